@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+//
+// Materials: sums of coloured lobes. Immutable values, cheap to copy.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "shlight/lobe_fit.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// A weight that depends on the view angle alone, tabulated as the fits are.
+class ViewWeight {
+  public:
+    explicit ViewWeight(std::vector<float> nodes) : nodes_(std::move(nodes)) {}
+    float operator()(float cos_theta_o) const;
+    const std::vector<float>& nodes() const { return nodes_; }
+
+  private:
+    std::vector<float> nodes_;
+};
+
+/// color · weight(θ_o) · shape.
+struct Lobe {
+    std::shared_ptr<const LobeFit> fit;
+    Rgb color;
+    std::shared_ptr<const ViewWeight> weight;  ///< null: 1
+
+    Rgb scale(float cos_theta_o) const { return weight ? color * (*weight)(cos_theta_o) : color; }
+};
+
+class Bsdf {
+  public:
+    Bsdf() = default;  ///< black
+
+    /// Throws std::invalid_argument for an albedo that is negative or not finite.
+    static Bsdf lambert(const Rgb& albedo);
+    /// GGX, height-correlated Smith, F = f0 + (1 - f0) s with s = (1 - cosθ_d)⁵, or with ior > 1 the exact dielectric
+    /// curve remapped to 0 … 1. alpha = roughness². Throws for roughness outside (0, 1] or a negative or non-finite f0.
+    static Bsdf ggx(float roughness, const Rgb& f0, float ior = 0.0F);
+    /// top + base · (1 - max over RGB of top's directional albedo).
+    static Bsdf layer(const Bsdf& top, const Bsdf& base);
+
+    Bsdf operator+(const Bsdf& other) const;
+    Bsdf scaled(const Rgb& factor) const;
+
+    const std::vector<Lobe>& lobes() const { return lobes_; }
+    /// f·cos in the shading frame.
+    Rgb evaluate(const Vec3d& wi, const Vec3d& wo) const;
+    /// ∫ f·cos dω.
+    Rgb albedo(double cos_theta_o) const;
+
+  private:
+    std::vector<Lobe> lobes_;
+};
+
+}  // namespace shlight

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+//
+// A lobe as spherical harmonics: the least-squares fit of f·cos over the *upper hemisphere*.
+//
+// Light coefficients are clipped at the horizon exactly, so below it the expansion may be anything; fitting only what
+// counts spares the ringing of a projection over the whole sphere. docs/algorithms.md derives the fit.
+// The view direction lies in the xz-plane, ω_o = (sinθ_o, 0, cosθ_o): only cosine terms (m ≥ 0) are non-zero.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "shlight/lobe_shape.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// Orders that a hit may choose from. Between neighbours the cost grows by about two, the error by much more.
+inline constexpr std::array<int, 12> kOrderLadder = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
+
+/// The coefficients of one order, tabulated over the view angle and interpolated.
+class LobeTable {
+  public:
+    /// nodes: one row of cosine_count(order) values for each view angle θ_o, equally spaced over 0 … π/2;
+    /// a single row for a lobe that does not depend on the view.
+    LobeTable(int order, std::vector<float> nodes);
+
+    int order() const { return order_; }
+    /// Writes the cosine_count(order()) cosine terms for one view angle.
+    void coefficients(float cos_theta_o, float* cosine_terms) const;
+
+  private:
+    int order_;
+    std::vector<float> nodes_;
+};
+
+/// The order that a hit takes, and whether it meets the tolerance (no order up to 64 may).
+struct OrderChoice {
+    int order;
+    bool met;
+};
+
+/// All fits of one shape.
+class LobeFit {
+  public:
+    explicit LobeFit(const LobeShape& shape);
+
+    const LobeShape& shape() const { return shape_; }
+    /// ∫ f·cos dω over the upper hemisphere.
+    double albedo(double cos_theta_o) const;
+    /// √∫ (f·cos)² dω over the upper hemisphere.
+    double norm(double cos_theta_o) const;
+    /// L2 error of the fit over the upper hemisphere ÷ norm, for any order 1 … 64.
+    double residual(double cos_theta_o, int order) const;
+    /// The smallest order of the ladder with residual ≤ tolerance.
+    OrderChoice order_for(double cos_theta_o, double tolerance) const;
+    /// The table of one order: kept for those of the ladder, solved for the others.
+    std::shared_ptr<const LobeTable> table(int order) const;
+
+  private:
+    LobeShape shape_;
+    int nodes_;                          // view angles: 1 for a lobe that does not depend on the view
+    std::vector<double> moments_;        // nodes × cosine_count(64): ∫ f·cos · (basis) dω
+    std::vector<double> norms_;          // nodes
+    std::vector<float> residuals_;       // nodes × 64
+    std::array<std::shared_ptr<const LobeTable>, kOrderLadder.size()> ladder_;
+};
+
+/// The fit of a shape, shared by everyone who asks for the same one while anyone keeps it. Thread-safe.
+std::shared_ptr<const LobeFit> fitted(const LobeShape& shape);
+
+}  // namespace shlight

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+//
+// Vocabulary that every other header shares: vectors, colours, orders and coefficient indices.
+//
+// Conventions (docs/conventions.md):
+//   * Shading frame: right-handed, the shading point is the origin, z is the surface normal.
+//   * Real, orthonormal spherical harmonics without Condon–Shortley phase.
+//   * order n means the bands l = 0 … n-1, that is n² coefficients at index l² + l + m.
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+namespace shlight {
+
+template <class T>
+using Vec3 = glm::vec<3, T, glm::defaultp>;
+using Vec3f = Vec3<float>;
+using Vec3d = Vec3<double>;
+
+/// Linear colour or radiance [W m⁻² sr⁻¹], Rec. 709 primaries.
+using Rgb = glm::vec<3, float, glm::defaultp>;
+
+/// The highest order: bands 0 … 63.
+inline constexpr int kMaxOrder = 64;
+
+/// Number of coefficients of an order.
+constexpr int coefficient_count(int order) { return order * order; }
+
+/// Where band l, degree m (-l ≤ m ≤ l) is stored.
+constexpr int coefficient_index(int l, int m) { return l * l + l + m; }
+
+/// Number of cosine terms (m ≥ 0) of an order: all that a light or a lobe with the mirror plane y = 0 has.
+constexpr int cosine_count(int order) { return order * (order + 1) / 2; }
+
+/// Where band l, degree m ≥ 0 is stored in a list of cosine terms.
+constexpr int cosine_index(int l, int m) { return l * (l + 1) / 2 + m; }
+
+/// Throws std::invalid_argument naming `order` unless 1 ≤ order ≤ kMaxOrder.
+void check_order(int order);
+
+}  // namespace shlight
