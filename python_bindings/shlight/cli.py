@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+"""The `shlight` command: finds its commands in the entry point group "shlight.commands" and runs one.
+
+A command is a function (argv: list[str]) -> int, its exit code. A package on top of this one adds commands without
+this one knowing it.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Sequence
+from importlib import metadata
+
+GROUP = "shlight.commands"
+# What a shell reports of a process that the signal ended.
+INTERRUPTED = 130
+PIPE_CLOSED = 141
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Runs `shlight argv...` and returns its exit code; 2 for a command line that is not understood."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    try:
+        code = _run(arguments)
+        sys.stdout.flush()
+        return code
+    except KeyboardInterrupt:
+        _complain("interrupted")
+        return INTERRUPTED
+    except BrokenPipeError:
+        # Python flushes stdout once more when it exits; that must not fail a second time.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _complain("standard output was closed before all was written")
+        return PIPE_CLOSED
+
+
+def _run(arguments: list[str]) -> int:
+    commands = metadata.entry_points(group=GROUP)
+    if not arguments or arguments[0] in ("-h", "--help", "help"):
+        print("usage: shlight <command> [arguments]\n       shlight --version\n\ncommands:")
+        for name in sorted(commands.names):
+            print(f"  {name}")
+        print("\n`shlight <command> --help` explains a command.")
+        return 0
+    name = arguments[0]
+    if name == "--version":
+        print(f"shlight {metadata.version('shlight')}")
+        return 0
+    if name not in commands.names:
+        _complain(f"unknown command '{name}'; `shlight --help` lists the commands")
+        return 2
+    try:
+        command: Callable[[list[str]], int] = commands[name].load()
+    except ModuleNotFoundError as error:
+        _complain(f"{name} needs the Python module {error.name}: pip install 'shlight[blender]'")
+        return 1
+    return command(arguments[1:])
+
+
+def _complain(message: str) -> None:
+    print(f"shlight: {message}", file=sys.stderr)

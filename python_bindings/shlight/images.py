@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: MIT
+"""Images as files: float32 OpenEXR and 8-bit PNG through OpenImageIO.
+
+An image is an array (height, width, channels) with row 0 on top. A file appears under its name only when it is
+complete: it is written beside it under a temporary name, then renamed.
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["linear_to_srgb8", "read_exr", "write_exr", "write_png"]
+
+_CHANNEL_NAMES = {1: ("Y",), 3: ("R", "G", "B"), 4: ("R", "G", "B", "A")}
+
+
+def write_exr(path: str | os.PathLike[str], image: npt.ArrayLike) -> None:
+    """Writes an image of 1, 3 or 4 channels as 32-bit float OpenEXR, compressed without loss.
+
+    With 4 channels RGB is premultiplied by alpha, as OpenEXR asks and as `shlight.render` returns it.
+    Raises ValueError for an array that is no such image, OSError when the file cannot be written.
+    """
+    pixels = _as_image(image, np.float32)
+    _write(Path(path), pixels, "openexr", "float", {"compression": "zip"})
+
+
+def read_exr(path: str | os.PathLike[str]) -> npt.NDArray[np.float32]:
+    """Reads the first part of an OpenEXR file as float32 of shape (height, width, channels).
+
+    Raises OSError when the file is missing or cannot be read.
+    """
+    import OpenImageIO as oiio
+
+    path = Path(path)
+    with path.open("rb"):  # the usual FileNotFoundError, PermissionError or IsADirectoryError
+        pass
+    source = oiio.ImageInput.open(str(path))
+    if source is None:
+        raise OSError(f"{path}: {oiio.geterror().strip()}")
+    try:
+        pixels = source.read_image("float") if source.format_name() == "openexr" else None
+        reason = source.geterror().strip() or "not an OpenEXR image"
+    finally:
+        source.close()
+    if pixels is None:
+        raise OSError(f"{path}: {reason}")
+    return np.ascontiguousarray(np.atleast_3d(pixels), dtype=np.float32)
+
+
+def write_png(path: str | os.PathLike[str], image_srgb_uint8: npt.ArrayLike) -> None:
+    """Writes a uint8 image of 1, 3 or 4 channels, sRGB encoded, alpha not premultiplied, as PNG.
+
+    Raises ValueError for an array that is no such image, OSError when the file cannot be written.
+    """
+    if np.asarray(image_srgb_uint8).dtype != np.uint8:
+        raise ValueError("image_srgb_uint8 must be of dtype uint8; linear_to_srgb8 makes it from linear light")
+    pixels = _as_image(image_srgb_uint8, np.uint8, "image_srgb_uint8")
+    _write(Path(path), pixels, "png", "uint8", {"oiio:ColorSpace": "sRGB", "oiio:UnassociatedAlpha": 1})
+
+
+def linear_to_srgb8(image: npt.ArrayLike, exposure: float = 0.0) -> npt.NDArray[np.uint8]:
+    """Linear light to 8-bit sRGB (IEC 61966-2-1), brightened by `exposure` stops first; what is brighter than 1 clips.
+
+    Of 4 channels the last is alpha: RGB is divided by it, and alpha itself stays linear. NaN becomes black.
+    """
+    linear = np.nan_to_num(_as_image(image, np.float32), nan=0.0).astype(np.float64)
+    colour = linear[..., :3]
+    if linear.shape[2] == 4:
+        alpha = np.clip(linear[..., 3:], 0.0, 1.0)
+        colour = np.divide(colour, alpha, out=np.zeros_like(colour), where=alpha > 0)
+        linear[..., 3:] = alpha
+    colour = np.clip(colour * 2.0**exposure, 0.0, 1.0)
+    linear[..., :3] = np.where(colour <= 0.0031308, 12.92 * colour, 1.055 * colour ** (1 / 2.4) - 0.055)
+    srgb: npt.NDArray[np.uint8] = np.round(linear * 255).astype(np.uint8)
+    return srgb
+
+
+def _as_image(image: npt.ArrayLike, dtype: type[np.generic], name: str = "image") -> npt.NDArray[Any]:
+    try:
+        pixels = np.ascontiguousarray(image, dtype=dtype)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name} must be an array of numbers") from error
+    if pixels.ndim != 3 or pixels.shape[2] not in _CHANNEL_NAMES or pixels.size == 0:
+        raise ValueError(f"{name} must have shape (height, width, 1, 3 or 4), not {pixels.shape}")
+    return pixels
+
+
+@contextmanager
+def _complete_or_absent(path: Path) -> Iterator[Path]:
+    """A new empty file beside `path`, renamed to it when the block ends well and removed when not."""
+    temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
+    try:
+        temporary.touch(exist_ok=False)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path)) from None
+    try:
+        yield temporary
+        temporary.replace(path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+def _write(
+    path: Path, pixels: npt.NDArray[Any], file_format: str, channel_type: str, attributes: dict[str, str | int]
+) -> None:
+    import OpenImageIO as oiio
+
+    height, width, channels = pixels.shape
+    spec = oiio.ImageSpec(width, height, channels, channel_type)
+    spec.channelnames = _CHANNEL_NAMES[channels]
+    for name, value in attributes.items():
+        spec.attribute(name, value)
+    with _complete_or_absent(path) as temporary:
+        target = oiio.ImageOutput.create(file_format)
+        if target is None:
+            raise OSError(f"{path}: {oiio.geterror().strip()}")
+        done = target.open(str(temporary), spec) and target.write_image(pixels)
+        if not (target.close() and done):
+            raise OSError(f"{path}: {target.geterror().strip() or 'the file could not be written'}")

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from shlight import metrics
+
+
+@pytest.fixture
+def reference() -> np.ndarray:
+    return np.random.default_rng(3).uniform(0.5, 2.0, (40, 50, 3))
+
+
+def test_rel_mse_by_hand() -> None:
+    reference = np.array([[[1.0, 1.0, 1.0], [3.0, 3.0, 3.0]]])  # mean 2
+    image = reference + np.array([[[0.1, 0.0, 0.0], [0.0, -0.2, 0.0]]])
+    expected = (0.1**2 / (1 + 0.04) + 0.2**2 / (9 + 0.04)) / 6
+    assert metrics.rel_mse(image, reference) == pytest.approx(expected, rel=1e-12)
+
+
+def test_alpha_does_not_count(reference: np.ndarray) -> None:
+    with_alpha = np.concatenate([reference, np.ones((40, 50, 1))], axis=-1)
+    other_alpha = np.concatenate([reference, np.zeros((40, 50, 1))], axis=-1)
+    assert metrics.rel_mse(with_alpha, other_alpha) == 0.0
+
+
+def test_relative_difference_is_the_signed_root(reference: np.ndarray) -> None:
+    image = reference * 1.1
+    grey = np.full_like(reference, 2.0)
+    np.testing.assert_allclose(metrics.relative_difference(grey * 1.1, grey), 0.1 / np.sqrt(1.01), rtol=1e-12)
+    assert (metrics.relative_difference(image, reference) > 0).all()
+    assert (metrics.relative_difference(reference - 0.1, reference) < 0).all()
+
+
+def test_mean_ratio(reference: np.ndarray) -> None:
+    assert metrics.mean_ratio(0.99 * reference, reference) == pytest.approx(0.99, rel=1e-12)
+    assert np.isnan(metrics.mean_ratio(reference, 0 * reference))
+
+
+def test_noise_of_the_reference_is_found(reference: np.ndarray) -> None:
+    rng = np.random.default_rng(4)
+    sigma = 0.05
+    a, b = (reference + sigma * rng.standard_normal(reference.shape) for _ in range(2))
+    error = metrics.standard_error(a, b)
+    assert error.shape == reference.shape
+    assert np.sqrt(np.mean(error**2)) == pytest.approx(sigma / np.sqrt(2), rel=0.05)
+    # What the truth scores against the noisy reference is what the halves foretell.
+    truth = metrics.rel_mse(reference, (a + b) / 2)
+    assert metrics.reference_rel_mse(a, b) == pytest.approx(truth, rel=0.1)
+    assert metrics.share_within(reference, (a + b) / 2, error) > 0.97
+    assert metrics.share_within(reference + 0.3, (a + b) / 2, error) < 0.01
+
+
+def test_standard_error_at_the_border_averages_existing_neighbours_only() -> None:
+    a = np.zeros((4, 4, 3))
+    b = np.full((4, 4, 3), 0.2)
+    np.testing.assert_allclose(metrics.standard_error(a, b), 0.1, rtol=1e-12)
+
+
+def test_equal_images_are_within(reference: np.ndarray) -> None:
+    assert metrics.share_within(reference, reference, np.zeros_like(reference)) == 1.0
+
+
+def test_faults_are_named(reference: np.ndarray) -> None:
+    with pytest.raises(ValueError, match="image and reference differ in size"):
+        metrics.rel_mse(reference[:-1], reference)
+    with pytest.raises(ValueError, match="reference must have shape"):
+        metrics.rel_mse(reference, reference[..., 0])
+    with pytest.raises(ValueError, match="reference is black"):
+        metrics.rel_mse(reference, 0 * reference)
+    broken = reference.copy()
+    broken[3, 4, 1] = np.nan
+    with pytest.raises(ValueError, match="image holds 1 values that are not finite"):
+        metrics.rel_mse(broken, reference)
+    with pytest.raises(ValueError, match="error must have the reference's shape"):
+        metrics.share_within(reference, reference, np.zeros((2, 2, 3)))
