@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/polygon.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "checks.h"
+#include "polygon_boundary.h"
+#include "polygon_cubature.h"
+#include "spherical_polygon.h"
+
+namespace shlight {
+namespace {
+
+/// Below this solid angle Ω the edges' contributions, each of order one, cancel to too few digits: their sum is wrong by
+/// about 2 ε / Ω of L_00. At the hand-over that is 1e-5 (float) and 1e-12 (double), and cubature is the faster one too.
+template <class T>
+constexpr double kSmallestForBoundary = std::is_same_v<T, float> ? 0.03 : 1e-3;
+
+template <class T>
+void integrate(const SphericalPolygon& polygon, int order, T* coefficients, PolygonMethod method) {
+    if (polygon.empty()) {
+        std::fill_n(coefficients, coefficient_count(order), T(0));
+        return;
+    }
+    if (method == PolygonMethod::automatic) {
+        method = polygon.solid_angle() < kSmallestForBoundary<T> ? PolygonMethod::cubature : PolygonMethod::boundary;
+    }
+    if (method == PolygonMethod::cubature) {
+        polygon_by_cubature(polygon, order, coefficients);
+    } else {
+        polygon_by_boundary(polygon, order, coefficients);
+    }
+}
+
+void check_polygon(std::span<const Vec3d> vertices, double epsilon) {
+    double largest = 0;
+    double extent = 0;
+    for (const Vec3d& v : vertices) {
+        check_finite("vertices", v);
+        largest = std::max(largest, glm::length(v));
+        extent = std::max(extent, glm::length(v - vertices[0]));
+    }
+    // A far polygon's vertices are off its plane by their own rounding.
+    if (extent > 0 && planarity_error(vertices) > 1e-4 + 8 * epsilon * largest / extent) {
+        reject("vertices: a polygon is not planar");
+    }
+}
+
+}  // namespace
+
+template <class T>
+void polygon_coefficients(std::span<const Vec3<T>> vertices, int order, bool clip, T* coefficients,
+                          PolygonMethod method) {
+    std::vector<Vec3d> exact(vertices.begin(), vertices.end());
+    integrate(SphericalPolygon(exact, clip), order, coefficients, method);
+}
+
+template <class T>
+void polygon_coefficients(std::span<const Vec3<T>> vertices, int vertex_count, int order, bool clip,
+                          std::span<T> coefficients, PolygonMethod method) {
+    check_order(order);
+    if (vertex_count < 3) {
+        reject("vertices: a polygon needs at least 3, got " + std::to_string(vertex_count));
+    }
+    const auto k = static_cast<std::size_t>(vertex_count);
+    const auto row = static_cast<std::size_t>(coefficient_count(order));
+    const std::size_t count = vertices.size() / k;
+    check_size("vertices", vertices.size(), count * k);
+    check_size("coefficients", coefficients.size(), count * row);
+    std::vector<Vec3d> exact(k);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto polygon = vertices.subspan(i * k, k);
+        std::transform(polygon.begin(), polygon.end(), exact.begin(), [](const Vec3<T>& v) { return Vec3d(v); });
+        check_polygon(exact, std::numeric_limits<T>::epsilon());
+        integrate(SphericalPolygon(exact, clip), order, coefficients.data() + i * row, method);
+    }
+}
+
+template void polygon_coefficients(std::span<const Vec3f>, int, bool, float*, PolygonMethod);
+template void polygon_coefficients(std::span<const Vec3d>, int, bool, double*, PolygonMethod);
+template void polygon_coefficients(std::span<const Vec3f>, int, int, bool, std::span<float>, PolygonMethod);
+template void polygon_coefficients(std::span<const Vec3d>, int, int, bool, std::span<double>, PolygonMethod);
+
+}  // namespace shlight

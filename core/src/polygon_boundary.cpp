@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+#include "polygon_boundary.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "band_system.h"
+#include "legendre.h"
+
+namespace shlight {
+namespace {
+
+/// Cosine and sine terms P̄_l^m cos mφ, P̄_l^m sin mφ (no √2) of one band.
+template <class T>
+struct BandTerms {
+    std::array<T, kMaxOrder + 1> cosine, sine;
+};
+
+/// The terms at one end of an arc, band after band.
+template <class T>
+class EndPoint {
+  public:
+    EndPoint(const Vec3d& direction, int order) : legendre_(static_cast<T>(direction.z)) {
+        complex_powers(static_cast<T>(direction.x), static_cast<T>(direction.y), order, cos_.data(), sin_.data());
+    }
+    void advance() { legendre_.advance(); }
+    T cosine(int m) const { return legendre_[m] * cos_[static_cast<std::size_t>(m)]; }
+    T sine(int m) const { return legendre_[m] * sin_[static_cast<std::size_t>(m)]; }
+
+  private:
+    LegendreRows<T> legendre_;
+    std::array<T, kMaxOrder> cos_, sin_;
+};
+
+/// An edge in the frame turned about z so that its pole is (sinθ, 0, cosθ).
+struct Edge {
+    double length, cos_tilt, sin_tilt, cos_azimuth, sin_azimuth;
+    Vec3d from, to;
+
+    Edge(const Vec3d& a, const Vec3d& b, const Vec3d& cross) {
+        const double sine = glm::length(cross);
+        const double radial = std::hypot(cross.x, cross.y);
+        length = std::atan2(sine, glm::dot(a, b));
+        cos_tilt = sine > 0 ? cross.z / sine : 1.0;
+        sin_tilt = sine > 0 ? radial / sine : 0.0;
+        cos_azimuth = radial > 0 ? cross.x / radial : 1.0;
+        sin_azimuth = radial > 0 ? cross.y / radial : 0.0;
+        from = turned(a);
+        to = turned(b);
+    }
+
+  private:
+    Vec3d turned(const Vec3d& v) const {
+        return {cos_azimuth * v.x + sin_azimuth * v.y, cos_azimuth * v.y - sin_azimuth * v.x, v.z};
+    }
+};
+
+/// P_l(0) for l = 0, 1, 2, … : along a great circle ω·N = 0.
+template <class T>
+T legendre_at_zero(int l) {
+    T p = l % 2 == 0 ? T(1) : T(0);
+    for (int k = 2; k <= l && l % 2 == 0; k += 2) {
+        p *= -static_cast<T>(k - 1) / static_cast<T>(k);
+    }
+    return p;
+}
+
+/// ∫ P̄_l^m cos mφ ds and ∫ P̄_l^m sin mφ ds along an edge. A turn about the pole moves along the edge, so the
+/// generator's right sides are plain differences of the end points.
+template <class T>
+class ArcIntegrals {
+  public:
+    ArcIntegrals(const Edge& edge, int order)
+        : length_(static_cast<T>(edge.length)),
+          cos_tilt_(static_cast<T>(edge.cos_tilt)),
+          sin_tilt_(static_cast<T>(edge.sin_tilt)),
+          legendre_(cos_tilt_),
+          from_(edge.from, order),
+          to_(edge.to, order) {
+        powers(sin_tilt_, order, sin_powers_.data());
+        terms_.cosine[0] = legendre_[0] * length_;
+        terms_.sine[0] = 0;
+    }
+
+    const BandTerms<T>& terms() const { return terms_; }
+
+    void advance() {
+        legendre_.advance();
+        from_.advance();
+        to_.advance();
+        const int l = legendre_.band();
+        std::array<T, kMaxOrder> null, sine_rise, cosine_fall;
+        for (int m = 0; m <= l; ++m) {
+            const auto k = static_cast<std::size_t>(m);
+            null[k] = legendre_[m] * sin_powers_[k];
+            sine_rise[k] = to_.sine(m) - from_.sine(m);
+            cosine_fall[k] = from_.cosine(m) - to_.cosine(m);
+        }
+        const BandSystem<T> system(l, cos_tilt_, sin_tilt_, legendre_.row());
+        system.solve(sine_rise.data(), terms_.cosine.data());
+        set_null_component(l, null.data(), legendre_at_zero<T>(l) * length_, terms_.cosine.data());
+        system.solve(cosine_fall.data(), terms_.sine.data());
+        fix_sine_part(l, cosine_fall[0], null.data());
+    }
+
+  private:
+    /// The sine part obeys two conditions more (Y_0 = 0 and the row m = 0) for its one free multiple of the null vector:
+    /// least squares of both, because either alone becomes singular for some pole.
+    void fix_sine_part(int l, T cosine_fall, const T* null) {
+        const T ladder = LegendreConstants<T>::get().ladder[at(l, 0)];
+        T* z = terms_.sine.data();
+        const T alpha = -(z[0] * null[0] + cosine_fall * legendre_[1] / ladder + z[1] * null[1]) /
+                        (null[0] * null[0] + null[1] * null[1]);
+        for (int m = 0; m <= l; ++m) {
+            z[m] += alpha * null[m];
+        }
+        z[0] = 0;
+    }
+
+    T length_, cos_tilt_, sin_tilt_;
+    LegendreRows<T> legendre_;
+    EndPoint<T> from_, to_;
+    std::array<T, kMaxOrder> sin_powers_;
+    BandTerms<T> terms_;
+};
+
+/// ∫ N·∇Y ds of band l from the arc integrals of band l-1: N is a constant vector, and the gradient of a solid
+/// harmonic lies one band lower.
+template <class T>
+BandTerms<T> normal_derivative(int l, T cos_tilt, T sin_tilt, const BandTerms<T>& below) {
+    const T g = std::sqrt(static_cast<T>(2 * l + 1) / static_cast<T>(2 * l - 1));
+    const auto root = [](int product) { return std::sqrt(static_cast<T>(std::max(0, product))); };
+    BandTerms<T> out;
+    for (int m = 0; m <= l; ++m) {
+        const auto k = static_cast<std::size_t>(m);
+        const T same = m < l ? cos_tilt * root(l * l - m * m) : T(0);
+        const T up = m + 1 < l ? -sin_tilt / 2 * root((l - m) * (l - m - 1)) : T(0);
+        const T down = sin_tilt / 2 * root((l + m) * (l + m - 1));
+        T c = 0;
+        T s = 0;
+        if (m < l) {
+            c += same * below.cosine[k];
+            s += same * below.sine[k];
+        }
+        if (m + 1 < l) {
+            c += up * below.cosine[k + 1];
+            s += up * below.sine[k + 1];
+        }
+        if (m >= 1) {
+            c += down * below.cosine[k - 1];
+            s += down * below.sine[k - 1];
+        } else if (l > 1) {
+            c -= down * below.cosine[1];  // Y^{-1} = -conj Y^1
+        }
+        out.cosine[k] = g * c;
+        out.sine[k] = g * s;
+    }
+    return out;
+}
+
+template <class T>
+void add_edge(const Edge& edge, int order, T* coefficients) {
+    const auto cos_tilt = static_cast<T>(edge.cos_tilt);
+    const auto sin_tilt = static_cast<T>(edge.sin_tilt);
+    std::array<T, kMaxOrder> cos_m, sin_m;
+    complex_powers(static_cast<T>(edge.cos_azimuth), static_cast<T>(edge.sin_azimuth), order, cos_m.data(),
+                   sin_m.data());
+    ArcIntegrals<T> arc(edge, order);
+    for (int l = 1; l < order; ++l) {
+        const BandTerms<T> e = normal_derivative(l, cos_tilt, sin_tilt, arc.terms());
+        const T scale = 1 / static_cast<T>(l * (l + 1));
+        const T pair = scale * std::numbers::sqrt2_v<T>;
+        T* band = coefficients + coefficient_index(l, 0);
+        band[0] += scale * e.cosine[0];
+        for (int m = 1; m <= l; ++m) {
+            const auto k = static_cast<std::size_t>(m);
+            band[m] += pair * (e.cosine[k] * cos_m[k] - e.sine[k] * sin_m[k]);
+            band[-m] += pair * (e.cosine[k] * sin_m[k] + e.sine[k] * cos_m[k]);
+        }
+        if (l + 1 < order) {
+            arc.advance();
+        }
+    }
+}
+
+}  // namespace
+
+template <class T>
+void polygon_by_boundary(const SphericalPolygon& polygon, int order, T* coefficients) {
+    std::fill_n(coefficients, coefficient_count(order), T(0));
+    coefficients[0] = static_cast<T>(polygon.solid_angle() * std::sqrt(1 / (4 * std::numbers::pi)));
+    const std::vector<Vec3d>& v = polygon.directions();
+    for (std::size_t i = 0; i < v.size() && order > 1; ++i) {
+        const Vec3d& cross = polygon.edge_cross(i);
+        if (cross != Vec3d(0)) {
+            add_edge(Edge(v[i], v[(i + 1) % v.size()], cross), order, coefficients);
+        }
+    }
+}
+
+template void polygon_by_boundary(const SphericalPolygon&, int, float*);
+template void polygon_by_boundary(const SphericalPolygon&, int, double*);
+
+}  // namespace shlight

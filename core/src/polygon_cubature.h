@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "spherical_polygon.h"
+
+namespace shlight {
+
+/// order² coefficients by Gauss cubature on the polygon's triangles, to the precision of T for every size and shape.
+template <class T>
+void polygon_by_cubature(const SphericalPolygon& polygon, int order, T* coefficients);
+
+}  // namespace shlight
