@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+//
+// The references themselves: two resolutions and two unrelated methods must agree far below what the tests ask of the
+// library.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <vector>
+
+#include "quad_truth.h"
+#include "random_input.h"
+
+namespace shlight {
+namespace {
+
+using testing::RandomInput;
+using truth::CapInput;
+using truth::Coefficients;
+
+/// The larger of two errors, NaN counting as larger.
+double worst(double a, double b) {
+    return b <= a ? a : b;
+}
+
+/// Largest difference ÷ L_00 of the first.
+double difference(const Coefficients& a, const Coefficients& b) {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.high.size(); ++i) {
+        largest = worst(largest, std::abs((a.high[i] - b.high[i]) + (a.low[i] - b.low[i])));
+    }
+    return largest / a.high[0];
+}
+
+void print(const char* what, double error) {
+    std::printf("%-28s %.1e of L_00\n", what, error);
+}
+
+CapInput random_clipped_cap(RandomInput& random) {
+    const double half = random.log_uniform(1e-6, 1.56);
+    const double tilt = std::numbers::pi / 2 + half * random.uniform(-1, 0.999);
+    return {random.at_tilt(tilt), CapInput::Kind::angle, half};
+}
+
+std::vector<Vec3d> random_polygon(RandomInput& random, double size) {
+    const Vec3d center = random.direction();
+    const Vec3d u = size * glm::normalize(glm::cross(center, random.direction()));
+    const Vec3d v = size * glm::normalize(glm::cross(random.direction(), u));
+    const int count = random.integer(3, 6);
+    std::vector<Vec3d> vertices;
+    for (int i = 0; i < count; ++i) {
+        const double angle = 2 * std::numbers::pi * (i + random.uniform(0, 0.8)) / count;
+        vertices.push_back(center + random.uniform(0.3, 1) * (std::cos(angle) * u + std::sin(angle) * v));
+    }
+    return vertices;
+}
+
+TEST(Reference, CapsHaveConverged) {
+    RandomInput random(1);
+    double largest = 0;
+    for (const int order : {8, 16, 33, 64}) {
+        for (int i = 0; i < 800 / order; ++i) {
+            const CapInput input = random_clipped_cap(random);
+            for (const bool clip : {true, false}) {
+                const Coefficients reference = truth::cap(input, order, clip);
+                largest = worst(largest, difference(reference, truth::cap(input, order, clip, 8)));
+            }
+        }
+    }
+    print("caps, two resolutions", largest);
+    EXPECT_LE(largest, 1e-20);
+}
+
+TEST(Reference, CapsAgreeWithQuadratureOverColatitude) {
+    RandomInput random(2);
+    double largest = 0;
+    for (int i = 0; i < 60; ++i) {
+        CapInput input = random_clipped_cap(random);
+        if (i % 4 == 0 || input.size > 1) {  // whole, wide about the pole
+            input.axis = random.at_tilt(random.uniform(0, 1.5));
+        }
+        for (const bool clip : {true, false}) {
+            const Coefficients reference = truth::cap(input, 12, clip);
+            largest = worst(largest, difference(reference, truth::cap_by_slices(input, 12, clip)));
+        }
+    }
+    print("caps, two methods", largest);
+    EXPECT_LE(largest, 1e-20);
+}
+
+TEST(Reference, PolygonsHaveConverged) {
+    RandomInput random(3);
+    double largest = 0;
+    for (const int order : {8, 16, 33, 64}) {
+        for (int i = 0; i < 400 / order; ++i) {
+            const std::vector<Vec3d> vertices = random_polygon(random, random.log_uniform(1e-6, 100));
+            for (const bool clip : {true, false}) {
+                const Coefficients reference = truth::polygon(vertices, order, clip);
+                if (reference.high[0] > 0) {
+                    largest = worst(largest, difference(reference, truth::polygon(vertices, order, clip, 8)));
+                }
+            }
+        }
+    }
+    print("polygons, two resolutions", largest);
+    EXPECT_LE(largest, 1e-20);
+}
+
+TEST(Reference, PolygonsAgreeWithProductCubature) {
+    RandomInput random(4);
+    double largest = 0;
+    for (int i = 0; i < 12; ++i) {
+        const std::vector<Vec3d> vertices = random_polygon(random, random.log_uniform(1e-4, 0.3));
+        for (const bool clip : {true, false}) {
+            const Coefficients reference = truth::polygon(vertices, 10, clip);
+            if (reference.high[0] > 0) {
+                largest = worst(largest, difference(reference, truth::polygon_by_cubature(vertices, 10, clip, 36)));
+            }
+        }
+    }
+    print("polygons, two methods", largest);
+    EXPECT_LE(largest, 1e-17);
+}
+
+}  // namespace
+}  // namespace shlight
