@@ -60,11 +60,15 @@ class LobeFit {
     std::shared_ptr<const LobeTable> table(int order) const;
 
   private:
+    void fit_all_views();
+    LobeTable solve_table(int order) const;
+
     LobeShape shape_;
-    int nodes_;                          // view angles: 1 for a lobe that does not depend on the view
-    std::vector<double> moments_;        // nodes × cosine_count(64): ∫ f·cos · (basis) dω
-    std::vector<double> norms_;          // nodes
-    std::vector<float> residuals_;       // nodes × 64
+    // One row per view angle; empty for Lambert, which does not depend on it and is known in closed form.
+    std::vector<double> reduced_;  // moments ∫ f·cos · (basis) dω, reduced so that they serve every order
+    std::vector<double> norms_;
+    std::vector<double> albedos_;
+    std::vector<float> residuals_;  // × 64 orders
     std::array<std::shared_ptr<const LobeTable>, kOrderLadder.size()> ladder_;
 };
 

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+//
+// Points in the unit square that fill it evenly, and the same on every run, machine and number of threads.
+#pragma once
+
+#include <cstdint>
+
+#include <glm/vec2.hpp>
+
+namespace shlight {
+
+/// Mixes two numbers into one that looks random.
+std::uint32_t hash(std::uint32_t a, std::uint32_t b);
+
+/// Point `index` of the two-dimensional Sobol sequence, Owen-scrambled by `seed` (Burley 2020, "Practical hash-based
+/// Owen scrambling"): each block of 2^k points, aligned at a multiple of 2^k, has one point in each elementary interval
+/// of area 2^-k. Coordinates lie strictly between 0 and 1.
+glm::dvec2 sobol(std::uint32_t index, std::uint32_t seed);
+
+/// Point `index` of the `count` points of a centred Hammersley set, the same for every pixel: edges get even steps and
+/// no noise. One point is the centre.
+glm::dvec2 hammersley(std::uint32_t index, std::uint32_t count);
+
+}  // namespace shlight

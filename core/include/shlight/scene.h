@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+//
+// What is rendered: meshes, materials and lights in one world frame, in metres.
+//
+// A Scene collects; compile() makes of it an immutable CompiledScene that any number of threads may read.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "shlight/light.h"
+#include "shlight/mesh.h"
+#include "shlight/ray_tracer.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// A material as the renderer meets it.
+struct Material {
+    Bsdf bsdf;
+    Rgb emission;  ///< radiance of both sides
+};
+
+/// A surface where a ray has met it, turned to the side that the ray came from.
+struct SurfacePoint {
+    Vec3d position;
+    Vec3d geometric_normal;  ///< unit
+    Vec3d shading_normal;    ///< unit, on the side of the geometric normal
+    /// Bound of the distance between this point and the surface that float rays meet here.
+    double error;
+    std::uint32_t material;
+};
+
+class CompiledScene {
+  public:
+    CompiledScene(const CompiledScene&) = delete;
+    CompiledScene& operator=(const CompiledScene&) = delete;
+    ~CompiledScene();
+
+    std::span<const Material> materials() const;
+    /// Lamps first, in the order in which they were added, then emissive faces.
+    std::span<const Light> lights() const;
+    const RayTracer& rays() const;
+    /// Precondition: not hit.missed(); direction is the ray's.
+    SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
+
+  private:
+    friend class Scene;
+    class Impl;
+    explicit CompiledScene(std::unique_ptr<const Impl> impl);
+    std::unique_ptr<const Impl> impl_;
+};
+
+class Scene {
+  public:
+    /// Throws as check_mesh does. Emissive faces become two-sided polygon lights; as every face, the camera sees them
+    /// and they block light.
+    void add_mesh(Mesh mesh);
+    /// These two throw as make_sphere_light and make_polygon_light do. Such lights are not seen by the camera and do
+    /// not block light.
+    void add_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk = false);
+    void add_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance);
+
+    /// Builds with at most `threads` threads, 0: all cores.
+    /// Throws std::invalid_argument for threads < 0, std::bad_alloc or std::runtime_error when Embree fails.
+    std::shared_ptr<const CompiledScene> compile(int threads = 0) const;
+
+  private:
+    std::vector<std::shared_ptr<const Mesh>> meshes_;
+    std::vector<Light> lamps_;
+};
+
+}  // namespace shlight

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "hits.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace shlight {
+namespace {
+
+constexpr double kSmallestViewCosine = 1e-4;
+
+/// Any unit vector at right angles to a unit vector (Duff et al. 2017).
+Vec3d perpendicular(const Vec3d& n) {
+    const double sign = std::copysign(1.0, n.z);
+    const double a = -1 / (sign + n.z);
+    return {1 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x};
+}
+
+}  // namespace
+
+ShadingFrame shading_frame(const SurfacePoint& surface, const Vec3d& towards_viewer) {
+    const Vec3d& z = surface.shading_normal;
+    const Vec3d across = glm::cross(z, towards_viewer);
+    const double length = glm::length(across);
+    // Seen head-on the azimuth is free, and every lobe is round.
+    const Vec3d y = length > 1e-12 ? across / length : perpendicular(z);
+    return {surface.position, glm::cross(y, z), y, z};
+}
+
+float view_cosine(const ShadingFrame& frame, const Vec3d& towards_viewer) {
+    return static_cast<float>(std::clamp(glm::dot(frame.z, towards_viewer), kSmallestViewCosine, 1.0));
+}
+
+void Hits::clear() {
+    frame.clear();
+    cos_theta_o.clear();
+    shadow_origin.clear();
+    error.clear();
+    material.clear();
+    sample.clear();
+    radiance.clear();
+    pixel_begin.assign(1, 0);
+}
+
+void Hits::add(const SurfacePoint& surface, const Vec3d& towards_viewer, const Rgb& emission,
+               std::uint32_t sample_index) {
+    frame.push_back(shading_frame(surface, towards_viewer));
+    cos_theta_o.push_back(view_cosine(frame.back(), towards_viewer));
+    shadow_origin.push_back(surface.position + surface.error * surface.geometric_normal);
+    error.push_back(surface.error);
+    material.push_back(surface.material);
+    sample.push_back(sample_index);
+    radiance.push_back(emission);
+}
+
+}  // namespace shlight

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "checks.h"
+#include "ray_rounding.h"
+
+namespace shlight {
+namespace {
+
+constexpr double kPlanar = 1e-4;       // of the extent: far above the rounding of float vertices, far below a picture
+constexpr double kRepeated = 1e-9;     // of the extent: two vertices are one
+constexpr double kSmallestArea = 1e-9;  // of the extent squared
+
+double extent_of(const std::vector<Vec3d>& vertices) {
+    double extent = 0;
+    for (const Vec3d& v : vertices) {
+        extent = std::max(extent, glm::length(v - vertices[0]));
+    }
+    return extent;
+}
+
+/// Twice the vector area (Newell): right for any simple polygon, convex or not.
+Vec3d doubled_area(const std::vector<Vec3d>& vertices) {
+    Vec3d sum(0);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        sum += glm::cross(vertices[i] - vertices[0], vertices[(i + 1) % vertices.size()] - vertices[0]);
+    }
+    return sum;
+}
+
+void merge_repeated(std::vector<Vec3d>& vertices, double extent) {
+    const auto same = [extent](const Vec3d& a, const Vec3d& b) { return glm::length(a - b) <= kRepeated * extent; };
+    vertices.erase(std::unique(vertices.begin(), vertices.end(), same), vertices.end());
+    while (vertices.size() > 1 && same(vertices.front(), vertices.back())) {
+        vertices.pop_back();
+    }
+}
+
+void flatten(std::vector<Vec3d>& vertices, const Vec3d& normal, double extent) {
+    Vec3d center(0);
+    for (const Vec3d& v : vertices) {
+        center += v / static_cast<double>(vertices.size());
+    }
+    for (Vec3d& v : vertices) {
+        const double height = glm::dot(v - center, normal);
+        if (!(std::abs(height) <= kPlanar * extent)) {
+            reject("vertices are not planar");
+        }
+        v -= height * normal;
+    }
+}
+
+/// Ear clipping (Meisters 1975). Collinear vertices are dropped with ears of no area.
+class EarClipper {
+  public:
+    EarClipper(const std::vector<Vec3d>& vertices, const Vec3d& normal, double extent)
+        : vertices_(vertices), normal_(normal), tolerance_(1e-12 * extent * extent), left_(vertices.size()) {
+        std::iota(left_.begin(), left_.end(), 0U);
+    }
+
+    std::vector<Triangle> run() {
+        std::vector<Triangle> triangles;
+        while (left_.size() >= 3) {
+            const std::size_t ear = find_ear();
+            const Triangle triangle = corner(ear);
+            if (area(triangle) > tolerance_) {
+                triangles.push_back(triangle);
+            }
+            left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(ear));
+        }
+        return triangles;
+    }
+
+  private:
+    Triangle corner(std::size_t i) const {
+        const std::size_t n = left_.size();
+        return {left_[(i + n - 1) % n], left_[i], left_[(i + 1) % n]};
+    }
+
+    double area(const Triangle& t) const {
+        return glm::dot(normal_, glm::cross(vertices_[t.y] - vertices_[t.x], vertices_[t.z] - vertices_[t.x]));
+    }
+
+    bool contains_vertex(const Triangle& t) const {
+        return std::any_of(left_.begin(), left_.end(), [&](std::uint32_t p) {
+            return p != t.x && p != t.y && p != t.z && area({t.x, t.y, p}) >= -tolerance_ &&
+                   area({t.y, t.z, p}) >= -tolerance_ && area({t.z, t.x, p}) >= -tolerance_;
+        });
+    }
+
+    std::size_t find_ear() const {
+        for (std::size_t i = 0; i < left_.size(); ++i) {
+            const Triangle triangle = corner(i);
+            const double size = area(triangle);
+            if (std::abs(size) <= tolerance_ || (size > 0 && !contains_vertex(triangle))) {
+                return i;
+            }
+        }
+        reject("vertices: the polygon crosses itself");
+    }
+
+    const std::vector<Vec3d>& vertices_;
+    Vec3d normal_;
+    double tolerance_;
+    std::vector<std::uint32_t> left_;
+};
+
+}  // namespace
+
+SphereLight make_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk) {
+    check_finite("center", center);
+    if (!(std::isfinite(radius) && radius > 0)) {
+        reject("radius must be positive and finite");
+    }
+    check_finite("radiance", radiance);
+    return {center, radius, radiance, facing_disk};
+}
+
+PolygonLight make_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance, bool two_sided) {
+    if (vertices.size() < 3) {
+        reject("vertices: a polygon needs at least three");
+    }
+    for (const Vec3d& v : vertices) {
+        check_finite("vertices", v);
+    }
+    check_finite("radiance", radiance);
+    const double extent = extent_of(vertices);
+    merge_repeated(vertices, extent);
+    const Vec3d area = doubled_area(vertices);
+    if (vertices.size() < 3 || !(glm::length(area) > kSmallestArea * extent * extent)) {
+        reject("vertices: the polygon has no area");
+    }
+    const Vec3d normal = glm::normalize(area);
+    flatten(vertices, normal, extent);
+    std::vector<Triangle> triangles = EarClipper(vertices, normal, extent).run();
+    // What ear clipping leaves out by mistake of a polygon that crosses itself shows in the area.
+    double covered = 0;
+    for (const Triangle& t : triangles) {
+        covered += glm::length(glm::cross(vertices[t.y] - vertices[t.x], vertices[t.z] - vertices[t.x]));
+    }
+    if (!(std::abs(covered - glm::length(area)) <= 1e-6 * covered)) {
+        reject("vertices: the polygon crosses itself");
+    }
+    double largest = 0;
+    for (const Vec3d& v : vertices) {
+        largest = std::max(largest, largest_component(v));
+    }
+    const double error = kRayRounding * (largest + extent);
+    return {std::move(vertices), std::move(triangles), normal, radiance, two_sided, error};
+}
+
+}  // namespace shlight

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "light_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "shlight/cap.h"
+#include "shlight/polygon.h"
+
+namespace shlight {
+namespace {
+
+Cap<float> to_float(const Cap<double>& cap) {
+    const auto f = [](double x) { return static_cast<float>(x); };
+    return {f(cap.cos_tilt), f(cap.sin_tilt), f(cap.cos_azimuth), f(cap.sin_azimuth),
+            f(cap.cos_half), f(cap.sin_half), f(cap.crossing),    cap.complement};
+}
+
+/// In double up to the few numbers that the recurrences start from: contact and tangency amplify rounding.
+Cap<float> cap_of(const CapView& cap) {
+    switch (cap.kind) {
+        case CapView::Kind::sphere:
+            return to_float(Cap<double>::of_sphere(cap.center, cap.radius));
+        case CapView::Kind::facing_disk:
+            return to_float(Cap<double>::of_facing_disk(cap.center, cap.radius));
+        case CapView::Kind::inside:
+            break;
+    }
+    return Cap<float>::about_axis(Vec3f(0, 0, 1), std::numbers::pi_v<float> / 2);
+}
+
+}  // namespace
+
+std::optional<CapView> view(const SphereLight& light, const ShadingFrame& frame) {
+    const Vec3d center = frame.point_to_local(light.center);
+    const double distance = glm::length(center);
+    if (light.facing_disk) {
+        // The disk's upper rim: the centre's height plus the radius along the disk's steepest line.
+        const double rim = center.z * distance + light.radius * std::hypot(center.x, center.y);
+        if (distance > 0 && !(rim > 0)) {
+            return std::nullopt;
+        }
+        return CapView{distance > 0 ? CapView::Kind::facing_disk : CapView::Kind::inside, center, light.radius};
+    }
+    if (distance <= light.radius) {
+        return CapView{CapView::Kind::inside, center, light.radius};
+    }
+    if (!(center.z + light.radius > 0)) {
+        return std::nullopt;
+    }
+    return CapView{CapView::Kind::sphere, center, light.radius};
+}
+
+bool is_seen(const PolygonLight& light, const ShadingFrame& frame, double error) {
+    const double height = glm::dot(light.normal, frame.origin - light.vertices[0]);
+    if (!((light.two_sided ? std::abs(height) : height) > 2 * (error + light.error))) {
+        return false;
+    }
+    return std::any_of(light.vertices.begin(), light.vertices.end(),
+                       [&](const Vec3d& v) { return glm::dot(frame.z, v - frame.origin) > 0; });
+}
+
+void light_coefficients(const CapView& cap, int order, float* coefficients) {
+    cap_coefficients(cap_of(cap), order, true, coefficients);
+}
+
+void light_coefficients(const PolygonLight& light, const ShadingFrame& frame, int order, std::vector<Vec3f>& vertices,
+                        float* coefficients) {
+    vertices.clear();
+    for (const Vec3d& v : light.vertices) {
+        vertices.emplace_back(frame.point_to_local(v));
+    }
+    polygon_coefficients<float>(std::span<const Vec3f>(vertices), order, true, coefficients);
+}
+
+}  // namespace shlight

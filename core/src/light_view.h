@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+//
+// Lights as a hit sees them: in its shading frame, with what lies on their dark side or below the horizon sorted out.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "hits.h"
+#include "shlight/light.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// A sphere light. Within the sphere the whole hemisphere is lit: the limit of a point that touches it.
+struct CapView {
+    enum class Kind { sphere, facing_disk, inside };
+
+    Kind kind;
+    Vec3d center;
+    double radius;
+};
+
+/// Nothing for a cap that lies below the horizon.
+std::optional<CapView> view(const SphereLight& light, const ShadingFrame& frame);
+
+/// Whether the light's bright side is seen at all: the hit lies off the polygon's plane, on a side that it shines to,
+/// and some vertex is above the horizon. A hit in the plane, within rounding, gets nothing: a polygon is dark edge-on,
+/// and a surface on which a light lies flat is not lit at random.
+bool is_seen(const PolygonLight& light, const ShadingFrame& frame, double error);
+
+/// Coefficients of the light at one hit, order² values.
+void light_coefficients(const CapView& cap, int order, float* coefficients);
+void light_coefficients(const PolygonLight& light, const ShadingFrame& frame, int order, std::vector<Vec3f>& vertices,
+                        float* coefficients);
+
+}  // namespace shlight

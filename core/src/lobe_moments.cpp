@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "lobe_moments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "gauss_legendre.h"
+#include "legendre.h"
+
+namespace shlight {
+namespace {
+
+constexpr int kPanelPoints = 16;
+
+/// A panel no longer than this holds fewer than three waves of band 63: sixteen points integrate them to 1e-10.
+constexpr double kLongestPanel = std::numbers::pi / 12;
+
+struct Rule {
+    std::vector<double> nodes, weights;
+};
+
+/// A point near which a function varies over a length `scale` rather than over one.
+struct Feature {
+    double position, scale;
+};
+
+/// Gauss panels over (from, to), each no longer than kLongestPanel and than half its distance from a feature plus its scale.
+Rule graded_rule(double from, double to, const std::vector<Feature>& features) {
+    Rule rule;
+    const GaussRule& gauss = gauss_rule(kPanelPoints);
+    double start = from;
+    while (start < to) {
+        // The bound holds at both ends of the panel if it is taken at the nearer one.
+        const auto allowed = [&](double x) {
+            double length = kLongestPanel;
+            for (const Feature& f : features) {
+                length = std::min(length, f.scale + 0.7 * std::abs(x - f.position));
+            }
+            return length;
+        };
+        double length = allowed(start);
+        length = std::min(length, 2 * allowed(start + length));
+        if (to - start < 1.2 * length) {
+            length = to - start;
+        }
+        for (std::size_t i = 0; i < gauss.nodes.size(); ++i) {
+            rule.nodes.push_back(start + length * gauss.nodes[i]);
+            rule.weights.push_back(length * gauss.weights[i]);
+        }
+        start += length;
+    }
+    return rule;
+}
+
+/// Half width of the lobe [rad]; a lobe without a peak has that of the hemisphere.
+double width(const LobeShape& shape) {
+    const auto* ggx = std::get_if<GgxShape>(&shape);
+    return ggx != nullptr ? ggx->alpha : 1.0;
+}
+
+/// The lobe's Fourier moments over the azimuth at one θ: out[m] = ∫ f·cos cos mφ dφ; returns ∫ (f·cos)² dφ.
+double azimuth_moments(const LobeShape& shape, double theta, const Vec3d& wo, const Rule& phi,
+                       const std::vector<double>& cos_m_phi, std::vector<double>& out) {
+    std::fill(out.begin(), out.end(), 0.0);
+    const double sine = std::sin(theta);
+    const double cosine = std::cos(theta);
+    double square = 0;
+    for (std::size_t j = 0; j < phi.nodes.size(); ++j) {
+        // The mirror direction of ω_o = (sinθ_o, 0, cosθ_o) has φ = π: angles count from there.
+        const Vec3d wi(-sine * std::cos(phi.nodes[j]), sine * std::sin(phi.nodes[j]), cosine);
+        const double f = lobe_value(shape, wi, wo);
+        const double weighted = 2 * f * phi.weights[j];
+        square += f * weighted;
+        const double* c = &cos_m_phi[j * kMaxOrder];
+        for (std::size_t m = 0; m < kMaxOrder; ++m) {
+            out[m] += weighted * c[m];
+        }
+    }
+    return square;
+}
+
+std::vector<double> cosines(const Rule& phi) {
+    std::vector<double> values(phi.nodes.size() * kMaxOrder);
+    std::vector<double> unused(kMaxOrder);
+    for (std::size_t j = 0; j < phi.nodes.size(); ++j) {
+        // cos m(π - φ') = (-1)^m cos mφ': the sign is folded in here.
+        complex_powers(-std::cos(phi.nodes[j]), std::sin(phi.nodes[j]), kMaxOrder, &values[j * kMaxOrder],
+                       unused.data());
+    }
+    return values;
+}
+
+}  // namespace
+
+LobeMoments lobe_moments(const LobeShape& shape, double theta_o) {
+    const double alpha = width(shape);
+    const double half_pi = std::numbers::pi / 2;
+    const Vec3d wo(std::sin(theta_o), 0.0, std::cos(theta_o));
+    // The lobe is α wide in the plane of incidence and α cosθ_o across; masking varies over α near the horizon.
+    const Rule theta = graded_rule(0, half_pi, {{theta_o, alpha}, {half_pi, alpha}});
+    const double across = alpha * std::max(wo.z, 0.05);
+    const Rule phi = graded_rule(0, std::numbers::pi, {{0.0, across / std::max(wo.x, across)}});
+    const std::vector<double> cos_m_phi = cosines(phi);
+
+    LobeMoments result{std::vector<double>(kCosineMax, 0.0), 0.0, 0.0};
+    std::vector<double> fourier(kMaxOrder);
+    std::vector<double> sines(kMaxOrder);
+    for (std::size_t i = 0; i < theta.nodes.size(); ++i) {
+        const double sine = std::sin(theta.nodes[i]);
+        const double weight = theta.weights[i] * sine;
+        result.norm_squared += weight * azimuth_moments(shape, theta.nodes[i], wo, phi, cos_m_phi, fourier);
+        result.albedo += weight * fourier[0];
+        powers(sine, kMaxOrder, sines.data());
+        for (std::size_t m = 0; m < kMaxOrder; ++m) {
+            fourier[m] *= weight * sines[m] * (m == 0 ? 1.0 : std::numbers::sqrt2);
+        }
+        LegendreRows<double> legendre(std::cos(theta.nodes[i]));
+        for (int l = 0; l < kMaxOrder; ++l) {
+            for (int m = 0; m <= l; ++m) {
+                result.moments[at(l, m)] += legendre[m] * fourier[static_cast<std::size_t>(m)];
+            }
+            if (l + 1 < kMaxOrder) {
+                legendre.advance();
+            }
+        }
+    }
+    return result;
+}
+
+}  // namespace shlight

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/mesh_light.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace shlight {
+namespace {
+
+constexpr double kCoplanar = 1e-5;  // height over the plane ÷ extent, and sine at a convex corner
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+Vec3d scaled_normal(std::span<const Vec3d> vertices, const Triangle& t) {
+    return glm::cross(vertices[t.y] - vertices[t.x], vertices[t.z] - vertices[t.x]);
+}
+
+double longest_edge(std::span<const Vec3d> vertices, const Triangle& t) {
+    return std::max({glm::length(vertices[t.y] - vertices[t.x]), glm::length(vertices[t.z] - vertices[t.y]),
+                     glm::length(vertices[t.x] - vertices[t.z])});
+}
+
+bool has_area(std::span<const Vec3d> vertices, const Triangle& t) {
+    const double longest = longest_edge(vertices, t);
+    return glm::length(scaled_normal(vertices, t)) > 1e-8 * longest * longest;
+}
+
+/// The quadrilateral that the two make, if it is planar and convex. They share the edge of `first` that starts at
+/// corner `edge`; `apex` is the corner of the other triangle that lies off this edge.
+std::optional<FaceOutline> quadrilateral(std::span<const Vec3d> vertices, const Triangle& first, int edge,
+                                         std::uint32_t apex) {
+    const Vec3d& from = vertices[first[edge]];
+    const Vec3d& to = vertices[first[(edge + 1) % 3]];
+    const Vec3d& opposite = vertices[first[(edge + 2) % 3]];
+    const Vec3d normal = glm::normalize(scaled_normal(vertices, first));
+    const Vec3d& tip = vertices[apex];
+    if (std::abs(glm::dot(tip - from, normal)) > kCoplanar * longest_edge(vertices, first)) {
+        return std::nullopt;
+    }
+    FaceOutline outline = {from, tip, to, opposite};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vec3d in = glm::normalize(outline[(i + 1) % 4] - outline[i]);
+        const Vec3d out = glm::normalize(outline[(i + 2) % 4] - outline[(i + 1) % 4]);
+        if (!(glm::dot(glm::cross(in, out), normal) > kCoplanar)) {
+            return std::nullopt;
+        }
+    }
+    return outline;
+}
+
+}  // namespace
+
+std::vector<FaceOutline> merge_faces(std::span<const Vec3d> vertices, std::span<const Triangle> triangles) {
+    std::multimap<Edge, std::size_t> triangle_at;  // by directed edge
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        for (int corner = 0; corner < 3; ++corner) {
+            triangle_at.emplace(Edge{triangles[i][corner], triangles[i][(corner + 1) % 3]}, i);
+        }
+    }
+    std::vector<bool> used(triangles.size());
+    std::vector<FaceOutline> outlines;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const Triangle& triangle = triangles[i];
+        if (used[i] || !has_area(vertices, triangle)) {
+            continue;
+        }
+        used[i] = true;
+        std::size_t partner = triangles.size();
+        FaceOutline outline = {vertices[triangle.x], vertices[triangle.y], vertices[triangle.z]};
+        for (int edge = 0; edge < 3; ++edge) {
+            // A neighbour of the same winding runs along the shared edge the other way.
+            const auto [begin, end] = triangle_at.equal_range({triangle[(edge + 1) % 3], triangle[edge]});
+            for (auto it = begin; it != end; ++it) {
+                const Triangle& other = triangles[it->second];
+                if (used[it->second] || it->second >= partner || !has_area(vertices, other)) {
+                    continue;
+                }
+                const std::uint32_t apex = other.x ^ other.y ^ other.z ^ triangle[edge] ^ triangle[(edge + 1) % 3];
+                if (auto joined = quadrilateral(vertices, triangle, edge, apex)) {
+                    outline = std::move(*joined);
+                    partner = it->second;
+                }
+            }
+        }
+        if (partner < triangles.size()) {
+            used[partner] = true;
+        }
+        outlines.push_back(std::move(outline));
+    }
+    return outlines;
+}
+
+}  // namespace shlight

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/parallel.h"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+#include <tbb/task_arena.h>
+
+namespace shlight {
+namespace {
+
+constexpr auto kInterval = std::chrono::milliseconds(50);
+
+/// The work of one parallel_for, on a thread of its own so that the caller is free to report.
+class Work {
+  public:
+    Work(std::size_t count, int threads, const std::function<void(std::size_t)>& body)
+        : count_(count), thread_([this, threads, &body] { run(threads, body); }) {}
+    Work(const Work&) = delete;
+    Work& operator=(const Work&) = delete;
+    ~Work() {
+        cancel();
+        thread_.join();
+    }
+
+    /// Whether the work has ended within the interval.
+    bool wait() {
+        std::unique_lock lock(mutex_);
+        return ended_.wait_for(lock, kInterval, [this] { return over_; });
+    }
+
+    void cancel() { cancelled_ = true; }
+    double share() const { return static_cast<double>(done_) / static_cast<double>(count_); }
+    void rethrow() const {
+        if (error_) {
+            std::rethrow_exception(error_);
+        }
+    }
+
+  private:
+    void run(int threads, const std::function<void(std::size_t)>& body) {
+        std::exception_ptr error;
+        try {
+            run_in_arena(threads, [&] {
+                const auto step = [&](std::size_t i) {
+                    if (!cancelled_) {
+                        body(i);
+                        ++done_;
+                    }
+                };
+                tbb::parallel_for(std::size_t{0}, count_, step, tbb::simple_partitioner());
+            });
+        } catch (...) {
+            error = std::current_exception();
+        }
+        const std::lock_guard lock(mutex_);
+        error_ = error;
+        over_ = true;
+        ended_.notify_all();
+    }
+
+    const std::size_t count_;
+    std::atomic<std::size_t> done_ = 0;
+    std::atomic<bool> cancelled_ = false;
+    std::mutex mutex_;
+    std::condition_variable ended_;
+    bool over_ = false;
+    std::exception_ptr error_;
+    std::thread thread_;  // last: it uses all the others
+};
+
+}  // namespace
+
+void run_in_arena(int threads, const std::function<void()>& work) {
+    if (threads < 0) {
+        throw std::invalid_argument("threads must not be negative");
+    }
+    tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : threads);
+    arena.execute(work);
+}
+
+void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body,
+                  const Progress& progress) {
+    if (count > 0) {
+        Work work(count, threads, body);
+        while (!work.wait()) {
+            if (progress && !progress(work.share())) {
+                throw RenderCancelled();
+            }
+        }
+        work.rethrow();
+    }
+    if (progress && !progress(1.0)) {
+        throw RenderCancelled();
+    }
+}
+
+}  // namespace shlight

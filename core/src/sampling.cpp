@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/sampling.h"
+
+#include <bit>
+#include <cmath>
+
+namespace shlight {
+namespace {
+
+std::uint32_t reverse_bits(std::uint32_t x) {
+    x = ((x >> 1) & 0x55555555U) | ((x & 0x55555555U) << 1);
+    x = ((x >> 2) & 0x33333333U) | ((x & 0x33333333U) << 2);
+    x = ((x >> 4) & 0x0F0F0F0FU) | ((x & 0x0F0F0F0FU) << 4);
+    x = ((x >> 8) & 0x00FF00FFU) | ((x & 0x00FF00FFU) << 8);
+    return (x >> 16) | (x << 16);
+}
+
+/// Owen scrambling of a bit-reversed number: each bit is flipped by a hash of the bits below it (Laine & Karras 2011,
+/// with Vegdahl's constants).
+std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
+    x ^= x * 0x3D20ADEAU;
+    x += seed;
+    x *= (seed >> 16) | 1U;
+    x ^= x * 0x05526C56U;
+    x ^= x * 0x53A22864U;
+    return x;
+}
+
+/// The second Sobol dimension, bit-reversed: the index times the Pascal matrix modulo 2, in log steps.
+std::uint32_t pascal(std::uint32_t x) {
+    x ^= x >> 16;
+    x ^= (x >> 8) & 0x00FF00FFU;
+    x ^= (x >> 4) & 0x0F0F0F0FU;
+    x ^= (x >> 2) & 0x33333333U;
+    x ^= (x >> 1) & 0x55555555U;
+    return x;
+}
+
+double unit(std::uint32_t x) { return (static_cast<double>(x) + 0.5) * 0x1p-32; }
+
+}  // namespace
+
+std::uint32_t hash(std::uint32_t a, std::uint32_t b) {
+    // Two rounds of the 32-bit finalizer "lowbias32" (Wellons 2018).
+    std::uint32_t x = a;
+    for (const std::uint32_t add : {0x9E3779B9U, b}) {
+        x += add;
+        x ^= x >> 16;
+        x *= 0x7FEB352DU;
+        x ^= x >> 15;
+        x *= 0x846CA68BU;
+        x ^= x >> 16;
+    }
+    return x;
+}
+
+glm::dvec2 sobol(std::uint32_t index, std::uint32_t seed) {
+    return {unit(reverse_bits(scramble_reversed(index, hash(seed, 0)))),
+            unit(reverse_bits(scramble_reversed(pascal(index), hash(seed, 1))))};
+}
+
+glm::dvec2 hammersley(std::uint32_t index, std::uint32_t count) {
+    const int bits = std::bit_width(count - 1);
+    const double half_step = std::ldexp(0.5, -bits);
+    return {(index + 0.5) / count, reverse_bits(index) * 0x1p-32 + half_step};
+}
+
+}  // namespace shlight

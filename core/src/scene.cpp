@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <tbb/task_arena.h>
+
+#include "shlight/mesh_light.h"
+#include "shlight/parallel.h"
+#include "ray_rounding.h"
+#include "transforms.h"
+
+namespace shlight {
+namespace {
+
+/// A mesh as it is traced. A mesh placed once has its vertices moved to the world; others are instanced.
+struct TracedMesh {
+    std::shared_ptr<const Mesh> mesh;
+    std::vector<Vec3f> world_vertices;  // empty: instanced
+    std::uint32_t first_material;
+
+    std::span<const Vec3f> vertices() const {
+        return world_vertices.empty() ? std::span<const Vec3f>(mesh->vertices) : world_vertices;
+    }
+};
+
+struct Placement {
+    std::uint32_t mesh;
+    bool baked;              // vertices are in the world frame
+    glm::dmat4 to_world;
+    glm::dmat3 normal_to_world;  // inverse transpose
+    double condition;        // how much a ray's rounding grows on its way through the instance's frame
+    double origin;           // largest component of the translation
+};
+
+double inf_norm(const glm::dmat3& m) {
+    double norm = 0;
+    for (int row = 0; row < 3; ++row) {
+        norm = std::max(norm, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
+    }
+    return norm;
+}
+
+Placement place(std::uint32_t mesh, const glm::dmat4& to_world, bool baked) {
+    const glm::dmat3 linear(to_world);
+    const glm::dmat3 inverse = glm::inverse(linear);
+    return {mesh,
+            baked,
+            to_world,
+            glm::transpose(inverse),
+            baked ? 1.0 : inf_norm(linear) * inf_norm(inverse),
+            baked ? 0.0 : largest_component(Vec3d(to_world[3]))};
+}
+
+std::vector<Vec3f> moved(const std::vector<Vec3f>& vertices, const glm::dmat4& to_world) {
+    std::vector<Vec3f> result;
+    result.reserve(vertices.size());
+    for (const Vec3f& v : vertices) {
+        result.emplace_back(transform_point(to_world, Vec3d(v)));
+    }
+    return result;
+}
+
+Vec3d normalized_or(const Vec3d& v, const Vec3d& fallback) {
+    const double length = glm::length(v);
+    return length > 0 && std::isfinite(length) ? v / length : fallback;
+}
+
+}  // namespace
+
+class CompiledScene::Impl {
+  public:
+    explicit Impl(std::vector<Light> lamps) : lights(std::move(lamps)) {}
+
+    void add(const std::shared_ptr<const Mesh>& mesh) {
+        const auto index = static_cast<std::uint32_t>(meshes.size());
+        const bool baked = mesh->transforms.size() == 1;
+        meshes.push_back({mesh, baked ? moved(mesh->vertices, mesh->transforms[0]) : std::vector<Vec3f>(),
+                          static_cast<std::uint32_t>(materials.size())});
+        for (std::size_t i = 0; i < mesh->material_count(); ++i) {
+            materials.push_back({mesh->bsdf(i), mesh->emitted(i)});
+        }
+        for (const glm::dmat4& to_world : mesh->transforms) {
+            placements.push_back(place(index, to_world, baked));
+        }
+        add_emissive_faces(*mesh);
+    }
+
+    void build() {
+        std::vector<TracedGeometry> geometries;
+        for (const TracedMesh& traced : meshes) {
+            geometries.push_back({traced.vertices(), traced.mesh->triangles});
+        }
+        std::vector<TracedInstance> instances;
+        for (const Placement& placement : placements) {
+            instances.push_back({placement.mesh, placement.baked, placement.to_world});
+        }
+        rays = std::make_unique<const RayTracer>(geometries, instances);
+    }
+
+    SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
+
+    std::vector<TracedMesh> meshes;
+    std::vector<Placement> placements;
+    std::vector<Material> materials;
+    std::vector<Light> lights;
+    std::unique_ptr<const RayTracer> rays;
+
+  private:
+    void add_emissive_faces(const Mesh& mesh);
+};
+
+void CompiledScene::Impl::add_emissive_faces(const Mesh& mesh) {
+    const TracedMesh& traced = meshes.back();
+    for (std::size_t material = 0; material < mesh.material_count(); ++material) {
+        const Rgb emission = mesh.emitted(material);
+        std::vector<Triangle> emissive;
+        for (std::size_t i = 0; emission != Rgb(0) && i < mesh.triangles.size(); ++i) {
+            if (mesh.material_index(i) == material) {
+                emissive.push_back(mesh.triangles[i]);
+            }
+        }
+        for (const glm::dmat4& to_world : mesh.transforms) {
+            if (emissive.empty()) break;
+            const bool baked = !traced.world_vertices.empty();
+            std::vector<Vec3d> vertices;
+            for (const Vec3f& v : traced.vertices()) {
+                vertices.push_back(baked ? Vec3d(v) : transform_point(to_world, Vec3d(v)));
+            }
+            for (FaceOutline& outline : merge_faces(vertices, emissive)) {
+                lights.emplace_back(make_polygon_light(std::move(outline), emission, true));
+            }
+        }
+    }
+}
+
+SurfacePoint CompiledScene::Impl::surface(const RayHit& hit, const Vec3f& direction) const {
+    const Placement& placement = placements[hit.instance];
+    const TracedMesh& traced = meshes[placement.mesh];
+    const Mesh& mesh = *traced.mesh;
+    const Triangle& triangle = mesh.triangles[hit.triangle];
+    const std::array<double, 3> weights = {1.0 - hit.u - hit.v, hit.u, hit.v};
+    std::array<Vec3d, 3> corners{};
+    Vec3d position(0);
+    for (int i = 0; i < 3; ++i) {
+        const Vec3d local(traced.vertices()[triangle[i]]);
+        corners[static_cast<std::size_t>(i)] = placement.baked ? local : transform_point(placement.to_world, local);
+        position += weights[static_cast<std::size_t>(i)] * corners[static_cast<std::size_t>(i)];
+    }
+    // From the corners in double, and not along the ray, the point lies in the triangle's plane to double precision.
+    const Vec3d towards_viewer = -Vec3d(direction);
+    Vec3d geometric =
+        normalized_or(glm::cross(corners[1] - corners[0], corners[2] - corners[0]), glm::normalize(towards_viewer));
+    if (glm::dot(geometric, towards_viewer) < 0) {
+        geometric = -geometric;
+    }
+    Vec3d shading = geometric;
+    if (!mesh.vertex_normals.empty() || !mesh.corner_normals.empty()) {
+        Vec3d local(0);
+        for (int i = 0; i < 3; ++i) {
+            const Vec3f& normal = mesh.corner_normals.empty()
+                                      ? mesh.vertex_normals[triangle[i]]
+                                      : mesh.corner_normals[3 * std::size_t{hit.triangle} + static_cast<std::size_t>(i)];
+            local += weights[static_cast<std::size_t>(i)] * Vec3d(normal);
+        }
+        shading = normalized_or(placement.normal_to_world * local, geometric);
+        // By side and not by winding: mirrored instances and faces wound the wrong way come out right.
+        if (glm::dot(shading, geometric) < 0) {
+            shading = -shading;
+        }
+    }
+    double extent = 0;
+    for (const Vec3d& corner : corners) {
+        extent = std::max(extent, largest_component(corner - position));
+    }
+    const double scale = placement.condition * (largest_component(position) + placement.origin) + extent;
+    return {position, geometric, shading, kRayRounding * scale,
+            traced.first_material + mesh.material_index(hit.triangle)};
+}
+
+CompiledScene::CompiledScene(std::unique_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+CompiledScene::~CompiledScene() = default;
+
+std::span<const Material> CompiledScene::materials() const { return impl_->materials; }
+std::span<const Light> CompiledScene::lights() const { return impl_->lights; }
+const RayTracer& CompiledScene::rays() const { return *impl_->rays; }
+
+SurfacePoint CompiledScene::surface(const RayHit& hit, const Vec3f& direction) const {
+    return impl_->surface(hit, direction);
+}
+
+void Scene::add_mesh(Mesh mesh) {
+    check_mesh(mesh);
+    meshes_.push_back(std::make_shared<const Mesh>(std::move(mesh)));
+}
+
+void Scene::add_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk) {
+    lamps_.emplace_back(make_sphere_light(center, radius, radiance, facing_disk));
+}
+
+void Scene::add_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance) {
+    lamps_.emplace_back(make_polygon_light(std::move(vertices), radiance, false));
+}
+
+std::shared_ptr<const CompiledScene> Scene::compile(int threads) const {
+    auto impl = std::make_unique<CompiledScene::Impl>(lamps_);
+    for (const auto& mesh : meshes_) {
+        if (!mesh->triangles.empty() && !mesh->transforms.empty()) {
+            impl->add(mesh);
+        }
+    }
+    run_in_arena(threads, [&] { impl->build(); });
+    return std::shared_ptr<const CompiledScene>(new CompiledScene(std::move(impl)));
+}
+
+}  // namespace shlight
