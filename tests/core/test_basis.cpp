@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/basis.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "error_record.h"
+#include "quad_truth.h"
+#include "random_input.h"
+
+namespace shlight {
+namespace {
+
+using testing::ErrorRecord;
+using testing::RandomInput;
+
+template <class T>
+std::vector<T> basis_in(const Vec3d& direction, int order) {
+    std::vector<T> values(coefficient_count(order), std::numeric_limits<T>::quiet_NaN());
+    const Vec3<T> rounded(direction);
+    sh_basis<T>(std::span(&rounded, 1), order, values);
+    return values;
+}
+
+/// Bands 0 … 2 as polynomials: what fixes the order of the coefficients, their signs and scale.
+TEST(Basis, FirstBandsAreTheKnownPolynomials) {
+    RandomInput random(10);
+    const double pi = std::numbers::pi;
+    for (int i = 0; i < 200; ++i) {
+        const Vec3d d = random.direction();
+        const double expected[9] = {
+            std::sqrt(1 / (4 * pi)),
+            std::sqrt(3 / (4 * pi)) * d.y,
+            std::sqrt(3 / (4 * pi)) * d.z,
+            std::sqrt(3 / (4 * pi)) * d.x,
+            std::sqrt(15 / (4 * pi)) * d.x * d.y,
+            std::sqrt(15 / (4 * pi)) * d.y * d.z,
+            std::sqrt(5 / (16 * pi)) * (3 * d.z * d.z - 1),
+            std::sqrt(15 / (4 * pi)) * d.z * d.x,
+            std::sqrt(15 / (16 * pi)) * (d.x * d.x - d.y * d.y),
+        };
+        const std::vector<double> computed = basis_in<double>(d, 3);
+        for (int k = 0; k < 9; ++k) {
+            EXPECT_NEAR(computed[k], expected[k], 1e-15) << "coefficient " << k;
+        }
+    }
+}
+
+/// Errors are relative to √(n/4π), the root mean square of the highest band's values.
+template <class T>
+void compare_with_laplace(int order, int count, double bound) {
+    RandomInput random(static_cast<std::uint64_t>(order));
+    ErrorRecord errors(static_cast<std::size_t>(count));
+    std::vector<Vec3d> directions;
+    for (int i = 0; i < count; ++i) {
+        const double tilt = i % 3 == 0 ? random.log_uniform(1e-9, 1e-1) : random.uniform(0, std::numbers::pi);
+        directions.push_back(Vec3d(Vec3<T>(random.log_uniform(1e-3, 1e3) * random.at_tilt(tilt))));
+    }
+    directions[0] = {0, 0, 1};
+    directions[1] = {0, 0, -2};
+    directions[2] = {-1, 0, 0};
+    directions[3] = {0, -1, 0};
+    testing::on_two_threads(directions.size(), [&](std::size_t i) {
+        const std::vector<T> computed = basis_in<T>(directions[i], order);
+        errors[i] = truth::largest_error(truth::basis(directions[i], order), order, computed.data()) /
+                    std::sqrt(order / (4 * std::numbers::pi));
+    });
+    errors.publish("n = " + std::to_string(order) + (sizeof(T) == 8 ? ", float64" : ", float32"));
+    const Vec3d& worst = directions[errors.worst()];
+    EXPECT_LE(errors.largest(), bound) << "direction " << worst.x << ' ' << worst.y << ' ' << worst.z;
+}
+
+TEST(Basis, AgreesWithLaplacesIntegral) {
+    compare_with_laplace<double>(8, 300, 1e-14);
+    compare_with_laplace<double>(16, 200, 1e-13);
+    compare_with_laplace<double>(33, 60, 1e-12);
+    compare_with_laplace<double>(64, 30, 1e-12);
+    compare_with_laplace<float>(8, 300, 1e-5);
+    compare_with_laplace<float>(16, 200, 1e-4);
+    compare_with_laplace<float>(33, 60, 5e-4);
+    compare_with_laplace<float>(64, 30, 2e-3);
+}
+
+/// std::sph_legendre has the Condon–Shortley phase (-1)^m, which this basis does not.
+TEST(Basis, AgreesWithTheStandardLibrary) {
+    RandomInput random(11);
+    for (int i = 0; i < 50; ++i) {
+        const double tilt = random.uniform(0.05, 3.09);
+        const std::vector<double> computed = basis_in<double>({std::sin(tilt), 0, std::cos(tilt)}, 20);
+        for (unsigned l = 0; l < 20; ++l) {
+            for (unsigned m = 0; m <= l; ++m) {
+                const double expected =
+                    (m == 0 ? 1 : std::numbers::sqrt2) * (m % 2 == 0 ? 1 : -1) * std::sph_legendre(l, m, tilt);
+                EXPECT_NEAR(computed[l * l + l + m], expected, 1e-11);
+            }
+        }
+    }
+}
+
+/// Σ_m Y_lm(a) Y_lm(b) = (2l+1)/4π P_l(a·b).
+TEST(Basis, ObeysTheAdditionTheorem) {
+    RandomInput random(12);
+    for (int i = 0; i < 100; ++i) {
+        const Vec3d a = random.direction();
+        const Vec3d b = random.direction();
+        const std::vector<double> in_a = basis_in<double>(a, 64);
+        const std::vector<double> in_b = basis_in<double>(b, 64);
+        for (int l = 0; l < 64; ++l) {
+            double sum = 0;
+            for (int m = -l; m <= l; ++m) {
+                sum += in_a[coefficient_index(l, m)] * in_b[coefficient_index(l, m)];
+            }
+            const double expected = (2 * l + 1) / (4 * std::numbers::pi) *
+                                    std::legendre(static_cast<unsigned>(l), std::clamp(glm::dot(a, b), -1.0, 1.0));
+            EXPECT_NEAR(sum, expected, 1e-11);
+        }
+    }
+}
+
+/// ∫ Y_k Y_j dω by equally spaced longitudes and the Clenshaw–Curtis rule in z, both exact for these polynomials.
+TEST(Basis, IsOrthonormal) {
+    const int order = 12;
+    const int count = coefficient_count(order);
+    const int circles = 2 * order;
+    const int longitudes = 2 * order;
+    std::vector<double> gram(static_cast<std::size_t>(count * count));
+    for (int j = 0; j <= circles; ++j) {
+        const double tilt = std::numbers::pi * j / circles;
+        double weight = 1;
+        for (int k = 1; k <= circles / 2; ++k) {
+            weight -= (2 * k == circles ? 1 : 2) * std::cos(2 * k * tilt) / (4 * k * k - 1);
+        }
+        weight *= (j % circles == 0 ? 1.0 : 2.0) / circles * 2 * std::numbers::pi / longitudes;
+        for (int i = 0; i < longitudes; ++i) {
+            const double phi = 2 * std::numbers::pi * i / longitudes;
+            const std::vector<double> y = basis_in<double>(
+                {std::sin(tilt) * std::cos(phi), std::sin(tilt) * std::sin(phi), std::cos(tilt)}, order);
+            for (int a = 0; a < count; ++a) {
+                for (int b = 0; b < count; ++b) {
+                    gram[static_cast<std::size_t>(a * count + b)] += weight * y[a] * y[b];
+                }
+            }
+        }
+    }
+    for (int a = 0; a < count; ++a) {
+        for (int b = 0; b < count; ++b) {
+            EXPECT_NEAR(gram[static_cast<std::size_t>(a * count + b)], a == b ? 1 : 0, 1e-13) << a << ", " << b;
+        }
+    }
+}
+
+TEST(Basis, LowerOrdersArePrefixes) {
+    const std::vector<double> all = basis_in<double>({0.3, -0.5, 0.2}, 64);
+    for (int order = 1; order < 64; ++order) {
+        const std::vector<double> some = basis_in<double>({0.3, -0.5, 0.2}, order);
+        EXPECT_TRUE(std::equal(some.begin(), some.end(), all.begin()));
+    }
+}
+
+TEST(Basis, EvaluatesExpansions) {
+    RandomInput random(13);
+    const int order = 9;
+    const std::vector<Vec3d> directions = {random.direction(), 5.0 * random.direction(), {0, 0, 1}};
+    std::vector<double> coefficients(directions.size() * 81);
+    for (double& c : coefficients) {
+        c = random.uniform(-1, 1);
+    }
+    std::vector<double> values(directions.size());
+    evaluate<double>(coefficients, directions, order, values);
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        const std::vector<double> y = basis_in<double>(directions[i], order);
+        double sum = 0;
+        for (std::size_t k = 0; k < 81; ++k) {
+            sum += coefficients[i * 81 + k] * y[k];
+        }
+        EXPECT_NEAR(values[i], sum, 1e-13);
+    }
+}
+
+TEST(Basis, RejectsBadInput) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double inf = std::numeric_limits<double>::infinity();
+    EXPECT_THROW(basis_in<double>({0, 0, 0}, 4), std::invalid_argument);
+    EXPECT_THROW(basis_in<double>({nan, 0, 1}, 4), std::invalid_argument);
+    EXPECT_THROW(basis_in<double>({0, inf, 1}, 4), std::invalid_argument);
+    EXPECT_THROW(basis_in<float>({0, 0, 0}, 4), std::invalid_argument);
+    const Vec3d up(0, 0, 1);
+    std::vector<double> values(65 * 65);
+    for (const int order : {-1, 0, 65}) {
+        try {
+            sh_basis<double>(std::span(&up, 1), order, values);
+            ADD_FAILURE() << "order " << order << " was accepted";
+        } catch (const std::invalid_argument& error) {
+            EXPECT_NE(std::string(error.what()).find("order"), std::string::npos) << error.what();
+        }
+    }
+    EXPECT_THROW(sh_basis<double>(std::span(&up, 1), 4, std::span(values).first(15)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace shlight

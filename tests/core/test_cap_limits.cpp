@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+//
+// Caps where formulas break: nothing kept, everything kept, contact, straight above, absurd sizes, and bad input.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "random_input.h"
+#include "shlight/basis.h"
+#include "shlight/cap.h"
+
+namespace shlight {
+namespace {
+
+using testing::RandomInput;
+
+constexpr double kPi = std::numbers::pi;
+
+template <class T>
+std::vector<T> sphere(const Vec3<T>& center, T radius, int order, bool clip = true) {
+    std::vector<T> result(coefficient_count(order), std::numeric_limits<T>::quiet_NaN());
+    sphere_coefficients<T>(std::span(&center, 1), std::span(&radius, 1), order, clip, result);
+    return result;
+}
+
+template <class T>
+std::vector<T> cap(const Vec3<T>& axis, T half_angle, int order, bool clip = true) {
+    std::vector<T> result(coefficient_count(order), std::numeric_limits<T>::quiet_NaN());
+    cap_coefficients<T>(std::span(&axis, 1), std::span(&half_angle, 1), order, clip, result);
+    return result;
+}
+
+template <class T>
+bool all_finite(const std::vector<T>& values) {
+    return std::all_of(values.begin(), values.end(), [](T value) { return std::isfinite(value); });
+}
+
+template <class T>
+T largest(const std::vector<T>& values) {
+    T result = 0;
+    for (const T value : values) {
+        result = std::max(result, std::abs(value));
+    }
+    return result;
+}
+
+template <class T>
+class CapLimits : public ::testing::Test {};
+using Precisions = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(CapLimits, Precisions);
+
+TYPED_TEST(CapLimits, HiddenLightsGiveZeros) {
+    using T = TypeParam;
+    EXPECT_EQ(largest(sphere<T>({1, 0, -2}, 1, 64)), 0);
+    EXPECT_EQ(largest(sphere<T>({0, 0, -1}, T(0.5), 64)), 0);
+    EXPECT_EQ(largest(sphere<T>({0, 0, -1}, 1, 64)), 0);  // contact from straight below
+    EXPECT_EQ(largest(sphere<T>({3, 4, -1}, 1, 64)), 0);  // tangent from below
+    EXPECT_EQ(largest(cap<T>({0, 0, -1}, T(1.5), 64)), 0);
+}
+
+TYPED_TEST(CapLimits, ContactIsTheHemisphereAboutTheCentre) {
+    using T = TypeParam;
+    const double tolerance = 40 * static_cast<double>(std::numeric_limits<T>::epsilon());
+    // Straight above: ∫ P_l dz over 0 … 1; odd bands only, and 2π for l = 0.
+    const std::vector<T> above = sphere<T>({0, 0, 1}, 1, 8);
+    EXPECT_NEAR(above[coefficient_index(0, 0)], std::sqrt(kPi), tolerance);
+    EXPECT_NEAR(above[coefficient_index(1, 0)], std::sqrt(3 * kPi) / 2, tolerance);
+    EXPECT_NEAR(above[coefficient_index(2, 0)], 0, tolerance);
+    EXPECT_NEAR(above[coefficient_index(3, 0)], -std::sqrt(7 * kPi) / 8, tolerance);
+    // On the horizon: half of that region is kept.
+    const std::vector<T> beside = sphere<T>({5, 0, 0}, 5, 8);
+    EXPECT_NEAR(beside[coefficient_index(0, 0)], std::sqrt(kPi) / 2, tolerance);
+    EXPECT_NEAR(beside[coefficient_index(1, 1)], std::sqrt(3 / (4 * kPi)) * kPi / 2, tolerance);
+    EXPECT_NEAR(beside[coefficient_index(1, 0)], std::sqrt(3 / (4 * kPi)) * kPi / 2, tolerance);
+    EXPECT_NEAR(beside[coefficient_index(1, -1)], 0, tolerance);
+}
+
+TYPED_TEST(CapLimits, HalfAnglePiIsEverything) {
+    using T = TypeParam;
+    const double tolerance = 40 * static_cast<double>(std::numeric_limits<T>::epsilon());
+    const T pi = std::numbers::pi_v<T>;
+    const std::vector<T> all = cap<T>({T(0.3), T(-0.2), T(0.1)}, pi, 16, false);
+    EXPECT_NEAR(all[0], std::sqrt(4 * kPi), tolerance);
+    EXPECT_LE(largest(std::vector<T>(all.begin() + 1, all.end())), tolerance);
+    const std::vector<T> upper = cap<T>({T(0.3), T(-0.2), T(0.1)}, pi, 16, true);
+    const std::vector<T> contact = sphere<T>({0, 0, 1}, 1, 16);
+    for (std::size_t i = 0; i < upper.size(); ++i) {
+        EXPECT_NEAR(upper[i], contact[i], tolerance);
+    }
+}
+
+TYPED_TEST(CapLimits, StraightAboveHasNoPreferredAzimuth) {
+    using T = TypeParam;
+    for (const T half_angle : {T(1e-6), T(0.1), T(1.5), T(2), T(3)}) {
+        for (const bool clip : {true, false}) {
+            for (const T z : {T(1), T(-1)}) {
+                const std::vector<T> result = cap<T>({0, 0, z}, half_angle, 64, clip);
+                ASSERT_TRUE(all_finite(result));
+                for (int l = 1; l < 64; ++l) {
+                    for (int m = 1; m <= l; ++m) {
+                        EXPECT_EQ(result[coefficient_index(l, m)], 0);
+                        EXPECT_EQ(result[coefficient_index(l, -m)], 0);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Nothing may overflow, underflow to NaN or divide by zero, whatever the sizes and however the light grazes.
+TYPED_TEST(CapLimits, EverythingIsFinite) {
+    using T = TypeParam;
+    RandomInput random(30);
+    const double huge = sizeof(T) == 8 ? 1e150 : 1e18;
+    for (int i = 0; i < 4000; ++i) {
+        const double distance = random.log_uniform(1 / huge, huge);
+        Vec3d direction = random.direction();
+        for (int k = 0; k < 3; ++k) {
+            if (random.chance(0.2)) {
+                direction[k] = random.chance(0.5) ? 0 : random.uniform(-1, 1) * std::pow(10, random.uniform(-30, 0));
+            }
+        }
+        if (direction == Vec3d(0)) {
+            continue;
+        }
+        const Vec3<T> center(distance * direction);
+        const T length = static_cast<T>(glm::length(Vec3d(center)));
+        const double share = i % 4 == 0 ? std::abs(direction.z) / glm::length(direction) : random.log_uniform(1e-30, 1);
+        const T radius = std::min(static_cast<T>(share) * length, std::nextafter(length, T(0)));
+        if (radius > 0) {
+            EXPECT_TRUE(all_finite(sphere<T>(center, radius, 33, i % 5 != 0)))
+                << center.x << ' ' << center.y << ' ' << center.z << " radius " << radius;
+        }
+        const T half_angle = static_cast<T>(random.log_uniform(1e-30, kPi));
+        EXPECT_TRUE(all_finite(cap<T>(center, half_angle, 33, i % 5 != 0)))
+            << center.x << ' ' << center.y << ' ' << center.z << " half angle " << half_angle;
+    }
+}
+
+/// Only directions count: powers of two change no bit.
+TYPED_TEST(CapLimits, ScaleDoesNotMatter) {
+    using T = TypeParam;
+    const std::vector<T> near = sphere<T>({T(0.3), T(0.4), T(-0.02)}, T(0.1), 16);
+    EXPECT_EQ(near, sphere<T>({T(0.3) * 1024, T(0.4) * 1024, T(-0.02) * 1024}, T(0.1) * 1024, 16));
+    EXPECT_EQ(near, sphere<T>({T(0.3) / 4096, T(0.4) / 4096, T(-0.02) / 4096}, T(0.1) / 4096, 16));
+}
+
+TYPED_TEST(CapLimits, ManyLightsGiveTheSameAsEachAlone) {
+    using T = TypeParam;
+    RandomInput random(31);
+    std::vector<Vec3<T>> centers;
+    std::vector<T> radii;
+    for (int i = 0; i < 37; ++i) {
+        centers.push_back(Vec3<T>(random.direction()));
+        radii.push_back(static_cast<T>(random.log_uniform(1e-4, 0.99)));
+    }
+    for (const int order : {1, 2, 3, 8, 13}) {
+        const std::size_t count = static_cast<std::size_t>(coefficient_count(order));
+        std::vector<T> together(centers.size() * count);
+        sphere_coefficients<T>(centers, radii, order, true, together);
+        for (std::size_t i = 0; i < centers.size(); ++i) {
+            const std::vector<T> alone = sphere<T>(centers[i], radii[i], order);
+            EXPECT_TRUE(
+                std::equal(alone.begin(), alone.end(), together.begin() + static_cast<std::ptrdiff_t>(i * count)));
+        }
+    }
+}
+
+/// A small cap is its solid angle times the basis along its axis.
+TYPED_TEST(CapLimits, SmallCapsTendToTheBasis) {
+    using T = TypeParam;
+    RandomInput random(32);
+    for (int i = 0; i < 50; ++i) {
+        const Vec3<T> axis(random.at_tilt(random.uniform(0, 1.5)));
+        const T half_angle = T(1e-4);
+        const std::vector<T> result = cap<T>(axis, half_angle, 8);
+        std::vector<T> basis(64);
+        sh_basis<T>(std::span(&axis, 1), 8, basis);
+        for (std::size_t k = 0; k < 64; ++k) {
+            EXPECT_NEAR(result[k] / (kPi * 1e-8), basis[k], 1e-5);
+        }
+    }
+}
+
+std::string rejection(const std::function<void()>& call) {
+    try {
+        call();
+    } catch (const std::invalid_argument& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+TYPED_TEST(CapLimits, RejectsBadInput) {
+    using T = TypeParam;
+    const T nan = std::numeric_limits<T>::quiet_NaN();
+    const T inf = std::numeric_limits<T>::infinity();
+    const auto names = [](const std::string& argument, const std::function<void()>& call) {
+        EXPECT_NE(rejection(call).find(argument), std::string::npos) << argument << ": " << rejection(call);
+    };
+    names("centers", [&] { sphere<T>({nan, 0, 1}, T(0.5), 4); });
+    names("centers", [&] { sphere<T>({0, 0, inf}, T(0.5), 4); });
+    for (const T radius : {T(0), T(-1), nan, inf}) {
+        names("radii", [&] { sphere<T>({0, 0, 1}, radius, 4); });
+    }
+    names("inside", [&] { sphere<T>({0, 0, 1}, T(1.01), 4); });
+    names("inside", [&] { sphere<T>({0, 0, 0}, T(1), 4); });
+    for (const int order : {-3, 0, 65}) {
+        names("order", [&] {
+            const Vec3<T> center(0, 0, 1);
+            const T radius = T(0.5);
+            std::vector<T> values(65 * 65);
+            sphere_coefficients<T>(std::span(&center, 1), std::span(&radius, 1), order, true, values);
+        });
+    }
+    names("axes", [&] { cap<T>({0, 0, 0}, T(0.5), 4); });
+    names("axes", [&] { cap<T>({nan, 0, 0}, T(0.5), 4); });
+    for (const T half_angle : {T(0), T(-1), T(3.2), nan, inf}) {
+        names("half_angles", [&] { cap<T>({0, 0, 1}, half_angle, 4); });
+    }
+    const std::vector<Vec3<T>> centers(2, Vec3<T>(0, 0, 1));
+    const std::vector<T> radii(2, T(0.5));
+    std::vector<T> values(2 * 16);
+    EXPECT_NE(
+        rejection([&] { sphere_coefficients<T>(centers, std::span(radii).first(1), 4, true, std::span(values)); }),
+        "accepted");
+    EXPECT_NE(rejection([&] { sphere_coefficients<T>(centers, radii, 4, true, std::span(values).first(31)); }),
+              "accepted");
+}
+
+}  // namespace
+}  // namespace shlight
