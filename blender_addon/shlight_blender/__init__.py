@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender add-on: the render engine "shlight", noise-free direct light from area lights."""
+
+import importlib.util
+import sys
+from pathlib import Path
+
+bl_info = {
+    "name": "shlight",
+    "author": "The shlight authors",
+    "version": (0, 1, 0),
+    "blender": (3, 4, 0),
+    "location": "Render Properties > Render Engine",
+    "description": "Noise-free direct light from area lights with spherical harmonics",
+    "category": "Render",
+}
+
+
+def _find_native_package() -> None:
+    """In the source tree the package `shlight` lies beside the add-on and need not be installed."""
+    package = Path(__file__).resolve().parents[2] / "python_bindings"
+    if importlib.util.find_spec("shlight") is None and (package / "shlight" / "__init__.py").is_file():
+        sys.path.append(str(package))
+
+
+_find_native_package()
+
+
+def register() -> None:
+    """Adds the engine, its scene settings and its panels to Blender."""
+    from . import engine, panels, properties
+
+    properties.register()
+    engine.register()
+    panels.register()
+
+
+def unregister() -> None:
+    """Removes everything that `register` added."""
+    from . import engine, panels, properties
+
+    panels.unregister()
+    engine.unregister()
+    properties.unregister()

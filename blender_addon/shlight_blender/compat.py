@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Everything in which the supported Blender versions differ: 3.4 on one side, 4.2 and later on the other.
+
+The differences are in three tables (`LAMPS`, `PRINCIPLED`, and the functions on meshes and results, which ask for the
+attribute they need instead of the version), so that no other module knows a version number.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+VERSION: tuple[int, int, int] = bpy.app.version
+IS_BLENDER_4 = VERSION >= (4, 0, 0)
+
+
+@dataclass(frozen=True)
+class LampConvention:
+    """How Cycles turns a lamp's power S [W] into emitted radiance."""
+
+    area: float  # rectangle of area A: radiance = area * S / A
+    point_is_always_disk: bool  # a point lamp is the disk that faces the shading point, whatever its settings
+
+
+LAMPS = LampConvention(1.0 / math.pi, False) if IS_BLENDER_4 else LampConvention(0.25, True)
+
+
+@dataclass(frozen=True)
+class PrincipledSockets:
+    """Sockets of the Principled BSDF by meaning; `unsupported` maps a socket to the value at which it does nothing."""
+
+    layered: bool  # specular layer over the diffuse base (4.x), or a plain sum of both (3.4)
+    specular: str
+    emission: str
+    unsupported: dict[str, float]
+
+
+PRINCIPLED = (
+    PrincipledSockets(
+        layered=True,
+        specular="Specular IOR Level",
+        emission="Emission Color",
+        unsupported={
+            "Diffuse Roughness": 0.0,
+            "Subsurface Weight": 0.0,
+            "Anisotropic": 0.0,
+            "Transmission Weight": 0.0,
+            "Coat Weight": 0.0,
+            "Sheen Weight": 0.0,
+            "Thin Film Thickness": 0.0,
+            "Alpha": 1.0,
+        },
+    )
+    if IS_BLENDER_4
+    else PrincipledSockets(
+        layered=False,
+        specular="Specular",
+        emission="Emission",
+        unsupported={
+            "Subsurface": 0.0,
+            "Anisotropic": 0.0,
+            "Transmission": 0.0,
+            "Clearcoat": 0.0,
+            "Sheen": 0.0,
+            "Alpha": 1.0,
+        },
+    )
+)
+
+
+def lamp_tint(lamp: Any) -> NDArray[np.float64]:
+    """RGB factor on a lamp's power: its colour and, where Blender has them (4.5), temperature and exposure."""
+    tint = np.array(lamp.color, dtype=np.float64)
+    if getattr(lamp, "use_temperature", False):
+        tint *= np.array(lamp.temperature_color, dtype=np.float64)
+    return tint * 2.0 ** float(getattr(lamp, "exposure", 0.0))
+
+
+def lamp_is_normalized(lamp: Any) -> bool:
+    """True: the power is spread over the lamp's surface; False (4.5 only): it is the power of a unit surface."""
+    return bool(getattr(lamp, "normalize", True))
+
+
+def lamp_casts_shadows(lamp: Any) -> bool:
+    """Cycles' own switch (3.4) and Blender's (4.2 and later; EEVEE alone reads it in 3.4)."""
+    if IS_BLENDER_4:
+        return bool(lamp.use_shadow)
+    return bool(getattr(getattr(lamp, "cycles", None), "cast_shadow", True))
+
+
+def point_is_disk(lamp: Any) -> bool:
+    """True if a point lamp shades as the disk that faces the shading point, False for the sphere itself."""
+    return LAMPS.point_is_always_disk or bool(getattr(lamp, "use_soft_falloff", False))
+
+
+def smooth_corner_normals(mesh: Any) -> NDArray[np.float32] | None:
+    """Normals of all corners (loops, 3) with smooth and custom shading applied; None if every face is flat."""
+    corners = len(mesh.loops)
+    normals = np.empty(corners * 3, dtype=np.float32)
+    if hasattr(mesh, "corner_normals"):
+        if mesh.normals_domain == "FACE":
+            return None
+        mesh.corner_normals.foreach_get("vector", normals)
+    else:
+        smooth = np.empty(len(mesh.polygons), dtype=bool)
+        mesh.polygons.foreach_get("use_smooth", smooth)
+        if not smooth.any() and not mesh.has_custom_normals:
+            return None
+        mesh.calc_normals_split()
+        mesh.loops.foreach_get("normal", normals)
+    return normals.reshape(-1, 3)
+
+
+def write_pass(render_pass: Any, pixels: NDArray[np.float32]) -> None:
+    """Copies (height * width, channels) float32 pixels, bottom row first, into a render pass."""
+    pixels = np.ascontiguousarray(pixels, dtype=np.float32)
+    render_pass.rect.foreach_set(pixels.ravel() if IS_BLENDER_4 else pixels)
+
+
+def uses_nodes(owner: Any) -> bool:
+    """True if a material, world or lamp is defined by its node tree (from 5.0 on `use_nodes` says nothing)."""
+    if owner.node_tree is None:
+        return False
+    return VERSION >= (5, 0, 0) or bool(owner.use_nodes)

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The render engine: final renders in Blender's render window and in the background."""
+
+from __future__ import annotations
+
+import traceback
+from typing import Any
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from .compat import write_pass
+from .report import ExportError, ExportReport
+
+ENGINE = "SHLIGHT"
+MOST_WARNINGS = 20
+VIEWPORT_NOTE = "shlight draws final renders (F12); use Material Preview in the viewport"
+
+
+class ShlightRenderEngine(bpy.types.RenderEngine):
+    """Noise-free direct light from area lights."""
+
+    bl_idname = ENGINE
+    bl_label = "shlight"
+    bl_use_preview = False  # material previews stay with EEVEE
+    bl_use_eevee_viewport = True  # and so does the viewport's Material Preview
+    bl_use_shading_nodes_custom = False
+
+    def render(self, depsgraph: Any) -> None:
+        """Renders one view layer. Blender prints exceptions and goes on, so all of them are reported here."""
+        frame: Any = None
+        try:
+            # Imported here: an installation without the native module still registers, and says what is wrong.
+            from .export import frame_of
+
+            frame = frame_of(depsgraph.scene.render)
+            self._render(depsgraph, frame)
+        except ExportError as error:
+            self._fail(depsgraph, frame, str(error))
+        except Exception as error:
+            traceback.print_exc()
+            self._fail(depsgraph, frame, f"{type(error).__name__}: {error}")
+
+    def _render(self, depsgraph: Any, frame: Any) -> None:
+        import shlight
+
+        from .export import export_scene, over_background, render_settings
+
+        self.update_stats("", "Exporting the scene")
+        scene, report, background = export_scene(depsgraph, frame=frame, camera=self.camera_override)
+        self._show(report)
+        if self.test_break():
+            self._deliver(depsgraph, frame, None)
+            return
+        try:
+            image = shlight.render(
+                scene,
+                frame.width,
+                frame.height,
+                progress=self._progress,
+                **render_settings(depsgraph.scene).arguments(),
+            )
+        except shlight.RenderCancelled:
+            self._deliver(depsgraph, frame, None)
+            return
+        film_transparent = depsgraph.scene.render.film_transparent
+        self._deliver(depsgraph, frame, over_background(image, background, film_transparent))
+
+    def _progress(self, fraction: float) -> bool:
+        self.update_progress(fraction)
+        self.update_stats("", f"Rendering {fraction:.0%}")
+        return not self.test_break()
+
+    def _show(self, report: ExportReport) -> None:
+        lines = report.lines()
+        for line in lines[:MOST_WARNINGS]:
+            self.report({"WARNING"}, f"shlight: {line}")
+        if len(lines) > MOST_WARNINGS:
+            self.report({"WARNING"}, f"shlight: and {len(lines) - MOST_WARNINGS} more warnings, see the console")
+            print(*(f"shlight: {line}" for line in lines[MOST_WARNINGS:]), sep="\n")
+
+    def _fail(self, depsgraph: Any, frame: Any, text: str) -> None:
+        self.report({"ERROR"}, f"shlight: {text}")
+        if frame is not None:
+            self._deliver(depsgraph, frame, None)
+
+    def _deliver(self, depsgraph: Any, frame: Any, image: NDArray[np.float32] | None) -> None:
+        """Hands over the picture (None: an empty one; without any, saving the render crashes Blender)."""
+        if image is None:
+            image = np.zeros((frame.height, frame.width, 4), dtype=np.float32)
+        render = depsgraph.scene.render
+        views = [view.name for view in render.views if view.use] if render.use_multiview else [""]
+        for view in views:
+            result = self.begin_result(0, 0, frame.width, frame.height, layer=depsgraph.view_layer.name, view=view)
+            for layer in result.layers:
+                write_pass(layer.passes["Combined"], image[::-1].reshape(-1, 4))
+            self.end_result(result)
+
+    def view_update(self, context: Any, depsgraph: Any) -> None:
+        """Says in the viewport that it shows nothing."""
+        self.update_stats("", VIEWPORT_NOTE)
+
+    def view_draw(self, context: Any, depsgraph: Any) -> None:
+        """Leaves the viewport empty."""
+
+
+def register() -> None:
+    """Adds the engine."""
+    bpy.utils.register_class(ShlightRenderEngine)
+
+
+def unregister() -> None:
+    """Removes the engine."""
+    bpy.utils.unregister_class(ShlightRenderEngine)

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From Blender's depsgraph to a shlight.Scene."""
+
+from ..report import ExportError, ExportReport
+from .camera import Frame, frame_of, whole_frame
+from .scene import ExportedScene, export_scene
+from .settings import RenderSettings, over_background, render_settings
+
+__all__ = [
+    "ExportError",
+    "ExportReport",
+    "ExportedScene",
+    "Frame",
+    "RenderSettings",
+    "export_scene",
+    "frame_of",
+    "over_background",
+    "render_settings",
+    "whole_frame",
+]

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes: evaluated objects as arrays, one set of arrays for all instances of the same mesh and materials."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import shlight
+
+from ..compat import smooth_corner_normals
+from ..report import ExportReport
+from .materials import read_material
+from .surface import Surface
+
+FloatArray = NDArray[np.float32]
+
+
+@dataclass
+class MeshArrays:
+    """A triangulated mesh in its own frame; normals (k, 3, 3) per corner, None where all faces are flat."""
+
+    vertices: FloatArray
+    triangles: NDArray[np.int32]
+    normals: FloatArray | None
+    material_indices: NDArray[np.int32]
+
+
+@dataclass
+class MeshUse:
+    """A mesh with its surfaces (one per material slot, at least one), and all places where it stands."""
+
+    arrays: MeshArrays
+    surfaces: list[Surface]
+    transforms: list[NDArray[np.float64]] = field(default_factory=list)
+
+
+def mesh_arrays(mesh: Any) -> MeshArrays | None:
+    """Triangles of an evaluated mesh, None if it has none."""
+    mesh.calc_loop_triangles()
+    count = len(mesh.loop_triangles)
+    if count == 0:
+        return None
+    vertices = np.empty(len(mesh.vertices) * 3, dtype=np.float32)
+    mesh.vertices.foreach_get("co", vertices)
+    triangles = np.empty(count * 3, dtype=np.int32)
+    mesh.loop_triangles.foreach_get("vertices", triangles)
+    polygons = np.empty(count, dtype=np.int32)
+    mesh.loop_triangles.foreach_get("polygon_index", polygons)
+    materials = np.empty(len(mesh.polygons), dtype=np.int32)
+    mesh.polygons.foreach_get("material_index", materials)
+    corner_normals = smooth_corner_normals(mesh)
+    normals = None
+    vertices, triangles = vertices.reshape(-1, 3), triangles.reshape(-1, 3)
+    if corner_normals is not None:
+        loops = np.empty(count * 3, dtype=np.int32)
+        mesh.loop_triangles.foreach_get("loops", loops)
+        normals = _repaired(corner_normals[loops].reshape(-1, 3, 3), vertices, triangles)
+    return MeshArrays(vertices, triangles, normals, materials[polygons])
+
+
+def _repaired(normals: FloatArray, vertices: FloatArray, triangles: NDArray[np.int32]) -> FloatArray:
+    """Normals of length 1; where Blender has none (degenerate faces) the face's own, else +Z."""
+    length = np.linalg.norm(normals, axis=2, keepdims=True)
+    good = length > 1e-6
+    if good.all():
+        return normals
+    a, b, c = (vertices[triangles[:, i]] for i in range(3))
+    face = np.cross(b - a, c - a)
+    face_length = np.linalg.norm(face, axis=1, keepdims=True)
+    face = np.where(face_length > 0.0, face / np.where(face_length > 0.0, face_length, 1.0), (0.0, 0.0, 1.0))
+    repaired: FloatArray = np.where(good, normals, face[:, None, :]).astype(np.float32)
+    return repaired
+
+
+class MeshCollector:
+    """Gathers the meshes of a depsgraph and hands them to a scene."""
+
+    def __init__(self, report: ExportReport, material_override: Any = None) -> None:
+        self._report = report
+        self._override = material_override
+        self._uses: dict[tuple[Any, ...], MeshUse | None] = {}
+        self._surfaces: dict[Any, Surface] = {}
+
+    def add(self, mesh_object: Any, to_world: NDArray[np.float64]) -> None:
+        """Notes one evaluated mesh object (or instance) at `to_world`."""
+        place = f"Object '{mesh_object.name}'"
+        if not np.isfinite(to_world).all():
+            self._report.add(place, "its transform is not finite; left out")
+            return
+        materials = tuple(slot.material for slot in mesh_object.material_slots)
+        key = (mesh_object.data.as_pointer(), *(material and material.as_pointer() for material in materials))
+        if key not in self._uses:
+            self._uses[key] = self._convert(mesh_object, place, materials)
+        use = self._uses[key]
+        if use is not None:
+            use.transforms.append(to_world)
+
+    def _convert(self, mesh_object: Any, place: str, materials: Sequence[Any]) -> MeshUse | None:
+        mesh = mesh_object.to_mesh()
+        try:
+            arrays = mesh_arrays(mesh)
+        finally:
+            mesh_object.to_mesh_clear()
+        if arrays is None:
+            return None
+        if not np.isfinite(arrays.vertices).all():
+            self._report.add(place, "some of its vertices are not finite; left out")
+            return None
+        if arrays.normals is not None and not np.isfinite(arrays.normals).all():
+            arrays.normals = None
+        return MeshUse(arrays, [self._surface(material) for material in materials or [None]])
+
+    def _surface(self, material: Any) -> Surface:
+        material = self._override or material
+        key = material and material.as_pointer()
+        if key not in self._surfaces:
+            self._surfaces[key] = read_material(material, self._report)
+        return self._surfaces[key]
+
+    def hand_over(self, scene: shlight.Scene) -> bool:
+        """Adds everything to `scene`; True if some of it emits light."""
+        emits = False
+        for use in self._uses.values():
+            if use is not None:
+                emits |= self._add_mesh(scene, use)
+        return emits
+
+    def _add_mesh(self, scene: shlight.Scene, use: MeshUse) -> bool:
+        surfaces = use.surfaces
+        indices = np.clip(use.arrays.material_indices, 0, len(surfaces) - 1)
+        used = np.unique(indices)
+        emission = np.array([surface.emission for surface in surfaces])
+        emits = bool(emission[used].any())
+        for arrays, transforms in standing(use):
+            scene.add_mesh(
+                arrays.vertices,
+                arrays.triangles,
+                normals=arrays.normals,
+                bsdf=[surface.opaque_bsdf() for surface in surfaces],
+                emission=emission if emits else None,
+                material_indices=indices,
+                transforms=transforms,
+            )
+        return emits
+
+
+def standing(use: MeshUse) -> list[tuple[MeshArrays, NDArray[np.float64] | None]]:
+    """A mesh with its transforms, and one flattened copy for each transform without inverse (an axis of scale 0)."""
+    transforms = np.array(use.transforms)
+    linear = transforms[:, :3, :3]
+    volume = np.abs(np.linalg.det(linear))
+    size = np.linalg.norm(linear, axis=1).max(axis=1)
+    regular = volume > 1e-9 * size**3
+    parts: list[tuple[MeshArrays, NDArray[np.float64] | None]] = []
+    if regular.any():
+        parts.append((use.arrays, transforms[regular]))
+    for transform in transforms[~regular]:
+        vertices = use.arrays.vertices @ transform[:3, :3].T + transform[:3, 3]
+        if np.linalg.matrix_rank(vertices - vertices[0]) < 2:
+            continue  # a line or a point shows nothing
+        flat = MeshArrays(vertices.astype(np.float32), use.arrays.triangles, None, use.arrays.material_indices)
+        parts.append((flat, None))
+    return parts

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A Blender scene as a shlight.Scene."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import shlight
+
+from ..report import ExportError, ExportReport
+from .camera import Frame, frame_of, set_camera
+from .lights import add_lamp
+from .meshes import MeshCollector
+from .nodes import RGB
+from .settings import background_color, report_unsupported_settings
+
+# Types of objects that have a surface or volume which is not exported. Curves, texts, surfaces and metaballs are not
+# among them: the depsgraph gives their meshes as instances of their own.
+UNSUPPORTED_TYPES = {
+    "CURVES": "hair curves",
+    "POINTCLOUD": "point clouds",
+    "VOLUME": "volumes",
+    "GPENCIL": "grease pencil drawings",
+    "GREASEPENCIL": "grease pencil drawings",
+}
+
+# Flags of an object with the value at which they change nothing.
+VISIBILITY = {
+    "visible_camera": (True, "objects hidden from the camera are not supported; drawn as usual"),
+    "visible_diffuse": (True, "objects hidden from diffuse rays are not supported; drawn as usual"),
+    "visible_glossy": (True, "objects hidden from glossy rays are not supported; drawn as usual"),
+    "visible_shadow": (True, "objects without shadow are not supported; drawn as usual"),
+    "is_shadow_catcher": (False, "shadow catchers are not supported; drawn as usual"),
+    "is_holdout": (False, "holdouts are not supported; drawn as usual"),
+}
+
+
+class ExportedScene(NamedTuple):
+    """A scene ready for `shlight.render`."""
+
+    scene: shlight.Scene
+    report: ExportReport  # what of the Blender scene is not supported
+    background: RGB  # radiance that the camera sees behind the scene
+
+
+def export_scene(depsgraph: Any, *, frame: Frame | None = None, camera: Any = None) -> ExportedScene:
+    """The evaluated scene of `depsgraph` with its camera.
+
+    depsgraph: in a render engine the one it is given, else `bpy.context.evaluated_depsgraph_get()`, which shows what
+        the viewport shows: an object hidden there is missing, and modifiers have their viewport settings.
+    frame: the picture and its part to render; None: resolution and render border of `scene.render`.
+    camera: the camera object; None: the scene's.
+    Raises ExportError if there is no camera, no light, or a camera that is not supported.
+    """
+    blender_scene = depsgraph.scene_eval
+    frame = frame or frame_of(blender_scene.render)
+    camera = camera or blender_scene.camera
+    report = ExportReport()
+    if camera is None:
+        raise ExportError(f"Scene '{blender_scene.name}' has no camera")
+    if camera.type != "CAMERA":
+        raise ExportError(f"the active camera of scene '{blender_scene.name}', '{camera.name}', is not a camera")
+    scene = shlight.Scene()
+    set_camera(scene, camera.evaluated_get(depsgraph), depsgraph, frame, blender_scene.render, report)
+    report_unsupported_settings(blender_scene, depsgraph.view_layer_eval, report)
+    background = background_color(blender_scene, report)
+    if not _add_objects(scene, depsgraph, report):
+        raise ExportError(_no_light(blender_scene, report))
+    return ExportedScene(scene, report, background)
+
+
+def _no_light(blender_scene: Any, report: ExportReport) -> str:
+    left_out = [line for line in report.lines() if line.startswith(("Light", "World"))]
+    return " ".join([f"Scene '{blender_scene.name}' has no light that shlight can render.", *left_out])
+
+
+def _add_objects(scene: shlight.Scene, depsgraph: Any, report: ExportReport) -> bool:
+    """Adds all meshes and lamps; True if something gives light."""
+    meshes = MeshCollector(report, depsgraph.view_layer_eval.material_override)
+    lit = False
+    for instance in depsgraph.object_instances:
+        seen = instance.object
+        if not instance.show_self or (seen.hide_render and not instance.is_instance):
+            continue
+        place = f"Object '{seen.name}'"
+        if seen.type == "LIGHT":
+            _report_light_linking(seen, f"Light '{seen.name}'", report)
+            lit |= add_lamp(scene, seen, np.array(instance.matrix_world, dtype=np.float64), report)
+        elif seen.type == "MESH":
+            _report_object(seen, place, report)
+            meshes.add(seen, np.array(instance.matrix_world, dtype=np.float64))
+        elif seen.type in UNSUPPORTED_TYPES:
+            report.add(place, f"{UNSUPPORTED_TYPES[seen.type]} are not supported; left out")
+    return meshes.hand_over(scene) or lit
+
+
+def _report_object(seen: Any, place: str, report: ExportReport) -> None:
+    for name, (neutral, text) in VISIBILITY.items():
+        if bool(getattr(seen, name, neutral)) != neutral:
+            report.add(place, text)
+    for system in seen.particle_systems:
+        settings = system.settings
+        if settings.type == "HAIR" and settings.render_type == "PATH":
+            report.add(f"{place}, particle system '{system.name}'", "hair is not supported; left out")
+    _report_light_linking(seen, place, report)
+
+
+def _report_light_linking(seen: Any, place: str, report: ExportReport) -> None:
+    linking = getattr(seen, "light_linking", None)
+    if linking is not None and (linking.receiver_collection or linking.blocker_collection):
+        report.add(place, "light linking is not supported; it lights and shadows everything")

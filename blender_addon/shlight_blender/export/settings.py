@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Settings of a Blender scene: those that shlight takes over, and a report of those it does not know."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compat import uses_nodes
+from ..report import ExportReport
+from .nodes import RGB, ConstantReader, origin
+
+PASSES_WRITTEN = {"use_pass_combined"}
+# Says how precise another pass is, and is no pass itself.
+PASS_OPTIONS = {"use_pass_cryptomatte_accurate"}
+
+
+@dataclass(frozen=True)
+class RenderSettings:
+    """Arguments of `shlight.render` as the scene's panel and Blender's own settings have them."""
+
+    order: int | str
+    tolerance: float
+    pixel_samples: int
+    shadow_rays: int
+    threads: int
+
+    def arguments(self) -> dict[str, Any]:
+        """The settings as keyword arguments of `shlight.render`."""
+        return dict(self.__dict__)
+
+
+def render_settings(scene: Any) -> RenderSettings:
+    """Reads `scene.shlight` and the number of threads of `scene.render`."""
+    settings = scene.shlight
+    render = scene.render
+    return RenderSettings(
+        order="auto" if settings.order == "AUTO" else int(settings.order),
+        tolerance=float(settings.tolerance),
+        pixel_samples=int(settings.pixel_samples),
+        shadow_rays=int(settings.shadow_rays) if settings.use_shadows else 0,
+        threads=int(render.threads) if render.threads_mode == "FIXED" else 0,
+    )
+
+
+def background_color(scene: Any, report: ExportReport) -> RGB:
+    """Colour (RGB radiance) that the camera sees behind the scene; what of the world is not supported is reported."""
+    world = scene.world
+    if world is None:
+        return np.zeros(3)
+    place = f"World '{world.name}'"
+    color = _world_color(world, place, report)
+    if color.any():
+        report.add(place, "light from the world is not supported; its colour is seen behind the scene only")
+    return color
+
+
+def _world_color(world: Any, place: str, report: ExportReport) -> RGB:
+    if not uses_nodes(world):
+        return np.array(world.color, dtype=np.float64)
+    output = world.node_tree.get_output_node("CYCLES")
+    if output is None:
+        return np.zeros(3)
+    if origin(output.inputs["Volume"]).node is not None:
+        report.add(place, "volume is not supported; left out")
+    source = origin(output.inputs["Surface"])
+    if source.node is None:
+        return np.zeros(3)
+    reader = ConstantReader(place, report)
+    if source.node.type != "BACKGROUND":
+        report.add(reader.at(source.node), f"{source.node.bl_label} is not supported; black is used")
+        return np.zeros(3)
+    strength = reader.number(source.node, "Strength", source.groups)
+    return max(strength, 0.0) * reader.color(source.node, "Color", source.groups)
+
+
+def over_background(image: NDArray[np.float32], background: RGB, film_transparent: bool) -> NDArray[np.float32]:
+    """A picture of `shlight.render` (premultiplied RGBA) as on Blender's film: opaque unless that is transparent."""
+    if film_transparent:
+        return image
+    opaque = image.copy()
+    opaque[..., :3] += (1.0 - image[..., 3:]) * background.astype(np.float32)
+    opaque[..., 3] = 1.0
+    return opaque
+
+
+def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportReport) -> None:
+    """Notes settings of the scene and its view layer that change Cycles' picture and not shlight's."""
+    place = f"Scene '{scene.name}'"
+    render = scene.render
+    if render.use_motion_blur:
+        report.add(place, "motion blur is not supported; everything stands still")
+    if render.use_multiview:
+        report.add(place, "stereoscopy is not supported; all views show the same picture")
+    if getattr(render, "use_freestyle", False):
+        report.add(place, "Freestyle lines are not supported; left out")
+    passes = sorted(
+        name
+        for name in dir(view_layer)
+        if name.startswith("use_pass_") and name not in PASSES_WRITTEN | PASS_OPTIONS and getattr(view_layer, name)
+    )
+    if passes:
+        names = ", ".join(name.removeprefix("use_pass_") for name in passes)
+        report.add(f"View layer '{view_layer.name}'", f"only the Combined pass is written; not {names}")
+    _report_layer_collections(view_layer.layer_collection, report)
+
+
+def _report_layer_collections(layer_collection: Any, report: ExportReport) -> None:
+    for child in layer_collection.children:
+        if child.holdout or child.indirect_only:
+            report.add(f"Collection '{child.name}'", "holdout and indirect only are not supported; drawn as usual")
+        _report_layer_collections(child, report)

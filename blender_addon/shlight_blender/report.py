@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What of a Blender scene shlight renders otherwise than Cycles would, collected while the scene is exported."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+
+class ExportError(ValueError):
+    """The scene cannot be rendered at all (no camera, no light, a camera type without a picture plane)."""
+
+
+@dataclass
+class Message:
+    """One finding: what is the case and what is done instead (`text`), and everything it holds for (`places`)."""
+
+    text: str
+    places: list[str] = field(default_factory=list)
+
+    def line(self, most: int = 4) -> str:
+        """The message on one line; of many places only the first `most` are named."""
+        shown = ", ".join(self.places[:most])
+        if len(self.places) > most:
+            shown += f" and {len(self.places) - most} more"
+        return f"{shown}: {self.text}"
+
+
+class ExportReport:
+    """Messages in the order of their first occurrence; the same text about several things is one message."""
+
+    def __init__(self) -> None:
+        self._messages: dict[str, Message] = {}
+
+    def add(self, place: str, text: str) -> None:
+        """Notes `text` about `place`, for instance "Material 'Wood', node 'Noise Texture'"."""
+        message = self._messages.setdefault(text, Message(text))
+        if place not in message.places:
+            message.places.append(place)
+
+    def __iter__(self) -> Iterator[Message]:
+        return iter(self._messages.values())
+
+    def __len__(self) -> int:
+        return len(self._messages)
+
+    def lines(self, most: int = 4) -> list[str]:
+        """One line per message, as shown to the user."""
+        return [message.line(most) for message in self]
+
+    def to_data(self) -> list[dict[str, object]]:
+        """The messages as plain data: a list of {"text": str, "places": [str, ...]}."""
+        return [{"text": message.text, "places": list(message.places)} for message in self]
