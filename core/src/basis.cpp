@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 
 #include "checks.h"
@@ -33,7 +34,7 @@ void sh_basis(const Vec3<T>& direction, int order, T* basis) {
         cos_part[static_cast<std::size_t>(m)] *= std::numbers::sqrt2_v<T>;
         sin_part[static_cast<std::size_t>(m)] *= std::numbers::sqrt2_v<T>;
     }
-    LegendreRows<T> legendre(direction.z);
+    LegendreRows<T> legendre(direction.z, std::hypot(direction.x, direction.y));
     for (int l = 0;; legendre.advance()) {
         T* band = basis + coefficient_index(l, 0);
         band[0] = legendre[0];

@@ -61,32 +61,29 @@ Cap<T> make_cap(const Axis& axis, double cos_half, double sin_half, double cross
 
 /// The zonal integrals λ_l of an unclipped cap, ∫ P_l(ω·L) dω (Funk–Hecke).
 /// λ_l = 2π sin²σ P_l'(cosσ) / (l(l+1)) is 2π (P_{l-1} - P_{l+1}) / (2l+1) without its cancellation;
-/// λ_0 = 2π (1 - cosσ) with 1 - cosσ = sin²σ / (1 + cosσ).
+/// λ_0 = 2π (1 - cosσ). For small caps P_l falls from 1 by l(l+1)/2 · (1 - cosσ): the recurrence runs on the differences
+/// P_l - P_{l-1} and on 1 - cosσ = sin²σ / (1 + cosσ), because a rounded cosσ would be amplified by l².
 template <class T>
 class ZonalIntegrals {
   public:
-    ZonalIntegrals(T cos_half, T sin_half) : cos_(cos_half), sin2_(sin_half * sin_half) {}
+    ZonalIntegrals(T cos_half, T sin_half) : sin2_(sin_half * sin_half), one_minus_cos_(sin2_ / (1 + cos_half)) {}
 
-    T band_zero() const { return 2 * std::numbers::pi_v<T> * sin2_ / (1 + cos_); }
+    T band_zero() const { return 2 * std::numbers::pi_v<T> * one_minus_cos_; }
     /// sin²σ P_l'(cosσ) for l = 1, 2, 3 … in turn.
     T next_edge() {
         ++l_;
-        if (l_ > 1) {
-            const T p = (static_cast<T>(2 * l_ - 3) * cos_ * p_ - static_cast<T>(l_ - 2) * p_before_) /
-                        static_cast<T>(l_ - 1);
-            p_before_ = p_;
-            p_ = p;
-        }
-        const T derivative = derivative_before_ + static_cast<T>(2 * l_ - 1) * p_;
+        const T derivative = derivative_before_ + static_cast<T>(2 * l_ - 1) * p_;  // P'_l = P'_{l-2} + (2l-1) P_{l-1}
         derivative_before_ = derivative_;
         derivative_ = derivative;
+        rise_ = (static_cast<T>(l_ - 1) * rise_ - static_cast<T>(2 * l_ - 1) * one_minus_cos_ * p_) / static_cast<T>(l_);
+        p_ += rise_;
         return sin2_ * derivative;
     }
 
   private:
-    T cos_, sin2_;
+    T sin2_, one_minus_cos_;
     int l_ = 0;
-    T p_before_ = 0, p_ = 1;                    // P_{l-2}, P_{l-1} after a step to l
+    T p_ = 1, rise_ = 0;                        // P_l, P_l - P_{l-1}
     T derivative_before_ = 0, derivative_ = 0;  // P'_{l-1}, P'_l
 };
 
@@ -107,7 +104,7 @@ void whole_cap(const Cap<T>& cap, int order, T* coefficients) {
     std::array<T, kMaxOrder> cos_m;
     std::array<T, kMaxOrder> sin_m;
     complex_powers(cap.sin_tilt * cap.cos_azimuth, cap.sin_tilt * cap.sin_azimuth, order, cos_m.data(), sin_m.data());
-    LegendreRows<T> legendre(cap.cos_tilt);
+    LegendreRows<T> legendre(cap.cos_tilt, cap.sin_tilt);
     ZonalIntegrals<T> zonal(cap.cos_half, cap.sin_half);
     coefficients[0] = zonal.band_zero() * legendre[0];
     std::array<T, kMaxOrder> band;
@@ -197,7 +194,7 @@ void clipped_cap(const Cap<T>& cap, int order, T* coefficients) {
     std::array<T, kMaxOrder> cos_m, sin_m, sin_tilt_powers;
     complex_powers(cap.cos_azimuth, cap.sin_azimuth, order, cos_m.data(), sin_m.data());
     powers(cap.sin_tilt, order, sin_tilt_powers.data());
-    LegendreRows<T> legendre(cap.cos_tilt);
+    LegendreRows<T> legendre(cap.cos_tilt, cap.sin_tilt);
     ZonalIntegrals<T> zonal(cap.cos_half, cap.sin_half);
     coefficients[0] = arc.solid_angle * legendre[0];
     std::array<T, kMaxOrder> right, band, null;

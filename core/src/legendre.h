@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
 #include "shlight/types.h"
 
@@ -27,6 +26,7 @@ struct LegendreConstants {
     std::array<T, kCosineMax> back;        //
     std::array<T, kCosineMax> ladder;      ///< √((l-m)(l+m+1)), the ladder operators' factor
     std::array<T, kCosineMax> at_horizon;  ///< P̄_l^m(0), zero for odd l - m
+    std::array<T, kCosineMax> at_pole;        ///< P̂_l^m(1)
     std::array<T, kCosineMax> dz_at_horizon;  ///< dP̄_l^m/dz (0), zero for even l - m
 
     static const LegendreConstants& get();
@@ -35,40 +35,76 @@ struct LegendreConstants {
 extern template struct LegendreConstants<float>;
 extern template struct LegendreConstants<double>;
 
-/// P̂_l^0 … P̂_l^l for l = 0, 1, 2, … at one z.
+/// P̂_l^0 … P̂_l^l for l = 0, 1, 2, … at one z = cosθ.
+///
+/// Near the poles P̂_l^m leaves its value there by about l²/2 · (1 - |z|): a rounded z, and the rounding of each step of
+/// the usual recurrence, would be amplified by l². There the recurrence runs on the differences of R_l = P̂_l / P̂_l(1),
+///   (l+m) (R_l - R_{l-1}) = (l-m-1) (R_{l-1} - R_{l-2}) - (2l-1) (1-|z|) R_{l-1},   1 - |z| = sin²θ / (1 + |z|).
 template <class T>
 class LegendreRows {
   public:
-    explicit LegendreRows(T z) : z_(z) { current_[0] = constants_.diagonal[0]; }
+    LegendreRows(T z, T sine) : z_(z), near_pole_(sine < T(0.125)) {
+        row_[0] = constants_.diagonal[0];
+        if (near_pole_) {
+            distance_ = sine * sine / (1 + std::abs(z));
+            state_[0] = 1;
+            other_[0] = 0;
+        }
+    }
 
     int band() const { return l_; }
     /// P̂_l^m of the present band, m = 0 … l.
-    const T* row() const { return current_; }
-    T operator[](int m) const { return current_[m]; }
+    const T* row() const { return row_; }
+    T operator[](int m) const { return row_[m]; }
 
     /// Steps to the next band.
     void advance() {
         ++l_;
-        const T* step = &constants_.step[at(l_, 0)];
-        const T* back = &constants_.back[at(l_, 0)];
-        for (int m = 0; m + 1 < l_; ++m) {
-            previous_[m] = step[m] * z_ * current_[m] - back[m] * previous_[m];
+        if (near_pole_) {
+            advance_near_pole();
+        } else {
+            advance_by_z();
         }
-        previous_[l_ - 1] = step[l_ - 1] * z_ * current_[l_ - 1];
-        previous_[l_] = constants_.diagonal[static_cast<std::size_t>(l_)];
-        std::swap(current_, previous_);
     }
 
-    LegendreRows(const LegendreRows&) = delete;
-    LegendreRows& operator=(const LegendreRows&) = delete;
-
   private:
+    /// other_ holds the band before.
+    void advance_by_z() {
+        const T* step = &constants_.step[at(l_, 0)];
+        const T* back = &constants_.back[at(l_, 0)];
+        for (int m = 0; m < l_; ++m) {
+            const T next = step[m] * z_ * row_[m] - back[m] * other_[m];
+            other_[m] = row_[m];
+            row_[m] = next;
+        }
+        row_[l_] = constants_.diagonal[static_cast<std::size_t>(l_)];
+        other_[l_] = 0;
+    }
+
+    /// state_ holds R_l, other_ the difference R_l - R_{l-1}.
+    void advance_near_pole() {
+        const T* at_pole = &constants_.at_pole[at(l_, 0)];
+        const T slope = static_cast<T>(2 * l_ - 1) * distance_;
+        T sign = z_ < 0 && l_ % 2 == 1 ? T(-1) : T(1);
+        for (int m = 0; m < l_; ++m) {
+            other_[m] = (static_cast<T>(l_ - m - 1) * other_[m] - slope * state_[m]) / static_cast<T>(l_ + m);
+            state_[m] += other_[m];
+            row_[m] = sign * at_pole[m] * state_[m];
+            sign = z_ < 0 ? -sign : sign;  // P̂_l^m(-z) = (-1)^(l-m) P̂_l^m(z)
+        }
+        state_[l_] = 1;
+        other_[l_] = 0;
+        row_[l_] = constants_.diagonal[static_cast<std::size_t>(l_)];
+    }
+
     const LegendreConstants<T>& constants_ = LegendreConstants<T>::get();
     T z_;
+    T distance_ = 0;
+    bool near_pole_;
     int l_ = 0;
-    T storage_[2][kMaxOrder + 1];
-    T* current_ = storage_[0];
-    T* previous_ = storage_[1];
+    T row_[kMaxOrder];
+    T state_[kMaxOrder];
+    T other_[kMaxOrder] = {0};
 };
 
 /// out[m] = base^m for m = 0 … count-1.

@@ -22,7 +22,7 @@ struct BandTerms {
 template <class T>
 class EndPoint {
   public:
-    EndPoint(const Vec3d& direction, int order) : legendre_(static_cast<T>(direction.z)) {
+    EndPoint(const Vec3d& direction, int order) : legendre_(static_cast<T>(direction.z), static_cast<T>(std::hypot(direction.x, direction.y))) {
         complex_powers(static_cast<T>(direction.x), static_cast<T>(direction.y), order, cos_.data(), sin_.data());
     }
     void advance() { legendre_.advance(); }
@@ -76,7 +76,7 @@ class ArcIntegrals {
         : length_(static_cast<T>(edge.length)),
           cos_tilt_(static_cast<T>(edge.cos_tilt)),
           sin_tilt_(static_cast<T>(edge.sin_tilt)),
-          legendre_(cos_tilt_),
+          legendre_(cos_tilt_, sin_tilt_),
           from_(edge.from, order),
           to_(edge.to, order) {
         powers(sin_tilt_, order, sin_powers_.data());
