@@ -13,7 +13,9 @@ namespace shlight::embree {
 
 #if SHLIGHT_EMBREE_MAJOR >= 4
 
-inline void intersect1(RTCScene scene, RTCRayHit* ray_hit) { rtcIntersect1(scene, ray_hit, nullptr); }
+inline void intersect1(RTCScene scene, RTCRayHit* ray_hit) {
+    rtcIntersect1(scene, ray_hit, nullptr);
+}
 
 inline void occluded8(const int* valid, RTCScene scene, RTCRay8* rays) {
     RTCOccludedArguments arguments;

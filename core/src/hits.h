@@ -38,8 +38,8 @@ struct Hits {
     std::vector<Vec3d> shadow_origin;  ///< off the surface, on the viewer's side
     std::vector<double> error;         ///< see SurfacePoint
     std::vector<std::uint32_t> material;
-    std::vector<std::uint32_t> sample;  ///< number of the camera ray within its pixel
-    std::vector<Rgb> radiance;          ///< towards the camera, summed up
+    std::vector<std::uint32_t> sample;           ///< number of the camera ray within its pixel
+    std::vector<Rgb> radiance;                   ///< towards the camera, summed up
     std::vector<std::size_t> pixel_begin = {0};  ///< pixel p has the hits pixel_begin[p] … pixel_begin[p + 1] - 1
 
     std::size_t size() const { return frame.size(); }

@@ -11,8 +11,8 @@
 namespace shlight {
 namespace {
 
-constexpr double kPlanar = 1e-4;       // of the extent: far above the rounding of float vertices, far below a picture
-constexpr double kRepeated = 1e-9;     // of the extent: two vertices are one
+constexpr double kPlanar = 1e-4;        // of the extent: far above the rounding of float vertices, far below a picture
+constexpr double kRepeated = 1e-9;      // of the extent: two vertices are one
 constexpr double kSmallestArea = 1e-9;  // of the extent squared
 
 double extent_of(const std::vector<Vec3d>& vertices) {

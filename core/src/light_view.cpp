@@ -27,7 +27,7 @@ Cap<float> cap_of(const CapView& cap) {
         case CapView::Kind::inside:
             break;
     }
-    return Cap<float>::about_axis(Vec3f(0, 0, 1), std::numbers::pi_v<float> / 2);
+    return to_float(Cap<double>::about_axis(Vec3d(0, 0, 1), std::numbers::pi / 2));
 }
 
 }  // namespace

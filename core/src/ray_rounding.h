@@ -14,6 +14,8 @@ namespace shlight {
 /// of it into an instance's frame, and in its edge tests.
 inline constexpr double kRayRounding = 16 * 0x1p-24;
 
-inline double largest_component(const Vec3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+inline double largest_component(const Vec3d& v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
 
 }  // namespace shlight

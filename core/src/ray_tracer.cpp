@@ -50,8 +50,8 @@ T* new_buffer(RTCDevice device, RTCGeometry geometry, RTCBufferType type, RTCFor
 
 Geometry triangle_geometry(RTCDevice device, const TracedGeometry& source) {
     Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-    auto* vertices = new_buffer<Vec3f>(device, geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
-                                       source.vertices.size());
+    auto* vertices =
+        new_buffer<Vec3f>(device, geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, source.vertices.size());
     std::copy(source.vertices.begin(), source.vertices.end(), vertices);
     auto* triangles =
         new_buffer<Triangle>(device, geometry.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, source.triangles.size());
@@ -130,8 +130,18 @@ void RayTracer::intersect(std::span<const Ray> rays, std::span<RayHit> hits) con
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const Ray& ray = rays[i];
         RTCRayHit query{};
-        query.ray = {ray.origin.x,    ray.origin.y,    ray.origin.z, ray.t_min, ray.direction.x, ray.direction.y,
-                     ray.direction.z, 0.0F, ray.t_max, 0xFFFFFFFFU, 0U, 0U};
+        query.ray = {ray.origin.x,
+                     ray.origin.y,
+                     ray.origin.z,
+                     ray.t_min,
+                     ray.direction.x,
+                     ray.direction.y,
+                     ray.direction.z,
+                     0.0F,
+                     ray.t_max,
+                     0xFFFFFFFFU,
+                     0U,
+                     0U};
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         embree::intersect1(impl_->scene(), &query);

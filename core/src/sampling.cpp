@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cmath>
+#include <initializer_list>
 
 namespace shlight {
 namespace {
@@ -36,7 +37,9 @@ std::uint32_t pascal(std::uint32_t x) {
     return x;
 }
 
-double unit(std::uint32_t x) { return (static_cast<double>(x) + 0.5) * 0x1p-32; }
+double unit(std::uint32_t x) {
+    return (static_cast<double>(x) + 0.5) * 0x1p-32;
+}
 
 }  // namespace
 

@@ -8,9 +8,9 @@
 
 #include <tbb/task_arena.h>
 
+#include "ray_rounding.h"
 #include "shlight/mesh_light.h"
 #include "shlight/parallel.h"
-#include "ray_rounding.h"
 #include "transforms.h"
 
 namespace shlight {
@@ -29,11 +29,11 @@ struct TracedMesh {
 
 struct Placement {
     std::uint32_t mesh;
-    bool baked;              // vertices are in the world frame
+    bool baked;  // vertices are in the world frame
     glm::dmat4 to_world;
     glm::dmat3 normal_to_world;  // inverse transpose
-    double condition;        // how much a ray's rounding grows on its way through the instance's frame
-    double origin;           // largest component of the translation
+    double condition;            // how much a ray's rounding grows on its way through the instance's frame
+    double origin;               // largest component of the translation
 };
 
 double inf_norm(const glm::dmat3& m) {
@@ -161,9 +161,10 @@ SurfacePoint CompiledScene::Impl::surface(const RayHit& hit, const Vec3f& direct
     if (!mesh.vertex_normals.empty() || !mesh.corner_normals.empty()) {
         Vec3d local(0);
         for (int i = 0; i < 3; ++i) {
-            const Vec3f& normal = mesh.corner_normals.empty()
-                                      ? mesh.vertex_normals[triangle[i]]
-                                      : mesh.corner_normals[3 * std::size_t{hit.triangle} + static_cast<std::size_t>(i)];
+            const Vec3f& normal =
+                mesh.corner_normals.empty()
+                    ? mesh.vertex_normals[triangle[i]]
+                    : mesh.corner_normals[3 * std::size_t{hit.triangle} + static_cast<std::size_t>(i)];
             local += weights[static_cast<std::size_t>(i)] * Vec3d(normal);
         }
         shading = normalized_or(placement.normal_to_world * local, geometric);
@@ -184,9 +185,15 @@ SurfacePoint CompiledScene::Impl::surface(const RayHit& hit, const Vec3f& direct
 CompiledScene::CompiledScene(std::unique_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 CompiledScene::~CompiledScene() = default;
 
-std::span<const Material> CompiledScene::materials() const { return impl_->materials; }
-std::span<const Light> CompiledScene::lights() const { return impl_->lights; }
-const RayTracer& CompiledScene::rays() const { return *impl_->rays; }
+std::span<const Material> CompiledScene::materials() const {
+    return impl_->materials;
+}
+std::span<const Light> CompiledScene::lights() const {
+    return impl_->lights;
+}
+const RayTracer& CompiledScene::rays() const {
+    return *impl_->rays;
+}
 
 SurfacePoint CompiledScene::surface(const RayHit& hit, const Vec3f& direction) const {
     return impl_->surface(hit, direction);

@@ -18,9 +18,9 @@ struct Mesh {
     std::vector<Triangle> triangles;  ///< vertex indices
     /// Smooth normals of any length in the mesh's frame: one per vertex, or three per triangle, or none (flat).
     std::vector<Vec3f> vertex_normals, corner_normals;
-    std::vector<Bsdf> bsdfs = {Bsdf()};          ///< one per material, or one for all
-    std::vector<Rgb> emission = {Rgb(0)};        ///< radiance of both sides: one per material, or one for all
-    std::vector<std::uint32_t> material_indices;  ///< one per triangle, or none (all 0)
+    std::vector<Bsdf> bsdfs = {Bsdf()};                    ///< one per material, or one for all
+    std::vector<Rgb> emission = {Rgb(0)};                  ///< radiance of both sides: one per material, or one for all
+    std::vector<std::uint32_t> material_indices;           ///< one per triangle, or none (all 0)
     std::vector<glm::dmat4> transforms = {glm::dmat4(1)};  ///< object to world, one per instance
 
     std::size_t material_count() const { return bsdfs.size() > emission.size() ? bsdfs.size() : emission.size(); }

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+//
+// Pictures: direct light from area lights by Eq. 5 of Zhou & Wei 2020, times a visibility ratio from shadow rays.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "shlight/camera.h"
+#include "shlight/parallel.h"
+#include "shlight/scene.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+struct RenderSettings {
+    int order = 0;            ///< 1 … 64, or 0: for each lobe and view the smallest that meets the tolerance
+    double tolerance = 1e-3;  ///< L2 error of a lobe's fit ÷ norm of the whole f·cos of the material, at the same view
+    int pixel_samples = 16;   ///< camera rays per pixel, spread evenly over its square
+    int shadow_rays = 16;     ///< per camera ray and light, at most; 0: no shadows
+    int threads = 0;          ///< 0: all cores
+};
+
+/// What the picture took.
+struct RenderReport {
+    std::array<std::uint64_t, kMaxOrder + 1> order_counts{};  ///< lobes of camera hits, by the order they took
+    std::uint64_t hits = 0;                                   ///< camera rays that met a surface
+    std::uint64_t over_tolerance = 0;                         ///< of these, where no order met the tolerance
+    std::uint64_t shadow_rays = 0;
+    double seconds = 0;
+};
+
+/// Throws std::invalid_argument naming the member or argument: order outside 0 … 64, tolerance ≤ 0 or not finite,
+/// pixel_samples outside 1 … 2^20, shadow_rays outside 0 … 2^20, more than 2^22 of both per pixel, threads < 0,
+/// width or height < 1, or more than 2^28 pixels.
+void check_render(const RenderSettings& settings, int width, int height);
+
+/// image: height × width × RGBA, row 0 on top, linear, premultiplied; alpha is the share of camera rays that met a
+/// surface. The picture depends on nothing but scene, camera, size and settings; not on the number of threads. Throws
+/// as check_render does, also for an image of another size; RenderCancelled when progress returns false; what progress
+/// throws.
+RenderReport render(const CompiledScene& scene, const Camera& camera, int width, int height,
+                    const RenderSettings& settings, std::span<float> image, const Progress& progress = {});
+
+}  // namespace shlight

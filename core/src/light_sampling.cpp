@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "light_sampling.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace shlight {
+namespace {
+
+using std::numbers::pi;
+
+/// Below this solid angle the spherical triangle's angles lose digits, and the weight of points spread over its area
+/// hardly varies.
+constexpr double kSmallest = 1e-5;
+
+double solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    const double la = glm::length(a);
+    const double lb = glm::length(b);
+    const double lc = glm::length(c);
+    const double triple = std::abs(glm::dot(a, glm::cross(b - a, c - a)));
+    return 2 * std::atan2(triple, la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
+}
+
+/// The part of v at right angles to the unit vector `axis`, as a unit vector.
+Vec3d orthogonal(const Vec3d& v, const Vec3d& axis) {
+    return glm::normalize(v - glm::dot(v, axis) * axis);
+}
+
+double angle_between(const Vec3d& a, const Vec3d& b) {
+    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+/// Arvo 1995, "Stratified sampling of spherical triangles": the first coordinate cuts off a triangle (a, b, c') of that
+/// share of the area, the second picks a point on the arc from b to c'.
+Vec3d in_spherical_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c, const glm::dvec2& point) {
+    const Vec3d ab = glm::normalize(glm::cross(a, b));
+    const Vec3d bc = glm::normalize(glm::cross(b, c));
+    const Vec3d ca = glm::normalize(glm::cross(c, a));
+    const double alpha = angle_between(ab, -ca);
+    const double beta = angle_between(bc, -ab);
+    const double gamma = angle_between(ca, -bc);
+    const double area = point.x * (alpha + beta + gamma - pi);
+    const double s = std::sin(area - alpha);
+    const double t = std::cos(area - alpha);
+    const double u = t - std::cos(alpha);
+    const double v = s + std::sin(alpha) * glm::dot(a, b);
+    const double q =
+        std::clamp(((v * t - u * s) * std::cos(alpha) - v) / ((v * s + u * t) * std::sin(alpha)), -1.0, 1.0);
+    const Vec3d corner = q * a + std::sqrt(1 - q * q) * orthogonal(c, a);
+    const Vec3d chord = corner - b;
+    const double drop = point.y * 0.5 * glm::dot(chord, chord);  // 1 - z of Arvo's text
+    return (1 - drop) * b + std::sqrt(std::max(0.0, drop * (2 - drop))) * orthogonal(corner, b);
+}
+
+}  // namespace
+
+CapSampler::CapSampler(const CapView& cap) : cap_(cap), axis_(0, 0, 1), up_(1, 0, 0), across_(0, 1, 0), widest_(pi) {
+    if (cap.kind == CapView::Kind::inside) {
+        return;  // the whole hemisphere
+    }
+    const double distance = glm::length(cap.center);
+    axis_ = cap.center / distance;
+    axis_height_ = axis_.z;
+    tilt_ = std::hypot(axis_.x, axis_.y);
+    if (tilt_ > 0) {
+        up_ = Vec3d(-axis_.x * axis_.z, -axis_.y * axis_.z, tilt_ * tilt_) / tilt_;
+        across_ = glm::cross(axis_, up_);
+    }
+    const bool sphere = cap.kind == CapView::Kind::sphere;
+    const double sine = cap.radius / (sphere ? distance : std::hypot(distance, cap.radius));
+    const double cosine = sphere ? std::sqrt(std::max(0.0, (1 - sine) * (1 + sine))) : sine * distance / cap.radius;
+    one_minus_cos_ = sine * sine / (1 + cosine);
+    if (axis_height_ < 0) {
+        widest_ = std::acos(std::clamp(-axis_height_ * cosine / (tilt_ * sine), -1.0, 1.0));
+    }
+}
+
+LightSample CapSampler::sample(const glm::dvec2& point) const {
+    const double azimuth = widest_ * (2 * point.y - 1);
+    const double toward_up = std::cos(azimuth);
+    double from = 0;  // range of 1 - cos of the angle to the axis
+    double to = one_minus_cos_;
+    // The horizon crosses this meridian where tan(angle) = -height / (tilt · toward_up).
+    const double slope = tilt_ * toward_up;
+    if ((axis_height_ >= 0) != (slope >= 0)) {
+        const double length = std::hypot(axis_height_, slope);
+        const double crossing = axis_height_ * axis_height_ / (length * (length + std::abs(slope)));
+        (axis_height_ >= 0 ? to : from) = std::min(one_minus_cos_, crossing);
+    }
+    const double drop = from + point.x * (to - from);
+    const double sine = std::sqrt(drop * (2 - drop));
+    const Vec3d direction = (1 - drop) * axis_ + sine * (toward_up * up_ + std::sin(azimuth) * across_);
+    return {direction, distance(direction, 1 - drop), 2 * widest_ * (to - from)};
+}
+
+double CapSampler::distance(const Vec3d& direction, double cosine) const {
+    const double to_center = glm::length(cap_.center);
+    if (cap_.kind == CapView::Kind::facing_disk) {
+        return to_center / cosine;
+    }
+    const double along = glm::dot(direction, cap_.center);
+    const double rest = (cap_.radius - to_center) * (cap_.radius + to_center) + along * along;
+    const double half_chord = std::sqrt(std::max(0.0, rest));
+    return cap_.kind == CapView::Kind::sphere ? std::max(0.0, along - half_chord) : along + half_chord;
+}
+
+void PolygonSampler::reset(const PolygonLight& light, const ShadingFrame& frame) {
+    pieces_.clear();
+    total_ = 0;
+    normal_ = frame.to_local(light.normal);
+    height_ = glm::dot(light.normal, light.vertices[0] - frame.origin);
+    for (const Triangle& t : light.triangles) {
+        add_clipped(frame.point_to_local(light.vertices[t.x]), frame.point_to_local(light.vertices[t.y]),
+                    frame.point_to_local(light.vertices[t.z]));
+    }
+}
+
+void PolygonSampler::add_clipped(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    std::array<Vec3d, 4> kept{};
+    std::size_t count = 0;
+    const std::array<Vec3d, 3> corners = {a, b, c};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3d& from = corners[i];
+        const Vec3d& to = corners[(i + 1) % 3];
+        if (from.z >= 0) {
+            kept[count++] = from;
+        }
+        if ((from.z >= 0) != (to.z >= 0)) {
+            kept[count++] = from + from.z / (from.z - to.z) * (to - from);
+        }
+    }
+    for (std::size_t i = 2; i < count; ++i) {
+        const Piece piece = {kept[0], kept[i - 1], kept[i], solid_angle(kept[0], kept[i - 1], kept[i])};
+        if (piece.solid_angle > 0) {
+            pieces_.push_back(piece);
+            total_ += piece.solid_angle;
+        }
+    }
+}
+
+LightSample PolygonSampler::sample(glm::dvec2 point) const {
+    if (!(total_ > 0)) {
+        return {Vec3d(0, 0, 1), 0, 0};
+    }
+    double left = point.x * total_;
+    const Piece* piece = pieces_.data();
+    while (left >= piece->solid_angle && piece != &pieces_.back()) {
+        left -= piece->solid_angle;
+        ++piece;
+    }
+    point.x = std::min(left / piece->solid_angle, 1.0);
+    const auto& [a, b, c, solid_angle] = *piece;
+    if (solid_angle < kSmallest) {
+        const double root = std::sqrt(point.x);
+        const Vec3d target = (1 - root) * a + root * ((1 - point.y) * b + point.y * c);
+        const double distance = glm::length(target);
+        const double area = 0.5 * glm::length(glm::cross(b - a, c - a));
+        // dω = |cos at the light| dA / distance²
+        const double density = area * std::abs(height_) / (distance * distance * distance);
+        return {target / distance, distance, total_ / solid_angle * density};
+    }
+    const Vec3d direction = in_spherical_triangle(glm::normalize(a), glm::normalize(b), glm::normalize(c), point);
+    return {direction, height_ / glm::dot(normal_, direction), total_};
+}
+
+}  // namespace shlight

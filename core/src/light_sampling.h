@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+//
+// Directions to a light from a hit, spread over what of it lies above the horizon.
+//
+// Both samplers turn a point of the unit square into a direction and a weight: the mean of weight · g(direction) over
+// evenly spread points is the integral of g over the solid angle of the light above the horizon.
+#pragma once
+
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "light_view.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+struct LightSample {
+    Vec3d direction;  ///< unit, in the shading frame
+    double distance;  ///< to the light's surface
+    double weight;
+};
+
+/// Uniform in the solid angle of a cap; along each meridian that the horizon cuts, uniform in what is left of it.
+class CapSampler {
+  public:
+    explicit CapSampler(const CapView& cap);
+    LightSample sample(const glm::dvec2& point) const;
+
+  private:
+    double distance(const Vec3d& direction, double cosine) const;
+
+    CapView cap_;
+    Vec3d axis_, up_, across_;           // up: at right angles to the axis, towards the zenith
+    double axis_height_ = 1, tilt_ = 0;  // the axis' elevation: sine and cosine
+    double one_minus_cos_ = 1;           // of the half angle
+    double widest_;                      // azimuth about the axis, from `up`, where the light ends
+};
+
+/// Uniform in solid angle within each spherical triangle (Arvo 1995); small triangles are sampled by area.
+class PolygonSampler {
+  public:
+    /// Sets the light and the hit; keeps its memory from one to the next.
+    void reset(const PolygonLight& light, const ShadingFrame& frame);
+    /// Where nothing lies above the horizon, a sample of no weight and no distance.
+    LightSample sample(glm::dvec2 point) const;
+
+  private:
+    struct Piece {
+        Vec3d a, b, c;
+        double solid_angle;
+    };
+    void add_clipped(const Vec3d& a, const Vec3d& b, const Vec3d& c);
+
+    std::vector<Piece> pieces_;
+    double total_ = 0;
+    Vec3d normal_{0};
+    double height_ = 0;  // of the plane over the hit, along the normal
+};
+
+}  // namespace shlight

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+//
+// Shadows: the unshadowed radiance of each lobe times the ratio of shadowed to unshadowed sampling (Heitz, Hill &
+// McGuire 2018, "Combining analytic direct illumination and stochastic shadows").
+//
+// The ratio is exact where a light is wholly seen or wholly hidden; noise lives in penumbrae only. So a quarter of the
+// rays goes first, and where all those of a pixel agree, the rest is spared.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "hits.h"
+#include "light_sampling.h"
+#include "material_orders.h"
+#include "shlight/light.h"
+#include "shlight/ray_tracer.h"
+#include "shlight/render.h"
+
+namespace shlight {
+
+/// Keeps its memory from light to light; one per thread.
+class ShadowedLight {
+  public:
+    ShadowedLight(const RayTracer& tracer, const RenderSettings& settings, std::span<const OrderedMaterial> materials);
+
+    /// Adds one light to the hits' radiance. unshadowed: see Unshadowed::light. pixel_seeds: one per pixel, other for
+    /// each light.
+    void add(const Light& light, std::span<const float> unshadowed, std::span<const std::uint32_t> pixel_seeds,
+             Hits& hits);
+    std::uint64_t rays_traced() const { return rays_traced_; }
+
+  private:
+    /// Part of the rays of each hit: which of the pixel's points they take, and where their results lie.
+    struct Phase {
+        std::uint32_t first_point, rays_per_hit;
+        std::size_t offset;
+    };
+
+    void add_pixel(const Light& light, std::span<const float> unshadowed, std::uint32_t seed, std::size_t begin,
+                   std::size_t end, Hits& hits);
+    void trace(const Light& light, const Hits& hits, const Phase& phase, std::uint32_t seed);
+    float visible_share(const LobeShape& shape, const Vec3d& towards_viewer, std::size_t lit_index,
+                        std::span<const Phase> phases) const;
+    void shade(const Light& light, std::span<const float> unshadowed, std::span<const Phase> phases, Hits& hits) const;
+
+    const RayTracer* tracer_;
+    std::span<const OrderedMaterial> materials_;
+    std::uint32_t ray_count_, first_ray_count_;
+    std::uint32_t pixel_samples_;
+    std::uint64_t rays_traced_ = 0;
+
+    std::vector<std::size_t> lit_;  // hits of the pixel that the light reaches if nothing is between
+    std::vector<Ray> rays_;
+    std::vector<Vec3f> directions_;  // in the hits' frames
+    std::vector<float> weights_;
+    std::vector<std::uint8_t> blocked_;
+    PolygonSampler polygon_sampler_;
+};
+
+}  // namespace shlight
