@@ -105,6 +105,16 @@ Rgb Bsdf::evaluate(const Vec3d& wi, const Vec3d& wo) const {
     return sum;
 }
 
+double Bsdf::norm(double cos_theta_o) const {
+    double squares = 0;
+    for (const Lobe& lobe : lobes_) {
+        const double size =
+            static_cast<double>(largest(lobe.scale(static_cast<float>(cos_theta_o)))) * lobe.fit->norm(cos_theta_o);
+        squares += size * size;
+    }
+    return std::sqrt(squares);
+}
+
 Rgb Bsdf::albedo(double cos_theta_o) const {
     Rgb sum(0);
     for (const Lobe& lobe : lobes_) {

@@ -51,6 +51,8 @@ class Bsdf {
     Rgb evaluate(const Vec3d& wi, const Vec3d& wo) const;
     /// ∫ f·cos dω.
     Rgb albedo(double cos_theta_o) const;
+    /// √∫ (f·cos)² dω from below: overlaps of the lobes, which are all positive, are left out.
+    double norm(double cos_theta_o) const;
 
   private:
     std::vector<Lobe> lobes_;

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+"""Noise-free direct light from area lights with spherical harmonics.
+
+Coefficients are real, orthonormal, without Condon–Shortley phase, stored at index l² + l + m; an order n means the bands
+l = 0 … n-1. Lights and materials are given in the shading frame: the shading point is the origin, z the surface normal.
+Scenes are given in the world frame, in metres; radiance is linear RGB [W m⁻² sr⁻¹].
+"""
+
+from shlight._load import load_core
+
+load_core()
+
+from shlight import images  # noqa: E402
+from shlight._core import Bsdf, RenderCancelled, RenderReport, Scene, render  # noqa: E402
+from shlight.coefficients import (  # noqa: E402
+    cap_coefficients,
+    evaluate,
+    polygon_coefficients,
+    sh_basis,
+    shade,
+    sphere_coefficients,
+)
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "Bsdf",
+    "RenderCancelled",
+    "RenderReport",
+    "Scene",
+    "cap_coefficients",
+    "evaluate",
+    "images",
+    "polygon_coefficients",
+    "render",
+    "sh_basis",
+    "shade",
+    "sphere_coefficients",
+]

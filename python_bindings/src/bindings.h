@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace shlight::python {
+
+void bind_coefficients(pybind11::module_& m);
+void bind_bsdf(pybind11::module_& m);
+void bind_scene(pybind11::module_& m);
+void bind_render(pybind11::module_& m);
+
+}  // namespace shlight::python

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include <pybind11/operators.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "shlight/bsdf.h"
+
+namespace shlight::python {
+namespace {
+
+bool is_grey(const Bsdf& bsdf) {
+    for (const Lobe& lobe : bsdf.lobes()) {
+        if (lobe.color.x != lobe.color.y || lobe.color.y != lobe.color.z) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void check_cosine(double cosine) {
+    if (!(cosine >= 0 && cosine <= 1)) {
+        throw std::invalid_argument("cos_theta_o must lie in [0, 1]");
+    }
+}
+
+/// f of one view angle: `channels` rows of order² coefficients, zero where m < 0.
+void write_coefficients(const std::vector<std::pair<Lobe, std::shared_ptr<const LobeTable>>>& lobes, double cosine,
+                        int order, int channels, float* out) {
+    const int row = coefficient_count(order);
+    std::fill_n(out, channels * row, 0.0F);
+    std::vector<float> terms(static_cast<std::size_t>(cosine_count(order)));
+    for (const auto& [lobe, table] : lobes) {
+        const Rgb scale = lobe.scale(static_cast<float>(cosine));
+        table->coefficients(static_cast<float>(cosine), terms.data());
+        for (int channel = 0; channel < channels; ++channel) {
+            for (int l = 0; l < order; ++l) {
+                for (int m = 0; m <= l; ++m) {
+                    out[channel * row + coefficient_index(l, m)] +=
+                        scale[channel] * terms[static_cast<std::size_t>(cosine_index(l, m))];
+                }
+            }
+        }
+    }
+}
+
+Array<float> coefficients(const Bsdf& bsdf, const AnyArray<double>& cos_theta_o, int order) {
+    check_order(order);
+    const int channels = is_grey(bsdf) ? 1 : 3;
+    std::vector<py::ssize_t> added{coefficient_count(order)};
+    if (channels == 3) {
+        added.insert(added.begin(), 3);
+    }
+    Array<float> out(shape_with(cos_theta_o, 0, added));
+    std::vector<std::pair<Lobe, std::shared_ptr<const LobeTable>>> lobes;
+    for (const Lobe& lobe : bsdf.lobes()) {
+        lobes.emplace_back(lobe, lobe.fit->table(order));
+    }
+    float* data = out.mutable_data();
+    for (const double cosine : values(cos_theta_o)) {
+        check_cosine(cosine);
+        write_coefficients(lobes, cosine, order, channels, data);
+        data += channels * coefficient_count(order);
+    }
+    return out;
+}
+
+/// Lobes may err in the same direction: the sum of their errors bounds the error of their sum.
+double residual_at(const Bsdf& bsdf, double cosine, int order) {
+    check_cosine(cosine);
+    double error = 0;
+    for (const Lobe& lobe : bsdf.lobes()) {
+        const Rgb scale = lobe.scale(static_cast<float>(cosine));
+        const double size = std::max({scale.x, scale.y, scale.z}) * lobe.fit->norm(cosine);
+        error += size * lobe.fit->residual(cosine, order);
+    }
+    const double norm = bsdf.norm(cosine);
+    return norm > 0 ? error / norm : 0;
+}
+
+Array<double> residual(const Bsdf& bsdf, const AnyArray<double>& cos_theta_o, int order) {
+    Array<double> out(shape_with(cos_theta_o, 0, {}));
+    double* data = out.mutable_data();
+    for (const double cosine : values(cos_theta_o)) {
+        *data++ = residual_at(bsdf, cosine, order);
+    }
+    return out;
+}
+
+Vec3d unit(const char* name, const Vec3d& v) {
+    const double length = glm::length(v);
+    if (!(length > 0 && std::isfinite(length))) {
+        throw std::invalid_argument(std::string(name) + " contains a direction that is zero or not finite");
+    }
+    return v / length;
+}
+
+Array<double> evaluate(const Bsdf& bsdf, const AnyArray<double>& wi, const AnyArray<double>& wo) {
+    const auto numpy = py::module_::import("numpy");
+    if (wi.ndim() < 1 || wi.shape(wi.ndim() - 1) != 3) {
+        throw std::invalid_argument("wi must have shape (..., 3)");
+    }
+    if (wo.ndim() < 1 || wo.shape(wo.ndim() - 1) != 3) {
+        throw std::invalid_argument("wo must have shape (..., 3)");
+    }
+    const py::sequence both = numpy.attr("broadcast_arrays")(wi, wo);
+    const AnyArray<double> incoming(py::reinterpret_borrow<py::object>(both[0]));
+    const AnyArray<double> outgoing(py::reinterpret_borrow<py::object>(both[1]));
+    const auto i = vectors("wi", incoming);
+    const auto o = vectors("wo", outgoing);
+    const bool grey = is_grey(bsdf);
+    Array<double> out(shape_with(incoming, 1, grey ? std::vector<py::ssize_t>{} : std::vector<py::ssize_t>{3}));
+    double* data = out.mutable_data();
+    for (std::size_t k = 0; k < i.size(); ++k) {
+        const Rgb f = bsdf.evaluate(unit("wi", i[k]), unit("wo", o[k]));
+        for (int channel = 0; channel < (grey ? 1 : 3); ++channel) {
+            *data++ = static_cast<double>(f[channel]);
+        }
+    }
+    return out;
+}
+
+Bsdf scaled(const Bsdf& bsdf, const AnyArray<float>& factor) { return bsdf.scaled(color("factor", factor)); }
+
+constexpr const char* kDoc = R"(A material: a sum of coloured lobes f·cos in the shading frame (z is the surface normal).
+
+Bsdfs can be added and multiplied by a number or an RGB colour. They are immutable.)";
+
+}  // namespace
+
+void bind_bsdf(py::module_& m) {
+    py::class_<Bsdf>(m, "Bsdf", kDoc)
+        .def_static(
+            "lambert", [](const AnyArray<float>& albedo) { return Bsdf::lambert(color("albedo", albedo)); },
+            py::arg("albedo"), "Diffuse: f·cos = albedo · cosθ_i / π. albedo: a number or RGB, ≥ 0. Order 2 is exact.")
+        .def_static(
+            "ggx",
+            [](float roughness, const AnyArray<float>& f0, std::optional<float> ior) {
+                const Rgb head_on = color("f0", f0);
+                const py::gil_scoped_release release;
+                return Bsdf::ggx(roughness, head_on, ior.value_or(0.0F));
+            },
+            py::arg("roughness"), py::arg("f0"), py::kw_only(), py::arg("ior") = py::none(),
+            R"(GGX microfacets with height-correlated Smith masking; alpha = roughness², 0 < roughness ≤ 1.
+
+f0 (a number or RGB) is the reflectance seen head-on; Fresnel is f0 + (1 - f0) s with Schlick's
+s = (1 - cosθ_d)⁵ or, with `ior`, the dielectric Fresnel curve of that index remapped to 0 … 1.
+Raises ValueError naming the argument.)")
+        .def_static("layer", &Bsdf::layer, py::arg("top"), py::arg("base"),
+                    "top + base · (1 - largest channel of top's directional albedo at the view angle).")
+        .def("coefficients", &coefficients, py::arg("cos_theta_o"), py::arg("order"),
+             R"(Coefficients of f·cos for ω_o = (sinθ_o, 0, cosθ_o): shape (..., order²), float32, or (..., 3, order²)
+if the material has colour. They fit the upper hemisphere only: use them with light clipped at the horizon.
+Raises ValueError for cos_theta_o outside [0, 1] or an order outside 1 … 64.)")
+        .def("residual", &residual, py::arg("cos_theta_o"), py::arg("order"),
+             R"(Relative L2 error of that fit over the upper hemisphere, shape (...). For a sum of lobes an upper bound.)")
+        .def("evaluate", &evaluate, py::arg("wi"), py::arg("wo"),
+             R"(f·cos for directions (..., 3) in the shading frame, which broadcast against each other:
+shape (...), or (..., 3) if the material has colour. Zero where either direction lies below the horizon.)")
+        .def(py::self + py::self)
+        .def("__mul__", &scaled, py::arg("factor"), py::is_operator())
+        .def("__rmul__", &scaled, py::arg("factor"), py::is_operator())
+        // Without this numpy would spread `array * bsdf` over the array's elements.
+        .attr("__array_ufunc__") = py::none();
+}
+
+}  // namespace shlight::python

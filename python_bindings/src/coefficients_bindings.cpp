@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+//
+// Flat batch functions; shlight/coefficients.py broadcasts in front of them.
+#include <algorithm>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "shlight/basis.h"
+#include "shlight/cap.h"
+#include "shlight/parallel.h"
+#include "shlight/polygon.h"
+#include "shlight/shading.h"
+
+namespace shlight::python {
+namespace {
+
+/// Lights a task takes at once: enough to hide the cost of handing it out, few enough to share evenly.
+constexpr std::size_t kChunk = 512;
+
+/// work(first, count) over chunks of 0 … total-1, without the GIL.
+template <class Work>
+void in_chunks(std::size_t total, int threads, const Work& work) {
+    const py::gil_scoped_release release;
+    const std::size_t chunks = (total + kChunk - 1) / kChunk;
+    parallel_for(chunks, threads, [&](std::size_t chunk) {
+        const std::size_t first = chunk * kChunk;
+        work(first, std::min(kChunk, total - first));
+    });
+}
+
+template <class T>
+Array<T> rows(std::size_t count, int order) {
+    check_order(order);
+    return Array<T>({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(coefficient_count(order))});
+}
+
+/// The rows [first, first + count) of a matrix of order² columns.
+template <class T>
+std::span<T> slice(T* data, int order, std::size_t first, std::size_t count) {
+    const auto row = static_cast<std::size_t>(coefficient_count(order));
+    return {data + first * row, count * row};
+}
+
+template <class T>
+Array<T> basis(const Array<T>& directions, int order, int threads) {
+    const auto d = vectors("directions", directions);
+    Array<T> out = rows<T>(d.size(), order);
+    T* data = out.mutable_data();
+    in_chunks(d.size(), threads, [&](std::size_t first, std::size_t count) {
+        sh_basis(d.subspan(first, count), order, slice(data, order, first, count));
+    });
+    return out;
+}
+
+template <class T>
+Array<T> evaluated(const Array<T>& coefficients, const Array<T>& directions, int order, int threads) {
+    const auto d = vectors("directions", directions);
+    const auto c = values(coefficients);
+    Array<T> out(static_cast<py::ssize_t>(d.size()));
+    T* data = out.mutable_data();
+    in_chunks(d.size(), threads, [&](std::size_t first, std::size_t count) {
+        evaluate(slice(c.data(), order, first, count), d.subspan(first, count), order, std::span<T>(data + first, count));
+    });
+    return out;
+}
+
+template <class T>
+Array<T> spheres(const Array<T>& centers, const Array<T>& radii, int order, bool clip, int threads) {
+    const auto c = vectors("centers", centers);
+    const auto r = values(radii);
+    Array<T> out = rows<T>(c.size(), order);
+    T* data = out.mutable_data();
+    in_chunks(c.size(), threads, [&](std::size_t first, std::size_t count) {
+        sphere_coefficients(c.subspan(first, count), r.subspan(first, count), order, clip,
+                            slice(data, order, first, count));
+    });
+    return out;
+}
+
+template <class T>
+Array<T> caps(const Array<T>& axes, const Array<T>& half_angles, int order, bool clip, int threads) {
+    const auto a = vectors("axes", axes);
+    const auto h = values(half_angles);
+    Array<T> out = rows<T>(a.size(), order);
+    T* data = out.mutable_data();
+    in_chunks(a.size(), threads, [&](std::size_t first, std::size_t count) {
+        cap_coefficients(a.subspan(first, count), h.subspan(first, count), order, clip,
+                         slice(data, order, first, count));
+    });
+    return out;
+}
+
+template <class T>
+Array<T> polygons(const Array<T>& vertices, int order, bool clip, int threads) {
+    const auto v = vectors("vertices", vertices);
+    const auto k = static_cast<std::size_t>(vertices.shape(1));
+    const auto total = static_cast<std::size_t>(vertices.shape(0));
+    Array<T> out = rows<T>(total, order);
+    T* data = out.mutable_data();
+    in_chunks(total, threads, [&](std::size_t first, std::size_t count) {
+        polygon_coefficients(v.subspan(first * k, count * k), static_cast<int>(k), order, clip,
+                             slice(data, order, first, count));
+    });
+    return out;
+}
+
+template <class T>
+Array<T> shaded(const Array<T>& light, const Array<T>& bsdf, int order, int threads) {
+    const auto total = static_cast<std::size_t>(light.shape(0));
+    Array<T> out(static_cast<py::ssize_t>(total));
+    T* data = out.mutable_data();
+    in_chunks(total, threads, [&](std::size_t first, std::size_t count) {
+        shade(slice(light.data(), order, first, count), slice(bsdf.data(), order, first, count), order,
+              std::span<T>(data + first, count));
+    });
+    return out;
+}
+
+template <class T>
+void bind_for(py::module_& m) {
+    m.def("sh_basis", &basis<T>, py::arg("directions").noconvert(), py::arg("order"), py::arg("threads"));
+    m.def("evaluate", &evaluated<T>, py::arg("coefficients").noconvert(), py::arg("directions").noconvert(),
+          py::arg("order"), py::arg("threads"));
+    m.def("sphere_coefficients", &spheres<T>, py::arg("centers").noconvert(), py::arg("radii").noconvert(),
+          py::arg("order"), py::arg("clip"), py::arg("threads"));
+    m.def("cap_coefficients", &caps<T>, py::arg("axes").noconvert(), py::arg("half_angles").noconvert(),
+          py::arg("order"), py::arg("clip"), py::arg("threads"));
+    m.def("polygon_coefficients", &polygons<T>, py::arg("vertices").noconvert(), py::arg("order"), py::arg("clip"),
+          py::arg("threads"));
+    m.def("shade", &shaded<T>, py::arg("light").noconvert(), py::arg("bsdf").noconvert(), py::arg("order"),
+          py::arg("threads"));
+}
+
+}  // namespace
+
+void bind_coefficients(py::module_& m) {
+    bind_for<float>(m);
+    bind_for<double>(m);
+}
+
+}  // namespace shlight::python
