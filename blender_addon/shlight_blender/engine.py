@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import time
 import traceback
 from typing import Any
 
@@ -10,6 +11,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from . import record
 from .compat import write_pass
 from .report import ExportError, ExportReport
 
@@ -30,6 +32,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
     def render(self, depsgraph: Any) -> None:
         """Renders one view layer. Blender prints exceptions and goes on, so all of them are reported here."""
         frame: Any = None
+        record.begin()
         try:
             # Imported here: an installation without the native module still registers, and says what is wrong.
             from .export import frame_of
@@ -37,6 +40,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             frame = frame_of(depsgraph.scene.render)
             self._render(depsgraph, frame)
         except ExportError as error:
+            record.last.scene_error = str(error)
             self._fail(depsgraph, frame, str(error))
         except Exception as error:
             traceback.print_exc()
@@ -48,18 +52,19 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         from .export import export_scene, over_background, render_settings
 
         self.update_stats("", "Exporting the scene")
+        start = time.perf_counter()
         scene, report, background = export_scene(depsgraph, frame=frame, camera=self.camera_override)
+        settings = render_settings(depsgraph.scene).arguments()
+        record.last.export_seconds = time.perf_counter() - start
+        record.last.messages = report.to_data()
+        record.last.settings = settings
         self._show(report)
         if self.test_break():
             self._deliver(depsgraph, frame, None)
             return
         try:
-            image = shlight.render(
-                scene,
-                frame.width,
-                frame.height,
-                progress=self._progress,
-                **render_settings(depsgraph.scene).arguments(),
+            image, record.last.statistics = shlight.render(
+                scene, frame.width, frame.height, progress=self._progress, return_report=True, **settings
             )
         except shlight.RenderCancelled:
             self._deliver(depsgraph, frame, None)

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""All figures of a preview: measured from its pictures, and shown as a table."""
+
+from __future__ import annotations
+
+import os
+import platform
+from importlib import metadata
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from shlight import metrics
+
+from .options import Options
+
+Image = npt.NDArray[np.float32]
+FACTOR = 3.0  # standard errors
+
+
+def add_measurements(figures: dict[str, Any], shlight: Image, cycles: Image, halves: tuple[Image, Image]) -> Image:
+    """Adds the errors of both pictures and of the reference to the figures of the worker; returns the reference."""
+    reference: Image = (halves[0] + halves[1]) / 2
+    error = metrics.standard_error(*halves)
+    figures["reference"]["noise_rel_mse"] = metrics.reference_rel_mse(*halves)
+    for name, image in (("shlight", shlight), ("cycles_same_time", cycles)):
+        figures[name]["rel_mse"] = metrics.rel_mse(image, reference)
+        figures[name]["mean_ratio"] = metrics.mean_ratio(image, reference)
+    figures["shlight"]["within_3_standard_errors"] = metrics.share_within(shlight, reference, error, factor=FACTOR)
+    return reference
+
+
+def add_circumstances(figures: dict[str, Any], options: Options) -> None:
+    """Adds where, with what and with which options the figures came about."""
+    figures["scene"]["file"] = options.scene
+    figures["options"] = options.to_data()
+    figures["versions"] = {
+        "shlight": metadata.version("shlight"),
+        "blender": figures.pop("blender"),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+    }
+    figures["machine"] = {"processors": os.cpu_count(), "system": platform.platform()}
+
+
+def table(figures: dict[str, Any]) -> str:
+    """The figures that matter, for a terminal."""
+    shlight, cycles, reference = (figures[name] for name in ("shlight", "cycles_same_time", "reference"))
+    rows = [
+        ("", "seconds", "samples", "relMSE", "mean/ref.", "within 3 s.e."),
+        (
+            "shlight",
+            f"{shlight['seconds']:.3f}",
+            "",
+            f"{shlight['rel_mse']:.2e}",
+            f"{shlight['mean_ratio']:.4f}",
+            f"{shlight['within_3_standard_errors']:.1%}",
+        ),
+        (
+            "Cycles, same time",
+            f"{cycles['seconds']:.3f}",
+            str(cycles["samples"]),
+            f"{cycles['rel_mse']:.2e}",
+            f"{cycles['mean_ratio']:.4f}",
+            "",
+        ),
+        (
+            "reference (Cycles)",
+            f"{reference['seconds']:.1f}",
+            str(reference["samples"]),
+            f"{reference['noise_rel_mse']:.2e}",
+            "",
+            "",
+        ),
+    ]
+    lines = [f"{row[0]:18}" + "".join(f"{cell:>14}" for cell in row[1:]) for row in rows]
+    lines.append("The reference's relMSE is its own noise, from the difference of its two halves.")
+    lines.extend(_details(shlight))
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def _details(shlight: dict[str, Any]) -> list[str]:
+    shares = sorted((int(order), share) for order, share in shlight["order_shares"].items() if share > 0)
+    orders = ", ".join(f"{order}: {share:.1%}" for order, share in shares)
+    lines = [f"orders: {orders or 'none'}; over tolerance: {shlight['over_tolerance']:.2%} of the camera hits"]
+    if shlight["unsupported"]:
+        lines.append("not supported by shlight:")
+    for message in shlight["unsupported"]:
+        lines.append(f"  {', '.join(message['places'])}: {message['text']}")
+    return lines

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command line of `shlight preview`."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, NoReturn
+
+EXAMPLE_NAME = "example_scene"
+LARGEST_SIDE = 16384
+
+
+@dataclass(frozen=True)
+class Options:
+    """What to render and how; None: as the scene has it."""
+
+    scene: str | None  # path of the .blend file; None: the example scene
+    out: str  # folder of the results
+    size: tuple[int, int] | None
+    frame: int | None
+    samples: int  # of the reference
+    threads: int  # 0: all
+    order: str | None
+    tolerance: float | None
+    pixel_samples: int | None
+    shadow_rays: int | None
+
+    @property
+    def scene_name(self) -> str:
+        """Name of the scene in captions and of its folder of results."""
+        return _name_of(self.scene)
+
+    def to_data(self) -> dict[str, Any]:
+        """The options as plain data."""
+        return asdict(self)
+
+
+def parse(argv: list[str]) -> Options:
+    """The options of a command line; prints the reason and raises SystemExit(2) where it is not understood."""
+    values = vars(_parser().parse_args(argv))
+    if values["out"] is None:
+        values["out"] = str(Path("out") / "preview" / _name_of(values["scene"]))
+    return Options(**values)
+
+
+def _name_of(scene: str | None) -> str:
+    return EXAMPLE_NAME if scene is None else Path(scene).stem
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says on one line what is wrong."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {message}\n")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="shlight preview",
+        description="Renders a scene with shlight, with Cycles in about the same time, and with Cycles at many "
+        "samples as the reference; writes the pictures, a comparison and all figures.",
+    )
+    add = parser.add_argument
+    add("scene", nargs="?", metavar="scene.blend", help="a Blender file (default: a small scene of shlight's own)")
+    add("--size", type=_size, metavar="WxH", help="pixels (default: the scene's shape, 512 on the longer side)")
+    add("--out", metavar="DIR", help="folder of the results (default: out/preview/<scene name>)")
+    add("--frame", type=int, metavar="N", help="frame of the animation (default: the scene's current one)")
+    add("--samples", type=_whole(2), default=4096, metavar="N", help="samples of the reference (default: %(default)s)")
+    add("--threads", type=_whole(0), default=0, metavar="N", help="threads of all renders (default: 0, all cores)")
+    group = parser.add_argument_group("settings of shlight (default: the scene's)")
+    add = group.add_argument
+    add("--order", type=_order, metavar="N", help="order of the spherical harmonics, 1 to 64, or auto")
+    add("--tolerance", type=_tolerance, metavar="X", help="relative error that the automatic order may make")
+    add("--pixel-samples", type=_whole(1), metavar="N", help="camera rays per pixel")
+    add("--shadow-rays", type=_whole(0), metavar="N", help="rays towards each light, 0: no shadows")
+    return parser
+
+
+def _size(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d{1,6})[xX×](\d{1,6})", text)
+    if not match or not all(1 <= int(side) <= LARGEST_SIDE for side in match.groups()):
+        raise argparse.ArgumentTypeError(f"'{text}' is no size such as 640x480 (each side 1 to {LARGEST_SIDE})")
+    return int(match[1]), int(match[2])
+
+
+def _whole(least: int) -> Any:
+    def parse_whole(text: str) -> int:
+        if not re.fullmatch(r"\d{1,9}", text) or int(text) < least:
+            raise argparse.ArgumentTypeError(f"'{text}' is no whole number of at least {least}")
+        return int(text)
+
+    return parse_whole
+
+
+def _order(text: str) -> str:
+    if text.upper() == "AUTO":
+        return "AUTO"
+    if re.fullmatch(r"\d{1,2}", text) and 1 <= int(text) <= 64:
+        return str(int(text))
+    raise argparse.ArgumentTypeError(f"'{text}' is neither auto nor an order from 1 to 64")
+
+
+def _tolerance(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 1e-6 <= value <= 0.5:
+        raise argparse.ArgumentTypeError(f"'{text}' is no number from 1e-6 to 0.5")
+    return value

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The comparison as one picture: shlight, Cycles in the same time, the reference, and where shlight differs from it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from shlight import images, metrics
+
+Image = npt.NDArray[np.float32]
+
+# Pixels of the picture.
+LEAST_PANEL_WIDTH, MOST_PANEL_WIDTH = 400, 960
+MARGIN, CAPTION, BAR = 12, 44, 46
+DPI = 100
+PALETTE = "PuOr"  # diverging, told apart by the colour-blind too
+WHITE_AT = 0.8  # linear value to which the brightest parts are brought
+
+
+def comparison(
+    name: str, figures: dict[str, Any], shlight: Image, cycles: Image, reference: Image
+) -> npt.NDArray[np.uint8]:
+    """The picture (height, width, 3), sRGB."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    height, width = reference.shape[:2]
+    panel_width = width * math.ceil(LEAST_PANEL_WIDTH / width) if width < LEAST_PANEL_WIDTH else width
+    panel_width = min(panel_width, MOST_PANEL_WIDTH)
+    panel_height = max(round(panel_width * height / width), 1)
+    whole = (2 * panel_width + 3 * MARGIN + BAR, 2 * (panel_height + CAPTION) + MARGIN)
+    figure = Figure(figsize=(whole[0] / DPI, whole[1] / DPI), dpi=DPI, facecolor="white")
+    canvas = FigureCanvasAgg(figure)
+
+    def axes(column: int, row: int, left: int = 0, panel: int = panel_width) -> Any:
+        x = MARGIN + column * (panel_width + MARGIN) + left
+        y = whole[1] - (row + 1) * (panel_height + CAPTION)
+        return figure.add_axes((x / whole[0], y / whole[1], panel / whole[0], panel_height / whole[1]))
+
+    exposure = common_exposure(reference)
+    ours, theirs, long = (figures[key] for key in ("shlight", "cycles_same_time", "reference"))
+    panels = [
+        (shlight, f"{name}: shlight", f"{_seconds(ours)}, relMSE {ours['rel_mse']:.1e}"),
+        (
+            cycles,
+            "Cycles, same time",
+            f"{_seconds(theirs)}, {theirs['samples']} samples, relMSE {theirs['rel_mse']:.1e}",
+        ),
+        (
+            reference,
+            "reference: Cycles",
+            f"{_seconds(long)}, {long['samples']} samples, own noise relMSE {long['noise_rel_mse']:.1e}",
+        ),
+    ]
+    for number, (image, title, numbers) in enumerate(panels):
+        panel = axes(number % 2, number // 2)
+        panel.imshow(images.linear_to_srgb8(image[..., :3], exposure), interpolation="antialiased", aspect="auto")
+        _caption(panel, title, numbers)
+
+    difference = metrics.relative_difference(shlight, reference)
+    limit = difference_limit(difference)
+    panel = axes(1, 1)
+    shown = panel.imshow(
+        100 * difference, cmap=PALETTE, vmin=-limit, vmax=limit, interpolation="antialiased", aspect="auto"
+    )
+    _caption(panel, "shlight − reference", "in % of the reference's value (dark parts: of a tenth of its mean)")
+    bar = figure.colorbar(shown, cax=axes(1, 1, left=panel_width + 4, panel=12), extend="both", extendfrac=0.03)
+    bar.ax.tick_params(labelsize=7, length=2, pad=1)
+    canvas.draw()
+    return np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[..., :3])
+
+
+def common_exposure(reference: Image) -> float:
+    """Stops by which all pictures are brightened: few of the reference's pixels are then brighter than WHITE_AT."""
+    bright = float(np.percentile(reference[..., :3].max(axis=-1), 95))
+    return math.log2(WHITE_AT / bright) if bright > 0 else 0.0
+
+
+def difference_limit(difference: npt.NDArray[np.float64]) -> float:
+    """End of the colour scale [%]: 1, 2 or 5 times a power of ten that only the outermost hundredth exceeds."""
+    needed = max(100 * float(np.percentile(np.abs(difference), 99)), 0.1)
+    power = 10.0 ** math.floor(math.log10(needed))
+    return next(step * power for step in (1, 2, 5, 10) if step * power >= needed * (1 - 1e-9))
+
+
+def _seconds(figures: dict[str, Any]) -> str:
+    seconds = figures["seconds"]
+    return f"{seconds:.0f} s" if seconds >= 20 else f"{seconds:.2g} s"
+
+
+def _caption(panel: Any, title: str, numbers: str) -> None:
+    panel.set_axis_off()
+    panel.text(
+        0, 1.0, f"{title}\n", transform=panel.transAxes, fontsize=9, weight="bold", va="bottom", linespacing=1.35
+    )
+    panel.text(0, 1.0, numbers, transform=panel.transAxes, fontsize=8, va="bottom", linespacing=1.35)

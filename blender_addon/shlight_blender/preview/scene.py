@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Opening a scene in Blender and setting up its renders."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from .example_scene import build_example_scene
+from .options import Options
+
+DEFAULT_LONGER_SIDE = 512
+
+
+class SceneError(Exception):
+    """The scene cannot be opened or has nothing to render; the message is for the user."""
+
+
+def open_scene(path: str | None) -> Any:
+    """Opens a .blend file (None: builds the example) and returns its scene."""
+    if path is None:
+        return build_example_scene()
+    try:
+        bpy.ops.wm.open_mainfile(filepath=str(Path(path).resolve()), load_ui=False, use_scripts=False)
+    except RuntimeError as error:
+        raise SceneError(_reason(error)) from error
+    scene = bpy.context.scene
+    if scene is None:
+        raise SceneError("there is no scene in it")
+    if scene.camera is None:
+        raise SceneError(f"scene '{scene.name}' has no camera")
+    return scene
+
+
+def _reason(error: RuntimeError) -> str:
+    """Blender's own words without the file's name, which Blender puts before them, in quotation marks."""
+    line = str(error).strip().splitlines()[0]
+    words = line.removeprefix("Error: ").split('" failed: ')[-1].split("': ")[-1]
+    return f"Blender cannot read it ({words.split(' in file ')[0]})"
+
+
+def prepare(scene: Any, options: Options) -> None:
+    """Settings that all renders share: the frame, the size, and nothing after the renderer."""
+    if options.frame is not None:
+        scene.frame_set(options.frame)
+    render = scene.render
+    render.resolution_x, render.resolution_y = options.size or _default_size(render)
+    render.resolution_percentage = 100
+    render.use_border = False
+    render.use_multiview = False
+    render.use_compositing = False
+    render.use_sequencer = False
+    render.use_stamp = False
+    # Each render exports the scene anew: that is part of its time, and Cycles would go on with its old settings.
+    render.use_persistent_data = False
+    render.threads_mode = "FIXED" if options.threads else "AUTO"
+    if options.threads:
+        render.threads = options.threads
+    image = render.image_settings
+    image.color_management = "FOLLOW_SCENE"
+    image.file_format = "OPEN_EXR"
+    image.color_mode = "RGBA"
+    image.color_depth = "32"
+
+
+def _default_size(render: Any) -> tuple[int, int]:
+    scale = DEFAULT_LONGER_SIDE / max(render.resolution_x, render.resolution_y)
+    return max(1, round(render.resolution_x * scale)), max(1, round(render.resolution_y * scale))
+
+
+def use_shlight(scene: Any, options: Options) -> None:
+    """The next render is shlight's, with the scene's settings and what the command line changes of them."""
+    scene.render.engine = "SHLIGHT"
+    settings = scene.shlight
+    if options.order is not None:
+        settings.order = options.order
+    if options.tolerance is not None:
+        settings.tolerance = options.tolerance
+    if options.pixel_samples is not None:
+        settings.pixel_samples = options.pixel_samples
+    if options.shadow_rays is not None:
+        settings.use_shadows = options.shadow_rays > 0
+        settings.shadow_rays = max(options.shadow_rays, 1)
+
+
+def use_cycles(scene: Any, samples: int, seed: int) -> None:
+    """The next render is Cycles': direct light only, by the same pixel filter, and nothing that trades truth for calm."""
+    scene.render.engine = "CYCLES"
+    cycles = scene.cycles
+    cycles.device = "CPU"
+    cycles.samples = samples
+    cycles.seed = seed
+    cycles.use_animated_seed = False
+    cycles.time_limit = 0.0
+    cycles.sample_offset = 0
+    cycles.max_bounces = 0
+    cycles.sample_clamp_direct = 0.0
+    cycles.sample_clamp_indirect = 0.0
+    cycles.light_sampling_threshold = 0.0
+    cycles.blur_glossy = 0.0
+    cycles.use_adaptive_sampling = False
+    cycles.use_denoising = False
+    cycles.use_guiding = False
+    cycles.film_exposure = 1.0
+    cycles.pixel_filter_type = "BOX"
+    for layer in scene.view_layers:
+        layer.samples = 0  # 0: the scene's number
