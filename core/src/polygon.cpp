@@ -15,12 +15,12 @@ namespace shlight {
 namespace {
 
 /// Below this solid angle Ω the edges' contributions, each of order one, cancel to too few digits: their sum is wrong by
-/// about 2 ε / Ω of L_00. At the hand-over that is 1e-5 (float) and 1e-12 (double), and cubature is the faster one too.
+/// about 2 ε / Ω of L_00. At the hand-over that is 5e-6 (float) and 1e-12 (double), and cubature is the faster one too.
 template <class T>
-constexpr double kSmallestForBoundary = std::is_same_v<T, float> ? 0.03 : 1e-3;
+constexpr double kSmallestForBoundary = std::is_same_v<T, float> ? 0.06 : 1e-3;
 
 template <class T>
-void integrate(const SphericalPolygon& polygon, int order, T* coefficients, PolygonMethod method) {
+void integrate(const SphericalPolygon<Wider<T>>& polygon, int order, T* coefficients, PolygonMethod method) {
     if (polygon.empty()) {
         std::fill_n(coefficients, coefficient_count(order), T(0));
         return;
@@ -35,16 +35,19 @@ void integrate(const SphericalPolygon& polygon, int order, T* coefficients, Poly
     }
 }
 
-void check_polygon(std::span<const Vec3d> vertices, double epsilon) {
-    double largest = 0;
-    double extent = 0;
-    for (const Vec3d& v : vertices) {
+template <class T>
+void check_polygon(std::span<const Vec3<Wider<T>>> vertices) {
+    using Real = Wider<T>;
+    Real largest = 0;
+    Real extent = 0;
+    for (const Vec3<Real>& v : vertices) {
         check_finite("vertices", v);
         largest = std::max(largest, glm::length(v));
         extent = std::max(extent, glm::length(v - vertices[0]));
     }
     // A far polygon's vertices are off its plane by their own rounding.
-    if (extent > 0 && planarity_error(vertices) > 1e-4 + 8 * epsilon * largest / extent) {
+    constexpr Real kEpsilon = std::numeric_limits<T>::epsilon();
+    if (extent > 0 && planarity_error(vertices) > Real(1e-4) + 8 * kEpsilon * largest / extent) {
         reject("vertices: a polygon is not planar");
     }
 }
@@ -54,8 +57,8 @@ void check_polygon(std::span<const Vec3d> vertices, double epsilon) {
 template <class T>
 void polygon_coefficients(std::span<const Vec3<T>> vertices, int order, bool clip, T* coefficients,
                           PolygonMethod method) {
-    std::vector<Vec3d> exact(vertices.begin(), vertices.end());
-    integrate(SphericalPolygon(exact, clip), order, coefficients, method);
+    const std::vector<Vec3<Wider<T>>> exact(vertices.begin(), vertices.end());
+    integrate(SphericalPolygon<Wider<T>>(exact, clip), order, coefficients, method);
 }
 
 template <class T>
@@ -70,12 +73,12 @@ void polygon_coefficients(std::span<const Vec3<T>> vertices, int vertex_count, i
     const std::size_t count = vertices.size() / k;
     check_size("vertices", vertices.size(), count * k);
     check_size("coefficients", coefficients.size(), count * row);
-    std::vector<Vec3d> exact(k);
+    std::vector<Vec3<Wider<T>>> exact(k);
     for (std::size_t i = 0; i < count; ++i) {
         const auto polygon = vertices.subspan(i * k, k);
-        std::transform(polygon.begin(), polygon.end(), exact.begin(), [](const Vec3<T>& v) { return Vec3d(v); });
-        check_polygon(exact, std::numeric_limits<T>::epsilon());
-        integrate(SphericalPolygon(exact, clip), order, coefficients.data() + i * row, method);
+        std::transform(polygon.begin(), polygon.end(), exact.begin(), [](const Vec3<T>& v) { return Vec3<Wider<T>>(v); });
+        check_polygon<T>(exact);
+        integrate(SphericalPolygon<Wider<T>>(exact, clip), order, coefficients.data() + i * row, method);
     }
 }
 

@@ -22,7 +22,7 @@ struct BandTerms {
 template <class T>
 class EndPoint {
   public:
-    EndPoint(const Vec3d& direction, int order) : legendre_(static_cast<T>(direction.z), static_cast<T>(std::hypot(direction.x, direction.y))) {
+    EndPoint(const Vec3<Wider<T>>& direction, int order) : legendre_(static_cast<T>(direction.z), static_cast<T>(std::hypot(direction.x, direction.y))) {
         complex_powers(static_cast<T>(direction.x), static_cast<T>(direction.y), order, cos_.data(), sin_.data());
     }
     void advance() { legendre_.advance(); }
@@ -35,24 +35,26 @@ class EndPoint {
 };
 
 /// An edge in the frame turned about z so that its pole is (sinθ, 0, cosθ).
+template <class Real>
 struct Edge {
-    double length, cos_tilt, sin_tilt, cos_azimuth, sin_azimuth;
-    Vec3d from, to;
+    Real length, cos_tilt, sin_tilt, cos_azimuth, sin_azimuth;
+    Vec3<Real> from, to;
 
-    Edge(const Vec3d& a, const Vec3d& b, const Vec3d& cross) {
-        const double sine = glm::length(cross);
-        const double radial = std::hypot(cross.x, cross.y);
+    /// cross: a × b ≠ 0.
+    Edge(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& cross) {
+        const Real sine = glm::length(cross);
+        const Real radial = std::hypot(cross.x, cross.y);
         length = std::atan2(sine, glm::dot(a, b));
-        cos_tilt = sine > 0 ? cross.z / sine : 1.0;
-        sin_tilt = sine > 0 ? radial / sine : 0.0;
-        cos_azimuth = radial > 0 ? cross.x / radial : 1.0;
-        sin_azimuth = radial > 0 ? cross.y / radial : 0.0;
+        cos_tilt = cross.z / sine;
+        sin_tilt = radial / sine;
+        cos_azimuth = radial > 0 ? cross.x / radial : Real(1);
+        sin_azimuth = radial > 0 ? cross.y / radial : Real(0);
         from = turned(a);
         to = turned(b);
     }
 
   private:
-    Vec3d turned(const Vec3d& v) const {
+    Vec3<Real> turned(const Vec3<Real>& v) const {
         return {cos_azimuth * v.x + sin_azimuth * v.y, cos_azimuth * v.y - sin_azimuth * v.x, v.z};
     }
 };
@@ -72,7 +74,7 @@ T legendre_at_zero(int l) {
 template <class T>
 class ArcIntegrals {
   public:
-    ArcIntegrals(const Edge& edge, int order)
+    ArcIntegrals(const Edge<Wider<T>>& edge, int order)
         : length_(static_cast<T>(edge.length)),
           cos_tilt_(static_cast<T>(edge.cos_tilt)),
           sin_tilt_(static_cast<T>(edge.sin_tilt)),
@@ -161,7 +163,7 @@ BandTerms<T> normal_derivative(int l, T cos_tilt, T sin_tilt, const BandTerms<T>
 }
 
 template <class T>
-void add_edge(const Edge& edge, int order, T* coefficients) {
+void add_edge(const Edge<Wider<T>>& edge, int order, T* coefficients) {
     const auto cos_tilt = static_cast<T>(edge.cos_tilt);
     const auto sin_tilt = static_cast<T>(edge.sin_tilt);
     std::array<T, kMaxOrder> cos_m, sin_m;
@@ -188,19 +190,20 @@ void add_edge(const Edge& edge, int order, T* coefficients) {
 }  // namespace
 
 template <class T>
-void polygon_by_boundary(const SphericalPolygon& polygon, int order, T* coefficients) {
+void polygon_by_boundary(const SphericalPolygon<Wider<T>>& polygon, int order, T* coefficients) {
+    using Real = Wider<T>;
     std::fill_n(coefficients, coefficient_count(order), T(0));
-    coefficients[0] = static_cast<T>(polygon.solid_angle() * std::sqrt(1 / (4 * std::numbers::pi)));
-    const std::vector<Vec3d>& v = polygon.directions();
+    coefficients[0] = static_cast<T>(polygon.solid_angle() * std::sqrt(1 / (4 * std::numbers::pi_v<Real>)));
+    const std::vector<Vec3<Real>>& v = polygon.directions();
     for (std::size_t i = 0; i < v.size() && order > 1; ++i) {
-        const Vec3d& cross = polygon.edge_cross(i);
-        if (cross != Vec3d(0)) {
-            add_edge(Edge(v[i], v[(i + 1) % v.size()], cross), order, coefficients);
+        const Vec3<Real>& cross = polygon.edge_cross(i);
+        if (cross != Vec3<Real>(0)) {
+            add_edge(Edge<Real>(v[i], v[(i + 1) % v.size()], cross), order, coefficients);
         }
     }
 }
 
-template void polygon_by_boundary(const SphericalPolygon&, int, float*);
-template void polygon_by_boundary(const SphericalPolygon&, int, double*);
+template void polygon_by_boundary(const SphericalPolygon<double>&, int, float*);
+template void polygon_by_boundary(const SphericalPolygon<long double>&, int, double*);
 
 }  // namespace shlight

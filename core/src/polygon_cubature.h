@@ -7,6 +7,6 @@ namespace shlight {
 
 /// order² coefficients by Gauss cubature on the polygon's triangles, to the precision of T for every size and shape.
 template <class T>
-void polygon_by_cubature(const SphericalPolygon& polygon, int order, T* coefficients);
+void polygon_by_cubature(const SphericalPolygon<Wider<T>>& polygon, int order, T* coefficients);
 
 }  // namespace shlight

@@ -3,40 +3,44 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace shlight {
 namespace {
 
 /// Twice the vector area; from differences, so that a far polygon keeps its digits.
-Vec3d vector_area(std::span<const Vec3d> v) {
-    Vec3d sum(0);
+template <class Real>
+Vec3<Real> vector_area(std::span<const Vec3<Real>> v) {
+    Vec3<Real> sum(0);
     for (std::size_t i = 1; i + 1 < v.size(); ++i) {
         sum += glm::cross(v[i] - v[0], v[i + 1] - v[0]);
     }
     return sum;
 }
 
-double extent(std::span<const Vec3d> v) {
-    double largest = 0;
-    for (const Vec3d& p : v) {
+template <class Real>
+Real extent(std::span<const Vec3<Real>> v) {
+    Real largest = 0;
+    for (const Vec3<Real>& p : v) {
         largest = std::max(largest, glm::length(p - v[0]));
     }
     return largest;
 }
 
 /// Sutherland–Hodgman against z ≥ 0. Cut points get z = 0 exactly: their edge then lies *in* the horizon.
-std::vector<Vec3d> clipped_by_horizon(std::span<const Vec3d> v) {
-    std::vector<Vec3d> kept;
+template <class Real>
+std::vector<Vec3<Real>> clipped_by_horizon(std::span<const Vec3<Real>> v) {
+    std::vector<Vec3<Real>> kept;
     kept.reserve(2 * v.size());
     for (std::size_t i = 0; i < v.size(); ++i) {
-        const Vec3d& a = v[i];
-        const Vec3d& b = v[(i + 1) % v.size()];
+        const Vec3<Real>& a = v[i];
+        const Vec3<Real>& b = v[(i + 1) % v.size()];
         if (a.z >= 0) {
             kept.push_back(a);
         }
         if ((a.z >= 0) != (b.z >= 0) && a.z != 0 && b.z != 0) {
-            const double t = a.z / (a.z - b.z);
-            kept.push_back({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), 0.0});
+            const Real t = a.z / (a.z - b.z);
+            kept.push_back({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), Real(0)});
         }
     }
     return kept;
@@ -44,31 +48,33 @@ std::vector<Vec3d> clipped_by_horizon(std::span<const Vec3d> v) {
 
 /// Solid angle of a triangle (Van Oosterom & Strackee 1983), signed by its winding. The triple product is taken of edge
 /// vectors, so that its error is relative to the triangle and not to the sphere.
-double triangle_solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-    const double la = glm::length(a);
-    const double lb = glm::length(b);
-    const double lc = glm::length(c);
-    const double triple = glm::dot(a, glm::cross(b - a, c - a));
-    const double denominator = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
+template <class Real>
+Real triangle_solid_angle(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c) {
+    const Real la = glm::length(a);
+    const Real lb = glm::length(b);
+    const Real lc = glm::length(c);
+    const Real triple = glm::dot(a, glm::cross(b - a, c - a));
+    const Real denominator = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
     return 2 * std::atan2(triple, denominator);
 }
 
 }  // namespace
 
-SphericalPolygon::SphericalPolygon(std::span<const Vec3d> vertices, bool clip) {
-    std::vector<Vec3d> v = clip ? clipped_by_horizon(vertices) : std::vector<Vec3d>(vertices.begin(), vertices.end());
+template <class Real>
+SphericalPolygon<Real>::SphericalPolygon(std::span<const Vec3<Real>> vertices, bool clip) {
+    std::vector<Vec3<Real>> v = clip ? clipped_by_horizon(vertices) : std::vector<Vec3<Real>>(vertices.begin(), vertices.end());
     if (v.size() < 3) {
         return;
     }
     // The plane and its distance from the origin come from the vertices as given: clipping would only add rounding.
-    const Vec3d normal = vector_area(vertices);
-    double farthest = 0;
-    double distance = 0;
-    for (const Vec3d& p : vertices) {
+    const Vec3<Real> normal = vector_area(vertices);
+    Real farthest = 0;
+    Real distance = 0;
+    for (const Vec3<Real>& p : vertices) {
         farthest = std::max(farthest, glm::length(p));
-        distance += glm::dot(normal, p) / static_cast<double>(vertices.size());
+        distance += glm::dot(normal, p) / static_cast<Real>(vertices.size());
     }
-    constexpr double kEdgeOn = 1e-14;
+    constexpr Real kEdgeOn = 64 * std::numeric_limits<Real>::epsilon();
     if (!(std::abs(distance) > kEdgeOn * farthest * glm::length(normal))) {
         return;
     }
@@ -83,25 +89,31 @@ SphericalPolygon::SphericalPolygon(std::span<const Vec3d> vertices, bool clip) {
         return;
     }
     for (std::size_t i = 0; i < v.size(); ++i) {
-        const Vec3d& a = v[i];
-        const Vec3d& b = v[(i + 1) % v.size()];
+        const Vec3<Real>& a = v[i];
+        const Vec3<Real>& b = v[(i + 1) % v.size()];
         directions_.push_back(a / glm::length(a));
         edge_crosses_.push_back(glm::cross(a, b - a) / (glm::length(a) * glm::length(b)));
     }
 }
 
-double planarity_error(std::span<const Vec3d> vertices) {
-    const Vec3d area = vector_area(vertices);
-    const double size = extent(vertices);
-    const double length = glm::length(area);
+template <class Real>
+Real planarity_error(std::span<const Vec3<Real>> vertices) {
+    const Vec3<Real> area = vector_area(vertices);
+    const Real size = extent(vertices);
+    const Real length = glm::length(area);
     if (!(length > 0)) {
         return 0;
     }
-    double largest = 0;
-    for (const Vec3d& p : vertices) {
+    Real largest = 0;
+    for (const Vec3<Real>& p : vertices) {
         largest = std::max(largest, std::abs(glm::dot(area, p - vertices[0])) / length);
     }
     return largest / size;
 }
+
+template class SphericalPolygon<double>;
+template class SphericalPolygon<long double>;
+template double planarity_error(std::span<const Vec3<double>>);
+template long double planarity_error(std::span<const Vec3<long double>>);
 
 }  // namespace shlight

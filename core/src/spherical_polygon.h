@@ -1,36 +1,44 @@
 // SPDX-License-Identifier: MIT
 //
-// A planar polygon as seen from the origin: clipped, turned into directions, measured. All in double: what follows
-// (an edge's pole, a small solid angle) hangs on differences of the vertices.
+// A planar polygon as seen from the origin: clipped, turned into directions, measured. In a wider type than the
+// coefficients: an edge's pole, a small solid angle and the distance of a plane nearly through the origin are
+// differences of the vertices.
 #pragma once
 
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "shlight/types.h"
 
 namespace shlight {
 
+/// The type in which a light of precision T is prepared.
+template <class T>
+using Wider = std::conditional_t<std::is_same_v<T, float>, double, long double>;
+
+template <class Real>
 class SphericalPolygon {
   public:
     /// vertices: k ≥ 3, planar, in either winding. clip: keep only z ≥ 0.
-    SphericalPolygon(std::span<const Vec3d> vertices, bool clip);
+    SphericalPolygon(std::span<const Vec3<Real>> vertices, bool clip);
 
     /// Nothing is left: no area, edge-on, or below the horizon.
     bool empty() const { return directions_.empty(); }
     /// Unit vectors to the vertices, the interior on the left of each edge seen from outside the sphere.
-    const std::vector<Vec3d>& directions() const { return directions_; }
+    const std::vector<Vec3<Real>>& directions() const { return directions_; }
     /// a × b / (|a| |b|) of the edge from vertex i to the next: the edge's pole times the sine of its length.
-    const Vec3d& edge_cross(std::size_t i) const { return edge_crosses_[i]; }
-    double solid_angle() const { return solid_angle_; }
+    const Vec3<Real>& edge_cross(std::size_t i) const { return edge_crosses_[i]; }
+    Real solid_angle() const { return solid_angle_; }
 
   private:
-    std::vector<Vec3d> directions_;
-    std::vector<Vec3d> edge_crosses_;
-    double solid_angle_ = 0;
+    std::vector<Vec3<Real>> directions_;
+    std::vector<Vec3<Real>> edge_crosses_;
+    Real solid_angle_ = 0;
 };
 
 /// The largest distance of a vertex from the polygon's mean plane ÷ the polygon's extent.
-double planarity_error(std::span<const Vec3d> vertices);
+template <class Real>
+Real planarity_error(std::span<const Vec3<Real>> vertices);
 
 }  // namespace shlight
