@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+#include "mesh_arrays.h"
+
+#include <cstring>
+#include <initializer_list>
+#include <stdexcept>
+#include <string>
+
+#include "arrays.h"
+
+namespace shlight::python {
+namespace {
+
+constexpr py::ssize_t kAny = -1;
+
+std::string describe(std::initializer_list<py::ssize_t> shape) {
+    std::string text = "(";
+    for (const py::ssize_t size : shape) {
+        text += (text.size() > 1 ? ", " : "") + (size == kAny ? "n" : std::to_string(size));
+    }
+    return text + ")";
+}
+
+bool fits(const py::array& array, std::initializer_list<py::ssize_t> shape) {
+    if (array.ndim() != static_cast<py::ssize_t>(shape.size())) {
+        return false;
+    }
+    py::ssize_t axis = 0;
+    for (const py::ssize_t size : shape) {
+        if (size != kAny && array.shape(axis) != size) {
+            return false;
+        }
+        ++axis;
+    }
+    return true;
+}
+
+/// kinds: numpy's letters of the types that are accepted.
+template <class T>
+AnyArray<T> array_from(const char* name, const py::handle& value, const char* kinds, const char* expected) {
+    const py::array raw = py::array::ensure(value);
+    if (!raw || std::strchr(kinds, raw.dtype().kind()) == nullptr) {
+        PyErr_Clear();
+        throw std::invalid_argument(std::string(name) + " must be an array of " + expected);
+    }
+    return AnyArray<T>(raw);
+}
+
+template <class T>
+AnyArray<T> numbers(const char* name, const py::handle& value) {
+    return array_from<T>(name, value, "fiub", "numbers");
+}
+
+template <class T>
+AnyArray<T> numbers(const char* name, const py::handle& value, std::initializer_list<py::ssize_t> shape) {
+    AnyArray<T> array = numbers<T>(name, value);
+    if (!fits(array, shape)) {
+        throw std::invalid_argument(std::string(name) + " must have shape " + describe(shape));
+    }
+    return array;
+}
+
+/// Integers in 0 … 2³² - 1.
+std::vector<std::uint32_t> indices(const char* name, const py::handle& value,
+                                   std::initializer_list<py::ssize_t> shape) {
+    const py::array raw = py::array::ensure(value);
+    PyErr_Clear();
+    // An empty list has numpy's default type, float.
+    const bool empty = raw && raw.size() == 0;
+    const auto array = array_from<std::int64_t>(name, value, empty ? "fiu" : "iu", "integers");
+    if (!fits(array, shape)) {
+        throw std::invalid_argument(std::string(name) + " must have shape " + describe(shape));
+    }
+    std::vector<std::uint32_t> result(static_cast<std::size_t>(array.size()));
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        const std::int64_t index = array.data()[i];
+        if (index < 0 || index > 0xFFFFFFFFLL) {
+            throw std::invalid_argument(std::string(name) + ": " + std::to_string(index) + " is out of range");
+        }
+        result[i] = static_cast<std::uint32_t>(index);
+    }
+    return result;
+}
+
+template <class T>
+std::vector<Vec3<T>> copy_vectors(const char* name, const AnyArray<T>& array) {
+    const std::span<const Vec3<T>> all = vectors(name, array);
+    return {all.begin(), all.end()};
+}
+
+glm::dmat4 matrix_at(const double* rows) {
+    glm::dmat4 matrix(1);
+    for (int row = 0; row < 4; ++row) {
+        for (int column = 0; column < 4; ++column) {
+            matrix[column][row] = rows[4 * row + column];
+        }
+    }
+    return matrix;
+}
+
+std::vector<Bsdf> bsdfs_from(const py::object& value) {
+    if (value.is_none()) {
+        return {Bsdf::lambert(Rgb(0.8F))};
+    }
+    if (py::isinstance<Bsdf>(value)) {
+        return {value.cast<Bsdf>()};
+    }
+    std::vector<Bsdf> result;
+    if (py::isinstance<py::sequence>(value)) {
+        for (const py::handle item : py::reinterpret_borrow<py::sequence>(value)) {
+            if (!py::isinstance<Bsdf>(item)) {
+                throw std::invalid_argument("bsdf must be a Bsdf or a sequence of them");
+            }
+            result.push_back(item.cast<Bsdf>());
+        }
+    }
+    if (result.empty()) {
+        throw std::invalid_argument("bsdf must be a Bsdf or a sequence of at least one");
+    }
+    return result;
+}
+
+std::vector<Rgb> emission_from(const py::object& value) {
+    if (value.is_none()) {
+        return {Rgb(0)};
+    }
+    const AnyArray<float> array = numbers<float>("emission", value);
+    if (!fits(array, {3}) && !(fits(array, {kAny, 3}) && array.size() > 0)) {
+        throw std::invalid_argument("emission must have shape (3,) or (m, 3)");
+    }
+    return copy_vectors("emission", array);
+}
+
+/// Either of the two forms; the other stays empty.
+void set_normals(Mesh& mesh, const py::object& value) {
+    const AnyArray<float> array = numbers<float>("normals", value);
+    const auto vertex_count = static_cast<py::ssize_t>(mesh.vertices.size());
+    const auto triangle_count = static_cast<py::ssize_t>(mesh.triangles.size());
+    if (fits(array, {vertex_count, 3})) {
+        mesh.vertex_normals = copy_vectors("normals", array);
+    } else if (fits(array, {triangle_count, 3, 3})) {
+        mesh.corner_normals = copy_vectors("normals", array);
+    } else {
+        throw std::invalid_argument("normals must have shape " + describe({vertex_count, 3}) + " or " +
+                                    describe({triangle_count, 3, 3}));
+    }
+}
+
+void check_uvs(const Mesh& mesh, const py::object& value) {
+    const AnyArray<float> array = numbers<float>("uvs", value);
+    const auto vertex_count = static_cast<py::ssize_t>(mesh.vertices.size());
+    const auto triangle_count = static_cast<py::ssize_t>(mesh.triangles.size());
+    if (!fits(array, {vertex_count, 2}) && !fits(array, {triangle_count, 3, 2})) {
+        throw std::invalid_argument("uvs must have shape " + describe({vertex_count, 2}) + " or " +
+                                    describe({triangle_count, 3, 2}));
+    }
+}
+
+}  // namespace
+
+Vec3d vector_from(const char* name, const py::handle& value) {
+    return vectors(name, numbers<double>(name, value, {3}))[0];
+}
+
+Rgb rgb_from(const char* name, const py::handle& value) {
+    return vectors(name, numbers<float>(name, value, {3}))[0];
+}
+
+std::vector<Vec3d> points_from(const char* name, const py::handle& value) {
+    return copy_vectors(name, numbers<double>(name, value, {kAny, 3}));
+}
+
+glm::dmat4 matrix_from(const char* name, const py::handle& value) {
+    return matrix_at(numbers<double>(name, value, {4, 4}).data());
+}
+
+Mesh mesh_from(const MeshArguments& arguments) {
+    Mesh mesh;
+    mesh.vertices = copy_vectors("vertices", numbers<float>("vertices", arguments.vertices, {kAny, 3}));
+    const std::vector<std::uint32_t> corners = indices("triangles", arguments.triangles, {kAny, 3});
+    for (std::size_t i = 0; i < corners.size(); i += 3) {
+        mesh.triangles.emplace_back(corners[i], corners[i + 1], corners[i + 2]);
+    }
+    if (!arguments.normals.is_none()) {
+        set_normals(mesh, arguments.normals);
+    }
+    if (!arguments.uvs.is_none()) {
+        check_uvs(mesh, arguments.uvs);
+    }
+    mesh.bsdfs = bsdfs_from(arguments.bsdf);
+    mesh.emission = emission_from(arguments.emission);
+    if (!arguments.material_indices.is_none()) {
+        mesh.material_indices =
+            indices("material_indices", arguments.material_indices, {static_cast<py::ssize_t>(mesh.triangles.size())});
+    }
+    if (!arguments.transforms.is_none()) {
+        const AnyArray<double> array = numbers<double>("transforms", arguments.transforms, {kAny, 4, 4});
+        mesh.transforms.clear();
+        for (py::ssize_t i = 0; i < array.shape(0); ++i) {
+            mesh.transforms.push_back(matrix_at(array.data() + 16 * i));
+        }
+    }
+    return mesh;
+}
+
+}  // namespace shlight::python

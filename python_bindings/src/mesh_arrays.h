@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+//
+// numpy arrays → what the core's scene holds. Everything throws std::invalid_argument naming the argument.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <vector>
+
+#include "shlight/mesh.h"
+#include "shlight/types.h"
+
+namespace shlight::python {
+
+/// Shape (3,).
+Vec3d vector_from(const char* name, const pybind11::handle& value);
+/// A radiance: shape (3,).
+Rgb rgb_from(const char* name, const pybind11::handle& value);
+/// Shape (n, 3).
+std::vector<Vec3d> points_from(const char* name, const pybind11::handle& value);
+/// Shape (4, 4), to be multiplied with column vectors.
+glm::dmat4 matrix_from(const char* name, const pybind11::handle& value);
+
+/// The arguments of Scene.add_mesh; None where Python leaves one out.
+struct MeshArguments {
+    pybind11::object vertices, triangles, normals, uvs, bsdf, emission, material_indices, transforms;
+};
+
+/// Shapes and types are checked here, the rest by check_mesh.
+Mesh mesh_from(const MeshArguments& arguments);
+
+}  // namespace shlight::python

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/render.h"
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "scene_bindings.h"
+
+using namespace pybind11::literals;
+
+namespace shlight::python {
+namespace {
+
+constexpr const char* kRenderDoc = R"(Render the direct light of a scene.
+
+scene: a Scene with a camera.
+width, height: pixels.
+order: 1 ... 64, or "auto": each lobe takes at each view the smallest order that meets the tolerance.
+tolerance: L2 error of a lobe's fit / norm of the whole f*cos of its material, > 0.
+pixel_samples: camera rays per pixel, over a box of one pixel.
+shadow_rays: per camera ray and light, at most; a quarter of them where light and shadow are plain. 0: no shadows.
+threads: at most; 0: all cores. The image does not depend on it.
+progress: is called with the finished share, 0 ... 1, about every 50 ms; returning False cancels. What it raises ends
+    the render and is raised here.
+return_report: return (image, RenderReport).
+
+Returns (height, width, 4) float32, linear, row 0 on top, RGB premultiplied; alpha is the coverage.
+Raises ValueError naming the argument, RenderCancelled.)";
+
+/// A report with what only Python's side knows.
+struct Report {
+    RenderReport core;
+    double build_seconds;
+
+    std::map<int, double> order_shares() const {
+        std::uint64_t all = 0;
+        for (const std::uint64_t count : core.order_counts) {
+            all += count;
+        }
+        std::map<int, double> shares;
+        for (std::size_t order = 0; order < core.order_counts.size(); ++order) {
+            if (core.order_counts[order] > 0) {
+                shares[static_cast<int>(order)] =
+                    static_cast<double>(core.order_counts[order]) / static_cast<double>(all);
+            }
+        }
+        return shares;
+    }
+    double over_tolerance() const {
+        return core.hits == 0 ? 0.0 : static_cast<double>(core.over_tolerance) / static_cast<double>(core.hits);
+    }
+    std::string repr() const {
+        return "RenderReport(hits=" + std::to_string(core.hits) + ", shadow_rays=" + std::to_string(core.shadow_rays) +
+               ", over_tolerance=" + std::to_string(over_tolerance()) +
+               ", build_seconds=" + std::to_string(build_seconds) + ", render_seconds=" + std::to_string(core.seconds) +
+               ")";
+    }
+};
+
+int order_from(const py::object& order) {
+    if (py::isinstance<py::str>(order) && order.cast<std::string>() == "auto") {
+        return 0;
+    }
+    const bool integer = PyIndex_Check(order.ptr()) != 0 && !py::isinstance<py::bool_>(order);
+    // Out of long long's range counts as out of range too.
+    int overflow = 0;
+    const long long value = integer ? PyLong_AsLongLongAndOverflow(py::int_(order).ptr(), &overflow) : 0;
+    if (overflow != 0 || value < 1 || value > kMaxOrder) {
+        throw std::invalid_argument("order must be 1 … 64 or \"auto\"");
+    }
+    return static_cast<int>(value);
+}
+
+/// Numbers that do not fit an int are as much out of range as the largest that does.
+int clamp_to_int(std::int64_t value) {
+    return static_cast<int>(
+        std::clamp<std::int64_t>(value, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
+}
+
+bool is_false(const py::object& value) {
+    return (PyBool_Check(value.ptr()) != 0 || py::isinstance(value, py::module_::import("numpy").attr("bool_"))) &&
+           !value.cast<bool>();
+}
+
+/// Runs in the calling thread, which does not hold the GIL while it waits: signals are seen, and the callback called.
+Progress progress_from(const py::object& callback) {
+    if (!callback.is_none() && PyCallable_Check(callback.ptr()) == 0) {
+        throw std::invalid_argument("progress must be callable or None");
+    }
+    return [&callback](double share) {
+        const py::gil_scoped_acquire acquire;
+        if (PyErr_CheckSignals() != 0) {
+            throw py::error_already_set();
+        }
+        return callback.is_none() || !is_false(callback(share));
+    };
+}
+
+/// The compiled scene of the object as it is now, and the seconds that building it has taken.
+std::pair<std::shared_ptr<const CompiledScene>, double> compiled(SceneObject& object, int threads) {
+    if (object.compiled) {
+        return {object.compiled, 0.0};
+    }
+    // A copy, since other Python threads may add to the object meanwhile.
+    const Scene scene = object.scene;
+    const std::uint64_t revision = object.revision;
+    const auto start = std::chrono::steady_clock::now();
+    std::shared_ptr<const CompiledScene> result;
+    {
+        const py::gil_scoped_release release;
+        result = scene.compile(threads);
+    }
+    if (object.revision == revision) {
+        object.compiled = result;
+    }
+    return {result, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+}
+
+py::object render_scene(SceneObject& scene, std::int64_t width, std::int64_t height, const py::object& order,
+                        double tolerance, std::int64_t pixel_samples, std::int64_t shadow_rays, std::int64_t threads,
+                        const py::object& progress, bool return_report) {
+    const RenderSettings settings = {order_from(order), tolerance, clamp_to_int(pixel_samples),
+                                     clamp_to_int(shadow_rays), clamp_to_int(threads)};
+    const int columns = clamp_to_int(width);
+    const int rows = clamp_to_int(height);
+    check_render(settings, columns, rows);
+    const Progress report_progress = progress_from(progress);
+    if (!scene.camera) {
+        throw std::invalid_argument("scene has no camera: call set_camera() or set_camera_window()");
+    }
+    const Camera camera = *scene.camera;
+    const auto [compiled_scene, build_seconds] = compiled(scene, settings.threads);
+    py::array_t<float> image({rows, columns, 4});
+    const std::span<float> pixels(image.mutable_data(), static_cast<std::size_t>(image.size()));
+    RenderReport report;
+    {
+        const py::gil_scoped_release release;
+        report = render(*compiled_scene, camera, columns, rows, settings, pixels, report_progress);
+    }
+    if (return_report) {
+        return py::make_tuple(image, Report{report, build_seconds});
+    }
+    return image;
+}
+
+}  // namespace
+
+void bind_render(py::module_& m) {
+    py::register_exception<RenderCancelled>(m, "RenderCancelled", PyExc_RuntimeError);
+    py::class_<Report>(m, "RenderReport", "What a picture took.")
+        .def_property_readonly("order_shares", &Report::order_shares,
+                               "Share of the lobes of camera hits by the order they took.")
+        .def_property_readonly("over_tolerance", &Report::over_tolerance,
+                               "Share of camera hits where no order up to 64 met the tolerance.")
+        .def_property_readonly(
+            "hits", [](const Report& r) { return r.core.hits; }, "Camera rays that met a surface.")
+        .def_property_readonly(
+            "shadow_rays", [](const Report& r) { return r.core.shadow_rays; }, "Shadow rays traced.")
+        .def_readonly("build_seconds", &Report::build_seconds, "Time for building what rays are traced in; 0 if kept.")
+        .def_property_readonly(
+            "render_seconds", [](const Report& r) { return r.core.seconds; }, "Time for rendering.")
+        .def("__repr__", &Report::repr);
+    m.def("render", &render_scene, kRenderDoc, "scene"_a, "width"_a, "height"_a, py::kw_only(), "order"_a = "auto",
+          "tolerance"_a = 1e-3, "pixel_samples"_a = 16, "shadow_rays"_a = 16, "threads"_a = 0,
+          "progress"_a = py::none(), "return_report"_a = false);
+}
+
+}  // namespace shlight::python

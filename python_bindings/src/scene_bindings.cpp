@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "scene_bindings.h"
+
+#include <limits>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "mesh_arrays.h"
+
+using namespace pybind11::literals;
+
+namespace shlight::python {
+namespace {
+
+constexpr const char* kSceneDoc = R"(Meshes, area lights and a camera in one world frame, in metres.
+
+Scene() is empty. Add meshes and lights, set a camera, then call shlight.render().
+What render() builds for ray tracing is kept until something is added.)";
+
+constexpr const char* kAddMeshDoc = R"(Add a triangle mesh. Surfaces are two-sided.
+
+vertices: (n, 3).
+triangles: (k, 3) integers, vertex indices.
+normals: (n, 3) per vertex or (k, 3, 3) per triangle corner, of any length; None: flat triangles.
+uvs: (n, 2) per vertex or (k, 3, 2) per triangle corner. Checked only: no material reads them.
+bsdf: a Bsdf, or a sequence with one per material; None: Bsdf.lambert(0.8).
+emission: emitted radiance [W m^-2 sr^-1] of both sides, RGB, or (m, 3) with one per material; None: none. Emissive
+    faces light the scene, are seen by the camera and block light.
+material_indices: (k,) integers, the material of each triangle; None: 0 for all.
+transforms: (i, 4, 4), one object-to-world matrix per instance, for column vectors; None: one at the identity.
+
+Raises ValueError naming the argument; the scene is then as it was.)";
+
+constexpr const char* kSphereDoc = R"(Add a sphere light. The camera does not see it and it does not block light.
+
+center: (3,). radius: > 0. radiance: RGB [W m^-2 sr^-1]; negative takes light away.
+facing_disk: a disk that always faces the shading point, of half angle atan(radius / distance), instead of the sphere of
+    half angle asin(radius / distance).
+A point inside the sphere is lit from its whole hemisphere.
+
+Raises ValueError naming the argument.)";
+
+constexpr const char* kPolygonDoc =
+    R"(Add a one-sided polygon light. The camera does not see it and it does not block light.
+
+vertices: (k, 3), k >= 3, planar and simple, convex or not. It shines to the side that sees them counter-clockwise.
+radiance: RGB [W m^-2 sr^-1]; negative takes light away.
+
+Raises ValueError naming the argument.)";
+
+constexpr const char* kCameraDoc = R"(Set a perspective camera with square pixels.
+
+to_world: (4, 4), camera to world, for column vectors; the camera looks along -z, y is up.
+fov_x: horizontal field of view in radians, between 0 and pi.
+
+Raises ValueError naming the argument.)";
+
+constexpr const char* kWindowDoc = R"(Set a camera by the rectangle that the image shows.
+
+to_world: (4, 4), camera to world, for column vectors; the camera looks along -z, y is up.
+left, right, bottom, top: on the plane z = -1 of the camera frame, or in metres if orthographic.
+clip_start, clip_end: surfaces are seen between these depths along the view axis.
+
+Raises ValueError naming the argument.)";
+
+void add_mesh(SceneObject& self, const py::object& vertices, const py::object& triangles, const py::object& normals,
+              const py::object& uvs, const py::object& bsdf, const py::object& emission,
+              const py::object& material_indices, const py::object& transforms) {
+    self.scene.add_mesh(mesh_from({vertices, triangles, normals, uvs, bsdf, emission, material_indices, transforms}));
+    self.changed();
+}
+
+void add_sphere_light(SceneObject& self, const py::object& center, double radius, const py::object& radiance,
+                      bool facing_disk) {
+    self.scene.add_sphere_light(vector_from("center", center), radius, rgb_from("radiance", radiance), facing_disk);
+    self.changed();
+}
+
+void add_polygon_light(SceneObject& self, const py::object& vertices, const py::object& radiance) {
+    self.scene.add_polygon_light(points_from("vertices", vertices), rgb_from("radiance", radiance));
+    self.changed();
+}
+
+void set_camera(SceneObject& self, const py::object& to_world, double fov_x) {
+    self.camera.emplace(matrix_from("to_world", to_world), fov_x);
+}
+
+void set_camera_window(SceneObject& self, const py::object& to_world, double left, double right, double bottom,
+                       double top, bool orthographic, double clip_start, double clip_end) {
+    self.camera.emplace(matrix_from("to_world", to_world), Window{left, right, bottom, top},
+                        orthographic ? Projection::orthographic : Projection::perspective,
+                        ClipRange{clip_start, clip_end});
+}
+
+}  // namespace
+
+void bind_scene(py::module_& m) {
+    py::class_<SceneObject>(m, "Scene", kSceneDoc)
+        .def(py::init<>())
+        .def("add_mesh", &add_mesh, kAddMeshDoc, "vertices"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
+             "uvs"_a = py::none(), "bsdf"_a = py::none(), "emission"_a = py::none(), "material_indices"_a = py::none(),
+             "transforms"_a = py::none())
+        .def("add_sphere_light", &add_sphere_light, kSphereDoc, "center"_a, "radius"_a, "radiance"_a, py::kw_only(),
+             "facing_disk"_a = false)
+        .def("add_polygon_light", &add_polygon_light, kPolygonDoc, "vertices"_a, "radiance"_a)
+        .def("set_camera", &set_camera, kCameraDoc, "to_world"_a, "fov_x"_a)
+        .def("set_camera_window", &set_camera_window, kWindowDoc, "to_world"_a, "left"_a, "right"_a, "bottom"_a,
+             "top"_a, py::kw_only(), "orthographic"_a = false, "clip_start"_a = 0.0,
+             "clip_end"_a = std::numeric_limits<double>::infinity());
+}
+
+}  // namespace shlight::python
