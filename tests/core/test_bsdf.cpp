@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/bsdf.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "quadrature.h"
+#include "random_input.h"
+
+namespace shlight {
+namespace {
+
+using testing::RandomInput;
+
+Vec3d upper(RandomInput& random) {
+    return random.at_tilt(random.uniform(0.02, 1.5));
+}
+
+void expect_near(const Rgb& computed, const Vec3d& expected, double tolerance) {
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(computed[i], expected[i], tolerance * std::max(1.0, expected[i])) << "channel " << i;
+    }
+}
+
+TEST(Bsdf, LambertIsAlbedoOverPi) {
+    RandomInput random(70);
+    const Bsdf bsdf = Bsdf::lambert({0.2F, 0.5F, 0.9F});
+    for (int i = 0; i < 20; ++i) {
+        const Vec3d wi = upper(random);
+        expect_near(bsdf.evaluate(wi, upper(random)), Vec3d(0.2, 0.5, 0.9) * wi.z / std::numbers::pi, 1e-6);
+    }
+    expect_near(bsdf.albedo(0.4), {0.2, 0.5, 0.9}, 1e-6);
+}
+
+TEST(Bsdf, DefaultIsBlack) {
+    EXPECT_EQ(Bsdf().evaluate({0, 0, 1}, {0, 0, 1}), Rgb(0));
+    EXPECT_EQ(Bsdf().albedo(1), Rgb(0));
+}
+
+/// F = f0 + (1 - f0) s multiplies what GGX without Fresnel reflects.
+TEST(Bsdf, GgxMixesFresnelByColor) {
+    RandomInput random(71);
+    const Vec3d f0(0.04, 0.5, 1);
+    for (const float ior : {0.0F, 1.5F}) {
+        const Bsdf bsdf = Bsdf::ggx(0.6F, Rgb(f0), ior);
+        const double alpha = static_cast<double>(0.6F) * static_cast<double>(0.6F);
+        const GgxShape edge{alpha, ior > 0 ? Fresnel::dielectric : Fresnel::schlick, 1.5};
+        for (int i = 0; i < 100; ++i) {
+            const Vec3d wi = upper(random);
+            const Vec3d wo = upper(random);
+            const double plain = lobe_value(GgxShape{alpha}, wi, wo);
+            const double grazing = lobe_value(edge, wi, wo);
+            expect_near(bsdf.evaluate(wi, wo), f0 * plain + (Vec3d(1) - f0) * grazing, 1e-6);
+        }
+    }
+}
+
+TEST(Bsdf, SumsAndScalesAreLinear) {
+    RandomInput random(72);
+    const Bsdf a = Bsdf::lambert({0.1F, 0.2F, 0.3F});
+    const Bsdf b = Bsdf::ggx(0.5F, {0.9F, 0.6F, 0.3F});
+    const Bsdf sum = (a + b).scaled({2, 0.5F, 0});
+    for (int i = 0; i < 50; ++i) {
+        const Vec3d wi = upper(random);
+        const Vec3d wo = upper(random);
+        const Vec3d expected = Vec3d(a.evaluate(wi, wo)) + Vec3d(b.evaluate(wi, wo));
+        expect_near(sum.evaluate(wi, wo), expected * Vec3d(2, 0.5, 0), 1e-6);
+    }
+    expect_near(sum.albedo(0.6), (Vec3d(a.albedo(0.6)) + Vec3d(b.albedo(0.6))) * Vec3d(2, 0.5, 0), 1e-6);
+}
+
+/// What the top reflects does not reach the base.
+TEST(Bsdf, LayersShareTheLight) {
+    RandomInput random(73);
+    const Bsdf top = Bsdf::ggx(0.4F, {0.04F, 0.05F, 0.03F}, 1.5F);
+    const Bsdf base = Bsdf::lambert({0.8F, 0.4F, 0.2F});
+    const Bsdf layered = Bsdf::layer(top, base);
+    for (int i = 0; i < 100; ++i) {
+        const Vec3d wi = upper(random);
+        const Vec3d wo = random.at_tilt(random.uniform(0, 1.45));
+        const Rgb reflected = top.albedo(wo.z);
+        const double passed = 1 - std::max({reflected.x, reflected.y, reflected.z});
+        const Vec3d expected = Vec3d(top.evaluate(wi, wo)) + passed * Vec3d(base.evaluate(wi, wo));
+        expect_near(layered.evaluate(wi, wo), expected, 2e-4);
+    }
+    for (const double cos_theta_o : {0.05, 0.3, 0.9}) {  // no layer makes light
+        const Rgb albedo = Bsdf::layer(top, Bsdf::lambert(Rgb(1))).albedo(cos_theta_o);
+        EXPECT_LE(std::max({albedo.x, albedo.y, albedo.z}), 1 + 1e-4);
+    }
+}
+
+/// Layers on layers keep the weights of those below.
+TEST(Bsdf, LayersNest) {
+    const Bsdf coat = Bsdf::ggx(0.5F, Rgb(0.04F), 1.5F);
+    const Bsdf glossy = Bsdf::ggx(0.7F, Rgb(0.2F));
+    const Bsdf nested = Bsdf::layer(coat, Bsdf::layer(glossy, Bsdf::lambert(Rgb(0.5F))));
+    const Vec3d wi = glm::normalize(Vec3d(-0.3, 0.2, 0.8));
+    const Vec3d wo = glm::normalize(Vec3d(0.5, 0, 0.7));
+    const double through_coat = 1 - static_cast<double>(coat.albedo(wo.z).x);
+    const double through_glossy = 1 - static_cast<double>(glossy.albedo(wo.z).x);
+    const double expected =
+        static_cast<double>(coat.evaluate(wi, wo).x) + through_coat * (static_cast<double>(glossy.evaluate(wi, wo).x) +
+                                                                       through_glossy * 0.5 * wi.z / std::numbers::pi);
+    EXPECT_NEAR(nested.evaluate(wi, wo).x, expected, 2e-4);
+}
+
+TEST(Bsdf, AlbedoIsTheIntegralOfEvaluate) {
+    const auto samples = testing::mirrored_hemisphere(120, 120);
+    const Bsdf bsdf = Bsdf::layer(Bsdf::ggx(0.6F, Rgb(0.04F), 1.5F), Bsdf::lambert({0.8F, 0.4F, 0.2F}));
+    for (const double cos_theta_o : {0.3, 0.8, 1.0}) {
+        const Vec3d wo(std::sqrt(1 - cos_theta_o * cos_theta_o), 0, cos_theta_o);
+        for (int channel = 0; channel < 3; ++channel) {
+            const double expected = testing::integral(
+                samples, [&](const Vec3d& wi) { return static_cast<double>(bsdf.evaluate(wi, wo)[channel]); });
+            EXPECT_NEAR(bsdf.albedo(cos_theta_o)[channel], expected, 1e-4);
+        }
+    }
+}
+
+TEST(Bsdf, RejectsBadInput) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float inf = std::numeric_limits<float>::infinity();
+    const auto names = [](const std::string& argument, const std::function<void()>& call) {
+        std::string message = "accepted";
+        try {
+            call();
+        } catch (const std::invalid_argument& error) {
+            message = error.what();
+        }
+        EXPECT_NE(message.find(argument), std::string::npos) << argument << ": " << message;
+    };
+    for (const float bad : {-0.1F, nan, inf}) {
+        names("albedo", [&] { Bsdf::lambert({0.5F, bad, 0.5F}); });
+        names("f0", [&] { Bsdf::ggx(0.5F, {0.5F, 0.5F, bad}); });
+        names("factor", [&] { Bsdf::lambert(Rgb(0.5F)).scaled({bad, 1, 1}); });
+    }
+    for (const float bad : {0.0F, -0.5F, 1.01F, nan}) {
+        names("roughness", [&] { Bsdf::ggx(bad, Rgb(0.5F)); });
+    }
+    for (const float bad : {1.0F, 0.5F, -1.5F, nan, inf}) {
+        names("ior", [&] { Bsdf::ggx(0.5F, Rgb(0.5F), bad); });
+    }
+}
+
+}  // namespace
+}  // namespace shlight

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/lobe_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "error_record.h"
+#include "quadrature.h"
+#include "random_input.h"
+#include "shlight/basis.h"
+
+namespace shlight {
+namespace {
+
+using testing::RandomInput;
+using testing::Sample;
+
+Vec3d view(double cos_theta_o) {
+    return {std::sqrt(1 - cos_theta_o * cos_theta_o), 0, cos_theta_o};
+}
+
+std::vector<float> cosine_terms(const LobeFit& fit, double cos_theta_o, int order) {
+    std::vector<float> terms(cosine_count(order));
+    fit.table(order)->coefficients(static_cast<float>(cos_theta_o), terms.data());
+    return terms;
+}
+
+double expansion(const std::vector<float>& terms, int order, const std::vector<double>& basis) {
+    double sum = 0;
+    for (int l = 0; l < order; ++l) {
+        for (int m = 0; m <= l; ++m) {
+            sum += static_cast<double>(terms[cosine_index(l, m)]) * basis[coefficient_index(l, m)];
+        }
+    }
+    return sum;
+}
+
+/// The basis in every sample, computed once for all fits.
+struct Grid {
+    std::vector<Sample> samples = testing::mirrored_hemisphere(100, 120);
+    std::vector<std::vector<double>> basis;
+
+    Grid() {
+        for (const Sample& sample : samples) {
+            basis.emplace_back(coefficient_count(kMaxOrder));
+            sh_basis(sample.direction, kMaxOrder, basis.back().data());
+        }
+    }
+};
+
+const Grid& grid() {
+    static const Grid instance;
+    return instance;
+}
+
+/// L2 norm of f·cos and of its difference from the expansions, on this file's own grid.
+double measured_norm(const LobeShape& shape, double cos_theta_o) {
+    return std::sqrt(testing::integral(
+        grid().samples, [&](const Vec3d& wi) { return std::pow(lobe_value(shape, wi, view(cos_theta_o)), 2); }));
+}
+
+double measured_residual(const LobeFit& fit, double cos_theta_o, int order) {
+    const std::vector<float> terms = cosine_terms(fit, cos_theta_o, order);
+    double sum = 0;
+    for (std::size_t i = 0; i < grid().samples.size(); ++i) {
+        const Sample& sample = grid().samples[i];
+        const double exact = lobe_value(fit.shape(), sample.direction, view(cos_theta_o));
+        sum += sample.weight * std::pow(expansion(terms, order, grid().basis[i]) - exact, 2);
+    }
+    return std::sqrt(sum) / measured_norm(fit.shape(), cos_theta_o);
+}
+
+TEST(LobeFit, LambertIsExactFromOrderTwo) {
+    const LobeFit fit{LambertShape{}};
+    for (const int order : {2, 3, 7, 64}) {
+        const std::vector<float> terms = cosine_terms(fit, 0.3, order);
+        for (int k = 0; k < cosine_count(order); ++k) {
+            const double expected = k == cosine_index(1, 0) ? std::sqrt(4 / (3 * std::numbers::pi)) : 0;  // z/π
+            EXPECT_NEAR(terms[static_cast<std::size_t>(k)], expected, 1e-7) << "order " << order << ", term " << k;
+        }
+        EXPECT_LE(fit.residual(0.3, order), 1e-7);
+    }
+    EXPECT_EQ(fit.order_for(0.3, 1e-3).order, 2);
+    EXPECT_TRUE(fit.order_for(0.3, 1e-3).met);
+    EXPECT_NEAR(fit.albedo(0.5), 1, 1e-12);
+    EXPECT_NEAR(fit.norm(0.5), std::sqrt(2 / (3 * std::numbers::pi)), 1e-12);
+    EXPECT_NEAR(measured_residual(fit, 0.3, 1), fit.residual(0.3, 1), 1e-3);
+}
+
+/// What the fit says of its own error is what anyone measures, between the tabulated view angles as well.
+TEST(LobeFit, ResidualIsTheMeasuredError) {
+    RandomInput random(60);
+    for (const double alpha : {0.2, 0.3, 0.6, 1.0}) {
+        for (const Fresnel fresnel : {Fresnel::one, Fresnel::schlick, Fresnel::dielectric}) {
+            const LobeFit fit{GgxShape{alpha, fresnel, 1.5}};
+            for (int i = 0; i < 3; ++i) {
+                const double cos_theta_o = i == 0 ? 1 : random.uniform(0.15, 1);
+                for (const int order : {1, 2, 4, 8, 16, 32}) {
+                    const double claimed = fit.residual(cos_theta_o, order);
+                    const double measured = measured_residual(fit, cos_theta_o, order);
+                    EXPECT_NEAR(measured, claimed, 0.05 * claimed + 2e-5)
+                        << "alpha " << alpha << ", fresnel " << static_cast<int>(fresnel) << ", cosθ_o " << cos_theta_o
+                        << ", order " << order;
+                }
+            }
+        }
+    }
+}
+
+/// Published with the method: relative L2 errors of hemisphere fits.
+TEST(LobeFit, ConvergesAsExpected) {
+    struct Row {
+        double alpha, cos_theta_o;
+        double errors[4];  // orders 2, 4, 8, 16
+    };
+    constexpr int kOrders[4] = {2, 4, 8, 16};
+    constexpr Row kRows[] = {
+        {0.6, 0.95, {0.13, 0.009, 1.5e-4, 5e-5}}, {0.6, 0.5, {0.32, 0.10, 0.014, 4e-4}},
+        {0.3, 0.95, {0.51, 0.18, 0.016, 2e-4}},   {0.3, 0.5, {0.74, 0.46, 0.18, 0.025}},
+        {0.3, 0.2, {0.81, 0.63, 0.40, 0.17}},     {0.1, 0.95, {0.91, 0.74, 0.42, 0.12}},
+    };
+    for (const Row& row : kRows) {
+        const LobeFit fit{GgxShape{row.alpha}};
+        for (int k = 0; k < 4; ++k) {
+            EXPECT_LE(fit.residual(row.cos_theta_o, kOrders[k]), 1.15 * row.errors[k])
+                << "alpha " << row.alpha << ", cosθ_o " << row.cos_theta_o << ", order " << kOrders[k];
+        }
+    }
+}
+
+/// Down to where Tikhonov's term, not the order, limits the fit.
+TEST(LobeFit, ErrorFallsWithTheOrder) {
+    for (const double alpha : {0.1, 0.3, 0.8}) {
+        const LobeFit fit{GgxShape{alpha}};
+        for (const double cos_theta_o : {0.05, 0.4, 0.9, 1.0}) {
+            for (int order = 2; order <= kMaxOrder; ++order) {
+                EXPECT_LE(fit.residual(cos_theta_o, order), 1.1 * fit.residual(cos_theta_o, order - 1) + 1.5e-4)
+                    << "alpha " << alpha << ", cosθ_o " << cos_theta_o << ", order " << order;
+            }
+        }
+    }
+}
+
+TEST(LobeFit, TakesTheSmallestOrderThatWillDo) {
+    const LobeFit rough{GgxShape{0.5}};
+    for (const double tolerance : {0.3, 0.03, 1e-3, 1e-4}) {
+        const OrderChoice choice = rough.order_for(0.8, tolerance);
+        EXPECT_TRUE(choice.met);
+        EXPECT_LE(rough.residual(0.8, choice.order), tolerance);
+        for (const int order : kOrderLadder) {
+            if (order < choice.order) {
+                EXPECT_GT(rough.residual(0.8, order), tolerance);
+            }
+        }
+    }
+    const OrderChoice sharp = LobeFit{GgxShape{0.02}}.order_for(0.3, 1e-3);
+    EXPECT_EQ(sharp.order, kMaxOrder);
+    EXPECT_FALSE(sharp.met);
+}
+
+TEST(LobeFit, AlbedoAndNormAreIntegrals) {
+    RandomInput random(61);
+    for (const double alpha : {0.2, 0.5, 1.0}) {
+        for (const Fresnel fresnel : {Fresnel::one, Fresnel::schlick, Fresnel::dielectric}) {
+            const LobeFit fit{GgxShape{alpha, fresnel, 1.5}};
+            for (int i = 0; i < 6; ++i) {
+                const double cos_theta_o = i == 0 ? 1 : random.uniform(0.1, 1);
+                const double albedo = testing::integral(
+                    grid().samples, [&](const Vec3d& wi) { return lobe_value(fit.shape(), wi, view(cos_theta_o)); });
+                EXPECT_NEAR(fit.albedo(cos_theta_o), albedo, 1e-3 * albedo + 1e-5);
+                const double norm = measured_norm(fit.shape(), cos_theta_o);
+                EXPECT_NEAR(fit.norm(cos_theta_o), norm, 2e-3 * norm + 1e-5);
+            }
+        }
+    }
+}
+
+/// Large coefficients would amplify the light's rounding. (Orders far too low for their lobe are not kept small.)
+TEST(LobeFit, CoefficientsStaySmall) {
+    for (const double alpha : {0.1, 0.3, 0.6, 1.0}) {
+        const LobeFit fit{GgxShape{alpha}};
+        for (const double cos_theta_o : {0.1, 0.5, 1.0}) {
+            for (const int order : kOrderLadder) {
+                const std::vector<float> terms = cosine_terms(fit, cos_theta_o, order);
+                const auto largest = std::max_element(terms.begin(), terms.end(),
+                                                      [](float a, float b) { return std::abs(a) < std::abs(b); });
+                const double bound = fit.residual(cos_theta_o, order) <= 0.03 ? 10 : 500;
+                EXPECT_LE(std::abs(*largest), bound * std::max(1.0, fit.norm(cos_theta_o)))
+                    << "alpha " << alpha << ", cosθ_o " << cos_theta_o << ", order " << order;
+            }
+        }
+    }
+}
+
+TEST(LobeFit, OrdersOffTheLadderAreSolved) {
+    const LobeFit fit{GgxShape{0.4}};
+    for (const int order : {5, 11, 20, 40}) {
+        EXPECT_EQ(fit.table(order)->order(), order);
+        const double claimed = fit.residual(0.7, order);
+        EXPECT_NEAR(measured_residual(fit, 0.7, order), claimed, 0.05 * claimed + 2e-5) << "order " << order;
+    }
+}
+
+TEST(LobeFit, EqualShapesShareTheirFit) {
+    const auto first = fitted(GgxShape{0.7});
+    EXPECT_EQ(first, fitted(GgxShape{0.7}));
+    EXPECT_NE(first, fitted(GgxShape{0.71}));
+    EXPECT_NE(first, fitted(GgxShape{0.7, Fresnel::schlick}));
+}
+
+}  // namespace
+}  // namespace shlight
