@@ -7,6 +7,7 @@
 // In orthonormal unknowns its singular values are exactly 1 … l, its null vector is N_m = P̄_l^m(cosθ).
 #pragma once
 
+#include <array>
 #include <numbers>
 
 #include "legendre.h"
@@ -19,8 +20,7 @@ template <class T>
 class BandSystem {
   public:
     /// n_hat: P̂_l^m(cosθ), m = 0 … l, kept by reference; l ≥ 1.
-    BandSystem(int l, T cos_tilt, T sin_tilt, const T* n_hat)
-        : l_(l), sin_tilt_(sin_tilt), n_hat_(n_hat) {
+    BandSystem(int l, T cos_tilt, T sin_tilt, const T* n_hat) : l_(l), sin_tilt_(sin_tilt), n_hat_(n_hat) {
         // The second solution starts where its Casoratian with N is largest: Q_0 = -N_1, Q_1 = N_0.
         const T* ladder = &LegendreConstants<T>::get().ladder[at(l, 0)];
         const T sin2 = sin_tilt * sin_tilt;
@@ -36,7 +36,7 @@ class BandSystem {
     /// x[0 … l] from right[1 … l].
     void solve(const T* right, T* x) const {
         // N decays where Q grows, so Q is summed upwards and N downwards; a prefix difference would lose all digits.
-        T above[kMaxOrder];
+        std::array<T, kMaxOrder> above;
         above[l_] = 0;
         for (int m = l_ - 1; m >= 0; --m) {
             above[m] = sin_tilt_ * (above[m + 1] + n_hat_[m + 1] * right[m + 1]);
@@ -54,7 +54,7 @@ class BandSystem {
     T sin_tilt_;
     T scale_;
     const T* n_hat_;
-    T q_hat_[kMaxOrder];
+    std::array<T, kMaxOrder> q_hat_;
 };
 
 /// N · x with the weights 1, 2, 2, … of unnormalised cosine terms.

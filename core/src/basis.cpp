@@ -31,17 +31,16 @@ void sh_basis(const Vec3<T>& direction, int order, T* basis) {
     std::array<T, kMaxOrder> sin_part;
     complex_powers(direction.x, direction.y, order, cos_part.data(), sin_part.data());
     for (int m = 1; m < order; ++m) {
-        cos_part[static_cast<std::size_t>(m)] *= std::numbers::sqrt2_v<T>;
-        sin_part[static_cast<std::size_t>(m)] *= std::numbers::sqrt2_v<T>;
+        cos_part[m] *= std::numbers::sqrt2_v<T>;
+        sin_part[m] *= std::numbers::sqrt2_v<T>;
     }
     LegendreRows<T> legendre(direction.z, std::hypot(direction.x, direction.y));
     for (int l = 0;; legendre.advance()) {
         T* band = basis + coefficient_index(l, 0);
         band[0] = legendre[0];
         for (int m = 1; m <= l; ++m) {
-            const auto k = static_cast<std::size_t>(m);
-            band[m] = legendre[m] * cos_part[k];
-            band[-m] = legendre[m] * sin_part[k];
+            band[m] = legendre[m] * cos_part[m];
+            band[-m] = legendre[m] * sin_part[m];
         }
         if (++l == order) {
             break;

@@ -20,9 +20,13 @@ void check_color(const char* name, const Rgb& color) {
     }
 }
 
-float largest(const Rgb& c) { return std::max({c.x, c.y, c.z}); }
+float largest(const Rgb& c) {
+    return std::max({c.x, c.y, c.z});
+}
 
-bool is_black(const Rgb& c) { return c == Rgb(0); }
+bool is_black(const Rgb& c) {
+    return c == Rgb(0);
+}
 
 }  // namespace
 
@@ -67,7 +71,7 @@ Bsdf Bsdf::layer(const Bsdf& top, const Bsdf& base) {
     std::vector<float> passed(kViewNodes);
     for (int i = 0; i < kViewNodes; ++i) {
         const float reflected = largest(top.albedo(std::cos(view_angle(i))));
-        passed[static_cast<std::size_t>(i)] = std::max(0.0F, 1 - reflected);
+        passed[i] = std::max(0.0F, 1 - reflected);
     }
     Bsdf result = top;
     for (Lobe lobe : base.lobes_) {

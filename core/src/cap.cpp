@@ -55,14 +55,20 @@ void check_cap(const Vec3d& axis, double half_angle) {
 template <class T>
 Cap<T> make_cap(const Axis& axis, double cos_half, double sin_half, double crossing_squared, bool complement) {
     const auto r = [](double x) { return static_cast<T>(x); };
-    return {r(axis.cos_tilt), r(axis.sin_tilt), r(axis.cos_azimuth), r(axis.sin_azimuth),
-            r(cos_half),      r(sin_half),      r(std::sqrt(std::max(0.0, crossing_squared))), complement};
+    return {r(axis.cos_tilt),
+            r(axis.sin_tilt),
+            r(axis.cos_azimuth),
+            r(axis.sin_azimuth),
+            r(cos_half),
+            r(sin_half),
+            r(std::sqrt(std::max(0.0, crossing_squared))),
+            complement};
 }
 
 /// The zonal integrals λ_l of an unclipped cap, ∫ P_l(ω·L) dω (Funk–Hecke).
 /// λ_l = 2π sin²σ P_l'(cosσ) / (l(l+1)) is 2π (P_{l-1} - P_{l+1}) / (2l+1) without its cancellation;
-/// λ_0 = 2π (1 - cosσ). For small caps P_l falls from 1 by l(l+1)/2 · (1 - cosσ): the recurrence runs on the differences
-/// P_l - P_{l-1} and on 1 - cosσ = sin²σ / (1 + cosσ), because a rounded cosσ would be amplified by l².
+/// λ_0 = 2π (1 - cosσ). For small caps P_l falls from 1 by l(l+1)/2 · (1 - cosσ): the recurrence runs on the
+/// differences P_l - P_{l-1} and on 1 - cosσ = sin²σ / (1 + cosσ), because a rounded cosσ would be amplified by l².
 template <class T>
 class ZonalIntegrals {
   public:
@@ -75,7 +81,8 @@ class ZonalIntegrals {
         const T derivative = derivative_before_ + static_cast<T>(2 * l_ - 1) * p_;  // P'_l = P'_{l-2} + (2l-1) P_{l-1}
         derivative_before_ = derivative_;
         derivative_ = derivative;
-        rise_ = (static_cast<T>(l_ - 1) * rise_ - static_cast<T>(2 * l_ - 1) * one_minus_cos_ * p_) / static_cast<T>(l_);
+        rise_ =
+            (static_cast<T>(l_ - 1) * rise_ - static_cast<T>(2 * l_ - 1) * one_minus_cos_ * p_) / static_cast<T>(l_);
         p_ += rise_;
         return sin2_ * derivative;
     }
@@ -112,7 +119,7 @@ void whole_cap(const Cap<T>& cap, int order, T* coefficients) {
         legendre.advance();
         const T lambda = 2 * std::numbers::pi_v<T> * zonal.next_edge() / static_cast<T>(l * (l + 1));
         for (int m = 0; m <= l; ++m) {
-            band[static_cast<std::size_t>(m)] = lambda * legendre[m];
+            band[m] = lambda * legendre[m];
         }
         turn_band(l, band.data(), cos_m.data(), sin_m.data(), coefficients);
     }
@@ -133,8 +140,9 @@ struct HorizonArc {
         half_arc = std::atan2(w, cap.cos_half);
         half_edge = std::atan2(w, -cap.cos_half * cap.cos_tilt);
         // Both terms are of the size of the region, for small caps too: 1 - cosσ never appears as a difference.
-        solid_angle = 2 * std::atan2(w * cap.cos_tilt * one_minus_cos, w * w + cap.cos_half * cap.cos_tilt * cap.cos_tilt) +
-                      2 * half_edge * one_minus_cos;
+        solid_angle =
+            2 * std::atan2(w * cap.cos_tilt * one_minus_cos, w * w + cap.cos_half * cap.cos_tilt * cap.cos_tilt) +
+            2 * half_edge * one_minus_cos;
         fill_sines(w, cap.cos_half, order);
         fill_moments(order);
     }
@@ -146,16 +154,15 @@ struct HorizonArc {
         complex_powers(cos_half / chord, w / chord, order + 1, unused.data(), sine_over_m.data());
         sine_over_m[0] = half_arc;
         for (int m = 1; m <= order; ++m) {
-            sine_over_m[static_cast<std::size_t>(m)] /= static_cast<T>(m);
+            sine_over_m[m] /= static_cast<T>(m);
         }
     }
 
     void fill_moments(int order) {
         moment[0] = 0;
         for (int m = 1; m < order; ++m) {
-            const auto k = static_cast<std::size_t>(m);
-            moment[k] = static_cast<T>(m + 1) * half_arc < T(0.6) ? moment_series(m)
-                                                                   : sine_over_m[k - 1] - sine_over_m[k + 1];
+            moment[m] =
+                static_cast<T>(m + 1) * half_arc < T(0.6) ? moment_series(m) : sine_over_m[m - 1] - sine_over_m[m + 1];
         }
     }
 
@@ -181,7 +188,7 @@ T clipped_zonal_integral(int l, T edge, const HorizonArc<T>& arc, const T* null)
     const T* dz = &LegendreConstants<T>::get().dz_at_horizon[at(l, 0)];
     T horizon = 0;
     for (int m = (l + 1) % 2; m <= l; m += 2) {
-        horizon += (m == 0 ? T(2) : T(4)) * dz[m] * null[m] * arc.sine_over_m[static_cast<std::size_t>(m)];
+        horizon += (m == 0 ? T(2) : T(4)) * dz[m] * null[m] * arc.sine_over_m[m];
     }
     const T four_pi_over = 4 * std::numbers::pi_v<T> / static_cast<T>(2 * l + 1);
     return (2 * arc.half_edge * edge + four_pi_over * horizon) / static_cast<T>(l * (l + 1));
@@ -202,9 +209,8 @@ void clipped_cap(const Cap<T>& cap, int order, T* coefficients) {
         legendre.advance();
         const T* at_horizon = &constants.at_horizon[at(l, 0)];
         for (int m = 0; m <= l; ++m) {
-            const auto k = static_cast<std::size_t>(m);
-            null[k] = legendre[m] * sin_tilt_powers[k];
-            right[k] = -cap.sin_tilt * at_horizon[m] * arc.moment[k];
+            null[m] = legendre[m] * sin_tilt_powers[m];
+            right[m] = -cap.sin_tilt * at_horizon[m] * arc.moment[m];
         }
         BandSystem<T>(l, cap.cos_tilt, cap.sin_tilt, legendre.row()).solve(right.data(), band.data());
         const T zonal_integral = clipped_zonal_integral(l, zonal.next_edge(), arc, null.data());
@@ -228,7 +234,7 @@ void subtract_from_everything(int order, bool clip, T* coefficients) {
     whole_cap(Cap<T>{1, 0, 1, 0, 0, 1, 0, false}, order, hemisphere.data());
     for (int l = 0; l < order; ++l) {
         const int i = coefficient_index(l, 0);
-        coefficients[i] += hemisphere[static_cast<std::size_t>(i)];
+        coefficients[i] += hemisphere[i];
     }
 }
 

@@ -17,7 +17,9 @@ bool is_finite(const Vec3<T>& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-[[noreturn]] inline void reject(const std::string& message) { throw std::invalid_argument(message); }
+[[noreturn]] inline void reject(const std::string& message) {
+    throw std::invalid_argument(message);
+}
 
 inline void check_size(const char* name, std::size_t actual, std::size_t expected) {
     if (actual != expected) {

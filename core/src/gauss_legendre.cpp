@@ -17,8 +17,9 @@ LegendreValue legendre(int n, long double x) {
     long double before = 1;
     long double p = x;
     for (int k = 2; k <= n; ++k) {
-        const long double next = (static_cast<long double>(2 * k - 1) * x * p - static_cast<long double>(k - 1) * before) /
-                                 static_cast<long double>(k);
+        const long double next =
+            (static_cast<long double>(2 * k - 1) * x * p - static_cast<long double>(k - 1) * before) /
+            static_cast<long double>(k);
         before = p;
         p = next;
     }

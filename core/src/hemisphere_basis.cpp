@@ -15,15 +15,15 @@ namespace {
 /// above a relative error of about 1e-5; fits that do not would otherwise reach thousands.
 constexpr double kLambda = 1e-7;
 
-constexpr std::size_t triangle(int row, int column) {
-    return static_cast<std::size_t>(row * (row + 1) / 2 + column);
+constexpr int triangle(int row, int column) {
+    return row * (row + 1) / 2 + column;
 }
 
 /// ∫₀¹ P̄_l^m P̄_k^m dz · 2π for all l, k ≥ m, as lower triangles; exact with 64 Gauss points (degree ≤ 126).
 std::array<std::vector<double>, kMaxOrder> gram_matrices() {
     std::array<std::vector<double>, kMaxOrder> gram;
     for (int m = 0; m < kMaxOrder; ++m) {
-        gram[static_cast<std::size_t>(m)].assign(triangle(kMaxOrder - m, 0), 0.0);
+        gram[m].assign(triangle(kMaxOrder - m, 0), 0.0);
     }
     const GaussRule& rule = gauss_rule(kMaxGaussPoints);
     std::vector<double> values(kCosineMax);
@@ -35,7 +35,7 @@ std::array<std::vector<double>, kMaxOrder> gram_matrices() {
         LegendreRows<double> legendre(z, sine);
         for (int l = 0; l < kMaxOrder; ++l) {
             for (int m = 0; m <= l; ++m) {
-                values[at(l, m)] = legendre[m] * sines[static_cast<std::size_t>(m)];
+                values[at(l, m)] = legendre[m] * sines[m];
             }
             if (l + 1 < kMaxOrder) {
                 legendre.advance();
@@ -43,7 +43,7 @@ std::array<std::vector<double>, kMaxOrder> gram_matrices() {
         }
         const double weight = 2 * std::numbers::pi * rule.weights[i];
         for (int m = 0; m < kMaxOrder; ++m) {
-            std::vector<double>& g = gram[static_cast<std::size_t>(m)];
+            std::vector<double>& g = gram[m];
             for (int row = 0; row < kMaxOrder - m; ++row) {
                 const double left = weight * values[at(m + row, m)];
                 for (int column = 0; column <= row; ++column) {
@@ -72,16 +72,16 @@ void cholesky(std::vector<double>& a, int size) {
 HemisphereBasis::HemisphereBasis() : rows_(gram_matrices()) {
     for (int m = 0; m < kMaxOrder; ++m) {
         const int size = kMaxOrder - m;
-        std::vector<double>& a = rows_[static_cast<std::size_t>(m)];
+        std::vector<double>& a = rows_[m];
         for (int row = 0; row < size; ++row) {
             a[triangle(row, row)] += kLambda;
         }
         cholesky(a, size);
-        std::vector<double>& columns = columns_[static_cast<std::size_t>(m)];
-        columns.assign(static_cast<std::size_t>(size * size), 0.0);
+        std::vector<double>& columns = columns_[m];
+        columns.assign(static_cast<std::size_t>(size) * size, 0.0);
         for (int row = 0; row < size; ++row) {
             for (int column = 0; column <= row; ++column) {
-                columns[static_cast<std::size_t>(column * size + row)] = a[triangle(row, column)];
+                columns[column * size + row] = a[triangle(row, column)];
             }
         }
     }
@@ -95,14 +95,14 @@ const HemisphereBasis& HemisphereBasis::get() {
 void HemisphereBasis::reduce(std::span<double> moments) const {
     std::array<double, kMaxOrder> y;
     for (int m = 0; m < kMaxOrder; ++m) {
-        const double* row = rows_[static_cast<std::size_t>(m)].data();
+        const double* row = rows_[m].data();
         for (int i = 0; i < kMaxOrder - m; ++i) {
             double sum = moments[at(m + i, m)];
             for (int k = 0; k < i; ++k) {
-                sum -= row[k] * y[static_cast<std::size_t>(k)];
+                sum -= row[k] * y[k];
             }
-            y[static_cast<std::size_t>(i)] = sum / row[i];
-            moments[at(m + i, m)] = y[static_cast<std::size_t>(i)];
+            y[i] = sum / row[i];
+            moments[at(m + i, m)] = y[i];
             row += i + 1;
         }
     }
@@ -113,13 +113,13 @@ void HemisphereBasis::solve(std::span<const double> reduced, int order, std::spa
     for (int m = 0; m < order; ++m) {
         const int size = kMaxOrder - m;
         for (int i = order - m - 1; i >= 0; --i) {
-            const double* column = &columns_[static_cast<std::size_t>(m)][static_cast<std::size_t>(i * size)];
+            const double* column = &columns_[m][i * size];
             double sum = reduced[at(m + i, m)];
             for (int k = i + 1; k < order - m; ++k) {
-                sum -= column[k] * f[static_cast<std::size_t>(k)];
+                sum -= column[k] * f[k];
             }
-            f[static_cast<std::size_t>(i)] = sum / column[i];
-            coefficients[at(m + i, m)] = f[static_cast<std::size_t>(i)];
+            f[i] = sum / column[i];
+            coefficients[at(m + i, m)] = f[i];
         }
     }
 }
@@ -138,9 +138,9 @@ std::array<double, kMaxOrder> HemisphereBasis::squared_errors(std::span<const do
         solve(reduced, order, coefficients);
         double size = 0;
         for (int i = 0; i < cosine_count(order); ++i) {
-            size += coefficients[static_cast<std::size_t>(i)] * coefficients[static_cast<std::size_t>(i)];
+            size += coefficients[i] * coefficients[i];
         }
-        errors[static_cast<std::size_t>(order - 1)] = std::max(0.0, norm_squared - explained - kLambda * size);
+        errors[order - 1] = std::max(0.0, norm_squared - explained - kLambda * size);
     }
     return errors;
 }

@@ -37,7 +37,7 @@ void fill_recurrence(Exact& c) {
 
 void fill_pole(Exact& c) {
     for (int m = 0; m < kMaxOrder; ++m) {
-        c.at_pole[at(m, m)] = c.diagonal[static_cast<std::size_t>(m)];
+        c.at_pole[at(m, m)] = c.diagonal[m];
         for (int l = m + 1; l < kMaxOrder; ++l) {
             const Real before = l > m + 1 ? c.at_pole[at(l - 2, m)] : Real(0);
             c.at_pole[at(l, m)] = c.step[at(l, m)] * c.at_pole[at(l - 1, m)] - c.back[at(l, m)] * before;
@@ -47,7 +47,7 @@ void fill_pole(Exact& c) {
 
 void fill_horizon(Exact& c) {
     for (int m = 0; m < kMaxOrder; ++m) {
-        c.at_horizon[at(m, m)] = c.diagonal[static_cast<std::size_t>(m)];
+        c.at_horizon[at(m, m)] = c.diagonal[m];
         for (int l = m + 2; l < kMaxOrder; l += 2) {
             c.at_horizon[at(l, m)] = -c.back[at(l, m)] * c.at_horizon[at(l - 2, m)];
         }

@@ -14,18 +14,20 @@
 namespace shlight {
 
 /// Index of (l, m ≥ 0) as an array subscript.
-constexpr std::size_t at(int l, int m) { return static_cast<std::size_t>(cosine_index(l, m)); }
+constexpr std::size_t at(int l, int m) {
+    return static_cast<std::size_t>(cosine_index(l, m));
+}
 
 inline constexpr std::size_t kCosineMax = static_cast<std::size_t>(cosine_count(kMaxOrder));
 
 /// Constants of the recurrences, the same for every light.
 template <class T>
 struct LegendreConstants {
-    std::array<T, kMaxOrder> diagonal;     ///< P̂_m^m
-    std::array<T, kCosineMax> step;        ///< P̂_l = step · z · P̂_{l-1} - back · P̂_{l-2}
-    std::array<T, kCosineMax> back;        //
-    std::array<T, kCosineMax> ladder;      ///< √((l-m)(l+m+1)), the ladder operators' factor
-    std::array<T, kCosineMax> at_horizon;  ///< P̄_l^m(0), zero for odd l - m
+    std::array<T, kMaxOrder> diagonal;        ///< P̂_m^m
+    std::array<T, kCosineMax> step;           ///< P̂_l = step · z · P̂_{l-1} - back · P̂_{l-2}
+    std::array<T, kCosineMax> back;           //
+    std::array<T, kCosineMax> ladder;         ///< √((l-m)(l+m+1)), the ladder operators' factor
+    std::array<T, kCosineMax> at_horizon;     ///< P̄_l^m(0), zero for odd l - m
     std::array<T, kCosineMax> at_pole;        ///< P̂_l^m(1)
     std::array<T, kCosineMax> dz_at_horizon;  ///< dP̄_l^m/dz (0), zero for even l - m
 
@@ -54,7 +56,7 @@ class LegendreRows {
 
     int band() const { return l_; }
     /// P̂_l^m of the present band, m = 0 … l.
-    const T* row() const { return row_; }
+    const T* row() const { return row_.data(); }
     T operator[](int m) const { return row_[m]; }
 
     /// Steps to the next band.
@@ -77,7 +79,7 @@ class LegendreRows {
             other_[m] = row_[m];
             row_[m] = next;
         }
-        row_[l_] = constants_.diagonal[static_cast<std::size_t>(l_)];
+        row_[l_] = constants_.diagonal[l_];
         other_[l_] = 0;
     }
 
@@ -94,7 +96,7 @@ class LegendreRows {
         }
         state_[l_] = 1;
         other_[l_] = 0;
-        row_[l_] = constants_.diagonal[static_cast<std::size_t>(l_)];
+        row_[l_] = constants_.diagonal[l_];
     }
 
     const LegendreConstants<T>& constants_ = LegendreConstants<T>::get();
@@ -102,9 +104,9 @@ class LegendreRows {
     T distance_ = 0;
     bool near_pole_;
     int l_ = 0;
-    T row_[kMaxOrder];
-    T state_[kMaxOrder];
-    T other_[kMaxOrder] = {0};
+    std::array<T, kMaxOrder> row_;
+    std::array<T, kMaxOrder> state_;
+    std::array<T, kMaxOrder> other_{};
 };
 
 /// out[m] = base^m for m = 0 … count-1.
@@ -118,7 +120,8 @@ void powers(T base, int count, T* out) {
 }
 
 /// out_cos[m] + i out_sin[m] = (x + i y)^m for m = 0 … count-1.
-/// With x + iy on the unit circle these are cos mφ and sin mφ; by rotation, because 2 cos φ · f_{m-1} - f_{m-2} loses digits.
+/// With x + iy on the unit circle these are cos mφ and sin mφ; by rotation, because 2 cos φ · f_{m-1} - f_{m-2} loses
+/// digits.
 template <class T>
 void complex_powers(T x, T y, int count, T* out_cos, T* out_sin) {
     T re = 1;

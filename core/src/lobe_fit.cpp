@@ -21,8 +21,7 @@ namespace {
 /// Linear interpolation is enough for what only steers a choice or varies slowly.
 template <class Values>
 double interpolated(double cos_theta_o, const Values& value_at) {
-    const double position =
-        std::acos(std::clamp(cos_theta_o, 0.0, 1.0)) * (kViewNodes - 1) * 2 / std::numbers::pi;
+    const double position = std::acos(std::clamp(cos_theta_o, 0.0, 1.0)) * (kViewNodes - 1) * 2 / std::numbers::pi;
     const int low = std::clamp(static_cast<int>(position), 0, kViewNodes - 2);
     const double t = position - low;
     return (1 - t) * value_at(low) + t * value_at(low + 1);
@@ -113,13 +112,12 @@ LobeTable LobeFit::solve_table(int order) const {
 }
 
 double LobeFit::albedo(double cos_theta_o) const {
-    return albedos_.empty() ? 1.0
-                            : interpolated(cos_theta_o, [&](int i) { return albedos_[static_cast<std::size_t>(i)]; });
+    return albedos_.empty() ? 1.0 : interpolated(cos_theta_o, [&](int i) { return albedos_[i]; });
 }
 
 double LobeFit::norm(double cos_theta_o) const {
     return norms_.empty() ? std::sqrt(2 / (3 * std::numbers::pi))
-                          : interpolated(cos_theta_o, [&](int i) { return norms_[static_cast<std::size_t>(i)]; });
+                          : interpolated(cos_theta_o, [&](int i) { return norms_[i]; });
 }
 
 double LobeFit::residual(double cos_theta_o, int order) const {
@@ -127,9 +125,8 @@ double LobeFit::residual(double cos_theta_o, int order) const {
     if (residuals_.empty()) {
         return order == 1 ? 0.5 : 0.0;  // of cosθ the mean explains three quarters of the square
     }
-    return interpolated(cos_theta_o, [&](int node) {
-        return static_cast<double>(residuals_[static_cast<std::size_t>(node * kMaxOrder + order - 1)]);
-    });
+    return interpolated(cos_theta_o,
+                        [&](int node) { return static_cast<double>(residuals_[node * kMaxOrder + order - 1]); });
 }
 
 OrderChoice LobeFit::order_for(double cos_theta_o, double tolerance) const {
@@ -144,7 +141,7 @@ OrderChoice LobeFit::order_for(double cos_theta_o, double tolerance) const {
 std::shared_ptr<const LobeTable> LobeFit::table(int order) const {
     const auto* found = std::find(kOrderLadder.begin(), kOrderLadder.end(), order);
     if (found != kOrderLadder.end()) {
-        return ladder_[static_cast<std::size_t>(found - kOrderLadder.begin())];
+        return ladder_[found - kOrderLadder.begin()];
     }
     return std::make_shared<const LobeTable>(solve_table(order));
 }

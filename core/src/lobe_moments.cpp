@@ -25,7 +25,8 @@ struct Feature {
     double position, scale;
 };
 
-/// Gauss panels over (from, to), each no longer than kLongestPanel and than half its distance from a feature plus its scale.
+/// Gauss panels over (from, to), each no longer than kLongestPanel and than half its distance from a feature plus its
+/// scale.
 Rule graded_rule(double from, double to, const std::vector<Feature>& features) {
     Rule rule;
     const GaussRule& gauss = gauss_rule(kPanelPoints);
@@ -118,7 +119,7 @@ LobeMoments lobe_moments(const LobeShape& shape, double theta_o) {
         LegendreRows<double> legendre(std::cos(theta.nodes[i]), sine);
         for (int l = 0; l < kMaxOrder; ++l) {
             for (int m = 0; m <= l; ++m) {
-                result.moments[at(l, m)] += legendre[m] * fourier[static_cast<std::size_t>(m)];
+                result.moments[at(l, m)] += legendre[m] * fourier[m];
             }
             if (l + 1 < kMaxOrder) {
                 legendre.advance();

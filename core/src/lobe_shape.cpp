@@ -30,7 +30,9 @@ double fresnel_factor(const GgxShape& shape, double cosine) {
     return 0;
 }
 
-double value(const LambertShape&, const Vec3d& wi, const Vec3d&) { return wi.z / std::numbers::pi; }
+double value(const LambertShape&, const Vec3d& wi, const Vec3d&) {
+    return wi.z / std::numbers::pi;
+}
 
 /// With D = α² / (π ((α²-1) cos²θ_h + 1)²) and G₂ / (4 cosθ_i cosθ_o)
 /// = ½ / (cosθ_o √(α² + (1-α²) cos²θ_i) + cosθ_i √(α² + (1-α²) cos²θ_o)), finite at grazing angles.
@@ -45,8 +47,8 @@ double value(const GgxShape& shape, const Vec3d& wi, const Vec3d& wo) {
     // 1 - cos²θ_h as sin²θ_h: the peak of a narrow lobe hangs on it.
     const double bell = a2 * h.z * h.z + (h.x * h.x + h.y * h.y);
     const double density = a2 / (std::numbers::pi * bell * bell);
-    const double visibility = 0.5 / (wo.z * std::sqrt(a2 + (1 - a2) * wi.z * wi.z) +
-                                     wi.z * std::sqrt(a2 + (1 - a2) * wo.z * wo.z));
+    const double visibility =
+        0.5 / (wo.z * std::sqrt(a2 + (1 - a2) * wi.z * wi.z) + wi.z * std::sqrt(a2 + (1 - a2) * wo.z * wo.z));
     const double cosine = std::clamp(glm::dot(wi, h), 0.0, 1.0);
     return fresnel_factor(shape, cosine) * density * visibility * wi.z;
 }

@@ -14,8 +14,9 @@
 namespace shlight {
 namespace {
 
-/// Below this solid angle Ω the edges' contributions, each of order one, cancel to too few digits: their sum is wrong by
-/// about 2 ε / Ω of L_00. At the hand-over that is 5e-6 (float) and 1e-12 (double), and cubature is the faster one too.
+/// Below this solid angle Ω the edges' contributions, each of order one, cancel to too few digits: their sum is wrong
+/// by about 2 ε / Ω of L_00. At the hand-over that is 5e-6 (float) and 1e-12 (double), and cubature is the faster one
+/// too.
 template <class T>
 constexpr double kSmallestForBoundary = std::is_same_v<T, float> ? 0.06 : 1e-3;
 
@@ -76,7 +77,8 @@ void polygon_coefficients(std::span<const Vec3<T>> vertices, int vertex_count, i
     std::vector<Vec3<Wider<T>>> exact(k);
     for (std::size_t i = 0; i < count; ++i) {
         const auto polygon = vertices.subspan(i * k, k);
-        std::transform(polygon.begin(), polygon.end(), exact.begin(), [](const Vec3<T>& v) { return Vec3<Wider<T>>(v); });
+        std::transform(polygon.begin(), polygon.end(), exact.begin(),
+                       [](const Vec3<T>& v) { return Vec3<Wider<T>>(v); });
         check_polygon<T>(exact);
         integrate(SphericalPolygon<Wider<T>>(exact, clip), order, coefficients.data() + i * row, method);
     }

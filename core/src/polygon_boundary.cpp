@@ -22,12 +22,13 @@ struct BandTerms {
 template <class T>
 class EndPoint {
   public:
-    EndPoint(const Vec3<Wider<T>>& direction, int order) : legendre_(static_cast<T>(direction.z), static_cast<T>(std::hypot(direction.x, direction.y))) {
+    EndPoint(const Vec3<Wider<T>>& direction, int order)
+        : legendre_(static_cast<T>(direction.z), static_cast<T>(std::hypot(direction.x, direction.y))) {
         complex_powers(static_cast<T>(direction.x), static_cast<T>(direction.y), order, cos_.data(), sin_.data());
     }
     void advance() { legendre_.advance(); }
-    T cosine(int m) const { return legendre_[m] * cos_[static_cast<std::size_t>(m)]; }
-    T sine(int m) const { return legendre_[m] * sin_[static_cast<std::size_t>(m)]; }
+    T cosine(int m) const { return legendre_[m] * cos_[m]; }
+    T sine(int m) const { return legendre_[m] * sin_[m]; }
 
   private:
     LegendreRows<T> legendre_;
@@ -95,10 +96,9 @@ class ArcIntegrals {
         const int l = legendre_.band();
         std::array<T, kMaxOrder> null, sine_rise, cosine_fall;
         for (int m = 0; m <= l; ++m) {
-            const auto k = static_cast<std::size_t>(m);
-            null[k] = legendre_[m] * sin_powers_[k];
-            sine_rise[k] = to_.sine(m) - from_.sine(m);
-            cosine_fall[k] = from_.cosine(m) - to_.cosine(m);
+            null[m] = legendre_[m] * sin_powers_[m];
+            sine_rise[m] = to_.sine(m) - from_.sine(m);
+            cosine_fall[m] = from_.cosine(m) - to_.cosine(m);
         }
         const BandSystem<T> system(l, cos_tilt_, sin_tilt_, legendre_.row());
         system.solve(sine_rise.data(), terms_.cosine.data());
@@ -108,8 +108,8 @@ class ArcIntegrals {
     }
 
   private:
-    /// The sine part obeys two conditions more (Y_0 = 0 and the row m = 0) for its one free multiple of the null vector:
-    /// least squares of both, because either alone becomes singular for some pole.
+    /// The sine part obeys two conditions more (Y_0 = 0 and the row m = 0) for its one free multiple of the null
+    /// vector: least squares of both, because either alone becomes singular for some pole.
     void fix_sine_part(int l, T cosine_fall, const T* null) {
         const T ladder = LegendreConstants<T>::get().ladder[at(l, 0)];
         T* z = terms_.sine.data();
@@ -136,28 +136,27 @@ BandTerms<T> normal_derivative(int l, T cos_tilt, T sin_tilt, const BandTerms<T>
     const auto root = [](int product) { return std::sqrt(static_cast<T>(std::max(0, product))); };
     BandTerms<T> out;
     for (int m = 0; m <= l; ++m) {
-        const auto k = static_cast<std::size_t>(m);
         const T same = m < l ? cos_tilt * root(l * l - m * m) : T(0);
         const T up = m + 1 < l ? -sin_tilt / 2 * root((l - m) * (l - m - 1)) : T(0);
         const T down = sin_tilt / 2 * root((l + m) * (l + m - 1));
         T c = 0;
         T s = 0;
         if (m < l) {
-            c += same * below.cosine[k];
-            s += same * below.sine[k];
+            c += same * below.cosine[m];
+            s += same * below.sine[m];
         }
         if (m + 1 < l) {
-            c += up * below.cosine[k + 1];
-            s += up * below.sine[k + 1];
+            c += up * below.cosine[m + 1];
+            s += up * below.sine[m + 1];
         }
         if (m >= 1) {
-            c += down * below.cosine[k - 1];
-            s += down * below.sine[k - 1];
+            c += down * below.cosine[m - 1];
+            s += down * below.sine[m - 1];
         } else if (l > 1) {
             c -= down * below.cosine[1];  // Y^{-1} = -conj Y^1
         }
-        out.cosine[k] = g * c;
-        out.sine[k] = g * s;
+        out.cosine[m] = g * c;
+        out.sine[m] = g * s;
     }
     return out;
 }
@@ -177,9 +176,8 @@ void add_edge(const Edge<Wider<T>>& edge, int order, T* coefficients) {
         T* band = coefficients + coefficient_index(l, 0);
         band[0] += scale * e.cosine[0];
         for (int m = 1; m <= l; ++m) {
-            const auto k = static_cast<std::size_t>(m);
-            band[m] += pair * (e.cosine[k] * cos_m[k] - e.sine[k] * sin_m[k]);
-            band[-m] += pair * (e.cosine[k] * sin_m[k] + e.sine[k] * cos_m[k]);
+            band[m] += pair * (e.cosine[m] * cos_m[m] - e.sine[m] * sin_m[m]);
+            band[-m] += pair * (e.cosine[m] * sin_m[m] + e.sine[m] * cos_m[m]);
         }
         if (l + 1 < order) {
             arc.advance();

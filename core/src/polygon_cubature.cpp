@@ -11,7 +11,8 @@
 namespace shlight {
 namespace {
 
-/// Triangles longer than this are halved first: beyond it the density of the projection costs more points than it saves.
+/// Triangles longer than this are halved first: beyond it the density of the projection costs more points than it
+/// saves.
 constexpr double kLongestSide = 0.7;
 
 template <class Real>
@@ -53,7 +54,7 @@ Wider<T> add_small_triangle(const Triangle<Wider<T>>& t, Wider<T> side, int orde
             total += weight;
             sh_basis(Vec3<T>(p / length), order, basis.data());
             for (int k = 0; k < count; ++k) {
-                coefficients[k] += static_cast<T>(weight) * basis[static_cast<std::size_t>(k)];
+                coefficients[k] += static_cast<T>(weight) * basis[k];
             }
         }
     }
@@ -86,7 +87,8 @@ void polygon_by_cubature(const SphericalPolygon<Wider<T>>& polygon, int order, T
     for (std::size_t i = 1; i + 1 < v.size(); ++i) {
         total += add_triangle<T>(Triangle<Real>{v[0], v[i], v[i + 1]}, order, coefficients);
     }
-    // The area of a tiny or thin polygon drowns in the rounding of unit vectors; its solid angle was measured before that.
+    // The area of a tiny or thin polygon drowns in the rounding of unit vectors; its solid angle was measured before
+    // that.
     const auto correction = static_cast<T>(total > 0 ? polygon.solid_angle() / total : 0);
     std::for_each_n(coefficients, coefficient_count(order), [correction](T& c) { c *= correction; });
 }

@@ -62,7 +62,8 @@ Real triangle_solid_angle(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<R
 
 template <class Real>
 SphericalPolygon<Real>::SphericalPolygon(std::span<const Vec3<Real>> vertices, bool clip) {
-    std::vector<Vec3<Real>> v = clip ? clipped_by_horizon(vertices) : std::vector<Vec3<Real>>(vertices.begin(), vertices.end());
+    std::vector<Vec3<Real>> v =
+        clip ? clipped_by_horizon(vertices) : std::vector<Vec3<Real>>(vertices.begin(), vertices.end());
     if (v.size() < 3) {
         return;
     }

@@ -8,7 +8,9 @@
 
 namespace shlight {
 
-double view_angle(int node) { return std::numbers::pi / 2 * node / (kViewNodes - 1); }
+double view_angle(int node) {
+    return std::numbers::pi / 2 * node / (kViewNodes - 1);
+}
 
 ViewStencil::ViewStencil(float cos_theta_o) {
     const float theta = std::acos(std::clamp(cos_theta_o, 0.0F, 1.0F));
@@ -18,9 +20,8 @@ ViewStencil::ViewStencil(float cos_theta_o) {
     even = {-(t - 1) * (t - 2) * (t - 3) / 6, t * (t - 2) * (t - 3) / 2, -t * (t - 1) * (t - 3) / 2,
             t * (t - 1) * (t - 2) / 6};
     for (int i = 0; i < 4; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        nodes[k] = static_cast<std::size_t>(std::abs(first + i));
-        odd[k] = first + i < 0 ? -even[k] : even[k];
+        nodes[i] = static_cast<std::size_t>(std::abs(first + i));
+        odd[i] = first + i < 0 ? -even[i] : even[i];
     }
 }
 

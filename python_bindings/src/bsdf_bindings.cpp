@@ -126,9 +126,12 @@ Array<double> evaluate(const Bsdf& bsdf, const AnyArray<double>& wi, const AnyAr
     return out;
 }
 
-Bsdf scaled(const Bsdf& bsdf, const AnyArray<float>& factor) { return bsdf.scaled(color("factor", factor)); }
+Bsdf scaled(const Bsdf& bsdf, const AnyArray<float>& factor) {
+    return bsdf.scaled(color("factor", factor));
+}
 
-constexpr const char* kDoc = R"(A material: a sum of coloured lobes f·cos in the shading frame (z is the surface normal).
+constexpr const char* kDoc =
+    R"(A material: a sum of coloured lobes f·cos in the shading frame (z is the surface normal).
 
 Bsdfs can be added and multiplied by a number or an RGB colour. They are immutable.)";
 
@@ -158,8 +161,9 @@ Raises ValueError naming the argument.)")
              R"(Coefficients of f·cos for ω_o = (sinθ_o, 0, cosθ_o): shape (..., order²), float32, or (..., 3, order²)
 if the material has colour. They fit the upper hemisphere only: use them with light clipped at the horizon.
 Raises ValueError for cos_theta_o outside [0, 1] or an order outside 1 … 64.)")
-        .def("residual", &residual, py::arg("cos_theta_o"), py::arg("order"),
-             R"(Relative L2 error of that fit over the upper hemisphere, shape (...). For a sum of lobes an upper bound.)")
+        .def(
+            "residual", &residual, py::arg("cos_theta_o"), py::arg("order"),
+            R"(Relative L2 error of that fit over the upper hemisphere, shape (...). For a sum of lobes an upper bound.)")
         .def("evaluate", &evaluate, py::arg("wi"), py::arg("wo"),
              R"(f·cos for directions (..., 3) in the shading frame, which broadcast against each other:
 shape (...), or (..., 3) if the material has colour. Zero where either direction lies below the horizon.)")

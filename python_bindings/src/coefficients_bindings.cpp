@@ -59,7 +59,8 @@ Array<T> evaluated(const Array<T>& coefficients, const Array<T>& directions, int
     Array<T> out(static_cast<py::ssize_t>(d.size()));
     T* data = out.mutable_data();
     in_chunks(d.size(), threads, [&](std::size_t first, std::size_t count) {
-        evaluate(slice(c.data(), order, first, count), d.subspan(first, count), order, std::span<T>(data + first, count));
+        evaluate(slice(c.data(), order, first, count), d.subspan(first, count), order,
+                 std::span<T>(data + first, count));
     });
     return out;
 }

@@ -18,8 +18,8 @@ struct Cap {
     T cos_tilt, sin_tilt;        ///< angle between the cap's axis and z
     T cos_azimuth, sin_azimuth;  ///< the axis' azimuth about z
     T cos_half, sin_half;        ///< half angle σ, 0 < σ ≤ π/2
-    T crossing;                  ///< √(sin²σ - cos²θ), the half chord of the horizon; 0 where cap and horizon do not cross
-    bool complement;             ///< the region is everything *outside* this cap (half angles above π/2)
+    T crossing;       ///< √(sin²σ - cos²θ), the half chord of the horizon; 0 where cap and horizon do not cross
+    bool complement;  ///< the region is everything *outside* this cap (half angles above π/2)
 
     /// The cap of a sphere; precondition 0 < radius ≤ |center|, all finite.
     static Cap of_sphere(const Vec3<T>& center, T radius);

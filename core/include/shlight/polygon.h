@@ -2,8 +2,8 @@
 //
 // Planar polygons seen from the shading point, clipped by the horizon z ≥ 0.
 //
-// Large ones by Stokes' theorem and recurrences in the degree, O(order²) per edge; small or thin ones, whose edges would
-// cancel, by Gauss cubature; docs/algorithms.md derives both and says where one hands over to the other.
+// Large ones by Stokes' theorem and recurrences in the degree, O(order²) per edge; small or thin ones, whose edges
+// would cancel, by Gauss cubature; docs/algorithms.md derives both and says where one hands over to the other.
 #pragma once
 
 #include <span>
@@ -25,8 +25,8 @@ void polygon_coefficients(std::span<const Vec3<T>> vertices, int order, bool cli
 
 /// Many polygons with the same number of vertices.
 /// vertices: count × vertex_count; coefficients: count × order², row by row.
-/// Throws std::invalid_argument naming the argument: order outside 1 … 64, fewer than 3 vertices, sizes that do not fit,
-/// a non-finite number, vertices that are not planar.
+/// Throws std::invalid_argument naming the argument: order outside 1 … 64, fewer than 3 vertices, sizes that do not
+/// fit, a non-finite number, vertices that are not planar.
 template <class T>
 void polygon_coefficients(std::span<const Vec3<T>> vertices, int vertex_count, int order, bool clip,
                           std::span<T> coefficients, PolygonMethod method = PolygonMethod::automatic);

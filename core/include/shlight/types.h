@@ -26,16 +26,24 @@ using Rgb = glm::vec<3, float, glm::defaultp>;
 inline constexpr int kMaxOrder = 64;
 
 /// Number of coefficients of an order.
-constexpr int coefficient_count(int order) { return order * order; }
+constexpr int coefficient_count(int order) {
+    return order * order;
+}
 
 /// Where band l, degree m (-l ≤ m ≤ l) is stored.
-constexpr int coefficient_index(int l, int m) { return l * l + l + m; }
+constexpr int coefficient_index(int l, int m) {
+    return l * l + l + m;
+}
 
 /// Number of cosine terms (m ≥ 0) of an order: all that a light or a lobe with the mirror plane y = 0 has.
-constexpr int cosine_count(int order) { return order * (order + 1) / 2; }
+constexpr int cosine_count(int order) {
+    return order * (order + 1) / 2;
+}
 
 /// Where band l, degree m ≥ 0 is stored in a list of cosine terms.
-constexpr int cosine_index(int l, int m) { return l * (l + 1) / 2 + m; }
+constexpr int cosine_index(int l, int m) {
+    return l * (l + 1) / 2 + m;
+}
 
 /// Throws std::invalid_argument naming `order` unless 1 ≤ order ≤ kMaxOrder.
 void check_order(int order);
