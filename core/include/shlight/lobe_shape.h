@@ -28,7 +28,8 @@ struct GgxShape {
     double alpha;                    ///< roughness² in Blender's terms, 0 < alpha ≤ 1
     Fresnel fresnel = Fresnel::one;  ///< which factor is folded in
     double ior = 1.5;                ///< used by Fresnel::dielectric only
-    auto operator<=>(const GgxShape&) const = default;  // NOLINT(modernize-use-nullptr): the linter misreads <=>
+    // NOLINTNEXTLINE(modernize-use-nullptr): the linter misreads <=>
+    auto operator<=>(const GgxShape&) const = default;
 };
 
 using LobeShape = std::variant<LambertShape, GgxShape>;
