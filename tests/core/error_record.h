@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -37,10 +38,11 @@ class ErrorRecord {
     }
     /// Prints one line and keeps it in the test's XML report.
     void publish(const std::string& name) const {
-        char text[120];
-        std::snprintf(text, sizeof text, "%5zu inputs, median %.1e, largest %.1e", errors_.size(), median(), largest());
-        std::printf("%-44s %s\n", name.c_str(), text);
-        ::testing::Test::RecordProperty(name, text);
+        std::array<char, 120> text{};
+        std::snprintf(text.data(), text.size(), "%5zu inputs, median %.1e, largest %.1e", errors_.size(), median(),
+                      largest());
+        std::printf("%-44s %s\n", name.c_str(), text.data());
+        ::testing::Test::RecordProperty(name, text.data());
     }
 
   private:

@@ -40,7 +40,7 @@ class RandomInput {
 
 /// The nearest float. Through memory, because GCC 12 takes double → float → double for nothing when it vectorizes it.
 inline double as_float(double x) {
-    volatile float rounded = static_cast<float>(x);
+    volatile auto rounded = static_cast<float>(x);
     return rounded;
 }
 inline Vec3d as_float(const Vec3d& v) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -34,7 +35,7 @@ TEST(Basis, FirstBandsAreTheKnownPolynomials) {
     const double pi = std::numbers::pi;
     for (int i = 0; i < 200; ++i) {
         const Vec3d d = random.direction();
-        const double expected[9] = {
+        const std::array<double, 9> expected = {
             std::sqrt(1 / (4 * pi)),
             std::sqrt(3 / (4 * pi)) * d.y,
             std::sqrt(3 / (4 * pi)) * d.z,
@@ -46,7 +47,7 @@ TEST(Basis, FirstBandsAreTheKnownPolynomials) {
             std::sqrt(15 / (16 * pi)) * (d.x * d.x - d.y * d.y),
         };
         const std::vector<double> computed = basis_in<double>(d, 3);
-        for (int k = 0; k < 9; ++k) {
+        for (std::size_t k = 0; k < 9; ++k) {
             EXPECT_NEAR(computed[k], expected[k], 1e-15) << "coefficient " << k;
         }
     }

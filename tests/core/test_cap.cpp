@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -100,13 +101,15 @@ Light near_overhead(RandomInput& random) {
 /// The sphere's surface passes through the shading point, or all but; the directions have rational lengths.
 /// Straight below, such a sphere is hidden: see test_cap_limits.cpp.
 Light contact(RandomInput& random) {
-    constexpr int kTriples[6][4] = {{2, 3, 6, 7}, {1, 4, 8, 9}, {4, 4, 7, 9},
-                                    {0, 3, 4, 5}, {0, 0, 1, 1}, {2, 6, 9, 11}};
-    const int* triple = kTriples[random.integer(0, 5)];
+    constexpr auto kTriples = std::to_array<std::array<double, 4>>(
+        {{2, 3, 6, 7}, {1, 4, 8, 9}, {4, 4, 7, 9}, {0, 3, 4, 5}, {0, 0, 1, 1}, {2, 6, 9, 11}});
+    const std::array<double, 4>& triple = kTriples[static_cast<std::size_t>(random.integer(0, 5))];
     const int shift = random.integer(0, 2);
-    const auto part = [&](int i) { return std::copysign(triple[(i + shift) % 3], random.uniform(-1, 1)); };
+    Vec3d center;
+    for (int i = 0; i < 3; ++i) {
+        center[i] = std::copysign(triple[static_cast<std::size_t>((i + shift) % 3)], random.uniform(-1, 1));
+    }
     const double near = random.chance(0.5) ? 1 : 1 - random.log_uniform(1e-7, 1e-2);
-    Vec3d center{part(0), part(1), part(2)};
     if (center.x == 0 && center.y == 0) {
         center.z = std::abs(center.z);
     }
@@ -138,7 +141,7 @@ template <class T>
 std::vector<T> coefficients(const CapInput& input, int order, bool clip) {
     std::vector<T> result(coefficient_count(order), std::numeric_limits<T>::quiet_NaN());
     const Vec3<T> axis(input.axis);
-    const T size = static_cast<T>(input.size);
+    const auto size = static_cast<T>(input.size);
     if (input.kind == Kind::sphere) {
         sphere_coefficients<T>(std::span(&axis, 1), std::span(&size, 1), order, clip, result);
     } else if (input.kind == Kind::angle) {
@@ -159,7 +162,7 @@ struct Class {
     int share;    ///< of the sample, in hundredths
 };
 
-constexpr Class kClasses[] = {
+constexpr auto kClasses = std::to_array<Class>({
     {"clipped", clipped, Relative::to_own, Relative::to_own, 1e-12, false, 30},
     {"barely clipped", barely_clipped, Relative::to_own, Relative::to_own, 1e-12, false, 8},
     {"sliver", sliver, Relative::to_own, Relative::to_whole, 2e-11, true, 12},
@@ -171,7 +174,7 @@ constexpr Class kClasses[] = {
     {"contact", contact, Relative::to_own, Relative::to_own, 1e-12, false, 6},
     {"wider than a hemisphere", wide, Relative::to_own, Relative::to_own, 1e-12, false, 6},
     {"unclipped", unclipped, Relative::to_own, Relative::to_own, 1e-12, false, 6},
-};
+});
 
 double bound32(int order, bool sliver) {
     if (sliver || order <= 16) {
@@ -189,11 +192,11 @@ double relative_error(const Light& light, const truth::Coefficients& reference, 
 }
 
 std::string describe(const Light& light) {
-    char text[200];
-    std::snprintf(text, sizeof text, "axis %.17g %.17g %.17g, size %.17g, kind %d, clip %d", light.input.axis.x,
+    std::array<char, 200> text{};
+    std::snprintf(text.data(), text.size(), "axis %.17g %.17g %.17g, size %.17g, kind %d, clip %d", light.input.axis.x,
                   light.input.axis.y, light.input.axis.z, light.input.size, static_cast<int>(light.input.kind),
                   static_cast<int>(light.clip));
-    return text;
+    return text.data();
 }
 
 /// `count` lights of one class at every order of `orders`, the last of which is the highest.

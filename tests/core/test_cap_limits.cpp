@@ -131,14 +131,14 @@ TYPED_TEST(CapLimits, EverythingIsFinite) {
             continue;
         }
         const Vec3<T> center(distance * direction);
-        const T length = static_cast<T>(glm::length(Vec3d(center)));
+        const auto length = static_cast<T>(glm::length(Vec3d(center)));
         const double share = i % 4 == 0 ? std::abs(direction.z) / glm::length(direction) : random.log_uniform(1e-30, 1);
         const T radius = std::min(static_cast<T>(share) * length, std::nextafter(length, T(0)));
         if (radius > 0) {
             EXPECT_TRUE(all_finite(sphere<T>(center, radius, 33, i % 5 != 0)))
                 << center.x << ' ' << center.y << ' ' << center.z << " radius " << radius;
         }
-        const T half_angle = static_cast<T>(random.log_uniform(1e-30, kPi));
+        const auto half_angle = static_cast<T>(random.log_uniform(1e-30, kPi));
         EXPECT_TRUE(all_finite(cap<T>(center, half_angle, 33, i % 5 != 0)))
             << center.x << ' ' << center.y << ' ' << center.z << " half angle " << half_angle;
     }
@@ -162,7 +162,7 @@ TYPED_TEST(CapLimits, ManyLightsGiveTheSameAsEachAlone) {
         radii.push_back(static_cast<T>(random.log_uniform(1e-4, 0.99)));
     }
     for (const int order : {1, 2, 3, 8, 13}) {
-        const std::size_t count = static_cast<std::size_t>(coefficient_count(order));
+        const auto count = static_cast<std::size_t>(coefficient_count(order));
         std::vector<T> together(centers.size() * count);
         sphere_coefficients<T>(centers, radii, order, true, together);
         for (std::size_t i = 0; i < centers.size(); ++i) {

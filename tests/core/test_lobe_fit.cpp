@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -116,17 +117,20 @@ TEST(LobeFit, ResidualIsTheMeasuredError) {
 TEST(LobeFit, ConvergesAsExpected) {
     struct Row {
         double alpha, cos_theta_o;
-        double errors[4];  // orders 2, 4, 8, 16
+        std::array<double, 4> errors;  // orders 2, 4, 8, 16
     };
-    constexpr int kOrders[4] = {2, 4, 8, 16};
-    constexpr Row kRows[] = {
-        {0.6, 0.95, {0.13, 0.009, 1.5e-4, 5e-5}}, {0.6, 0.5, {0.32, 0.10, 0.014, 4e-4}},
-        {0.3, 0.95, {0.51, 0.18, 0.016, 2e-4}},   {0.3, 0.5, {0.74, 0.46, 0.18, 0.025}},
-        {0.3, 0.2, {0.81, 0.63, 0.40, 0.17}},     {0.1, 0.95, {0.91, 0.74, 0.42, 0.12}},
-    };
+    constexpr std::array kOrders = {2, 4, 8, 16};
+    constexpr auto kRows = std::to_array<Row>({
+        {0.6, 0.95, {0.13, 0.009, 1.5e-4, 5e-5}},
+        {0.6, 0.5, {0.32, 0.10, 0.014, 4e-4}},
+        {0.3, 0.95, {0.51, 0.18, 0.016, 2e-4}},
+        {0.3, 0.5, {0.74, 0.46, 0.18, 0.025}},
+        {0.3, 0.2, {0.81, 0.63, 0.40, 0.17}},
+        {0.1, 0.95, {0.91, 0.74, 0.42, 0.12}},
+    });
     for (const Row& row : kRows) {
         const LobeFit fit{GgxShape{row.alpha}};
-        for (int k = 0; k < 4; ++k) {
+        for (std::size_t k = 0; k < kOrders.size(); ++k) {
             EXPECT_LE(fit.residual(row.cos_theta_o, kOrders[k]), 1.15 * row.errors[k])
                 << "alpha " << row.alpha << ", cosθ_o " << row.cos_theta_o << ", order " << kOrders[k];
         }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -17,7 +18,7 @@ namespace {
 using testing::RandomInput;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kAlphas[] = {0.01, 0.1, 0.3, 0.6, 1.0};
+constexpr std::array kAlphas = {0.01, 0.1, 0.3, 0.6, 1.0};
 
 double distribution(double alpha, double theta) {
     const double tan2 = std::pow(std::tan(theta), 2);
@@ -58,7 +59,8 @@ Vec3d upper(RandomInput& random) {
 TEST(LobeShape, GgxIsTheTextbooks) {
     RandomInput random(50);
     for (int i = 0; i < 3000; ++i) {
-        const GgxShape shape{kAlphas[i % 5], static_cast<Fresnel>(i % 3), random.uniform(1.05, 2.5)};
+        const GgxShape shape{kAlphas[static_cast<std::size_t>(i % 5)], static_cast<Fresnel>(i % 3),
+                             random.uniform(1.05, 2.5)};
         const Vec3d wi = upper(random);
         const Vec3d wo = upper(random);
         const double expected = textbook(shape, wi, wo);
@@ -71,7 +73,7 @@ TEST(LobeShape, GgxIsTheTextbooks) {
 TEST(LobeShape, GgxIsReciprocal) {
     RandomInput random(51);
     for (int i = 0; i < 1000; ++i) {
-        const GgxShape shape{kAlphas[i % 5], static_cast<Fresnel>(i % 3), 1.5};
+        const GgxShape shape{kAlphas[static_cast<std::size_t>(i % 5)], static_cast<Fresnel>(i % 3), 1.5};
         const Vec3d wi = upper(random);
         const Vec3d wo = upper(random);
         const double forward = lobe_value(shape, wi, wo) / wi.z;

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdio>
 #include <limits>
 #include <string>
@@ -42,9 +43,9 @@ Vertices rounded_to_float(Vertices vertices) {
 std::string describe(const Vertices& vertices, bool clip) {
     std::string text = clip ? "clipped" : "unclipped";
     for (const Vec3d& v : vertices) {
-        char vertex[100];
-        std::snprintf(vertex, sizeof vertex, " {%.17g, %.17g, %.17g}", v.x, v.y, v.z);
-        text += vertex;
+        std::array<char, 100> vertex{};
+        std::snprintf(vertex.data(), vertex.size(), " {%.17g, %.17g, %.17g}", v.x, v.y, v.z);
+        text += vertex.data();
     }
     return text;
 }
@@ -61,7 +62,7 @@ struct Class {
     Vertices (*draw)(RandomInput&);
 };
 
-constexpr Class kClasses[] = {
+constexpr auto kClasses = std::to_array<Class>({
     {"plain", testing::plain},
     {"concave", testing::concave},
     {"small", testing::small},
@@ -72,7 +73,7 @@ constexpr Class kClasses[] = {
     {"nearly edge-on", testing::nearly_edge_on},
     {"edge on the horizon", testing::on_horizon},
     {"deep", testing::deep},
-};
+});
 
 /// One in four is not clipped; half are wound the other way.
 void compare_class(const Class& kind, std::size_t count, const std::vector<int>& orders, std::uint64_t seed) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -184,11 +185,12 @@ TYPED_TEST(PolygonLimits, HugeCeilingIsTheHemisphere) {
 TYPED_TEST(PolygonLimits, EverythingIsFinite) {
     using T = TypeParam;
     RandomInput random(44);
-    Vertices (*const kinds[])(RandomInput&) = {testing::plain,        testing::concave, testing::tiny,
-                                               testing::near_contact, testing::thin,    testing::nearly_edge_on,
-                                               testing::on_horizon,   testing::deep};
+    using Draw = Vertices (*)(RandomInput&);
+    const std::array<Draw, 8> kinds = {testing::plain,        testing::concave, testing::tiny,
+                                       testing::near_contact, testing::thin,    testing::nearly_edge_on,
+                                       testing::on_horizon,   testing::deep};
     for (int i = 0; i < 2000; ++i) {
-        Vertices vertices = kinds[i % 8](random);
+        Vertices vertices = kinds[static_cast<std::size_t>(i % 8)](random);
         for (Vec3d& vertex : vertices) {
             for (int k = 0; k < 3; ++k) {
                 vertex[k] = vertices.size() == 3 && random.chance(0.1) ? 0 : vertex[k];
