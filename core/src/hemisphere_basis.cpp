@@ -77,13 +77,6 @@ HemisphereBasis::HemisphereBasis() : rows_(gram_matrices()) {
             a[triangle(row, row)] += kLambda;
         }
         cholesky(a, size);
-        std::vector<double>& columns = columns_[m];
-        columns.assign(static_cast<std::size_t>(size) * size, 0.0);
-        for (int row = 0; row < size; ++row) {
-            for (int column = 0; column <= row; ++column) {
-                columns[column * size + row] = a[triangle(row, column)];
-            }
-        }
     }
 }
 
@@ -109,17 +102,19 @@ void HemisphereBasis::reduce(std::span<double> moments) const {
 }
 
 void HemisphereBasis::solve(std::span<const double> reduced, int order, std::span<double> coefficients) const {
-    std::array<double, kMaxOrder> f;
+    // Each unknown is taken out of all equations above it as soon as it is known: along rows of the factor.
+    std::array<double, kMaxOrder> rest;
     for (int m = 0; m < order; ++m) {
-        const int size = kMaxOrder - m;
+        for (int i = 0; i < order - m; ++i) {
+            rest[i] = reduced[at(m + i, m)];
+        }
         for (int i = order - m - 1; i >= 0; --i) {
-            const double* column = &columns_[m][i * size];
-            double sum = reduced[at(m + i, m)];
-            for (int k = i + 1; k < order - m; ++k) {
-                sum -= column[k] * f[k];
+            const double* row = &rows_[m][triangle(i, 0)];
+            const double f = rest[i] / row[i];
+            coefficients[at(m + i, m)] = f;
+            for (int k = 0; k < i; ++k) {
+                rest[k] -= row[k] * f;
             }
-            f[i] = sum / column[i];
-            coefficients[at(m + i, m)] = f[i];
         }
     }
 }

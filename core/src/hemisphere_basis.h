@@ -30,9 +30,7 @@ class HemisphereBasis {
   private:
     HemisphereBasis();
 
-    // Per m the Cholesky factor twice, so that both substitutions run along memory.
-    std::array<std::vector<double>, kMaxOrder> rows_;     // lower triangle, row by row
-    std::array<std::vector<double>, kMaxOrder> columns_;  // square, column by column
+    std::array<std::vector<double>, kMaxOrder> rows_;  // per m the lower triangle of L, row by row
 };
 
 }  // namespace shlight

@@ -60,36 +60,36 @@ double width(const LobeShape& shape) {
     return ggx != nullptr ? ggx->alpha : 1.0;
 }
 
+/// Azimuths 0 … π counted from the mirror direction of ω_o = (sinθ_o, 0, cosθ_o), which lies at φ = π.
+struct Azimuths {
+    std::vector<double> weights;
+    std::vector<double> cosines, sines;  ///< cos mφ and sin mφ for m = 0 … 63, node by node
+
+    explicit Azimuths(Rule rule)
+        : weights(std::move(rule.weights)), cosines(weights.size() * kMaxOrder), sines(cosines.size()) {
+        for (std::size_t j = 0; j < weights.size(); ++j) {
+            complex_powers(-std::cos(rule.nodes[j]), std::sin(rule.nodes[j]), kMaxOrder, &cosines[j * kMaxOrder],
+                           &sines[j * kMaxOrder]);
+        }
+    }
+};
+
 /// The lobe's Fourier moments over the azimuth at one θ: out[m] = ∫ f·cos cos mφ dφ; returns ∫ (f·cos)² dφ.
-double azimuth_moments(const LobeShape& shape, double theta, const Vec3d& wo, const Rule& phi,
-                       const std::vector<double>& cos_m_phi, std::vector<double>& out) {
+double azimuth_moments(const LobeShape& shape, double sine, double cosine, const Vec3d& wo, const Azimuths& phi,
+                       std::vector<double>& out) {
     std::fill(out.begin(), out.end(), 0.0);
-    const double sine = std::sin(theta);
-    const double cosine = std::cos(theta);
     double square = 0;
-    for (std::size_t j = 0; j < phi.nodes.size(); ++j) {
-        // The mirror direction of ω_o = (sinθ_o, 0, cosθ_o) has φ = π: angles count from there.
-        const Vec3d wi(-sine * std::cos(phi.nodes[j]), sine * std::sin(phi.nodes[j]), cosine);
+    for (std::size_t j = 0; j < phi.weights.size(); ++j) {
+        const double* c = &phi.cosines[j * kMaxOrder];
+        const Vec3d wi(sine * c[1], sine * phi.sines[j * kMaxOrder + 1], cosine);
         const double f = lobe_value(shape, wi, wo);
         const double weighted = 2 * f * phi.weights[j];
         square += f * weighted;
-        const double* c = &cos_m_phi[j * kMaxOrder];
         for (std::size_t m = 0; m < kMaxOrder; ++m) {
             out[m] += weighted * c[m];
         }
     }
     return square;
-}
-
-std::vector<double> cosines(const Rule& phi) {
-    std::vector<double> values(phi.nodes.size() * kMaxOrder);
-    std::vector<double> unused(kMaxOrder);
-    for (std::size_t j = 0; j < phi.nodes.size(); ++j) {
-        // cos m(π - φ') = (-1)^m cos mφ': the sign is folded in here.
-        complex_powers(-std::cos(phi.nodes[j]), std::sin(phi.nodes[j]), kMaxOrder, &values[j * kMaxOrder],
-                       unused.data());
-    }
-    return values;
 }
 
 }  // namespace
@@ -101,22 +101,22 @@ LobeMoments lobe_moments(const LobeShape& shape, double theta_o) {
     // The lobe is α wide in the plane of incidence and α cosθ_o across; masking varies over α near the horizon.
     const Rule theta = graded_rule(0, half_pi, {{theta_o, alpha}, {half_pi, alpha}});
     const double across = alpha * std::max(wo.z, 0.05);
-    const Rule phi = graded_rule(0, std::numbers::pi, {{0.0, across / std::max(wo.x, across)}});
-    const std::vector<double> cos_m_phi = cosines(phi);
+    const Azimuths phi(graded_rule(0, std::numbers::pi, {{0.0, across / std::max(wo.x, across)}}));
 
     LobeMoments result{std::vector<double>(kCosineMax, 0.0), 0.0, 0.0};
     std::vector<double> fourier(kMaxOrder);
     std::vector<double> sines(kMaxOrder);
     for (std::size_t i = 0; i < theta.nodes.size(); ++i) {
         const double sine = std::sin(theta.nodes[i]);
+        const double cosine = std::cos(theta.nodes[i]);
         const double weight = theta.weights[i] * sine;
-        result.norm_squared += weight * azimuth_moments(shape, theta.nodes[i], wo, phi, cos_m_phi, fourier);
+        result.norm_squared += weight * azimuth_moments(shape, sine, cosine, wo, phi, fourier);
         result.albedo += weight * fourier[0];
         powers(sine, kMaxOrder, sines.data());
         for (std::size_t m = 0; m < kMaxOrder; ++m) {
             fourier[m] *= weight * sines[m] * (m == 0 ? 1.0 : std::numbers::sqrt2);
         }
-        LegendreRows<double> legendre(std::cos(theta.nodes[i]), sine);
+        LegendreRows<double> legendre(cosine, sine);
         for (int l = 0; l < kMaxOrder; ++l) {
             for (int m = 0; m <= l; ++m) {
                 result.moments[at(l, m)] += legendre[m] * fourier[m];

@@ -20,8 +20,10 @@ double fresnel_factor(const GgxShape& shape, double cosine) {
     switch (shape.fresnel) {
         case Fresnel::one:
             return 1;
-        case Fresnel::schlick:
-            return std::pow(1 - cosine, 5);
+        case Fresnel::schlick: {
+            const double edge = 1 - cosine;
+            return edge * edge * edge * edge * edge;
+        }
         case Fresnel::dielectric: {
             const double head_on = fresnel_dielectric(1, shape.ior);
             return (fresnel_dielectric(cosine, shape.ior) - head_on) / (1 - head_on);
