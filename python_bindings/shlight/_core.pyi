@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,3 +27,80 @@ class Bsdf:
     def __add__(self, other: Bsdf) -> Bsdf: ...
     def __mul__(self, factor: ArrayLike) -> Bsdf: ...
     def __rmul__(self, factor: ArrayLike) -> Bsdf: ...
+
+class RenderCancelled(RuntimeError): ...
+
+class RenderReport:
+    @property
+    def order_shares(self) -> dict[int, float]: ...
+    @property
+    def over_tolerance(self) -> float: ...
+    @property
+    def hits(self) -> int: ...
+    @property
+    def shadow_rays(self) -> int: ...
+    @property
+    def build_seconds(self) -> float: ...
+    @property
+    def render_seconds(self) -> float: ...
+
+class Scene:
+    def __init__(self) -> None: ...
+    def add_mesh(
+        self,
+        vertices: ArrayLike,
+        triangles: ArrayLike,
+        *,
+        normals: ArrayLike | None = None,
+        uvs: ArrayLike | None = None,
+        bsdf: Bsdf | Sequence[Bsdf] | None = None,
+        emission: ArrayLike | None = None,
+        material_indices: ArrayLike | None = None,
+        transforms: ArrayLike | None = None,
+    ) -> None: ...
+    def add_sphere_light(
+        self, center: ArrayLike, radius: float, radiance: ArrayLike, *, facing_disk: bool = False
+    ) -> None: ...
+    def add_polygon_light(self, vertices: ArrayLike, radiance: ArrayLike) -> None: ...
+    def set_camera(self, to_world: ArrayLike, fov_x: float) -> None: ...
+    def set_camera_window(
+        self,
+        to_world: ArrayLike,
+        left: float,
+        right: float,
+        bottom: float,
+        top: float,
+        *,
+        orthographic: bool = False,
+        clip_start: float = 0.0,
+        clip_end: float = ...,
+    ) -> None: ...
+
+@overload
+def render(
+    scene: Scene,
+    width: int,
+    height: int,
+    *,
+    order: Literal["auto"] | int = "auto",
+    tolerance: float = 1e-3,
+    pixel_samples: int = 16,
+    shadow_rays: int = 16,
+    threads: int = 0,
+    progress: Callable[[float], object] | None = None,
+    return_report: Literal[False] = False,
+) -> NDArray[np.float32]: ...
+@overload
+def render(
+    scene: Scene,
+    width: int,
+    height: int,
+    *,
+    order: Literal["auto"] | int = "auto",
+    tolerance: float = 1e-3,
+    pixel_samples: int = 16,
+    shadow_rays: int = 16,
+    threads: int = 0,
+    progress: Callable[[float], object] | None = None,
+    return_report: Literal[True],
+) -> tuple[NDArray[np.float32], RenderReport]: ...
