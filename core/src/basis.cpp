@@ -34,7 +34,7 @@ void sh_basis(const Vec3<T>& direction, int order, T* basis) {
         cos_part[m] *= std::numbers::sqrt2_v<T>;
         sin_part[m] *= std::numbers::sqrt2_v<T>;
     }
-    LegendreRows<T> legendre(direction.z, std::hypot(direction.x, direction.y));
+    LegendreRows<T> legendre(direction.z, direction.x * direction.x + direction.y * direction.y);
     for (int l = 0;; legendre.advance()) {
         T* band = basis + coefficient_index(l, 0);
         band[0] = legendre[0];

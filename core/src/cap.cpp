@@ -111,7 +111,7 @@ void whole_cap(const Cap<T>& cap, int order, T* coefficients) {
     std::array<T, kMaxOrder> cos_m;
     std::array<T, kMaxOrder> sin_m;
     complex_powers(cap.sin_tilt * cap.cos_azimuth, cap.sin_tilt * cap.sin_azimuth, order, cos_m.data(), sin_m.data());
-    LegendreRows<T> legendre(cap.cos_tilt, cap.sin_tilt);
+    LegendreRows<T> legendre(cap.cos_tilt, cap.sin_tilt * cap.sin_tilt);
     ZonalIntegrals<T> zonal(cap.cos_half, cap.sin_half);
     coefficients[0] = zonal.band_zero() * legendre[0];
     std::array<T, kMaxOrder> band;
@@ -201,7 +201,7 @@ void clipped_cap(const Cap<T>& cap, int order, T* coefficients) {
     std::array<T, kMaxOrder> cos_m, sin_m, sin_tilt_powers;
     complex_powers(cap.cos_azimuth, cap.sin_azimuth, order, cos_m.data(), sin_m.data());
     powers(cap.sin_tilt, order, sin_tilt_powers.data());
-    LegendreRows<T> legendre(cap.cos_tilt, cap.sin_tilt);
+    LegendreRows<T> legendre(cap.cos_tilt, cap.sin_tilt * cap.sin_tilt);
     ZonalIntegrals<T> zonal(cap.cos_half, cap.sin_half);
     coefficients[0] = arc.solid_angle * legendre[0];
     std::array<T, kMaxOrder> right, band, null;

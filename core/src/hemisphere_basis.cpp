@@ -30,9 +30,9 @@ std::array<std::vector<double>, kMaxOrder> gram_matrices() {
     std::array<double, kMaxOrder> sines;
     for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
         const double z = rule.nodes[i];
-        const double sine = std::sqrt((1 - z) * (1 + z));
-        powers(sine, kMaxOrder, sines.data());
-        LegendreRows<double> legendre(z, sine);
+        const double sine_squared = (1 - z) * (1 + z);
+        powers(std::sqrt(sine_squared), kMaxOrder, sines.data());
+        LegendreRows<double> legendre(z, sine_squared);
         for (int l = 0; l < kMaxOrder; ++l) {
             for (int m = 0; m <= l; ++m) {
                 values[at(l, m)] = legendre[m] * sines[m];

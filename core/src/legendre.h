@@ -45,10 +45,10 @@ extern template struct LegendreConstants<double>;
 template <class T>
 class LegendreRows {
   public:
-    LegendreRows(T z, T sine) : z_(z), near_pole_(sine < T(0.125)) {
+    LegendreRows(T z, T sine_squared) : z_(z), near_pole_(sine_squared < T(0.0156)) {
         row_[0] = constants_.diagonal[0];
         if (near_pole_) {
-            distance_ = sine * sine / (1 + std::abs(z));
+            distance_ = sine_squared / (1 + std::abs(z));
             state_[0] = 1;
             other_[0] = 0;
         }

@@ -116,7 +116,7 @@ LobeMoments lobe_moments(const LobeShape& shape, double theta_o) {
         for (std::size_t m = 0; m < kMaxOrder; ++m) {
             fourier[m] *= weight * sines[m] * (m == 0 ? 1.0 : std::numbers::sqrt2);
         }
-        LegendreRows<double> legendre(cosine, sine);
+        LegendreRows<double> legendre(cosine, sine * sine);
         for (int l = 0; l < kMaxOrder; ++l) {
             for (int m = 0; m <= l; ++m) {
                 result.moments[at(l, m)] += legendre[m] * fourier[m];

@@ -27,7 +27,8 @@ void integrate(const SphericalPolygon<Wider<T>>& polygon, int order, T* coeffici
         return;
     }
     if (method == PolygonMethod::automatic) {
-        method = polygon.solid_angle() < kSmallestForBoundary<T> ? PolygonMethod::cubature : PolygonMethod::boundary;
+        const bool cancels = order > 2 && polygon.solid_angle() < kSmallestForBoundary<T>;
+        method = cancels ? PolygonMethod::cubature : PolygonMethod::boundary;
     }
     if (method == PolygonMethod::cubature) {
         polygon_by_cubature(polygon, order, coefficients);

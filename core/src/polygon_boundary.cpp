@@ -23,7 +23,8 @@ template <class T>
 class EndPoint {
   public:
     EndPoint(const Vec3<Wider<T>>& direction, int order)
-        : legendre_(static_cast<T>(direction.z), static_cast<T>(std::hypot(direction.x, direction.y))) {
+        : legendre_(static_cast<T>(direction.z),
+                    static_cast<T>(direction.x * direction.x + direction.y * direction.y)) {
         complex_powers(static_cast<T>(direction.x), static_cast<T>(direction.y), order, cos_.data(), sin_.data());
     }
     void advance() { legendre_.advance(); }
@@ -79,7 +80,7 @@ class ArcIntegrals {
         : length_(static_cast<T>(edge.length)),
           cos_tilt_(static_cast<T>(edge.cos_tilt)),
           sin_tilt_(static_cast<T>(edge.sin_tilt)),
-          legendre_(cos_tilt_, sin_tilt_),
+          legendre_(cos_tilt_, sin_tilt_ * sin_tilt_),
           from_(edge.from, order),
           to_(edge.to, order) {
         powers(sin_tilt_, order, sin_powers_.data());
@@ -169,7 +170,8 @@ void add_edge(const Edge<Wider<T>>& edge, int order, T* coefficients) {
     complex_powers(static_cast<T>(edge.cos_azimuth), static_cast<T>(edge.sin_azimuth), order, cos_m.data(),
                    sin_m.data());
     ArcIntegrals<T> arc(edge, order);
-    for (int l = 1; l < order; ++l) {
+    arc.advance();
+    for (int l = 2; l < order; ++l) {
         const BandTerms<T> e = normal_derivative(l, cos_tilt, sin_tilt, arc.terms());
         const T scale = 1 / static_cast<T>(l * (l + 1));
         const T pair = scale * std::numbers::sqrt2_v<T>;
@@ -185,15 +187,39 @@ void add_edge(const Edge<Wider<T>>& edge, int order, T* coefficients) {
     }
 }
 
+/// Bands 0 and 1: the solid angle and the vector irradiance, ∫ ω dω = ½ Σ length · pole over the edges (Lambert 1760).
+/// In the wider type their cancellation leaves every digit of T, for polygons of any size.
+template <class T>
+void low_bands(const SphericalPolygon<Wider<T>>& polygon, int order, T* coefficients) {
+    using Real = Wider<T>;
+    coefficients[0] = static_cast<T>(polygon.solid_angle() * std::sqrt(1 / (4 * std::numbers::pi_v<Real>)));
+    if (order == 1) {
+        return;
+    }
+    const std::vector<Vec3<Real>>& v = polygon.directions();
+    Vec3<Real> sum(0);
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        const Vec3<Real>& cross = polygon.edge_cross(i);
+        const Real sine = glm::length(cross);
+        if (sine > 0) {
+            sum += std::atan2(sine, glm::dot(v[i], v[(i + 1) % v.size()])) / sine * cross;
+        }
+    }
+    sum *= std::sqrt(3 / (4 * std::numbers::pi_v<Real>)) / 2;
+    coefficients[1] = static_cast<T>(sum.y);
+    coefficients[2] = static_cast<T>(sum.z);
+    coefficients[3] = static_cast<T>(sum.x);
+}
+
 }  // namespace
 
 template <class T>
 void polygon_by_boundary(const SphericalPolygon<Wider<T>>& polygon, int order, T* coefficients) {
     using Real = Wider<T>;
     std::fill_n(coefficients, coefficient_count(order), T(0));
-    coefficients[0] = static_cast<T>(polygon.solid_angle() * std::sqrt(1 / (4 * std::numbers::pi_v<Real>)));
+    low_bands(polygon, order, coefficients);
     const std::vector<Vec3<Real>>& v = polygon.directions();
-    for (std::size_t i = 0; i < v.size() && order > 1; ++i) {
+    for (std::size_t i = 0; i < v.size() && order > 2; ++i) {
         const Vec3<Real>& cross = polygon.edge_cross(i);
         if (cross != Vec3<Real>(0)) {
             add_edge(Edge<Real>(v[i], v[(i + 1) % v.size()], cross), order, coefficients);
