@@ -94,7 +94,6 @@ def _seconds(figures: dict[str, Any]) -> str:
 
 def _caption(panel: Any, title: str, numbers: str) -> None:
     panel.set_axis_off()
-    panel.text(
-        0, 1.0, f"{title}\n", transform=panel.transAxes, fontsize=9, weight="bold", va="bottom", linespacing=1.35
-    )
-    panel.text(0, 1.0, numbers, transform=panel.transAxes, fontsize=8, va="bottom", linespacing=1.35)
+    common = {"transform": panel.transAxes, "va": "bottom", "linespacing": 1.35}
+    panel.text(0, 1.0, f"{title}\n", fontsize=9, weight="bold", **common)
+    panel.text(0, 1.0, numbers, fontsize=8, **common)

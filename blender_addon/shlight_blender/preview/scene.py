@@ -86,7 +86,7 @@ def use_shlight(scene: Any, options: Options) -> None:
 
 
 def use_cycles(scene: Any, samples: int, seed: int) -> None:
-    """The next render is Cycles': direct light only, by the same pixel filter, and nothing that trades truth for calm."""
+    """The next render is Cycles': direct light only, the same pixel filter, nothing that trades truth for calm."""
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
     cycles.device = "CPU"
