@@ -67,7 +67,7 @@ testing::ErrorRecord differences_at_solid_angle(double solid_angle, int order, s
 /// Where one method hands over to the other, a picture must not show it.
 TEST(PolygonLimits, HandOverIsInvisible) {
     for (const int order : {2, 8, 16, 33}) {
-        const testing::ErrorRecord errors32 = differences_at_solid_angle<float>(0.03, order, 400);
+        const testing::ErrorRecord errors32 = differences_at_solid_angle<float>(0.06, order, 400);
         errors32.publish("hand-over, n = " + std::to_string(order) + ", float32");
         EXPECT_LE(errors32.largest(), 1e-5);
         const testing::ErrorRecord errors64 = differences_at_solid_angle<double>(1e-3, order, 400);

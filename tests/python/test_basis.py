@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: MIT
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from scipy.special import sph_harm_y
+from strategies import angles, directions, orders, reproducible, turn, turned
+
+import shlight
+
+
+def test_index_order_and_signs() -> None:
+    x, y, z = 0.48, -0.6, 0.64
+    expected = [
+        math.sqrt(1 / (4 * math.pi)),
+        math.sqrt(3 / (4 * math.pi)) * y,
+        math.sqrt(3 / (4 * math.pi)) * z,
+        math.sqrt(3 / (4 * math.pi)) * x,
+        math.sqrt(15 / (4 * math.pi)) * x * y,
+        math.sqrt(15 / (4 * math.pi)) * y * z,
+        math.sqrt(5 / (16 * math.pi)) * (3 * z * z - 1),
+        math.sqrt(15 / (4 * math.pi)) * z * x,
+        math.sqrt(15 / (16 * math.pi)) * (x * x - y * y),
+    ]
+    np.testing.assert_allclose(shlight.sh_basis([x, y, z], 3, dtype=np.float64), expected, atol=1e-15)
+
+
+@reproducible
+@given(directions())
+def test_agrees_with_scipy(direction: np.ndarray) -> None:
+    """scipy's are complex and carry the Condon–Shortley phase (-1)^m."""
+    order = 12
+    basis = shlight.sh_basis(direction, order, dtype=np.float64)
+    tilt = math.atan2(math.hypot(direction[0], direction[1]), direction[2])
+    azimuth = math.atan2(direction[1], direction[0])
+    for l in range(order):  # noqa: E741
+        for m in range(l + 1):
+            value = (-1) ** m * (math.sqrt(2) if m else 1) * sph_harm_y(l, m, tilt, azimuth)
+            assert basis[l * l + l + m] == pytest.approx(value.real, abs=1e-12)
+            if m > 0:
+                assert basis[l * l + l - m] == pytest.approx(value.imag, abs=1e-12)
+
+
+@reproducible
+@given(directions(), angles, orders)
+def test_turning_about_z_turns_pairs(direction: np.ndarray, angle: float, order: int) -> None:
+    basis = shlight.sh_basis(direction, order, dtype=np.float64)
+    after = shlight.sh_basis(turn(angle) @ direction, order, dtype=np.float64)
+    np.testing.assert_allclose(after, turned(basis, angle), atol=1e-12)
+
+
+@reproducible
+@given(directions(), orders)
+def test_length_does_not_matter(direction: np.ndarray, order: int) -> None:
+    for dtype in (np.float32, np.float64):
+        near = shlight.sh_basis(direction, order, dtype=dtype)
+        far = shlight.sh_basis(1024 * direction, order, dtype=dtype)
+        np.testing.assert_allclose(far, near, rtol=0, atol=1e-37)  # denormal components lose bits
+
+
+@reproducible
+@given(directions(), orders)
+def test_float32_is_close_to_float64(direction: np.ndarray, order: int) -> None:
+    single = direction.astype(np.float32)
+    exact = shlight.sh_basis(single.astype(np.float64), order, dtype=np.float64)
+    np.testing.assert_allclose(shlight.sh_basis(single, order), exact, atol=1e-4)
+
+
+@pytest.mark.parametrize("shape", [(), (1,), (5,), (2, 3), (4, 1, 2), (0,), (3, 0)])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_shapes_and_types(shape: tuple[int, ...], dtype: type) -> None:
+    d = np.full((*shape, 3), 0.5)
+    basis = shlight.sh_basis(d, 4, dtype=dtype)
+    assert basis.shape == (*shape, 16)
+    assert basis.dtype == dtype
+
+
+def test_takes_integers_lists_and_strides() -> None:
+    expected = shlight.sh_basis(np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]), 5)
+    np.testing.assert_array_equal(shlight.sh_basis([[1, 2, 3], [4, 5, 6]], 5), expected)
+    strided = np.zeros((2, 6), np.float32)
+    strided[:, ::2] = [[1, 2, 3], [4, 5, 6]]
+    np.testing.assert_array_equal(shlight.sh_basis(strided[:, ::2], 5), expected)
+    np.testing.assert_array_equal(shlight.sh_basis(np.asfortranarray([[1.0, 2, 3], [4, 5, 6]]), 5), expected)
+
+
+def test_input_is_left_alone() -> None:
+    d = np.array([[3.0, 0.0, 4.0]])
+    shlight.sh_basis(d, 5, dtype=np.float64)
+    np.testing.assert_array_equal(d, [[3.0, 0.0, 4.0]])
+
+
+def test_evaluate_sums_the_expansion() -> None:
+    rng = np.random.default_rng(1)
+    coefficients = rng.normal(size=(7, 1, 36))
+    d = rng.normal(size=(5, 3))
+    values = shlight.evaluate(coefficients, d)
+    assert values.shape == (7, 5)
+    assert values.dtype == np.float64
+    basis = shlight.sh_basis(d, 6, dtype=np.float64)
+    np.testing.assert_allclose(values, np.einsum("ak,bk->ab", coefficients[:, 0], basis), atol=1e-12)
+    assert shlight.evaluate(coefficients.astype(np.float32), d.astype(np.float32)).dtype == np.float32
+    assert np.shape(shlight.evaluate(coefficients[0, 0], d[0])) == ()
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_threads_change_no_bit(threads: int) -> None:
+    d = np.random.default_rng(2).normal(size=(3001, 3)).astype(np.float32)
+    basis = shlight.sh_basis(d, 9)
+    assert shlight.sh_basis(d, 9, threads=threads).tobytes() == basis.tobytes()
+    values = shlight.evaluate(basis, d)
+    assert shlight.evaluate(basis, d, threads=threads).tobytes() == values.tobytes()
+
+
+BAD_ORDERS = [0, -1, 65, 2.5, "8", None]
+
+
+@pytest.mark.parametrize("order", BAD_ORDERS)
+def test_bad_order_is_named(order: object) -> None:
+    with pytest.raises(ValueError, match="order"):
+        shlight.sh_basis([0, 0, 1], order)
+
+
+@pytest.mark.parametrize(
+    "d",
+    [[0, 0, 0], [math.nan, 0, 1], [0, math.inf, 1], [1, 2], 1.0, [[1, 2, 3, 4]], "up", [1j, 0, 1], [[1, 2, 3], [4]]],
+)
+def test_bad_directions_are_named(d: object) -> None:
+    with pytest.raises(ValueError, match="directions"):
+        shlight.sh_basis(d, 4)
+    with pytest.raises(ValueError, match="directions"):
+        shlight.evaluate(np.zeros(16), d)
+
+
+def test_other_bad_arguments_are_named() -> None:
+    with pytest.raises(ValueError, match="coefficients"):
+        shlight.evaluate(np.zeros(15), [0, 0, 1])
+    with pytest.raises(ValueError, match="coefficients"):
+        shlight.evaluate(np.zeros(65 * 65), [0, 0, 1])
+    with pytest.raises(ValueError, match=r"coefficients.*directions"):
+        shlight.evaluate(np.zeros((2, 16)), np.ones((3, 3)))
+    with pytest.raises(ValueError, match="dtype"):
+        shlight.sh_basis([0, 0, 1], 4, dtype=np.float16)
+    with pytest.raises(ValueError, match="threads"):
+        shlight.sh_basis([0, 0, 1], 4, threads=-1)

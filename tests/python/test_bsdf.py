@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: MIT
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from strategies import Floats, angles, reproducible, spheres
+
+import shlight
+from shlight import Bsdf
+
+cosines = st.floats(0.02, 1)
+
+
+def upper(tilt_cosine: float, azimuth: float) -> Floats:
+    r = math.sqrt(1 - tilt_cosine**2)
+    return np.array([r * math.cos(azimuth), r * math.sin(azimuth), tilt_cosine])
+
+
+def hemisphere_grid(count: int) -> tuple[Floats, Floats]:
+    """Directions and solid angles over the upper hemisphere."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    z = (nodes + 1) / 2
+    phi = 2 * math.pi * np.arange(2 * count) / (2 * count)
+    r = np.sqrt(1 - z**2)[:, None]
+    points = np.stack(np.broadcast_arrays(r * np.cos(phi), r * np.sin(phi), z[:, None]), axis=-1)
+    return points, np.broadcast_to(weights[:, None] / 2 * math.pi / count, points.shape[:-1])
+
+
+def test_lambert_is_exact_from_order_two() -> None:
+    for order in (2, 3, 16):
+        coefficients = Bsdf.lambert(0.6).coefficients(0.4, order)
+        expected = np.zeros(order * order)
+        expected[2] = 0.6 * math.sqrt(4 / (3 * math.pi))
+        np.testing.assert_allclose(coefficients, expected, atol=1e-7)
+        assert Bsdf.lambert(0.6).residual(0.4, order) == pytest.approx(0, abs=1e-7)
+
+
+@reproducible
+@given(spheres(), cosines)
+def test_lambert_under_whole_spheres_is_the_form_factor(sphere: tuple[Floats, float], cosine: float) -> None:
+    """sin²σ cosθ for a sphere above the horizon."""
+    radius = sphere[1]
+    center = np.abs(sphere[0])
+    center[2] += radius
+    sine = radius / np.linalg.norm(center)
+    light = shlight.sphere_coefficients(center, radius, 2, dtype=np.float64)
+    radiance = shlight.shade(light, Bsdf.lambert(1).coefficients(cosine, 2))
+    assert radiance == pytest.approx(sine**2 * center[2] / np.linalg.norm(center), rel=1e-5)
+
+
+@pytest.mark.parametrize("cosine", [0.3, 0.7, 1.0])
+@pytest.mark.parametrize("order", [4, 8, 16])
+def test_residual_is_the_error_of_the_expansion(cosine: float, order: int) -> None:
+    bsdf = Bsdf.ggx(0.7, 1.0)
+    points, weights = hemisphere_grid(90)
+    exact = bsdf.evaluate(points, upper(cosine, 0))
+    expansion = shlight.evaluate(bsdf.coefficients(cosine, order).astype(np.float64), points)
+    error = math.sqrt((weights * (expansion - exact) ** 2).sum() / (weights * exact**2).sum())
+    assert error == pytest.approx(float(bsdf.residual(cosine, order)), rel=0.05, abs=1e-4)
+
+
+@pytest.fixture(scope="module", params=["dielectric", "metal"])
+def glossy(request: pytest.FixtureRequest) -> Bsdf:
+    return Bsdf.ggx(0.5, 0.04, ior=1.5) if request.param == "dielectric" else Bsdf.ggx(0.8, [0.9, 0.5, 0.1])
+
+
+@reproducible
+@given(cosines, cosines, angles)
+def test_ggx_is_reciprocal(glossy: Bsdf, cos_i: float, cos_o: float, azimuth: float) -> None:
+    wi, wo = upper(cos_i, azimuth), upper(cos_o, 0.0)
+    np.testing.assert_allclose(glossy.evaluate(wi, wo) / cos_i, glossy.evaluate(wo, wi) / cos_o, rtol=1e-5)
+
+
+def test_sums_and_multiples_are_linear() -> None:
+    a, b = Bsdf.lambert([0.1, 0.5, 0.9]), Bsdf.ggx(0.6, 0.8)
+    mixed = 2 * a + b * [1, 0, 0.5]
+    wi, wo = upper(0.6, 1.0), upper(0.8, 0.0)
+    tint = np.array([1, 0, 0.5])
+    np.testing.assert_allclose(mixed.evaluate(wi, wo), 2 * a.evaluate(wi, wo) + tint * b.evaluate(wi, wo), rtol=1e-5)
+    expected = 2 * a.coefficients(0.8, 6) + tint[:, None] * b.coefficients(0.8, 6)
+    np.testing.assert_allclose(mixed.coefficients(0.8, 6), expected, atol=1e-5)
+
+
+def test_layers_share_the_light() -> None:
+    top, base = Bsdf.ggx(0.5, 0.04, ior=1.5), Bsdf.lambert(0.8)
+    points, weights = hemisphere_grid(60)
+    wo = upper(0.6, 0.0)
+    reflected = (weights * top.evaluate(points, wo)).sum()
+    expected = top.evaluate(points, wo) + (1 - reflected) * base.evaluate(points, wo)
+    np.testing.assert_allclose(Bsdf.layer(top, base).evaluate(points, wo), expected, atol=2e-4)
+
+
+def test_shapes() -> None:
+    grey, colored = Bsdf.lambert(0.5), Bsdf.lambert([0.1, 0.2, 0.3])
+    for shape in [(), (4,), (2, 3)]:
+        cosine = np.full(shape, 0.5)
+        assert grey.coefficients(cosine, 3).shape == (*shape, 9)
+        assert colored.coefficients(cosine, 3).shape == (*shape, 3, 9)
+        assert grey.coefficients(cosine, 3).dtype == np.float32
+        assert np.shape(grey.residual(cosine, 3)) == shape
+        w = np.broadcast_to([0.6, 0, 0.8], (*shape, 3))
+        assert np.shape(grey.evaluate(w, [0, 0, 1])) == shape
+        assert colored.evaluate([0, 0, 1], w).shape == (*shape, 3)
+    assert grey.evaluate(np.ones((5, 1, 3)), np.ones((4, 3))).shape == (5, 4)
+
+
+def test_shade_broadcasts_over_colors() -> None:
+    light = shlight.sphere_coefficients(np.ones((7, 3)), 0.5, 4)
+    bsdf = Bsdf.lambert([0.1, 0.2, 0.3]).coefficients(np.full(7, 0.5), 4)
+    radiance = shlight.shade(light[..., None, :], bsdf)
+    assert radiance.shape == (7, 3)
+    assert radiance.dtype == np.float32
+    np.testing.assert_allclose(radiance, np.einsum("ak,ack->ac", light, bsdf), rtol=1e-5)
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_threads_change_no_bit(threads: int) -> None:
+    rng = np.random.default_rng(4)
+    light, bsdf = rng.normal(size=(2, 3001, 25)).astype(np.float32)
+    assert shlight.shade(light, bsdf, threads=threads).tobytes() == shlight.shade(light, bsdf).tobytes()
+
+
+def test_nothing_is_reflected_below_the_horizon() -> None:
+    bsdf = Bsdf.ggx(0.5, 0.9) + Bsdf.lambert(0.5)
+    assert bsdf.evaluate([0.6, 0, -0.8], [0, 0, 1]) == 0
+    assert bsdf.evaluate([0, 0, 1], [0.6, 0, -0.8]) == 0
+
+
+@pytest.mark.parametrize("bad", [-0.1, math.nan, math.inf, [0.1, 0.2], [0.1, 0.2, -0.3]])
+def test_bad_colors_are_named(bad: object) -> None:
+    with pytest.raises(ValueError, match="albedo"):
+        Bsdf.lambert(bad)
+    with pytest.raises(ValueError, match="f0"):
+        Bsdf.ggx(0.5, bad)
+    with pytest.raises(ValueError, match="factor"):
+        Bsdf.lambert(0.5) * bad
+
+
+def test_other_bad_arguments_are_named() -> None:
+    for roughness in (0, -0.5, 1.5, math.nan):
+        with pytest.raises(ValueError, match="roughness"):
+            Bsdf.ggx(roughness, 0.5)
+    for ior in (0, 1, 0.5, math.nan, math.inf):
+        with pytest.raises(ValueError, match="ior"):
+            Bsdf.ggx(0.5, 0.5, ior=ior)
+    bsdf = Bsdf.lambert(0.5)
+    for cosine in (-0.1, 1.1, math.nan):
+        with pytest.raises(ValueError, match="cos_theta_o"):
+            bsdf.coefficients(cosine, 4)
+        with pytest.raises(ValueError, match="cos_theta_o"):
+            bsdf.residual(cosine, 4)
+    for order in (0, 65, -1):
+        with pytest.raises(ValueError, match="order"):
+            bsdf.coefficients(0.5, order)
+        with pytest.raises(ValueError, match="order"):
+            bsdf.residual(0.5, order)
+    for direction in ([0, 0, 0], [math.nan, 0, 1], [1, 2]):
+        with pytest.raises(ValueError, match="wi"):
+            bsdf.evaluate(direction, [0, 0, 1])
+        with pytest.raises(ValueError, match="wo"):
+            bsdf.evaluate([0, 0, 1], direction)
+    with pytest.raises(ValueError, match=r"bsdf_coefficients.*light_coefficients"):
+        shlight.shade(np.zeros(16), np.zeros(25))
+    with pytest.raises(ValueError, match="light_coefficients"):
+        shlight.shade(np.zeros(15), np.zeros(15))
+    with pytest.raises(ValueError, match=r"light_coefficients.*bsdf_coefficients"):
+        shlight.shade(np.zeros((2, 16)), np.zeros((3, 16)))
