@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "shlight/parallel.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -8,6 +9,7 @@
 #include <mutex>
 #include <thread>
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
@@ -81,7 +83,9 @@ void run_in_arena(int threads, const std::function<void()>& work) {
     if (threads < 0) {
         throw std::invalid_argument("threads must not be negative");
     }
-    tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : threads);
+    // More than the machine has would only make oneTBB warn.
+    const int cores = tbb::info::default_concurrency();
+    tbb::task_arena arena(threads == 0 ? cores : std::min(threads, cores));
     arena.execute(work);
 }
 

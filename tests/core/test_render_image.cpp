@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: MIT
+//
+// Pictures without shadows against closed forms. Lambert floors have exact fits of order 2, so what is left is float
+// rounding of the coefficients, of the hit and of the image: 1e-5 is some forty times that of one operation chain.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include "render_scenes.h"
+
+namespace shlight {
+namespace {
+
+using namespace testing;
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kTolerance = 1e-5;
+constexpr int kSize = 24;
+constexpr double kHalf = 2;
+
+void expect_close(double value, double truth, double largest) {
+    EXPECT_LE(std::abs(value - truth), kTolerance * largest);
+}
+
+/// Irradiance ÷ π of a polygon of unit radiance above the horizon (Lambert 1760): ½ Σ γ_i n·Γ_i ÷ π.
+double form_factor(const Vec3d& point, const Vec3d& normal, const std::vector<Vec3d>& vertices) {
+    double sum = 0;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const Vec3d a = glm::normalize(vertices[i] - point);
+        const Vec3d b = glm::normalize(vertices[(i + 1) % vertices.size()] - point);
+        const Vec3d cross = glm::cross(a, b);
+        sum += std::atan2(glm::length(cross), glm::dot(a, b)) * glm::dot(normal, glm::normalize(cross));
+    }
+    return std::abs(sum) / (2 * kPi);
+}
+
+TEST(RenderImage, SphereLightOverALambertFloor) {
+    const Vec3d center(0.3, -0.4, 1.5);
+    const double radius = 0.6;
+    for (const bool facing_disk : {false, true}) {
+        Scene scene;
+        scene.add_mesh(floor_mesh(10));
+        scene.add_sphere_light(center, radius, Rgb(2, 1, 0), facing_disk);
+        const Image image = render_image(scene, camera_above(kHalf), kSize, kSize, analytic_settings());
+        for (int row = 0; row < kSize; ++row) {
+            for (int column = 0; column < kSize; ++column) {
+                const Vec3d way = center - floor_point(column, row, kSize, kHalf);
+                const double d2 = glm::dot(way, way);
+                const double sin2 = radius * radius / (facing_disk ? d2 + radius * radius : d2);
+                const double truth = 0.5 * sin2 * way.z / std::sqrt(d2);  // albedo ÷ π · π sin²σ cosθ
+                expect_close(image.color(column, row).x, 2 * truth, 0.2);
+                expect_close(image.color(column, row).y, truth, 0.1);
+                EXPECT_EQ(image.color(column, row).z, 0);
+                EXPECT_EQ(image.alpha(column, row), 1);
+            }
+        }
+    }
+}
+
+TEST(RenderImage, SphereCutByTheHorizon) {
+    // A centre in the floor's plane: half the cap is kept. Seen from above it fills the segment of the unit disk
+    // between the horizon's arc and the chord at cosσ, and that area, σ - sinσ cosσ, is ∫ cosθ dω.
+    Scene scene;
+    scene.add_mesh(floor_mesh(10));
+    scene.add_sphere_light({4, 0, 0}, 1, Rgb(1));
+    const Image image = render_image(scene, camera_above(kHalf), kSize, kSize, analytic_settings());
+    for (int row = 0; row < kSize; ++row) {
+        for (int column = 0; column < kSize; ++column) {
+            const double sine = 1 / glm::length(Vec3d(4, 0, 0) - floor_point(column, row, kSize, kHalf));
+            const double sigma = std::asin(sine);
+            const double truth = 0.5 / kPi * (sigma - sine * std::cos(sigma));
+            expect_close(image.red(column, row), truth, 0.05);
+        }
+    }
+}
+
+TEST(RenderImage, PolygonLightShinesToItsFrontOnly) {
+    const std::vector<Vec3d> down = {{-0.5, -0.5, 1}, {-0.5, 0.7, 1}, {0.9, 0.7, 1}, {0.9, -0.5, 1}};
+    const std::vector<Vec3d> up(down.rbegin(), down.rend());
+    Scene lit;
+    lit.add_mesh(floor_mesh(10));
+    lit.add_polygon_light(down, Rgb(3));
+    Scene dark;
+    dark.add_mesh(floor_mesh(10));
+    dark.add_polygon_light(up, Rgb(3));
+    const Image bright = render_image(lit, camera_above(kHalf), kSize, kSize, analytic_settings());
+    const Image black = render_image(dark, camera_above(kHalf), kSize, kSize, analytic_settings());
+    for (int row = 0; row < kSize; ++row) {
+        for (int column = 0; column < kSize; ++column) {
+            const double truth = 1.5 * form_factor(floor_point(column, row, kSize, kHalf), {0, 0, 1}, down);
+            expect_close(bright.red(column, row), truth, 1);
+            EXPECT_EQ(black.red(column, row), 0);
+        }
+    }
+}
+
+TEST(RenderImage, LampsAreNotSeen) {
+    Scene scene;
+    scene.add_mesh(floor_mesh(0.5F));
+    scene.add_sphere_light({0, 0, 5}, 1, Rgb(7));
+    scene.add_polygon_light({{-2, -2, 6}, {2, -2, 6}, {2, 2, 6}, {-2, 2, 6}}, Rgb(7));
+    const Image image = render_image(scene, camera_above(kHalf), kSize, kSize, analytic_settings());
+    EXPECT_EQ(image.alpha(0, 0), 0);
+    EXPECT_EQ(image.color(0, 0), Rgb(0));
+    EXPECT_LE(image.red(kSize / 2, kSize / 2), 1);
+}
+
+Mesh emitter(const std::vector<Vec3d>& quad, const Rgb& radiance) {
+    Mesh mesh;
+    mesh.vertices.assign(quad.begin(), quad.end());
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    mesh.emission = {radiance};
+    return mesh;
+}
+
+TEST(RenderImage, EmissiveQuadEqualsPolygonLightAndIsSeen) {
+    const std::vector<Vec3d> quad = {{0.5, -0.5, 0.25}, {0.5, 0.5, 0.25}, {1.5, 0.5, 1.25}, {1.5, -0.5, 1.25}};
+    for (const bool reversed : {false, true}) {  // both sides emit
+        const std::vector<Vec3d> wound = reversed ? std::vector<Vec3d>(quad.rbegin(), quad.rend()) : quad;
+        Scene by_mesh;
+        by_mesh.add_mesh(floor_mesh(10));
+        by_mesh.add_mesh(emitter(wound, Rgb(2)));
+        RenderSettings settings = analytic_settings();
+        settings.shadow_rays = 4;  // the emitter must not shadow itself
+        const Image image = render_image(by_mesh, camera_above(kHalf), kSize, kSize, settings);
+        for (int row = 0; row < kSize; ++row) {
+            for (int column = 0; column < kSize; ++column) {
+                const Vec3d point = floor_point(column, row, kSize, kHalf);
+                if (point.x > 0.5 && point.x < 1.5 && std::abs(point.y) < 0.5) {
+                    EXPECT_EQ(image.red(column, row), 2);
+                } else {
+                    expect_close(image.red(column, row), form_factor(point, {0, 0, 1}, quad), 1);
+                }
+            }
+        }
+    }
+}
+
+TEST(RenderImage, EmissiveMaterialsOfOneMesh) {
+    Mesh mesh = floor_mesh(2);
+    mesh.material_indices = {0, 1};
+    mesh.bsdfs = {Bsdf::lambert(Rgb(0.5F)), Bsdf()};
+    mesh.emission = {Rgb(0), Rgb(4, 5, 6)};
+    Scene scene;
+    scene.add_mesh(mesh);
+    EXPECT_EQ(scene.compile()->lights().size(), 1U);
+    const Image image = render_image(scene, camera_above(kHalf), kSize, kSize, analytic_settings());
+    EXPECT_EQ(image.color(2, kSize / 4), Rgb(4, 5, 6));            // upper left: triangle 1
+    EXPECT_EQ(image.color(kSize - 3, kSize - kSize / 4), Rgb(0));  // coplanar with its light: unlit
+}
+
+TEST(RenderImage, MirroredAndStretchedInstancesKeepTheirNormals) {
+    // A smooth ellipsoid, half of it in shade of the horizon, drawn (a) from vertices in the world, (b) as one of two
+    // instances, (c) mirrored. The same picture each time.
+    const Vec3d light(3, 2, 4);
+    const auto picture = [&](Mesh mesh, const std::vector<glm::dmat4>& transforms) {
+        mesh.transforms = transforms;
+        Scene scene;
+        scene.add_mesh(mesh);
+        scene.add_sphere_light(light, 0.5, Rgb(10));
+        return render_image(scene, camera_above(kHalf), kSize, kSize, analytic_settings());
+    };
+    const glm::dmat4 stretch = frame_matrix({2, 0, 0}, {0, 0.5, 0}, {0.3, 0, 1}, {0.1, 0, 0});
+    const glm::dmat4 mirror = frame_matrix({1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, 0});
+    const glm::dmat4 far_away = frame_matrix({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {100, 0, 0});
+    const Mesh ball = sphere_mesh({0, 0, 0}, 1, 24, true);
+    const Image one = picture(ball, {stretch});
+    const Image instanced = picture(ball, {stretch, far_away});
+    const Image mirrored = picture(ball, {stretch * mirror, far_away});
+    double brightest = 0;
+    for (int row = 0; row < kSize; ++row) {
+        for (int column = 0; column < kSize; ++column) {
+            brightest = std::max<double>(brightest, one.red(column, row));
+            EXPECT_EQ(one.alpha(column, row), instanced.alpha(column, row));
+            expect_close(instanced.red(column, row), one.red(column, row), 1);
+            // The mesh's triangles are mirrored too, which moves its silhouette and facets a little.
+            if (one.alpha(column, row) == mirrored.alpha(column, row)) {
+                EXPECT_LE(std::abs(mirrored.red(column, row) - one.red(column, row)), 0.01);
+            }
+        }
+    }
+    EXPECT_GE(brightest, 0.05);
+    // At the top the normal is that of the ellipsoid, by inverse transpose: unit Lambert with the exact normal there.
+    const Vec3d normal = glm::normalize(Vec3d(glm::transpose(glm::inverse(stretch)) * glm::dvec4(0, 0, 1, 0)));
+    Scene small;
+    Mesh placed = ball;
+    placed.transforms = {stretch};
+    small.add_mesh(placed);
+    small.add_sphere_light(light, 0.5, Rgb(10));
+    const Vec3d top(0.4, 0, 1);
+    const Camera close(frame_matrix({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, Vec3d(0.4, 0, 10)),
+                       Window{-1e-3, 1e-3, -1e-3, 1e-3}, Projection::orthographic);
+    const Image pole = render_image(small, close, 1, 1, analytic_settings());
+    const Vec3d way = light - top;
+    const double truth = 0.5 * 10 * 0.25 / glm::dot(way, way) * glm::dot(normal, glm::normalize(way));
+    EXPECT_LE(std::abs(pole.red(0, 0) - truth), 2e-3 * truth);  // smooth normals of 24 rings, 1e-3 from the pole
+}
+
+TEST(RenderImage, BackFacesAreTurnedToTheViewer) {
+    const auto picture = [](bool flipped, bool smooth) {
+        Mesh mesh = floor_mesh(10);
+        if (flipped) {
+            mesh.triangles = {{0, 2, 1}, {0, 3, 2}};
+        }
+        if (smooth) {
+            mesh.vertex_normals.assign(4, Vec3f(0, 0, flipped ? -3.0F : 3.0F));
+        }
+        Scene scene;
+        scene.add_mesh(mesh);
+        scene.add_sphere_light({0, 0, 1}, 0.5, Rgb(1));
+        return render_image(scene, camera_above(kHalf), kSize, kSize, analytic_settings()).values;
+    };
+    const std::vector<float> expected = picture(false, false);
+    EXPECT_EQ(picture(true, false), expected);
+    EXPECT_EQ(picture(true, true), expected);
+    EXPECT_EQ(picture(false, true), expected);
+}
+
+TEST(RenderImage, CornerNormalsAreInterpolated) {
+    // Normals leaning by ±45° along x: in the middle of the floor they cancel to z.
+    Mesh mesh = floor_mesh(2);
+    const Vec3f left(-1, 0, 1);
+    const Vec3f right(1, 0, 1);
+    mesh.corner_normals = {left, right, right, left, right, left};
+    Scene scene;
+    scene.add_mesh(mesh);
+    const Vec3d center(0, 0, 50);
+    scene.add_sphere_light(center, 10, Rgb(1));
+    const Image image = render_image(scene, camera_above(kHalf), kSize, kSize, analytic_settings());
+    for (int column = 0; column < kSize; ++column) {
+        const Vec3d point = floor_point(column, kSize / 2, kSize, kHalf);
+        const Vec3d normal = glm::normalize(Vec3d(point.x / 2, 0, 1));
+        const Vec3d way = center - point;
+        const double truth = 0.5 * 100 / glm::dot(way, way) * glm::dot(normal, glm::normalize(way));
+        expect_close(image.red(column, kSize / 2), truth, 0.02);
+    }
+}
+
+TEST(RenderImage, InsideTheSphereTheHemisphereIsLit) {
+    Scene scene;
+    scene.add_mesh(floor_mesh(10));
+    scene.add_sphere_light({0, 0, 0.5}, 1.5, Rgb(1));
+    for (const int rays : {0, 16}) {
+        RenderSettings settings = analytic_settings();
+        settings.shadow_rays = rays;
+        const Image image = render_image(scene, camera_above(1), 8, 8, settings);
+        for (int i = 0; i < 64; ++i) {
+            expect_close(image.red(i % 8, i / 8), 0.5, 0.5);
+        }
+    }
+}
+
+TEST(RenderImage, ContactIsFinite) {
+    // Spheres that touch, cut and rest on the floor, polygons in its plane, on it and through it; all orders of GGX.
+    Scene scene;
+    scene.add_mesh(floor_mesh(4, 0, Bsdf::layer(Bsdf::ggx(0.4F, Rgb(0.04F)), Bsdf::lambert(Rgb(0.5F)))));
+    scene.add_sphere_light({1, 1, 0.5}, 0.5, Rgb(1));
+    scene.add_sphere_light({-1, 1, 0}, 0.5, Rgb(1));
+    scene.add_sphere_light({0, 0, 1e-9}, 1e-9, Rgb(1));
+    scene.add_sphere_light({0.0625, 0.0625, 0}, 0.3, Rgb(1), true);
+    scene.add_polygon_light({{-1, -1, 0}, {-1, -0.5, 0}, {-0.5, -0.5, 0}, {-0.5, -1, 0}}, Rgb(1));
+    scene.add_polygon_light({{0.5, -1, -0.5}, {0.5, -1, 0.5}, {1.5, -1, 0.5}, {1.5, -1, -0.5}}, Rgb(1));
+    scene.add_mesh(emitter({{-1, 0, 0}, {-1, 0.5, 0}, {-1.5, 0.5, 0}, {-1.5, 0, 0}}, Rgb(1)));
+    scene.add_mesh(emitter({{1, 0, 0}, {1, 0.5, 0}, {1, 0.5, 1}, {1, 0, 1}}, Rgb(1)));
+    for (const int rays : {0, 4}) {
+        RenderSettings settings = analytic_settings();
+        settings.shadow_rays = rays;
+        const Image image = render_image(scene, camera_above(2), 64, 64, settings);
+        for (const float value : image.values) {
+            EXPECT_TRUE(std::isfinite(value));
+            EXPECT_GE(value, 0);
+            EXPECT_LE(value, 100);
+        }
+    }
+}
+
+TEST(RenderImage, ALightInTheFloorsPlaneDoesNotSpeckle) {
+    // A polygon lamp mounted flush in a floor that it shines away from, at coordinates that float cannot hold.
+    const float height = 0.1F;
+    Scene scene;
+    scene.add_mesh(floor_mesh(3.3F, height));
+    scene.add_polygon_light({{-1, -1, 0.1}, {-1, 1, 0.1}, {1, 1, 0.1}, {1, -1, 0.1}}, Rgb(1));
+    const Image image = render_image(scene, camera_above(2), 64, 64, analytic_settings());
+    for (int i = 0; i < 64 * 64; ++i) {
+        EXPECT_EQ(image.red(i % 64, i / 64), 0);
+    }
+}
+
+TEST(RenderImage, FixedAndAutomaticOrdersAgree) {
+    const Bsdf material = Bsdf::layer(Bsdf::ggx(0.7F, Rgb(0.04F)), Bsdf::lambert(Rgb(0.2F, 0.5F, 0.1F)));
+    Scene scene;
+    scene.add_mesh(floor_mesh(10, 0, material));
+    scene.add_sphere_light({0.5, 0.3, 1}, 0.4, Rgb(1));
+    const Camera camera(look_at({0, -3, 2}, {0, 0, 0}), 0.7);
+    RenderSettings settings = analytic_settings();
+    settings.order = 32;
+    const Image exact = render_image(scene, camera, kSize, kSize, settings);
+    settings.order = 0;
+    const Image automatic = render_image(scene, camera, kSize, kSize, settings);
+    EXPECT_EQ(automatic.report.over_tolerance, 0U);
+    EXPECT_GT(automatic.report.order_counts[2], 0U);  // Lambert takes no more
+    EXPECT_EQ(exact.report.order_counts[32], 3 * exact.report.hits);
+    for (std::size_t i = 0; i < exact.values.size(); ++i) {
+        // ∫ |error| ≤ tolerance · ‖f·cos‖ · √Ω, with three lobes, ‖f·cos‖ < 1 and Ω < 0.5.
+        EXPECT_LE(std::abs(exact.values[i] - automatic.values[i]), 3e-3);
+    }
+}
+
+TEST(RenderImage, GlossyFloorAgainstCubature) {
+    const Bsdf material = Bsdf::ggx(0.7F, Rgb(0.3F, 0.6F, 0.9F));
+    const Vec3d center(0.5, 0.3, 1);
+    Scene scene;
+    scene.add_mesh(floor_mesh(10, 0, material));
+    scene.add_sphere_light(center, 0.4, Rgb(1));
+    const Camera camera(look_at({1, -3, 2}, {0.5, 0, 0}), 0.02);  // a narrow look at one point
+    const Image image = render_image(scene, camera, 1, 1, analytic_settings());
+    const Vec3d point(0.5, 0, 0);
+    const Vec3d wo = glm::normalize(Vec3d(1, -3, 2) - point);
+    const Vec3d axis = glm::normalize(center - point);
+    const Vec3d u = glm::normalize(glm::cross(axis, Vec3d(1, 0, 0)));
+    const Vec3d v = glm::cross(axis, u);
+    const double drop = 1 - std::sqrt(1 - 0.16 / glm::dot(center - point, center - point));
+    Vec3d sum(0);  // midpoint rule in 1 - cos and azimuth
+    for (int i = 0; i < 200; ++i) {
+        for (int j = 0; j < 200; ++j) {
+            const double z = 1 - drop * (i + 0.5) / 200;
+            const double angle = 2 * kPi * (j + 0.5) / 200;
+            const Vec3d wi = z * axis + std::sqrt(1 - z * z) * (std::cos(angle) * u + std::sin(angle) * v);
+            sum += Vec3d(material.evaluate(wi, wo)) * (2 * kPi * drop / 40000);
+        }
+    }
+    for (int channel = 0; channel < 3; ++channel) {
+        EXPECT_LE(std::abs(image.color(0, 0)[channel] - sum[channel]), 2e-3 * sum[channel]);
+    }
+}
+
+TEST(RenderImage, CameraLooksAlongMinusZWithYUp) {
+    // Four squares of different emission in the plane z = -2 of a turned camera.
+    const glm::dmat4 to_world = look_at({3, -4, 2}, {0, 1, 0.5});
+    Scene scene;
+    for (int i = 0; i < 4; ++i) {
+        Mesh mesh = floor_mesh(0.4F);
+        mesh.emission = {Rgb(static_cast<float>(i + 1))};
+        const Vec3d offset(i % 2 == 0 ? -0.5 : 0.5, i < 2 ? 0.5 : -0.5, -2);
+        mesh.transforms = {to_world * frame_matrix({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, offset)};
+        scene.add_mesh(mesh);
+    }
+    const auto corners = [&](const Camera& camera) {
+        const Image image = render_image(scene, camera, 4, 4, analytic_settings());
+        return std::array{image.red(1, 1), image.red(2, 1), image.red(1, 2), image.red(2, 2)};
+    };
+    const std::array<float, 4> expected = {1, 2, 3, 4};
+    EXPECT_EQ(corners(Camera(to_world, 2 * std::atan(0.5))), expected);
+    EXPECT_EQ(corners(Camera(to_world, Window{-0.5, 0.5, -0.5, 0.5}, Projection::perspective)), expected);
+    EXPECT_EQ(corners(Camera(to_world, Window{-1, 1, -1, 1}, Projection::orthographic)), expected);
+    // A shifted window shows only the upper right square.
+    const Image shifted = render_image(scene, Camera(to_world, Window{0.1, 0.4, 0.1, 0.4}, Projection::perspective), 2,
+                                       2, analytic_settings());
+    EXPECT_EQ(shifted.red(0, 0), 2);
+    EXPECT_EQ(shifted.red(1, 1), 2);
+}
+
+TEST(RenderImage, ClippingIsByDepthAlongTheAxis) {
+    Mesh wall = floor_mesh(100, -2);
+    wall.emission = {Rgb(1)};
+    Scene scene;
+    scene.add_mesh(wall);
+    const Window wide = {-3, 3, -3, 3};  // at the corner the ray is four times as long as the depth
+    const auto alpha = [&](const ClipRange& clip, Projection projection) {
+        const Image image =
+            render_image(scene, Camera(glm::dmat4(1), wide, projection, clip), 8, 8, analytic_settings());
+        float sum = 0;
+        for (int i = 0; i < 64; ++i) {
+            sum += image.alpha(i % 8, i / 8);
+        }
+        return sum / 64;
+    };
+    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+        EXPECT_EQ(alpha({0, 2.001}, projection), 1);
+        EXPECT_EQ(alpha({0, 1.999}, projection), 0);
+        EXPECT_EQ(alpha({1.999, 100}, projection), 1);
+        EXPECT_EQ(alpha({2.001, 100}, projection), 0);
+    }
+}
+
+TEST(RenderImage, CoverageIsTheShareOfThePixel) {
+    // The floor covers the left 37.5 % of the only pixel: 6 of 16 columns of stratified samples.
+    Mesh mesh = floor_mesh(1);
+    mesh.transforms = {frame_matrix({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1.25, 0, 0})};
+    mesh.emission = {Rgb(1)};
+    Scene scene;
+    scene.add_mesh(mesh);
+    RenderSettings settings = analytic_settings();
+    settings.pixel_samples = 16;
+    const Image image = render_image(scene, camera_above(1), 1, 1, settings);
+    EXPECT_EQ(image.alpha(0, 0), 6.0F / 16);
+    EXPECT_EQ(image.red(0, 0), 6.0F / 16);
+}
+
+TEST(RenderImage, EmptySceneIsTransparentBlack) {
+    const Image image = render_image(Scene(), camera_above(1), 3, 2, RenderSettings());
+    EXPECT_EQ(image.values, std::vector<float>(24, 0.0F));
+    EXPECT_EQ(image.report.hits, 0U);
+}
+
+TEST(RenderImage, BadArgumentsAreTurnedDown) {
+    const auto rejects = [](auto change, int width = 4, int height = 4) {
+        RenderSettings settings;
+        change(settings);
+        EXPECT_THROW(check_render(settings, width, height), std::invalid_argument);
+    };
+    rejects([](RenderSettings& s) { s.order = 65; });
+    rejects([](RenderSettings& s) { s.order = -1; });
+    rejects([](RenderSettings& s) { s.tolerance = 0; });
+    rejects([](RenderSettings& s) { s.tolerance = std::numeric_limits<double>::quiet_NaN(); });
+    rejects([](RenderSettings& s) { s.pixel_samples = 0; });
+    rejects([](RenderSettings& s) { s.shadow_rays = -1; });
+    rejects([](RenderSettings& s) { s.threads = -1; });
+    rejects([](RenderSettings&) {}, 0, 4);
+    rejects([](RenderSettings&) {}, 4, -1);
+    rejects([](RenderSettings&) {}, 1 << 20, 1 << 20);
+    EXPECT_THROW(Camera(glm::dmat4(0), 1), std::invalid_argument);
+    EXPECT_THROW(Camera(glm::dmat4(1), kPi), std::invalid_argument);
+    EXPECT_THROW(Camera(glm::dmat4(1), Window{1, 1, 0, 1}, Projection::perspective), std::invalid_argument);
+    EXPECT_THROW(Camera(glm::dmat4(1), Window{0, 1, 0, 1}, Projection::perspective, {2, 2}), std::invalid_argument);
+    Mesh flat = floor_mesh(1);
+    flat.transforms = {frame_matrix({1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 0})};
+    EXPECT_THROW(Scene().add_mesh(flat), std::invalid_argument);
+    Mesh torn = floor_mesh(1);
+    torn.triangles[1].x = 4;
+    EXPECT_THROW(Scene().add_mesh(torn), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace shlight

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+//
+// Making lights: polygons of any simple shape, emissive faces, and what is turned down.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "random_input.h"
+#include "shlight/light.h"
+#include "shlight/mesh_light.h"
+
+namespace shlight {
+namespace {
+
+using testing::RandomInput;
+
+double triangulated_area(const PolygonLight& light) {
+    double area = 0;
+    for (const Triangle& t : light.triangles) {
+        area += 0.5 * glm::dot(light.normal, glm::cross(light.vertices[t.y] - light.vertices[t.x],
+                                                        light.vertices[t.z] - light.vertices[t.x]));
+    }
+    return area;
+}
+
+std::string polygon_error(std::vector<Vec3d> vertices, const Rgb& radiance = Rgb(1)) {
+    try {
+        make_polygon_light(std::move(vertices), radiance, false);
+    } catch (const std::invalid_argument& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+TEST(RenderLights, PolygonNormalSeesVerticesCounterClockwise) {
+    const PolygonLight light = make_polygon_light({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, Rgb(1), false);
+    EXPECT_LE(glm::length(light.normal - Vec3d(0, 0, 1)), 1e-15);
+    EXPECT_LE(std::abs(triangulated_area(light) - 1), 1e-12);
+}
+
+TEST(RenderLights, ConcavePolygonsAreTriangulatedOnce) {
+    RandomInput random(3);
+    for (int spikes = 3; spikes < 12; ++spikes) {
+        // A star in a random plane: its area has a closed form, Σ ½ r_i r_{i+1} sin Δφ.
+        const Vec3d x = random.direction();
+        const Vec3d y = glm::normalize(glm::cross(x, random.direction()));
+        std::vector<Vec3d> vertices;
+        const int count = 2 * spikes;
+        for (int i = 0; i < count; ++i) {
+            const double angle = 2 * std::numbers::pi * i / count;
+            vertices.push_back(Vec3d(5, 6, 7) + (i % 2 == 0 ? 1.0 : 0.3) * (std::cos(angle) * x + std::sin(angle) * y));
+        }
+        const double expected = count * 0.5 * 0.3 * std::sin(2 * std::numbers::pi / count);
+        const PolygonLight light = make_polygon_light(vertices, Rgb(1), false);
+        EXPECT_LE(std::abs(triangulated_area(light) - expected), 1e-12) << spikes;
+        for (const Triangle& t : light.triangles) {
+            EXPECT_GE(glm::dot(light.normal, glm::cross(light.vertices[t.y] - light.vertices[t.x],
+                                                        light.vertices[t.z] - light.vertices[t.x])),
+                      0);
+        }
+    }
+}
+
+TEST(RenderLights, RepeatedAndCollinearVerticesDoNoHarm) {
+    const PolygonLight light = make_polygon_light(
+        {{0, 0, 1}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {2, 2, 1}, {0, 2, 1}, {0, 0, 1}}, Rgb(1), false);
+    EXPECT_EQ(light.vertices.size(), 5U);
+    EXPECT_LE(std::abs(triangulated_area(light) - 4), 1e-12);
+}
+
+TEST(RenderLights, BadPolygonsAreTurnedDown) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_NE(polygon_error({{0, 0, 0}, {1, 0, 0}}).find("vertices"), std::string::npos);
+    EXPECT_NE(polygon_error({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}).find("no area"), std::string::npos);
+    EXPECT_NE(polygon_error({{0, 0, 0}, {1, 0, 0}, {0, nan, 0}}).find("vertices"), std::string::npos);
+    EXPECT_NE(polygon_error({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.3}, {0, 1, 0}}).find("planar"), std::string::npos);
+    EXPECT_NE(polygon_error({{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 3, 0}}).find("crosses"), std::string::npos);
+    EXPECT_NE(
+        polygon_error({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, Rgb(std::numeric_limits<float>::infinity())).find("radiance"),
+        std::string::npos);
+}
+
+TEST(RenderLights, BadSpheresAreTurnedDown) {
+    EXPECT_THROW(make_sphere_light({0, 0, 0}, 0, Rgb(1), false), std::invalid_argument);
+    EXPECT_THROW(make_sphere_light({0, 0, 0}, -1, Rgb(1), false), std::invalid_argument);
+    EXPECT_THROW(make_sphere_light({0, 0, std::numeric_limits<double>::infinity()}, 1, Rgb(1), false),
+                 std::invalid_argument);
+}
+
+TEST(RenderLights, TrianglesOfAQuadrilateralAreJoined) {
+    const std::vector<Vec3d> vertices = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}};
+    // Both diagonals, and each corner of the second triangle first.
+    for (const std::vector<Triangle>& triangles :
+         {std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}, std::vector<Triangle>{{0, 1, 2}, {2, 3, 0}},
+          std::vector<Triangle>{{1, 2, 3}, {3, 0, 1}}, std::vector<Triangle>{{3, 0, 1}, {2, 3, 1}}}) {
+        const std::vector<FaceOutline> outlines = merge_faces(vertices, triangles);
+        ASSERT_EQ(outlines.size(), 1U);
+        const PolygonLight light = make_polygon_light(outlines[0], Rgb(1), true);
+        EXPECT_LE(std::abs(triangulated_area(light) - 2), 1e-12);
+        EXPECT_LE(glm::length(light.normal - Vec3d(0, 0, 1)), 1e-12);
+    }
+}
+
+TEST(RenderLights, OnlyFlatConvexPairsAreJoined) {
+    const std::vector<Vec3d> folded = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.01}, {0, 1, 0}};
+    EXPECT_EQ(merge_faces(folded, std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}).size(), 2U);
+    const std::vector<Vec3d> dart = {{0, 0, 0}, {2, 0, 0}, {0.4, 0.4, 0}, {0, 2, 0}};
+    EXPECT_EQ(merge_faces(dart, std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}).size(), 2U);
+    const std::vector<Vec3d> square = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    EXPECT_EQ(merge_faces(square, std::vector<Triangle>{{0, 1, 2}, {0, 3, 2}}).size(), 2U) << "opposite windings";
+    EXPECT_EQ(merge_faces(square, std::vector<Triangle>{{0, 1, 2}, {0, 2, 2}}).size(), 1U) << "one without area";
+}
+
+TEST(RenderLights, AGridBecomesItsQuadrilaterals) {
+    std::vector<Vec3d> vertices;
+    std::vector<Triangle> triangles;
+    constexpr std::uint32_t kCells = 8;
+    for (std::uint32_t i = 0; i <= kCells; ++i) {
+        for (std::uint32_t j = 0; j <= kCells; ++j) {
+            vertices.emplace_back(j, i, 0);
+        }
+    }
+    for (std::uint32_t i = 0; i < kCells; ++i) {
+        for (std::uint32_t j = 0; j < kCells; ++j) {
+            const std::uint32_t a = i * (kCells + 1) + j;
+            triangles.emplace_back(a, a + 1, a + kCells + 2);
+            triangles.emplace_back(a, a + kCells + 2, a + kCells + 1);
+        }
+    }
+    EXPECT_EQ(merge_faces(vertices, triangles).size(), kCells * kCells);
+}
+
+}  // namespace
+}  // namespace shlight

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+//
+// The same bits however the work is spread; progress, cancellation and exceptions.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "render_scenes.h"
+#include "shlight/parallel.h"
+
+namespace shlight {
+namespace {
+
+using namespace testing;
+
+Scene busy_scene() {
+    Scene scene;
+    scene.add_mesh(floor_mesh(4, 0, Bsdf::layer(Bsdf::ggx(0.7F, Rgb(0.04F)), Bsdf::lambert(Rgb(0.5F)))));
+    scene.add_mesh(sphere_mesh({0, 0, 0.5}, 0.5, 12, true));
+    scene.add_sphere_light({1, -1, 2}, 0.5, Rgb(3));
+    scene.add_polygon_light({{-1, -1, 2}, {-1, 0, 2}, {0, 0, 2}, {0, -1, 2}}, Rgb(3));
+    return scene;
+}
+
+RenderSettings settings_for(int threads) {
+    RenderSettings settings;
+    settings.pixel_samples = 4;
+    settings.threads = threads;
+    return settings;
+}
+
+TEST(RenderParallel, ThreadsDoNotChangeABit) {
+    const Scene scene = busy_scene();
+    const Image one = render_image(scene, camera_above(2), 70, 50, settings_for(1));
+    for (const int threads : {2, 5, 0}) {
+        const Image many = render_image(scene, camera_above(2), 70, 50, settings_for(threads));
+        EXPECT_EQ(many.values, one.values) << threads;
+        EXPECT_EQ(many.report.order_counts, one.report.order_counts);
+        EXPECT_EQ(many.report.shadow_rays, one.report.shadow_rays);
+    }
+    EXPECT_EQ(render_image(scene, camera_above(2), 70, 50, settings_for(1)).values, one.values) << "a second run";
+}
+
+TEST(RenderParallel, TilesDoNotChangeABit) {
+    // The left quarter alone is cut into other tiles than as part of the whole. Powers of two keep the rays the same.
+    const Scene scene = busy_scene();
+    const glm::dmat4 above = frame_matrix({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 10});
+    const Image whole =
+        render_image(scene, Camera(above, Window{-1, 1, -1, 1}, Projection::orthographic), 64, 64, settings_for(0));
+    const Image part =
+        render_image(scene, Camera(above, Window{-1, -0.75, -1, 1}, Projection::orthographic), 8, 64, settings_for(0));
+    for (int row = 0; row < 64; ++row) {
+        for (int column = 0; column < 8; ++column) {
+            EXPECT_EQ(part.color(column, row), whole.color(column, row));
+        }
+    }
+}
+
+TEST(RenderParallel, EveryIndexRunsOnce) {
+    std::vector<std::atomic<int>> runs(1000);
+    parallel_for(1000, 0, [&](std::size_t i) { ++runs[i]; });
+    EXPECT_TRUE(std::all_of(runs.begin(), runs.end(), [](const auto& count) { return count == 1; }));
+    parallel_for(0, 0, [](std::size_t) { FAIL(); });
+}
+
+TEST(RenderParallel, NoMoreThreadsThanAskedFor) {
+    std::atomic<int> running = 0;
+    std::atomic<int> most = 0;
+    parallel_for(50, 1, [&](std::size_t) {
+        most = std::max<int>(most, ++running);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        --running;
+    });
+    EXPECT_EQ(most, 1);
+    EXPECT_THROW(parallel_for(1, -1, [](std::size_t) {}), std::invalid_argument);
+}
+
+TEST(RenderParallel, ProgressComesFromTheCallerAndNeverFalls) {
+    std::vector<double> shares;
+    const auto caller = std::this_thread::get_id();
+    parallel_for(
+        100, 0, [](std::size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(4)); },
+        [&](double share) {
+            EXPECT_EQ(std::this_thread::get_id(), caller);
+            shares.push_back(share);
+            return true;
+        });
+    EXPECT_GE(shares.size(), 3U);
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_GE(shares.front(), 0);
+    EXPECT_EQ(shares.back(), 1);
+}
+
+TEST(RenderParallel, CancelStopsTheWork) {
+    std::atomic<int> runs = 0;
+    const auto slow = [&](std::size_t) {
+        ++runs;
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    };
+    EXPECT_THROW(parallel_for(10000, 0, slow, [](double) { return false; }), RenderCancelled);
+    EXPECT_LE(runs, 2000);  // the whole would take 25 s on two cores
+}
+
+TEST(RenderParallel, ExceptionsReachTheCaller) {
+    const auto slow = [](std::size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(5)); };
+    const auto throws = [](double) -> bool { throw std::runtime_error("from progress"); };
+    EXPECT_THROW(parallel_for(10000, 0, slow, throws), std::runtime_error);
+    try {
+        parallel_for(100, 0, [](std::size_t i) {
+            if (i == 50) throw std::out_of_range("from the body");
+        });
+        FAIL() << "nothing was thrown";
+    } catch (const std::out_of_range& error) {
+        EXPECT_EQ(std::string(error.what()), "from the body");
+    }
+}
+
+TEST(RenderParallel, ARenderCanBeCancelled) {
+    RenderSettings settings = settings_for(0);
+    settings.pixel_samples = 256;
+    const auto compiled = busy_scene().compile();
+    std::vector<float> image(std::size_t{4} * 512 * 512);
+    EXPECT_THROW(render(*compiled, camera_above(2), 512, 512, settings, image, [](double) { return false; }),
+                 RenderCancelled);
+}
+
+}  // namespace
+}  // namespace shlight

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+//
+// Point sets and directions to lights: evenness, and integrals over the light against its exact coefficients.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <vector>
+
+#include "light_sampling.h"
+#include "random_input.h"
+#include "shlight/cap.h"
+#include "shlight/polygon.h"
+#include "shlight/sampling.h"
+
+namespace shlight {
+namespace {
+
+using testing::RandomInput;
+
+constexpr std::uint32_t kPoints = 1 << 14;
+
+TEST(RenderSampling, SobolHasOnePointInEachElementaryInterval) {
+    for (const std::uint32_t seed : {0U, 1U, 0xDEADBEEFU}) {
+        for (std::uint32_t bits = 0; bits <= 8; ++bits) {
+            for (const std::uint32_t block : {0U, 3U}) {  // aligned blocks, not only the first
+                for (std::uint32_t columns = 0; columns <= bits; ++columns) {
+                    std::set<std::pair<int, int>> cells;
+                    for (std::uint32_t i = 0; i < 1U << bits; ++i) {
+                        const glm::dvec2 p = sobol((block << bits) + i, seed);
+                        cells.emplace(static_cast<int>(p.x * (1U << columns)),
+                                      static_cast<int>(p.y * (1U << (bits - columns))));
+                    }
+                    EXPECT_EQ(cells.size(), 1U << bits) << "seed " << seed << ", columns 2^" << columns;
+                }
+            }
+        }
+    }
+}
+
+TEST(RenderSampling, SeedsGiveIndependentUnbiasedSets) {
+    // The share of 16 points below a slanted line, for many seeds: right on average, far less spread than for random
+    // points, and unrelated from one seed to the next.
+    constexpr std::uint32_t kSeeds = 4000;
+    std::vector<double> errors;
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+        double share = 0;
+        for (std::uint32_t i = 0; i < 16; ++i) {
+            const glm::dvec2 p = sobol(i, seed);
+            share += p.y < 0.2 + 0.3 * p.x ? 1.0 / 16 : 0;
+        }
+        errors.push_back(share - 0.35);
+    }
+    double mean = 0;
+    double variance = 0;
+    double neighbours = 0;
+    for (std::size_t i = 0; i < kSeeds; ++i) {
+        mean += errors[i] / kSeeds;
+        variance += errors[i] * errors[i] / kSeeds;
+        neighbours += errors[i] * errors[(i + 1) % kSeeds] / kSeeds;
+    }
+    // Statistical bounds: five standard deviations.
+    EXPECT_LE(std::abs(mean), 5 * std::sqrt(variance / kSeeds));
+    EXPECT_LE(variance, 0.25 * 0.35 * 0.65 / 16);
+    EXPECT_LE(std::abs(neighbours), 5 * variance / std::sqrt(kSeeds));
+}
+
+TEST(RenderSampling, HammersleyIsCentredAndEven) {
+    EXPECT_EQ(hammersley(0, 1), glm::dvec2(0.5));
+    std::set<std::pair<int, int>> cells;
+    glm::dvec2 mean(0);
+    for (std::uint32_t i = 0; i < 16; ++i) {
+        const glm::dvec2 p = hammersley(i, 16);
+        cells.emplace(static_cast<int>(4 * p.x), static_cast<int>(4 * p.y));
+        mean += p / 16.0;
+    }
+    EXPECT_EQ(cells.size(), 16U);
+    EXPECT_LE(glm::length(mean - glm::dvec2(0.5)), 1e-15);
+}
+
+/// Means of weight and weight · z: the solid angle above the horizon, and its projection.
+template <class Sampler>
+glm::dvec2 solid_angle_and_projection(const Sampler& sampler) {
+    glm::dvec2 sum(0);
+    for (std::uint32_t i = 0; i < kPoints; ++i) {
+        const LightSample sample = sampler.sample(sobol(i, 7));
+        EXPECT_GE(sample.direction.z, -1e-9);
+        EXPECT_LE(std::abs(glm::length(sample.direction) - 1), 1e-9);
+        EXPECT_GE(sample.weight, 0);
+        sum += glm::dvec2(1, sample.direction.z) * (sample.weight / kPoints);
+    }
+    return sum;
+}
+
+/// The same from coefficients of order 2.
+glm::dvec2 exact(const std::vector<double>& coefficients) {
+    return {coefficients[0] * std::sqrt(4 * std::numbers::pi), coefficients[2] * std::sqrt(4 * std::numbers::pi / 3)};
+}
+
+/// Quasi-Monte Carlo with 2^14 points of a bounded integrand: an error of some 1e-4; 1e-3 is ten times that.
+void expect_near(const glm::dvec2& sampled, const glm::dvec2& truth) {
+    EXPECT_LE(std::abs(sampled.x - truth.x), 1e-3 * truth.x);
+    EXPECT_LE(std::abs(sampled.y - truth.y), 1e-3 * truth.y + 1e-3 * truth.x * truth.x);
+}
+
+TEST(RenderSampling, CapsCoverWhatIsAboveTheHorizon) {
+    RandomInput random(11);
+    for (int i = 0; i < 100; ++i) {
+        const double half_angle = random.log_uniform(1e-3, 1.55);
+        const double tilt = std::min(3.1, random.uniform(0, std::numbers::pi / 2 + 0.98 * half_angle));
+        const double distance = random.log_uniform(0.1, 100);
+        const Vec3d center = distance * random.at_tilt(tilt);
+        const bool disk = random.chance(0.5);
+        const double radius = distance * (disk ? std::tan(half_angle) : std::sin(half_angle));
+        const CapView cap = {disk ? CapView::Kind::facing_disk : CapView::Kind::sphere, center, radius};
+        std::vector<double> coefficients(4);
+        cap_coefficients(disk ? Cap<double>::of_facing_disk(center, radius) : Cap<double>::of_sphere(center, radius), 2,
+                         true, coefficients.data());
+        SCOPED_TRACE(::testing::Message() << "half angle " << half_angle << ", tilt " << tilt);
+        expect_near(solid_angle_and_projection(CapSampler(cap)), exact(coefficients));
+    }
+}
+
+TEST(RenderSampling, CapSamplesEndOnTheLight) {
+    const Vec3d center(1, -0.5, 2);
+    const CapSampler sphere({CapView::Kind::sphere, center, 0.7});
+    const CapSampler disk({CapView::Kind::facing_disk, center, 0.7});
+    const CapSampler inside({CapView::Kind::inside, {0.1, 0.2, -0.3}, 0.7});
+    for (std::uint32_t i = 0; i < 256; ++i) {
+        const LightSample s = sphere.sample(sobol(i, 1));
+        const Vec3d on_sphere = s.distance * s.direction - center;
+        EXPECT_LE(std::abs(glm::length(on_sphere) - 0.7), 1e-6);
+        EXPECT_LE(glm::dot(on_sphere, s.direction), 1e-6) << "the far side";
+        const LightSample d = disk.sample(sobol(i, 1));
+        EXPECT_LE(std::abs(glm::dot(d.distance * d.direction - center, glm::normalize(center))), 1e-9);
+        EXPECT_LE(glm::length(d.distance * d.direction - center), 0.7 + 1e-9);
+        const LightSample in = inside.sample(sobol(i, 1));
+        EXPECT_LE(std::abs(glm::length(in.distance * in.direction - Vec3d(0.1, 0.2, -0.3)) - 0.7), 1e-9);
+    }
+}
+
+ShadingFrame frame_at_origin() {
+    return {Vec3d(0), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+}
+
+TEST(RenderSampling, PolygonsCoverWhatIsAboveTheHorizon) {
+    RandomInput random(12);
+    PolygonSampler sampler;
+    for (int i = 0; i < 100; ++i) {
+        const double size = random.log_uniform(1e-3, 30);  // from area sampling to nearly the whole hemisphere
+        const Vec3d center = random.direction();
+        const Vec3d u = size * random.direction();
+        const Vec3d v = size * glm::cross(random.direction(), glm::normalize(u));
+        std::vector<Vec3d> vertices = {center - u - v, center + u - v, center + u + v, center - u + v};
+        const PolygonLight light = make_polygon_light(vertices, Rgb(1), true);
+        std::vector<double> coefficients(4);
+        polygon_coefficients<double>(std::span<const Vec3d>(light.vertices), 2, true, coefficients.data());
+        const glm::dvec2 truth = exact(coefficients);
+        if (truth.x < 1e-9) continue;
+        sampler.reset(light, frame_at_origin());
+        SCOPED_TRACE(::testing::Message() << "size " << size << ", solid angle " << truth.x);
+        expect_near(solid_angle_and_projection(sampler), truth);
+    }
+}
+
+TEST(RenderSampling, PolygonSamplesEndOnThePolygon) {
+    const PolygonLight light = make_polygon_light({{-1, -1, 1}, {2, -1, 1}, {2, 1, 1.5}, {-1, 1, 1.5}}, Rgb(1), true);
+    PolygonSampler sampler;
+    sampler.reset(light, frame_at_origin());
+    for (std::uint32_t i = 0; i < 256; ++i) {
+        const LightSample s = sampler.sample(sobol(i, 2));
+        const Vec3d p = s.distance * s.direction;
+        EXPECT_LE(std::abs(glm::dot(p - light.vertices[0], light.normal)), 1e-9);
+        EXPECT_TRUE(p.x >= -1 - 1e-9 && p.x <= 2 + 1e-9 && p.y >= -1 - 1e-9 && p.y <= 1 + 1e-9);
+    }
+}
+
+TEST(RenderSampling, APolygonBelowTheHorizonHasNoWeight) {
+    const PolygonLight light = make_polygon_light({{-1, -1, -1}, {1, -1, -1}, {0, 1, -1}}, Rgb(1), true);
+    PolygonSampler sampler;
+    sampler.reset(light, frame_at_origin());
+    EXPECT_EQ(sampler.sample({0.5, 0.5}).weight, 0);
+}
+
+}  // namespace
+}  // namespace shlight

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+//
+// Shadows: none where nothing is between (bit for bit), all where everything is, and penumbrae against closed forms.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "render_scenes.h"
+
+namespace shlight {
+namespace {
+
+using namespace testing;
+
+constexpr int kSize = 32;
+
+/// Irradiance ÷ π on a floor point from a polygon of unit radiance above it.
+double form_factor(const Vec3d& point, const std::vector<Vec3d>& vertices) {
+    double sum = 0;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const Vec3d a = glm::normalize(vertices[i] - point);
+        const Vec3d b = glm::normalize(vertices[(i + 1) % vertices.size()] - point);
+        const Vec3d cross = glm::cross(a, b);
+        sum += std::atan2(glm::length(cross), glm::dot(a, b)) * glm::normalize(cross).z;
+    }
+    return std::abs(sum) / (2 * std::numbers::pi);
+}
+
+RenderSettings with_rays(int pixel_samples, int shadow_rays) {
+    RenderSettings settings;
+    settings.pixel_samples = pixel_samples;
+    settings.shadow_rays = shadow_rays;
+    return settings;
+}
+
+Mesh cuboid(const Vec3d& low, const Vec3d& high) {
+    Mesh mesh;
+    for (int i = 0; i < 8; ++i) {
+        mesh.vertices.emplace_back((i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
+                                   (i & 4) != 0 ? high.z : low.z);
+    }
+    mesh.triangles = {{0, 3, 1}, {0, 2, 3}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                      {2, 7, 3}, {2, 6, 7}, {0, 6, 2}, {0, 4, 6}, {1, 3, 7}, {1, 7, 5}};
+    mesh.bsdfs = {Bsdf::lambert(Rgb(0.5F))};
+    return mesh;
+}
+
+TEST(RenderShadows, AConvexBodyDoesNotShadowItself) {
+    // All that lies above a flat facet's horizon is unblocked, so shadow rays must change no bit: no acne at any scale,
+    // distance from the origin, or transform.
+    for (const double scale : {1e-3, 1.0, 1e4}) {
+        for (const double offset : {0.0, 30.0}) {
+            for (const bool instanced : {false, true}) {
+                const Vec3d origin = scale * offset * Vec3d(1, -0.7, 0.4);
+                Mesh ball = sphere_mesh({0, 0, 0}, 1, 16, false);
+                ball.transforms = {frame_matrix({scale, 0, 0}, {0, scale, 0}, {0, 0, scale}, origin)};
+                if (instanced) {
+                    ball.transforms.push_back(
+                        frame_matrix({scale, 0, 0}, {0, scale, 0}, {0, 0, scale}, origin + Vec3d(0, 0, 50 * scale)));
+                }
+                Scene scene;
+                scene.add_mesh(ball);
+                scene.add_sphere_light(origin + scale * Vec3d(2, 1, 1.5), 0.7 * scale, Rgb(1));
+                scene.add_polygon_light({origin + scale * Vec3d(-3, -1, 2), origin + scale * Vec3d(-1, -1, 4),
+                                         origin + scale * Vec3d(-1, 1, 4), origin + scale * Vec3d(-3, 1, 2)},
+                                        Rgb(1));
+                const Camera camera(look_at(origin + scale * Vec3d(1, -2, 4), origin), 0.6);
+                const Image shadowed = render_image(scene, camera, 64, 64, with_rays(1, 16));
+                const Image plain = render_image(scene, camera, 64, 64, with_rays(1, 0));
+                EXPECT_GT(plain.report.hits, 1000U);
+                std::size_t different = 0;
+                for (std::size_t i = 0; i < plain.values.size(); ++i) {
+                    different += plain.values[i] == shadowed.values[i] ? 0 : 1;
+                }
+                EXPECT_EQ(different, 0U) << "scale " << scale << ", offset " << offset << ", instanced " << instanced;
+            }
+        }
+    }
+}
+
+TEST(RenderShadows, NothingLeaksIntoAClosedRoom) {
+    // Walls without thickness; strong lights just outside, at the edges and corners, some cut by the walls.
+    for (const double scale : {1e-3, 1.0, 1e4}) {
+        for (const double offset : {0.0, 30.0}) {
+            const Vec3d origin = scale * offset * Vec3d(1, -0.7, 0.4);
+            Scene scene;
+            scene.add_mesh(cuboid(origin - scale * Vec3d(1), origin + scale * Vec3d(1)));
+            scene.add_sphere_light(origin + scale * Vec3d(1.51, 0, 0.9), 0.5 * scale, Rgb(1e6F));
+            scene.add_sphere_light(origin + scale * Vec3d(1.1, 1.1, -1.1), 0.1 * scale, Rgb(1e6F));
+            scene.add_polygon_light({origin + scale * Vec3d(-2, -2, 1.01), origin + scale * Vec3d(-2, 2, 1.01),
+                                     origin + scale * Vec3d(2, 2, 1.01), origin + scale * Vec3d(2, -2, 1.01)},
+                                    Rgb(1e6F));
+            const Camera camera(look_at(origin + scale * Vec3d(0.9, -0.9, 0.9), origin - scale * Vec3d(0.9, -0.9, 0.9)),
+                                2.4);
+            const Image image = render_image(scene, camera, 64, 64, with_rays(4, 8));
+            EXPECT_EQ(image.report.hits, 4U * 64 * 64);
+            float brightest = 0;
+            for (int i = 0; i < 64 * 64; ++i) {
+                brightest = std::max(brightest, image.red(i % 64, i / 64));
+            }
+            EXPECT_EQ(brightest, 0) << "scale " << scale << ", offset " << offset;
+        }
+    }
+}
+
+/// A half plane x < 0 at height 1 between the floor and a rectangle light at height 2.
+struct HalfPlane {
+    std::vector<Vec3d> light = {{-0.4, -0.5, 2}, {-0.4, 0.5, 2}, {0.6, 0.5, 2}, {0.6, -0.5, 2}};
+    Scene scene;
+
+    HalfPlane() {
+        scene.add_mesh(floor_mesh(10));
+        Mesh blocker = floor_mesh(20, 1);
+        blocker.transforms = {frame_matrix({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-20, 0, 0})};
+        scene.add_mesh(blocker);
+        scene.add_polygon_light(light, Rgb(2));
+    }
+
+    /// Looks from below the blocker.
+    static Camera camera() { return camera_above(1.5, 0.9); }
+
+    /// The part of the light that is seen ends where the line over the blocker's edge meets it.
+    double truth(const Vec3d& point) const {
+        std::vector<Vec3d> seen = light;
+        for (Vec3d& v : seen) {
+            v.x = std::max(v.x, -point.x);
+        }
+        return seen[2].x > seen[0].x && -point.x < 0.6 ? form_factor(point, seen) : 0;
+    }
+};
+
+TEST(RenderShadows, PenumbraOfAHalfPlane) {
+    const HalfPlane setup;
+    const auto errors = [&](int pixel_samples, int rays) {
+        const Image image =
+            render_image(setup.scene, HalfPlane::camera(), kSize, kSize, with_rays(pixel_samples, rays));
+        double largest = 0;
+        double squares = 0;
+        double bias = 0;
+        for (int row = 0; row < kSize; ++row) {
+            for (int column = 0; column < kSize; ++column) {
+                const Vec3d point = floor_point(column, row, kSize, 1.5);
+                const double truth = setup.truth(point);
+                const double error = image.red(column, row) - truth;
+                // Wholly lit and wholly dark, away from the boundary by more than a pixel: no noise at all. Many camera
+                // rays average over the pixel, which differs from its centre by (size of the pixel)² f'' / 24 = 4e-5.
+                const bool penumbra = point.x > -0.75 && point.x < 0.55;
+                if (!penumbra) {
+                    EXPECT_LE(std::abs(error), pixel_samples == 1 ? 1e-5 : 1e-4) << point.x;
+                }
+                largest = std::max(largest, std::abs(error));
+                squares += error * error / (kSize * kSize);
+                bias += error / (kSize * kSize);
+            }
+        }
+        return std::array{largest, std::sqrt(squares), std::abs(bias)};
+    };
+    // Full brightness is 0.13. A fraction that n stratified points measure of a straight cut is wrong by about n^-3/4.
+    const auto fine = errors(1, 4096);
+    EXPECT_LE(fine[0], 0.13 * 4 * std::pow(4096, -0.75));
+    EXPECT_LE(fine[2], 1e-4);
+    const auto usual = errors(16, 16);
+    EXPECT_LE(usual[0], 0.13 * 8 * std::pow(256, -0.75));
+    EXPECT_LE(usual[1], 0.13 * 1 * std::pow(256, -0.75));
+    EXPECT_LE(usual[2], 2e-4);  // adaptive rays must not darken or brighten the rim
+}
+
+TEST(RenderShadows, RaysAreSparedWhereAllAgree) {
+    Scene scene;
+    scene.add_mesh(floor_mesh(10));
+    scene.add_sphere_light({0, 0, 2}, 0.5, Rgb(1));
+    const Image lit = render_image(scene, camera_above(1), 8, 8, with_rays(16, 16));
+    EXPECT_EQ(lit.report.shadow_rays, 4 * lit.report.hits);
+    const Image one_sample = render_image(scene, camera_above(1), 8, 8, with_rays(1, 16));
+    EXPECT_EQ(one_sample.report.shadow_rays, 16 * one_sample.report.hits);
+}
+
+TEST(RenderShadows, LightsThatCannotReachCostNoRays) {
+    Scene scene;
+    scene.add_mesh(floor_mesh(10));
+    scene.add_sphere_light({0, 0, -2}, 0.5, Rgb(1));                                    // below the horizon
+    scene.add_polygon_light({{-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}}, Rgb(1));  // shines up
+    const Image image = render_image(scene, camera_above(1), 8, 8, with_rays(4, 16));
+    EXPECT_EQ(image.report.shadow_rays, 0U);
+    EXPECT_EQ(image.red(4, 4), 0);
+}
+
+TEST(RenderShadows, AnEmissiveCubeHidesItsFarSides) {
+    // Each floor point sees the faces turned to it; the others are behind them. All from rays and closed forms.
+    Mesh cube = cuboid({-0.3, -0.3, 0.5}, {0.3, 0.3, 1.1});
+    cube.bsdfs = {Bsdf()};
+    cube.emission = {Rgb(1)};
+    Scene scene;
+    scene.add_mesh(floor_mesh(10));
+    scene.add_mesh(cube);
+    EXPECT_EQ(scene.compile()->lights().size(), 6U);
+    const auto face = [](int axis, double at) {
+        std::vector<Vec3d> corners(4);
+        for (int i = 0; i < 4; ++i) {
+            const double u = i == 1 || i == 2 ? 0.3 : -0.3;
+            const double v = i >= 2 ? 0.3 : -0.3;
+            Vec3d& corner = corners[static_cast<std::size_t>(i)];
+            corner[axis] = at;
+            corner[(axis + 1) % 3] = u;
+            corner[(axis + 2) % 3] = v;
+            corner.z += 0.8;
+        }
+        return corners;
+    };
+    const Image image = render_image(scene, camera_above(1.5, 0.4), kSize, kSize, with_rays(1, 64));
+    for (int row = 0; row < kSize; ++row) {
+        for (int column = 0; column < kSize; ++column) {
+            const Vec3d point = floor_point(column, row, kSize, 1.5);
+            double truth = form_factor(point, face(2, -0.3));
+            for (int axis = 0; axis < 2; ++axis) {
+                if (std::abs(point[axis]) > 0.3) {
+                    truth += form_factor(point, face(axis, std::copysign(0.3, point[axis])));
+                }
+            }
+            EXPECT_LE(std::abs(image.red(column, row) - 0.5 * truth), 1e-5) << point.x << ", " << point.y;
+        }
+    }
+}
+
+TEST(RenderShadows, InstancesCastTheShadowsOfBakedMeshes) {
+    const auto picture = [](bool instanced) {
+        Scene scene;
+        scene.add_mesh(floor_mesh(10));
+        Mesh box = cuboid({-0.5, -0.5, 0}, {0.5, 0.5, 1});
+        box.transforms = {frame_matrix({0.6, 0.2, 0}, {-0.2, 0.6, 0}, {0, 0, 0.9}, {0.1, 0, 0})};
+        if (instanced) {
+            box.transforms.push_back(frame_matrix({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {500, 0, 0}));
+        }
+        scene.add_mesh(box);
+        scene.add_sphere_light({1, 1, 2}, 0.2, Rgb(5));
+        return render_image(scene, camera_above(1.5), kSize, kSize, with_rays(4, 8));
+    };
+    const Image baked = picture(false);
+    const Image instanced = picture(true);
+    double sum = 0;
+    for (std::size_t i = 0; i < baked.values.size(); ++i) {
+        sum += std::abs(baked.values[i] - instanced.values[i]) / static_cast<double>(baked.values.size());
+    }
+    // Float rounding may flip single rays at edges.
+    EXPECT_LE(sum, 1e-5);
+}
+
+TEST(RenderShadows, ALampDoesNotBlockAndIsNotBlockedByWhatItIsMountedOn) {
+    // A ceiling lamp in the ceiling's own plane, and another lamp between it and the floor.
+    Scene scene;
+    scene.add_mesh(floor_mesh(10));
+    scene.add_mesh(floor_mesh(10, 2.1F));
+    const std::vector<Vec3d> light = {{-0.5, -0.5, 2.1}, {-0.5, 0.5, 2.1}, {0.5, 0.5, 2.1}, {0.5, -0.5, 2.1}};
+    scene.add_polygon_light(light, Rgb(2));
+    scene.add_polygon_light({{-5, -5, 1}, {5, -5, 1}, {5, 5, 1}, {-5, 5, 1}}, Rgb(1));  // shines up
+    const Image image = render_image(scene, camera_above(1.5, 0.9), kSize, kSize, with_rays(4, 16));
+    for (int row = 0; row < kSize; ++row) {
+        for (int column = 0; column < kSize; ++column) {
+            // Four camera rays average over a pixel: their second difference, below 1e-3 of the brightness.
+            const double truth = form_factor(floor_point(column, row, kSize, 1.5), light);
+            EXPECT_LE(std::abs(image.red(column, row) - truth), 1e-3 * 0.07 + 1e-5);
+        }
+    }
+}
+
+TEST(RenderShadows, AGlossyPenumbraFollowsTheLobe) {
+    // The ratio is weighted by the lobe: against a render with very many rays, errors must be unbiased.
+    Scene scene;
+    scene.add_mesh(floor_mesh(10, 0, Bsdf::ggx(0.5F, Rgb(0.5F))));
+    Mesh blocker = cuboid({-0.2, -0.2, 0.3}, {0.2, 0.2, 0.4});
+    scene.add_mesh(blocker);
+    scene.add_sphere_light({0.5, 1.5, 1.5}, 0.4, Rgb(3));
+    const Camera camera(look_at({0, -2, 1.5}, {0, 0, 0}), 0.6);
+    const Image usual = render_image(scene, camera, kSize, kSize, with_rays(16, 16));
+    const Image fine = render_image(scene, camera, kSize, kSize, with_rays(16, 1024));
+    double bias = 0;
+    double squares = 0;
+    double mean = 0;
+    for (int i = 0; i < kSize * kSize; ++i) {
+        const double error = usual.red(i % kSize, i / kSize) - fine.red(i % kSize, i / kSize);
+        bias += error / (kSize * kSize);
+        squares += error * error / (kSize * kSize);
+        mean += fine.red(i % kSize, i / kSize) / (kSize * kSize);
+    }
+    EXPECT_LE(std::abs(bias), 2e-3 * mean);
+    EXPECT_LE(std::sqrt(squares), 1e-2 * mean);
+}
+
+}  // namespace
+}  // namespace shlight
