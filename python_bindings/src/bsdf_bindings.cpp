@@ -146,6 +146,9 @@ void bind_bsdf(py::module_& m) {
             "ggx",
             [](float roughness, const AnyArray<float>& f0, std::optional<float> ior) {
                 const Rgb head_on = color("f0", f0);
+                if (ior && !(*ior > 1)) {  // 0 would mean none
+                    throw std::invalid_argument("ior must be greater than 1");
+                }
                 const py::gil_scoped_release release;
                 return Bsdf::ggx(roughness, head_on, ior.value_or(0.0F));
             },
