@@ -18,6 +18,7 @@ EXCLUDED = {
     "DATA_PT_spot",
     "NODE_DATA_PT_light",
     "RENDER_PT_freestyle",
+    "RENDER_PT_gpencil",
     "VIEWLAYER_PT_freestyle",
 }
 # Panels of EEVEE that edit what every engine reads.

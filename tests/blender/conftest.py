@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: MIT
+"""A studio: small scenes built in a fresh Blender file, rendered with shlight and with Cycles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from shlight.images import read_exr
+from shlight.metrics import mean_ratio, rel_mse
+
+bpy = pytest.importorskip("bpy", reason="tests/blender needs bpy: ./dev setup installs it")
+
+Image = NDArray[np.float32]
+SCENES = Path(__file__).resolve().parents[3] / "shared" / "scenes"
+
+
+class Studio:
+    """Builds objects in the current file and renders it."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.preferences.addon_enable(module="cycles")
+        self.scene = bpy.context.scene
+        self.prepare()
+
+    def prepare(self) -> None:
+        """Settings that make Cycles' picture a reference for direct light, and both pictures comparable."""
+        scene = self.scene = bpy.context.scene
+        render = scene.render
+        render.resolution_x, render.resolution_y, render.resolution_percentage = 96, 72, 100
+        render.image_settings.file_format = "OPEN_EXR"
+        render.image_settings.color_mode = "RGBA"
+        render.image_settings.color_depth = "32"
+        render.image_settings.exr_codec = "ZIP"
+        render.use_compositing = render.use_sequencer = False
+        cycles = scene.cycles
+        cycles.samples = 256
+        cycles.use_adaptive_sampling = cycles.use_denoising = False
+        cycles.max_bounces = 0
+        cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
+        cycles.light_sampling_threshold = 0.0
+        cycles.blur_glossy = 0.0
+        cycles.pixel_filter_type = "BOX"
+        cycles.filter_width = 1.0
+        scene.world = None
+
+    # --- objects
+
+    def link(self, name: str, data: Any, location: Sequence[float] = (0, 0, 0), **properties: Any) -> Any:
+        """A new object with `data` in the scene; `properties` are set on it."""
+        made = bpy.data.objects.new(name, data)
+        made.location = location
+        for key, value in properties.items():
+            setattr(made, key, value)
+        self.scene.collection.objects.link(made)
+        return made
+
+    def mesh(self, name: str, vertices: Any, faces: Any, material: Any = None, **properties: Any) -> Any:
+        """A mesh object of polygons."""
+        data = bpy.data.meshes.new(name)
+        data.from_pydata([tuple(v) for v in vertices], [], [tuple(f) for f in faces])
+        if material is not None:
+            data.materials.append(material)
+        return self.link(name, data, **properties)
+
+    def plane(self, size: float = 8.0, material: Any = None, name: str = "Plane", **properties: Any) -> Any:
+        """A square in the xy-plane, facing +Z."""
+        h = size / 2
+        return self.mesh(name, [(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)], [(0, 1, 2, 3)], material, **properties)
+
+    def box(self, size: Sequence[float] = (1, 1, 1), material: Any = None, name: str = "Box", **properties: Any) -> Any:
+        """A box around its origin."""
+        x, y, z = (0.5 * s for s in size)
+        vertices = [(i * x, j * y, k * z) for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]
+        faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+        return self.mesh(name, vertices, faces, material, **properties)
+
+    def ball(self, radius: float = 1.0, material: Any = None, smooth: bool = True, **properties: Any) -> Any:
+        """A sphere of 32 by 16 faces."""
+        segments, rings = 32, 16
+        phi = 2 * np.pi * np.arange(segments) / segments
+        theta = np.pi * np.arange(1, rings) / rings
+        x = radius * np.outer(np.sin(theta), np.cos(phi))
+        y = radius * np.outer(np.sin(theta), np.sin(phi))
+        z = radius * np.outer(np.cos(theta), np.ones(segments))
+        vertices = [*np.stack([x, y, z], -1).reshape(-1, 3), (0, 0, radius), (0, 0, -radius)]
+        top, bottom = len(vertices) - 2, len(vertices) - 1
+        faces: list[tuple[int, ...]] = []
+        for j in range(segments):
+            k = (j + 1) % segments
+            faces.append((top, j, k))
+            for i in range(rings - 2):
+                a, b = i * segments, (i + 1) * segments
+                faces.append((a + j, b + j, b + k, a + k))
+            last = (rings - 2) * segments
+            faces.append((bottom, last + k, last + j))
+        made = self.mesh("Ball", vertices, faces, material, **properties)
+        made.data.polygons.foreach_set("use_smooth", [smooth] * len(made.data.polygons))
+        return made
+
+    def lamp(self, kind: str, energy: float, location: Sequence[float], **properties: Any) -> Any:
+        """A lamp; properties of its data and of the object may be mixed."""
+        data = bpy.data.lights.new(kind.title(), kind)
+        data.energy = energy
+        made = self.link(kind.title(), data, location)
+        for key, value in properties.items():
+            setattr(data if hasattr(data, key) else made, key, value)
+        return made
+
+    def area(self, energy: float = 100.0, location: Sequence[float] = (1.5, -1, 3), **properties: Any) -> Any:
+        """An area lamp, looking down unless it is rotated."""
+        return self.lamp("AREA", energy, location, **properties)
+
+    def camera(self, location: Sequence[float] = (3, -6, 4), target: Sequence[float] = (0, 0, 0.4), **lens: Any) -> Any:
+        """The scene's camera, looking at `target`."""
+        from mathutils import Vector
+
+        made = self.link("Camera", bpy.data.cameras.new("Camera"), location)
+        made.rotation_euler = (Vector(target) - Vector(location)).to_track_quat("-Z", "Y").to_euler()
+        for key, value in lens.items():
+            setattr(made.data, key, value)
+        self.scene.camera = made
+        return made
+
+    def material(self, shader: str = "ShaderNodeBsdfDiffuse", name: str = "Material", **inputs: Any) -> Any:
+        """A material of one shader node; `inputs` are sockets by name, "_" for a space, other names its properties."""
+        made = bpy.data.materials.new(name)
+        made.use_nodes = True
+        tree = made.node_tree
+        tree.nodes.clear()
+        node = tree.nodes.new(shader)
+        output = tree.nodes.new("ShaderNodeOutputMaterial")
+        tree.links.new(node.outputs[0], output.inputs["Surface"])
+        for key, value in inputs.items():
+            socket = node.inputs.get(key.replace("_", " "))
+            if socket is None:
+                setattr(node, key, value)
+            elif isinstance(value, tuple) and socket.type == "RGBA":
+                socket.default_value = (*value, 1.0)
+            else:
+                socket.default_value = value
+        return made
+
+    def still_life(self) -> None:
+        """An asymmetric group of boxes on a plane, coloured, under a rectangular area lamp."""
+        self.plane(material=self.material(Color=(0.7, 0.7, 0.6)))
+        self.box((1, 1, 2), self.material(Color=(0.8, 0.2, 0.1)), location=(-1.2, 0.5, 1))
+        self.box((0.6, 1.4, 0.8), self.material(Color=(0.1, 0.3, 0.8)), location=(1.0, -0.6, 0.4))
+        self.box((0.4, 0.4, 0.4), self.material(Color=(0.2, 0.7, 0.2)), location=(0.2, 1.6, 0.2))
+        self.area(energy=150, shape="RECTANGLE", size=1.5, size_y=0.6, rotation_euler=(0.3, 0.4, 0.2))
+
+    # --- pictures
+
+    def render(self, engine: str) -> Image:
+        """The picture of `engine` (height, width, 4), row 0 on top."""
+        render = self.scene.render
+        render.engine = engine
+        path = self.folder / f"{engine.lower()}.exr"
+        render.filepath = str(path)
+        if engine == "CYCLES":
+            self.scene.cycles.seed = 7
+        bpy.ops.render.render(write_still=True)
+        return read_exr(path)
+
+    def compare(self, *, mean: float = 5e-3, error: float = 5e-3) -> tuple[Image, Image]:
+        """Renders with both engines and compares mean and relMSE; returns both pictures (shlight, Cycles)."""
+        image, reference = self.render("SHLIGHT"), self.render("CYCLES")
+        assert image.shape == reference.shape
+        ratio, mse = mean_ratio(image, reference), rel_mse(image, reference)
+        print(f"mean {100 * (ratio - 1):+.3f} %, relMSE {mse:.2e}")
+        assert abs(ratio - 1.0) <= mean
+        assert mse <= error
+        return image, reference
+
+
+@pytest.fixture(scope="session")
+def _addon() -> Iterator[None]:
+    import shlight_blender
+
+    shlight_blender.register()
+    yield
+    shlight_blender.unregister()
+
+
+@pytest.fixture
+def studio(_addon: None, tmp_path: Path) -> Studio:
+    """An empty file with the add-on registered."""
+    return Studio(tmp_path)
+
+
+@pytest.fixture
+def shared_scene(studio: Studio) -> Any:
+    """Opens a scene of the shared folder and prepares it for comparison; skips where the folder is absent."""
+
+    def open_scene(name: str) -> Studio:
+        path = SCENES / name
+        if not path.is_file():
+            pytest.skip(f"{path} is not there")
+        bpy.ops.wm.open_mainfile(filepath=str(path))
+        studio.prepare()
+        return studio
+
+    return open_scene
+
+
+QUARTER_TURN = math.pi / 2

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""The same add-on inside Debian's Blender 3.4: in the background against Cycles, and in a real window."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from shlight.images import read_exr
+from shlight.metrics import mean_ratio, rel_mse
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+BLENDER = shutil.which("blender")
+
+
+def blender_is_usable() -> str:
+    """Why Debian's Blender cannot run the add-on here; empty if it can."""
+    if BLENDER is None:
+        return "no program named blender is installed"
+    if sys.version_info[:2] != (3, 11):
+        return "the native module is built for another Python than Debian's Blender has"
+    found = subprocess.run(["/usr/bin/python3.11", "-c", "import numpy"], capture_output=True, check=False)
+    return "" if found.returncode == 0 else "Debian's python3-numpy is not installed"
+
+
+WHY_NOT = blender_is_usable()
+pytestmark = pytest.mark.skipif(bool(WHY_NOT), reason=WHY_NOT or "-")
+
+
+def run_blender(
+    *arguments: str, script: str, folder: Path, before: tuple[str, ...] = ()
+) -> subprocess.CompletedProcess[str]:
+    """Runs Blender with the source tree's add-on on its path and nothing of the user's configuration."""
+    environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTHON", "BLENDER"))}
+    environment |= {
+        "HOME": str(folder),
+        "LIBGL_ALWAYS_SOFTWARE": "1",
+    }
+    paths = [str(ROOT / "python_bindings"), str(ROOT / "blender_addon")]
+    command = [
+        *before, str(BLENDER), *arguments, "--factory-startup", "--python-exit-code", "1",
+        "--python-expr", f"import sys; sys.path[:0] = {paths!r}", "--python", str(HERE / script), "--", str(folder),
+    ]  # fmt: skip
+    return subprocess.run(command, capture_output=True, text=True, env=environment, timeout=240, check=False)
+
+
+@pytest.fixture(scope="module")
+def pictures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """Runs all background scenes once; returns what the script says of them."""
+    folder = tmp_path_factory.mktemp("debian")
+    done = run_blender("-b", script="debian_scenes.py", folder=folder)
+    assert done.returncode == 0, done.stdout + done.stderr
+    results: dict[str, Any] = json.loads((folder / "results.json").read_text())
+    return results
+
+
+@pytest.mark.parametrize("scene", ["lamps", "area", "smooth", "glossy", "metal", "blackbody", "curves", "border"])
+def test_pictures_against_cycles(pictures: dict[str, Any], scene: str) -> None:
+    result = pictures[scene]
+    assert result["messages"] == []
+    image, reference = read_exr(result["SHLIGHT"]), read_exr(result["CYCLES"])
+    assert image.shape == reference.shape
+    ratio, mse = mean_ratio(image, reference), rel_mse(image, reference)
+    print(f"mean {100 * (ratio - 1):+.3f} %, relMSE {mse:.2e}")
+    assert abs(ratio - 1.0) <= 5e-3
+    assert mse <= 1e-2
+
+
+def test_principled_names_its_diffuse_part(pictures: dict[str, Any]) -> None:
+    result = pictures["principled"]
+    assert len(result["messages"]) == 1
+    assert "the diffuse part is drawn as Diffuse BSDF" in result["messages"][0]
+    assert abs(mean_ratio(read_exr(result["SHLIGHT"]), read_exr(result["CYCLES"])) - 1.0) <= 0.05
+
+
+def test_errors_do_not_crash(pictures: dict[str, Any]) -> None:
+    assert "no light that shlight can render" in pictures["dark"]["error"]
+
+
+def test_window(tmp_path: Path) -> None:
+    """A real window: the engine selected, its panels drawn, the viewport in rendered mode, and a final render."""
+    if shutil.which("xvfb-run") is None:
+        pytest.skip("xvfb-run is not installed")
+    window = ("-noaudio", "--window-geometry", "0", "0", "1280", "800")
+    screen = ("xvfb-run", "-a", "-s", "-screen 0 1280x800x24 +extension GLX")
+    done = run_blender(*window, script="debian_window.py", folder=tmp_path, before=screen)
+    output = done.stdout + done.stderr
+    assert done.returncode == 0, output
+    assert "Traceback" not in output, output
+    drawn = json.loads((tmp_path / "drawn.json").read_text())
+    assert {"SHLIGHT_RENDER_PT_accuracy", "SHLIGHT_RENDER_PT_shadows", "SHLIGHT_LIGHT_PT_light"} <= set(drawn["panels"])
+    assert drawn["viewport_updates"] >= 1
+    assert read_exr(tmp_path / "final.exr")[..., :3].any()

@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: MIT
+"""The engine inside Blender: results, errors, cancelling, settings, panels, registering and leaving."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="tests/blender needs bpy: ./dev setup installs it")
+
+
+def simple_scene(studio: Any) -> None:
+    """A plane, a lamp and a camera, rendered quickly."""
+    studio.still_life()
+    studio.camera()
+    studio.scene.render.engine = "SHLIGHT"
+    studio.scene.shlight.pixel_samples = 1
+
+
+def test_errors_are_reported_and_something_is_saved(studio: Any) -> None:
+    studio.plane()
+    studio.camera()
+    studio.scene.render.engine = "SHLIGHT"
+    studio.scene.render.filepath = str(studio.folder / "dark.exr")
+    with pytest.raises(RuntimeError, match="no light that shlight can render"):
+        bpy.ops.render.render(write_still=True)
+
+
+def test_unexpected_exceptions_are_reported(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    import shlight
+
+    def fails(*args: Any, **named: Any) -> None:
+        raise MemoryError("no room")
+
+    simple_scene(studio)
+    monkeypatch.setattr(shlight, "render", fails)
+    with pytest.raises(RuntimeError, match="MemoryError: no room"):
+        studio.render("SHLIGHT")
+
+
+def test_cancelling_leaves_an_empty_picture(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    from shlight_blender.engine import ShlightRenderEngine
+
+    simple_scene(studio)
+    studio.scene.shlight.pixel_samples = 4096
+    asked = []
+
+    def progress(self: Any, fraction: float) -> bool:
+        asked.append(fraction)
+        return False
+
+    monkeypatch.setattr(ShlightRenderEngine, "_progress", progress)
+    assert not studio.render("SHLIGHT").any()
+    assert asked
+
+
+def test_progress_goes_from_0_to_1(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    from shlight_blender.engine import ShlightRenderEngine
+
+    simple_scene(studio)
+    studio.scene.shlight.pixel_samples = 64
+    seen: list[float] = []
+    original = ShlightRenderEngine._progress
+
+    def progress(self: Any, fraction: float) -> bool:
+        seen.append(fraction)
+        return original(self, fraction)
+
+    monkeypatch.setattr(ShlightRenderEngine, "_progress", progress)
+    studio.render("SHLIGHT")
+    assert seen
+    assert seen == sorted(seen)
+    assert min(seen) >= 0.0
+    assert max(seen) <= 1.0
+
+
+def test_every_view_layer_gets_its_own_picture(studio: Any) -> None:
+    simple_scene(studio)
+    scene = studio.scene
+    other = bpy.data.collections.new("Other")
+    scene.collection.children.link(other)
+    box = bpy.data.objects["Box"]
+    scene.collection.objects.unlink(box)
+    other.objects.link(box)
+    second = scene.view_layers.new("Second")
+    second.layer_collection.children["Other"].exclude = True
+    scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
+    scene.render.filepath = str(studio.folder / "layers.exr")
+    bpy.ops.render.render(write_still=True)
+    import OpenImageIO as oiio
+
+    source = oiio.ImageInput.open(scene.render.filepath)
+    assert source is not None
+    names, pixels = list(source.spec().channelnames), np.asarray(source.read_image("float"))
+    layers = [
+        pixels[..., [names.index(f"{layer.name}.Combined.{channel}") for channel in "RGBA"]]
+        for layer in scene.view_layers
+    ]
+    source.close()
+    assert all(layer[..., :3].any() for layer in layers)
+    assert not np.array_equal(*layers)
+
+
+def test_both_eyes_get_a_picture(studio: Any) -> None:
+    simple_scene(studio)
+    studio.scene.render.use_multiview = True
+    studio.scene.render.image_settings.views_format = "INDIVIDUAL"
+    studio.scene.render.filepath = str(studio.folder / "eyes.exr")
+    bpy.ops.render.render(write_still=True)
+    from shlight.images import read_exr
+
+    written = sorted(studio.folder.glob("eyes*.exr"))
+    assert len(written) == 2
+    assert all(read_exr(path)[..., :3].any() for path in written)
+
+
+def test_settings_reach_the_renderer(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    import shlight
+
+    simple_scene(studio)
+    scene = studio.scene
+    given: dict[str, Any] = {}
+    original = shlight.render
+
+    def render(*args: Any, **named: Any) -> Any:
+        given.update(named)
+        return original(*args, **named)
+
+    monkeypatch.setattr(shlight, "render", render)
+    scene.shlight.order = "12"
+    scene.shlight.tolerance = 0.02
+    scene.shlight.shadow_rays = 3
+    scene.render.threads_mode, scene.render.threads = "FIXED", 1
+    studio.render("SHLIGHT")
+    passed = {name: value for name, value in given.items() if name not in {"progress", "return_report"}}
+    assert callable(given["progress"])
+    assert passed == {
+        "order": 12,
+        "tolerance": pytest.approx(0.02),
+        "pixel_samples": 1,
+        "shadow_rays": 3,
+        "threads": 1,
+    }
+    scene.shlight.order, scene.shlight.use_shadows, scene.render.threads_mode = "AUTO", False, "AUTO"
+    studio.render("SHLIGHT")
+    assert (given["order"], given["shadow_rays"], given["threads"]) == ("auto", 0, 0)
+
+
+def test_order_takes_auto_and_every_number_up_to_64(studio: Any) -> None:
+    settings = studio.scene.shlight
+    for order in ("AUTO", "1", "7", "64"):
+        settings.order = order
+        assert settings.order == order
+    for wrong in ("0", "65", "auto"):
+        with pytest.raises(TypeError):
+            settings.order = wrong
+
+
+def test_shadows_can_be_switched_off(studio: Any) -> None:
+    simple_scene(studio)
+    shadowed = studio.render("SHLIGHT")
+    studio.scene.shlight.use_shadows = False
+    assert studio.render("SHLIGHT")[..., :3].mean() > 1.02 * shadowed[..., :3].mean()
+
+
+def test_settings_survive_saving(studio: Any) -> None:
+    studio.scene.shlight.order = "16"
+    path = str(studio.folder / "saved.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    assert bpy.context.scene.shlight.order == "16"
+
+
+def test_blenders_own_panels_and_unregistering(studio: Any) -> None:
+    import shlight_blender
+
+    def panels() -> set[str]:
+        return {
+            panel.__name__
+            for panel in bpy.types.Panel.__subclasses__()
+            if "SHLIGHT" in getattr(panel, "COMPAT_ENGINES", ()) and not panel.__name__.startswith("SHLIGHT")
+        }
+
+    joined = panels()
+    assert {"DATA_PT_lens", "EEVEE_MATERIAL_PT_surface", "EEVEE_WORLD_PT_surface", "RENDER_PT_format"} <= joined
+    assert not {"DATA_PT_light", "RENDER_PT_freestyle", "DATA_PT_EEVEE_light"} & joined
+    shlight_blender.unregister()
+    try:
+        assert panels() == set()
+        assert not hasattr(bpy.types.Scene, "shlight")
+        assert not hasattr(bpy.types, "SHLIGHT_RENDER_PT_accuracy")
+        with pytest.raises(TypeError):
+            bpy.context.scene.render.engine = "SHLIGHT"
+    finally:
+        shlight_blender.register()
+    assert panels() == joined
+
+
+def test_without_the_native_module_the_engine_says_so(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    import sys
+
+    simple_scene(studio)
+    for name in [name for name in sys.modules if name.startswith("shlight_blender.export")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "shlight", None)
+    with pytest.raises(RuntimeError, match="ModuleNotFoundError"):
+        studio.render("SHLIGHT")

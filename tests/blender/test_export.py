@@ -1,0 +1,318 @@
+# SPDX-License-Identifier: MIT
+"""The export: frames, instances, reports, and scenes that are broken in one way or another."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="tests/blender needs bpy: ./dev setup installs it")
+
+
+def export() -> Any:
+    """Exports the current scene as the viewport shows it."""
+    from shlight_blender.export import export_scene
+
+    return export_scene(bpy.context.evaluated_depsgraph_get())
+
+
+def messages() -> list[str]:
+    """Lines of the export's report."""
+    return export().report.lines(most=99)
+
+
+@pytest.fixture
+def calls(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, tuple[Any, ...], dict[str, Any]]]:
+    """Calls that the export makes on shlight.Scene, which are made for real too."""
+    import shlight
+
+    made: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = []
+
+    class RecordingScene(shlight.Scene):
+        pass
+
+    def recorded(name: str) -> Any:
+        def call(self: Any, *args: Any, **named: Any) -> Any:
+            made.append((name, args, named))
+            return getattr(shlight_scene, name)(self, *args, **named)
+
+        return call
+
+    shlight_scene = shlight.Scene
+    for name in ("add_mesh", "add_sphere_light", "add_polygon_light", "set_camera_window"):
+        setattr(RecordingScene, name, recorded(name))
+    monkeypatch.setattr(shlight, "Scene", RecordingScene)
+    return made
+
+
+def simple_scene(studio: Any) -> None:
+    """A plane, a lamp and a camera."""
+    studio.plane(material=studio.material())
+    studio.area()
+    studio.camera()
+
+
+# --- frames
+
+
+def test_frame_of_resolution_percentage_and_border(studio: Any) -> None:
+    from shlight_blender.export import Frame, frame_of
+
+    render = studio.scene.render
+    render.resolution_x, render.resolution_y, render.resolution_percentage = 101, 51, 50
+    assert frame_of(render) == Frame(50, 25, 0, 0, 50, 25)
+    render.use_border = True
+    render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.1, 0.5, 0.2, 1.0
+    assert frame_of(render) == Frame(50, 25, 5, 5, 25, 25)
+    assert (frame_of(render).width, frame_of(render).height) == (20, 20)
+
+
+# --- meshes
+
+
+def test_instances_share_one_mesh(studio: Any, calls: Any) -> None:
+    simple_scene(studio)
+    ball = studio.ball(0.2)
+    for i in range(5):
+        studio.link("Copy", ball.data, (i, 0, 1), scale=(1, 1, -1 if i % 2 else 1))
+    export()
+    (balls,) = [named for name, args, named in calls if name == "add_mesh" and len(args[0]) > 100]
+    assert balls["transforms"].shape == (6, 4, 4)
+
+
+def test_objects_with_modifiers_or_other_materials_are_meshes_of_their_own(studio: Any, calls: Any) -> None:
+    simple_scene(studio)
+    ball = studio.ball(0.2, studio.material())
+    studio.link("Bent", ball.data).modifiers.new("Twist", "SIMPLE_DEFORM").angle = 1.0
+    painted = studio.link("Painted", ball.data)
+    painted.material_slots[0].link = "OBJECT"
+    painted.material_slots[0].material = studio.material(Color=(1, 0, 0))
+    export()
+    assert [len(named["transforms"]) for name, args, named in calls if name == "add_mesh" and len(args[0]) > 100] == [
+        1,
+        1,
+        1,
+    ]
+
+
+def test_flat_meshes_have_no_normals_and_smooth_ones_have_unit_normals(studio: Any, calls: Any) -> None:
+    simple_scene(studio)
+    studio.ball(0.2, smooth=False)
+    studio.ball(0.3, smooth=True)
+    export()
+    normals = [named["normals"] for name, args, named in calls if name == "add_mesh" and len(args[0]) > 100]
+    assert [n is None for n in normals] == [True, False]
+    np.testing.assert_allclose(np.linalg.norm(normals[1], axis=2), 1.0, atol=1e-5)
+
+
+def test_broken_objects_do_no_harm(studio: Any) -> None:
+    simple_scene(studio)
+    expected = studio.render("SHLIGHT")
+    nan = float("nan")
+    studio.mesh("Nothing", [], [])
+    studio.mesh("Points", [(0, 0, 0), (1, 0, 0)], [])
+    studio.mesh("Nowhere", [(nan, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+    studio.box(location=(nan, 0, 0), name="Lost")
+    studio.box(scale=(0, 0, 0), location=(0, 0, 1), name="Point")
+    studio.box(scale=(0, 0, 1), location=(0, 0, 1), name="Line")
+    studio.ball(1e-30, location=(0, 0, 1))
+    studio.lamp("POINT", 0.0, (0, 0, 3))
+    studio.lamp("AREA", 10.0, (0, 0, 3), scale=(0, 1, 1))
+    studio.lamp("POINT", 10.0, (nan, 0, 3))
+    text = "\n".join(messages())
+    assert "Object 'Nowhere': some of its vertices are not finite; left out" in text
+    assert "Object 'Lost': its transform is not finite; left out" in text
+    assert "its area is 0" in text
+    assert "its power or its transform is not finite" in text
+    np.testing.assert_array_equal(studio.render("SHLIGHT"), expected)
+
+
+def test_object_with_one_axis_of_scale_0(studio: Any) -> None:
+    studio.plane(material=studio.material())
+    studio.plane(1.0, studio.material(Color=(0.8, 0.2, 0.2)), location=(0, 0, 0.6), scale=(1, 1.5, 0))
+    studio.area(150, (1.5, -1, 3), size=0.8)
+    studio.camera()
+    studio.compare()
+
+
+def test_degenerate_faces_of_a_smooth_mesh(studio: Any) -> None:
+    simple_scene(studio)
+    vertices = [(0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 0, 1), (0, 0, 1), (0, 0, 1)]
+    made = studio.mesh("Sliver", vertices, [(0, 1, 2), (3, 4, 5), (0, 1, 3)])
+    made.data.polygons.foreach_set("use_smooth", [True] * 3)
+    assert np.isfinite(studio.render("SHLIGHT")).all()
+
+
+# --- lamps
+
+
+@pytest.mark.parametrize("scale", [(1, 1, 1), (2, 3, 1), (-1, 1, 1), (1, 1, -1), (-1, -1, -1)])
+def test_corners_of_an_area_lamp(studio: Any, scale: tuple[float, float, float]) -> None:
+    from shlight_blender.export.lights import area_corners
+
+    lamp = studio.area(
+        10, (1, 2, 3), shape="RECTANGLE", size=0.5, size_y=0.25, rotation_euler=(0.3, 1.1, -0.4), scale=scale
+    )
+    bpy.context.view_layer.update()
+    to_world = np.array(lamp.matrix_world, dtype=np.float64)
+    corners = area_corners(lamp.data, to_world)
+    local = {(x, y) for x in (-0.25, 0.25) for y in (-0.125, 0.125)}
+    expected = np.array(sorted(tuple((to_world @ (x, y, 0, 1))[:3]) for x, y in local))
+    np.testing.assert_allclose(np.array(sorted(map(tuple, corners))), expected, atol=1e-6)
+    normal = np.cross(corners[1] - corners[0], corners[2] - corners[1])
+    assert normal @ -to_world[:3, 2] > 0, "the lamp shines along its -Z, counter-clockwise"
+
+
+def test_lamps_that_are_not_supported_are_named(studio: Any) -> None:
+    simple_scene(studio)
+    studio.lamp("SUN", 3, (0, 0, 3)).name = "Sol"
+    studio.lamp("SPOT", 30, (0, 0, 3)).name = "Torch"
+    studio.lamp("POINT", 30, (0, 0, 3), shadow_soft_size=0.0).name = "Dot"
+    studio.lamp("AREA", 30, (0, 0, 3), shape="DISK").name = "Dish"
+    studio.lamp("AREA", 30, (0, 0, 3), spread=math.radians(60)).name = "Beam"
+    studio.lamp("POINT", -5, (0, 0, 3), shadow_soft_size=0.1).name = "Dark"
+    studio.lamp("POINT", 5, (0, 0, 3), shadow_soft_size=0.1, use_shadow=False).name = "Ghost"
+    studio.lamp("POINT", 5, (0, 0, 3), shadow_soft_size=0.1, visible_camera=True)
+    text = "\n".join(messages())
+    for part in (
+        "Light 'Sol': sun lamps are not supported; left out",
+        "Light 'Torch': spot lamps are not supported; left out",
+        "Light 'Dot': radius 0 is not supported",
+        "Light 'Dish': round area lamps",
+        "Light 'Beam': a spread below 180°",
+        "Light 'Dark': negative light",
+        "Light 'Ghost': lamps without shadows",
+        "lamps seen by the camera",
+    ):
+        assert part in text
+
+
+def test_nodes_of_a_lamp(studio: Any) -> None:
+    studio.plane(material=studio.material())
+    lamp = studio.area(80, (0.5, -1, 2)).data
+    lamp.use_nodes = True
+    emission = next(node for node in lamp.node_tree.nodes if node.type == "EMISSION")
+    emission.inputs["Color"].default_value = (1.0, 0.5, 0.2, 1)
+    emission.inputs["Strength"].default_value = 1.7
+    studio.camera()
+    studio.compare()
+    assert messages() == []
+    noise = lamp.node_tree.nodes.new("ShaderNodeTexNoise")
+    lamp.node_tree.links.new(noise.outputs[0], emission.inputs["Color"])
+    assert [line for line in messages() if "Light 'Area', node 'Noise Texture'" in line]
+
+
+# --- reports
+
+
+def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any) -> None:
+    simple_scene(studio)
+    scene = studio.scene
+    scene.render.use_motion_blur = True
+    scene.camera.data.dof.use_dof = True
+    bpy.context.view_layer.use_pass_normal = True
+    scene.world = bpy.data.worlds.new("Sky")
+    scene.world.use_nodes = False
+    scene.world.color = (0.1, 0.1, 0.1)
+    studio.box(name="Hidden").visible_camera = False
+    studio.box(name="Catcher").is_shadow_catcher = True
+    studio.link("Smoke", bpy.data.volumes.new("Smoke"))
+    studio.link("Fur", bpy.data.hair_curves.new("Fur"))
+    hairy = studio.box(name="Hairy")
+    hairy.modifiers.new("Hair", "PARTICLE_SYSTEM").particle_system.settings.type = "HAIR"
+    linked = studio.box(name="Linked")
+    linked.light_linking.receiver_collection = bpy.data.collections.new("Receivers")
+    text = "\n".join(messages())
+    for part in (
+        "motion blur is not supported",
+        "Camera 'Camera': depth of field",
+        "only the Combined pass is written; not normal",
+        "World 'Sky': light from the world",
+        "Object 'Hidden': objects hidden from the camera",
+        "Object 'Catcher': shadow catchers",
+        "Object 'Smoke': volumes are not supported; left out",
+        "Object 'Fur': hair curves are not supported; left out",
+        "Object 'Hairy', particle system",
+        "Object 'Linked': light linking",
+    ):
+        assert part in text, text
+
+
+def test_a_supported_scene_has_an_empty_report(studio: Any) -> None:
+    studio.still_life()
+    studio.camera()
+    assert messages() == []
+
+
+def test_equal_findings_are_one_message() -> None:
+    from shlight_blender.report import ExportReport
+
+    report = ExportReport()
+    for place in ("a", "b", "a", "c", "d", "e"):
+        report.add(place, "odd")
+    report.add("a", "even")
+    assert report.lines() == ["a, b, c, d and 1 more: odd", "a: even"]
+    assert report.to_data()[0] == {"text": "odd", "places": ["a", "b", "c", "d", "e"]}
+    assert len(report) == 2
+
+
+@pytest.mark.parametrize("missing", ["camera", "light", "panoramic", "flat camera"])
+def test_scenes_that_cannot_be_rendered(studio: Any, missing: str) -> None:
+    from shlight_blender.export import ExportError
+
+    studio.plane()
+    if missing != "light":
+        studio.area()
+    if missing != "camera":
+        camera = studio.camera()
+        if missing == "panoramic":
+            camera.data.type = "PANO"
+        if missing == "flat camera":
+            camera.scale = (1, 0, 1)
+    words = {"camera": "no camera", "light": "no light", "panoramic": "pano cameras", "flat camera": "scale 0"}
+    with pytest.raises(ExportError, match=words[missing]):
+        export()
+
+
+def test_without_light_the_lamps_left_out_are_named(studio: Any) -> None:
+    from shlight_blender.export import ExportError
+
+    studio.plane()
+    studio.camera()
+    studio.lamp("SUN", 3, (0, 0, 3)).name = "Sol"
+    with pytest.raises(ExportError, match="Light 'Sol': sun lamps are not supported"):
+        export()
+
+
+# --- real scenes
+
+
+def test_cornell_box(shared_scene: Any) -> None:
+    studio = shared_scene("cornell_box.blend")
+    studio.scene.render.resolution_x = studio.scene.render.resolution_y = 96
+    # The emitter is 300 times as bright as the walls: what its edges cover counts.
+    studio.scene.shlight.pixel_samples = 256
+    studio.scene.shlight.shadow_rays = 2
+    studio.compare(error=1e-2)
+
+
+def test_lights_are_named(shared_scene: Any) -> None:
+    studio = shared_scene("lights.blend")
+    text = "\n".join(messages())
+    assert "Light 'Spot_Quadratic', Light 'Spot_Linear', Light 'Spot_Constant': spot lamps" in text
+    assert "Light 'Directional': sun lamps" in text
+    for lamp in [o for o in bpy.data.objects if o.type == "LIGHT" and o.data.type in {"SPOT", "SUN"}]:
+        lamp.hide_render = True
+    studio.compare(error=2e-2)  # small lamps: noise of Cycles
+
+
+def test_animated_character(shared_scene: Any) -> None:
+    studio = shared_scene("robot.blend")
+    studio.scene.frame_set(20)
+    studio.plane(30.0)
+    studio.area(3000, (4, -5, 8), size=2.0, rotation_euler=(0.6, 0.4, 0))
+    studio.camera((6, -9, 5), (0, 0, 2.2))
+    studio.compare(error=1e-2)

@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: MIT
+"""Materials: pictures against Cycles, and what of a node tree is named as not supported."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="tests/blender needs bpy: ./dev setup installs it")
+
+
+def shine_on(studio: Any, material: Any, *, sharp: bool = False) -> None:
+    """A smooth ball of `material` over a plane of the same, under two lamps.
+
+    A sharp reflection of an area lamp takes the highest orders and long; then both are point lamps.
+    """
+    studio.plane(material=material)
+    studio.ball(1.0, material, location=(0, 0, 1.1))
+    if sharp:
+        studio.lamp("POINT", 150, (1.5, -2, 3), shadow_soft_size=0.6)
+    else:
+        studio.area(150, (1.5, -2, 3), shape="RECTANGLE", size=1.2, size_y=0.8, rotation_euler=(-0.5, 0.3, 0))
+    studio.lamp("POINT", 80, (-2, -2, 2), shadow_soft_size=0.4, color=(0.6, 0.8, 1.0))
+    studio.camera()
+    studio.scene.render.resolution_x, studio.scene.render.resolution_y = 64, 48
+
+
+def messages_of(studio: Any) -> list[str]:
+    """Lines of the export's report."""
+    from shlight_blender.export import export_scene
+
+    return export_scene(bpy.context.evaluated_depsgraph_get()).report.lines(most=99)
+
+
+@pytest.mark.parametrize(
+    ("distribution", "roughness"), [("GGX", 0.4), ("GGX", 0.6), ("MULTI_GGX", 0.4), ("MULTI_GGX", 0.7)]
+)
+def test_glossy(studio: Any, distribution: str, roughness: float) -> None:
+    shine_on(
+        studio,
+        studio.material(
+            "ShaderNodeBsdfAnisotropic", Color=(0.9, 0.6, 0.3), Roughness=roughness, distribution=distribution
+        ),
+        sharp=roughness < 0.5,
+    )
+    studio.compare()
+    assert messages_of(studio) == []
+
+
+@pytest.mark.parametrize(
+    "inputs",
+    [
+        {"Base_Color": (0.8, 0.3, 0.2)},
+        {"Base_Color": (0.2, 0.5, 0.8), "Roughness": 0.25, "Specular_IOR_Level": 1.0, "IOR": 1.8},
+        {"Base_Color": (0.9, 0.7, 0.3), "Metallic": 1.0, "Roughness": 0.5},
+        {"Base_Color": (0.9, 0.7, 0.3), "Metallic": 1.0, "Roughness": 0.4, "distribution": "GGX"},
+        {"Base_Color": (0.9, 0.2, 0.3), "Metallic": 0.4, "Roughness": 0.5, "Specular_Tint": (1.0, 1.0, 1.0)},
+        {"Base_Color": (0.5, 0.6, 0.3), "Specular_IOR_Level": 0.0},
+        {"Base_Color": (0.1, 0.1, 0.1), "Specular_Tint": (1.0, 0.5, 0.2), "Roughness": 0.3},
+    ],
+)
+def test_principled(studio: Any, inputs: dict[str, Any]) -> None:
+    sharp = inputs.get("Roughness", 0.5) < 0.5
+    shine_on(studio, studio.material("ShaderNodeBsdfPrincipled", **inputs), sharp=sharp)
+    studio.compare()
+    assert messages_of(studio) == []
+
+
+def test_principled_emission(studio: Any) -> None:
+    studio.plane(material=studio.material())
+    studio.box(
+        (0.4, 0.4, 0.4),
+        studio.material(
+            "ShaderNodeBsdfPrincipled",
+            Emission_Color=(0.4, 0.7, 1.0),
+            Emission_Strength=9.0,
+            Base_Color=(0.5, 0.5, 0.5),
+        ),
+        location=(0, 0, 0.8),
+    )
+    studio.camera()
+    studio.compare()
+
+
+def test_mixed_and_added_shaders_in_groups(studio: Any) -> None:
+    """Mix of diffuse and glossy, plus emission, inside a node group with a reroute, a muted node and group inputs."""
+    group = bpy.data.node_groups.new("Group", "ShaderNodeTree")
+    group.interface.new_socket("Tint", in_out="INPUT", socket_type="NodeSocketColor")
+    group.interface.new_socket("Share", in_out="INPUT", socket_type="NodeSocketFloat")
+    group.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
+    new, link = group.nodes.new, group.links.new
+    inside, outside = new("NodeGroupInput"), new("NodeGroupOutput")
+    diffuse, glossy, emission = (new(f"ShaderNode{kind}") for kind in ("BsdfDiffuse", "BsdfAnisotropic", "Emission"))
+    mix, add, reroute, muted = (
+        new("ShaderNodeMixShader"),
+        new("ShaderNodeAddShader"),
+        new("NodeReroute"),
+        new("ShaderNodeGamma"),
+    )
+    glossy.distribution, glossy.inputs["Roughness"].default_value = "GGX", 0.5
+    emission.inputs["Strength"].default_value = 2.0
+    muted.inputs["Gamma"].default_value, muted.mute = 3.0, True
+    link(inside.outputs["Tint"], muted.inputs["Color"])
+    link(muted.outputs["Color"], diffuse.inputs["Color"])
+    link(inside.outputs["Share"], mix.inputs["Fac"])
+    link(diffuse.outputs[0], reroute.inputs[0])
+    link(reroute.outputs[0], mix.inputs[1])
+    link(glossy.outputs[0], mix.inputs[2])
+    link(mix.outputs[0], add.inputs[0])
+    link(emission.outputs[0], add.inputs[1])
+    link(add.outputs[0], outside.inputs["Shader"])
+
+    material = studio.material()
+    tree = material.node_tree
+    node, value = tree.nodes.new("ShaderNodeGroup"), tree.nodes.new("ShaderNodeValue")
+    node.node_tree = group
+    node.inputs["Tint"].default_value = (0.2, 0.6, 0.3, 1)
+    value.outputs[0].default_value = 0.35
+    tree.links.new(value.outputs[0], node.inputs["Share"])
+    tree.links.new(node.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
+    # Emissive, it lights the plane; few faces, for every one of them is a lamp.
+    studio.plane(material=studio.material(Color=(0.5, 0.5, 0.5)))
+    studio.box((1.5, 1.2, 1), material, location=(0, 0, 0.8))
+    studio.lamp("POINT", 150, (1.5, -2, 3), shadow_soft_size=0.6)
+    studio.camera()
+    studio.scene.render.resolution_x, studio.scene.render.resolution_y = 64, 48
+    studio.compare()
+    assert messages_of(studio) == []
+
+
+@pytest.mark.parametrize("temperature", [900.0, 1700.0, 3000.0, 6500.0, 15000.0])
+def test_blackbody_emission(studio: Any, temperature: float) -> None:
+    material = studio.material("ShaderNodeEmission", Strength=1.0)
+    tree = material.node_tree
+    blackbody = tree.nodes.new("ShaderNodeBlackbody")
+    blackbody.inputs["Temperature"].default_value = temperature
+    tree.links.new(blackbody.outputs[0], tree.nodes["Emission"].inputs["Color"])
+    studio.plane(20.0, material)
+    studio.camera()
+    studio.scene.render.resolution_x = studio.scene.render.resolution_y = 8
+    studio.scene.cycles.samples = 1
+    image, reference = studio.render("SHLIGHT")[4, 4, :3], studio.render("CYCLES")[4, 4, :3]
+    assert np.abs(image - reference).max() <= 5e-3 * reference.max()
+
+
+def test_blackbody_over_its_whole_range() -> None:
+    """Blender computes the colour of a lamp's temperature as Cycles computes the Blackbody node's."""
+    from shlight_blender.export.blackbody import blackbody_rgb
+
+    lamp = bpy.data.lights.new("Lamp", "POINT")
+    lamp.use_temperature = True
+    worst = 0.0
+    for temperature in [*range(800, 12001, 50), 12500]:
+        lamp.temperature = temperature
+        expected = np.array(lamp.temperature_color)
+        worst = max(worst, float(np.abs(blackbody_rgb(temperature) - expected).max() / expected.max()))
+    assert worst <= 2e-3
+    np.testing.assert_allclose(blackbody_rgb(100.0), blackbody_rgb(800.0))
+    bpy.data.lights.remove(lamp)
+
+
+def test_objects_without_material_or_nodes(studio: Any) -> None:
+    studio.plane()
+    plain = bpy.data.materials.new("Plain")
+    plain.diffuse_color = (0.7, 0.2, 0.4, 1.0)
+    studio.box((1, 1, 1), plain, location=(-1, 0, 0.5))
+    studio.box((1, 1, 1), location=(1, 0, 0.5)).data.materials.append(None)
+    studio.area(150)
+    studio.camera()
+    studio.compare()
+
+
+def test_ggx_albedo_is_the_integral_of_the_lobe() -> None:
+    """Albedo from visible normals against the core's own lobe summed over the hemisphere."""
+    import shlight
+    from shlight_blender.export.microfacets import ggx_albedo
+
+    cosines, albedos, _ = ggx_albedo(0.6)
+    nodes, weights = np.polynomial.legendre.leggauss(200)
+    z, phi = np.meshgrid(0.5 * (nodes + 1), 2 * np.pi * (np.arange(400) + 0.5) / 400, indexing="ij")
+    r = np.sqrt(1 - z * z)
+    wi = np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1)
+    lobe = shlight.Bsdf.ggx(0.6, 1.0)
+    for index in (8, 16, 30):
+        c = cosines[index]
+        wo = np.broadcast_to((np.sqrt(1 - c * c), 0.0, c), wi.shape)
+        values = np.asarray(lobe.evaluate(wi, wo)).reshape(*z.shape, -1)[..., 0]
+        integral = float((values * (0.5 * weights)[:, None]).sum() * 2 * np.pi / 400)
+        assert albedos[index] == pytest.approx(integral, rel=5e-3)
+
+
+# --- what is not supported
+
+
+def linked_noise(material: Any, socket: Any) -> Any:
+    """Links a noise texture to a socket of the material's tree."""
+    noise = material.node_tree.nodes.new("ShaderNodeTexNoise")
+    material.node_tree.links.new(noise.outputs[0], socket)
+    return noise
+
+
+def test_textures_are_named_and_the_sockets_value_used(studio: Any) -> None:
+    studio.area()
+    studio.camera()
+    material = studio.material(name="Wood", Color=(0.25, 0.5, 0.75))
+    linked_noise(material, material.node_tree.nodes["Diffuse BSDF"].inputs["Color"]).label = "Grain"
+    studio.plane(material=material)
+    (line,) = messages_of(studio)
+    assert "Material 'Wood'" in line
+    assert "node 'Grain'" in line
+    assert "'Color' of 'Diffuse BSDF'" in line
+    assert "[0.25, 0.5 , 0.75]" in line
+
+
+@pytest.mark.parametrize(
+    ("shader", "inputs", "named"),
+    [
+        ("ShaderNodeBsdfDiffuse", {"Roughness": 0.5}, "'Roughness' is not supported"),
+        ("ShaderNodeBsdfGlass", {}, "Glass BSDF is not supported"),
+        ("ShaderNodeBsdfTransparent", {}, "Transparent BSDF is not supported; drawn black"),
+        ("ShaderNodeSubsurfaceScattering", {}, "Subsurface Scattering is not supported"),
+        ("ShaderNodeBsdfAnisotropic", {"Anisotropy": 0.3}, "'Anisotropy' is not supported"),
+        ("ShaderNodeBsdfAnisotropic", {"distribution": "BECKMANN"}, "distribution BECKMANN is not supported"),
+        ("ShaderNodeBsdfAnisotropic", {"Roughness": 0.0, "distribution": "GGX"}, "roughness below"),
+        ("ShaderNodeBsdfPrincipled", {"Alpha": 0.5}, "'Alpha' is not supported; 1 is used"),
+        ("ShaderNodeBsdfPrincipled", {"Transmission_Weight": 1.0}, "'Transmission Weight' is not supported"),
+        ("ShaderNodeBsdfPrincipled", {"Coat_Weight": 0.5}, "'Coat Weight' is not supported"),
+        ("ShaderNodeBsdfPrincipled", {"Sheen_Weight": 0.5}, "'Sheen Weight' is not supported"),
+        ("ShaderNodeBsdfPrincipled", {"Subsurface_Weight": 0.5}, "'Subsurface Weight' is not supported"),
+        ("ShaderNodeBsdfPrincipled", {"Diffuse_Roughness": 0.5}, "'Diffuse Roughness' is not supported"),
+        ("ShaderNodeEmission", {"Strength": -1.0}, "negative Strength"),
+    ],
+)
+def test_unsupported_shaders_are_named(studio: Any, shader: str, inputs: dict[str, Any], named: str) -> None:
+    studio.area()
+    studio.camera()
+    studio.plane(material=studio.material(shader, name="Odd", **inputs))
+    assert [line for line in messages_of(studio) if named in line and "Material 'Odd'" in line], messages_of(studio)
+    studio.scene.render.resolution_percentage = 25
+    assert np.isfinite(studio.render("SHLIGHT")).all()
+
+
+def test_normal_maps_volumes_and_displacement_are_named(studio: Any) -> None:
+    studio.area()
+    studio.camera()
+    material = studio.material("ShaderNodeBsdfPrincipled", name="Rough")
+    tree = material.node_tree
+    output = tree.get_output_node("CYCLES")
+    for kind, socket in (
+        ("ShaderNodeBump", tree.nodes["Principled BSDF"].inputs["Normal"]),
+        ("ShaderNodeVolumeScatter", output.inputs["Volume"]),
+        ("ShaderNodeDisplacement", output.inputs["Displacement"]),
+    ):
+        tree.links.new(tree.nodes.new(kind).outputs[0], socket)
+    linked_noise(material, tree.nodes["Principled BSDF"].inputs["Coat Weight"])
+    studio.plane(material=material)
+    text = "\n".join(messages_of(studio))
+    for part in ("'Normal'", "volume is", "displacement is", "'Coat Weight'"):
+        assert part in text
+    assert text.count("\n") == 3
+
+
+def test_material_without_output_is_black(studio: Any) -> None:
+    studio.area()
+    studio.camera()
+    empty = studio.material(name="Empty")
+    empty.node_tree.nodes.clear()
+    studio.plane(material=empty)
+    assert any("no Material Output" in line for line in messages_of(studio))
+    assert studio.render("SHLIGHT")[..., :3].max() == 0.0
