@@ -60,8 +60,9 @@ def _check(options: Options) -> None:
         with Path(options.scene).open("rb"):  # missing, a folder, or not readable: an OSError with its name
             pass
     out = Path(options.out)
-    if out.exists() and not out.is_dir():
-        raise PreviewError(f"{out} is a file; --out wants a folder", 2)
+    nearest = next(path for path in (out, *out.parents) if path.exists())
+    if not nearest.is_dir():
+        raise PreviewError(f"{nearest} is a file; --out wants a folder", 2)
     if importlib.util.find_spec("bpy") is None:
         raise PreviewError("the Python module bpy is missing: pip install 'shlight[blender]'", 1)
 

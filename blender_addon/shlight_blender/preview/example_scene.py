@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A small scene built by code: matt and glossy things, an area lamp, a sphere lamp and a glowing bar."""
+"""A small scene built by code: matt and glossy things, an area lamp, a sphere lamp and a glowing strip."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ def build_example_scene() -> Any:
     grey = _material("matt grey", (0.55, 0.55, 0.55), 0.6, specular=0.0)
     _mesh(scene, "floor", _grid, grey, (0, 0, 0), scale=(7, 7, 1))
     _mesh(scene, "wall", _grid, grey, (0, 3.2, 3), scale=(7, 3, 1), rotation=(math.pi / 2, 0, 0))
-    monkey = _material("orange plastic", (0.80, 0.24, 0.04), 0.35)
+    monkey = _material("orange plastic", (0.80, 0.24, 0.04), 0.5)
     turned = (math.radians(-12), 0, math.radians(14))
     head = _mesh(
         scene, "Suzanne", _monkey, monkey, (0.0, 0.1, 1.0), scale=(1.1, 1.1, 1.1), rotation=turned, smooth=True
     )
     head.modifiers.new("smooth", "SUBSURF").render_levels = 2
-    gold = _material("rough gold", (0.92, 0.62, 0.25), 0.3, metallic=1.0)
+    gold = _material("rough gold", (0.92, 0.62, 0.25), 0.5, metallic=1.0)
     _mesh(scene, "gold sphere", _sphere, gold, (-2.1, 0.3, 0.75), scale=(0.75,) * 3, smooth=True)
-    blue = _material("blue lacquer", (0.03, 0.12, 0.42), 0.2)
+    blue = _material("blue plastic", (0.03, 0.12, 0.42), 0.55)
     _mesh(scene, "blue box", _cube, blue, (2.1, 0.7, 0.7), scale=(0.6, 0.6, 0.7), rotation=(0, 0, 0.5))
     green = _material("matt green", (0.12, 0.40, 0.14), 0.8, specular=0.0)
     _mesh(scene, "green ball", _sphere, green, (1.3, -1.2, 0.4), scale=(0.4,) * 3, smooth=True)
@@ -43,7 +43,7 @@ def build_example_scene() -> Any:
     bulb = _lamp(scene, "bulb", "POINT", 60.0, (0.75, 0.85, 1.0), (3.0, -1.6, 2.6))
     bulb.shadow_soft_size = 0.35
     glow = _emission("glow", (1.0, 0.45, 0.25), 9.0)
-    _mesh(scene, "glowing bar", _cube, glow, (0.9, 2.6, 0.12), scale=(1.0, 0.07, 0.07))
+    _mesh(scene, "glowing strip", _grid, glow, (0.9, 2.6, 0.16), scale=(1.0, 0.12, 1.0), rotation=(1.2, 0, 0))
 
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     camera.data.lens = 45.0

@@ -89,7 +89,7 @@ def difference_limit(difference: npt.NDArray[np.float64]) -> float:
 
 def _seconds(figures: dict[str, Any]) -> str:
     seconds = figures["seconds"]
-    return f"{seconds:.0f} s" if seconds >= 20 else f"{seconds:.2g} s"
+    return f"{seconds:.0f} s" if seconds >= 20 else f"{seconds:.2f} s"
 
 
 def _caption(panel: Any, title: str, numbers: str) -> None:

@@ -58,7 +58,6 @@ def run_worker(options: Options, folder: Path, progress: Progress) -> dict[str, 
 def _environment(folder: Path) -> dict[str, str]:
     """Blender reads no preferences of the user, and puts its temporary files where they are removed with the rest."""
     return os.environ | {
-        "PYTHONPATH": os.pathsep.join(path for path in sys.path if path),
         "BLENDER_USER_RESOURCES": str(folder / "blender"),
         "TMPDIR": str(folder),
     }
