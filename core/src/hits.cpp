@@ -18,13 +18,12 @@ Vec3d perpendicular(const Vec3d& n) {
 
 }  // namespace
 
-ShadingFrame shading_frame(const SurfacePoint& surface, const Vec3d& towards_viewer) {
-    const Vec3d& z = surface.shading_normal;
-    const Vec3d across = glm::cross(z, towards_viewer);
+ShadingFrame shading_frame(const Vec3d& position, const Vec3d& normal, const Vec3d& towards_viewer) {
+    const Vec3d across = glm::cross(normal, towards_viewer);
     const double length = glm::length(across);
     // Seen head-on the azimuth is free, and every lobe is round.
-    const Vec3d y = length > 1e-12 ? across / length : perpendicular(z);
-    return {surface.position, glm::cross(y, z), y, z};
+    const Vec3d y = length > 1e-12 ? across / length : perpendicular(normal);
+    return {position, glm::cross(y, normal), y, normal};
 }
 
 float view_cosine(const ShadingFrame& frame, const Vec3d& towards_viewer) {
@@ -44,7 +43,7 @@ void Hits::clear() {
 
 void Hits::add(const SurfacePoint& surface, const Vec3d& towards_viewer, const Rgb& emission,
                std::uint32_t sample_index) {
-    frame.push_back(shading_frame(surface, towards_viewer));
+    frame.push_back(shading_frame(surface.position, surface.shading_normal, towards_viewer));
     cos_theta_o.push_back(view_cosine(frame.back(), towards_viewer));
     shadow_origin.push_back(surface.position + surface.error * surface.geometric_normal);
     error.push_back(surface.error);

@@ -24,8 +24,8 @@ struct ShadingFrame {
     }
 };
 
-/// The frame of a surface seen from direction `towards_viewer` (unit).
-ShadingFrame shading_frame(const SurfacePoint& surface, const Vec3d& towards_viewer);
+/// The frame of a point with a normal, seen from direction `towards_viewer`; both unit vectors.
+ShadingFrame shading_frame(const Vec3d& position, const Vec3d& normal, const Vec3d& towards_viewer);
 
 /// Cosine of the angle between normal and viewer. A smooth normal may turn away from a grazing viewer; there the
 /// surface is shaded as seen at a grazing angle.

@@ -32,6 +32,14 @@ Vec3d doubled_area(const std::vector<Vec3d>& vertices) {
     return sum;
 }
 
+Vec3d mean(const std::vector<Vec3d>& vertices) {
+    Vec3d sum(0);
+    for (const Vec3d& v : vertices) {
+        sum += v;
+    }
+    return sum / static_cast<double>(vertices.size());
+}
+
 void merge_repeated(std::vector<Vec3d>& vertices, double extent) {
     const auto same = [extent](const Vec3d& a, const Vec3d& b) { return glm::length(a - b) <= kRepeated * extent; };
     vertices.erase(std::unique(vertices.begin(), vertices.end(), same), vertices.end());
@@ -41,10 +49,7 @@ void merge_repeated(std::vector<Vec3d>& vertices, double extent) {
 }
 
 void flatten(std::vector<Vec3d>& vertices, const Vec3d& normal, double extent) {
-    Vec3d center(0);
-    for (const Vec3d& v : vertices) {
-        center += v / static_cast<double>(vertices.size());
-    }
+    const Vec3d center = mean(vertices);
     for (Vec3d& v : vertices) {
         const double height = glm::dot(v - center, normal);
         if (!(std::abs(height) <= kPlanar * extent)) {
@@ -146,11 +151,14 @@ PolygonLight make_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance
         reject("vertices: the polygon crosses itself");
     }
     double largest = 0;
+    double radius = 0;
+    const Vec3d center = mean(vertices);
     for (const Vec3d& v : vertices) {
         largest = std::max(largest, largest_component(v));
+        radius = std::max(radius, glm::length(v - center));
     }
     const double error = kRayRounding * (largest + extent);
-    return {std::move(vertices), std::move(triangles), normal, radiance, two_sided, error};
+    return {std::move(vertices), std::move(triangles), normal, radiance, two_sided, center, radius, error};
 }
 
 }  // namespace shlight

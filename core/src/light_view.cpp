@@ -61,6 +61,22 @@ bool is_seen(const PolygonLight& light, const ShadingFrame& frame, double error)
                        [&](const Vec3d& v) { return glm::dot(frame.z, v - frame.origin) > 0; });
 }
 
+bool is_seen(const Light& light, const ShadingFrame& frame, double error) {
+    if (const auto* sphere = std::get_if<SphereLight>(&light)) {
+        return view(*sphere, frame).has_value();
+    }
+    return is_seen(std::get<PolygonLight>(light), frame, error);
+}
+
+double least_distance(const Light& light, const Vec3d& position) {
+    if (const auto* sphere = std::get_if<SphereLight>(&light)) {
+        return std::max(0.0, glm::length(sphere->center - position) - sphere->radius);
+    }
+    const auto& polygon = std::get<PolygonLight>(light);
+    return std::max(std::abs(glm::dot(polygon.normal, position - polygon.center)),
+                    glm::length(polygon.center - position) - polygon.radius);
+}
+
 void light_coefficients(const CapView& cap, int order, float* coefficients) {
     cap_coefficients(cap_of(cap), order, true, coefficients);
 }

@@ -28,6 +28,11 @@ std::optional<CapView> view(const SphereLight& light, const ShadingFrame& frame)
 /// and some vertex is above the horizon. A hit in the plane, within rounding, gets nothing: a polygon is dark edge-on,
 /// and a surface on which a light lies flat is not lit at random.
 bool is_seen(const PolygonLight& light, const ShadingFrame& frame, double error);
+/// The same for any light.
+bool is_seen(const Light& light, const ShadingFrame& frame, double error);
+
+/// At least this far away lies every point of the light; 0 where that is not known.
+double least_distance(const Light& light, const Vec3d& position);
 
 /// Coefficients of the light at one hit, order² values.
 void light_coefficients(const CapView& cap, int order, float* coefficients);

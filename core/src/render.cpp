@@ -11,6 +11,7 @@
 #include "checks.h"
 #include "hits.h"
 #include "material_orders.h"
+#include "shading_points.h"
 #include "shlight/sampling.h"
 #include "unshadowed.h"
 #include "visibility.h"
@@ -66,11 +67,13 @@ class TileRenderer {
     explicit TileRenderer(const Picture& picture)
         : picture_(&picture),
           unshadowed_(picture.lobe_stride),
-          shadowed_(picture.scene->rays(), picture.settings, picture.materials) {}
+          shadowed_(picture.scene->rays(), picture.settings, picture.materials, picture.lobe_stride) {}
 
     void render(const Tile& tile, std::span<float> image) {
         trace_camera_rays(tile);
-        groups_.assign(hits_, picture_->materials, picture_->lobe_stride, report_);
+        points_.assign(hits_, picture_->materials, picture_->lobe_stride, picture_->scene->lights(),
+                       picture_->settings.tolerance, report_);
+        unshadowed_.group(points_);
         add_lights(tile);
         write_pixels(tile, image);
     }
@@ -91,7 +94,7 @@ class TileRenderer {
     std::vector<Ray> rays_;
     std::vector<RayHit> ray_hits_;
     Hits hits_;
-    HitGroups groups_;
+    ShadingPoints points_;
     Unshadowed unshadowed_;
     ShadowedLight shadowed_;
     std::vector<std::uint32_t> pixel_seeds_;
@@ -132,7 +135,7 @@ void TileRenderer::add_lights(const Tile& tile) {
     const auto lights = picture_->scene->lights();
     for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
         const auto block = lights.subspan(first, std::min(kLightBlock, lights.size() - first));
-        unshadowed_.compute(hits_, groups_, picture_->materials, block);
+        unshadowed_.compute(points_, picture_->materials, block);
         for (std::size_t i = 0; i < block.size(); ++i) {
             pixel_seeds_.clear();
             for (int row = tile.top; row < tile.bottom; ++row) {
@@ -142,7 +145,7 @@ void TileRenderer::add_lights(const Tile& tile) {
                     pixel_seeds_.push_back(hash(pixel, static_cast<std::uint32_t>(first + i)));
                 }
             }
-            shadowed_.add(block[i], unshadowed_.light(i), pixel_seeds_, hits_);
+            shadowed_.add(block[i], unshadowed_.light(i), points_.of_hit, pixel_seeds_, hits_);
         }
     }
 }

@@ -42,9 +42,10 @@ Ray shadow_ray(const Vec3d& origin, const Vec3d& target) {
 }  // namespace
 
 ShadowedLight::ShadowedLight(const RayTracer& tracer, const RenderSettings& settings,
-                             std::span<const OrderedMaterial> materials)
+                             std::span<const OrderedMaterial> materials, std::size_t lobe_stride)
     : tracer_(&tracer),
       materials_(materials),
+      lobe_stride_(lobe_stride),
       ray_count_(static_cast<std::uint32_t>(settings.shadow_rays)),
       pixel_samples_(static_cast<std::uint32_t>(settings.pixel_samples)) {
     const std::uint32_t least = (kLeastFirstPoints + pixel_samples_ - 1) / pixel_samples_;
@@ -52,21 +53,29 @@ ShadowedLight::ShadowedLight(const RayTracer& tracer, const RenderSettings& sett
 }
 
 void ShadowedLight::add(const Light& light, std::span<const float> unshadowed,
-                        std::span<const std::uint32_t> pixel_seeds, Hits& hits) {
+                        std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds,
+                        Hits& hits) {
+    unshadowed_ = unshadowed;
+    point_of_hit_ = point_of_hit;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
-        add_pixel(light, unshadowed, pixel_seeds[pixel], hits.pixel_begin[pixel], hits.pixel_begin[pixel + 1], hits);
+        add_pixel(light, pixel_seeds[pixel], hits.pixel_begin[pixel], hits.pixel_begin[pixel + 1], hits);
     }
 }
 
-void ShadowedLight::add_pixel(const Light& light, std::span<const float> unshadowed, std::uint32_t seed,
-                              std::size_t begin, std::size_t end, Hits& hits) {
+bool ShadowedLight::is_lit(const Light& light, const Hits& hits, std::size_t hit) const {
+    bool any = false;
+    for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+        any = any || unshadowed(hit, lobe) > 0;
+    }
+    // The hit itself may see less of the light than the point that it shares.
+    return any && is_seen(light, hits.frame[hit], hits.error[hit]);
+}
+
+void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits) {
     lit_.clear();
     for (std::size_t hit = begin; hit < end; ++hit) {
-        for (std::size_t value = hit; value < unshadowed.size(); value += hits.size()) {
-            if (unshadowed[value] > 0) {
-                lit_.push_back(hit);
-                break;
-            }
+        if (is_lit(light, hits, hit)) {
+            lit_.push_back(hit);
         }
     }
     if (lit_.empty()) {
@@ -83,11 +92,11 @@ void ShadowedLight::add_pixel(const Light& light, std::span<const float> unshado
         }
         if (blocked > 0) {
             trace(light, hits, second, seed);
-            shade(light, unshadowed, std::array{first, second}, hits);
+            shade(light, std::array{first, second}, hits);
             return;
         }
     }
-    shade(light, unshadowed, {}, hits);
+    shade(light, {}, hits);
 }
 
 void ShadowedLight::trace(const Light& light, const Hits& hits, const Phase& phase, std::uint32_t seed) {
@@ -146,15 +155,14 @@ float ShadowedLight::visible_share(const LobeShape& shape, const Vec3d& towards_
     return all > 0 ? static_cast<float>(seen / all) : 0.0F;
 }
 
-void ShadowedLight::shade(const Light& light, std::span<const float> unshadowed, std::span<const Phase> phases,
-                          Hits& hits) const {
+void ShadowedLight::shade(const Light& light, std::span<const Phase> phases, Hits& hits) const {
     for (std::size_t i = 0; i < lit_.size(); ++i) {
         const std::size_t hit = lit_[i];
         const float cosine = hits.cos_theta_o[hit];
         const Vec3d towards_viewer(std::sqrt(1.0 - static_cast<double>(cosine) * cosine), 0, cosine);
         const auto& lobes = materials_[hits.material[hit]].lobes();
         for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
-            const float value = unshadowed[lobe * hits.size() + hit];
+            const float value = unshadowed(hit, lobe);
             if (!(value > 0)) continue;
             const LobeShape& shape = lobes[lobe].lobe().fit->shape();
             const float share = phases.empty() ? 1.0F : visible_share(shape, towards_viewer, i, phases);

@@ -24,12 +24,13 @@ namespace shlight {
 /// Keeps its memory from light to light; one per thread.
 class ShadowedLight {
   public:
-    ShadowedLight(const RayTracer& tracer, const RenderSettings& settings, std::span<const OrderedMaterial> materials);
+    ShadowedLight(const RayTracer& tracer, const RenderSettings& settings, std::span<const OrderedMaterial> materials,
+                  std::size_t lobe_stride);
 
-    /// Adds one light to the hits' radiance. unshadowed: see Unshadowed::light. pixel_seeds: one per pixel, other for
-    /// each light.
-    void add(const Light& light, std::span<const float> unshadowed, std::span<const std::uint32_t> pixel_seeds,
-             Hits& hits);
+    /// Adds one light to the hits' radiance. unshadowed: see Unshadowed::light; point_of_hit: the shading point of each
+    /// hit; pixel_seeds: one per pixel, other for each light.
+    void add(const Light& light, std::span<const float> unshadowed, std::span<const std::uint32_t> point_of_hit,
+             std::span<const std::uint32_t> pixel_seeds, Hits& hits);
     std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
@@ -39,20 +40,27 @@ class ShadowedLight {
         std::size_t offset;
     };
 
-    void add_pixel(const Light& light, std::span<const float> unshadowed, std::uint32_t seed, std::size_t begin,
-                   std::size_t end, Hits& hits);
+    void add_pixel(const Light& light, std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits);
+    /// The value of one lobe at a hit.
+    float unshadowed(std::size_t hit, std::size_t lobe) const {
+        return unshadowed_[lobe * (unshadowed_.size() / lobe_stride_) + point_of_hit_[hit]];
+    }
+    bool is_lit(const Light& light, const Hits& hits, std::size_t hit) const;
     void trace(const Light& light, const Hits& hits, const Phase& phase, std::uint32_t seed);
     float visible_share(const LobeShape& shape, const Vec3d& towards_viewer, std::size_t lit_index,
                         std::span<const Phase> phases) const;
-    void shade(const Light& light, std::span<const float> unshadowed, std::span<const Phase> phases, Hits& hits) const;
+    void shade(const Light& light, std::span<const Phase> phases, Hits& hits) const;
 
     const RayTracer* tracer_;
     std::span<const OrderedMaterial> materials_;
+    std::size_t lobe_stride_;
     std::uint32_t ray_count_, first_ray_count_;
     std::uint32_t pixel_samples_;
     std::uint64_t rays_traced_ = 0;
 
-    std::vector<std::size_t> lit_;  // hits of the pixel that the light reaches if nothing is between
+    std::span<const float> unshadowed_;            // of the light being added
+    std::span<const std::uint32_t> point_of_hit_;  // likewise
+    std::vector<std::size_t> lit_;                 // hits of the pixel that the light reaches if nothing is between
     std::vector<Ray> rays_;
     std::vector<Vec3f> directions_;  // in the hits' frames
     std::vector<float> weights_;

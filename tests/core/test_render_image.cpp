@@ -100,6 +100,22 @@ TEST(RenderImage, PolygonLightShinesToItsFrontOnly) {
     }
 }
 
+TEST(RenderImage, PolygonLightCutByTheHorizon) {
+    // A wall of light through the floor: what lies below does not count.
+    const std::vector<Vec3d> wall = {{3, -1, -2}, {3, -1, 1}, {3, 1, 1}, {3, 1, -2}};
+    const std::vector<Vec3d> above = {{3, -1, 0}, {3, -1, 1}, {3, 1, 1}, {3, 1, 0}};
+    Scene scene;
+    scene.add_mesh(floor_mesh(10));
+    scene.add_polygon_light(wall, Rgb(1));
+    const Image image = render_image(scene, camera_above(kHalf), kSize, kSize, analytic_settings());
+    for (int row = 0; row < kSize; ++row) {
+        for (int column = 0; column < kSize; ++column) {
+            const double truth = 0.5 * form_factor(floor_point(column, row, kSize, kHalf), {0, 0, 1}, above);
+            expect_close(image.red(column, row), truth, 0.3);
+        }
+    }
+}
+
 TEST(RenderImage, LampsAreNotSeen) {
     Scene scene;
     scene.add_mesh(floor_mesh(0.5F));
@@ -310,6 +326,38 @@ TEST(RenderImage, FixedAndAutomaticOrdersAgree) {
         // ∫ |error| ≤ tolerance · ‖f·cos‖ · √Ω, with three lobes, ‖f·cos‖ < 1 and Ω < 0.5.
         EXPECT_LE(std::abs(exact.values[i] - automatic.values[i]), 3e-3);
     }
+}
+
+TEST(RenderImage, SharedShadingPointsStayWithinTheTolerance) {
+    // With a fixed order the tolerance decides only how many hits of a pixel share a point; 1e-12: none. Curved and
+    // flat, glossy and diffuse, lights near and far.
+    const Bsdf material = Bsdf::ggx(0.5F, Rgb(0.9F)) + Bsdf::lambert(Rgb(0.3F));
+    Scene scene;
+    Mesh ball = sphere_mesh({0, 0, 0.5}, 0.5, 48, true);
+    ball.bsdfs = {material};
+    scene.add_mesh(floor_mesh(10, 0, material));
+    scene.add_mesh(ball);
+    scene.add_sphere_light({0.9, -0.5, 0.4}, 0.3, Rgb(1));
+    scene.add_polygon_light({{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}}, Rgb(1));
+    const Camera camera(look_at({0, -3, 2}, {0, 0, 0}), 0.7);
+    RenderSettings settings = analytic_settings();
+    settings.pixel_samples = 16;
+    settings.order = 24;
+    const Image shared = render_image(scene, camera, 48, 48, settings);
+    settings.tolerance = 1e-12;
+    const Image single = render_image(scene, camera, 48, 48, settings);
+    double brightest = 0;
+    double largest = 0;
+    double squares = 0;
+    for (std::size_t i = 0; i < single.values.size(); ++i) {
+        brightest = std::max<double>(brightest, single.values[i]);
+        const double error = std::abs(shared.values[i] - single.values[i]);
+        largest = std::max(largest, error);
+        squares += error * error / static_cast<double>(single.values.size());
+    }
+    EXPECT_LE(largest, 1e-3 * brightest);
+    EXPECT_LE(std::sqrt(squares), 2e-4 * brightest);
+    EXPECT_GT(largest, 0) << "no hits were shared";
 }
 
 TEST(RenderImage, GlossyFloorAgainstCubature) {

@@ -26,7 +26,9 @@ struct PolygonLight {
     Vec3d normal;                     ///< unit, towards the side that sees the vertices counter-clockwise
     Rgb radiance;
     bool two_sided;
-    double error;  ///< bound of the distance between this plane and a mesh face that float rays meet in its place
+    Vec3d center;   ///< mean of the vertices
+    double radius;  ///< largest distance of a vertex from it
+    double error;   ///< bound of the distance between this plane and a mesh face that float rays meet in its place
 };
 
 using Light = std::variant<SphereLight, PolygonLight>;

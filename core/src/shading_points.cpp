@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "shading_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "light_view.h"
+
+namespace shlight {
+namespace {
+
+Vec3d towards_viewer(const Hits& hits, std::size_t hit) {
+    const double cosine = hits.cos_theta_o[hit];
+    return std::sqrt(1 - cosine * cosine) * hits.frame[hit].x + cosine * hits.frame[hit].z;
+}
+
+double nearest(std::span<const Light> lights, const Vec3d& position) {
+    double distance = std::numeric_limits<double>::infinity();
+    for (const Light& light : lights) {
+        distance = std::min(distance, least_distance(light, position));
+    }
+    return distance;
+}
+
+}  // namespace
+
+int ShadingPoints::largest_order(std::size_t point) const {
+    const auto first = orders_.begin() + static_cast<std::ptrdiff_t>(point * lobe_stride_);
+    return *std::max_element(first, first + static_cast<std::ptrdiff_t>(lobe_stride_));
+}
+
+void ShadingPoints::clear() {
+    frame.clear();
+    cos_theta_o.clear();
+    error.clear();
+    material.clear();
+    of_hit.clear();
+    orders_.clear();
+    members_.clear();
+}
+
+bool ShadingPoints::joins(const Hits& hits, std::size_t hit, std::size_t point) const {
+    if (material[point] != hits.material[hit]) {
+        return false;
+    }
+    // The point's frame is that of its first hit until all are known.
+    const Members& members = members_[point];
+    const double difference = glm::length(hits.frame[hit].z - frame[point].z) +
+                              glm::length(towards_viewer(hits, hit) - members.first_towards_viewer) +
+                              glm::length(hits.frame[hit].origin - frame[point].origin) / members.nearest_light;
+    return difference <= members.spread;
+}
+
+void ShadingPoints::start(const Hits& hits, std::size_t hit, std::span<const OrderedMaterial> materials,
+                          std::span<const Light> lights, double tolerance) {
+    const OrderedMaterial& lobes = materials[hits.material[hit]];
+    orders_.resize(orders_.size() + lobe_stride_, 0);
+    const auto orders = std::span(orders_).last(lobe_stride_).first(lobes.lobes().size());
+    const bool met = lobes.choose_orders(hits.cos_theta_o[hit], orders);
+    frame.push_back(hits.frame[hit]);
+    cos_theta_o.push_back(hits.cos_theta_o[hit]);
+    error.push_back(hits.error[hit]);
+    material.push_back(hits.material[hit]);
+    const double spread = 8 * std::sqrt(tolerance) / (largest_order(size() - 1) + 4);
+    members_.push_back({towards_viewer(hits, hit), spread, nearest(lights, hits.frame[hit].origin), met, Vec3d(0),
+                        Vec3d(0), Vec3d(0), 0});
+}
+
+void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t point) {
+    Members& members = members_[point];
+    members.position += hits.frame[hit].origin;
+    members.normal += hits.frame[hit].z;
+    members.towards_viewer += towards_viewer(hits, hit);
+    ++members.count;
+    of_hit.push_back(static_cast<std::uint32_t>(point));
+}
+
+void ShadingPoints::finish(std::size_t point, RenderReport& report) {
+    const Members& members = members_[point];
+    if (members.count > 1) {
+        const Vec3d viewer = glm::normalize(members.towards_viewer);
+        frame[point] = shading_frame(members.position / static_cast<double>(members.count),
+                                     glm::normalize(members.normal), viewer);
+        cos_theta_o[point] = view_cosine(frame[point], viewer);
+    }
+    report.over_tolerance += members.met ? 0 : members.count;
+    for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+        const int lobe_order = order(point, lobe);
+        report.order_counts[static_cast<std::size_t>(lobe_order)] += lobe_order > 0 ? members.count : 0;
+    }
+}
+
+void ShadingPoints::assign(const Hits& hits, std::span<const OrderedMaterial> materials, std::size_t lobe_stride,
+                           std::span<const Light> lights, double tolerance, RenderReport& report) {
+    clear();
+    lobe_stride_ = lobe_stride;
+    for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
+        const std::size_t first_point = size();
+        for (std::size_t hit = hits.pixel_begin[pixel]; hit < hits.pixel_begin[pixel + 1]; ++hit) {
+            std::size_t point = first_point;
+            while (point < size() && !joins(hits, hit, point)) {
+                ++point;
+            }
+            if (point == size()) {
+                start(hits, hit, materials, lights, tolerance);
+            }
+            add_member(hits, hit, point);
+        }
+        for (std::size_t point = first_point; point < size(); ++point) {
+            finish(point, report);
+        }
+    }
+}
+
+}  // namespace shlight
