@@ -11,8 +11,10 @@ namespace {
 
 using std::numbers::pi;
 
-/// Below this solid angle the spherical triangle's angles lose digits, and the weight of points spread over its area
-/// hardly varies.
+/// A triangle whose corners' distances differ by less than this factor is sampled by area, which costs no angles: the
+/// weight of its points varies by at most about the factor's cube.
+constexpr double kEvenDistances = 1.6;
+/// Below this solid angle the spherical triangle's angles lose digits.
 constexpr double kSmallest = 1e-5;
 
 double solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
@@ -32,29 +34,38 @@ double angle_between(const Vec3d& a, const Vec3d& b) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-/// Arvo 1995, "Stratified sampling of spherical triangles": the first coordinate cuts off a triangle (a, b, c') of that
-/// share of the area, the second picks a point on the arc from b to c'.
-Vec3d in_spherical_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c, const glm::dvec2& point) {
-    const Vec3d ab = glm::normalize(glm::cross(a, b));
-    const Vec3d bc = glm::normalize(glm::cross(b, c));
-    const Vec3d ca = glm::normalize(glm::cross(c, a));
-    const double alpha = angle_between(ab, -ca);
-    const double beta = angle_between(bc, -ab);
-    const double gamma = angle_between(ca, -bc);
-    const double area = point.x * (alpha + beta + gamma - pi);
-    const double s = std::sin(area - alpha);
-    const double t = std::cos(area - alpha);
-    const double u = t - std::cos(alpha);
-    const double v = s + std::sin(alpha) * glm::dot(a, b);
-    const double q =
-        std::clamp(((v * t - u * s) * std::cos(alpha) - v) / ((v * s + u * t) * std::sin(alpha)), -1.0, 1.0);
-    const Vec3d corner = q * a + std::sqrt(1 - q * q) * orthogonal(c, a);
-    const Vec3d chord = corner - b;
-    const double drop = point.y * 0.5 * glm::dot(chord, chord);  // 1 - z of Arvo's text
-    return (1 - drop) * b + std::sqrt(std::max(0.0, drop * (2 - drop))) * orthogonal(corner, b);
+bool has_even_distances(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    const auto [nearest, farthest] = std::minmax({glm::dot(a, a), glm::dot(b, b), glm::dot(c, c)});
+    return farthest < kEvenDistances * kEvenDistances * nearest;
 }
 
 }  // namespace
+
+SphericalTriangle::SphericalTriangle(const Vec3d& corner_a, const Vec3d& corner_b, const Vec3d& corner_c)
+    : a_(glm::normalize(corner_a)), b_(glm::normalize(corner_b)) {
+    const Vec3d c = glm::normalize(corner_c);
+    const Vec3d ab = glm::normalize(glm::cross(a_, b_));
+    const Vec3d bc = glm::normalize(glm::cross(b_, c));
+    const Vec3d ca = glm::normalize(glm::cross(c, a_));
+    alpha_ = angle_between(ab, -ca);
+    cos_alpha_ = std::cos(alpha_);
+    sin_alpha_ = std::sin(alpha_);
+    area_ = alpha_ + angle_between(bc, -ab) + angle_between(ca, -bc) - pi;
+    towards_c_ = orthogonal(c, a_);
+}
+
+Vec3d SphericalTriangle::sample(const glm::dvec2& point) const {
+    const double angle = point.x * area_ - alpha_;
+    const double s = std::sin(angle);
+    const double t = std::cos(angle);
+    const double u = t - cos_alpha_;
+    const double v = s + sin_alpha_ * glm::dot(a_, b_);
+    const double q = std::clamp(((v * t - u * s) * cos_alpha_ - v) / ((v * s + u * t) * sin_alpha_), -1.0, 1.0);
+    const Vec3d corner = q * a_ + std::sqrt(1 - q * q) * towards_c_;
+    const Vec3d chord = corner - b_;
+    const double drop = point.y * 0.5 * glm::dot(chord, chord);  // 1 - z of Arvo's text
+    return (1 - drop) * b_ + std::sqrt(std::max(0.0, drop * (2 - drop))) * orthogonal(corner, b_);
+}
 
 CapSampler::CapSampler(const CapView& cap) : cap_(cap), axis_(0, 0, 1), up_(1, 0, 0), across_(0, 1, 0), widest_(pi) {
     if (cap.kind == CapView::Kind::inside) {
@@ -132,11 +143,17 @@ void PolygonSampler::add_clipped(const Vec3d& a, const Vec3d& b, const Vec3d& c)
         }
     }
     for (std::size_t i = 2; i < count; ++i) {
-        const Piece piece = {kept[0], kept[i - 1], kept[i], solid_angle(kept[0], kept[i - 1], kept[i])};
-        if (piece.solid_angle > 0) {
-            pieces_.push_back(piece);
-            total_ += piece.solid_angle;
+        Piece piece = {kept[0], kept[i - 1], kept[i], solid_angle(kept[0], kept[i - 1], kept[i]), 0, std::nullopt};
+        if (!(piece.solid_angle > 0)) {
+            continue;
         }
+        if (piece.solid_angle < kSmallest || has_even_distances(piece.a, piece.b, piece.c)) {
+            piece.area = 0.5 * glm::length(glm::cross(piece.b - piece.a, piece.c - piece.a));
+        } else {
+            piece.spherical.emplace(piece.a, piece.b, piece.c);
+        }
+        total_ += piece.solid_angle;
+        pieces_.push_back(piece);
     }
 }
 
@@ -151,18 +168,16 @@ LightSample PolygonSampler::sample(glm::dvec2 point) const {
         ++piece;
     }
     point.x = std::min(left / piece->solid_angle, 1.0);
-    const auto& [a, b, c, solid_angle] = *piece;
-    if (solid_angle < kSmallest) {
-        const double root = std::sqrt(point.x);
-        const Vec3d target = (1 - root) * a + root * ((1 - point.y) * b + point.y * c);
-        const double distance = glm::length(target);
-        const double area = 0.5 * glm::length(glm::cross(b - a, c - a));
-        // dω = |cos at the light| dA / distance²
-        const double density = area * std::abs(height_) / (distance * distance * distance);
-        return {target / distance, distance, total_ / solid_angle * density};
+    if (piece->spherical) {
+        const Vec3d direction = piece->spherical->sample(point);
+        return {direction, height_ / glm::dot(normal_, direction), total_};
     }
-    const Vec3d direction = in_spherical_triangle(glm::normalize(a), glm::normalize(b), glm::normalize(c), point);
-    return {direction, height_ / glm::dot(normal_, direction), total_};
+    const double root = std::sqrt(point.x);
+    const Vec3d target = (1 - root) * piece->a + root * ((1 - point.y) * piece->b + point.y * piece->c);
+    const double distance = glm::length(target);
+    // dω = |cos at the light| dA / distance²
+    const double density = piece->area * std::abs(height_) / (distance * distance * distance);
+    return {target / distance, distance, total_ / piece->solid_angle * density};
 }
 
 }  // namespace shlight

@@ -6,6 +6,7 @@
 // evenly spread points is the integral of g over the solid angle of the light above the horizon.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -37,7 +38,21 @@ class CapSampler {
     double widest_;                      // azimuth about the axis, from `up`, where the light ends
 };
 
-/// Uniform in solid angle within each spherical triangle (Arvo 1995); small triangles are sampled by area.
+/// Points uniform in solid angle (Arvo 1995, "Stratified sampling of spherical triangles"): the first coordinate cuts
+/// off a triangle (a, b, c') of that share of the area, the second picks a point on the arc from b to c'.
+class SphericalTriangle {
+  public:
+    /// Corners of any length > 0.
+    SphericalTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c);
+    Vec3d sample(const glm::dvec2& point) const;
+
+  private:
+    Vec3d a_, b_;
+    Vec3d towards_c_;  // at right angles to a
+    double area_, alpha_, cos_alpha_, sin_alpha_;
+};
+
+/// Uniform in solid angle over each triangle; triangles that are about equally far everywhere are sampled by area.
 class PolygonSampler {
   public:
     /// Sets the light and the hit; keeps its memory from one to the next.
@@ -49,6 +64,8 @@ class PolygonSampler {
     struct Piece {
         Vec3d a, b, c;
         double solid_angle;
+        double area;                                 // where it is sampled by area
+        std::optional<SphericalTriangle> spherical;  // where it is not
     };
     void add_clipped(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
