@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Noise-free direct light from area lights with spherical harmonics.
 
-Coefficients are real, orthonormal, without Condon–Shortley phase, stored at index l² + l + m; an order n means the bands
-l = 0 … n-1. Lights and materials are given in the shading frame: the shading point is the origin, z the surface normal.
-Scenes are given in the world frame, in metres; radiance is linear RGB [W m⁻² sr⁻¹].
+Coefficients are real, orthonormal, without Condon–Shortley phase, stored at index l² + l + m; an order n means the
+bands l = 0 … n-1. Lights and materials are given in the shading frame: the shading point is the origin, z the surface
+normal. Scenes are given in the world frame, in metres; radiance is linear RGB [W m⁻² sr⁻¹].
 """
 
 from shlight._load import load_core

@@ -138,9 +138,7 @@ def shade(light_coefficients: ArrayLike, bsdf_coefficients: ArrayLike, *, thread
     bsdf = _array("bsdf_coefficients", bsdf_coefficients, dtype, core_axes=1)
     order = _order_of("light_coefficients", light)
     if bsdf.shape[-1] != order * order:
-        raise ValueError(
-            f"bsdf_coefficients has {bsdf.shape[-1]} coefficients, light_coefficients has {order * order}"
-        )
+        raise ValueError(f"bsdf_coefficients has {bsdf.shape[-1]} coefficients, light_coefficients has {order * order}")
     shape = _broadcast(light_coefficients=light.shape[:-1], bsdf_coefficients=bsdf.shape[:-1])
     size = order * order
     flat = _core.shade(_rows(light, shape, size), _rows(bsdf, shape, size), order, _threads(threads))
