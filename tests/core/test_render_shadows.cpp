@@ -110,13 +110,14 @@ TEST(RenderShadows, NothingLeaksIntoAClosedRoom) {
 /// A half plane x < 0 at height 1 between the floor and a rectangle light at height 2.
 struct HalfPlane {
     std::vector<Vec3d> light = {{-0.4, -0.5, 2}, {-0.4, 0.5, 2}, {0.6, 0.5, 2}, {0.6, -0.5, 2}};
-    Scene scene;
+    Scene occluders, scene;
 
     HalfPlane() {
-        scene.add_mesh(floor_mesh(10));
+        occluders.add_mesh(floor_mesh(10));
         Mesh blocker = floor_mesh(20, 1);
         blocker.transforms = {frame_matrix({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-20, 0, 0})};
-        scene.add_mesh(blocker);
+        occluders.add_mesh(blocker);
+        scene = occluders;
         scene.add_polygon_light(light, Rgb(2));
     }
 
@@ -167,6 +168,30 @@ TEST(RenderShadows, PenumbraOfAHalfPlane) {
     EXPECT_LE(usual[0], 0.13 * 8 * std::pow(256, -0.75));
     EXPECT_LE(usual[1], 0.13 * 1 * std::pow(256, -0.75));
     EXPECT_LE(usual[2], 2e-4);  // adaptive rays must not darken or brighten the rim
+}
+
+TEST(RenderShadows, APenumbraCountsEachPartOfTheLightByItsSolidAngle) {
+    // A long strip, near at one end and far at the other: equal parts of its area count very unequally.
+    HalfPlane setup;
+    for (const double width : {1e-6, 0.2}) {
+        setup.light = {{-8, -width, 1.2}, {-8, width, 1.2}, {0.6, width, 1.2}, {0.6, -width, 1.2}};
+        Scene scene = setup.occluders;
+        scene.add_polygon_light(setup.light, Rgb(2));
+        const Image image = render_image(scene, HalfPlane::camera(), kSize, kSize, with_rays(1, 4096));
+        for (int row = kSize / 2 - 1; row < kSize / 2 + 1; ++row) {
+            for (int column = 0; column < kSize; ++column) {
+                const Vec3d point = floor_point(column, row, kSize, 1.5);
+                const double whole = form_factor(point, setup.light);
+                // The line over the edge at height 1 meets height 1.2 at x = -0.2 point.x.
+                std::vector<Vec3d> seen = setup.light;
+                for (Vec3d& v : seen) {
+                    v.x = std::max(v.x, -0.2 * point.x);
+                }
+                const double truth = form_factor(point, seen);
+                EXPECT_LE(std::abs(image.red(column, row) - truth), whole * 4 * std::pow(4096, -0.75) + 1e-5 * whole);
+            }
+        }
+    }
 }
 
 TEST(RenderShadows, RaysAreSparedWhereAllAgree) {

@@ -1,0 +1,336 @@
+# SPDX-License-Identifier: MIT
+"""shlight.Scene and shlight.render from Python: closed forms, conventions, arguments, progress, cancelling, threads."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import shlight
+
+FLOOR = np.array([[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]], dtype=np.float32)
+QUAD = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
+
+
+def from_above(scene: shlight.Scene, half_size: float = 2.0) -> None:
+    """Column j shows x, row i shows -y of the floor."""
+    to_world = np.eye(4)
+    to_world[2, 3] = 10
+    scene.set_camera_window(to_world, -half_size, half_size, -half_size, half_size, orthographic=True)
+
+
+def lit_floor(**mesh: Any) -> shlight.Scene:
+    scene = shlight.Scene()
+    scene.add_mesh(FLOOR, QUAD, **mesh)
+    scene.add_sphere_light([0.5, 0.25, 1.5], 0.5, [4, 2, 1])
+    from_above(scene)
+    return scene
+
+
+def floor_points(size: int, half_size: float = 2.0) -> NDArray[np.float64]:
+    centers = (2 * (np.arange(size) + 0.5) / size - 1) * half_size
+    x, y = np.meshgrid(centers, -centers)
+    return np.stack([x, y, np.zeros_like(x)], axis=-1)
+
+
+def test_lambert_floor_under_a_sphere_light() -> None:
+    image = shlight.render(lit_floor(), 16, 16, pixel_samples=1)
+    way = np.array([0.5, 0.25, 1.5]) - floor_points(16)
+    distance = np.linalg.norm(way, axis=-1)
+    expected = 0.8 * (0.5 / distance) ** 2 * way[..., 2] / distance
+    assert image.dtype == np.float32
+    assert image.shape == (16, 16, 4)
+    assert image.flags.owndata
+    assert image.flags.c_contiguous
+    # Float rounding of hits and coefficients.
+    np.testing.assert_allclose(image[..., :3], expected[..., None] * [4, 2, 1], rtol=0, atol=1e-5)
+    np.testing.assert_array_equal(image[..., 3], 1)
+
+
+def test_image_size_need_not_be_square() -> None:
+    image, report = shlight.render(lit_floor(), 7, 3, pixel_samples=2, return_report=True)
+    assert image.shape == (3, 7, 4)
+    assert report.hits == 7 * 3 * 2
+    assert report.order_shares == {2: 1.0}
+    assert report.over_tolerance == 0
+    assert report.shadow_rays > 0
+    assert report.render_seconds > 0
+
+
+def test_no_lights_is_black_and_background_is_transparent() -> None:
+    scene = shlight.Scene()
+    scene.add_mesh(FLOOR[:, :] / 18, QUAD)  # x and y from -0.5 to 0.5
+    from_above(scene, 1.0)
+    image = shlight.render(scene, 8, 8, pixel_samples=1)
+    np.testing.assert_array_equal(image[..., :3], 0)
+    expected = np.zeros((8, 8))
+    expected[2:6, 2:6] = 1
+    np.testing.assert_array_equal(image[..., 3], expected)
+
+
+def test_row_0_is_on_top() -> None:
+    scene = shlight.Scene()
+    scene.add_mesh(FLOOR + np.array([0, 9, 0]), QUAD, emission=[1, 2, 3])  # y > 0
+    from_above(scene)
+    image = shlight.render(scene, 4, 4, pixel_samples=1)
+    np.testing.assert_array_equal(image[:2], np.broadcast_to([1, 2, 3, 1], (2, 4, 4)))
+    np.testing.assert_array_equal(image[2:], 0)
+
+
+def test_field_of_view_is_horizontal() -> None:
+    scene = shlight.Scene()
+    scene.add_mesh(np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1]]) * [0.49, 0.24, 1], QUAD)
+    scene.set_camera(np.eye(4), 2 * np.arctan(0.5))
+    image = shlight.render(scene, 200, 100, pixel_samples=1, shadow_rays=0)
+    assert image[..., 3].sum() == 196 * 96
+
+
+def test_emission_per_material_and_instances() -> None:
+    scene = shlight.Scene()
+    transforms = np.array([np.eye(4), np.eye(4)])
+    transforms[:, :3, :3] /= 18
+    transforms[0, :3, 3] = [-1, 0, 0]
+    transforms[1, :3, 3] = [1, 0, 0]
+    transforms[1, 0, 0] *= -1  # mirrored
+    scene.add_mesh(
+        FLOOR,
+        QUAD,
+        bsdf=[shlight.Bsdf.lambert(0.5), shlight.Bsdf.lambert(0.1)],
+        emission=[[1, 0, 0], [0, 1, 0]],
+        material_indices=[0, 1],
+        transforms=transforms,
+    )
+    from_above(scene)
+    image = shlight.render(scene, 64, 64, pixel_samples=1)
+    # Triangle 0 lies to the lower right of the diagonal, in the mirrored instance to the lower left.
+    assert image[36, 64 // 4 + 4, 0] == 1
+    assert image[27, 64 // 4 - 4, 1] == 1
+    assert image[36, 3 * 64 // 4 - 4, 0] == 1
+    assert image[27, 3 * 64 // 4 + 4, 1] == 1
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("index", [np.int32, np.int64, np.uint32])
+def test_array_types_do_not_matter(dtype: Any, index: Any) -> None:
+    scene = shlight.Scene()
+    # Fortran order and a strided view as well.
+    scene.add_mesh(np.asfortranarray(FLOOR.astype(dtype)), np.repeat(QUAD, 2, axis=1)[:, ::2].astype(index))
+    scene.add_sphere_light((0.5, 0.25, 1.5), 0.5, np.array([4, 2, 1], dtype=dtype))
+    from_above(scene)
+    np.testing.assert_array_equal(shlight.render(scene, 8, 8), shlight.render(lit_floor(), 8, 8))
+
+
+def test_normals_per_vertex_and_per_corner_agree() -> None:
+    normals = np.array([[1, 0, 2], [0, 1, 2], [-1, 0, 2], [0, -1, 2]], dtype=np.float32)
+    by_vertex = shlight.render(lit_floor(normals=normals), 8, 8)
+    by_corner = shlight.render(lit_floor(normals=normals[QUAD]), 8, 8)
+    np.testing.assert_array_equal(by_vertex, by_corner)
+    assert np.abs(by_vertex - shlight.render(lit_floor(), 8, 8)).max() > 1e-3
+
+
+def test_threads_do_not_change_a_bit() -> None:
+    scene = lit_floor(bsdf=shlight.Bsdf.ggx(0.8, 0.5))
+    scene.add_mesh(FLOOR / 20 + [0, 0, 0.5], QUAD)
+    one = shlight.render(scene, 33, 21, threads=1)
+    np.testing.assert_array_equal(one, shlight.render(scene, 33, 21, threads=2))
+    np.testing.assert_array_equal(one, shlight.render(scene, 33, 21))
+    assert np.isfinite(one).all()
+
+
+def test_what_was_built_is_kept_until_something_is_added() -> None:
+    scene = lit_floor()
+    _, first = shlight.render(scene, 4, 4, return_report=True)
+    image, second = shlight.render(scene, 4, 4, return_report=True)
+    assert first.build_seconds > 0
+    assert second.build_seconds == 0
+    scene.add_sphere_light([0, 0, 2], 0.5, [1, 1, 1])
+    brighter, third = shlight.render(scene, 4, 4, return_report=True)
+    assert third.build_seconds > 0
+    assert (brighter[..., :3] > image[..., :3]).all()
+
+
+def expect_value_error(name: str, call: Callable[[], Any]) -> None:
+    with pytest.raises(ValueError, match=name):
+        call()
+
+
+NAN = float("nan")
+RENDER_ERRORS: list[tuple[str, dict[str, Any]]] = [
+    ("width", {"width": 0}),
+    ("width", {"width": 10**12}),
+    ("height", {"height": -1}),
+    ("height", {"width": 10**5, "height": 10**5}),
+    ("order", {"order": 0}),
+    ("order", {"order": 65}),
+    ("order", {"order": 10**30}),
+    ("order", {"order": "low"}),
+    ("order", {"order": None}),
+    ("order", {"order": 2.5}),
+    ("tolerance", {"tolerance": 0}),
+    ("tolerance", {"tolerance": NAN}),
+    ("pixel_samples", {"pixel_samples": 0}),
+    ("shadow_rays", {"shadow_rays": -1}),
+    ("shadow_rays", {"shadow_rays": 10**10}),
+    ("threads", {"threads": -1}),
+    ("progress", {"progress": 5}),
+]
+
+
+@pytest.mark.parametrize(("name", "change"), RENDER_ERRORS)
+def test_bad_render_arguments(name: str, change: dict[str, Any]) -> None:
+    arguments: dict[str, Any] = {"width": 4, "height": 4, **change}
+    scene = lit_floor()
+    expect_value_error(name, lambda: shlight.render(scene, **arguments))
+
+
+def test_a_camera_is_needed() -> None:
+    expect_value_error("camera", lambda: shlight.render(shlight.Scene(), 4, 4))
+
+
+MESH_ERRORS: list[tuple[str, dict[str, Any]]] = [
+    ("vertices", {"vertices": FLOOR[:, :2]}),
+    ("vertices", {"vertices": np.full_like(FLOOR, NAN)}),
+    ("vertices", {"vertices": "floor"}),
+    ("vertices", {"vertices": FLOOR.astype(complex)}),
+    ("triangles", {"triangles": [[0, 1, 4]]}),
+    ("triangles", {"triangles": [[0, 1, -1]]}),
+    ("triangles", {"triangles": [[0, 1, 2**32]]}),
+    ("triangles", {"triangles": [[0, 1]]}),
+    ("triangles", {"triangles": QUAD.astype(float)}),
+    ("normals", {"normals": FLOOR[:3]}),
+    ("normals", {"normals": np.full_like(FLOOR, np.inf)}),
+    ("uvs", {"uvs": FLOOR}),
+    ("bsdf", {"bsdf": []}),
+    ("bsdf", {"bsdf": 0.8}),
+    ("bsdf", {"bsdf": [0.8]}),
+    ("emission", {"emission": 1.0}),
+    ("emission", {"emission": [1, 2, NAN]}),
+    ("bsdf", {"bsdf": [shlight.Bsdf.lambert(1)] * 2, "emission": np.ones((3, 3))}),
+    ("material_indices", {"material_indices": [0]}),
+    ("material_indices", {"material_indices": [0, 1]}),
+    ("material_indices", {"material_indices": [0, -1]}),
+    ("transforms", {"transforms": np.eye(4)}),
+    ("transforms", {"transforms": [np.diag([1, 1, 0, 1])]}),
+    ("transforms", {"transforms": [np.diag([1, 1, NAN, 1])]}),
+    ("transforms", {"transforms": [np.ones((4, 4))]}),
+]
+
+
+@pytest.mark.parametrize(("name", "change"), MESH_ERRORS)
+def test_bad_meshes_leave_the_scene_as_it_was(name: str, change: dict[str, Any]) -> None:
+    scene = lit_floor()
+    before = shlight.render(scene, 4, 4)
+    arguments: dict[str, Any] = {"vertices": FLOOR + np.array([0, 0, 1]), "triangles": QUAD, **change}
+    expect_value_error(name, lambda: scene.add_mesh(**arguments))
+    after, report = shlight.render(scene, 4, 4, return_report=True)
+    np.testing.assert_array_equal(after, before)
+    assert report.build_seconds == 0
+
+
+def test_bad_lights_and_cameras() -> None:
+    scene = shlight.Scene()
+    square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    expect_value_error("center", lambda: scene.add_sphere_light([0, 0], 1, [1, 1, 1]))
+    expect_value_error("center", lambda: scene.add_sphere_light([0, 0, NAN], 1, [1, 1, 1]))
+    expect_value_error("radius", lambda: scene.add_sphere_light([0, 0, 0], 0, [1, 1, 1]))
+    expect_value_error("radius", lambda: scene.add_sphere_light([0, 0, 0], NAN, [1, 1, 1]))
+    expect_value_error("radiance", lambda: scene.add_sphere_light([0, 0, 0], 1, 1.0))
+    expect_value_error("radiance", lambda: scene.add_polygon_light(square, [1, 1, np.inf]))
+    expect_value_error("vertices", lambda: scene.add_polygon_light(square[:2], [1, 1, 1]))
+    expect_value_error("vertices", lambda: scene.add_polygon_light([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [1, 1, 1]))
+    expect_value_error("planar", lambda: scene.add_polygon_light([*square[:3], [0, 1, 1]], [1, 1, 1]))
+    expect_value_error("crosses", lambda: scene.add_polygon_light([[0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 3, 0]], [1, 1, 1]))
+    expect_value_error("to_world", lambda: scene.set_camera(np.eye(3), 1.0))
+    expect_value_error("to_world", lambda: scene.set_camera(np.zeros((4, 4)), 1.0))
+    expect_value_error("fov_x", lambda: scene.set_camera(np.eye(4), np.pi))
+    expect_value_error("left", lambda: scene.set_camera_window(np.eye(4), 1, 1, 0, 1))
+    expect_value_error("bottom", lambda: scene.set_camera_window(np.eye(4), 0, 1, 1, 0))
+    expect_value_error("clip_start", lambda: scene.set_camera_window(np.eye(4), 0, 1, 0, 1, clip_start=-1))
+    expect_value_error("clip_end", lambda: scene.set_camera_window(np.eye(4), 0, 1, 0, 1, clip_start=2, clip_end=1))
+
+
+def slow_arguments() -> dict[str, Any]:
+    return {"width": 2000, "height": 2000, "pixel_samples": 64}
+
+
+def test_progress_rises_to_one_in_the_calling_thread() -> None:
+    shares: list[float] = []
+    threads: set[int] = set()
+
+    def progress(share: float) -> None:
+        shares.append(share)
+        threads.add(threading.get_ident())
+
+    scene = lit_floor(bsdf=shlight.Bsdf.ggx(0.9, 0.5))
+    shlight.render(scene, 300, 300, progress=progress)
+    assert threads == {threading.get_ident()}
+    assert shares == sorted(shares)
+    assert shares[-1] == 1
+    assert all(0 <= share <= 1 for share in shares)
+
+
+@pytest.mark.parametrize("answer", [False, np.False_])
+def test_false_cancels(answer: Any) -> None:
+    start = time.monotonic()
+    with pytest.raises(shlight.RenderCancelled):
+        shlight.render(lit_floor(), **slow_arguments(), progress=lambda share: answer)
+    assert time.monotonic() - start < 10
+    assert issubclass(shlight.RenderCancelled, RuntimeError)
+
+
+def test_errors_of_the_callback_propagate() -> None:
+    def progress(share: float) -> None:
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        shlight.render(lit_floor(), **slow_arguments(), progress=progress)
+
+
+def test_control_c_ends_the_render() -> None:
+    timer = threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        shlight.render(lit_floor(), **slow_arguments())
+    assert time.monotonic() - start < 10
+    timer.join()
+
+
+def test_other_threads_run_meanwhile() -> None:
+    ticks: list[float] = []
+    done = threading.Event()
+
+    def tick() -> None:
+        while not done.is_set():
+            ticks.append(time.monotonic())
+            time.sleep(0.005)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    start = time.monotonic()
+    try:
+        with pytest.raises(shlight.RenderCancelled):
+            shlight.render(
+                lit_floor(), **slow_arguments(), threads=1, progress=lambda share: time.monotonic() - start < 0.5
+            )
+    finally:
+        done.set()
+        thread.join()
+    assert len(ticks) > 20
+
+
+def test_negative_light_takes_light_away() -> None:
+    scene = lit_floor()
+    bright = shlight.render(scene, 4, 4)
+    scene.add_sphere_light([0.5, 0.25, 1.5], 0.5, [-4, -2, -1])
+    dark = shlight.render(scene, 4, 4)
+    assert bright[..., :3].min() > 0
+    np.testing.assert_allclose(dark[..., :3], 0, atol=1e-7)
