@@ -247,7 +247,8 @@ def test_bad_lights_and_cameras() -> None:
     expect_value_error("vertices", lambda: scene.add_polygon_light(square[:2], [1, 1, 1]))
     expect_value_error("vertices", lambda: scene.add_polygon_light([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [1, 1, 1]))
     expect_value_error("planar", lambda: scene.add_polygon_light([*square[:3], [0, 1, 1]], [1, 1, 1]))
-    expect_value_error("crosses", lambda: scene.add_polygon_light([[0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 3, 0]], [1, 1, 1]))
+    bow_tie = [[0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 3, 0]]
+    expect_value_error("crosses", lambda: scene.add_polygon_light(bow_tie, [1, 1, 1]))
     expect_value_error("to_world", lambda: scene.set_camera(np.eye(3), 1.0))
     expect_value_error("to_world", lambda: scene.set_camera(np.zeros((4, 4)), 1.0))
     expect_value_error("fov_x", lambda: scene.set_camera(np.eye(4), np.pi))
