@@ -1,21 +1,27 @@
 # SPDX-License-Identifier: MIT
-"""Loads the compiled core with its own libraries.
+"""Loads the compiled core with its own Embree.
 
-Blender keeps Embree 4 and oneTBB in the process' global symbol scope. A module linked to another Embree would bind to
+Official Blenders keep Embree 4 in the process' global symbol scope. A module linked to another Embree would bind to
 those functions instead: no error, but every ray misses. RTLD_DEEPBIND makes the module look in its own libraries first.
+It is used only there, because it also binds the module to the C library's allocator: Debian's Blender replaces that
+allocator, and runs on the very Embree that the module is linked to.
 """
 
 from __future__ import annotations
 
+import ctypes
 import importlib
+import importlib.util
 import os
+import re
 import sys
+from pathlib import Path
 from types import ModuleType
 
 
 def load_core() -> ModuleType:
     """Imports and returns shlight._core; the interpreter's dlopen flags are as before afterwards."""
-    if not hasattr(os, "RTLD_DEEPBIND"):
+    if not _foreign_embree_is_global():
         return importlib.import_module("shlight._core")
     flags = sys.getdlopenflags()
     sys.setdlopenflags(os.RTLD_NOW | os.RTLD_DEEPBIND)
@@ -23,3 +29,17 @@ def load_core() -> ModuleType:
         return importlib.import_module("shlight._core")
     finally:
         sys.setdlopenflags(flags)
+
+
+def _foreign_embree_is_global() -> bool:
+    """Whether Embree's functions are in the global scope, but not those of the library that the core is linked to."""
+    maps = Path("/proc/self/maps")
+    if not hasattr(os, "RTLD_DEEPBIND") or not maps.is_file():
+        return False
+    if not hasattr(ctypes.CDLL(None), "rtcNewDevice"):
+        return False
+    core = importlib.util.find_spec("shlight._core")
+    if core is None or core.origin is None:
+        return False
+    own = re.search(rb"libembree\d+\.so", Path(core.origin).read_bytes())
+    return own is None or own.group() not in maps.read_bytes()
