@@ -85,8 +85,10 @@ def lamp(kind, energy, location, rotation=(0, 0, 0), scale=(1, 1, 1), **values):
 def shine_on(material):
     plane(material)
     ball(material)
-    lamp("AREA", 150, (1.5, -2, 3), (-0.5, 0.3, 0), shape="RECTANGLE", size=1.2, size_y=0.8)
+    lamp("POINT", 150, (1.5, -2, 3), shadow_soft_size=0.6)
     lamp("POINT", 80, (-2, -2, 2), shadow_soft_size=0.4)
+    render = bpy.context.scene.render
+    render.resolution_x, render.resolution_y = 64, 48
 
 
 def lamps():
@@ -110,17 +112,17 @@ def smooth():
 
 
 def glossy():
-    shine_on(shader("ShaderNodeBsdfGlossy", Color=(0.9, 0.6, 0.3, 1), Roughness=0.45, distribution="GGX"))
+    shine_on(shader("ShaderNodeBsdfGlossy", Color=(0.9, 0.6, 0.3, 1), Roughness=0.5, distribution="GGX"))
 
 
 def metal():
     shine_on(
-        shader("ShaderNodeBsdfPrincipled", Base_Color=(0.9, 0.6, 0.3, 1), Metallic=1.0, Roughness=0.4, Specular=0.7)
+        shader("ShaderNodeBsdfPrincipled", Base_Color=(0.9, 0.6, 0.3, 1), Metallic=1.0, Roughness=0.5, Specular=0.7)
     )
 
 
 def principled():
-    shine_on(shader("ShaderNodeBsdfPrincipled", Base_Color=(0.3, 0.6, 0.8, 1), Roughness=0.35, Specular=0.8))
+    shine_on(shader("ShaderNodeBsdfPrincipled", Base_Color=(0.3, 0.6, 0.8, 1), Roughness=0.5, Specular=0.8))
 
 
 def blackbody():

