@@ -67,12 +67,12 @@ Vec3d SphericalTriangle::sample(const glm::dvec2& point) const {
     return (1 - drop) * b_ + std::sqrt(std::max(0.0, drop * (2 - drop))) * orthogonal(corner, b_);
 }
 
-CapSampler::CapSampler(const CapView& cap) : cap_(cap), axis_(0, 0, 1), up_(1, 0, 0), across_(0, 1, 0), widest_(pi) {
+CapSampler::CapSampler(const CapView& cap)
+    : cap_(cap), distance_(glm::length(cap.center)), axis_(0, 0, 1), up_(1, 0, 0), across_(0, 1, 0), widest_(pi) {
     if (cap.kind == CapView::Kind::inside) {
         return;  // the whole hemisphere
     }
-    const double distance = glm::length(cap.center);
-    axis_ = cap.center / distance;
+    axis_ = cap.center / distance_;
     axis_height_ = axis_.z;
     tilt_ = std::hypot(axis_.x, axis_.y);
     if (tilt_ > 0) {
@@ -80,9 +80,10 @@ CapSampler::CapSampler(const CapView& cap) : cap_(cap), axis_(0, 0, 1), up_(1, 0
         across_ = glm::cross(axis_, up_);
     }
     const bool sphere = cap.kind == CapView::Kind::sphere;
-    const double sine = cap.radius / (sphere ? distance : std::hypot(distance, cap.radius));
-    const double cosine = sphere ? std::sqrt(std::max(0.0, (1 - sine) * (1 + sine))) : sine * distance / cap.radius;
+    const double sine = cap.radius / (sphere ? distance_ : std::hypot(distance_, cap.radius));
+    const double cosine = sphere ? std::sqrt(std::max(0.0, (1 - sine) * (1 + sine))) : sine * distance_ / cap.radius;
     one_minus_cos_ = sine * sine / (1 + cosine);
+    cut_ = axis_height_ < sine;
     if (axis_height_ < 0) {
         widest_ = std::acos(std::clamp(-axis_height_ * cosine / (tilt_ * sine), -1.0, 1.0));
     }
@@ -95,24 +96,23 @@ LightSample CapSampler::sample(const glm::dvec2& point) const {
     double to = one_minus_cos_;
     // The horizon crosses this meridian where tan(angle) = -height / (tilt · toward_up).
     const double slope = tilt_ * toward_up;
-    if ((axis_height_ >= 0) != (slope >= 0)) {
-        const double length = std::hypot(axis_height_, slope);
+    if (cut_ && (axis_height_ >= 0) != (slope >= 0)) {
+        const double length = std::sqrt(axis_height_ * axis_height_ + slope * slope);
         const double crossing = axis_height_ * axis_height_ / (length * (length + std::abs(slope)));
         (axis_height_ >= 0 ? to : from) = std::min(one_minus_cos_, crossing);
     }
     const double drop = from + point.x * (to - from);
     const double sine = std::sqrt(drop * (2 - drop));
-    const Vec3d direction = (1 - drop) * axis_ + sine * (toward_up * up_ + std::sin(azimuth) * across_);
+    const Vec3d direction = (1 - drop) * axis_ + (sine * toward_up) * up_ + (sine * std::sin(azimuth)) * across_;
     return {direction, distance(direction, 1 - drop), 2 * widest_ * (to - from)};
 }
 
 double CapSampler::distance(const Vec3d& direction, double cosine) const {
-    const double to_center = glm::length(cap_.center);
     if (cap_.kind == CapView::Kind::facing_disk) {
-        return to_center / cosine;
+        return distance_ / cosine;
     }
     const double along = glm::dot(direction, cap_.center);
-    const double rest = (cap_.radius - to_center) * (cap_.radius + to_center) + along * along;
+    const double rest = (cap_.radius - distance_) * (cap_.radius + distance_) + along * along;
     const double half_chord = std::sqrt(std::max(0.0, rest));
     return cap_.kind == CapView::Kind::sphere ? std::max(0.0, along - half_chord) : along + half_chord;
 }

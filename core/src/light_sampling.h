@@ -29,12 +29,14 @@ class CapSampler {
     LightSample sample(const glm::dvec2& point) const;
 
   private:
-    double distance(const Vec3d& direction, double cosine) const;
+    double distance(const Vec3d& direction, double cosine) const;  // to the light's surface
 
     CapView cap_;
+    double distance_;                    // of the centre
     Vec3d axis_, up_, across_;           // up: at right angles to the axis, towards the zenith
     double axis_height_ = 1, tilt_ = 0;  // the axis' elevation: sine and cosine
     double one_minus_cos_ = 1;           // of the half angle
+    bool cut_ = false;                   // by the horizon
     double widest_;                      // azimuth about the axis, from `up`, where the light ends
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "ray_rounding.h"
 #include "shlight/sampling.h"
 
 namespace shlight {
@@ -17,27 +18,38 @@ const Rgb& radiance_of(const Light& light) {
     return std::visit([](const auto& l) -> const Rgb& { return l.radiance; }, light);
 }
 
-/// Where on the light the shadow ray ends, relative to the point sampled: a polygon may lie in a mesh's face, its own
-/// or one that it is mounted on, and must not be blocked by it.
+/// Where on the light a shadow ray ends, relative to the point sampled: a polygon may lie in a mesh's face, its own or
+/// one that it is mounted on, and must not be blocked by it. A float ray strays in proportion to its length too.
 Vec3d clearance(const Light& light, const ShadingFrame& frame) {
     const auto* polygon = std::get_if<PolygonLight>(&light);
     if (polygon == nullptr) {
         return Vec3d(0);
     }
+    const double distance = polygon->error + kRayRounding * glm::length(frame.origin - polygon->center);
     const bool front = glm::dot(polygon->normal, frame.origin - polygon->vertices[0]) > 0;
-    return (front ? polygon->error : -polygon->error) * polygon->normal;
+    return (front ? distance : -distance) * polygon->normal;
 }
 
-/// From the float origin that Embree will see to the target, all but the last few roundings.
-Ray shadow_ray(const Vec3d& origin, const Vec3d& target) {
-    Ray ray;
-    ray.origin = Vec3f(origin);
-    const Vec3d way = target - Vec3d(ray.origin);
-    const double length = glm::length(way);
-    ray.direction = Vec3f(way / length);
-    ray.t_max = static_cast<float>(length * (1 - 0x1p-22));
-    return ray;
-}
+/// Shadow rays of one hit, in float but for the way from the rounded origin.
+class RayStart {
+  public:
+    RayStart(const ShadingFrame& frame, const Vec3d& origin, const Vec3d& target_offset)
+        : origin_(origin),
+          x_(frame.x),
+          y_(frame.y),
+          z_(frame.z),
+          offset_(frame.to_local(frame.origin - Vec3d(origin_) + target_offset)) {}
+
+    /// To a point in the shading frame, all but the last few roundings.
+    Ray towards(const Vec3d& local_target) const {
+        const Vec3f way(local_target + offset_);
+        return {origin_, 0.0F, way.x * x_ + way.y * y_ + way.z * z_, 1.0F - 0x1p-22F};
+    }
+
+  private:
+    Vec3f origin_, x_, y_, z_;
+    Vec3d offset_;
+};
 
 }  // namespace
 
@@ -104,7 +116,7 @@ void ShadowedLight::trace(const Light& light, const Hits& hits, const Phase& pha
     directions_.resize(count);
     weights_.resize(count);
     blocked_.resize(count);
-    rays_.clear();
+    rays_.resize(count - phase.offset);
     for (std::size_t i = 0; i < lit_.size(); ++i) {
         const std::size_t hit = lit_[i];
         const ShadingFrame& frame = hits.frame[hit];
@@ -114,7 +126,7 @@ void ShadowedLight::trace(const Light& light, const Hits& hits, const Phase& pha
         } else {
             polygon_sampler_.reset(std::get<PolygonLight>(light), frame);
         }
-        const Vec3d target_offset = clearance(light, frame) + frame.origin;
+        const RayStart start(frame, hits.shadow_origin[hit], clearance(light, frame));
         const std::uint32_t first_point = phase.first_point + hits.sample[hit] * phase.rays_per_hit;
         for (std::uint32_t ray = 0; ray < phase.rays_per_hit; ++ray) {
             const glm::dvec2 point = sobol(first_point + ray, seed);
@@ -122,8 +134,7 @@ void ShadowedLight::trace(const Light& light, const Hits& hits, const Phase& pha
             const std::size_t index = phase.offset + i * phase.rays_per_hit + ray;
             directions_[index] = Vec3f(sample.direction);
             weights_[index] = static_cast<float>(sample.weight);
-            const Vec3d target = target_offset + frame.to_world(sample.distance * sample.direction);
-            rays_.push_back(shadow_ray(hits.shadow_origin[hit], target));
+            rays_[index - phase.offset] = start.towards(sample.distance * sample.direction);
         }
     }
     tracer_->occluded(rays_, std::span(blocked_).subspan(phase.offset));

@@ -251,6 +251,23 @@ TEST(RenderShadows, AnEmissiveCubeHidesItsFarSides) {
     }
 }
 
+TEST(RenderShadows, AFarGrazingEmitterDoesNotBlockItself) {
+    // Seen from a hundred times its size away, nearly edge-on: float rays stray by more than the emitter's own
+    // rounding.
+    Scene scene;
+    scene.add_mesh(floor_mesh(200));
+    Mesh emitter = floor_mesh(0.5F, 0.6F);
+    emitter.transforms = {frame_matrix({0.3, 0.1, 0.01}, {-0.1, 0.3, 0}, {0, 0, 1}, {0.1, 0.2, 0})};
+    emitter.emission = {Rgb(1000)};
+    scene.add_mesh(emitter);
+    const Camera camera(frame_matrix({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 10}), Window{40, 90, -25, 25},
+                        Projection::orthographic);
+    const Image plain = render_image(scene, camera, kSize, kSize, with_rays(1, 0));
+    const Image shadowed = render_image(scene, camera, kSize, kSize, with_rays(1, 16));
+    EXPECT_GT(plain.red(0, 0), 0);
+    EXPECT_EQ(plain.values, shadowed.values);
+}
+
 TEST(RenderShadows, InstancesCastTheShadowsOfBakedMeshes) {
     const auto picture = [](bool instanced) {
         Scene scene;
