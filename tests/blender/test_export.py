@@ -98,6 +98,22 @@ def test_objects_with_modifiers_or_other_materials_are_meshes_of_their_own(studi
     ]
 
 
+def test_curves_texts_and_metaballs_are_exported_once(studio: Any, calls: Any) -> None:
+    simple_scene(studio)
+    curve = bpy.data.curves.new("Curve", "CURVE")
+    curve.dimensions, curve.bevel_depth = "3D", 0.1
+    curve.splines.new("POLY").points.add(1)
+    curve.splines[0].points[1].co = (1, 1, 1, 1)
+    text = bpy.data.curves.new("Text", "FONT")
+    text.body = "R"
+    meta = bpy.data.metaballs.new("Meta")
+    meta.elements.new()
+    for data in (curve, text, meta):
+        studio.link(data.name, data)
+    export()
+    assert [len(named["transforms"]) for name, _, named in calls if name == "add_mesh"] == [1, 1, 1, 1]
+
+
 def test_flat_meshes_have_no_normals_and_smooth_ones_have_unit_normals(studio: Any, calls: Any) -> None:
     simple_scene(studio)
     studio.ball(0.2, smooth=False)
@@ -144,6 +160,18 @@ def test_degenerate_faces_of_a_smooth_mesh(studio: Any) -> None:
     made = studio.mesh("Sliver", vertices, [(0, 1, 2), (3, 4, 5), (0, 1, 3)])
     made.data.polygons.foreach_set("use_smooth", [True] * 3)
     assert np.isfinite(studio.render("SHLIGHT")).all()
+
+
+def test_emissive_degenerate_faces_and_many_emitters(studio: Any) -> None:
+    studio.plane()
+    studio.camera()
+    glow = studio.material("ShaderNodeEmission", Strength=3.0)
+    studio.mesh("Sliver", [(0, 0, 1), (1, 0, 1), (0, 1, 1), (0, 0, 1)], [(0, 1, 2), (0, 3, 1)], glow)
+    assert messages() == []
+    assert np.isfinite(studio.render("SHLIGHT")).all()
+    studio.ball(0.2, glow, location=(0, 0, 2)).name = "Bulb"
+    (line,) = messages()
+    assert "Object 'Bulb': 960 emissive triangles" in line
 
 
 # --- lamps

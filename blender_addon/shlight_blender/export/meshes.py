@@ -19,6 +19,9 @@ from .surface import Surface
 
 FloatArray = NDArray[np.float32]
 
+# Every emissive triangle is a lamp of its own; from this number on the user is told why the render takes long.
+MANY_EMITTERS = 200
+
 
 @dataclass
 class MeshArrays:
@@ -34,6 +37,7 @@ class MeshArrays:
 class MeshUse:
     """A mesh with its surfaces (one per material slot, at least one), and all places where it stands."""
 
+    place: str
     arrays: MeshArrays
     surfaces: list[Surface]
     transforms: list[NDArray[np.float64]] = field(default_factory=list)
@@ -113,7 +117,7 @@ class MeshCollector:
             return None
         if arrays.normals is not None and not np.isfinite(arrays.normals).all():
             arrays.normals = None
-        return MeshUse(arrays, [self._surface(material) for material in materials or [None]])
+        return MeshUse(place, arrays, [self._surface(material) for material in materials or [None]])
 
     def _surface(self, material: Any) -> Surface:
         material = self._override or material
@@ -136,6 +140,9 @@ class MeshCollector:
         used = np.unique(indices)
         emission = np.array([surface.emission for surface in surfaces])
         emits = bool(emission[used].any())
+        emitters = int(emission.any(axis=1)[indices].sum()) * len(use.transforms)
+        if emitters >= MANY_EMITTERS:
+            self._report.add(use.place, f"{emitters} emissive triangles, each a lamp of its own, take long to render")
         for arrays, transforms in standing(use):
             scene.add_mesh(
                 arrays.vertices,
