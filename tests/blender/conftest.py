@@ -83,9 +83,11 @@ class Studio:
         faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
         return self.mesh(name, vertices, faces, material, **properties)
 
-    def ball(self, radius: float = 1.0, material: Any = None, smooth: bool = True, **properties: Any) -> Any:
-        """A sphere of 32 by 16 faces."""
-        segments, rings = 32, 16
+    def ball(
+        self, radius: float = 1.0, material: Any = None, smooth: bool = True, rings: int = 16, **properties: Any
+    ) -> Any:
+        """A sphere of 2 `rings` by `rings` faces."""
+        segments = 2 * rings
         phi = 2 * np.pi * np.arange(segments) / segments
         theta = np.pi * np.arange(1, rings) / rings
         x = radius * np.outer(np.sin(theta), np.cos(phi))

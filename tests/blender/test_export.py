@@ -65,7 +65,7 @@ def test_frame_of_resolution_percentage_and_border(studio: Any) -> None:
     render.resolution_x, render.resolution_y, render.resolution_percentage = 101, 51, 50
     assert frame_of(render) == Frame(50, 25, 0, 0, 50, 25)
     render.use_border = True
-    render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.1, 0.5, 0.2, 1.0
+    render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.1, 0.5, 0.23, 1.0
     assert frame_of(render) == Frame(50, 25, 5, 5, 25, 25)
     assert (frame_of(render).width, frame_of(render).height) == (20, 20)
 
@@ -112,6 +112,13 @@ def test_curves_texts_and_metaballs_are_exported_once(studio: Any, calls: Any) -
         studio.link(data.name, data)
     export()
     assert [len(named["transforms"]) for name, _, named in calls if name == "add_mesh"] == [1, 1, 1, 1]
+
+
+def test_objects_hidden_from_renders_are_left_out_of_the_viewports_scene_too(studio: Any, calls: Any) -> None:
+    simple_scene(studio)
+    studio.box().hide_render = True
+    export()
+    assert len([name for name, _, _ in calls if name == "add_mesh"]) == 1
 
 
 def test_flat_meshes_have_no_normals_and_smooth_ones_have_unit_normals(studio: Any, calls: Any) -> None:
