@@ -15,10 +15,22 @@ namespace shlight {
 namespace {
 
 /// Below this solid angle Ω the edges' contributions, each of order one, cancel to too few digits: their sum is wrong
-/// by about 2 ε / Ω of L_00. At the hand-over that is 5e-6 (float) and 1e-12 (double), and cubature is the faster one
-/// too.
+/// by about 5e-16 / Ω of L_00, at the hand-over 5e-10 (float) and 5e-13 (double).
 template <class T>
-constexpr double kSmallestForBoundary = std::is_same_v<T, float> ? 0.06 : 1e-3;
+constexpr double kSmallestForBoundary = std::is_same_v<T, float> ? 1e-6 : 1e-3;
+
+/// Up to this many points along a triangle's side cubature is the faster one.
+constexpr int kFewPoints = 4;
+
+template <class T>
+PolygonMethod better_method(const SphericalPolygon<Wider<T>>& polygon, int order) {
+    if (order <= 2) {
+        return PolygonMethod::boundary;  // closed form
+    }
+    const bool cancels = polygon.solid_angle() < kSmallestForBoundary<T>;
+    return cancels || cubature_points<T>(polygon, order) <= kFewPoints ? PolygonMethod::cubature
+                                                                       : PolygonMethod::boundary;
+}
 
 template <class T>
 void integrate(const SphericalPolygon<Wider<T>>& polygon, int order, T* coefficients, PolygonMethod method) {
@@ -27,8 +39,7 @@ void integrate(const SphericalPolygon<Wider<T>>& polygon, int order, T* coeffici
         return;
     }
     if (method == PolygonMethod::automatic) {
-        const bool cancels = order > 2 && polygon.solid_angle() < kSmallestForBoundary<T>;
-        method = cancels ? PolygonMethod::cubature : PolygonMethod::boundary;
+        method = better_method<T>(polygon, order);
     }
     if (method == PolygonMethod::cubature) {
         polygon_by_cubature(polygon, order, coefficients);

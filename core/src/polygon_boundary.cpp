@@ -22,7 +22,8 @@ struct BandTerms {
 template <class T>
 class EndPoint {
   public:
-    EndPoint(const Vec3<Wider<T>>& direction, int order)
+    template <class Real>
+    EndPoint(const Vec3<Real>& direction, int order)
         : legendre_(static_cast<T>(direction.z),
                     static_cast<T>(direction.x * direction.x + direction.y * direction.y)) {
         complex_powers(static_cast<T>(direction.x), static_cast<T>(direction.y), order, cos_.data(), sin_.data());
@@ -76,7 +77,8 @@ T legendre_at_zero(int l) {
 template <class T>
 class ArcIntegrals {
   public:
-    ArcIntegrals(const Edge<Wider<T>>& edge, int order)
+    template <class Real>
+    ArcIntegrals(const Edge<Real>& edge, int order)
         : length_(static_cast<T>(edge.length)),
           cos_tilt_(static_cast<T>(edge.cos_tilt)),
           sin_tilt_(static_cast<T>(edge.sin_tilt)),
@@ -162,8 +164,8 @@ BandTerms<T> normal_derivative(int l, T cos_tilt, T sin_tilt, const BandTerms<T>
     return out;
 }
 
-template <class T>
-void add_edge(const Edge<Wider<T>>& edge, int order, T* coefficients) {
+template <class T, class Real>
+void add_edge(const Edge<Real>& edge, int order, T* coefficients) {
     const auto cos_tilt = static_cast<T>(edge.cos_tilt);
     const auto sin_tilt = static_cast<T>(edge.sin_tilt);
     std::array<T, kMaxOrder> cos_m, sin_m;
@@ -216,15 +218,19 @@ void low_bands(const SphericalPolygon<Wider<T>>& polygon, int order, T* coeffici
 template <class T>
 void polygon_by_boundary(const SphericalPolygon<Wider<T>>& polygon, int order, T* coefficients) {
     using Real = Wider<T>;
-    std::fill_n(coefficients, coefficient_count(order), T(0));
-    low_bands(polygon, order, coefficients);
+    // The recurrences run in double for either T: what they lose grows as 1/Ω, and most lights are small.
+    std::array<double, coefficient_count(kMaxOrder)> sum;
+    std::fill_n(sum.begin(), coefficient_count(order), 0.0);
     const std::vector<Vec3<Real>>& v = polygon.directions();
     for (std::size_t i = 0; i < v.size() && order > 2; ++i) {
         const Vec3<Real>& cross = polygon.edge_cross(i);
         if (cross != Vec3<Real>(0)) {
-            add_edge(Edge<Real>(v[i], v[(i + 1) % v.size()], cross), order, coefficients);
+            add_edge(Edge<Real>(v[i], v[(i + 1) % v.size()], cross), order, sum.data());
         }
     }
+    std::transform(sum.begin(), sum.begin() + coefficient_count(order), coefficients,
+                   [](double c) { return static_cast<T>(c); });
+    low_bands(polygon, order, coefficients);
 }
 
 template void polygon_by_boundary(const SphericalPolygon<double>&, int, float*);
