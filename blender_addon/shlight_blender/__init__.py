@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender add-on: the render engine "shlight", noise-free direct light from area lights."""
 
+import atexit
 import importlib.util
 import sys
 from pathlib import Path
@@ -33,12 +34,15 @@ def register() -> None:
     properties.register()
     engine.register()
     panels.register()
+    # A Python that ends with the module bpy and an add-on's classes in it never ends: Blender waits for itself.
+    atexit.register(unregister)
 
 
 def unregister() -> None:
     """Removes everything that `register` added."""
     from . import engine, panels, properties
 
+    atexit.unregister(unregister)
     panels.unregister()
     engine.unregister()
     properties.unregister()
