@@ -53,46 +53,66 @@ std::optional<FaceOutline> quadrilateral(std::span<const Vec3d> vertices, const 
     return outline;
 }
 
-}  // namespace
-
-std::vector<FaceOutline> merge_faces(std::span<const Vec3d> vertices, std::span<const Triangle> triangles) {
-    std::multimap<Edge, std::size_t> triangle_at;  // by directed edge
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        for (int corner = 0; corner < 3; ++corner) {
-            triangle_at.emplace(Edge{triangles[i][corner], triangles[i][(corner + 1) % 3]}, i);
+/// Pairs triangles up, each at most once.
+class FaceMerger {
+  public:
+    FaceMerger(std::span<const Vec3d> vertices, std::span<const Triangle> triangles)
+        : vertices_(vertices), triangles_(triangles), used_(triangles.size()) {
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            used_[i] = !has_area(vertices, triangles[i]);
+            for (int corner = 0; corner < 3; ++corner) {
+                triangle_at_.emplace(Edge{triangles[i][corner], triangles[i][(corner + 1) % 3]}, i);
+            }
         }
     }
-    std::vector<bool> used(triangles.size());
-    std::vector<FaceOutline> outlines;
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        const Triangle& triangle = triangles[i];
-        if (used[i] || !has_area(vertices, triangle)) {
-            continue;
+
+    std::vector<FaceOutline> run() {
+        std::vector<FaceOutline> outlines;
+        for (std::size_t i = 0; i < triangles_.size(); ++i) {
+            if (!used_[i]) {
+                used_[i] = true;
+                outlines.push_back(face_from(triangles_[i]));
+            }
         }
-        used[i] = true;
-        std::size_t partner = triangles.size();
-        FaceOutline outline = {vertices[triangle.x], vertices[triangle.y], vertices[triangle.z]};
+        return outlines;
+    }
+
+  private:
+    /// The triangle with its first partner, or alone.
+    FaceOutline face_from(const Triangle& triangle) {
+        std::size_t partner = triangles_.size();
+        FaceOutline outline = {vertices_[triangle.x], vertices_[triangle.y], vertices_[triangle.z]};
         for (int edge = 0; edge < 3; ++edge) {
+            const std::uint32_t from = triangle[edge];
+            const std::uint32_t to = triangle[(edge + 1) % 3];
             // A neighbour of the same winding runs along the shared edge the other way.
-            const auto [begin, end] = triangle_at.equal_range({triangle[(edge + 1) % 3], triangle[edge]});
+            const auto [begin, end] = triangle_at_.equal_range({to, from});
             for (auto it = begin; it != end; ++it) {
-                const Triangle& other = triangles[it->second];
-                if (used[it->second] || it->second >= partner || !has_area(vertices, other)) {
-                    continue;
-                }
-                const std::uint32_t apex = other.x ^ other.y ^ other.z ^ triangle[edge] ^ triangle[(edge + 1) % 3];
-                if (auto joined = quadrilateral(vertices, triangle, edge, apex)) {
+                if (used_[it->second] || it->second >= partner) continue;
+                const Triangle& other = triangles_[it->second];
+                const std::uint32_t apex = other.x ^ other.y ^ other.z ^ from ^ to;
+                if (auto joined = quadrilateral(vertices_, triangle, edge, apex)) {
                     outline = std::move(*joined);
                     partner = it->second;
                 }
             }
         }
-        if (partner < triangles.size()) {
-            used[partner] = true;
+        if (partner < triangles_.size()) {
+            used_[partner] = true;
         }
-        outlines.push_back(std::move(outline));
+        return outline;
     }
-    return outlines;
+
+    std::span<const Vec3d> vertices_;
+    std::span<const Triangle> triangles_;
+    std::multimap<Edge, std::size_t> triangle_at_;  // by directed edge
+    std::vector<bool> used_;                        // or without area
+};
+
+}  // namespace
+
+std::vector<FaceOutline> merge_faces(std::span<const Vec3d> vertices, std::span<const Triangle> triangles) {
+    return FaceMerger(vertices, triangles).run();
 }
 
 }  // namespace shlight

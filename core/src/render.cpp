@@ -118,15 +118,17 @@ void TileRenderer::trace_camera_rays(const Tile& tile) {
     ray_hits_.resize(rays_.size());
     p.scene->rays().intersect(rays_, ray_hits_);
     hits_.clear();
-    for (std::size_t i = 0; i < rays_.size(); ++i) {
-        if (!ray_hits_[i].missed()) {
-            const SurfacePoint surface = p.scene->surface(ray_hits_[i], rays_[i].direction);
-            hits_.add(surface, -glm::normalize(Vec3d(rays_[i].direction)),
-                      p.scene->materials()[surface.material].emission, static_cast<std::uint32_t>(i % samples));
+    for (std::size_t first = 0; first < rays_.size(); first += samples) {
+        for (std::uint32_t sample = 0; sample < samples; ++sample) {
+            const RayHit& hit = ray_hits_[first + sample];
+            if (!hit.missed()) {
+                const Vec3f& direction = rays_[first + sample].direction;
+                const SurfacePoint surface = p.scene->surface(hit, direction);
+                hits_.add(surface, -glm::normalize(Vec3d(direction)), p.scene->materials()[surface.material].emission,
+                          sample);
+            }
         }
-        if ((i + 1) % samples == 0) {
-            hits_.end_pixel();
-        }
+        hits_.end_pixel();
     }
     report_.hits += hits_.size();
 }
