@@ -49,11 +49,18 @@ struct Picture {
     RenderSettings settings;
     int width, height;
     Window window;
+    std::vector<glm::dvec2> pixel_points;
     std::vector<OrderedMaterial> materials;
     std::size_t lobe_stride = 1;
 
     Picture(const CompiledScene& s, const Camera& c, int w, int h, const RenderSettings& r)
-        : scene(&s), camera(&c), settings(r), width(w), height(h), window(c.window(w, h)) {
+        : scene(&s),
+          camera(&c),
+          settings(r),
+          width(w),
+          height(h),
+          window(c.window(w, h)),
+          pixel_points(hammersley(static_cast<std::uint32_t>(r.pixel_samples))) {
         for (const Material& material : s.materials()) {
             materials.emplace_back(material.bsdf, r);
             lobe_stride = std::max(lobe_stride, materials.back().lobes().size());
@@ -107,9 +114,8 @@ void TileRenderer::trace_camera_rays(const Tile& tile) {
     for (int row = tile.top; row < tile.bottom; ++row) {
         for (int column = tile.left; column < tile.right; ++column) {
             for (std::uint32_t sample = 0; sample < samples; ++sample) {
-                const glm::dvec2 point = hammersley(sample, samples);
-                const double x = (column + point.x) / p.width;
-                const double y = (row + point.y) / p.height;
+                const double x = (column + p.pixel_points[sample].x) / p.width;
+                const double y = (row + p.pixel_points[sample].y) / p.height;
                 rays_.push_back(p.camera->ray(p.window.left + x * (p.window.right - p.window.left),
                                               p.window.top + y * (p.window.bottom - p.window.top)));
             }

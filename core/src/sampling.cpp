@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "shlight/sampling.h"
 
-#include <bit>
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <numeric>
 
 namespace shlight {
 namespace {
@@ -62,10 +63,18 @@ glm::dvec2 sobol(std::uint32_t index, std::uint32_t seed) {
             unit(reverse_bits(scramble_reversed(pascal(index), hash(seed, 1))))};
 }
 
-glm::dvec2 hammersley(std::uint32_t index, std::uint32_t count) {
-    const int bits = std::bit_width(count - 1);
-    const double half_step = std::ldexp(0.5, -bits);
-    return {(index + 0.5) / count, reverse_bits(index) * 0x1p-32 + half_step};
+std::vector<glm::dvec2> hammersley(std::uint32_t count) {
+    // The radical inverses of 0 … count-1 are even for powers of two only; their ranks are for any count.
+    std::vector<std::uint32_t> by_inverse(count);
+    std::iota(by_inverse.begin(), by_inverse.end(), 0U);
+    std::sort(by_inverse.begin(), by_inverse.end(),
+              [](std::uint32_t a, std::uint32_t b) { return reverse_bits(a) < reverse_bits(b); });
+    std::vector<glm::dvec2> points(count);
+    for (std::uint32_t rank = 0; rank < count; ++rank) {
+        const std::uint32_t index = by_inverse[rank];
+        points[index] = glm::dvec2(index + 0.5, rank + 0.5) / static_cast<double>(count);
+    }
+    return points;
 }
 
 }  // namespace shlight

@@ -66,17 +66,31 @@ TEST(RenderSampling, SeedsGiveIndependentUnbiasedSets) {
     EXPECT_LE(std::abs(neighbours), 5 * variance / std::sqrt(kSeeds));
 }
 
-TEST(RenderSampling, HammersleyIsCentredAndEven) {
-    EXPECT_EQ(hammersley(0, 1), glm::dvec2(0.5));
+TEST(RenderSampling, HammersleyIsCentredAndEvenForAnyCount) {
+    EXPECT_EQ(hammersley(1).front(), glm::dvec2(0.5));
+    for (const std::uint32_t count : {1U, 2U, 3U, 5U, 9U, 16U, 100U}) {
+        const std::vector<glm::dvec2> points = hammersley(count);
+        ASSERT_EQ(points.size(), count);
+        std::set<int> columns;
+        std::set<int> rows;
+        glm::dvec2 mean(0);
+        for (const glm::dvec2& p : points) {
+            columns.insert(static_cast<int>(count * p.x));
+            rows.insert(static_cast<int>(count * p.y));
+            mean += p / static_cast<double>(count);
+        }
+        EXPECT_EQ(columns.size(), count);
+        EXPECT_EQ(rows.size(), count);
+        EXPECT_LE(glm::length(mean - glm::dvec2(0.5)), 1e-14) << count;
+    }
+}
+
+TEST(RenderSampling, HammersleyFillsEveryCell) {
     std::set<std::pair<int, int>> cells;
-    glm::dvec2 mean(0);
-    for (std::uint32_t i = 0; i < 16; ++i) {
-        const glm::dvec2 p = hammersley(i, 16);
+    for (const glm::dvec2& p : hammersley(16)) {
         cells.emplace(static_cast<int>(4 * p.x), static_cast<int>(4 * p.y));
-        mean += p / 16.0;
     }
     EXPECT_EQ(cells.size(), 16U);
-    EXPECT_LE(glm::length(mean - glm::dvec2(0.5)), 1e-15);
 }
 
 /// Means of weight and weight · z: the solid angle above the horizon, and its projection.

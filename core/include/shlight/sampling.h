@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include <glm/vec2.hpp>
 
@@ -17,8 +18,8 @@ std::uint32_t hash(std::uint32_t a, std::uint32_t b);
 /// of area 2^-k. Coordinates lie strictly between 0 and 1.
 glm::dvec2 sobol(std::uint32_t index, std::uint32_t seed);
 
-/// Point `index` of the `count` points of a centred Hammersley set, the same for every pixel: edges get even steps and
-/// no noise. One point is the centre.
-glm::dvec2 hammersley(std::uint32_t index, std::uint32_t count);
+/// A Hammersley set, its coordinates spread evenly over 0 … 1 for any count: each of the `count` equal strips of either
+/// axis has one point at its middle. The same for every pixel: edges get even steps and no noise.
+std::vector<glm::dvec2> hammersley(std::uint32_t count);
 
 }  // namespace shlight
