@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Blender's render call with the engine shlight, on a scene built by code.
 
-usage: python examples/render_in_blender.py [picture.png]                    with the module bpy (./dev setup has it)
-       blender -b --python examples/render_in_blender.py -- [picture.png]    with Blender itself
+usage: python examples/render_in_blender.py [picture.png [percent]]                  with the module bpy
+       blender -b --python examples/render_in_blender.py -- [picture.png [percent]]  with Blender itself
 """
 
 import sys
@@ -22,6 +22,6 @@ shlight_blender.register()
 scene = build_example_scene()
 scene.render.engine = "SHLIGHT"
 scene.shlight.shadow_rays = 32
-scene.render.resolution_percentage = 50
+scene.render.resolution_percentage = int(arguments[1]) if len(arguments) > 1 else 50
 scene.render.filepath = str(Path(arguments[0] if arguments else "example.png").resolve())
 bpy.ops.render.render(write_still=True, scene=scene.name)

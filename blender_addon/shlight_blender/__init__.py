@@ -29,13 +29,16 @@ _find_native_package()
 
 def register() -> None:
     """Adds the engine, its scene settings and its panels to Blender."""
+    import bpy
+
     from . import engine, panels, properties
 
     properties.register()
     engine.register()
     panels.register()
-    # A Python that ends with the module bpy and an add-on's classes in it never ends: Blender waits for itself.
-    atexit.register(unregister)
+    if getattr(bpy.app, "module", False):
+        # Python with the module bpy hangs at its end while an add-on's classes are registered.
+        atexit.register(unregister)
 
 
 def unregister() -> None:

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: MIT
+"""The examples, run as their first lines say."""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import shlight
+from shlight import images
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+
+def test_render_in_blender_writes_its_picture_and_ends(tmp_path: Path) -> None:
+    # Python once hung at its end while the add-on was registered.
+    subprocess.run(
+        [sys.executable, EXAMPLES / "render_in_blender.py", tmp_path / "a.png", "5"],
+        check=True,
+        capture_output=True,
+        timeout=120,
+    )
+    import OpenImageIO as oiio
+
+    picture = oiio.ImageBuf(str(tmp_path / "a.png"))
+    assert (picture.spec().width, picture.spec().height) == (32, 20)
+    assert 0.1 < np.mean(picture.get_pixels("float")[..., :3]) < 0.9
+
+
+def test_render_from_python_shows_a_lit_ball(tmp_path: Path) -> None:
+    spec = importlib.util.spec_from_file_location("example", EXAMPLES / "render_from_python.py")
+    assert spec is not None
+    assert spec.loader is not None
+    example = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(example)
+    image = shlight.render(example.build(), 48, 32, pixel_samples=4)
+    red, green, blue = image[16, 24, :3]
+    assert red > 2 * green > 0
+    assert red > 2 * blue > 0
+    assert image[28, 4, 1] == pytest.approx(image[28, 4, 0], rel=0.3)  # the grey floor
+    images.write_png(tmp_path / "a.png", images.linear_to_srgb8(image))
