@@ -342,3 +342,18 @@ def test_exposure_brings_the_bright_parts_up() -> None:
 @pytest.mark.parametrize(("share", "limit"), [(0.012, 2.0), (0.02, 2.0), (0.049, 5.0), (0.08, 10.0), (0.0, 0.1)])
 def test_colour_scale_ends_at_a_round_number(share: float, limit: float) -> None:
     assert picture.difference_limit(np.full((8, 8), -share)) == pytest.approx(limit)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="asks the system for the processes of a session")
+def test_a_killed_command_takes_the_worker_with_it(tmp_path: Path) -> None:
+    with start(*QUICK, "--samples", "100000000", "--out", "results", folder=tmp_path) as process:
+        assert process.stdout is not None
+        assert any(line.startswith("reference") for line in process.stdout)
+        children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+        process.kill()
+    assert len(children) == 1
+    worker = Path(f"/proc/{children[0]}")
+    deadline = time.monotonic() + 5
+    while worker.exists() and "State:\tZ" not in (worker / "status").read_text() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not worker.exists() or "State:\tZ" in (worker / "status").read_text()

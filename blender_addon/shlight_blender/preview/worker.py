@@ -11,8 +11,10 @@ The folder holds request.json, the options; the pictures are written there. A me
 
 from __future__ import annotations
 
+import ctypes
 import json
 import os
+import signal
 import sys
 import time
 from pathlib import Path
@@ -26,6 +28,8 @@ from .. import record
 from .options import Options
 from .scene import SceneError, open_scene, prepare, use_cycles, use_shlight
 from .timing import alternate, calibrate, middle, rounds_for
+
+PR_SET_PDEATHSIG = 1  # from linux/prctl.h
 
 # Random seeds: no two of the three Cycles pictures may share one.
 SEED_SAME_TIME, SEED_FIRST_HALF, SEED_SECOND_HALF = 0, 1, 2
@@ -159,6 +163,9 @@ def _one_line(error: Exception) -> str:
 
 def main(argv: list[str]) -> None:
     """Runs the request of the folder argv[0], messages to the open file descriptor argv[1]."""
+    if sys.platform == "linux":
+        # A command that is killed cannot end the worker; then the system does.
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     folder = Path(argv[0])
     request = json.loads((folder / "request.json").read_text(encoding="utf-8"))
     if request["size"] is not None:
