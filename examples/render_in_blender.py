@@ -10,11 +10,13 @@ from pathlib import Path
 
 import bpy
 
-# In the source tree the add-on need not be installed.
+# In the source tree the add-on need not be installed, and Blender does not look beside its script.
 sys.path.append(str(Path(__file__).resolve().parents[1] / "blender_addon"))
+sys.path.append(str(Path(__file__).resolve().parent))
+
+from example_scene import build_example_scene
 
 import shlight_blender
-from shlight_blender.preview.example_scene import build_example_scene
 
 arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
 #include <mutex>
 #include <numbers>
@@ -17,6 +18,9 @@
 
 namespace shlight {
 namespace {
+
+/// Fits kept although nobody holds them, some 4 MB each: a scene that is exported anew for every picture asks again.
+constexpr std::size_t kRecentFits = 16;
 
 /// Linear interpolation is enough for what only steers a choice or varies slowly.
 template <class Values>
@@ -149,12 +153,18 @@ std::shared_ptr<const LobeTable> LobeFit::table(int order) const {
 std::shared_ptr<const LobeFit> fitted(const LobeShape& shape) {
     static std::mutex mutex;
     static std::map<LobeShape, std::weak_ptr<const LobeFit>> fits;
+    static std::deque<std::shared_ptr<const LobeFit>> recent;  // the last one asked for in front
     const std::scoped_lock lock(mutex);
     std::weak_ptr<const LobeFit>& slot = fits[shape];
     std::shared_ptr<const LobeFit> fit = slot.lock();
     if (!fit) {
         fit = std::make_shared<const LobeFit>(shape);
         slot = fit;
+    }
+    std::erase(recent, fit);
+    recent.push_front(fit);
+    if (recent.size() > kRecentFits) {
+        recent.pop_back();
     }
     return fit;
 }

@@ -126,7 +126,7 @@ def test_the_picture_of_shlight_is_near_the_reference(example: tuple[Path, tuple
 
 
 def test_what_is_not_supported_is_named(tmp_path: Path, empty_scene: bpy.types.Scene) -> None:
-    from shlight_blender.preview.example_scene import build_example_scene
+    from shlight_blender.preview.scene import build_example_scene
 
     scene = build_example_scene()
     add_sun(scene)

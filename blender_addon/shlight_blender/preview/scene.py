@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
+import runpy
 from pathlib import Path
 from typing import Any
 
 import bpy
 
-from .example_scene import build_example_scene
 from .options import Options
 
 DEFAULT_LONGER_SIDE = 512
@@ -16,6 +16,14 @@ DEFAULT_LONGER_SIDE = 512
 
 class SceneError(Exception):
     """The scene cannot be opened or has nothing to render; the message is for the user."""
+
+
+def build_example_scene() -> Any:
+    """Runs examples/example_scene.py, from the source tree or from the copy that is installed with the package."""
+    here = Path(__file__).resolve()
+    folders = [here.parents[3] / "examples", here.parents[1] / "examples"]
+    script = next(file for folder in folders if (file := folder / "example_scene.py").is_file())
+    return runpy.run_path(str(script))["build_example_scene"]()
 
 
 def open_scene(path: str | None) -> Any:

@@ -72,7 +72,8 @@ class LobeFit {
     std::array<std::shared_ptr<const LobeTable>, kOrderLadder.size()> ladder_;
 };
 
-/// The fit of a shape, shared by everyone who asks for the same one while anyone keeps it. Thread-safe.
+/// The fit of a shape, shared by everyone who asks for the same one while anyone keeps it, and for some time after.
+/// Thread-safe.
 std::shared_ptr<const LobeFit> fitted(const LobeShape& shape);
 
 }  // namespace shlight

@@ -1,5 +1,10 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
-"""A small scene built by code: matt and glossy things, an area lamp, a sphere lamp and a glowing strip."""
+# SPDX-License-Identifier: MIT
+"""A small scene built by code: matt and glossy things, an area lamp, a sphere lamp and a glowing strip.
+
+`./dev preview` renders it when it is given no other.
+
+usage: blender --python examples/example_scene.py     to look at it
+"""
 
 from __future__ import annotations
 
@@ -139,3 +144,7 @@ def _look_at(seen: Any, location: tuple[float, float, float], target: tuple[floa
     """Puts a camera or lamp at `location`, its -Z towards `target`, its Y upwards."""
     seen.location = location
     seen.rotation_euler = (Vector(target) - Vector(location)).to_track_quat("-Z", "Y").to_euler()
+
+
+if __name__ == "__main__":
+    build_example_scene()
