@@ -161,14 +161,14 @@ class Studio:
 
     # --- pictures
 
-    def render(self, engine: str) -> Image:
-        """The picture of `engine` (height, width, 4), row 0 on top."""
+    def render(self, engine: str, seed: int = 7) -> Image:
+        """The picture of `engine` (height, width, 4), row 0 on top; `seed` is Cycles'."""
         render = self.scene.render
         render.engine = engine
         path = self.folder / f"{engine.lower()}.exr"
         render.filepath = str(path)
         if engine == "CYCLES":
-            self.scene.cycles.seed = 7
+            self.scene.cycles.seed = seed
         bpy.ops.render.render(write_still=True)
         return read_exr(path)
 
