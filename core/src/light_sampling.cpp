@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "spherical_polygon.h"
+
 namespace shlight {
 namespace {
 
@@ -16,14 +18,6 @@ using std::numbers::pi;
 constexpr double kEvenDistances = 1.6;
 /// Below this solid angle the spherical triangle's angles lose digits.
 constexpr double kSmallest = 1e-5;
-
-double solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-    const double la = glm::length(a);
-    const double lb = glm::length(b);
-    const double lc = glm::length(c);
-    const double triple = std::abs(glm::dot(a, glm::cross(b - a, c - a)));
-    return 2 * std::atan2(triple, la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
-}
 
 /// The part of v at right angles to the unit vector `axis`, as a unit vector.
 Vec3d orthogonal(const Vec3d& v, const Vec3d& axis) {
@@ -143,7 +137,8 @@ void PolygonSampler::add_clipped(const Vec3d& a, const Vec3d& b, const Vec3d& c)
         }
     }
     for (std::size_t i = 2; i < count; ++i) {
-        Piece piece = {kept[0], kept[i - 1], kept[i], solid_angle(kept[0], kept[i - 1], kept[i]), 0, std::nullopt};
+        Piece piece = {kept[0], kept[i - 1], kept[i], std::abs(triangle_solid_angle(kept[0], kept[i - 1], kept[i])),
+                       0,       std::nullopt};
         if (!(piece.solid_angle > 0)) {
             continue;
         }

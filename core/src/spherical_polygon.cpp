@@ -46,8 +46,8 @@ std::vector<Vec3<Real>> clipped_by_horizon(std::span<const Vec3<Real>> v) {
     return kept;
 }
 
-/// Solid angle of a triangle (Van Oosterom & Strackee 1983), signed by its winding. The triple product is taken of edge
-/// vectors, so that its error is relative to the triangle and not to the sphere.
+}  // namespace
+
 template <class Real>
 Real triangle_solid_angle(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c) {
     const Real la = glm::length(a);
@@ -57,8 +57,6 @@ Real triangle_solid_angle(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<R
     const Real denominator = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
     return 2 * std::atan2(triple, denominator);
 }
-
-}  // namespace
 
 template <class Real>
 SphericalPolygon<Real>::SphericalPolygon(std::span<const Vec3<Real>> vertices, bool clip) {
@@ -114,6 +112,8 @@ Real planarity_error(std::span<const Vec3<Real>> vertices) {
 
 template class SphericalPolygon<double>;
 template class SphericalPolygon<long double>;
+template double triangle_solid_angle(const Vec3<double>&, const Vec3<double>&, const Vec3<double>&);
+template long double triangle_solid_angle(const Vec3<long double>&, const Vec3<long double>&, const Vec3<long double>&);
 template double planarity_error(std::span<const Vec3<double>>);
 template long double planarity_error(std::span<const Vec3<long double>>);
 

@@ -37,6 +37,11 @@ class SphericalPolygon {
     Real solid_angle_ = 0;
 };
 
+/// Solid angle of a triangle (Van Oosterom & Strackee 1983), signed by its winding. The triple product is taken of edge
+/// vectors, so that its error is relative to the triangle and not to the sphere.
+template <class Real>
+Real triangle_solid_angle(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c);
+
 /// The largest distance of a vertex from the polygon's mean plane ÷ the polygon's extent.
 template <class Real>
 Real planarity_error(std::span<const Vec3<Real>> vertices);
