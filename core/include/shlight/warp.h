@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+//
+// A conformal warp of the sphere of directions: a boost that spreads a narrow lobe until few bands describe it.
+//
+// A Möbius map of the sphere, the aberration of a moving observer: circles stay circles, so the cap of a sphere light,
+// the horizon, and the edges of a polygon keep exact coefficients in warped space. docs/algorithms.md derives it.
+#pragma once
+
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// A circle on the unit sphere, with the cap {ω : ω·axis ≥ cosine} on one side of it.
+struct Circle {
+    Vec3d axis;     ///< unit
+    double cosine;  ///< of the half angle, which may be anything in 0 … π
+    double sine;    ///< ≥ 0; given beside the cosine because small caps need it
+};
+
+/// Directions ω of the shading frame ↔ warped directions u, in a frame whose z axis is the middle of the warped
+/// horizon: the upper hemisphere becomes the cap u_z ≥ horizon_height(). The plane y = 0 stays the plane y = 0.
+class Warp {
+  public:
+    /// No warp: u = ω.
+    Warp() = default;
+    /// The neighbourhood of the axis (-sin tilt, 0, cos tilt) is enlarged by (1 + r) / (1 - r), r = 1 - narrowness.
+    /// Precondition: |tilt| < π/2 [rad], 0 < narrowness ≤ 1.
+    Warp(double tilt, double narrowness);
+
+    bool is_identity() const { return speed_ == 0; }
+    double horizon_height() const { return horizon_height_; }  ///< z_0 = u_z along the horizon
+    double horizon_sine() const { return horizon_sine_; }      ///< √(1 - z_0²)
+
+    /// ω unit.
+    Vec3d warped(const Vec3d& direction) const;
+    /// The inverse; u unit.
+    Vec3d direction(const Vec3d& warped) const;
+    /// dω/du at u.
+    double density(const Vec3d& warped) const;
+    /// The image of a circle, inside to inside. sine' / sine of the result is the circle's scale.
+    Circle warped(const Circle& circle) const;
+
+  private:
+    /// (c'; L') of the 4-vector (c; L), given the differences from 1 that a strong boost would cancel:
+    /// gap = |L| - L·axis and lack = |L| - c, with |L| = 1.
+    struct Boosted {
+        Vec3d vector;
+        double cosine;
+    };
+    Boosted boosted(const Vec3d& vector, double gap, double lack) const;
+    Vec3d axis() const { return {-sin_tilt_, 0, cos_tilt_}; }
+
+    double sin_tilt_ = 0, cos_tilt_ = 1;
+    double speed_ = 0;                      // b = 2r / (1 + r²)
+    double one_minus_speed_ = 1;            // 1 - b = (1-r)² / (1+r²)
+    double gamma_ = 1;                      // 1 / √(1 - b²)
+    double horizon_x_ = 0, horizon_z_ = 1;  // the warped horizon's middle in the boost's frame
+    double horizon_height_ = 0, horizon_sine_ = 1;
+};
+
+}  // namespace shlight
