@@ -14,14 +14,14 @@ import bpy
 sys.path.append(str(Path(__file__).resolve().parents[1] / "blender_addon"))
 sys.path.append(str(Path(__file__).resolve().parent))
 
-from example_scene import build_example_scene
+from example_scene import build_scene
 
 import shlight_blender
 
 arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
 
 shlight_blender.register()
-scene = build_example_scene()
+scene = build_scene()
 scene.render.engine = "SHLIGHT"
 scene.shlight.shadow_rays = 32
 scene.render.resolution_percentage = int(arguments[1]) if len(arguments) > 1 else 50

@@ -20,6 +20,7 @@ from shlight import images, metrics
 from shlight_blender.preview import options, picture, timing
 from shlight_blender.preview.command import RESULTS
 from shlight_blender.preview.progress import Progress
+from shlight_blender.preview.scene import LIGHT_RAYS, open_scene, prepare, without_shadows
 
 COMMAND = [
     sys.executable,
@@ -126,9 +127,7 @@ def test_the_picture_of_shlight_is_near_the_reference(example: tuple[Path, tuple
 
 
 def test_what_is_not_supported_is_named(tmp_path: Path, empty_scene: bpy.types.Scene) -> None:
-    from shlight_blender.preview.scene import build_example_scene
-
-    scene = build_example_scene()
+    scene = open_scene(options.parse([]).scene_file)
     add_sun(scene)
     material = bpy.data.materials["matt grey"]
     noise = material.node_tree.nodes.new("ShaderNodeTexNoise")
@@ -143,6 +142,66 @@ def test_what_is_not_supported_is_named(tmp_path: Path, empty_scene: bpy.types.S
     figures = json.loads((tmp_path / "new" / "folder" / "figures.json").read_text())
     assert any("Light 'sky sun'" in message["places"] for message in figures["shlight"]["unsupported"])
     assert figures["scene"]["file"] == str(path)
+
+
+@pytest.mark.parametrize("name", ["example_scene", "glossy_balls", "glossy_floor", "roughness_ramp"])
+def test_an_example_has_a_name(name: str, empty_scene: bpy.types.Scene) -> None:
+    chosen = options.parse([name])
+    assert chosen.out == f"out/preview/{name}"
+    scene = open_scene(chosen.scene_file)
+    assert bpy.context.scene == scene
+    assert {seen.type for seen in scene.objects} == {"CAMERA", "LIGHT", "MESH"}
+
+
+def test_a_file_comes_before_an_example_of_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert options.parse(["glossy_balls"]).scene_file.is_absolute()
+    (tmp_path / "glossy_balls").touch()
+    assert options.parse(["glossy_balls"]).scene_file == Path("glossy_balls")
+
+
+def test_a_script_under_one_lamp_without_shadows(tmp_path: Path) -> None:
+    script = tmp_path / "table.py"
+    script.write_text(
+        "import bpy\n"
+        "def build_scene():\n"
+        "    bpy.ops.wm.read_factory_settings(use_empty=True)\n"
+        "    bpy.ops.mesh.primitive_plane_add(size=9)\n"
+        "    bpy.ops.mesh.primitive_plane_add(size=3, location=(0, 0, 1))\n"  # all that the camera sees is below it
+        "    bpy.ops.object.light_add(type='AREA', location=(0, 0, 3))\n"
+        "    bpy.ops.object.light_add(type='POINT', location=(0, 0, 3))\n"
+        "    bpy.ops.object.camera_add(location=(0, 0, 0.9))\n"
+        "    bpy.context.scene.camera = bpy.context.object\n"
+        "    return bpy.context.scene\n"
+    )
+    chosen = ["--light", "Area", "--out", tmp_path, "--size", "24x16", "--samples", "64"]
+    code, out, err = preview(script, *chosen, "--shadow-rays", "0", folder=tmp_path)
+    assert (code, err) == (0, "")
+    assert "not supported" not in out
+    figures = json.loads((tmp_path / "figures.json").read_text())
+    assert figures["shlight"]["mean_ratio"] == pytest.approx(1, abs=0.01)
+    assert refused(script, tmp_path, "--light", "Sun").endswith("there is no lamp 'Sun' in it, but Area, Point\n")
+
+
+def test_without_shadows_is_over_afterwards(empty_scene: bpy.types.Scene) -> None:
+    scene = open_scene(options.parse([]).scene_file)
+    scene.objects["floor"].visible_shadow = False
+
+    def seen_by_light() -> dict[str, list[bool]]:
+        return {seen.name: [getattr(seen, flag) for flag in LIGHT_RAYS] for seen in scene.objects}
+
+    before = seen_by_light()
+    with without_shadows():
+        blocking = {name for name, flags in seen_by_light().items() if any(flags)}
+    assert blocking == {"window", "bulb", "glowing strip"}
+    assert seen_by_light() == before
+
+
+def test_the_lamps_that_are_not_named_are_off(empty_scene: bpy.types.Scene) -> None:
+    chosen = options.parse(["glossy_balls", "--light", "quad", "--light", "small"])
+    scene = open_scene(chosen.scene_file)
+    prepare(scene, chosen)
+    assert [seen.name for seen in scene.objects if seen.type == "LIGHT" and not seen.hide_render] == ["quad", "small"]
 
 
 def refused(path: str | Path, folder: Path, *arguments: str | Path) -> str:
@@ -172,6 +231,20 @@ def test_a_text_named_blend(tmp_path: Path) -> None:
 def test_an_empty_file(tmp_path: Path) -> None:
     (tmp_path / "empty.blend").touch()
     assert "empty.blend: Blender cannot read it" in refused("empty.blend", tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("", "there is no function build_scene() in it"),
+        ("1 / 0", "ZeroDivisionError: division by zero"),
+        ("def build_scene(): return", "there is no scene in it"),
+        ("def build_scene(): raise SystemExit('no,\\n no')", "SystemExit: no, no"),
+    ],
+)
+def test_a_script_that_makes_no_scene(tmp_path: Path, text: str, reason: str) -> None:
+    (tmp_path / "wrong.py").write_text(text + "\n")
+    assert refused("wrong.py", tmp_path) == f"shlight preview: wrong.py: {reason}\n"
 
 
 @pytest.mark.parametrize("share", [0.2, 0.9])

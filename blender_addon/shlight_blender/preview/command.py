@@ -56,9 +56,8 @@ def _complain(text: str, exit_code: int) -> int:
 
 def _check(options: Options) -> None:
     """What can be known to fail before anything is started."""
-    if options.scene is not None:
-        with Path(options.scene).open("rb"):  # missing, a folder, or not readable: an OSError with its name
-            pass
+    with options.scene_file.open("rb"):  # missing, a folder, or not readable: an OSError with its name
+        pass
     out = Path(options.out)
     nearest = next(path for path in (out, *out.parents) if path.exists())
     if not nearest.is_dir():
@@ -77,8 +76,7 @@ def _run(options: Options, work: Path) -> dict[str, Any]:
         progress.end()
         return figures
     except PreviewError as error:
-        name = options.scene or options.scene_name
-        raise PreviewError(f"{name}: {error}", error.exit_code) from error
+        raise PreviewError(f"{options.scene}: {error}", error.exit_code) from error
 
 
 def _measure(options: Options, work: Path, figures: dict[str, Any]) -> None:

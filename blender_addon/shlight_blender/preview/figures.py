@@ -33,7 +33,7 @@ def add_measurements(figures: dict[str, Any], shlight: Image, cycles: Image, hal
 
 def add_circumstances(figures: dict[str, Any], options: Options) -> None:
     """Adds where, with what and with which options the figures came about."""
-    figures["scene"]["file"] = options.scene
+    figures["scene"]["file"] = str(options.scene_file)
     figures["options"] = options.to_data()
     figures["versions"] = {
         "shlight": metadata.version("shlight"),

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
-EXAMPLE_NAME = "example_scene"
+DEFAULT_SCENE = "example_scene"
 LARGEST_SIDE = 16384
 
 
@@ -17,8 +17,9 @@ LARGEST_SIDE = 16384
 class Options:
     """What to render and how; None: as the scene has it."""
 
-    scene: str | None  # path of the .blend file; None: the example scene
+    scene: str  # a Blender file, a script with a function build_scene(), or the name of an example, as it was given
     out: str  # folder of the results
+    lights: list[str] | None  # names of the lamps that shine
     size: tuple[int, int] | None
     frame: int | None
     samples: int  # of the reference
@@ -31,7 +32,14 @@ class Options:
     @property
     def scene_name(self) -> str:
         """Name of the scene in captions and of its folder of results."""
-        return _name_of(self.scene)
+        return Path(self.scene).stem
+
+    @property
+    def scene_file(self) -> Path:
+        """The file of the scene: `scene` itself unless that is no file but the name of an example."""
+        given = Path(self.scene)
+        example = _examples() / f"{self.scene}.py"
+        return example if not given.is_file() and self.scene.isidentifier() and example.is_file() else given
 
     def to_data(self) -> dict[str, Any]:
         """The options as plain data."""
@@ -42,12 +50,15 @@ def parse(argv: list[str]) -> Options:
     """The options of a command line; prints the reason and raises SystemExit(2) where it is not understood."""
     values = vars(_parser().parse_args(argv))
     if values["out"] is None:
-        values["out"] = str(Path("out") / "preview" / _name_of(values["scene"]))
+        values["out"] = str(Path("out") / "preview" / Path(values["scene"]).stem)
     return Options(**values)
 
 
-def _name_of(scene: str | None) -> str:
-    return EXAMPLE_NAME if scene is None else Path(scene).stem
+def _examples() -> Path:
+    """The folder examples/ of the source tree, or the copy of it that is installed with the package."""
+    here = Path(__file__).resolve()
+    folders = (here.parents[3] / "examples", here.parents[1] / "examples")
+    return next(folder for folder in folders if (folder / f"{DEFAULT_SCENE}.py").is_file())
 
 
 class _Parser(argparse.ArgumentParser):
@@ -64,9 +75,22 @@ def _parser() -> argparse.ArgumentParser:
         "samples as the reference; writes the pictures, a comparison and all figures.",
     )
     add = parser.add_argument
-    add("scene", nargs="?", metavar="scene.blend", help="a Blender file (default: a small scene of shlight's own)")
+    add(
+        "scene",
+        nargs="?",
+        default=DEFAULT_SCENE,
+        help="a Blender file, a script with a function build_scene(), or the name of an example: "
+        "%(default)s (the default), glossy_balls, glossy_floor, roughness_ramp",
+    )
     add("--size", type=_size, metavar="WxH", help="pixels (default: the scene's shape, 512 on the longer side)")
     add("--out", metavar="DIR", help="folder of the results (default: out/preview/<scene name>)")
+    add(
+        "--light",
+        action="append",
+        dest="lights",
+        metavar="NAME",
+        help="a lamp that shines, the others do not; may be given several times (default: all shine)",
+    )
     add("--frame", type=int, metavar="N", help="frame of the animation (default: the scene's current one)")
     add("--samples", type=_whole(2), default=4096, metavar="N", help="samples of the reference (default: %(default)s)")
     add("--threads", type=_whole(0), default=0, metavar="N", help="threads of all renders (default: 0, all cores)")
@@ -75,7 +99,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--order", type=_order, metavar="N", help="order of the spherical harmonics, 1 to 64, or auto")
     add("--tolerance", type=_tolerance, metavar="X", help="relative error that the automatic order may make")
     add("--pixel-samples", type=_whole(1), metavar="N", help="camera rays per pixel")
-    add("--shadow-rays", type=_whole(0), metavar="N", help="rays towards each light, 0: no shadows")
+    add("--shadow-rays", type=_whole(0), metavar="N", help="rays towards each light, 0: no shadows, in Cycles neither")
     return parser
 
 

@@ -4,42 +4,54 @@
 from __future__ import annotations
 
 import runpy
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import bpy
 
+from ..export.materials import read_material
+from ..report import ExportReport
 from .options import Options
 
 DEFAULT_LONGER_SIDE = 512
+# Rays that find an object in their way, other than the camera's.
+LIGHT_RAYS = ("visible_diffuse", "visible_glossy", "visible_shadow")
 
 
 class SceneError(Exception):
     """The scene cannot be opened or has nothing to render; the message is for the user."""
 
 
-def build_example_scene() -> Any:
-    """Runs examples/example_scene.py, from the source tree or from the copy that is installed with the package."""
-    here = Path(__file__).resolve()
-    folders = [here.parents[3] / "examples", here.parents[1] / "examples"]
-    script = next(file for folder in folders if (file := folder / "example_scene.py").is_file())
-    return runpy.run_path(str(script))["build_example_scene"]()
-
-
-def open_scene(path: str | None) -> Any:
-    """Opens a .blend file (None: builds the example) and returns its scene."""
-    if path is None:
-        return build_example_scene()
-    try:
-        bpy.ops.wm.open_mainfile(filepath=str(Path(path).resolve()), load_ui=False, use_scripts=False)
-    except RuntimeError as error:
-        raise SceneError(_reason(error)) from error
-    scene = bpy.context.scene
+def open_scene(path: Path) -> Any:
+    """Opens a Blender file, or runs the function build_scene() of a Python script, and returns the scene."""
+    scene = _build(path) if path.suffix == ".py" else _open(path)
     if scene is None:
         raise SceneError("there is no scene in it")
     if scene.camera is None:
         raise SceneError(f"scene '{scene.name}' has no camera")
     return scene
+
+
+def _build(script: Path) -> Any:
+    try:
+        names = runpy.run_path(str(script))
+        if "build_scene" not in names:
+            raise SceneError("there is no function build_scene() in it")
+        return names["build_scene"]()
+    except (Exception, SystemExit) as error:
+        if isinstance(error, SceneError):
+            raise
+        raise SceneError(f"{type(error).__name__}: {' '.join(str(error).split())}") from error
+
+
+def _open(path: Path) -> Any:
+    try:
+        bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False, use_scripts=False)
+    except RuntimeError as error:
+        raise SceneError(_reason(error)) from error
+    return bpy.context.scene
 
 
 def _reason(error: RuntimeError) -> str:
@@ -50,9 +62,11 @@ def _reason(error: RuntimeError) -> str:
 
 
 def prepare(scene: Any, options: Options) -> None:
-    """Settings that all renders share: the frame, the size, and nothing after the renderer."""
+    """Settings that all renders share: the frame, the lamps, the size, and nothing after the renderer."""
     if options.frame is not None:
         scene.frame_set(options.frame)
+    if options.lights is not None:
+        _leave_only(scene, options.lights)
     render = scene.render
     render.resolution_x, render.resolution_y = options.size or _default_size(render)
     render.resolution_percentage = 100
@@ -73,6 +87,16 @@ def prepare(scene: Any, options: Options) -> None:
     image.color_depth = "32"
 
 
+def _leave_only(scene: Any, names: list[str]) -> None:
+    """Switches off all lamps but these."""
+    lamps = {seen.name: seen for seen in scene.objects if seen.type == "LIGHT"}
+    for name in names:
+        if name not in lamps:
+            raise SceneError(f"there is no lamp '{name}' in it, but {', '.join(lamps) or 'none'}")
+    for name, lamp in lamps.items():
+        lamp.hide_render = name not in names
+
+
 def _default_size(render: Any) -> tuple[int, int]:
     scale = DEFAULT_LONGER_SIDE / max(render.resolution_x, render.resolution_y)
     return max(1, round(render.resolution_x * scale)), max(1, round(render.resolution_y * scale))
@@ -91,6 +115,25 @@ def use_shlight(scene: Any, options: Options) -> None:
     if options.shadow_rays is not None:
         settings.use_shadows = options.shadow_rays > 0
         settings.shadow_rays = max(options.shadow_rays, 1)
+
+
+@contextmanager
+def without_shadows() -> Iterator[None]:
+    """Meanwhile surfaces that do not glow are seen by the camera alone, and no light that Cycles follows meets them."""
+    surfaces = [seen for seen in bpy.data.objects if seen.type != "LIGHT" and not _glows(seen)]
+    before = [(seen, flag, getattr(seen, flag)) for seen in surfaces for flag in LIGHT_RAYS]
+    for seen, flag, _ in before:
+        setattr(seen, flag, False)
+    try:
+        yield
+    finally:
+        for seen, flag, value in before:
+            setattr(seen, flag, value)
+
+
+def _glows(seen: Any) -> bool:
+    materials = (slot.material for slot in seen.material_slots)
+    return any(read_material(material, ExportReport()).emission.any() for material in materials)
 
 
 def use_cycles(scene: Any, samples: int, seed: int) -> None:

@@ -17,6 +17,7 @@ import os
 import signal
 import sys
 import time
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ import shlight_blender
 
 from .. import record
 from .options import Options
-from .scene import SceneError, open_scene, prepare, use_cycles, use_shlight
+from .scene import SceneError, open_scene, prepare, use_cycles, use_shlight, without_shadows
 from .timing import alternate, calibrate, middle, rounds_for
 
 PR_SET_PDEATHSIG = 1  # from linux/prctl.h
@@ -55,7 +56,7 @@ class Worker:
 
     def _figures(self) -> dict[str, Any]:
         self._stage("Opening the scene")
-        self._scene = open_scene(self._options.scene)
+        self._scene = open_scene(self._options.scene_file)
         bpy.ops.preferences.addon_enable(module="cycles")
         shlight_blender.register()
         prepare(self._scene, self._options)
@@ -130,7 +131,8 @@ class Worker:
 
     def _render_cycles(self, samples: int, seed: int) -> float:
         use_cycles(self._scene, samples, seed)
-        return _render()
+        with nullcontext() if self._scene.shlight.use_shadows else without_shadows():
+            return _render()
 
     def _saved(self, render: Any, name: str) -> Any:
         """`render`, its picture saved afterwards, outside of its time."""
