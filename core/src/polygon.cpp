@@ -2,6 +2,7 @@
 #include "shlight/polygon.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -9,6 +10,8 @@
 #include "checks.h"
 #include "polygon_boundary.h"
 #include "polygon_cubature.h"
+#include "polygon_shading.h"
+#include "shlight/shading.h"
 #include "spherical_polygon.h"
 
 namespace shlight {
@@ -44,8 +47,14 @@ void integrate(const SphericalPolygon<Wider<T>>& polygon, int order, T* coeffici
     if (method == PolygonMethod::cubature) {
         polygon_by_cubature(polygon, order, coefficients);
     } else {
-        polygon_by_boundary(polygon, order, coefficients);
+        region_coefficients(PolygonRegion<Wider<T>>(polygon, Warp()), order, coefficients);
     }
+}
+
+template <class T>
+SphericalPolygon<Wider<T>> clipped(std::span<const Vec3<T>> vertices) {
+    const std::vector<Vec3<Wider<T>>> exact(vertices.begin(), vertices.end());
+    return {exact, true};
 }
 
 template <class T>
@@ -96,9 +105,40 @@ void polygon_coefficients(std::span<const Vec3<T>> vertices, int vertex_count, i
     }
 }
 
+template <class T>
+void warped_polygon_coefficients(std::span<const Vec3<T>> vertices, const Warp& warp, int order, T* coefficients) {
+    const SphericalPolygon<Wider<T>> polygon = clipped<T>(vertices);
+    if (warp.is_identity()) {
+        integrate(polygon, order, coefficients, PolygonMethod::automatic);
+    } else {
+        region_coefficients(PolygonRegion<Wider<T>>(polygon, warp), order, coefficients);
+    }
+}
+
+template <class T>
+T shade_polygon(const SphericalPolygon<Wider<T>>& polygon, const Warp& warp, const T* lobe_terms, int order) {
+    if (!warp.is_identity()) {
+        return shade_region(PolygonRegion<Wider<T>>(polygon, warp), lobe_terms, order);
+    }
+    std::array<T, coefficient_count(kMaxOrder)> coefficients;
+    integrate(polygon, order, coefficients.data(), PolygonMethod::automatic);
+    return shade_cosine(coefficients.data(), lobe_terms, order);
+}
+
+template <class T>
+T shade_polygon(std::span<const Vec3<T>> vertices, const Warp& warp, const T* lobe_terms, int order) {
+    return shade_polygon(clipped<T>(vertices), warp, lobe_terms, order);
+}
+
 template void polygon_coefficients(std::span<const Vec3f>, int, bool, float*, PolygonMethod);
 template void polygon_coefficients(std::span<const Vec3d>, int, bool, double*, PolygonMethod);
 template void polygon_coefficients(std::span<const Vec3f>, int, int, bool, std::span<float>, PolygonMethod);
 template void polygon_coefficients(std::span<const Vec3d>, int, int, bool, std::span<double>, PolygonMethod);
+template void warped_polygon_coefficients(std::span<const Vec3f>, const Warp&, int, float*);
+template void warped_polygon_coefficients(std::span<const Vec3d>, const Warp&, int, double*);
+template float shade_polygon(const SphericalPolygon<double>&, const Warp&, const float*, int);
+template double shade_polygon(const SphericalPolygon<long double>&, const Warp&, const double*, int);
+template float shade_polygon(std::span<const Vec3f>, const Warp&, const float*, int);
+template double shade_polygon(std::span<const Vec3d>, const Warp&, const double*, int);
 
 }  // namespace shlight

@@ -12,49 +12,76 @@
 namespace shlight {
 namespace {
 
-/// Cosine and sine terms P̄_l^m cos mφ, P̄_l^m sin mφ (no √2) of one band.
-template <class T>
+/// Cosine and sine terms P̄_l^m cos mφ, P̄_l^m sin mφ (no √2) of one band, with two zeros behind them.
 struct BandTerms {
-    std::array<T, kMaxOrder + 1> cosine, sine;
+    std::array<double, kMaxOrder + 2> cosine, sine;
 };
 
 /// The terms at one end of an arc, band after band.
-template <class T>
 class EndPoint {
   public:
     template <class Real>
-    EndPoint(const Vec3<Real>& direction, int order)
-        : legendre_(static_cast<T>(direction.z),
-                    static_cast<T>(direction.x * direction.x + direction.y * direction.y)) {
-        complex_powers(static_cast<T>(direction.x), static_cast<T>(direction.y), order, cos_.data(), sin_.data());
+    EndPoint(const Vec3<Real>& u, int order)
+        : legendre_(static_cast<double>(u.z), static_cast<double>(u.x * u.x + u.y * u.y)) {
+        complex_powers(static_cast<double>(u.x), static_cast<double>(u.y), order, cos_.data(), sin_.data());
     }
     void advance() { legendre_.advance(); }
-    T cosine(int m) const { return legendre_[m] * cos_[m]; }
-    T sine(int m) const { return legendre_[m] * sin_[m]; }
+    double cosine(int m) const { return legendre_[m] * cos_[m]; }
+    double sine(int m) const { return legendre_[m] * sin_[m]; }
 
   private:
-    LegendreRows<T> legendre_;
-    std::array<T, kMaxOrder> cos_, sin_;
+    LegendreRows<double> legendre_;
+    std::array<double, kMaxOrder> cos_, sin_;
 };
 
-/// An edge in the frame turned about z so that its pole is (sinθ, 0, cosθ).
+/// P_l(c) for l = 0, 1, 2, …; near c = ±1 by differences, as in LegendreRows.
+class LegendrePolynomials {
+  public:
+    LegendrePolynomials(double c, double sine) : c_(c), near_pole_(sine < 0.125) {
+        distance_ = near_pole_ ? sine * sine / (1 + std::abs(c)) : 0;
+        other_ = near_pole_ ? -distance_ : 1;
+        value_ = near_pole_ ? 1 - distance_ : c;
+    }
+    /// P_l of the band that the number of calls says, from l = 1.
+    double next() {
+        ++l_;
+        const double sign = near_pole_ && c_ < 0 && l_ % 2 == 1 ? -1 : 1;
+        const double result = sign * value_;
+        const double l = l_;
+        if (near_pole_) {  // other_ is P_l - P_{l-1} at |c|
+            other_ = (l * other_ - (2 * l + 1) * distance_ * value_) / (l + 1);
+            value_ += other_;
+        } else {  // other_ is P_{l-1}
+            const double next = ((2 * l + 1) * c_ * value_ - l * other_) / (l + 1);
+            other_ = value_;
+            value_ = next;
+        }
+        return result;
+    }
+
+  private:
+    double c_;
+    bool near_pole_;
+    double distance_, value_, other_;
+    int l_ = 0;
+};
+
+/// An arc in the frame turned about z so that its axis is (sinθ, 0, cosθ).
 template <class Real>
-struct Edge {
-    Real length, cos_tilt, sin_tilt, cos_azimuth, sin_azimuth;
+struct TurnedArc {
+    Real cosine, sine, angle, cos_tilt, sin_tilt, cos_azimuth, sin_azimuth;
     Vec3<Real> from, to;
 
-    /// cross: a × b ≠ 0.
-    Edge(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& cross) {
-        const Real sine = glm::length(cross);
-        const Real radial = std::hypot(cross.x, cross.y);
-        length = std::atan2(sine, glm::dot(a, b));
-        cos_tilt = cross.z / sine;
-        sin_tilt = radial / sine;
-        cos_azimuth = radial > 0 ? cross.x / radial : Real(1);
-        sin_azimuth = radial > 0 ? cross.y / radial : Real(0);
-        from = turned(a);
-        to = turned(b);
-    }
+    explicit TurnedArc(const Arc<Real>& arc)
+        : cosine(arc.cosine),
+          sine(arc.sine),
+          angle(arc.angle),
+          cos_tilt(arc.axis.z),
+          sin_tilt(std::hypot(arc.axis.x, arc.axis.y)),
+          cos_azimuth(sin_tilt > 0 ? arc.axis.x / sin_tilt : Real(1)),
+          sin_azimuth(sin_tilt > 0 ? arc.axis.y / sin_tilt : Real(0)),
+          from(turned(arc.from)),
+          to(turned(arc.to)) {}
 
   private:
     Vec3<Real> turned(const Vec3<Real>& v) const {
@@ -62,178 +89,224 @@ struct Edge {
     }
 };
 
-/// P_l(0) for l = 0, 1, 2, … : along a great circle ω·N = 0.
-template <class T>
-T legendre_at_zero(int l) {
-    T p = l % 2 == 0 ? T(1) : T(0);
-    for (int k = 2; k <= l && l % 2 == 0; k += 2) {
-        p *= -static_cast<T>(k - 1) / static_cast<T>(k);
-    }
-    return p;
-}
-
-/// ∫ P̄_l^m cos mφ ds and ∫ P̄_l^m sin mφ ds along an edge. A turn about the pole moves along the edge, so the
-/// generator's right sides are plain differences of the end points.
-template <class T>
+/// ∫ P̄_l^m cos mφ dψ and ∫ P̄_l^m sin mφ dψ over an arc, ψ the angle about its axis. A turn about the axis moves along
+/// the arc, so the generator's right sides are plain differences of the end points.
 class ArcIntegrals {
   public:
     template <class Real>
-    ArcIntegrals(const Edge<Real>& edge, int order)
-        : length_(static_cast<T>(edge.length)),
-          cos_tilt_(static_cast<T>(edge.cos_tilt)),
-          sin_tilt_(static_cast<T>(edge.sin_tilt)),
+    ArcIntegrals(const TurnedArc<Real>& arc, int order)
+        : angle_(static_cast<double>(arc.angle)),
+          cos_tilt_(static_cast<double>(arc.cos_tilt)),
+          sin_tilt_(static_cast<double>(arc.sin_tilt)),
           legendre_(cos_tilt_, sin_tilt_ * sin_tilt_),
-          from_(edge.from, order),
-          to_(edge.to, order) {
+          along_circle_(static_cast<double>(arc.cosine), static_cast<double>(arc.sine)),
+          from_(arc.from, order),
+          to_(arc.to, order) {
         powers(sin_tilt_, order, sin_powers_.data());
-        terms_.cosine[0] = legendre_[0] * length_;
+        terms_.cosine[0] = legendre_[0] * angle_;
         terms_.sine[0] = 0;
+        end_with_zeros();
     }
 
-    const BandTerms<T>& terms() const { return terms_; }
+    const BandTerms& terms() const { return terms_; }
 
     void advance() {
         legendre_.advance();
         from_.advance();
         to_.advance();
         const int l = legendre_.band();
-        std::array<T, kMaxOrder> null, sine_rise, cosine_fall;
+        std::array<double, kMaxOrder> null, sine_rise, cosine_fall;
         for (int m = 0; m <= l; ++m) {
             null[m] = legendre_[m] * sin_powers_[m];
             sine_rise[m] = to_.sine(m) - from_.sine(m);
             cosine_fall[m] = from_.cosine(m) - to_.cosine(m);
         }
-        const BandSystem<T> system(l, cos_tilt_, sin_tilt_, legendre_.row());
+        const BandSystem<double> system(l, cos_tilt_, sin_tilt_, legendre_.row());
         system.solve(sine_rise.data(), terms_.cosine.data());
-        set_null_component(l, null.data(), legendre_at_zero<T>(l) * length_, terms_.cosine.data());
+        set_null_component(l, null.data(), along_circle_.next() * angle_, terms_.cosine.data());
         system.solve(cosine_fall.data(), terms_.sine.data());
         fix_sine_part(l, cosine_fall[0], null.data());
+        end_with_zeros();
     }
 
   private:
     /// The sine part obeys two conditions more (Y_0 = 0 and the row m = 0) for its one free multiple of the null
-    /// vector: least squares of both, because either alone becomes singular for some pole.
-    void fix_sine_part(int l, T cosine_fall, const T* null) {
-        const T ladder = LegendreConstants<T>::get().ladder[at(l, 0)];
-        T* z = terms_.sine.data();
-        const T alpha = -(z[0] * null[0] + cosine_fall * legendre_[1] / ladder + z[1] * null[1]) /
-                        (null[0] * null[0] + null[1] * null[1]);
+    /// vector: least squares of both, because either alone becomes singular for some axis.
+    void fix_sine_part(int l, double cosine_fall, const double* null) {
+        const double ladder = LegendreConstants<double>::get().ladder[at(l, 0)];
+        double* z = terms_.sine.data();
+        const double alpha = -(z[0] * null[0] + cosine_fall * legendre_[1] / ladder + z[1] * null[1]) /
+                             (null[0] * null[0] + null[1] * null[1]);
         for (int m = 0; m <= l; ++m) {
             z[m] += alpha * null[m];
         }
         z[0] = 0;
     }
 
-    T length_, cos_tilt_, sin_tilt_;
-    LegendreRows<T> legendre_;
-    EndPoint<T> from_, to_;
-    std::array<T, kMaxOrder> sin_powers_;
-    BandTerms<T> terms_;
+    void end_with_zeros() {
+        for (const int m : {legendre_.band() + 1, legendre_.band() + 2}) {
+            terms_.cosine[m] = 0;
+            terms_.sine[m] = 0;
+        }
+    }
+
+    double angle_, cos_tilt_, sin_tilt_;
+    LegendreRows<double> legendre_;
+    LegendrePolynomials along_circle_;
+    EndPoint from_, to_;
+    std::array<double, kMaxOrder> sin_powers_;
+    BandTerms terms_;
 };
 
-/// ∫ N·∇Y ds of band l from the arc integrals of band l-1: N is a constant vector, and the gradient of a solid
-/// harmonic lies one band lower.
-template <class T>
-BandTerms<T> normal_derivative(int l, T cos_tilt, T sin_tilt, const BandTerms<T>& below) {
-    const T g = std::sqrt(static_cast<T>(2 * l + 1) / static_cast<T>(2 * l - 1));
-    const auto root = [](int product) { return std::sqrt(static_cast<T>(std::max(0, product))); };
-    BandTerms<T> out;
-    for (int m = 0; m <= l; ++m) {
-        const T same = m < l ? cos_tilt * root(l * l - m * m) : T(0);
-        const T up = m + 1 < l ? -sin_tilt / 2 * root((l - m) * (l - m - 1)) : T(0);
-        const T down = sin_tilt / 2 * root((l + m) * (l + m - 1));
-        T c = 0;
-        T s = 0;
-        if (m < l) {
-            c += same * below.cosine[m];
-            s += same * below.sine[m];
+/// The factors of `normal_derivative`, the same for every arc; zero where there is no term.
+struct GradientFactors {
+    std::array<double, kCosineMax> same;  ///< g √(l²-m²),  g = √((2l+1)/(2l-1))
+    std::array<double, kCosineMax> up;    ///< -g/2 √((l-m)(l-m-1))
+    std::array<double, kCosineMax> down;  ///< g/2 √((l+m)(l+m-1))
+
+    GradientFactors() {
+        same.fill(0);
+        up.fill(0);
+        down.fill(0);
+        for (int l = 1; l < kMaxOrder; ++l) {
+            const double g = std::sqrt((2.0 * l + 1) / (2.0 * l - 1));
+            for (int m = 0; m <= l; ++m) {
+                same[at(l, m)] = g * std::sqrt(static_cast<double>(l * l - m * m));
+                up[at(l, m)] = -g / 2 * std::sqrt(static_cast<double>((l - m) * (l - m - 1)));
+                down[at(l, m)] = g / 2 * std::sqrt(static_cast<double>((l + m) * (l + m - 1)));
+            }
         }
-        if (m + 1 < l) {
-            c += up * below.cosine[m + 1];
-            s += up * below.sine[m + 1];
-        }
-        if (m >= 1) {
-            c += down * below.cosine[m - 1];
-            s += down * below.sine[m - 1];
-        } else if (l > 1) {
-            c -= down * below.cosine[1];  // Y^{-1} = -conj Y^1
-        }
-        out.cosine[m] = g * c;
-        out.sine[m] = g * s;
     }
-    return out;
+    static const GradientFactors& get() {
+        static const GradientFactors factors;
+        return factors;
+    }
+};
+
+/// ∫ L·∇Y dψ of band l ≥ 2 from the arc integrals of band l-1: L is a constant vector, and the gradient of a solid
+/// harmonic lies one band lower.
+void gradient_along_axis(int l, double cos_tilt, double sin_tilt, const BandTerms& below, BandTerms& out) {
+    const double* same = &GradientFactors::get().same[at(l, 0)];
+    const double* up = &GradientFactors::get().up[at(l, 0)];
+    const double* down = &GradientFactors::get().down[at(l, 0)];
+    // Y^{-1} = -conj Y^1
+    out.cosine[0] = cos_tilt * same[0] * below.cosine[0] + sin_tilt * (up[0] - down[0]) * below.cosine[1];
+    out.sine[0] = 0;
+    const auto row = [&](const double* x, double* result) {
+        for (int m = 1; m <= l; ++m) {
+            result[m] = cos_tilt * same[m] * x[m] + sin_tilt * (up[m] * x[m + 1] + down[m] * x[m - 1]);
+        }
+    };
+    row(below.cosine.data(), out.cosine.data());
+    row(below.sine.data(), out.sine.data());
 }
 
-template <class T, class Real>
-void add_edge(const Edge<Real>& edge, int order, T* coefficients) {
-    const auto cos_tilt = static_cast<T>(edge.cos_tilt);
-    const auto sin_tilt = static_cast<T>(edge.sin_tilt);
-    std::array<T, kMaxOrder> cos_m, sin_m;
-    complex_powers(static_cast<T>(edge.cos_azimuth), static_cast<T>(edge.sin_azimuth), order, cos_m.data(),
-                   sin_m.data());
-    ArcIntegrals<T> arc(edge, order);
+/// ∮ ∂_ν Y over one arc, in its own frame: use(l, terms) for the bands 2 … order-1.
+template <class Real, class Use>
+void for_each_band(const TurnedArc<Real>& turned, int order, Use use) {
+    const auto cosine = static_cast<double>(turned.cosine);
+    const auto cos_tilt = static_cast<double>(turned.cos_tilt);
+    const auto sin_tilt = static_cast<double>(turned.sin_tilt);
+    const bool great_circle = cosine == 0;
+    ArcIntegrals arc(turned, order);
     arc.advance();
+    BandTerms e;
     for (int l = 2; l < order; ++l) {
-        const BandTerms<T> e = normal_derivative(l, cos_tilt, sin_tilt, arc.terms());
-        const T scale = 1 / static_cast<T>(l * (l + 1));
-        const T pair = scale * std::numbers::sqrt2_v<T>;
-        T* band = coefficients + coefficient_index(l, 0);
-        band[0] += scale * e.cosine[0];
-        for (int m = 1; m <= l; ++m) {
-            band[m] += pair * (e.cosine[m] * cos_m[m] - e.sine[m] * sin_m[m]);
-            band[-m] += pair * (e.cosine[m] * sin_m[m] + e.sine[m] * cos_m[m]);
-        }
-        if (l + 1 < order) {
+        gradient_along_axis(l, cos_tilt, sin_tilt, arc.terms(), e);
+        if (l + 1 < order || !great_circle) {
             arc.advance();
         }
+        if (!great_circle) {
+            // ν ds = (L - c u) dψ, and u·∇ of a solid harmonic of degree l is l times it.
+            const double lc = l * cosine;
+            for (int m = 0; m <= l; ++m) {
+                e.cosine[m] -= lc * arc.terms().cosine[m];
+                e.sine[m] -= lc * arc.terms().sine[m];
+            }
+        }
+        use(l, e);
     }
 }
 
-/// Bands 0 and 1: the solid angle and the vector irradiance, ∫ ω dω = ½ Σ length · pole over the edges (Lambert 1760).
-/// In the wider type their cancellation leaves every digit of T, for polygons of any size.
-template <class T>
-void low_bands(const SphericalPolygon<Wider<T>>& polygon, int order, T* coefficients) {
-    using Real = Wider<T>;
-    coefficients[0] = static_cast<T>(polygon.solid_angle() * std::sqrt(1 / (4 * std::numbers::pi_v<Real>)));
-    if (order == 1) {
+/// The same for every arc; use(l, terms, cos_m, sin_m) gets the multiples of the arc's azimuth, too.
+template <class Real, class Use>
+void for_each_arc_and_band(const PolygonRegion<Real>& region, int order, Use use) {
+    if (order <= 2) {
         return;
     }
-    const std::vector<Vec3<Real>>& v = polygon.directions();
-    Vec3<Real> sum(0);
-    for (std::size_t i = 0; i < v.size(); ++i) {
-        const Vec3<Real>& cross = polygon.edge_cross(i);
-        const Real sine = glm::length(cross);
-        if (sine > 0) {
-            sum += std::atan2(sine, glm::dot(v[i], v[(i + 1) % v.size()])) / sine * cross;
-        }
+    for (const Arc<Real>& arc : region.arcs()) {
+        const TurnedArc<Real> turned(arc);
+        std::array<double, kMaxOrder> cos_m, sin_m;
+        complex_powers(static_cast<double>(turned.cos_azimuth), static_cast<double>(turned.sin_azimuth), order,
+                       cos_m.data(), sin_m.data());
+        for_each_band(turned, order, [&](int l, const BandTerms& e) { use(l, e, cos_m.data(), sin_m.data()); });
     }
-    sum *= std::sqrt(3 / (4 * std::numbers::pi_v<Real>)) / 2;
-    coefficients[1] = static_cast<T>(sum.y);
-    coefficients[2] = static_cast<T>(sum.z);
-    coefficients[3] = static_cast<T>(sum.x);
+}
+
+double stokes_factor(int l) {
+    return 1 / static_cast<double>(l * (l + 1));
+}
+
+/// Bands 0 and 1 in closed form, at their indices: the solid angle and the vector irradiance,
+///   ∫ u du = ½ Σ [ s² ψ L + c L × (to - from) ]   (Lambert 1760 for c = 0).
+/// In the wider type the cancellation of an unwarped polygon's edges leaves every digit of T.
+template <class Real>
+std::array<Real, 4> low_bands(const PolygonRegion<Real>& region) {
+    Vec3<Real> sum(0);
+    for (const Arc<Real>& arc : region.arcs()) {
+        sum += arc.sine * arc.sine * arc.angle * arc.axis;
+        sum += arc.cosine * glm::cross(arc.axis, arc.to - arc.from);
+    }
+    constexpr Real kPi = std::numbers::pi_v<Real>;
+    sum *= std::sqrt(3 / (4 * kPi)) / 2;
+    return {region.solid_angle() * std::sqrt(1 / (4 * kPi)), sum.y, sum.z, sum.x};
 }
 
 }  // namespace
 
 template <class T>
-void polygon_by_boundary(const SphericalPolygon<Wider<T>>& polygon, int order, T* coefficients) {
-    using Real = Wider<T>;
-    // The recurrences run in double for either T: what they lose grows as 1/Ω, and most lights are small.
+void region_coefficients(const PolygonRegion<Wider<T>>& region, int order, T* coefficients) {
+    // In double for either T: what the sum over the arcs loses grows as 1/Ω, and most lights are small.
     std::array<double, coefficient_count(kMaxOrder)> sum;
     std::fill_n(sum.begin(), coefficient_count(order), 0.0);
-    const std::vector<Vec3<Real>>& v = polygon.directions();
-    for (std::size_t i = 0; i < v.size() && order > 2; ++i) {
-        const Vec3<Real>& cross = polygon.edge_cross(i);
-        if (cross != Vec3<Real>(0)) {
-            add_edge(Edge<Real>(v[i], v[(i + 1) % v.size()], cross), order, sum.data());
+    for_each_arc_and_band(region, order, [&](int l, const BandTerms& e, const double* cos_m, const double* sin_m) {
+        const double scale = stokes_factor(l);
+        const double pair = scale * std::numbers::sqrt2;
+        double* band = sum.data() + coefficient_index(l, 0);
+        band[0] += scale * e.cosine[0];
+        for (int m = 1; m <= l; ++m) {
+            band[m] += pair * (e.cosine[m] * cos_m[m] - e.sine[m] * sin_m[m]);
+            band[-m] += pair * (e.cosine[m] * sin_m[m] + e.sine[m] * cos_m[m]);
         }
-    }
-    std::transform(sum.begin(), sum.begin() + coefficient_count(order), coefficients,
-                   [](double c) { return static_cast<T>(c); });
-    low_bands(polygon, order, coefficients);
+    });
+    const auto to_result = [](auto c) { return static_cast<T>(c); };
+    std::transform(sum.begin(), sum.begin() + coefficient_count(order), coefficients, to_result);
+    const auto low = low_bands(region);
+    std::transform(low.begin(), low.begin() + std::min(4, coefficient_count(order)), coefficients, to_result);
 }
 
-template void polygon_by_boundary(const SphericalPolygon<double>&, int, float*);
-template void polygon_by_boundary(const SphericalPolygon<long double>&, int, double*);
+template <class T>
+T shade_region(const PolygonRegion<Wider<T>>& region, const T* lobe_terms, int order) {
+    const auto low = low_bands(region);
+    auto sum = static_cast<double>(low[0]) * static_cast<double>(lobe_terms[0]);
+    if (order > 1) {
+        sum += static_cast<double>(low[2]) * static_cast<double>(lobe_terms[1]) +
+               static_cast<double>(low[3]) * static_cast<double>(lobe_terms[2]);
+    }
+    for_each_arc_and_band(region, order, [&](int l, const BandTerms& e, const double* cos_m, const double* sin_m) {
+        const T* f = lobe_terms + cosine_index(l, 0);
+        double pairs = 0;
+        for (int m = 1; m <= l; ++m) {
+            pairs += static_cast<double>(f[m]) * (e.cosine[m] * cos_m[m] - e.sine[m] * sin_m[m]);
+        }
+        sum += stokes_factor(l) * (static_cast<double>(f[0]) * e.cosine[0] + std::numbers::sqrt2 * pairs);
+    });
+    return static_cast<T>(sum);
+}
+
+template void region_coefficients(const PolygonRegion<double>&, int, float*);
+template void region_coefficients(const PolygonRegion<long double>&, int, double*);
+template float shade_region(const PolygonRegion<double>&, const float*, int);
+template double shade_region(const PolygonRegion<long double>&, const double*, int);
 
 }  // namespace shlight

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "shlight/types.h"
+#include "shlight/warp.h"
 
 namespace shlight {
 
@@ -30,5 +31,19 @@ void polygon_coefficients(std::span<const Vec3<T>> vertices, int order, bool cli
 template <class T>
 void polygon_coefficients(std::span<const Vec3<T>> vertices, int vertex_count, int order, bool clip,
                           std::span<T> coefficients, PolygonMethod method = PolygonMethod::automatic);
+
+/// Coefficients of the image of a polygon under a warp, order² values in the warped frame. The polygon is clipped by
+/// the true horizon first.
+/// vertices: as above, in the shading frame, true directions.
+/// Under a warp the arcs cancel for a small image: of solid angle Ω', the error is about 1e-14 / Ω' of L_00 at order 16
+/// (in float too: the inputs are taken as exact). Narrow images below Ω' ~ 1e-6 are better served by cubature of what
+/// they are multiplied with; warped_solid_angle() decides.
+template <class T>
+void warped_polygon_coefficients(std::span<const Vec3<T>> vertices, const Warp& warp, int order, T* coefficients);
+
+/// Σ f_lm L_lm of the same coefficients with a lobe's cosine terms f_lm (cosine_count(order) values): unit radiance's
+/// reflection. Sine terms of the light are not computed.
+template <class T>
+T shade_polygon(std::span<const Vec3<T>> vertices, const Warp& warp, const T* lobe_terms, int order);
 
 }  // namespace shlight
