@@ -22,15 +22,16 @@ class BandSystem {
     /// n_hat: P̂_l^m(cosθ), m = 0 … l, kept by reference; l ≥ 1.
     BandSystem(int l, T cos_tilt, T sin_tilt, const T* n_hat) : l_(l), sin_tilt_(sin_tilt), n_hat_(n_hat) {
         // The second solution starts where its Casoratian with N is largest: Q_0 = -N_1, Q_1 = N_0.
-        const T* ladder = &LegendreConstants<T>::get().ladder[at(l, 0)];
+        const auto& constants = LegendreConstants<T>::get();
+        const T* climb = &constants.climb[at(l, 0)];
+        const T* fall = &constants.fall[at(l, 0)];
         const T sin2 = sin_tilt * sin_tilt;
         q_hat_[0] = -n_hat[1];
         q_hat_[1] = n_hat[0];
         for (int m = 1; m < l; ++m) {
-            const T twice_m = static_cast<T>(2 * m);
-            q_hat_[m + 1] = (twice_m * cos_tilt * q_hat_[m] - ladder[m - 1] * sin2 * q_hat_[m - 1]) / ladder[m];
+            q_hat_[m + 1] = climb[m] * cos_tilt * q_hat_[m] - fall[m] * sin2 * q_hat_[m - 1];
         }
-        scale_ = 2 / (ladder[0] * (n_hat[0] * n_hat[0] + sin2 * n_hat[1] * n_hat[1]));
+        scale_ = 2 / (constants.ladder[at(l, 0)] * (n_hat[0] * n_hat[0] + sin2 * n_hat[1] * n_hat[1]));
     }
 
     /// x[0 … l] from right[1 … l].

@@ -2,34 +2,22 @@
 #include "shlight/cap.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "band_system.h"
 #include "checks.h"
 #include "exact_sums.h"
-#include "legendre.h"
 
 namespace shlight {
 namespace {
 
-/// Axis-dependent half of a cap. The few scalars of a light are worked out in double for either T: near contact and
-/// tangency they amplify rounding, and their share of the time is small.
-struct Axis {
-    double length, height, cos_tilt, sin_tilt, cos_azimuth, sin_azimuth;
+constexpr double kPi = std::numbers::pi;
 
-    explicit Axis(const Vec3d& v) {
-        const double radial = std::hypot(v.x, v.y);
-        length = std::hypot(radial, v.z);
-        height = v.z;
-        cos_tilt = v.z / length;
-        sin_tilt = radial / length;
-        cos_azimuth = radial > 0 ? v.x / radial : 1.0;
-        sin_azimuth = radial > 0 ? v.y / radial : 0.0;
-    }
-};
+/// 1 - x for x = cos α, without cancellation.
+double one_minus(double cosine, double sine) {
+    return cosine > 0 ? sine * sine / (1 + cosine) : 1 - cosine;
+}
 
 void check_sphere(const Vec3d& center, double radius, double epsilon) {
     check_finite("centers", center);
@@ -47,243 +35,173 @@ void check_cap(const Vec3d& axis, double half_angle) {
     if (axis == Vec3d(0)) {
         reject("axes contains a zero vector");
     }
-    if (!(half_angle > 0 && half_angle <= std::numbers::pi * (1 + 1e-7))) {
+    if (!(half_angle > 0 && half_angle <= kPi * (1 + 1e-7))) {
         reject("half_angles must lie in (0, π]");
     }
 }
 
+double length(const Vec3d& v) {
+    return std::hypot(std::hypot(v.x, v.y), v.z);  // no overflow, no underflow
+}
+
+/// The circles of a light and of the horizon, and the triangle of their poles and a point where they cross. Each pair
+/// (`chord`, cosine) is the product of two sides' sines times the (sine, cosine) of the angle between those sides.
+struct Contact {
+    Circle light;
+    double height, sine;  // the horizon
+    double chord;         // 0 where the circles do not cross
+    double corner;        // cosθ - cosσ z_0: at the crossing
+    double arc;           // cosσ - z_0 cosθ: at the horizon's pole
+    double edge;          // z_0 - cosσ cosθ: at the light's pole
+};
+
+/// `arc` and `edge` from `corner`, as the form whose terms are smaller gives them. The first keeps every digit of small
+/// lights and of the plane z_0 = 0; the second that of nearly equal or nearly opposite circles, where it is
+/// arc ± edge = (cosσ ± z_0)(1 ∓ cosθ) that must be right.
+void complete(Contact& contact) {
+    const double c = contact.light.cosine;
+    const double z = contact.height;
+    const double cos_tilt = contact.light.axis.z;
+    const double sin_tilt = std::hypot(contact.light.axis.x, contact.light.axis.y);
+    const double own = c * contact.sine * contact.sine;
+    const double other = z * contact.light.sine * contact.light.sine;
+    const double sum = (c + z) * one_minus(cos_tilt, sin_tilt);
+    const double difference = (c - z) * one_minus(-cos_tilt, sin_tilt);
+    const double size = std::abs(own) + std::abs(other) + (std::abs(c) + std::abs(z)) * std::abs(contact.corner);
+    if (size <= std::abs(sum) + std::abs(difference)) {
+        contact.arc = own - z * contact.corner;
+        contact.edge = other - c * contact.corner;
+    } else {
+        contact.arc = (sum + difference) / 2;
+        contact.edge = (sum - difference) / 2;
+    }
+}
+
+/// What a horizon keeps of a light, as angles.
+struct Kept {
+    double arc = 0, edge = 0, solid_angle = 0;
+};
+
+/// Circles that do not cross: they are nested, or apart, or together they cover the sphere. `corner` decides whether
+/// they are nested; which of the two others holds is a question of size, continuous where they touch.
+Kept kept_without_crossing(const Contact& contact) {
+    const double light = 2 * kPi * one_minus(contact.light.cosine, contact.light.sine);
+    const double above = 2 * kPi * one_minus(contact.height, contact.sine);
+    if (contact.corner >= 0) {
+        return contact.light.cosine >= contact.height ? Kept{0, kPi, light} : Kept{kPi, 0, above};
+    }
+    const double rest = -2 * kPi * (contact.light.cosine + contact.height);
+    return rest > 0 ? Kept{kPi, kPi, rest} : Kept{};
+}
+
+/// Gauss–Bonnet, Ω = 2β - 2ψ_0 cosσ - 2φ_a z_0 with the exterior angle β = atan2(chord, -corner); β - ψ_0 is one
+/// arctangent of numbers as small as the light.
+Kept kept_with_crossing(const Contact& contact) {
+    const double lack = one_minus(contact.light.cosine, contact.light.sine);
+    Kept kept{std::atan2(contact.chord, contact.arc), std::atan2(contact.chord, contact.edge), 0};
+    const double turn = std::atan2(contact.chord * (contact.height + contact.light.axis.z) * lack,
+                                   contact.chord * contact.chord - contact.edge * contact.corner);
+    kept.solid_angle = std::max(0.0, 2 * (turn + kept.edge * lack - kept.arc * contact.height));
+    return kept;
+}
+
 template <class T>
-Cap<T> make_cap(const Axis& axis, double cos_half, double sin_half, double crossing_squared, bool complement) {
+Cap<T> make_cap(const Contact& contact) {
     const auto r = [](double x) { return static_cast<T>(x); };
-    return {r(axis.cos_tilt),
-            r(axis.sin_tilt),
-            r(axis.cos_azimuth),
-            r(axis.sin_azimuth),
-            r(cos_half),
-            r(sin_half),
-            r(std::sqrt(std::max(0.0, crossing_squared))),
-            complement};
+    const Vec3d& axis = contact.light.axis;
+    const double sin_tilt = std::hypot(axis.x, axis.y);
+    const bool crossing = contact.chord > 0;
+    const Kept kept = crossing ? kept_with_crossing(contact) : kept_without_crossing(contact);
+    const double radius = std::hypot(contact.chord, contact.arc);
+    return {r(axis.z),
+            r(sin_tilt),
+            r(sin_tilt > 0 ? axis.x / sin_tilt : 1.0),
+            r(sin_tilt > 0 ? axis.y / sin_tilt : 0.0),
+            r(contact.light.cosine),
+            r(contact.light.sine),
+            r(kept.arc),
+            r(crossing ? contact.arc / radius : 1.0),
+            r(crossing ? contact.chord / radius : 0.0),
+            r(kept.edge),
+            r(kept.solid_angle),
+            crossing};
 }
 
-/// The zonal integrals λ_l of an unclipped cap, ∫ P_l(ω·L) dω (Funk–Hecke).
-/// λ_l = 2π sin²σ P_l'(cosσ) / (l(l+1)) is 2π (P_{l-1} - P_{l+1}) / (2l+1) without its cancellation;
-/// λ_0 = 2π (1 - cosσ). For small caps P_l falls from 1 by l(l+1)/2 · (1 - cosσ): the recurrence runs on the
-/// differences P_l - P_{l-1} and on 1 - cosσ = sin²σ / (1 + cosσ), because a rounded cosσ would be amplified by l².
+/// The warp is a Lorentz transform of the circles' 4-vectors (cosine; axis): their product is invariant, so where a
+/// light crosses the horizon is known from before the warp, with all digits. crossing_squared: sin²σ - L_z² there.
 template <class T>
-class ZonalIntegrals {
-  public:
-    ZonalIntegrals(T cos_half, T sin_half) : sin2_(sin_half * sin_half), one_minus_cos_(sin2_ / (1 + cos_half)) {}
-
-    T band_zero() const { return 2 * std::numbers::pi_v<T> * one_minus_cos_; }
-    /// sin²σ P_l'(cosσ) for l = 1, 2, 3 … in turn.
-    T next_edge() {
-        ++l_;
-        const T derivative = derivative_before_ + static_cast<T>(2 * l_ - 1) * p_;  // P'_l = P'_{l-2} + (2l-1) P_{l-1}
-        derivative_before_ = derivative_;
-        derivative_ = derivative;
-        rise_ =
-            (static_cast<T>(l_ - 1) * rise_ - static_cast<T>(2 * l_ - 1) * one_minus_cos_ * p_) / static_cast<T>(l_);
-        p_ += rise_;
-        return sin2_ * derivative;
-    }
-
-  private:
-    T sin2_, one_minus_cos_;
-    int l_ = 0;
-    T p_ = 1, rise_ = 0;                        // P_l, P_l - P_{l-1}
-    T derivative_before_ = 0, derivative_ = 0;  // P'_{l-1}, P'_l
-};
-
-/// Spreads the cosine terms of one band in the frame where the light has azimuth 0 over ±m.
-template <class T>
-void turn_band(int l, const T* cosine_terms, const T* cos_m, const T* sin_m, T* coefficients) {
-    T* band = coefficients + coefficient_index(l, 0);
-    band[0] = cosine_terms[0];
-    for (int m = 1; m <= l; ++m) {
-        const T value = std::numbers::sqrt2_v<T> * cosine_terms[m];
-        band[m] = value * cos_m[m];
-        band[-m] = value * sin_m[m];
-    }
-}
-
-template <class T>
-void whole_cap(const Cap<T>& cap, int order, T* coefficients) {
-    std::array<T, kMaxOrder> cos_m;
-    std::array<T, kMaxOrder> sin_m;
-    complex_powers(cap.sin_tilt * cap.cos_azimuth, cap.sin_tilt * cap.sin_azimuth, order, cos_m.data(), sin_m.data());
-    LegendreRows<T> legendre(cap.cos_tilt, cap.sin_tilt * cap.sin_tilt);
-    ZonalIntegrals<T> zonal(cap.cos_half, cap.sin_half);
-    coefficients[0] = zonal.band_zero() * legendre[0];
-    std::array<T, kMaxOrder> band;
-    for (int l = 1; l < order; ++l) {
-        legendre.advance();
-        const T lambda = 2 * std::numbers::pi_v<T> * zonal.next_edge() / static_cast<T>(l * (l + 1));
-        for (int m = 0; m <= l; ++m) {
-            band[m] = lambda * legendre[m];
-        }
-        turn_band(l, band.data(), cos_m.data(), sin_m.data(), coefficients);
-    }
-}
-
-/// Where the cap's edge meets the horizon.
-template <class T>
-struct HorizonArc {
-    T half_arc;     ///< φ_a: the horizon is covered for |φ| ≤ φ_a
-    T half_edge;    ///< ψ_0: half of the cap's edge above the horizon, as an angle about its axis
-    T solid_angle;  ///< Ω of the kept region
-    std::array<T, kMaxOrder + 1> sine_over_m;  ///< sin(m φ_a) / m, φ_a for m = 0
-    std::array<T, kMaxOrder> moment;           ///< I_m = ∫ sin mφ sin φ dφ over the arc
-
-    HorizonArc(const Cap<T>& cap, int order) {
-        const T w = cap.crossing;
-        const T one_minus_cos = cap.sin_half * cap.sin_half / (1 + cap.cos_half);
-        half_arc = std::atan2(w, cap.cos_half);
-        half_edge = std::atan2(w, -cap.cos_half * cap.cos_tilt);
-        // Both terms are of the size of the region, for small caps too: 1 - cosσ never appears as a difference.
-        solid_angle =
-            2 * std::atan2(w * cap.cos_tilt * one_minus_cos, w * w + cap.cos_half * cap.cos_tilt * cap.cos_tilt) +
-            2 * half_edge * one_minus_cos;
-        fill_sines(w, cap.cos_half, order);
-        fill_moments(order);
-    }
-
-  private:
-    void fill_sines(T w, T cos_half, int order) {
-        const T chord = std::hypot(w, cos_half);
-        std::array<T, kMaxOrder + 1> unused;
-        complex_powers(cos_half / chord, w / chord, order + 1, unused.data(), sine_over_m.data());
-        sine_over_m[0] = half_arc;
-        for (int m = 1; m <= order; ++m) {
-            sine_over_m[m] /= static_cast<T>(m);
-        }
-    }
-
-    void fill_moments(int order) {
-        moment[0] = 0;
-        for (int m = 1; m < order; ++m) {
-            moment[m] =
-                static_cast<T>(m + 1) * half_arc < T(0.6) ? moment_series(m) : sine_over_m[m - 1] - sine_over_m[m + 1];
-        }
-    }
-
-    /// The power series of sin((m-1)φ)/(m-1) - sin((m+1)φ)/(m+1), whose two terms agree to φ³ for short arcs.
-    T moment_series(int m) const {
-        const T low = static_cast<T>((m - 1) * (m - 1));
-        const T high = static_cast<T>((m + 1) * (m + 1));
-        T term = half_arc, low_power = 1, high_power = 1, sum = 0;
-        for (int j = 1; j < 8; ++j) {
-            term *= -half_arc * half_arc / static_cast<T>(2 * j * (2 * j + 1));
-            low_power *= low;
-            high_power *= high;
-            sum += term * (low_power - high_power);
-        }
-        return sum;
-    }
-};
-
-/// T_l = ∫ P_l(ω·L) over the kept region: Stokes on the Laplacian, the cap's edge plus the horizon arc
-/// (on which P_l(ω·L) is expanded by the addition theorem; only odd l - m have a normal derivative there).
-template <class T>
-T clipped_zonal_integral(int l, T edge, const HorizonArc<T>& arc, const T* null) {
-    const T* dz = &LegendreConstants<T>::get().dz_at_horizon[at(l, 0)];
-    T horizon = 0;
-    for (int m = (l + 1) % 2; m <= l; m += 2) {
-        horizon += (m == 0 ? T(2) : T(4)) * dz[m] * null[m] * arc.sine_over_m[m];
-    }
-    const T four_pi_over = 4 * std::numbers::pi_v<T> / static_cast<T>(2 * l + 1);
-    return (2 * arc.half_edge * edge + four_pi_over * horizon) / static_cast<T>(l * (l + 1));
-}
-
-template <class T>
-void clipped_cap(const Cap<T>& cap, int order, T* coefficients) {
-    const HorizonArc<T> arc(cap, order);
-    const auto& constants = LegendreConstants<T>::get();
-    std::array<T, kMaxOrder> cos_m, sin_m, sin_tilt_powers;
-    complex_powers(cap.cos_azimuth, cap.sin_azimuth, order, cos_m.data(), sin_m.data());
-    powers(cap.sin_tilt, order, sin_tilt_powers.data());
-    LegendreRows<T> legendre(cap.cos_tilt, cap.sin_tilt * cap.sin_tilt);
-    ZonalIntegrals<T> zonal(cap.cos_half, cap.sin_half);
-    coefficients[0] = arc.solid_angle * legendre[0];
-    std::array<T, kMaxOrder> right, band, null;
-    for (int l = 1; l < order; ++l) {
-        legendre.advance();
-        const T* at_horizon = &constants.at_horizon[at(l, 0)];
-        for (int m = 0; m <= l; ++m) {
-            null[m] = legendre[m] * sin_tilt_powers[m];
-            right[m] = -cap.sin_tilt * at_horizon[m] * arc.moment[m];
-        }
-        BandSystem<T>(l, cap.cos_tilt, cap.sin_tilt, legendre.row()).solve(right.data(), band.data());
-        const T zonal_integral = clipped_zonal_integral(l, zonal.next_edge(), arc, null.data());
-        set_null_component(l, null.data(), zonal_integral, band.data());
-        turn_band(l, band.data(), cos_m.data(), sin_m.data(), coefficients);
-    }
-}
-
-/// Coefficients of the region that a complement is taken from: the upper hemisphere or the whole sphere.
-template <class T>
-void subtract_from_everything(int order, bool clip, T* coefficients) {
-    const int count = coefficient_count(order);
-    for (int i = 0; i < count; ++i) {
-        coefficients[i] = -coefficients[i];
-    }
-    if (!clip) {
-        coefficients[0] += std::sqrt(4 * std::numbers::pi_v<T>);
-        return;
-    }
-    std::array<T, static_cast<std::size_t>(coefficient_count(kMaxOrder))> hemisphere;
-    whole_cap(Cap<T>{1, 0, 1, 0, 0, 1, 0, false}, order, hemisphere.data());
-    for (int l = 0; l < order; ++l) {
-        const int i = coefficient_index(l, 0);
-        coefficients[i] += hemisphere[i];
-    }
+Cap<T> warped_cap(const Circle& light, double crossing_squared, const Warp& warp) {
+    Contact contact{
+        warp.is_identity() ? light : warp.warped(light), warp.horizon_height(), warp.horizon_sine(), 0, 0, 0, 0};
+    const double shrink = light.sine > 0 ? contact.light.sine / light.sine : 1.0;
+    const double scale = shrink * contact.sine;
+    contact.chord = std::sqrt(std::max(0.0, crossing_squared)) * scale;
+    contact.corner = light.axis.z * scale;
+    complete(contact);
+    return make_cap<T>(contact);
 }
 
 }  // namespace
 
 template <class T>
-Cap<T> Cap<T>::of_sphere(const Vec3<T>& center, T radius) {
-    const Vec3d c(center);
-    const double r = radius;
-    const Axis axis(c);
+Cap<T> Cap<T>::of_sphere(const Vec3d& center, double radius, const Warp& warp) {
+    const double distance = length(center);
     // |c|² - r² and r² - c_z² by exact products: near contact and tangency they are small differences of the inputs.
-    const double tangent_squared = std::max(0.0, difference_of_squares({c.x, c.y, c.z}, r));
-    const double sin_half = std::min(1.0, r / axis.length);
-    const double crossing = (r - c.z) * (r + c.z) / (axis.length * axis.length);
-    return make_cap<T>(axis, std::sqrt(tangent_squared) / axis.length, sin_half, crossing, false);
+    const double tangent_squared = std::max(0.0, difference_of_squares({center.x, center.y, center.z}, radius));
+    const Circle light{center / distance, std::sqrt(tangent_squared) / distance, std::min(1.0, radius / distance)};
+    const double crossing_squared = (radius - center.z) * (radius + center.z) / (distance * distance);
+    return warped_cap<T>(light, crossing_squared, warp);
 }
 
 template <class T>
-Cap<T> Cap<T>::of_facing_disk(const Vec3<T>& center, T radius) {
-    const Axis axis{Vec3d(center)};
-    const double slant = std::hypot(axis.length, static_cast<double>(radius));
-    const double sin_half = radius / slant;
-    const double crossing = (sin_half - axis.cos_tilt) * (sin_half + axis.cos_tilt);
-    return make_cap<T>(axis, axis.length / slant, sin_half, crossing, false);
+Cap<T> Cap<T>::of_facing_disk(const Vec3d& center, double radius, const Warp& warp) {
+    const double distance = length(center);
+    const double slant = std::hypot(distance, radius);
+    return inside({center / distance, distance / slant, radius / slant}, warp);
 }
 
 template <class T>
-Cap<T> Cap<T>::about_axis(const Vec3<T>& axis_vector, T half_angle) {
-    const double half = std::min(static_cast<double>(half_angle), std::numbers::pi);
-    const bool complement = half > std::numbers::pi / 2;
-    const Vec3d v(axis_vector);
-    const Axis axis(complement ? -v : v);
-    const double sin_half = std::sin(half);
-    const double crossing = (sin_half - axis.cos_tilt) * (sin_half + axis.cos_tilt);
-    return make_cap<T>(axis, std::abs(std::cos(half)), sin_half, crossing, complement);
+Cap<T> Cap<T>::about_axis(const Vec3d& axis, double half_angle, const Warp& warp) {
+    const double half = std::min(half_angle, kPi);
+    return inside({axis / length(axis), std::cos(half), std::sin(half)}, warp);
 }
 
 template <class T>
-void cap_coefficients(const Cap<T>& cap, int order, bool clip, T* coefficients) {
-    if (!clip || (cap.crossing <= 0 && cap.cos_tilt > 0)) {
-        whole_cap(cap, order, coefficients);
-    } else if (cap.crossing <= 0) {
-        std::fill_n(coefficients, coefficient_count(order), T(0));
-    } else {
-        clipped_cap(cap, order, coefficients);
-    }
-    if (cap.complement) {
-        subtract_from_everything(order, clip, coefficients);
-    }
+Cap<T> Cap<T>::inside(const Circle& circle, const Warp& warp) {
+    return warped_cap<T>(circle, (circle.sine - circle.axis.z) * (circle.sine + circle.axis.z), warp);
+}
+
+template <class T>
+Cap<T> Cap<T>::against(double horizon_height, double horizon_sine, const Vec3d& axis, double half_angle) {
+    const double sigma = std::min(half_angle, kPi);
+    const double theta = std::atan2(std::hypot(axis.x, axis.y), axis.z);
+    const double eta = std::atan2(horizon_sine, horizon_height);
+    // The half-angle formulas of the triangle with the sides θ, σ, η: four sines give everything.
+    const double whole = std::sin((theta + sigma + eta) / 2);
+    const double less_theta = std::sin((sigma + eta - theta) / 2);
+    const double less_sigma = std::sin((theta + eta - sigma) / 2);
+    const double less_eta = std::sin((theta + sigma - eta) / 2);
+    const double nested = whole * less_theta;
+    const double apart = less_sigma * less_eta;
+    const double chord = 2 * std::sqrt(std::max(0.0, nested * apart));
+    return make_cap<T>({{axis / length(axis), std::cos(sigma), std::sin(sigma)},
+                        horizon_height,
+                        horizon_sine,
+                        chord,
+                        nested - apart,
+                        whole * less_sigma - less_theta * less_eta,
+                        whole * less_eta - less_theta * less_sigma});
+}
+
+template <class T>
+Cap<T> Cap<T>::unclipped() const {
+    Cap whole = *this;
+    const T lack = cos_half > 0 ? sin_half * sin_half / (1 + cos_half) : 1 - cos_half;
+    whole.arc = 0;
+    whole.edge = std::numbers::pi_v<T>;
+    whole.solid_angle = 2 * std::numbers::pi_v<T> * lack;
+    whole.crossing = false;
+    return whole;
 }
 
 template <class T>
@@ -294,8 +212,9 @@ void sphere_coefficients(std::span<const Vec3<T>> centers, std::span<const T> ra
     const auto row = static_cast<std::size_t>(coefficient_count(order));
     check_size("coefficients", coefficients.size(), centers.size() * row);
     for (std::size_t i = 0; i < centers.size(); ++i) {
-        check_sphere(Vec3d(centers[i]), radii[i], std::numeric_limits<T>::epsilon());
-        cap_coefficients(Cap<T>::of_sphere(centers[i], radii[i]), order, clip, coefficients.data() + i * row);
+        const Vec3d center(centers[i]);
+        check_sphere(center, radii[i], std::numeric_limits<T>::epsilon());
+        cap_coefficients(Cap<T>::of_sphere(center, radii[i]), order, clip, coefficients.data() + i * row);
     }
 }
 
@@ -307,15 +226,14 @@ void cap_coefficients(std::span<const Vec3<T>> axes, std::span<const T> half_ang
     const auto row = static_cast<std::size_t>(coefficient_count(order));
     check_size("coefficients", coefficients.size(), axes.size() * row);
     for (std::size_t i = 0; i < axes.size(); ++i) {
-        check_cap(Vec3d(axes[i]), half_angles[i]);
-        cap_coefficients(Cap<T>::about_axis(axes[i], half_angles[i]), order, clip, coefficients.data() + i * row);
+        const Vec3d axis(axes[i]);
+        check_cap(axis, half_angles[i]);
+        cap_coefficients(Cap<T>::about_axis(axis, half_angles[i]), order, clip, coefficients.data() + i * row);
     }
 }
 
 template struct Cap<float>;
 template struct Cap<double>;
-template void cap_coefficients(const Cap<float>&, int, bool, float*);
-template void cap_coefficients(const Cap<double>&, int, bool, double*);
 template void sphere_coefficients(std::span<const Vec3<float>>, std::span<const float>, int, bool, std::span<float>);
 template void sphere_coefficients(std::span<const Vec3<double>>, std::span<const double>, int, bool, std::span<double>);
 template void cap_coefficients(std::span<const Vec3<float>>, std::span<const float>, int, bool, std::span<float>);

@@ -12,7 +12,7 @@ using Real = long double;
 
 struct Exact {
     std::array<Real, kMaxOrder> diagonal{};
-    std::array<Real, kCosineMax> step{}, back{}, ladder{}, at_pole{}, at_horizon{}, dz_at_horizon{};
+    std::array<Real, kCosineMax> step{}, back{}, ladder{}, at_pole{}, climb{}, fall{};
 };
 
 void fill_recurrence(Exact& c) {
@@ -45,18 +45,11 @@ void fill_pole(Exact& c) {
     }
 }
 
-void fill_horizon(Exact& c) {
-    for (int m = 0; m < kMaxOrder; ++m) {
-        c.at_horizon[at(m, m)] = c.diagonal[m];
-        for (int l = m + 2; l < kMaxOrder; l += 2) {
-            c.at_horizon[at(l, m)] = -c.back[at(l, m)] * c.at_horizon[at(l - 2, m)];
-        }
-    }
-    // (1 - z²) dP̄_l^m/dz = √((2l+1)/(2l-1) (l²-m²)) P̄_{l-1}^m - l z P̄_l^m, at z = 0.
-    for (int l = 1; l < kMaxOrder; ++l) {
-        for (int m = 0; m < l; ++m) {
-            c.dz_at_horizon[at(l, m)] =
-                std::sqrt((Real(2) * l + 1) / (Real(2) * l - 1) * (l * l - m * m)) * c.at_horizon[at(l - 1, m)];
+void fill_degrees(Exact& c) {
+    for (int l = 0; l < kMaxOrder; ++l) {
+        for (int m = 1; m < l; ++m) {
+            c.climb[at(l, m)] = 2 * static_cast<Real>(m) / c.ladder[at(l, m)];
+            c.fall[at(l, m)] = c.ladder[at(l, m - 1)] / c.ladder[at(l, m)];
         }
     }
 }
@@ -75,15 +68,15 @@ std::unique_ptr<const LegendreConstants<T>> make_constants() {
     auto exact = std::make_unique<Exact>();
     fill_recurrence(*exact);
     fill_pole(*exact);
-    fill_horizon(*exact);
+    fill_degrees(*exact);
     auto c = std::make_unique<LegendreConstants<T>>();
     c->diagonal = rounded<T>(exact->diagonal);
     c->step = rounded<T>(exact->step);
     c->back = rounded<T>(exact->back);
     c->ladder = rounded<T>(exact->ladder);
     c->at_pole = rounded<T>(exact->at_pole);
-    c->at_horizon = rounded<T>(exact->at_horizon);
-    c->dz_at_horizon = rounded<T>(exact->dz_at_horizon);
+    c->climb = rounded<T>(exact->climb);
+    c->fall = rounded<T>(exact->fall);
     return c;
 }
 

@@ -23,13 +23,13 @@ inline constexpr std::size_t kCosineMax = static_cast<std::size_t>(cosine_count(
 /// Constants of the recurrences, the same for every light.
 template <class T>
 struct LegendreConstants {
-    std::array<T, kMaxOrder> diagonal;        ///< P̂_m^m
-    std::array<T, kCosineMax> step;           ///< P̂_l = step · z · P̂_{l-1} - back · P̂_{l-2}
-    std::array<T, kCosineMax> back;           //
-    std::array<T, kCosineMax> ladder;         ///< √((l-m)(l+m+1)), the ladder operators' factor
-    std::array<T, kCosineMax> at_horizon;     ///< P̄_l^m(0), zero for odd l - m
-    std::array<T, kCosineMax> at_pole;        ///< P̂_l^m(1)
-    std::array<T, kCosineMax> dz_at_horizon;  ///< dP̄_l^m/dz (0), zero for even l - m
+    std::array<T, kMaxOrder> diagonal;  ///< P̂_m^m
+    std::array<T, kCosineMax> step;     ///< P̂_l = step · z · P̂_{l-1} - back · P̂_{l-2}
+    std::array<T, kCosineMax> back;     //
+    std::array<T, kCosineMax> ladder;   ///< √((l-m)(l+m+1)), the ladder operators' factor
+    std::array<T, kCosineMax> at_pole;  ///< P̂_l^m(1)
+    std::array<T, kCosineMax> climb;    ///< 2m / ladder, of a recurrence in m
+    std::array<T, kCosineMax> fall;     ///< ladder of m - 1 / ladder
 
     static const LegendreConstants& get();
 };

@@ -11,23 +11,16 @@
 namespace shlight {
 namespace {
 
-Cap<float> to_float(const Cap<double>& cap) {
-    const auto f = [](double x) { return static_cast<float>(x); };
-    return {f(cap.cos_tilt), f(cap.sin_tilt), f(cap.cos_azimuth), f(cap.sin_azimuth),
-            f(cap.cos_half), f(cap.sin_half), f(cap.crossing),    cap.complement};
-}
-
-/// In double up to the few numbers that the recurrences start from: contact and tangency amplify rounding.
 Cap<float> cap_of(const CapView& cap) {
     switch (cap.kind) {
         case CapView::Kind::sphere:
-            return to_float(Cap<double>::of_sphere(cap.center, cap.radius));
+            return Cap<float>::of_sphere(cap.center, cap.radius);
         case CapView::Kind::facing_disk:
-            return to_float(Cap<double>::of_facing_disk(cap.center, cap.radius));
+            return Cap<float>::of_facing_disk(cap.center, cap.radius);
         case CapView::Kind::inside:
             break;
     }
-    return to_float(Cap<double>::about_axis(Vec3d(0, 0, 1), std::numbers::pi / 2));
+    return Cap<float>::about_axis(Vec3d(0, 0, 1), std::numbers::pi / 2);
 }
 
 }  // namespace

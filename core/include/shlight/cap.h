@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Spherical caps: the region that a sphere light covers, seen from a shading point, clipped by the horizon z ≥ 0.
+// Spherical caps: the region that a sphere light covers, seen from a shading point, clipped by the horizon.
 //
 // Coefficients are the integrals of the basis over the kept region (Zhou & Wei 2020, Eq. 4 with unit radiance),
 // by recurrences in the degree that cost O(order²) in all; docs/algorithms.md derives them.
@@ -8,28 +8,54 @@
 
 #include <span>
 
+#include "shlight/horizon.h"
 #include "shlight/types.h"
+#include "shlight/warp.h"
 
 namespace shlight {
 
-/// A cap as the recurrences want it: sines and cosines that carry no cancellation for small or grazing caps.
+/// A cap {u : u·L ≥ cosσ} and what the horizon u_z ≥ z_0 keeps of it, as the recurrences want them.
+///
+/// Everything is worked out in double, whatever T: near contact and tangency the few scalars of a light amplify
+/// rounding. The horizon is the plane z = 0, or the image of that plane where a warp is given; axes, centres and half
+/// angles are always those before the warp.
 template <class T>
 struct Cap {
-    T cos_tilt, sin_tilt;        ///< angle between the cap's axis and z
+    T cos_tilt, sin_tilt;        ///< θ, the angle between the cap's axis L and z
     T cos_azimuth, sin_azimuth;  ///< the axis' azimuth about z
-    T cos_half, sin_half;        ///< half angle σ, 0 < σ ≤ π/2
-    T crossing;       ///< √(sin²σ - cos²θ), the half chord of the horizon; 0 where cap and horizon do not cross
-    bool complement;  ///< the region is everything *outside* this cap (half angles above π/2)
+    T cos_half, sin_half;        ///< half angle σ, 0 < σ ≤ π
+    T arc;                       ///< φ_a: the cap covers the horizon within φ_a of its axis' azimuth; 0 … π
+    T cos_arc, sin_arc;
+    T edge;         ///< ψ_0: the cap's edge is above the horizon within ψ_0 of its highest point; 0 … π
+    T solid_angle;  ///< of the kept region
+    bool crossing;  ///< whether the two circles cross; else arc and edge are 0 or π
 
     /// The cap of a sphere; precondition 0 < radius ≤ |center|, all finite.
-    static Cap of_sphere(const Vec3<T>& center, T radius);
+    static Cap of_sphere(const Vec3d& center, double radius, const Warp& warp = Warp());
     /// The cap of a disk that always faces the shading point: half angle atan(radius / |center|).
-    static Cap of_facing_disk(const Vec3<T>& center, T radius);
+    static Cap of_facing_disk(const Vec3d& center, double radius, const Warp& warp = Warp());
     /// The cap about an axis of any length > 0; precondition 0 < half_angle ≤ π.
-    static Cap about_axis(const Vec3<T>& axis, T half_angle);
+    static Cap about_axis(const Vec3d& axis, double half_angle, const Warp& warp = Warp());
+    /// The cap on one side of a circle.
+    static Cap inside(const Circle& circle, const Warp& warp = Warp());
+    /// The cap about an axis that is seen against a horizon of this height, whatever put the horizon there.
+    static Cap against(double horizon_height, double horizon_sine, const Vec3d& axis, double half_angle);
+
+    /// The same cap without a horizon.
+    Cap unclipped() const;
 };
 
-/// Coefficients of one cap, order² values. clip: keep only what lies above the horizon.
+/// Cosine terms S_lm = ∫ Y_lm over the kept region, m ≥ 0, about the azimuth of the cap's axis: cosine_count(order)
+/// values, with the √2 of the orthonormal basis. horizon: the one that the cap was made against, of this order or more.
+template <class T>
+void clipped_cap_terms(const Cap<T>& cap, const Horizon<T>& horizon, int order, T* cosine_terms);
+
+/// Σ f_lm L_lm for a lobe's cosine terms f_lm, cosine_count(order) of them: clipped_cap_terms turned to the cap's
+/// azimuth and multiplied, band by band.
+template <class T>
+T shade_cap(const Cap<T>& cap, const Horizon<T>& horizon, const T* lobe_terms, int order);
+
+/// Coefficients of one cap that was made against the plane z = 0, order² values. clip: keep only what lies above it.
 template <class T>
 void cap_coefficients(const Cap<T>& cap, int order, bool clip, T* coefficients);
 
