@@ -23,11 +23,11 @@ def build_scene() -> Any:
     polished = parts.metal("polished metal", (0.9, 0.9, 0.9), 0.2)
     parts.add_mesh(scene, "floor", parts.grid, polished, scale=(400, 400, 1))
     matt = parts.surface("matt", (0.5, 0.4, 0.3), 1.0, specular=0.0)
-    parts.add_mesh(scene, "pillar", parts.cube, matt, (-1.0, 4.0, 0.8), scale=(0.12, 0.12, 0.8))
-    parts.add_mesh(scene, "ball", parts.sphere, matt, (2.0, 3.0, 0.5), scale=(0.5,) * 3, smooth=True)
-    parts.add_sphere_lamp(scene, "sphere", 900.0, (-3.0, 14.0, 2.4), 1.0, (1.0, 0.80, 0.55))
-    parts.add_area_lamp(scene, "quad", 900.0, (3.5, 14.0, 2.2), (3.5, 0.0, 2.2), (3.0, 2.0), (0.6, 0.8, 1.0))
-    parts.add_camera(scene, (0, -7.0, 1.3), (0, 10.0, 0.55), lens=35.0, clip_end=2000.0)
+    parts.add_mesh(scene, "pillar", parts.cube, matt, (-1.5, 9.0, 1.0), scale=(0.1, 0.1, 1.0))
+    parts.add_mesh(scene, "ball", parts.sphere, matt, (2.3, 6.0, 0.4), scale=(0.4,) * 3, smooth=True)
+    parts.add_sphere_lamp(scene, "sphere", 900.0, (-4.5, 30.0, 2.6), 1.0, (1.0, 0.80, 0.55))
+    parts.add_area_lamp(scene, "quad", 500.0, (4.5, 30.0, 2.4), (4.5, 0.0, 2.4), (4.0, 2.0), (0.6, 0.8, 1.0))
+    parts.add_camera(scene, (0, -7.0, 1.0), (0, 10.0, -0.6), lens=40.0, clip_end=2000.0)
     return scene
 
 

@@ -21,20 +21,16 @@ sys.path.append(str(Path(__file__).resolve().parent))  # Blender does not look b
 
 import scene_parts as parts
 
-# Fine where reflections change fast: steps of 0.0025 up to 0.05, 0.01 up to 0.2, 0.025 up to 1.
-ROUGHNESSES = (
-    *(i / 400 for i in range(20)),
-    *(i / 100 for i in range(5, 20)),
-    *(i / 40 for i in range(8, 41)),
-)
-WIDTH = 0.1
+# Steps of 0.0025 up to 0.05, then of 2.8 % up to 1: a reflection's brightness goes with the fourth power.
+ROUGHNESSES = (*(i / 400 for i in range(20)), *(20.0 ** (i / 108 - 1.0) for i in range(109)))
+WIDTH = 0.05
 SEGMENTS = 96
 
 
 def build_scene() -> Any:
     """Makes the scene in Blender's current file, gives it the window, and returns it."""
     count = len(ROUGHNESSES)
-    scene = parts.new_scene("roughness ramp", 12 * count, 252)
+    scene = parts.new_scene("roughness ramp", 6 * count, 252)
     for number, roughness in enumerate(ROUGHNESSES):
         metal = parts.metal(f"metal {roughness:.4f}", (0.9, 0.9, 0.9), roughness)
         x = (number - 0.5 * (count - 1)) * WIDTH
