@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "quad_polygon.h"
+
 #include <algorithm>
 
 #include "quad_math.h"
@@ -56,9 +58,102 @@ void add_arc_point(const OrderTables& tables, const Vec3q& p, quad dz, quad area
     }
 }
 
-/// The arc from a to b. `facing` is a unit vector that every point of the arc faces: slices about it give the area.
-void add_arc(const OrderTables& tables, const Vec3q& a, const Vec3q& b, const Vec3q& facing, int extra_nodes,
-             std::vector<quad>& sums) {
+/// Directions ω ↔ u by the definition: about the axis the stereographic plane is stretched by `stretch`; then the frame
+/// is turned until the image of the horizon lies level.
+class PointwiseWarp {
+  public:
+    PointwiseWarp() = default;
+    explicit PointwiseWarp(const WarpInput& input)
+        : axis_{-sinf128(input.tilt), 0, cosf128(input.tilt)},
+          stretch_((2 - quad(input.narrowness)) / input.narrowness) {
+        const Vec3q right = image({1, 0, 0}).point;
+        const Vec3q left = image({-1, 0, 0}).point;
+        const Vec3q ahead = image({0, 1, 0}).point;
+        const Vec3q normal = normalized(cross(ahead - right, left - right));
+        // The rows of the turn about y; the warped frame's z is the normal of the plane through three horizon points.
+        z_ = normal;
+        x_ = cross(Vec3q{0, 1, 0}, normal);
+    }
+
+    struct Image {
+        Vec3q point, step;  ///< u and du/ds
+        quad scale;         ///< |du/ds| for |dω/ds| = 1
+        quad
+            area;  ///< (μ - μ') / (1 - μ²), μ = ω·axis and μ' = u·axis: the area grows by its integral over dφ (1 - μ²)
+    };
+
+    /// step: dω/ds.
+    Image image(const Vec3q& direction, const Vec3q& step = {0, 0, 0}) const {
+        const quad above = 1 + dot(direction, axis_);
+        const quad rise = dot(step, axis_);
+        const Vec3q plane = (1 / above) * (direction + axis_) - axis_;
+        const Vec3q plane_step = (1 / above) * (step - (rise / above) * (direction + axis_));
+        const quad squared = dot(plane, plane);
+        const quad divisor = 1 + stretch_ * stretch_ * squared;
+        const quad divisor_step = 2 * stretch_ * stretch_ * dot(plane, plane_step);
+        const Vec3q numerator = (2 * stretch_) * plane + 2 * axis_;
+        const Vec3q u = (1 / divisor) * numerator - axis_;
+        const Vec3q du = (1 / divisor) * ((2 * stretch_) * plane_step - (divisor_step / divisor) * numerator);
+        return {turned(u), turned(du), stretch_ * (1 + squared) / divisor,
+                (stretch_ * stretch_ - 1) * (1 + squared) / (2 * divisor)};
+    }
+    const Vec3q& axis() const { return axis_; }
+
+  private:
+    Vec3q turned(const Vec3q& v) const { return {dot(x_, v), v.y, dot(z_, v)}; }
+
+    Vec3q axis_{0, 0, 1};
+    quad stretch_ = 1;
+    Vec3q x_{1, 0, 0}, z_{0, 0, 1};
+};
+
+/// A great-circle edge, parametrised so that nodes crowd where the warp enlarges: tan(s/2) = tan(t/2) / crowding, s the
+/// angle from the point nearest to the warp's axis.
+struct CrowdedEdge {
+    Vec3q start, along;
+    quad crowding, first, last;
+
+    CrowdedEdge(const PointwiseWarp& warp, const Vec3q& a, const Vec3q& pole, quad length_of_edge) {
+        start = warp.axis() - dot(warp.axis(), pole) * pole;
+        start = normalized(length(start) > 1e-20 ? start : a);
+        along = cross(pole, start);
+        crowding = sqrtf128(warp.image(start).scale / warp.image(-1 * start).scale);
+        const quad from = atan2f128(dot(a, along), dot(a, start));
+        first = parameter(from);
+        last = parameter(from + length_of_edge);
+    }
+    quad parameter(quad s) const {
+        const quad half = atan2f128(crowding * sinf128(s / 2), cosf128(s / 2));
+        return 2 * (s > pi() && half < 0 ? half + 2 * pi() : half);
+    }
+    struct Node {
+        Vec3q point, step;
+        quad speed;  ///< ds/dt
+    };
+    Node at(quad t) const {
+        const quad c = cosf128(t / 2);
+        const quad s = sinf128(t / 2);
+        const quad square = crowding * crowding * c * c + s * s;
+        const quad cosine = (crowding * crowding * c * c - s * s) / square;
+        const quad sine = 2 * crowding * c * s / square;
+        return {cosine * start + sine * along, cosine * along - sine * start, crowding / square};
+    }
+};
+
+/// ∫ f over [first, last]; f(x, weight), smooth on the scale of 1 / wiggles.
+template <class Function>
+void gauss_integral(quad first, quad last, double wiggles, int extra_nodes, Function f) {
+    const int count = 4 * static_cast<int>((0.27 * wiggles + 30) / 4) + extra_nodes;
+    const GaussRule& rule = gauss_rule(count);
+    for (int i = 0; i < count; ++i) {
+        f(first + (last - first) * (1 + rule.nodes[i]) / 2, (last - first) * rule.weights[i] / 2);
+    }
+}
+
+/// The image of the edge from a to b. `facing` is a unit vector that every point of the edge faces: slices about it
+/// give the area before the warp.
+void add_edge(const OrderTables& tables, const PointwiseWarp& warp, const Vec3q& a, const Vec3q& b, const Vec3q& facing,
+              int extra_nodes, std::vector<quad>& sums) {
     const Vec3q normal = cross(a, b - a);
     if (!(length(normal) > 0)) {
         return;
@@ -67,18 +162,22 @@ void add_arc(const OrderTables& tables, const Vec3q& a, const Vec3q& b, const Ve
     const Vec3q pole = normalized(normal);
     const Vec3q start = normalized(a);
     const Vec3q along = cross(pole, start);
-    const double wiggles = (tables.order + 1) * static_cast<double>(angle);
-    const int count = 4 * static_cast<int>((0.27 * wiggles + 30) / 4) + extra_nodes;
-    const GaussRule& rule = gauss_rule(count);
-    std::vector<quad> legendre;
-    for (int i = 0; i < count; ++i) {
-        const quad s = angle * (1 + rule.nodes[i]) / 2;
-        const quad weight = angle * rule.weights[i] / 2;
+    gauss_integral(0, angle, (tables.order + 1) * static_cast<double>(angle), extra_nodes, [&](quad s, quad weight) {
         const Vec3q p = cosf128(s) * start + sinf128(s) * along;
-        const quad dz = weight * (cosf128(s) * along.z - sinf128(s) * start.z);
-        sums[0] += weight * dot(facing, pole) / (1 + dot(facing, p)) * tables.diagonal[0];
-        add_arc_point(tables, p, dz, weight * pole.z, legendre, sums);  // x dy - y dx is the pole's z times ds
-    }
+        sums[0] += weight * tables.diagonal[0] * dot(facing, pole) / (1 + dot(facing, p));
+    });
+    const CrowdedEdge edge(warp, a, pole, angle);
+    const double wiggles = (tables.order + 1) * static_cast<double>(edge.last - edge.first);
+    std::vector<quad> legendre;
+    gauss_integral(edge.first, edge.last, wiggles, extra_nodes, [&](quad t, quad weight) {
+        const CrowdedEdge::Node node = edge.at(t);
+        const PointwiseWarp::Image image = warp.image(node.point, node.step);
+        const Vec3q& u = image.point;
+        weight *= node.speed;
+        sums[0] += weight * tables.diagonal[0] * image.area * dot(warp.axis(), pole);
+        add_arc_point(tables, u, weight * image.step.z, weight * (u.x * image.step.y - u.y * image.step.x), legendre,
+                      sums);
+    });
 }
 
 /// Σ over the points of a fan, before the order-dependent part: direction and solid angle.
@@ -113,9 +212,8 @@ Coefficients finished(std::vector<quad> sums, int order) {
     return rounded(sums);
 }
 
-}  // namespace
-
-Coefficients polygon(std::span<const Vec3d> vertices, int order, bool clip, int extra_nodes) {
+Coefficients by_edges(std::span<const Vec3d> vertices, const PointwiseWarp& warp, int order, bool clip,
+                      int extra_nodes) {
     const OrderTables& tables = order_tables(std::max(order, 2));
     const std::vector<Vec3q> kept = kept_part(vertices, clip);
     std::vector<quad> sums(coefficient_count(tables.order));
@@ -123,20 +221,22 @@ Coefficients polygon(std::span<const Vec3d> vertices, int order, bool clip, int 
     if (kept.size() >= 3 && length(facing) > 0) {
         facing = normalized(dot(facing, kept[0]) < 0 ? -1 * facing : facing);
         for (std::size_t i = 0; i < kept.size(); ++i) {
-            add_arc(tables, kept[i], kept[(i + 1) % kept.size()], facing, extra_nodes, sums);
+            add_edge(tables, warp, kept[i], kept[(i + 1) % kept.size()], facing, extra_nodes, sums);
         }
     }
     return finished(std::move(sums), order);
 }
 
-Coefficients polygon_by_cubature(std::span<const Vec3d> vertices, int order, bool clip, int nodes) {
+Coefficients by_cubature(std::span<const Vec3d> vertices, const PointwiseWarp& warp, int order, bool clip, int nodes) {
     const OrderTables& tables = order_tables(order);
     const std::vector<Vec3q> kept = kept_part(vertices, clip);
     std::vector<quad> sums(coefficient_count(order));
     std::vector<quad> legendre;
-    product_cubature(kept, nodes, [&](const Vec3q& p, quad weight) {
+    product_cubature(kept, nodes, [&](const Vec3q& direction, quad weight) {
+        const PointwiseWarp::Image image = warp.image(direction);
+        const Vec3q& p = image.point;
         reduced_legendre(tables, p.z, legendre);
-        quad cos_part = weight;
+        quad cos_part = weight * image.scale * image.scale;
         quad sin_part = 0;
         for (int m = 0; m < order; ++m) {
             for (int l = m; l < order; ++l) {
@@ -150,6 +250,24 @@ Coefficients polygon_by_cubature(std::span<const Vec3d> vertices, int order, boo
         }
     });
     return finished(std::move(sums), order);
+}
+
+}  // namespace
+
+Coefficients polygon(std::span<const Vec3d> vertices, int order, bool clip, int extra_nodes) {
+    return by_edges(vertices, PointwiseWarp(), order, clip, extra_nodes);
+}
+
+Coefficients polygon_by_cubature(std::span<const Vec3d> vertices, int order, bool clip, int nodes) {
+    return by_cubature(vertices, PointwiseWarp(), order, clip, nodes);
+}
+
+Coefficients warped_polygon(std::span<const Vec3d> vertices, const WarpInput& warp, int order, int extra_nodes) {
+    return by_edges(vertices, PointwiseWarp(warp), order, true, extra_nodes);
+}
+
+Coefficients warped_polygon_by_cubature(std::span<const Vec3d> vertices, const WarpInput& warp, int order, int nodes) {
+    return by_cubature(vertices, PointwiseWarp(warp), order, true, nodes);
 }
 
 }  // namespace shlight::truth
