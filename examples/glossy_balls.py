@@ -24,7 +24,7 @@ SPACING = 1.15
 def build_scene() -> Any:
     """Makes the scene in Blender's current file, gives it the window, and returns it."""
     scene = parts.new_scene("glossy balls", 900, 300)
-    floor = parts.surface("dark matt floor", (0.06, 0.06, 0.06), 1.0, specular=0.0)
+    floor = parts.matt("dark floor", (0.06, 0.06, 0.06))
     parts.add_mesh(scene, "floor", parts.grid, floor, scale=(8, 8, 1))
     for number, roughness in enumerate(ROUGHNESSES):
         metal = parts.metal(f"metal {roughness}", (0.90, 0.87, 0.82), roughness)

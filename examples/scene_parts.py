@@ -89,16 +89,27 @@ def metal(name: str, color: Triple, roughness: float) -> Any:
     return material
 
 
+def matt(name: str, color: Triple) -> Any:
+    """A Diffuse BSDF."""
+    return _single_shader(name, "ShaderNodeBsdfDiffuse", color)[0]
+
+
 def emission(name: str, color: Triple, strength: float) -> Any:
     """A surface that glows."""
+    material, node = _single_shader(name, "ShaderNodeEmission", color)
+    node.inputs["Strength"].default_value = strength
+    return material
+
+
+def _single_shader(name: str, shader: str, color: Triple) -> tuple[Any, Any]:
+    """A material of one shader node, and that node."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     tree = material.node_tree
-    node = tree.nodes.new("ShaderNodeEmission")
+    node = tree.nodes.new(shader)
     node.inputs["Color"].default_value = (*color, 1.0)
-    node.inputs["Strength"].default_value = strength
-    tree.links.new(node.outputs["Emission"], tree.nodes["Material Output"].inputs["Surface"])
-    return material
+    tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+    return material, node
 
 
 def add_area_lamp(

@@ -88,6 +88,12 @@ def test_principled_names_its_diffuse_part(pictures: dict[str, Any]) -> None:
     assert abs(mean_ratio(read_exr(result["SHLIGHT"]), read_exr(result["CYCLES"])) - 1.0) <= 0.05
 
 
+@pytest.mark.parametrize("name", ["example_scene", "glossy_balls", "glossy_floor", "roughness_ramp"])
+def test_example_scenes_are_built(tmp_path: Path, name: str) -> None:
+    done = run_blender("-b", script=str(ROOT / "examples" / f"{name}.py"), folder=tmp_path)
+    assert done.returncode == 0, spoken(done)
+
+
 def test_errors_do_not_crash(pictures: dict[str, Any]) -> None:
     assert "no light that shlight can render" in pictures["dark"]["error"]
 
