@@ -16,22 +16,6 @@ double fresnel_dielectric(double cosine, double ior) {
     return 0.5 * a * a * (1 + b * b);
 }
 
-double fresnel_factor(const GgxShape& shape, double cosine) {
-    switch (shape.fresnel) {
-        case Fresnel::one:
-            return 1;
-        case Fresnel::schlick: {
-            const double edge = 1 - cosine;
-            return edge * edge * edge * edge * edge;
-        }
-        case Fresnel::dielectric: {
-            const double head_on = fresnel_dielectric(1, shape.ior);
-            return (fresnel_dielectric(cosine, shape.ior) - head_on) / (1 - head_on);
-        }
-    }
-    return 0;
-}
-
 double value(const LambertShape&, const Vec3d& wi, const Vec3d&) {
     return wi.z / std::numbers::pi;
 }
@@ -56,6 +40,22 @@ double value(const GgxShape& shape, const Vec3d& wi, const Vec3d& wo) {
 }
 
 }  // namespace
+
+double fresnel_factor(const GgxShape& shape, double cosine) {
+    switch (shape.fresnel) {
+        case Fresnel::one:
+            return 1;
+        case Fresnel::schlick: {
+            const double edge = 1 - cosine;
+            return edge * edge * edge * edge * edge;
+        }
+        case Fresnel::dielectric: {
+            const double head_on = fresnel_dielectric(1, shape.ior);
+            return (fresnel_dielectric(cosine, shape.ior) - head_on) / (1 - head_on);
+        }
+    }
+    return 0;
+}
 
 double lobe_value(const LobeShape& shape, const Vec3d& wi, const Vec3d& wo) {
     if (!(wi.z > 0 && wo.z > 0)) {

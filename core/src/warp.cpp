@@ -50,6 +50,20 @@ Vec3d Warp::direction(const Vec3d& warped) const {
     return {cos_tilt_ * side - sin_tilt_ * along, warped.y / (gamma_ * weight), sin_tilt_ * side + cos_tilt_ * along};
 }
 
+Vec3d Warp::tangent(const Vec3d& warped, const Vec3d& direction, const Vec3d& step) const {
+    // direction() is a quotient with the denominator `weight`: d(p/w) = (dp - (p/w) dw) / w.
+    const Vec3d middle(-horizon_x_, 0, horizon_z_);
+    const double weight = one_minus_speed_ + speed_ * squared_length(warped + middle) / 2;
+    const double rise = glm::dot(step, middle);
+    const double grow = speed_ * rise;
+    const double side = cos_tilt_ * direction.x + sin_tilt_ * direction.z;
+    const double along = cos_tilt_ * direction.z - sin_tilt_ * direction.x;
+    const double d_side = ((horizon_z_ * step.x + horizon_x_ * step.z) / gamma_ - side * grow) / weight;
+    const double d_along = (rise - along * grow) / weight;
+    const double d_y = (step.y / gamma_ - direction.y * grow) / weight;
+    return {cos_tilt_ * d_side - sin_tilt_ * d_along, d_y, sin_tilt_ * d_side + cos_tilt_ * d_along};
+}
+
 double Warp::density(const Vec3d& warped) const {
     const Vec3d middle(-horizon_x_, 0, horizon_z_);
     const double weight = gamma_ * (one_minus_speed_ + speed_ * squared_length(warped + middle) / 2);

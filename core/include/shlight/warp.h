@@ -35,7 +35,9 @@ class Warp {
     Vec3d warped(const Vec3d& direction) const;
     /// The inverse; u unit.
     Vec3d direction(const Vec3d& warped) const;
-    /// dω/du at u.
+    /// What a step along the warped sphere becomes: du at u, with ω = direction(u) → dω.
+    Vec3d tangent(const Vec3d& warped, const Vec3d& direction, const Vec3d& step) const;
+    /// dω/du at u, as areas.
     double density(const Vec3d& warped) const;
     /// The image of a circle, inside to inside. sine' / sine of the result is the circle's scale.
     Circle warped(const Circle& circle) const;

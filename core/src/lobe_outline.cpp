@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: MIT
+#include "lobe_outline.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "gauss_legendre.h"
+
+namespace shlight {
+namespace {
+
+/// Kronrod's extension of the Gauss rule of 7 points to 15 on (-1, 1): nodes ≥ 0 and both sets of weights, the Gauss
+/// nodes being every other one (Piessens et al. 1983, QUADPACK).
+constexpr std::array<double, 8> kNodes = {0.0,
+                                          0.207784955007898467600689403773245,
+                                          0.405845151377397166906606412076961,
+                                          0.586087235467691130294144691693013,
+                                          0.741531185599394439863864773280788,
+                                          0.864864423359769072789712788640926,
+                                          0.949107912342758524526189684047851,
+                                          0.991455371120812639206854697526329};
+constexpr std::array<double, 8> kKronrod = {0.209482141084727828012999174891714, 0.204432940075298892414161999234649,
+                                            0.190350578064785409913256402421014, 0.169004726639267902826583426598550,
+                                            0.140653259715525918745189590510238, 0.104790010322250183839876322541518,
+                                            0.063092092629978553290700663189204, 0.022935322010529224963732008058970};
+constexpr std::array<double, 4> kGauss = {0.417959183673469387755102040816327, 0.381830050505118944950369775488975,
+                                          0.279705391489276667901467771423780, 0.129484966168869693270611432679082};
+
+/// Pieces of the outline that may be waiting or done; past that the estimate stands as it is.
+constexpr int kMostPieces = 96;
+
+/// Points along a radius: the factors beside the bell vary slowly.
+int points_for(double tolerance) {
+    return tolerance > 4e-3 ? 4 : tolerance > 2e-4 ? 6 : tolerance > 1e-5 ? 12 : 24;
+}
+
+/// The lobe in the plane of half vectors.
+class Bell {
+  public:
+    Bell(const GgxShape& shape, double cos_theta_o, double tolerance)
+        : shape_(shape),
+          cos_o_(cos_theta_o),
+          sin_o_(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o))),
+          alpha2_(shape.alpha * shape.alpha),
+          masking_o_(std::sqrt(alpha2_ + (1 - alpha2_) * cos_theta_o * cos_theta_o)),
+          rule_(gauss_rule(points_for(tolerance))) {}
+
+    int radial_points() const { return static_cast<int>(rule_.nodes.size()); }
+
+    /// What the outline adds where its half vector is `half` (of any length) and changes by `step`: the angle about the
+    /// bell's middle times ∫ f·cos over a radius from there to the outline.
+    double outline_density(const Vec3d& half, const Vec3d& step) const {
+        const double across = std::hypot(half.x, half.y);
+        if (!(across > 0 && half.z > 0)) {
+            return 0;
+        }
+        return radial_integral(half.x / across, across / (shape_.alpha * half.z)) *
+               (half.x * step.y - half.y * step.x) / (across * across);
+    }
+
+  private:
+    /// ∫ over tan θ' = 0 … radius at one azimuth about the bell. In t = tan ½θ' the bell is rational and the range
+    /// short.
+    double radial_integral(double cos_azimuth, double radius) const {
+        const double end = radius / (1 + std::sqrt(1 + radius * radius));
+        double sum = 0;
+        // Crowded towards the outline, because a lobe that is cut by the horizon ends steeply there; the shortest rule
+        // is better off without.
+        const double crowding = rule_.nodes.size() > 4 ? 1 : 0;
+        for (std::size_t i = 0; i < rule_.nodes.size(); ++i) {
+            const double x = rule_.nodes[i];
+            const double t = end * x * (1 + crowding * (1 - x));
+            const double weight = rule_.weights[i] * (1 + crowding * (1 - 2 * x));
+            const double scale = 1 / (1 + t * t);
+            const double sine = 2 * t * scale;
+            const double cosine = (1 - t) * (1 + t) * scale;
+            sum += weight * scale * sine * factors(cos_azimuth, sine, cosine);
+        }
+        return 2 * end * sum / std::numbers::pi;
+    }
+
+    /// f·cos dω over the bell's own density cosθ' dω' / π and its cosine: F G₂ (ω_o·h) / cosθ_o with the length of h
+    /// divided out.
+    double factors(double cos_azimuth, double sine, double cosine) const {
+        const double x = shape_.alpha * sine;
+        const double square = x * x + cosine * cosine;
+        const double towards = cos_o_ * cosine + sin_o_ * x * cos_azimuth;  // (ω_o·h) √square
+        const double cos_i = 2 * towards * cosine / square - cos_o_;
+        if (!(cos_i > 0)) {
+            return 0;
+        }
+        const double masking_i = std::sqrt(alpha2_ + (1 - alpha2_) * cos_i * cos_i);
+        const double visibility = 2 * cos_i / (cos_o_ * masking_i + cos_i * masking_o_);  // G₂ / cosθ_o
+        return visibility * towards * fresnel_factor(shape_, towards / std::sqrt(square));
+    }
+
+    GgxShape shape_;
+    double cos_o_, sin_o_, alpha2_, masking_o_;
+    const GaussRule& rule_;
+};
+
+/// The half vectors along a circle, up to their length: middle + cosine cos τ + sine sin τ. Any parameter that is a
+/// Möbius map of the angle has this form; this one moves evenly over the sphere on which the bell is round, wherever
+/// the circle lies and however small the bell is.
+class Path {
+  public:
+    Path(const OutlineArc& arc, const Vec3d& view, double alpha) {
+        const Vec3d center = arc.circle.axis * arc.circle.cosine;
+        const Vec3d u = arc.from - center;
+        const Vec3d v = glm::cross(arc.circle.axis, u);
+        even_out(center + view, u, v, alpha);
+        start_ = arc.closed ? 0 : parameter(1, 0);
+        length_ = 2 * std::numbers::pi;
+        if (!arc.closed) {
+            const double square = glm::dot(u, u);
+            const Vec3d end = arc.to - center;
+            const double along = parameter(glm::dot(end, u) / square, glm::dot(end, v) / square) - start_;
+            length_ = along < 0 ? along + 2 * std::numbers::pi : along;
+        }
+    }
+
+    double start() const { return start_; }
+    double length() const { return length_; }
+    Vec3d half(double c, double s) const { return columns_[0] + c * columns_[1] + s * columns_[2]; }
+    Vec3d step(double c, double s) const { return c * columns_[2] - s * columns_[1]; }
+
+  private:
+    using Triple = std::array<double, 3>;
+
+    /// The vectors (1, cos τ, sin τ) are null for the metric (+, -, -), and so are their images under its boosts and
+    /// turns. Those that make the squared length on the bell's sphere, a quadratic form of them, diagonal are found as
+    /// Jacobi's rotations are. A few sweeps will do: the parameter need not be the best.
+    void even_out(const Vec3d& middle, const Vec3d& u, const Vec3d& v, double alpha) {
+        columns_ = {middle, u, v};
+        const auto form = [&](int i, int j) {
+            const Vec3d& a = columns_[i];
+            const Vec3d& b = columns_[j];
+            return (a.x * b.x + a.y * b.y) / (alpha * alpha) + a.z * b.z;
+        };
+        for (int sweep = 0; sweep < 4; ++sweep) {
+            for (int axis = 1; axis <= 2; ++axis) {
+                const double ratio = -2 * form(0, axis) / (form(0, 0) + form(axis, axis));
+                const double rapidity = std::atanh(std::clamp(ratio, -1 + 1e-14, 1 - 1e-14)) / 2;
+                boost(axis, std::cosh(rapidity), std::sinh(rapidity));
+            }
+            const double angle = std::atan2(2 * form(1, 2), form(1, 1) - form(2, 2)) / 2;
+            turn(std::cos(angle), std::sin(angle));
+        }
+    }
+
+    void boost(int axis, double c, double s) { mix(0, axis, c, s, s, c); }
+    void turn(double c, double s) { mix(1, 2, c, s, -s, c); }
+    /// New columns i and j: (ii, ij) and (ji, jj) times the old ones.
+    void mix(int i, int j, double ii, double ij, double ji, double jj) {
+        const auto apply = [&](auto& list) {
+            const auto first = ii * list[i] + ij * list[j];
+            list[j] = ji * list[i] + jj * list[j];
+            list[i] = first;
+        };
+        apply(columns_);
+        for (Triple& row : frame_) {
+            apply(row);
+        }
+    }
+
+    /// τ of the point at (cos, sin) of the circle's own angle.
+    double parameter(double cosine, double sine) const {
+        const auto component = [&](int column) {
+            return frame_[1][column] * cosine + frame_[2][column] * sine - frame_[0][column];
+        };
+        return std::atan2(component(2), component(1));
+    }
+
+    std::array<Vec3d, 3> columns_;
+    std::array<Triple, 3> frame_ = {Triple{1, 0, 0}, Triple{0, 1, 0}, Triple{0, 0, 1}};
+    double start_, length_;
+};
+
+/// The outline of one region, piece by piece.
+class Outline {
+  public:
+    Outline(const Bell& bell, double tolerance) : bell_(bell), tolerance_(tolerance) {}
+
+    /// share: part of the tolerance.
+    void add(const OutlineArc& arc, const Vec3d& view, double alpha, double share) {
+        const Path& path = paths_.emplace_back(arc, view, alpha);
+        if (arc.closed && add_circle(path, share * tolerance_)) {
+            return;
+        }
+        const int parts = std::max(1, static_cast<int>(std::ceil(path.length() / std::numbers::pi - 1e-9)));
+        const double part = path.length() / parts;
+        for (int k = 0; k < parts; ++k) {
+            add_piece(paths_.size() - 1, path.start() + k * part, path.start() + (k + 1) * part);
+        }
+    }
+
+    /// Halves the worst pieces until the estimate meets the tolerance.
+    void refine() {
+        while (sum_.error > tolerance_ && !pieces_.empty() && pieces_.size() < kMostPieces) {
+            const auto worst = std::max_element(pieces_.begin(), pieces_.end(),
+                                                [](const Piece& a, const Piece& b) { return a.error < b.error; });
+            const Piece halved = *worst;
+            pieces_.erase(worst);
+            sum_.value -= halved.value;
+            sum_.error -= halved.error;
+            add_piece(halved.path, halved.middle - halved.half, halved.middle);
+            add_piece(halved.path, halved.middle, halved.middle + halved.half);
+        }
+    }
+
+    const OutlineIntegral& sum() const { return sum_; }
+
+  private:
+    struct Piece {
+        std::size_t path;
+        double middle, half;
+        double value, error;
+    };
+
+    double density(const Path& path, double parameter) {
+        sum_.points += bell_.radial_points();
+        const double c = std::cos(parameter);
+        const double s = std::sin(parameter);
+        return bell_.outline_density(path.half(c, s), path.step(c, s));
+    }
+
+    /// The difference of two rules is the error of the coarser one; that of the finer one is about its power 3/2
+    /// (QUADPACK).
+    static double error_estimate(double difference) {
+        return std::min(difference, std::pow(200 * difference, 1.5) / 200);
+    }
+
+    /// A whole circle by the trapezoidal rule, which converges exponentially. False, with nothing added, if it does
+    /// not.
+    bool add_circle(const Path& path, double tolerance) {
+        constexpr int kFirst = 8;
+        constexpr int kLast = 64;
+        double total = 0;
+        double before = 0;
+        for (int count = kFirst; count <= kLast; count *= 2) {
+            const double step = 2 * std::numbers::pi / count;
+            const int stride = count == kFirst ? 1 : 2;  // the points between those of the rule before
+            for (int i = stride - 1; i < count; i += stride) {
+                total += density(path, i * step);
+            }
+            const double value = total * step;
+            const double error = error_estimate(std::abs(value - before));
+            if (count > kFirst && error <= tolerance) {
+                sum_.value += value;
+                sum_.error += error;
+                return true;
+            }
+            before = value;
+        }
+        return false;
+    }
+
+    void add_piece(std::size_t path, double from, double to) {
+        Piece piece{path, (from + to) / 2, (to - from) / 2, 0, 0};
+        double kronrod = 0;
+        double gauss = 0;
+        for (std::size_t i = 0; i < kNodes.size(); ++i) {
+            const double offset = kNodes[i] * piece.half;
+            double pair = density(paths_[path], piece.middle + offset);
+            if (i > 0) {
+                pair += density(paths_[path], piece.middle - offset);
+            }
+            kronrod += kKronrod[i] * pair;
+            gauss += i % 2 == 0 ? kGauss[i / 2] * pair : 0.0;
+        }
+        piece.value = piece.half * kronrod;
+        piece.error = error_estimate(std::abs(piece.half * (kronrod - gauss)));
+        sum_.value += piece.value;
+        sum_.error += piece.error;
+        pieces_.push_back(piece);
+    }
+
+    const Bell& bell_;
+    double tolerance_;
+    std::vector<Path> paths_;
+    std::vector<Piece> pieces_;
+    OutlineIntegral sum_{0, 0, 0};
+};
+
+}  // namespace
+
+OutlineIntegral outline_integral(const GgxShape& shape, double cos_theta_o, std::span<const OutlineArc> arcs,
+                                 double tolerance) {
+    const Bell bell(shape, cos_theta_o, tolerance);
+    const Vec3d view(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o);
+    Outline outline(bell, tolerance);
+    for (const OutlineArc& arc : arcs) {
+        outline.add(arc, view, shape.alpha, 1.0 / static_cast<double>(arcs.size()));
+    }
+    outline.refine();
+    return outline.sum();
+}
+
+}  // namespace shlight

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+//
+// A GGX lobe integrated over a light along the light's outline: cubature of the true f·cos, for lobes that few bands
+// do not describe. Seen from the half vector every GGX lobe is the same bell, whatever its roughness and the view:
+// with s = (h_x, h_y) / (α h_z) it is 1/(π (1 + s²)²), times factors that vary slowly. Green's theorem turns the
+// integral over the light's image in that plane into one along its outline, of a radial integral from the bell's
+// middle. Neither is large or narrow for small α or grazing views. docs/algorithms.md derives it.
+#pragma once
+
+#include <span>
+
+#include "shlight/lobe_shape.h"
+#include "shlight/types.h"
+#include "shlight/warp.h"
+
+namespace shlight {
+
+/// Part of a region's outline: counter-clockwise about the circle's axis, the region on the left.
+struct OutlineArc {
+    Circle circle;
+    Vec3d from, to;  ///< unit, on the circle
+    bool closed;     ///< the whole circle, from wherever
+};
+
+/// ∫ f·cos dω over a region of the upper hemisphere.
+struct OutlineIntegral {
+    double value;
+    double error;  ///< estimate
+    int points;    ///< values of f·cos that it took
+};
+
+/// arcs: the whole outline, in the shading frame. tolerance: of the value, absolute.
+/// Precondition: 0 < shape.alpha ≤ 1, 0 ≤ cos_theta_o ≤ 1.
+OutlineIntegral outline_integral(const GgxShape& shape, double cos_theta_o, std::span<const OutlineArc> arcs,
+                                 double tolerance);
+
+}  // namespace shlight

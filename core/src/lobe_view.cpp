@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "lobe_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "light_cubature.h"
+#include "lobe_outline.h"
+#include "polygon_boundary.h"
+#include "polygon_region.h"
+#include "polygon_shading.h"
+#include "shlight/cap.h"
+
+namespace shlight {
+namespace {
+
+/// Rules of at most these sizes are cheaper than harmonics of the orders that glossy lobes take.
+constexpr int kCheapRings = 3;
+constexpr int kCheapPoints = 2;
+
+/// The outline of a cap above the horizon.
+struct CapOutline {
+    std::array<OutlineArc, 2> arcs;
+    std::size_t count;
+};
+
+CapOutline cap_outline(const Circle& cap) {
+    const Vec3d& axis = cap.axis;
+    if (axis.z <= -cap.sine) {
+        return {{}, 0};
+    }
+    if (axis.z >= cap.sine) {
+        const Vec3d side = std::abs(axis.z) < 0.9 ? Vec3d(0, 0, 1) : Vec3d(1, 0, 0);
+        const Vec3d from = cap.cosine * axis + cap.sine * glm::normalize(glm::cross(side, axis));
+        return {{OutlineArc{cap, from, from, true}}, 1};
+    }
+    // The circle meets z = 0 at the azimuths φ_L ± acos(c / sinθ_L). Seen from outside, with z up, +φ is to the right.
+    const double radial = std::hypot(axis.x, axis.y);
+    const double c = std::min(1.0, cap.cosine / radial);
+    const double s = std::sqrt((1 - c) * (1 + c));
+    const double x = radial > 0 ? axis.x / radial : 1.0;
+    const double y = radial > 0 ? axis.y / radial : 0.0;
+    const Vec3d right(x * c - y * s, y * c + x * s, 0);
+    const Vec3d left(x * c + y * s, y * c - x * s, 0);
+    const Circle horizon{{0, 0, 1}, 0, 1};
+    return {{OutlineArc{cap, right, left, false}, OutlineArc{horizon, left, right, false}}, 2};
+}
+
+std::vector<OutlineArc> polygon_outline(const SphericalPolygon<double>& polygon) {
+    std::vector<OutlineArc> arcs;
+    const std::vector<Vec3d>& v = polygon.directions();
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        const double length = glm::length(polygon.edge_cross(i));
+        if (length > 0) {
+            arcs.push_back({{polygon.edge_cross(i) / length, 0, 1}, v[i], v[(i + 1) % v.size()], false});
+        }
+    }
+    return arcs;
+}
+
+/// The middle of a polygon and the greatest distance of a vertex from it, as directions.
+struct Extent {
+    Vec3d middle;
+    double half_angle;
+};
+
+Extent extent_of(const SphericalPolygon<double>& polygon) {
+    Extent e{Vec3d(0), 0};
+    for (const Vec3d& v : polygon.directions()) {
+        e.middle += v;
+    }
+    e.middle = glm::normalize(e.middle);
+    for (const Vec3d& v : polygon.directions()) {
+        e.half_angle = std::max(e.half_angle, glm::length(v - e.middle));
+    }
+    return e;
+}
+
+}  // namespace
+
+LobeAtView::LobeAtView(const LobeShape& shape, const WarpedFit* fit, double cos_theta_o, double tolerance,
+                       bool auto_order)
+    : shape_(shape),
+      view_(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o),
+      choose_(auto_order && std::holds_alternative<GgxShape>(shape)) {
+    if (fit == nullptr) {
+        return;
+    }
+    tolerance_ = tolerance * fit->albedo(cos_theta_o);
+    order_ = auto_order ? fit->order_for(cos_theta_o, tolerance) : fit->orders().front();
+    if (order_ > 0) {
+        warp_ = fit->warp(cos_theta_o);
+        horizon_.emplace(warp_, order_);
+        terms_.resize(static_cast<std::size_t>(cosine_count(order_)));
+        fit->coefficients(cos_theta_o, order_, terms_.data());
+    }
+}
+
+float LobeAtView::mirrored() const {
+    return static_cast<float>(fresnel_factor(ggx(), view_.z));
+}
+
+LobeRadiance LobeAtView::radiance(const Circle& cap) const {
+    if (cap.axis.z <= -cap.sine) {
+        return {0, 0, 0};
+    }
+    if (is_mirror(shape_)) {
+        const Vec3d mirrored_view(-view_.x, 0, view_.z);
+        return {glm::dot(mirrored_view, cap.axis) >= cap.cosine ? mirrored() : 0.0F, 0, 0};
+    }
+    if (choose_ && cap.axis.z >= cap.sine) {
+        const double size = relative_size(ggx(), view_, cap.axis, std::atan2(cap.sine, cap.cosine));
+        const int rings = cap_rings(size, tolerance_);
+        if (rings > 0 && (rings <= kCheapRings || order_ == 0)) {
+            const CubatureSum sum = cap_cubature(ggx(), view_, cap, rings);
+            return {static_cast<float>(sum.value), 0, sum.points};
+        }
+    }
+    if (order_ > 0) {
+        return {shade_cap(Cap<float>::inside(cap, warp_), *horizon_, terms_.data(), order_), order_, 0};
+    }
+    const CapOutline outline = cap_outline(cap);
+    const OutlineIntegral integral =
+        outline_integral(ggx(), view_.z, std::span(outline.arcs).first(outline.count), tolerance_);
+    return {static_cast<float>(integral.value), 0, integral.points};
+}
+
+bool LobeAtView::reflects_into(const SphericalPolygon<double>& polygon) const {
+    const Vec3d mirrored_view(-view_.x, 0, view_.z);
+    // The winding of the outline about the direction, as angles between neighbouring vertices.
+    const std::vector<Vec3d>& v = polygon.directions();
+    double winding = 0;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        const Vec3d a = glm::cross(mirrored_view, v[i]);
+        const Vec3d b = glm::cross(mirrored_view, v[(i + 1) % v.size()]);
+        winding += std::atan2(glm::dot(mirrored_view, glm::cross(a, b)), glm::dot(a, b));
+    }
+    return winding > 1 &&
+           std::any_of(v.begin(), v.end(), [&](const Vec3d& d) { return glm::dot(d, mirrored_view) > 0; });
+}
+
+LobeRadiance LobeAtView::radiance(const SphericalPolygon<double>& polygon) const {
+    if (polygon.empty()) {
+        return {0, 0, 0};
+    }
+    if (is_mirror(shape_)) {
+        return {reflects_into(polygon) ? mirrored() : 0.0F, 0, 0};
+    }
+    if (choose_) {
+        const Extent extent = extent_of(polygon);
+        const int points = polygon_points(relative_size(ggx(), view_, extent.middle, extent.half_angle), tolerance_);
+        if (points > 0 && (points <= kCheapPoints || order_ == 0)) {
+            const CubatureSum sum = polygon_cubature(ggx(), view_, polygon, points);
+            return {static_cast<float>(sum.value), 0, sum.points};
+        }
+    }
+    if (order_ > 0) {
+        const float value = warp_.is_identity()
+                                ? shade_polygon(polygon, warp_, terms_.data(), order_)
+                                : shade_region(PolygonRegion<double>(polygon, warp_), terms_.data(), order_);
+        return {value, order_, 0};
+    }
+    const std::vector<OutlineArc> outline = polygon_outline(polygon);
+    const OutlineIntegral integral = outline_integral(ggx(), view_.z, outline, tolerance_);
+    return {static_cast<float>(integral.value), 0, integral.points};
+}
+
+}  // namespace shlight

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+//
+// One least-squares fit in the warped sphere. The norm is that of the warped sphere, so the cosine terms of different
+// degree m decouple: with a Fourier sum over the azimuth each m is a small fit in the height alone.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "gauss_legendre.h"
+#include "legendre.h"
+#include "lobe_outline.h"
+#include "shlight/warped_fit.h"
+#include "warped_row.h"
+
+namespace shlight {
+namespace {
+
+/// Tikhonov's λ against Gram eigenvalues of at most 1: keeps what the fit does below the horizon, where nothing asks
+/// for it, from growing; a relative error of about √λ/10 is its price, a tenth of that where fits are broad.
+constexpr double kLambda = 1e-6;
+
+/// The lobe's density g over a grid in the warped frame, as Fourier coefficients over the azimuth.
+struct WarpedDensity {
+    std::vector<double> heights, weights;  ///< Gauss points over u_z = z_0 … 1
+    int waves;                             ///< degrees m = 0 … waves-1
+    std::vector<double> fourier;           ///< heights × waves: g = Σ_m fourier cos mφ
+    /// γ (1 + b u·axis) = constant + cosine · cos φ at each height: 1/√(dω/du).
+    std::vector<double> shrink_constant, shrink_cosine;
+};
+
+WarpedDensity warped_density(const GgxShape& shape, double cos_theta_o, int order) {
+    const Warp warp = lobe_warp(shape, cos_theta_o);
+    const Vec3d wo(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o);
+    const int points = std::max(24, order + 8);
+    const GaussRule& rule = gauss_rule(std::min(kMaxGaussPoints, std::max(40, order + 24)));
+    WarpedDensity d;
+    d.waves = points;
+    std::vector<double> cosines(static_cast<std::size_t>(points * points));  // cos mφ_j
+    for (int j = 0; j < points; ++j) {
+        const double phi = std::numbers::pi * (j + 0.5) / points;
+        for (int m = 0; m < points; ++m) {
+            cosines[m * points + j] = std::cos(m * phi) * (m == 0 ? 1.0 : 2.0) / points;
+        }
+    }
+    std::vector<double> values(static_cast<std::size_t>(points));
+    const double z0 = warp.horizon_height();
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+        const double z = z0 + (1 - z0) * rule.nodes[i];
+        const double s = std::sqrt(std::max(0.0, (1 - z) * (1 + z)));
+        for (int j = 0; j < points; ++j) {
+            const double phi = std::numbers::pi * (j + 0.5) / points;
+            const Vec3d u(s * std::cos(phi), s * std::sin(phi), z);
+            values[j] = lobe_value(shape, warp.direction(u), wo) * warp.density(u);
+        }
+        d.heights.push_back(z);
+        d.weights.push_back((1 - z0) * rule.weights[i]);
+        for (int m = 0; m < points; ++m) {
+            double sum = 0;
+            for (int j = 0; j < points; ++j) {
+                sum += cosines[m * points + j] * values[j];
+            }
+            d.fourier.push_back(sum);
+        }
+        const double towards = 1 / std::sqrt(warp.density({s, 0, z}));
+        const double away = 1 / std::sqrt(warp.density({-s, 0, z}));
+        d.shrink_constant.push_back((towards + away) / 2);
+        d.shrink_cosine.push_back((towards - away) / 2);
+    }
+    return d;
+}
+
+/// ∫ (Σ_m a_m cos mφ)² dφ.
+double square_over_circle(std::span<const double> a) {
+    double sum = 2 * a[0] * a[0];
+    for (std::size_t m = 1; m < a.size(); ++m) {
+        sum += a[m] * a[m];
+    }
+    return std::numbers::pi * sum;
+}
+
+/// Squared L2 norms of a density given as Fourier coefficients: over the warped sphere and, with weight du/dω, over
+/// directions.
+struct Norms {
+    double warped = 0, direction = 0;
+};
+
+Norms norms(const WarpedDensity& d, std::span<const double> fourier) {
+    Norms sum;
+    const auto waves = static_cast<std::size_t>(d.waves);
+    std::vector<double> shrunk(waves + 1);
+    for (std::size_t i = 0; i < d.heights.size(); ++i) {
+        const auto a = fourier.subspan(i * waves, waves);
+        std::fill(shrunk.begin(), shrunk.end(), 0.0);
+        const double half = d.shrink_cosine[i] / 2;
+        for (std::size_t m = 0; m < waves; ++m) {
+            shrunk[m] += d.shrink_constant[i] * a[m];
+            shrunk[m + 1] += half * a[m];
+            shrunk[m == 0 ? 1 : m - 1] += half * a[m];  // cos φ · 1 = cos φ, in one piece
+        }
+        sum.warped += d.weights[i] * square_over_circle(a);
+        sum.direction += d.weights[i] * square_over_circle(shrunk);
+    }
+    return sum;
+}
+
+/// The basis of one degree m over the heights: √2-normalised terms P̄_l^m, l = m … , row by row of l.
+using HeightBasis = std::vector<std::vector<double>>;
+
+HeightBasis height_basis(const WarpedDensity& d, int order) {
+    HeightBasis basis(static_cast<std::size_t>(cosine_count(order)), std::vector<double>(d.heights.size()));
+    std::array<double, kMaxOrder> sines;
+    for (std::size_t i = 0; i < d.heights.size(); ++i) {
+        const double z = d.heights[i];
+        const double sine_squared = std::max(0.0, (1 - z) * (1 + z));
+        powers(std::sqrt(sine_squared), order, sines.data());
+        LegendreRows<double> legendre(z, sine_squared);
+        for (int l = 0; l < order; ++l) {
+            for (int m = 0; m <= l; ++m) {
+                basis[at(l, m)][i] = legendre[m] * sines[m] * (m == 0 ? 1.0 : std::numbers::sqrt2);
+            }
+            if (l + 1 < order) {
+                legendre.advance();
+            }
+        }
+    }
+    return basis;
+}
+
+/// The normal equations of one degree, factorised once for all orders: the leading blocks of a Cholesky factor are the
+/// factors of the leading blocks.
+class DegreeFit {
+  public:
+    DegreeFit(const WarpedDensity& d, const HeightBasis& basis, int m, int order) : size_(order - m) {
+        const double circle = (m == 0 ? 2 : 1) * std::numbers::pi;
+        factor_.assign(static_cast<std::size_t>(size_ * size_), 0.0);
+        reduced_.resize(static_cast<std::size_t>(size_));
+        std::vector<double> weighted(d.heights.size());
+        for (int row = 0; row < size_; ++row) {
+            const std::vector<double>& b = basis[at(m + row, m)];
+            double moment = 0;
+            for (std::size_t i = 0; i < weighted.size(); ++i) {
+                weighted[i] = circle * d.weights[i] * b[i];
+                moment += weighted[i] * d.fourier[i * static_cast<std::size_t>(d.waves) + static_cast<std::size_t>(m)];
+            }
+            for (int column = 0; column <= row; ++column) {
+                const std::vector<double>& other = basis[at(m + column, m)];
+                double sum = row == column ? kLambda : 0.0;
+                for (std::size_t i = 0; i < weighted.size(); ++i) {
+                    sum += weighted[i] * other[i];
+                }
+                for (int k = 0; k < column; ++k) {
+                    sum -= entry(row, k) * entry(column, k);
+                }
+                entry(row, column) = row == column ? std::sqrt(sum) : sum / entry(column, column);
+            }
+            for (int k = 0; k < row; ++k) {
+                moment -= entry(row, k) * reduced_[k];
+            }
+            reduced_[row] = moment / entry(row, row);
+        }
+    }
+
+    /// The coefficients of l = m … order-1.
+    std::vector<double> solve(int count) const {
+        std::vector<double> x(reduced_.begin(), reduced_.begin() + count);
+        for (int row = count - 1; row >= 0; --row) {
+            x[row] /= entry(row, row);
+            for (int k = 0; k < row; ++k) {
+                x[k] -= entry(row, k) * x[row];
+            }
+        }
+        return x;
+    }
+
+  private:
+    double& entry(int row, int column) { return factor_[row * size_ + column]; }
+    double entry(int row, int column) const { return factor_[row * size_ + column]; }
+
+    int size_;
+    std::vector<double> factor_, reduced_;
+};
+
+/// A cap's coefficients fall as λ_l ≤ √(8π/l³) (Funk–Hecke), and what the fit lacks lies in bands ≥ order.
+double shading_error(double warped_norm, int order, double albedo) {
+    return albedo > 0 ? std::sqrt(2.0 / (order * order * order)) * warped_norm / albedo : 0.0;
+}
+
+}  // namespace
+
+void fit_warped_node(const GgxShape& shape, double cos_theta_o, const NodeLayout& layout, std::span<float> out) {
+    const int highest = *std::max_element(layout.orders().begin(), layout.orders().end());
+    const WarpedDensity d = warped_density(shape, cos_theta_o, highest);
+    const auto waves = static_cast<std::size_t>(d.waves);
+    // The lobe's own cubature: the grid here is too coarse for lobes whose order is out of reach.
+    const OutlineArc horizon{{{0, 0, 1}, 0, 1}, {1, 0, 0}, {1, 0, 0}, true};
+    const double albedo = outline_integral(shape, cos_theta_o, {&horizon, 1}, 1e-6).value;
+    out[NodeLayout::albedo()] = static_cast<float>(albedo);
+    const Norms whole = norms(d, d.fourier);
+    const HeightBasis basis = height_basis(d, highest);
+    std::vector<DegreeFit> fits;
+    for (int m = 0; m < highest; ++m) {
+        fits.emplace_back(d, basis, m, highest);
+    }
+    for (std::size_t which = 0; which < layout.orders().size(); ++which) {
+        const int order = layout.orders()[which];
+        std::vector<double> missing = d.fourier;
+        for (int m = 0; m < order; ++m) {
+            const std::vector<double> terms = fits[m].solve(order - m);
+            for (int l = m; l < order; ++l) {
+                out[layout.coefficients(which) + at(l, m)] = static_cast<float>(terms[l - m]);
+                for (std::size_t i = 0; i < d.heights.size(); ++i) {
+                    missing[i * waves + static_cast<std::size_t>(m)] -= terms[l - m] * basis[at(l, m)][i];
+                }
+            }
+        }
+        const Norms rest = norms(d, missing);
+        out[NodeLayout::shading_error(which)] =
+            static_cast<float>(shading_error(std::sqrt(rest.warped), order, albedo));
+        out[NodeLayout::residual(which)] =
+            static_cast<float>(whole.direction > 0 ? std::sqrt(rest.direction / whole.direction) : 0.0);
+    }
+}
+
+}  // namespace shlight

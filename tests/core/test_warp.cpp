@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/warp.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "random_input.h"
+
+namespace shlight {
+namespace {
+
+using testing::RandomInput;
+
+Warp random_warp(RandomInput& random) {
+    return {random.uniform(-1.5, 1.5), random.log_uniform(1e-3, 1)};
+}
+
+TEST(Warp, WithoutOneDirectionsStay) {
+    const Warp none;
+    EXPECT_TRUE(none.is_identity());
+    EXPECT_EQ(none.horizon_height(), 0);
+    const Vec3d d = glm::normalize(Vec3d(0.3, -0.2, 0.5));
+    EXPECT_LE(glm::length(none.warped(d) - d), 1e-15);
+    EXPECT_EQ(none.density(d), 1);
+}
+
+TEST(Warp, UndoesItself) {
+    RandomInput random(1);
+    for (int i = 0; i < 10000; ++i) {
+        const Warp warp = random_warp(random);
+        const Vec3d d = random.direction();
+        const Vec3d u = warp.warped(d);
+        EXPECT_LE(std::abs(glm::length(u) - 1), 1e-14);
+        // Rounding u by ε moves ω by ε √density, and at the boost's far side that is up to 2/narrowness · ε.
+        EXPECT_LE(glm::length(warp.direction(u) - d), 1e-15 * (8 + 4 * std::sqrt(warp.density(u))));
+    }
+}
+
+TEST(Warp, EnlargesWhatLiesAlongItsAxis) {
+    for (const double tilt : {-0.8, 0.0, 1.2}) {
+        for (const double narrowness : {0.01, 0.3}) {
+            const Warp warp(tilt, narrowness);
+            const Vec3d axis(-std::sin(tilt), 0, std::cos(tilt));
+            const double scale = narrowness / (2 - narrowness);  // (1 - r) / (1 + r)
+            EXPECT_NEAR(warp.density(warp.warped(axis)) / (scale * scale), 1, 1e-12);
+        }
+    }
+}
+
+TEST(Warp, TakesCirclesToCircles) {
+    RandomInput random(2);
+    for (int i = 0; i < 5000; ++i) {
+        const double narrowness = random.log_uniform(1e-3, 1);
+        const Warp warp(random.uniform(-1.5, 1.5), narrowness);
+        const double half = random.uniform(0.001, 3.14);
+        const Circle circle{random.direction(), std::cos(half), std::sin(half)};
+        const Circle image = warp.warped(circle);
+        const Vec3d side = glm::normalize(glm::cross(circle.axis, random.direction()));
+        const Vec3d rim = circle.cosine * circle.axis + circle.sine * side;
+        const Vec3d inside = std::cos(0.7 * half) * circle.axis + std::sin(0.7 * half) * side;
+        // A rounding of the inputs is enlarged by at most (1 + r) / (1 - r).
+        EXPECT_LE(std::abs(glm::dot(warp.warped(rim), image.axis) - image.cosine),
+                  1e-15 * (2 - narrowness) / narrowness);
+        EXPECT_GT(glm::dot(warp.warped(inside), image.axis), image.cosine);
+        EXPECT_LE(std::abs(image.cosine * image.cosine + image.sine * image.sine - 1), 1e-12);
+    }
+}
+
+TEST(Warp, TakesTheHorizonToItsHeight) {
+    RandomInput random(3);
+    for (int i = 0; i < 2000; ++i) {
+        const Warp warp = random_warp(random);
+        const double azimuth = random.uniform(0, 6.28);
+        const Vec3d on(std::cos(azimuth), std::sin(azimuth), 0);
+        EXPECT_LE(std::abs(warp.warped(on).z - warp.horizon_height()), 1e-14);
+        EXPECT_GT(warp.warped({0, 0, 1}).z, warp.horizon_height());
+        EXPECT_LE(std::abs(warp.warped({std::sqrt(0.5), 0, std::sqrt(0.5)}).y), 1e-15);
+        EXPECT_LE(std::abs(std::hypot(warp.horizon_height(), warp.horizon_sine()) - 1), 1e-14);
+    }
+}
+
+TEST(Warp, DensityAndTangentAreDerivatives) {
+    RandomInput random(4);
+    for (int i = 0; i < 2000; ++i) {
+        const Warp warp(random.uniform(-1.5, 1.5), random.log_uniform(0.02, 1));
+        const Vec3d u = random.direction();
+        const Vec3d a = glm::normalize(glm::cross(u, random.direction()));
+        const Vec3d b = glm::cross(u, a);
+        const double h = 1e-6;
+        const auto moved = [&](const Vec3d& step) {
+            return (warp.direction(glm::normalize(u + h * step)) - warp.direction(glm::normalize(u - h * step))) /
+                   (2 * h);
+        };
+        // Central differences: h² times a third derivative of at most about density^(3/2) / narrowness, and rounding.
+        const double scale = std::sqrt(warp.density(u));
+        EXPECT_LE(glm::length(moved(a) - warp.tangent(u, warp.direction(u), a)), scale * 1e-6);
+        EXPECT_LE(std::abs(glm::length(glm::cross(moved(a), moved(b))) / warp.density(u) - 1), 1e-6);
+    }
+}
+
+}  // namespace
+}  // namespace shlight
