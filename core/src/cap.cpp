@@ -94,15 +94,41 @@ Kept kept_without_crossing(const Contact& contact) {
     return rest > 0 ? Kept{kPi, kPi, rest} : Kept{};
 }
 
-/// Gauss–Bonnet, Ω = 2β - 2ψ_0 cosσ - 2φ_a z_0 with the exterior angle β = atan2(chord, -corner); β - ψ_0 is one
-/// arctangent of numbers as small as the light.
-Kept kept_with_crossing(const Contact& contact) {
+/// Area of the lens that two crossing circles enclose. Gauss–Bonnet for caps up to hemispheres, others are turned
+/// inside out; with E the excess of the triangle and β the exterior angle at the crossing,
+///   Ω/2 = ψ_0 (1 - cosσ) + φ_a (1 - z_0) - E = ψ_0 (1 - cosσ) + (β - ψ_0) - φ_a z_0.
+/// The first form is for high horizons, where E is small; the second for low ones, where β - ψ_0 is one arctangent of
+/// numbers as small as the light.
+double lens_area(Contact contact, double arc, double edge) {
     const double lack = one_minus(contact.light.cosine, contact.light.sine);
-    Kept kept{std::atan2(contact.chord, contact.arc), std::atan2(contact.chord, contact.edge), 0};
-    const double turn = std::atan2(contact.chord * (contact.height + contact.light.axis.z) * lack,
+    const double short_of_pole = one_minus(contact.height, contact.sine);
+    double& cos_tilt = contact.light.axis.z;
+    if (contact.light.cosine < 0) {
+        cos_tilt = -cos_tilt;
+        contact.light.cosine = -contact.light.cosine;
+        contact.corner = -contact.corner;
+        return 2 * kPi * short_of_pole - lens_area(contact, kPi - arc, edge);
+    }
+    if (contact.height < 0) {
+        cos_tilt = -cos_tilt;
+        contact.height = -contact.height;
+        contact.corner = -contact.corner;
+        contact.edge = -contact.edge;
+        return 2 * kPi * lack - lens_area(contact, arc, kPi - edge);
+    }
+    if (contact.height > 0.5) {
+        const double excess = 2 * std::atan2(contact.chord, 1 + cos_tilt + contact.light.cosine + contact.height);
+        return 2 * (edge * lack + arc * short_of_pole - excess);
+    }
+    const double turn = std::atan2(contact.chord * (contact.height + cos_tilt) * lack,
                                    contact.chord * contact.chord - contact.edge * contact.corner);
-    kept.solid_angle = std::max(0.0, 2 * (turn + kept.edge * lack - kept.arc * contact.height));
-    return kept;
+    return 2 * (edge * lack + turn - arc * contact.height);
+}
+
+Kept kept_with_crossing(const Contact& contact) {
+    const double arc = std::atan2(contact.chord, contact.arc);
+    const double edge = std::atan2(contact.chord, contact.edge);
+    return {arc, edge, std::max(0.0, lens_area(contact, arc, edge))};
 }
 
 template <class T>

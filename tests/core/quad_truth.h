@@ -32,9 +32,17 @@ struct CapInput {
 /// order² coefficients of a cap. extra_nodes: added to the quadrature rules, to show that they have converged.
 Coefficients cap(const CapInput& input, int order, bool clip, int extra_nodes = 0);
 
-/// The same by double-exponential quadrature of P̄ (closed φ integral) over the colatitude, to check `cap`.
-/// Slow, and needs a half angle + tilt below π.
+/// The same by double-exponential quadrature of P̄ (closed φ integral) over the colatitude, to check `cap`. Slow.
 Coefficients cap_by_slices(const CapInput& input, int order, bool clip);
+
+/// The part of a cap above a horizon of any height z_0 = cos atan2(sine, height); sine at least 1e-4.
+Coefficients cap_above(const CapInput& input, double height, double sine, int order, int extra_nodes = 0);
+Coefficients cap_above_by_slices(const CapInput& input, double height, double sine, int order);
+
+/// The image of a cap, clipped at z = 0, under the conformal map that enlarges the neighbourhood of
+/// (-sin tilt, 0, cos tilt) by (2 - narrowness) / narrowness, in the frame about the image of the upper hemisphere.
+/// The circles' images are drawn through three mapped points each.
+Coefficients warped_cap(const CapInput& input, double tilt, double narrowness, int order, int extra_nodes = 0);
 
 /// order² coefficients of the region bounded by the great arcs through the vertices, taken with positive area.
 Coefficients polygon(std::span<const Vec3d> vertices, int order, bool clip, int extra_nodes = 0);

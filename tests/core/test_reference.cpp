@@ -89,6 +89,47 @@ TEST(Reference, CapsAgreeWithQuadratureOverColatitude) {
     EXPECT_LE(largest, 1e-20);
 }
 
+/// Circles at random against horizons at random: they cross, are nested, apart, or cover the sphere.
+TEST(Reference, CapsAgainstAnyHorizonAgreeWithQuadratureOverColatitude) {
+    RandomInput random(5);
+    double methods = 0;
+    double resolutions = 0;
+    for (int i = 0; i < 100; ++i) {
+        const double horizon = std::numbers::pi * random.uniform(0.001, 0.999);
+        const CapInput input{random.direction(), CapInput::Kind::angle, random.uniform(0.01, 3.13)};
+        const auto above = [&](int extra_nodes) {
+            return truth::cap_above(input, std::cos(horizon), std::sin(horizon), 12, extra_nodes);
+        };
+        const Coefficients reference = above(0);
+        if (reference.high[0] > 0) {
+            resolutions = worst(resolutions, difference(reference, above(8)));
+            methods = worst(methods, difference(reference, truth::cap_above_by_slices(input, std::cos(horizon),
+                                                                                      std::sin(horizon), 12)));
+        }
+    }
+    print("any horizon, two resolutions", resolutions);
+    print("any horizon, two methods", methods);
+    EXPECT_LE(resolutions, 1e-20);
+    EXPECT_LE(methods, 1e-20);
+}
+
+TEST(Reference, WarpedCapsHaveConverged) {
+    RandomInput random(6);
+    double largest = 0;
+    for (int i = 0; i < 40; ++i) {
+        const CapInput input = random_clipped_cap(random);
+        const double tilt = random.uniform(-1.5, 1.5);
+        const double narrowness = i == 0 ? 1 : random.log_uniform(1e-3, 1);
+        const Coefficients reference = truth::warped_cap(input, tilt, narrowness, 12);
+        largest = worst(largest, difference(reference, truth::warped_cap(input, tilt, narrowness, 12, 8)));
+        if (i == 0) {
+            largest = worst(largest, difference(reference, truth::cap(input, 12, true)));
+        }
+    }
+    print("warped caps, two resolutions", largest);
+    EXPECT_LE(largest, 1e-16);  // a warp leaves areas down to 1e-17, and they are differences of larger ones
+}
+
 TEST(Reference, PolygonsHaveConverged) {
     RandomInput random(3);
     double largest = 0;
