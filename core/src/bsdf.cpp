@@ -28,7 +28,15 @@ bool is_black(const Rgb& c) {
     return c == Rgb(0);
 }
 
+Lobe make_lobe(const LobeShape& shape, const Rgb& color) {
+    return {shape, is_mirror(shape) ? nullptr : warped_fit(shape), color, nullptr};
+}
+
 }  // namespace
+
+double Lobe::albedo(double cos_theta_o) const {
+    return fit ? fit->albedo(cos_theta_o) : fresnel_factor(std::get<GgxShape>(shape), cos_theta_o);
+}
 
 float ViewWeight::operator()(float cos_theta_o) const {
     const ViewStencil s(cos_theta_o);
@@ -42,27 +50,27 @@ float ViewWeight::operator()(float cos_theta_o) const {
 Bsdf Bsdf::lambert(const Rgb& albedo) {
     check_color("albedo", albedo);
     Bsdf b;
-    b.lobes_.push_back({fitted(LambertShape{}), albedo, nullptr});
+    b.lobes_.push_back(make_lobe(LambertShape{}, albedo));
     return b;
 }
 
 Bsdf Bsdf::ggx(float roughness, const Rgb& f0, float ior) {
-    if (!(roughness > 0 && roughness <= 1)) {
-        reject("roughness must lie in (0, 1]");
+    if (!(roughness >= 0 && roughness <= 1)) {
+        reject("roughness must lie in [0, 1]");
     }
     check_color("f0", f0);
     if (ior != 0 && !(std::isfinite(ior) && ior > 1)) {
         reject("ior must be greater than 1");
     }
-    const double alpha = static_cast<double>(roughness) * roughness;
+    const double alpha = roughness < kLeastRoughness ? 0 : static_cast<double>(roughness) * roughness;
     Bsdf b;
     if (!is_black(f0)) {
-        b.lobes_.push_back({fitted(GgxShape{alpha, Fresnel::one}), f0, nullptr});
+        b.lobes_.push_back(make_lobe(GgxShape{alpha, Fresnel::one}, f0));
     }
     const Rgb rest = Rgb(1) - glm::min(f0, Rgb(1));
     if (!is_black(rest)) {
         const GgxShape edge = ior != 0 ? GgxShape{alpha, Fresnel::dielectric, ior} : GgxShape{alpha, Fresnel::schlick};
-        b.lobes_.push_back({fitted(edge), rest, nullptr});
+        b.lobes_.push_back(make_lobe(edge, rest));
     }
     return b;
 }
@@ -104,25 +112,15 @@ Bsdf Bsdf::scaled(const Rgb& factor) const {
 Rgb Bsdf::evaluate(const Vec3d& wi, const Vec3d& wo) const {
     Rgb sum(0);
     for (const Lobe& lobe : lobes_) {
-        sum += lobe.scale(static_cast<float>(wo.z)) * static_cast<float>(lobe_value(lobe.fit->shape(), wi, wo));
+        sum += lobe.scale(static_cast<float>(wo.z)) * static_cast<float>(lobe_value(lobe.shape, wi, wo));
     }
     return sum;
-}
-
-double Bsdf::norm(double cos_theta_o) const {
-    double squares = 0;
-    for (const Lobe& lobe : lobes_) {
-        const double size =
-            static_cast<double>(largest(lobe.scale(static_cast<float>(cos_theta_o)))) * lobe.fit->norm(cos_theta_o);
-        squares += size * size;
-    }
-    return std::sqrt(squares);
 }
 
 Rgb Bsdf::albedo(double cos_theta_o) const {
     Rgb sum(0);
     for (const Lobe& lobe : lobes_) {
-        sum += lobe.scale(static_cast<float>(cos_theta_o)) * static_cast<float>(lobe.fit->albedo(cos_theta_o));
+        sum += lobe.scale(static_cast<float>(cos_theta_o)) * static_cast<float>(lobe.albedo(cos_theta_o));
     }
     return sum;
 }

@@ -58,7 +58,7 @@ double fresnel_factor(const GgxShape& shape, double cosine) {
 }
 
 double lobe_value(const LobeShape& shape, const Vec3d& wi, const Vec3d& wo) {
-    if (!(wi.z > 0 && wo.z > 0)) {
+    if (!(wi.z > 0 && wo.z > 0) || is_mirror(shape)) {
         return 0;
     }
     return std::visit([&](const auto& s) { return value(s, wi, wo); }, shape);

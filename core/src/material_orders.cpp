@@ -9,11 +9,11 @@ namespace shlight {
 
 OrderedLobe::OrderedLobe(const Lobe& lobe, int order) : lobe_(lobe) {
     if (order != 0) {
-        tables_.push_back(lobe.fit->table(order));
+        tables_.push_back(fitted(lobe.shape)->table(order));
         return;
     }
     for (const int rung : kOrderLadder) {
-        tables_.push_back(lobe.fit->table(rung));
+        tables_.push_back(fitted(lobe.shape)->table(rung));
     }
 }
 
@@ -34,7 +34,7 @@ OrderedMaterial::OrderedMaterial(const Bsdf& bsdf, const RenderSettings& setting
 
 bool OrderedMaterial::choose_orders(float cos_theta_o, std::span<std::uint8_t> orders) const {
     const auto lobe_norm = [&](const OrderedLobe& lobe) {
-        return Vec3d(lobe.lobe().scale(cos_theta_o)) * lobe.lobe().fit->norm(cos_theta_o);
+        return Vec3d(lobe.lobe().scale(cos_theta_o)) * fitted(lobe.lobe().shape)->norm(cos_theta_o);
     };
     Vec3d squares(0);
     for (const OrderedLobe& lobe : lobes_) {
@@ -54,7 +54,7 @@ bool OrderedMaterial::choose_orders(float cos_theta_o, std::span<std::uint8_t> o
             orders[i] = 0;
             continue;
         }
-        const OrderChoice choice = lobes_[i].lobe().fit->order_for(cos_theta_o, tolerance_ * allowance);
+        const OrderChoice choice = fitted(lobes_[i].lobe().shape)->order_for(cos_theta_o, tolerance_ * allowance);
         orders[i] = static_cast<std::uint8_t>(order_ != 0 ? order_ : choice.order);
         all_met = all_met && choice.met;
     }

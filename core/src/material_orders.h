@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "shlight/bsdf.h"
+#include "shlight/lobe_fit.h"
 #include "shlight/render.h"
 #include "shlight/types.h"
 

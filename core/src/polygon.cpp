@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "checks.h"
+#include "light_checks.h"
 #include "polygon_boundary.h"
 #include "polygon_cubature.h"
 #include "polygon_shading.h"
@@ -55,23 +56,6 @@ template <class T>
 SphericalPolygon<Wider<T>> clipped(std::span<const Vec3<T>> vertices) {
     const std::vector<Vec3<Wider<T>>> exact(vertices.begin(), vertices.end());
     return {exact, true};
-}
-
-template <class T>
-void check_polygon(std::span<const Vec3<Wider<T>>> vertices) {
-    using Real = Wider<T>;
-    Real largest = 0;
-    Real extent = 0;
-    for (const Vec3<Real>& v : vertices) {
-        check_finite("vertices", v);
-        largest = std::max(largest, glm::length(v));
-        extent = std::max(extent, glm::length(v - vertices[0]));
-    }
-    // A far polygon's vertices are off its plane by their own rounding.
-    constexpr Real kEpsilon = std::numeric_limits<T>::epsilon();
-    if (extent > 0 && planarity_error(vertices) > Real(1e-4) + 8 * kEpsilon * largest / extent) {
-        reject("vertices: a polygon is not planar");
-    }
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "shlight/warp.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "exact_sums.h"
 
 namespace shlight {
 namespace {
@@ -11,6 +14,12 @@ double squared_length(const Vec3d& v) {
 }
 
 }  // namespace
+
+Circle circle_of_sphere(const Vec3d& center, double radius) {
+    const double distance = glm::length(center);
+    const double tangent_squared = std::max(0.0, difference_of_squares({center.x, center.y, center.z}, radius));
+    return {center / distance, std::sqrt(tangent_squared) / distance, std::min(1.0, radius / distance)};
+}
 
 Warp::Warp(double tilt, double narrowness) : sin_tilt_(std::sin(tilt)), cos_tilt_(std::cos(tilt)) {
     const double r = 1 - narrowness;

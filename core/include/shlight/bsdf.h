@@ -6,8 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "shlight/lobe_fit.h"
+#include "shlight/lobe_shape.h"
 #include "shlight/types.h"
+#include "shlight/warped_fit.h"
 
 namespace shlight {
 
@@ -24,12 +25,18 @@ class ViewWeight {
 
 /// color · weight(θ_o) · shape.
 struct Lobe {
-    std::shared_ptr<const LobeFit> fit;
+    LobeShape shape;
+    std::shared_ptr<const WarpedFit> fit;  ///< null for a mirror
     Rgb color;
     std::shared_ptr<const ViewWeight> weight;  ///< null: 1
 
     Rgb scale(float cos_theta_o) const { return weight ? color * (*weight)(cos_theta_o) : color; }
+    /// ∫ shape dω.
+    double albedo(double cos_theta_o) const;
 };
+
+/// A lobe narrower than this, some 1e-5 rad wide, is narrower than any pixel or light.
+inline constexpr float kLeastRoughness = 0.003F;
 
 class Bsdf {
   public:
@@ -38,7 +45,8 @@ class Bsdf {
     /// Throws std::invalid_argument for an albedo that is negative or not finite.
     static Bsdf lambert(const Rgb& albedo);
     /// GGX, height-correlated Smith, F = f0 + (1 - f0) s with s = (1 - cosθ_d)⁵, or with ior > 1 the exact dielectric
-    /// curve remapped to 0 … 1. alpha = roughness². Throws for roughness outside (0, 1] or a negative or non-finite f0.
+    /// curve remapped to 0 … 1. alpha = roughness²; below kLeastRoughness it is a perfect mirror.
+    /// Throws for roughness outside [0, 1] or a negative or non-finite f0.
     static Bsdf ggx(float roughness, const Rgb& f0, float ior = 0.0F);
     /// top + base · (1 - max over RGB of top's directional albedo).
     static Bsdf layer(const Bsdf& top, const Bsdf& base);
@@ -47,12 +55,10 @@ class Bsdf {
     Bsdf scaled(const Rgb& factor) const;
 
     const std::vector<Lobe>& lobes() const { return lobes_; }
-    /// f·cos in the shading frame.
+    /// f·cos in the shading frame; 0 for mirrors.
     Rgb evaluate(const Vec3d& wi, const Vec3d& wo) const;
     /// ∫ f·cos dω.
     Rgb albedo(double cos_theta_o) const;
-    /// √∫ (f·cos)² dω from below: overlaps of the lobes, which are all positive, are left out.
-    double norm(double cos_theta_o) const;
 
   private:
     std::vector<Lobe> lobes_;

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include "light_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "checks.h"
+#include "exact_sums.h"
+
+namespace shlight {
+
+void check_sphere(const Vec3d& center, double radius, double epsilon) {
+    check_finite("centers", center);
+    if (!(std::isfinite(radius) && radius > 0)) {
+        reject("radii must be positive and finite");
+    }
+    // Contact within the rounding of the inputs is contact.
+    if (difference_of_squares({center.x, center.y, center.z}, radius) < -4 * epsilon * radius * radius) {
+        reject("radii: the shading point lies inside a sphere (|center| < radius)");
+    }
+}
+
+template <class T>
+void check_polygon(std::span<const Vec3<Wider<T>>> vertices) {
+    using Real = Wider<T>;
+    Real largest = 0;
+    Real extent = 0;
+    for (const Vec3<Real>& v : vertices) {
+        check_finite("vertices", v);
+        largest = std::max(largest, glm::length(v));
+        extent = std::max(extent, glm::length(v - vertices[0]));
+    }
+    // A far polygon's vertices are off its plane by their own rounding.
+    constexpr Real kEpsilon = std::numeric_limits<T>::epsilon();
+    if (extent > 0 && planarity_error(vertices) > Real(1e-4) + 8 * kEpsilon * largest / extent) {
+        reject("vertices: a polygon is not planar");
+    }
+}
+
+template void check_polygon<float>(std::span<const Vec3d>);
+template void check_polygon<double>(std::span<const Vec3<long double>>);
+
+}  // namespace shlight

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+//
+// What may be passed as a light: checks that throw std::invalid_argument naming the argument.
+#pragma once
+
+#include <span>
+
+#include "shlight/types.h"
+#include "spherical_polygon.h"
+
+namespace shlight {
+
+/// A positive radius, and a shading point that is not inside: contact within epsilon, the rounding of the inputs,
+/// counts as contact.
+void check_sphere(const Vec3d& center, double radius, double epsilon);
+
+/// Finite and planar to the precision of T, in which the vertices were given.
+template <class T>
+void check_polygon(std::span<const Vec3<Wider<T>>> vertices);
+
+}  // namespace shlight

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// "Model no more than a scene needs": a material's lobes, and how exactly each must be shaded at each view.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "lobe_view.h"
+#include "shlight/bsdf.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+class MaterialLobes {
+  public:
+    /// order: the only one, 1 … 64, or 0 to meet the tolerance: of the radiance ÷ albedo of the whole material, in each
+    /// colour channel.
+    MaterialLobes(const Bsdf& bsdf, int order, double tolerance);
+
+    /// Those that are not black.
+    std::span<const Lobe> lobes() const { return lobes_; }
+    /// One lobe at one view; nothing if it is black there.
+    std::optional<LobeAtView> at(std::size_t lobe, double cos_theta_o) const;
+    /// The least distance [rad] over which f·cos changes at this view: of its narrowest lobe; 0 for a mirror.
+    double narrowest(double cos_theta_o) const;
+
+  private:
+    std::vector<Lobe> lobes_;
+    std::vector<std::shared_ptr<const WarpedFit>> fits_;  // of the only order; otherwise empty
+    bool auto_order_;
+    double tolerance_;
+};
+
+}  // namespace shlight
