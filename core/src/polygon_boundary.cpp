@@ -34,47 +34,32 @@ class EndPoint {
     std::array<double, kMaxOrder> cos_, sin_;
 };
 
-/// P_l(c) for l = 0, 1, 2, …; near c = ±1 by differences, as in LegendreRows.
+/// P_1(c), P_2(c), …
 class LegendrePolynomials {
   public:
-    LegendrePolynomials(double c, double sine) : c_(c), near_pole_(sine < 0.125) {
-        distance_ = near_pole_ ? sine * sine / (1 + std::abs(c)) : 0;
-        other_ = near_pole_ ? -distance_ : 1;
-        value_ = near_pole_ ? 1 - distance_ : c;
-    }
-    /// P_l of the band that the number of calls says, from l = 1.
+    explicit LegendrePolynomials(double c) : c_(c), value_(c) {}
     double next() {
-        ++l_;
-        const double sign = near_pole_ && c_ < 0 && l_ % 2 == 1 ? -1 : 1;
-        const double result = sign * value_;
-        const double l = l_;
-        if (near_pole_) {  // other_ is P_l - P_{l-1} at |c|
-            other_ = (l * other_ - (2 * l + 1) * distance_ * value_) / (l + 1);
-            value_ += other_;
-        } else {  // other_ is P_{l-1}
-            const double next = ((2 * l + 1) * c_ * value_ - l * other_) / (l + 1);
-            other_ = value_;
-            value_ = next;
-        }
+        const double result = value_;
+        const double l = ++l_;
+        value_ = ((2 * l + 1) * c_ * value_ - l * before_) / (l + 1);
+        before_ = result;
         return result;
     }
 
   private:
-    double c_;
-    bool near_pole_;
-    double distance_, value_, other_;
+    double c_, value_;
+    double before_ = 1;
     int l_ = 0;
 };
 
 /// An arc in the frame turned about z so that its axis is (sinθ, 0, cosθ).
 template <class Real>
 struct TurnedArc {
-    Real cosine, sine, angle, cos_tilt, sin_tilt, cos_azimuth, sin_azimuth;
+    Real cosine, angle, cos_tilt, sin_tilt, cos_azimuth, sin_azimuth;
     Vec3<Real> from, to;
 
     explicit TurnedArc(const Arc<Real>& arc)
         : cosine(arc.cosine),
-          sine(arc.sine),
           angle(arc.angle),
           cos_tilt(arc.axis.z),
           sin_tilt(std::hypot(arc.axis.x, arc.axis.y)),
@@ -99,7 +84,7 @@ class ArcIntegrals {
           cos_tilt_(static_cast<double>(arc.cos_tilt)),
           sin_tilt_(static_cast<double>(arc.sin_tilt)),
           legendre_(cos_tilt_, sin_tilt_ * sin_tilt_),
-          along_circle_(static_cast<double>(arc.cosine), static_cast<double>(arc.sine)),
+          along_circle_(static_cast<double>(arc.cosine)),
           from_(arc.from, order),
           to_(arc.to, order) {
         powers(sin_tilt_, order, sin_powers_.data());

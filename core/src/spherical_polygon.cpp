@@ -46,6 +46,19 @@ std::vector<Vec3<Real>> clipped_by_horizon(std::span<const Vec3<Real>> v) {
     return kept;
 }
 
+/// Unit vectors, with the side from a to b the longest. Where that is nearly half a turn, a·(b×c) and
+/// 1 + a·b + b·c + c·a both vanish as the square of a + b: they are formed from a + b and from c's distance to its
+/// neighbour b or to a.
+template <class Real>
+Real solid_angle_with_long_side(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c) {
+    const Vec3<Real> sum = a + b;
+    const bool near_b = glm::dot(b, c) > glm::dot(a, c);
+    const Vec3<Real>& neighbour = near_b ? b : a;
+    const Vec3<Real> step = c - neighbour;
+    const Real triple = glm::dot(sum, glm::cross(neighbour, step));
+    return 2 * std::atan2(near_b ? triple : -triple, glm::dot(sum, sum + step));
+}
+
 }  // namespace
 
 template <class Real>
@@ -53,9 +66,21 @@ Real triangle_solid_angle(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<R
     const Real la = glm::length(a);
     const Real lb = glm::length(b);
     const Real lc = glm::length(c);
+    const Real ab = glm::dot(a, b) * lc;
+    const Real bc = glm::dot(b, c) * la;
+    const Real ca = glm::dot(c, a) * lb;
+    const Real product = la * lb * lc;
+    const Real least = std::min({ab, bc, ca});
+    if (least < -product / 2) {
+        const Vec3<Real> u = a / la;
+        const Vec3<Real> v = b / lb;
+        const Vec3<Real> w = c / lc;
+        return least == ab   ? solid_angle_with_long_side(u, v, w)
+               : least == bc ? solid_angle_with_long_side(v, w, u)
+                             : solid_angle_with_long_side(w, u, v);
+    }
     const Real triple = glm::dot(a, glm::cross(b - a, c - a));
-    const Real denominator = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
-    return 2 * std::atan2(triple, denominator);
+    return 2 * std::atan2(triple, product + ab + bc + ca);
 }
 
 template <class Real>

@@ -84,6 +84,9 @@ class PointwiseWarp {
 
     /// step: dω/ds.
     Image image(const Vec3q& direction, const Vec3q& step = {0, 0, 0}) const {
+        if (stretch_ == 1) {
+            return {direction, step, 1, 0};  // the plane has no room for -axis
+        }
         const quad above = 1 + dot(direction, axis_);
         const quad rise = dot(step, axis_);
         const Vec3q plane = (1 / above) * (direction + axis_) - axis_;
@@ -98,6 +101,7 @@ class PointwiseWarp {
                 (stretch_ * stretch_ - 1) * (1 + squared) / (2 * divisor)};
     }
     const Vec3q& axis() const { return axis_; }
+    quad stretch() const { return stretch_; }
 
   private:
     Vec3q turned(const Vec3q& v) const { return {dot(x_, v), v.y, dot(z_, v)}; }
@@ -117,7 +121,10 @@ struct CrowdedEdge {
         start = warp.axis() - dot(warp.axis(), pole) * pole;
         start = normalized(length(start) > 1e-20 ? start : a);
         along = cross(pole, start);
-        crowding = sqrtf128(warp.image(start).scale / warp.image(-1 * start).scale);
+        const quad cosine = dot(start, warp.axis());
+        const quad squared = (1 - cosine) / (1 + cosine);  // of the stereographic plane's radius at `start`
+        const quad stretch = warp.stretch() * warp.stretch();
+        crowding = sqrtf128((squared + stretch) / (1 + stretch * squared));
         const quad from = atan2f128(dot(a, along), dot(a, start));
         first = parameter(from);
         last = parameter(from + length_of_edge);

@@ -74,6 +74,15 @@ inline Vertices near_contact(RandomInput& random) {
     return star(random, center, plane, random.integer(3, 5), 0.6, size, size);
 }
 
+/// One edge all but touches the shading point, which sees it as half a turn.
+inline Vertices contact_at_an_edge(RandomInput& random) {
+    const Vec3d along = random.chance(0.5) ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
+    const Vec3d across = as_float(glm::cross(random.at_tilt(random.uniform(0.2, 1.3)), along));
+    const Vec3d above = random.log_uniform(1e-8, 1e-3) * glm::normalize(glm::cross(along, across));
+    const double reach = random.uniform(0.3, 1);
+    return {above - reach * along, above + along, above + along + across, above - reach * along + across};
+}
+
 /// Long and thin: the width is 1e-6 … 1e-2 of the length.
 inline Vertices thin(RandomInput& random) {
     const Vec3d center = random.log_uniform(0.3, 3) * seen_direction(random);

@@ -73,6 +73,7 @@ constexpr auto kClasses = std::to_array<Class>({
     {"nearly edge-on", testing::nearly_edge_on},
     {"edge on the horizon", testing::on_horizon},
     {"deep", testing::deep},
+    {"contact at an edge", testing::contact_at_an_edge},
 });
 
 /// One in four is not clipped; half are wound the other way.

@@ -35,14 +35,13 @@ void polygon_coefficients(std::span<const Vec3<T>> vertices, int vertex_count, i
 /// Coefficients of the image of a polygon under a warp, order² values in the warped frame. The polygon is clipped by
 /// the true horizon first.
 /// vertices: as above, in the shading frame, true directions.
-/// Under a warp the arcs cancel for a small image: of solid angle Ω', the error is about 1e-14 / Ω' of L_00 at order 16
-/// (in float too: the inputs are taken as exact). Narrow images below Ω' ~ 1e-6 are better served by cubature of what
-/// they are multiplied with; warped_solid_angle() decides.
+/// Wrong by 1e-11 of L_00 where the image's solid angle Ω' is 10⁻³, in double and before the rounding to T, and by
+/// 10⁻¹⁴ / Ω' in general: the arcs of a small image cancel. docs/algorithms.md has the figures by Ω'.
+/// Precondition, not checked: 1 ≤ order ≤ kMaxOrder, finite vertices.
 template <class T>
 void warped_polygon_coefficients(std::span<const Vec3<T>> vertices, const Warp& warp, int order, T* coefficients);
 
-/// Σ f_lm L_lm of the same coefficients with a lobe's cosine terms f_lm (cosine_count(order) values): unit radiance's
-/// reflection. Sine terms of the light are not computed.
+/// Σ f_lm L_lm with a lobe's cosine terms f_lm, cosine_count(order) values: the reflection of unit radiance.
 template <class T>
 T shade_polygon(std::span<const Vec3<T>> vertices, const Warp& warp, const T* lobe_terms, int order);
 
