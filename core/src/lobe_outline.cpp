@@ -103,8 +103,10 @@ class Bell {
 };
 
 /// The half vectors along a circle, up to their length: middle + cosine cos τ + sine sin τ. Any parameter that is a
-/// Möbius map of the angle has this form; this one moves evenly over the sphere on which the bell is round, wherever
-/// the circle lies and however small the bell is.
+/// Möbius map of the angle has this form; one of them makes the three columns orthogonal on the sphere where the bell
+/// is round, whatever the circle and the bell. The curve is an ellipse's cone there. Where that is long and narrow, as
+/// that of a circle much larger than the bell, τ dashes past the bell at ±π/2; (cos τ, sin τ) ~ (f cos t, sin t) does
+/// not.
 class Path {
   public:
     Path(const OutlineArc& arc, const Vec3d& view, double alpha) {
@@ -124,8 +126,18 @@ class Path {
 
     double start() const { return start_; }
     double length() const { return length_; }
-    Vec3d half(double c, double s) const { return columns_[0] + c * columns_[1] + s * columns_[2]; }
-    Vec3d step(double c, double s) const { return c * columns_[2] - s * columns_[1]; }
+
+    /// A half vector, of any length, and how it changes.
+    struct Point {
+        Vec3d half, step;
+    };
+    Point at(double parameter) const {
+        const double c = std::cos(parameter);
+        const double s = std::sin(parameter);
+        const double r = std::hypot(flatness_ * c, s);
+        return {r * columns_[0] + flatness_ * c * columns_[1] + s * columns_[2],
+                (1 - flatness_ * flatness_) * s * c / r * columns_[0] - flatness_ * s * columns_[1] + c * columns_[2]};
+    }
 
   private:
     using Triple = std::array<double, 3>;
@@ -149,6 +161,10 @@ class Path {
             const double angle = std::atan2(2 * form(1, 2), form(1, 1) - form(2, 2)) / 2;
             turn(std::cos(angle), std::sin(angle));
         }
+        if (form(2, 2) > form(1, 1)) {
+            turn(0, 1);
+        }
+        flatness_ = std::min(1.0, std::sqrt((form(0, 0) + form(2, 2)) / form(1, 1)));
     }
 
     void boost(int axis, double c, double s) { mix(0, axis, c, s, s, c); }
@@ -166,16 +182,17 @@ class Path {
         }
     }
 
-    /// τ of the point at (cos, sin) of the circle's own angle.
+    /// t of the point at (cos, sin) of the circle's own angle.
     double parameter(double cosine, double sine) const {
         const auto component = [&](int column) {
             return frame_[1][column] * cosine + frame_[2][column] * sine - frame_[0][column];
         };
-        return std::atan2(component(2), component(1));
+        return std::atan2(component(2), component(1) / flatness_);
     }
 
     std::array<Vec3d, 3> columns_;
     std::array<Triple, 3> frame_ = {Triple{1, 0, 0}, Triple{0, 1, 0}, Triple{0, 0, 1}};
+    double flatness_ = 1;
     double start_, length_;
 };
 
@@ -222,9 +239,8 @@ class Outline {
 
     double density(const Path& path, double parameter) {
         sum_.points += bell_.radial_points();
-        const double c = std::cos(parameter);
-        const double s = std::sin(parameter);
-        return bell_.outline_density(path.half(c, s), path.step(c, s));
+        const auto [half, step] = path.at(parameter);
+        return bell_.outline_density(half, step);
     }
 
     /// The difference of two rules is the error of the coarser one; that of the finer one is about its power 3/2
