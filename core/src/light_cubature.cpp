@@ -22,7 +22,7 @@ constexpr std::array<RuleError, 4> kCapRules = {RuleError{0.7, 2}, {1.0, 4}, {1.
 constexpr std::array<RuleError, 3> kPolygonRules = {RuleError{1.0, 4}, {1.4, 6}, {1.5, 8}};
 
 int smallest_rule(std::span<const RuleError> rules, double size, double tolerance) {
-    constexpr double kOwnShare = 4;  // of a light's own value that may be wrong, in tolerances
+    constexpr double kOwnShare = 1;
     for (std::size_t i = 0; i < rules.size(); ++i) {
         const double relative = std::pow(size / rules[i].reach, rules[i].power);
         // A light of relative size x receives at most about x² of the albedo.

@@ -95,7 +95,7 @@ void shade_spheres(std::span<const Vec3d> centers, std::span<const double> radii
     check_size("radiance", radiance.size(), centers.size());
     check_size("effort", effort.size(), effort.empty() ? 0 : centers.size());
     shade_each(cos_theta_o, bsdf, settings, radiance, effort, [&](std::size_t i) {
-        check_sphere(centers[i], radii[i], std::numeric_limits<double>::epsilon());
+        check_sphere(centers[i], radii[i], std::numeric_limits<float>::epsilon());
         return circle_of_sphere(centers[i], radii[i]);
     });
 }

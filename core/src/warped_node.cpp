@@ -4,7 +4,9 @@
 // degree m decouple: with a Fourier sum over the azimuth each m is a small fit in the height alone.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <numeric>
 
 #include "gauss_legendre.h"
 #include "legendre.h"
@@ -19,6 +21,42 @@ namespace {
 /// for it, from growing; a relative error of about √λ/10 is its price, a tenth of that where fits are broad.
 constexpr double kLambda = 1e-6;
 
+/// Squared L2 norms of a density: over the warped sphere and, with weight du/dω, over directions.
+struct Norms {
+    double warped = 0, direction = 0;
+};
+
+/// Azimuths in the middles of equal steps over half a turn: what is even in φ needs no more.
+struct AzimuthTable {
+    std::vector<double> cosines, sines;
+
+    AzimuthTable(int points, int waves) : waves_(waves) {
+        for (int j = 0; j < points; ++j) {
+            const double phi = std::numbers::pi * (j + 0.5) / points;
+            cosines.push_back(std::cos(phi));
+            sines.push_back(std::sin(phi));
+        }
+        for (int m = 0; m < waves; ++m) {
+            for (int j = 0; j < points; ++j) {
+                transform_.push_back(std::cos(m * std::numbers::pi * (j + 0.5) / points) * (m == 0 ? 1.0 : 2.0) /
+                                     points);
+            }
+        }
+    }
+
+    /// a_m of Σ a_m cos mφ, m = 0 … waves-1.
+    void append_fourier(const std::vector<double>& values, std::vector<double>& out) const {
+        for (int m = 0; m < waves_; ++m) {
+            out.push_back(
+                std::inner_product(values.begin(), values.end(), transform_.begin() + m * std::ssize(values), 0.0));
+        }
+    }
+
+  private:
+    int waves_;
+    std::vector<double> transform_;
+};
+
 /// The lobe's density g over a grid in the warped frame, as Fourier coefficients over the azimuth.
 struct WarpedDensity {
     std::vector<double> heights, weights;  ///< Gauss points over u_z = z_0 … 1
@@ -26,41 +64,42 @@ struct WarpedDensity {
     std::vector<double> fourier;           ///< heights × waves: g = Σ_m fourier cos mφ
     /// γ (1 + b u·axis) = constant + cosine · cos φ at each height: 1/√(dω/du).
     std::vector<double> shrink_constant, shrink_cosine;
+    Norms norms;  ///< of all waves, also those beyond
 };
+
+/// Points over half a turn and over the heights. In its warp a lobe is still stretched by 1 : cosθ_o.
+int azimuth_points(double cos_theta_o, int order) {
+    return std::max({24, order + 8, static_cast<int>(std::min(128.0, 12 / cos_theta_o))});
+}
+int height_points(double cos_theta_o, int order) {
+    return std::min(kMaxGaussPoints, std::max(cos_theta_o < 0.3 ? 64 : 40, order + 24));
+}
 
 WarpedDensity warped_density(const GgxShape& shape, double cos_theta_o, int order) {
     const Warp warp = lobe_warp(shape, cos_theta_o);
     const Vec3d wo(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o);
-    const int points = std::max(24, order + 8);
-    const GaussRule& rule = gauss_rule(std::min(kMaxGaussPoints, std::max(40, order + 24)));
+    const int points = azimuth_points(cos_theta_o, order);
+    const GaussRule& rule = gauss_rule(height_points(cos_theta_o, order));
     WarpedDensity d;
-    d.waves = points;
-    std::vector<double> cosines(static_cast<std::size_t>(points * points));  // cos mφ_j
-    for (int j = 0; j < points; ++j) {
-        const double phi = std::numbers::pi * (j + 0.5) / points;
-        for (int m = 0; m < points; ++m) {
-            cosines[m * points + j] = std::cos(m * phi) * (m == 0 ? 1.0 : 2.0) / points;
-        }
-    }
+    d.waves = std::max(24, order + 8);
+    const AzimuthTable azimuths(points, d.waves);
     std::vector<double> values(static_cast<std::size_t>(points));
     const double z0 = warp.horizon_height();
     for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
         const double z = z0 + (1 - z0) * rule.nodes[i];
         const double s = std::sqrt(std::max(0.0, (1 - z) * (1 + z)));
+        const double weight = (1 - z0) * rule.weights[i];
         for (int j = 0; j < points; ++j) {
-            const double phi = std::numbers::pi * (j + 0.5) / points;
-            const Vec3d u(s * std::cos(phi), s * std::sin(phi), z);
-            values[j] = lobe_value(shape, warp.direction(u), wo) * warp.density(u);
+            const Vec3d u(s * azimuths.cosines[j], s * azimuths.sines[j], z);
+            const double density = warp.density(u);
+            values[j] = lobe_value(shape, warp.direction(u), wo) * density;
+            const double square = 2 * std::numbers::pi / points * weight * values[j] * values[j];
+            d.norms.warped += square;
+            d.norms.direction += square / density;
         }
         d.heights.push_back(z);
-        d.weights.push_back((1 - z0) * rule.weights[i]);
-        for (int m = 0; m < points; ++m) {
-            double sum = 0;
-            for (int j = 0; j < points; ++j) {
-                sum += cosines[m * points + j] * values[j];
-            }
-            d.fourier.push_back(sum);
-        }
+        d.weights.push_back(weight);
+        azimuths.append_fourier(values, d.fourier);
         const double towards = 1 / std::sqrt(warp.density({s, 0, z}));
         const double away = 1 / std::sqrt(warp.density({-s, 0, z}));
         d.shrink_constant.push_back((towards + away) / 2);
@@ -78,12 +117,7 @@ double square_over_circle(std::span<const double> a) {
     return std::numbers::pi * sum;
 }
 
-/// Squared L2 norms of a density given as Fourier coefficients: over the warped sphere and, with weight du/dω, over
-/// directions.
-struct Norms {
-    double warped = 0, direction = 0;
-};
-
+/// The same of a density given as Fourier coefficients.
 Norms norms(const WarpedDensity& d, std::span<const double> fourier) {
     Norms sum;
     const auto waves = static_cast<std::size_t>(d.waves);
@@ -193,9 +227,11 @@ void fit_warped_node(const GgxShape& shape, double cos_theta_o, const NodeLayout
     const auto waves = static_cast<std::size_t>(d.waves);
     // The lobe's own cubature: the grid here is too coarse for lobes whose order is out of reach.
     const OutlineArc horizon{{{0, 0, 1}, 0, 1}, {1, 0, 0}, {1, 0, 0}, true};
-    const double albedo = outline_integral(shape, cos_theta_o, {&horizon, 1}, 1e-6).value;
+    const double albedo = outline_integral(shape, cos_theta_o, {&horizon, 1}, 1e-5).value;
     out[NodeLayout::albedo()] = static_cast<float>(albedo);
-    const Norms whole = norms(d, d.fourier);
+    const Norms kept = norms(d, d.fourier);
+    const Norms beyond = {std::max(0.0, d.norms.warped - kept.warped),
+                          std::max(0.0, d.norms.direction - kept.direction)};
     const HeightBasis basis = height_basis(d, highest);
     std::vector<DegreeFit> fits;
     for (int m = 0; m < highest; ++m) {
@@ -215,9 +251,9 @@ void fit_warped_node(const GgxShape& shape, double cos_theta_o, const NodeLayout
         }
         const Norms rest = norms(d, missing);
         out[NodeLayout::shading_error(which)] =
-            static_cast<float>(shading_error(std::sqrt(rest.warped), order, albedo));
-        out[NodeLayout::residual(which)] =
-            static_cast<float>(whole.direction > 0 ? std::sqrt(rest.direction / whole.direction) : 0.0);
+            static_cast<float>(shading_error(std::sqrt(rest.warped + beyond.warped), order, albedo));
+        out[NodeLayout::residual(which)] = static_cast<float>(
+            d.norms.direction > 0 ? std::sqrt((rest.direction + beyond.direction) / d.norms.direction) : 0.0);
     }
 }
 

@@ -28,6 +28,24 @@ class Bsdf:
     def __mul__(self, factor: ArrayLike) -> Bsdf: ...
     def __rmul__(self, factor: ArrayLike) -> Bsdf: ...
 
+def shade_spheres(
+    centers: _Floats,
+    radii: _Floats,
+    bsdf: Bsdf,
+    cos_theta_o: _Floats,
+    order: int,
+    tolerance: float,
+    threads: int,
+) -> tuple[NDArray[np.float32], NDArray[np.int32]]: ...
+def shade_polygons(
+    vertices: _Floats,
+    bsdf: Bsdf,
+    cos_theta_o: _Floats,
+    order: int,
+    tolerance: float,
+    threads: int,
+) -> tuple[NDArray[np.float32], NDArray[np.int32]]: ...
+
 class RenderCancelled(RuntimeError): ...  # noqa: N818  the name says what happened, not what went wrong
 
 class RenderReport:

@@ -9,17 +9,23 @@ it), takes arrays of the right type without a copy, and raises ValueError naming
 from __future__ import annotations
 
 import math
-import operator
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike
 
 from shlight import _core
-
-Floats = NDArray[Any]
-
-_MAX_ORDER = 64
+from shlight._arrays import (
+    MAX_ORDER,
+    Floats,
+    broadcast,
+    check_last,
+    checked_array,
+    checked_order,
+    checked_threads,
+    common_type,
+    rows,
+    shaped,
+)
 
 
 def sh_basis(directions: ArrayLike, order: int, dtype: DTypeLike = np.float32, *, threads: int = 0) -> Floats:
@@ -27,10 +33,10 @@ def sh_basis(directions: ArrayLike, order: int, dtype: DTypeLike = np.float32, *
 
     directions: (..., 3), of any length > 0. Returns (..., order²).
     """
-    d = _array("directions", directions, dtype, core_axes=1)
-    _check_last("directions", d, 3)
-    n = _order(order)
-    flat = _core.sh_basis(d.reshape(-1, 3), n, _threads(threads))
+    d = checked_array("directions", directions, dtype, core_axes=1)
+    check_last("directions", d, 3)
+    n = checked_order(order)
+    flat = _core.sh_basis(d.reshape(-1, 3), n, checked_threads(threads))
     return flat.reshape(*d.shape[:-1], n * n)
 
 
@@ -40,14 +46,14 @@ def evaluate(coefficients: ArrayLike, directions: ArrayLike, *, threads: int = 0
     coefficients: (..., order²); directions: (..., 3), of any length > 0; their leading axes broadcast.
     Returns (...), float64 if either input is, else float32.
     """
-    dtype = _common_type(coefficients, directions)
-    c = _array("coefficients", coefficients, dtype, core_axes=1)
-    d = _array("directions", directions, dtype, core_axes=1)
-    _check_last("directions", d, 3)
+    dtype = common_type(coefficients, directions)
+    c = checked_array("coefficients", coefficients, dtype, core_axes=1)
+    d = checked_array("directions", directions, dtype, core_axes=1)
+    check_last("directions", d, 3)
     order = _order_of("coefficients", c)
-    shape = _broadcast(coefficients=c.shape[:-1], directions=d.shape[:-1])
-    flat = _core.evaluate(_rows(c, shape, order * order), _rows(d, shape, 3), order, _threads(threads))
-    return _shaped(flat, shape)
+    shape = broadcast(coefficients=c.shape[:-1], directions=d.shape[:-1])
+    flat = _core.evaluate(rows(c, shape, order * order), rows(d, shape, 3), order, checked_threads(threads))
+    return shaped(flat, shape)
 
 
 def sphere_coefficients(
@@ -67,12 +73,12 @@ def sphere_coefficients(
     Zhou & Wei 2020, Eq. 4 with unit radiance; the recurrence is derived in docs/algorithms.md.
     """
     _check_method(method)
-    c = _array("centers", centers, dtype, core_axes=1)
-    r = _array("radii", radii, dtype)
-    _check_last("centers", c, 3)
-    shape = _broadcast(centers=c.shape[:-1], radii=r.shape)
-    n = _order(order)
-    flat = _core.sphere_coefficients(_rows(c, shape, 3), _rows(r, shape), n, bool(clip), _threads(threads))
+    c = checked_array("centers", centers, dtype, core_axes=1)
+    r = checked_array("radii", radii, dtype)
+    check_last("centers", c, 3)
+    shape = broadcast(centers=c.shape[:-1], radii=r.shape)
+    n = checked_order(order)
+    flat = _core.sphere_coefficients(rows(c, shape, 3), rows(r, shape), n, bool(clip), checked_threads(threads))
     return flat.reshape(*shape, n * n)
 
 
@@ -92,12 +98,12 @@ def cap_coefficients(
     clip: keep only what lies above the horizon z ≥ 0. Returns (..., order²).
     """
     _check_method(method)
-    a = _array("axes", axes, dtype, core_axes=1)
-    h = _array("half_angles", half_angles, dtype)
-    _check_last("axes", a, 3)
-    shape = _broadcast(axes=a.shape[:-1], half_angles=h.shape)
-    n = _order(order)
-    flat = _core.cap_coefficients(_rows(a, shape, 3), _rows(h, shape), n, bool(clip), _threads(threads))
+    a = checked_array("axes", axes, dtype, core_axes=1)
+    h = checked_array("half_angles", half_angles, dtype)
+    check_last("axes", a, 3)
+    shape = broadcast(axes=a.shape[:-1], half_angles=h.shape)
+    n = checked_order(order)
+    flat = _core.cap_coefficients(rows(a, shape, 3), rows(h, shape), n, bool(clip), checked_threads(threads))
     return flat.reshape(*shape, n * n)
 
 
@@ -117,12 +123,12 @@ def polygon_coefficients(
     Returns (..., order²).
     """
     _check_method(method)
-    v = _array("vertices", vertices, dtype, core_axes=2)
-    _check_last("vertices", v, 3)
+    v = checked_array("vertices", vertices, dtype, core_axes=2)
+    check_last("vertices", v, 3)
     if v.shape[-2] < 3:
         raise ValueError(f"vertices: a polygon needs at least 3, got {v.shape[-2]}")
-    n = _order(order)
-    flat = _core.polygon_coefficients(v.reshape(-1, *v.shape[-2:]), n, bool(clip), _threads(threads))
+    n = checked_order(order)
+    flat = _core.polygon_coefficients(v.reshape(-1, *v.shape[-2:]), n, bool(clip), checked_threads(threads))
     return flat.reshape(*v.shape[:-2], n * n)
 
 
@@ -133,92 +139,26 @@ def shade(light_coefficients: ArrayLike, bsdf_coefficients: ArrayLike, *, thread
     Returns (...), float64 if either input is, else float32. A coloured material has coefficients (..., 3, order²):
     pass light_coefficients[..., None, :].
     """
-    dtype = _common_type(light_coefficients, bsdf_coefficients)
-    light = _array("light_coefficients", light_coefficients, dtype, core_axes=1)
-    bsdf = _array("bsdf_coefficients", bsdf_coefficients, dtype, core_axes=1)
+    dtype = common_type(light_coefficients, bsdf_coefficients)
+    light = checked_array("light_coefficients", light_coefficients, dtype, core_axes=1)
+    bsdf = checked_array("bsdf_coefficients", bsdf_coefficients, dtype, core_axes=1)
     order = _order_of("light_coefficients", light)
     if bsdf.shape[-1] != order * order:
         raise ValueError(f"bsdf_coefficients has {bsdf.shape[-1]} coefficients, light_coefficients has {order * order}")
-    shape = _broadcast(light_coefficients=light.shape[:-1], bsdf_coefficients=bsdf.shape[:-1])
+    shape = broadcast(light_coefficients=light.shape[:-1], bsdf_coefficients=bsdf.shape[:-1])
     size = order * order
-    flat = _core.shade(_rows(light, shape, size), _rows(bsdf, shape, size), order, _threads(threads))
-    return _shaped(flat, shape)
-
-
-def _shaped(flat: Floats, shape: tuple[int, ...]) -> Floats:
-    """Results without axes are numpy scalars, as numpy's own functions return them."""
-    return flat.reshape(shape)[()]
-
-
-def _order(order: int) -> int:
-    try:
-        n = operator.index(order)
-    except TypeError:
-        raise ValueError(f"order must be an integer 1 … {_MAX_ORDER}, got {order!r}") from None
-    if not 1 <= n <= _MAX_ORDER:
-        raise ValueError(f"order must be 1 … {_MAX_ORDER}, got {n}")
-    return n
+    flat = _core.shade(rows(light, shape, size), rows(bsdf, shape, size), order, checked_threads(threads))
+    return shaped(flat, shape)
 
 
 def _order_of(name: str, coefficients: Floats) -> int:
     count = coefficients.shape[-1]
     order = math.isqrt(count)
-    if order * order != count or not 1 <= order <= _MAX_ORDER:
-        raise ValueError(f"{name}: the last axis must have order² entries with order 1 … {_MAX_ORDER}, got {count}")
+    if order * order != count or not 1 <= order <= MAX_ORDER:
+        raise ValueError(f"{name}: the last axis must have order² entries with order 1 … {MAX_ORDER}, got {count}")
     return order
-
-
-def _threads(threads: int) -> int:
-    try:
-        n = operator.index(threads)
-    except TypeError:
-        raise ValueError(f"threads must be an integer ≥ 0, got {threads!r}") from None
-    if n < 0:
-        raise ValueError(f"threads must be ≥ 0, got {n}")
-    return n
 
 
 def _check_method(method: str) -> None:
     if method != "exact":
         raise ValueError(f"method must be 'exact', got {method!r}")
-
-
-def _common_type(*arrays: ArrayLike) -> DTypeLike:
-    return np.float64 if any(getattr(a, "dtype", None) == np.float64 for a in arrays) else np.float32
-
-
-def _array(name: str, value: ArrayLike, dtype: DTypeLike, *, core_axes: int = 0) -> Floats:
-    wanted = np.dtype(dtype)
-    if wanted not in (np.dtype(np.float32), np.dtype(np.float64)):
-        raise ValueError(f"dtype must be float32 or float64, got {wanted}")
-    try:
-        given = np.asarray(value)
-        if not (np.issubdtype(given.dtype, np.floating) or np.issubdtype(given.dtype, np.integer)):
-            raise ValueError
-        with np.errstate(over="ignore"):  # what does not fit becomes infinite and is refused as such
-            array = np.ascontiguousarray(given, dtype=wanted).reshape(given.shape)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} must be an array of real numbers") from None
-    if array.ndim < core_axes:
-        raise ValueError(f"{name} must have at least {core_axes} axes, got shape {array.shape}")
-    return array
-
-
-def _check_last(name: str, array: Floats, size: int) -> None:
-    if array.shape[-1] != size:
-        raise ValueError(f"{name} must have shape (..., {size}), got {array.shape}")
-
-
-def _broadcast(**shapes: tuple[int, ...]) -> tuple[int, ...]:
-    try:
-        return np.broadcast_shapes(*shapes.values())
-    except ValueError:
-        described = " and ".join(f"{name} {shape}" for name, shape in shapes.items())
-        raise ValueError(f"the leading axes of {described} do not broadcast") from None
-
-
-def _rows(array: Floats, shape: tuple[int, ...], *core: int) -> Floats:
-    """The array as contiguous rows of the broadcast shape; copied only if it really has to be spread."""
-    full = (*shape, *core)
-    spread = array if array.shape == full else np.ascontiguousarray(np.broadcast_to(array, full))
-    return spread.reshape(-1, *core)

@@ -11,6 +11,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "shlight/bsdf.h"
+#include "shlight/lobe_fit.h"
 
 namespace shlight::python {
 namespace {
@@ -28,6 +29,13 @@ void check_cosine(double cosine) {
     if (!(cosine >= 0 && cosine <= 1)) {
         throw std::invalid_argument("cos_theta_o must lie in [0, 1]");
     }
+}
+
+std::shared_ptr<const LobeFit> plain_fit(const Lobe& lobe) {
+    if (is_mirror(lobe.shape)) {
+        throw std::invalid_argument("a perfect mirror (roughness below 0.003) has no coefficients");
+    }
+    return fitted(lobe.shape);
 }
 
 /// f of one view angle: `channels` rows of order² coefficients, zero where m < 0.
@@ -60,7 +68,7 @@ Array<float> coefficients(const Bsdf& bsdf, const AnyArray<double>& cos_theta_o,
     Array<float> out(shape_with(cos_theta_o, 0, added));
     std::vector<std::pair<Lobe, std::shared_ptr<const LobeTable>>> lobes;
     for (const Lobe& lobe : bsdf.lobes()) {
-        lobes.emplace_back(lobe, lobe.fit->table(order));
+        lobes.emplace_back(lobe, plain_fit(lobe)->table(order));
     }
     float* data = out.mutable_data();
     for (const double cosine : values(cos_theta_o)) {
@@ -75,13 +83,15 @@ Array<float> coefficients(const Bsdf& bsdf, const AnyArray<double>& cos_theta_o,
 double residual_at(const Bsdf& bsdf, double cosine, int order) {
     check_cosine(cosine);
     double error = 0;
+    double squares = 0;  // of the norm from below: overlaps of the lobes, which are all positive, are left out
     for (const Lobe& lobe : bsdf.lobes()) {
         const Rgb scale = lobe.scale(static_cast<float>(cosine));
-        const double size = std::max({scale.x, scale.y, scale.z}) * lobe.fit->norm(cosine);
-        error += size * lobe.fit->residual(cosine, order);
+        const auto fit = plain_fit(lobe);
+        const double size = std::max({scale.x, scale.y, scale.z}) * fit->norm(cosine);
+        error += size * fit->residual(cosine, order);
+        squares += size * size;
     }
-    const double norm = bsdf.norm(cosine);
-    return norm > 0 ? error / norm : 0;
+    return squares > 0 ? error / std::sqrt(squares) : 0;
 }
 
 Array<double> residual(const Bsdf& bsdf, const AnyArray<double>& cos_theta_o, int order) {
@@ -153,7 +163,8 @@ void bind_bsdf(py::module_& m) {
                 return Bsdf::ggx(roughness, head_on, ior.value_or(0.0F));
             },
             py::arg("roughness"), py::arg("f0"), py::kw_only(), py::arg("ior") = py::none(),
-            R"(GGX microfacets with height-correlated Smith masking; alpha = roughness², 0 < roughness ≤ 1.
+            R"(GGX microfacets with height-correlated Smith masking; alpha = roughness², 0 ≤ roughness ≤ 1.
+Below a roughness of 0.003 a perfect mirror: lights reflect in it, but it has no coefficients and evaluates to 0.
 
 f0 (a number or RGB) is the reflectance seen head-on; Fresnel is f0 + (1 - f0) s with Schlick's
 s = (1 - cosθ_d)⁵ or, with `ior`, the dielectric Fresnel curve of that index remapped to 0 … 1.

@@ -1,32 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
 // Flat batch functions; shlight/coefficients.py broadcasts in front of them.
-#include <algorithm>
-
 #include "arrays.h"
 #include "bindings.h"
+#include "chunks.h"
 #include "shlight/basis.h"
 #include "shlight/cap.h"
-#include "shlight/parallel.h"
 #include "shlight/polygon.h"
 #include "shlight/shading.h"
 
 namespace shlight::python {
 namespace {
-
-/// Lights a task takes at once: enough to hide the cost of handing it out, few enough to share evenly.
-constexpr std::size_t kChunk = 512;
-
-/// work(first, count) over chunks of 0 … total-1, without the GIL.
-template <class Work>
-void in_chunks(std::size_t total, int threads, const Work& work) {
-    const py::gil_scoped_release release;
-    const std::size_t chunks = (total + kChunk - 1) / kChunk;
-    parallel_for(chunks, threads, [&](std::size_t chunk) {
-        const std::size_t first = chunk * kChunk;
-        work(first, std::min(kChunk, total - first));
-    });
-}
 
 template <class T>
 Array<T> rows(std::size_t count, int order) {

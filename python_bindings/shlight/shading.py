@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: MIT
+"""Materials lit by area lights: Eq. 5 of Zhou & Wei 2020 without the detour over coefficients.
+
+Glossy lobes are spherical harmonics in a warp of the sphere that makes them broad, against light that is warped with
+them, exactly (docs/algorithms.md); small lights and views that few bands do not describe are integrated by cubature of
+the true f·cos, and a roughness of 0 shows the light's own image. Nothing here is random.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Literal, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from shlight import _core
+from shlight._arrays import (
+    Floats,
+    broadcast,
+    check_last,
+    checked_array,
+    checked_order,
+    checked_threads,
+    rows,
+)
+
+Radiance = NDArray[np.float32]
+Effort = NDArray[np.int32]
+
+
+@overload
+def shade_spheres(
+    centers: ArrayLike,
+    radii: ArrayLike,
+    bsdf: _core.Bsdf,
+    cos_theta_o: ArrayLike,
+    *,
+    order: int | Literal["auto"] = ...,
+    tolerance: float = ...,
+    threads: int = ...,
+    return_effort: Literal[False] = ...,
+) -> Radiance: ...
+@overload
+def shade_spheres(
+    centers: ArrayLike,
+    radii: ArrayLike,
+    bsdf: _core.Bsdf,
+    cos_theta_o: ArrayLike,
+    *,
+    order: int | Literal["auto"] = ...,
+    tolerance: float = ...,
+    threads: int = ...,
+    return_effort: Literal[True],
+) -> tuple[Radiance, Effort]: ...
+def shade_spheres(
+    centers: ArrayLike,
+    radii: ArrayLike,
+    bsdf: _core.Bsdf,
+    cos_theta_o: ArrayLike,
+    *,
+    order: int | Literal["auto"] = "auto",
+    tolerance: float = 1e-3,
+    threads: int = 0,
+    return_effort: bool = False,
+) -> Radiance | tuple[Radiance, Effort]:
+    """Radiance reflected of sphere lights of unit radiance towards ω_o = (sinθ_o, 0, cosθ_o), clipped by the horizon.
+
+    centers: (..., 3), radii: (...), in the shading frame, any unit of length; 0 < radius ≤ |center|.
+    cos_theta_o: (...), in [0, 1]. Leading axes broadcast; lights that share a view should be neighbours along the last.
+    order: "auto" for whatever meets the tolerance, or 1 … 64 for harmonics of that order.
+    tolerance: of the radiance ÷ the material's albedo at that view, in each colour channel.
+
+    Returns (..., 3), float32. With return_effort also (...), int32: per light the largest order, or number of values
+    of f·cos, that a lobe of the material took; 0 where a light is hidden or mirrored.
+    """
+    c = checked_array("centers", centers, np.float64, core_axes=1)
+    r = checked_array("radii", radii, np.float64)
+    cosines = checked_array("cos_theta_o", cos_theta_o, np.float64)
+    check_last("centers", c, 3)
+    shape = broadcast(centers=c.shape[:-1], radii=r.shape, cos_theta_o=cosines.shape)
+    settings = _settings(order, tolerance, threads)
+    flat = _core.shade_spheres(rows(c, shape, 3), rows(r, shape), bsdf, rows(cosines, shape), *settings)
+    return _result(*flat, shape, return_effort)
+
+
+@overload
+def shade_polygons(
+    vertices: ArrayLike,
+    bsdf: _core.Bsdf,
+    cos_theta_o: ArrayLike,
+    *,
+    order: int | Literal["auto"] = ...,
+    tolerance: float = ...,
+    threads: int = ...,
+    return_effort: Literal[False] = ...,
+) -> Radiance: ...
+@overload
+def shade_polygons(
+    vertices: ArrayLike,
+    bsdf: _core.Bsdf,
+    cos_theta_o: ArrayLike,
+    *,
+    order: int | Literal["auto"] = ...,
+    tolerance: float = ...,
+    threads: int = ...,
+    return_effort: Literal[True],
+) -> tuple[Radiance, Effort]: ...
+def shade_polygons(
+    vertices: ArrayLike,
+    bsdf: _core.Bsdf,
+    cos_theta_o: ArrayLike,
+    *,
+    order: int | Literal["auto"] = "auto",
+    tolerance: float = 1e-3,
+    threads: int = 0,
+    return_effort: bool = False,
+) -> Radiance | tuple[Radiance, Effort]:
+    """As shade_spheres, for planar polygons.
+
+    vertices: (..., k, 3) with k ≥ 3, in the shading frame, in either winding: the region counts. A polygon without area
+    or seen edge-on gives zeros.
+    """
+    v = checked_array("vertices", vertices, np.float64, core_axes=2)
+    check_last("vertices", v, 3)
+    if v.shape[-2] < 3:
+        raise ValueError(f"vertices: a polygon needs at least 3, got {v.shape[-2]}")
+    cosines = checked_array("cos_theta_o", cos_theta_o, np.float64)
+    shape = broadcast(vertices=v.shape[:-2], cos_theta_o=cosines.shape)
+    settings = _settings(order, tolerance, threads)
+    flat = _core.shade_polygons(rows(v, shape, *v.shape[-2:]), bsdf, rows(cosines, shape), *settings)
+    return _result(*flat, shape, return_effort)
+
+
+def _settings(order: int | Literal["auto"], tolerance: float, threads: int) -> tuple[int, float, int]:
+    n = 0 if isinstance(order, str) and order == "auto" else checked_order(order)
+    try:
+        checked = float(tolerance)
+    except (TypeError, ValueError):
+        raise ValueError(f"tolerance must be a number, got {tolerance!r}") from None
+    if not (math.isfinite(checked) and checked > 0):
+        raise ValueError(f"tolerance must be positive and finite, got {tolerance!r}")
+    return n, checked, checked_threads(threads)
+
+
+def _result(radiance: Floats, effort: Any, shape: tuple[int, ...], return_effort: bool) -> Any:
+    shaded = radiance.reshape(*shape, 3)
+    return (shaded, effort.reshape(shape)[()]) if return_effort else shaded

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+//
+// Batches spread over threads.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "shlight/parallel.h"
+
+namespace shlight::python {
+
+/// Lights a task takes at once: enough to hide the cost of handing it out, few enough to share evenly.
+inline constexpr std::size_t kChunk = 512;
+
+/// work(first, count) over chunks of 0 … total-1, without the GIL.
+template <class Work>
+void in_chunks(std::size_t total, int threads, const Work& work) {
+    const pybind11::gil_scoped_release release;
+    const std::size_t chunks = (total + kChunk - 1) / kChunk;
+    parallel_for(chunks, threads, [&](std::size_t chunk) {
+        const std::size_t first = chunk * kChunk;
+        work(first, std::min(kChunk, total - first));
+    });
+}
+
+}  // namespace shlight::python

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+//
+// Whole materials under random lights, against brute force.
+#include "shlight/light_shading.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "lobe_truth.h"
+#include "random_input.h"
+
+namespace shlight {
+namespace {
+
+using testing::lobe_over_cap;
+using testing::PolygonTruth;
+using testing::RandomInput;
+using testing::view_direction;
+
+struct Light {
+    Vec3d axis;
+    double half_angle;
+};
+
+Vec3d normal_noise(RandomInput& random) {
+    Vec3d sum(0);
+    for (int i = 0; i < 4; ++i) {
+        sum += random.direction();
+    }
+    return sum * std::sqrt(3.0) / 2.0;
+}
+
+/// A third across the horizon, a third about the mirror direction, a third anywhere.
+Light random_light(RandomInput& random, int kind, double alpha, double cos_theta_o) {
+    const double half = random.chance(0.5) ? random.uniform(0.01, 1.4) : random.log_uniform(0.01, 1.4);
+    if (kind == 0) {
+        const double elevation = random.uniform(-half, half);
+        const double azimuth =
+            random.chance(0.5) ? std::numbers::pi + random.uniform(-0.6, 0.6) : random.uniform(0, 6.28);
+        const double c = std::cos(elevation);
+        return {{c * std::cos(azimuth), c * std::sin(azimuth), std::sin(elevation)}, half};
+    }
+    Vec3d axis = random.direction();
+    if (kind == 1) {
+        const Vec3d v = view_direction(cos_theta_o);
+        axis = Vec3d(-v.x, 0, v.z) + 0.7 * (half + 2 * alpha) * normal_noise(random);
+    }
+    axis.z = std::abs(axis.z);
+    return {glm::normalize(axis), half};
+}
+
+/// Planar and convex: a random quadrilateral in a random plane about the light's axis.
+std::vector<Vec3d> random_quad(RandomInput& random, const Light& light) {
+    const Vec3d normal = glm::normalize(light.axis + 0.5 * random.direction());
+    const Vec3d u = glm::normalize(glm::cross(normal, random.direction()));
+    const Vec3d v = glm::cross(normal, u);
+    const double size = std::tan(std::min(light.half_angle, 1.2));
+    std::vector<Vec3d> quad;
+    for (int i = 0; i < 4; ++i) {
+        const double angle = std::numbers::pi / 2 * (i + random.uniform(0, 0.6));
+        quad.push_back(light.axis + size * (std::cos(angle) * u + std::sin(angle) * v));
+    }
+    return quad;
+}
+
+/// Errors ÷ the brightest light of the same material and view, and how many took at most 16 of anything.
+struct Outcome {
+    std::vector<double> errors;
+    int few = 0, counted = 0;
+
+    void add(const std::vector<Rgb>& radiance, const std::vector<double>& truth,
+             const std::vector<std::int32_t>& effort, double cos_theta_o) {
+        const double brightest = *std::max_element(truth.begin(), truth.end());
+        for (std::size_t i = 0; i < truth.size(); ++i) {
+            const double error = std::abs(static_cast<double>(radiance[i].x) - truth[i]) / brightest;
+            errors.push_back(std::isfinite(error) ? error : 1e300);
+            if (cos_theta_o >= 0.3) {
+                ++counted;
+                few += effort[i] <= 16 ? 1 : 0;
+            }
+        }
+    }
+
+    void check(double tolerance) {
+        std::sort(errors.begin(), errors.end());
+        const double most = errors[errors.size() * 99 / 100];
+        ::testing::Test::RecordProperty("p99_over_tolerance", std::to_string(most / tolerance));
+        ::testing::Test::RecordProperty("max_over_tolerance", std::to_string(errors.back() / tolerance));
+        EXPECT_LE(most, 2 * tolerance);
+        EXPECT_LE(errors.back(), 10 * tolerance);
+        EXPECT_GE(few, 0.9 * counted);
+    }
+};
+
+double random_cosine(RandomInput& random, int i) {
+    return i % 4 == 0 ? random.uniform(0.05, 0.25) : random.uniform(0.05, 1);
+}
+
+class LightShading : public ::testing::TestWithParam<double> {};
+
+TEST_P(LightShading, SpheresMatchBruteForce) {
+    const double tolerance = GetParam();
+    RandomInput random(21);
+    Outcome outcome;
+    for (int i = 0; i < 80; ++i) {
+        const auto roughness = static_cast<float>(i % 3 == 0 ? random.uniform(0.05, 0.35) : random.uniform(0.05, 1));
+        const double alpha = static_cast<double>(roughness) * roughness;
+        const double cosine = random_cosine(random, i);
+        std::vector<Vec3d> centers;
+        std::vector<double> radii;
+        std::vector<double> truth;
+        for (int k = 0; k < 24; ++k) {
+            const Light light = random_light(random, k % 3, alpha, cosine);
+            const double distance = random.log_uniform(0.1, 10);
+            centers.push_back(distance * light.axis);
+            radii.push_back(distance * std::sin(light.half_angle));
+            truth.push_back(lobe_over_cap({alpha}, cosine, light.axis, light.half_angle, 16));
+        }
+        std::vector<Rgb> radiance(truth.size());
+        std::vector<std::int32_t> effort(truth.size());
+        shade_spheres(centers, radii, Bsdf::ggx(roughness, Rgb(1)), std::vector<double>(truth.size(), cosine),
+                      {0, tolerance}, radiance, effort);
+        outcome.add(radiance, truth, effort, cosine);
+    }
+    outcome.check(tolerance);
+}
+
+TEST_P(LightShading, PolygonsMatchBruteForce) {
+    const double tolerance = GetParam();
+    RandomInput random(22);
+    Outcome outcome;
+    for (int i = 0; i < 24; ++i) {
+        const auto roughness = static_cast<float>(i % 3 == 0 ? random.uniform(0.05, 0.35) : random.uniform(0.05, 1));
+        const double alpha = static_cast<double>(roughness) * roughness;
+        const double cosine = random_cosine(random, i);
+        std::vector<Vec3d> vertices;
+        std::vector<double> truth;
+        const PolygonTruth brute({alpha}, cosine);
+        for (int k = 0; k < 12; ++k) {
+            const std::vector<Vec3d> quad = random_quad(random, random_light(random, k % 3, alpha, cosine));
+            vertices.insert(vertices.end(), quad.begin(), quad.end());
+            truth.push_back(brute.integral(quad));
+        }
+        std::vector<Rgb> radiance(truth.size());
+        std::vector<std::int32_t> effort(truth.size());
+        shade_polygons(vertices, 4, Bsdf::ggx(roughness, Rgb(1)), std::vector<double>(truth.size(), cosine),
+                       {0, tolerance}, radiance, effort);
+        outcome.add(radiance, truth, effort, cosine);
+    }
+    outcome.check(tolerance);
+}
+
+INSTANTIATE_TEST_SUITE_P(Tolerances, LightShading, ::testing::Values(1e-2, 1e-3));
+
+TEST(LightShading, ALambertSurfaceIsExact) {
+    // Lambert's own formula for a whole sphere: albedo sin²σ cosθ.
+    const Vec3d center(0.3, -0.4, 1.2);
+    const double radius = 0.5;
+    Rgb radiance;
+    const double cosine = 0.4;
+    shade_spheres({&center, 1}, {&radius, 1}, Bsdf::lambert(Rgb(0.5F, 1, 0)), {&cosine, 1}, {}, {&radiance, 1});
+    const double distance = glm::length(center);
+    const double expected = radius * radius / (distance * distance) * center.z / distance;
+    EXPECT_NEAR(radiance.x, 0.5 * expected, 1e-7);
+    EXPECT_NEAR(radiance.y, expected, 1e-7);
+    EXPECT_EQ(radiance.z, 0);
+}
+
+TEST(LightShading, AMirrorShowsTheLight) {
+    const double cosine = 0.6;
+    const Bsdf mirror = Bsdf::ggx(0, Rgb(0.5F));
+    const Vec3d v = view_direction(cosine);
+    const double edge = 1 - cosine;
+    const double fresnel = 0.5 + 0.5 * edge * edge * edge * edge * edge;
+    const std::vector<Vec3d> centers = {{-v.x, 0, v.z}, {-v.x, 0.2, v.z}, {-v.x, 0.4, v.z}, {-v.x, 0, -2}};
+    const std::vector<double> radii(4, 0.25);
+    std::vector<Rgb> radiance(4);
+    shade_spheres(centers, radii, mirror, std::vector<double>(4, cosine), {}, radiance);
+    EXPECT_NEAR(radiance[0].x, fresnel, 1e-6);
+    EXPECT_NEAR(radiance[1].x, fresnel, 1e-6);
+    EXPECT_EQ(radiance[2].x, 0);
+    EXPECT_EQ(radiance[3].x, 0);
+    for (const bool inside : {true, false}) {
+        const double shift = inside ? 0.05 : 0.3;
+        const std::vector<Vec3d> quad = {{-v.x + shift - 0.2, -0.2, v.z},
+                                         {-v.x + shift + 0.2, -0.2, v.z},
+                                         {-v.x + shift + 0.2, 0.2, v.z},
+                                         {-v.x + shift - 0.2, 0.2, v.z}};
+        std::vector<Rgb> out(1);
+        shade_polygons(quad, 4, mirror, std::vector<double>(1, cosine), {}, out);
+        EXPECT_NEAR(out[0].x, inside ? fresnel : 0, 1e-6);
+    }
+}
+
+TEST(LightShading, RoughnessHasNoSeams) {
+    // From a mirror to the roughest surface in steps too small for the light to change much between them.
+    const double cosine = 0.5;
+    const Vec3d v = view_direction(cosine);
+    const Vec3d center = glm::normalize(Vec3d(-v.x, 0.1, v.z));
+    const double radius = 0.2;
+    double before = -1;
+    double step_before = 0;
+    for (int i = 0; i <= 2000; ++i) {
+        Rgb radiance;
+        shade_spheres({&center, 1}, {&radius, 1}, Bsdf::ggx(static_cast<float>(i) / 2000, Rgb(1)), {&cosine, 1}, {},
+                      {&radiance, 1});
+        const double step = static_cast<double>(radiance.x) - before;
+        if (i > 1) {
+            // Two methods may each be wrong by the tolerance where one hands over to the other.
+            EXPECT_LE(std::abs(step - step_before), 2e-3) << "at roughness " << i / 2000.0;
+        }
+        step_before = step;
+        before = radiance.x;
+    }
+}
+
+TEST(LightShading, RejectsBadInput) {
+    const Bsdf bsdf = Bsdf::ggx(0.5F, Rgb(1));
+    const std::vector<Vec3d> center = {{0, 0, 2}};
+    const std::vector<double> radius = {1};
+    std::vector<Rgb> out(1);
+    const auto shade = [&](double cosine, double r, int order, double tolerance) {
+        shade_spheres(center, std::vector<double>{r}, bsdf, std::vector<double>{cosine}, {order, tolerance}, out);
+    };
+    EXPECT_NO_THROW(shade(0.5, 1, 0, 1e-3));
+    EXPECT_THROW(shade(-0.1, 1, 0, 1e-3), std::invalid_argument);
+    EXPECT_THROW(shade(NAN, 1, 0, 1e-3), std::invalid_argument);
+    EXPECT_THROW(shade(0.5, 3, 0, 1e-3), std::invalid_argument);
+    EXPECT_THROW(shade(0.5, 1, 65, 1e-3), std::invalid_argument);
+    EXPECT_THROW(shade(0.5, 1, 0, 0), std::invalid_argument);
+    EXPECT_THROW(shade(0.5, 1, 0, NAN), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace shlight

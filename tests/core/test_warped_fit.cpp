@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/warped_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "lobe_truth.h"
+#include "random_input.h"
+#include "shlight/basis.h"
+
+namespace shlight {
+namespace {
+
+using testing::lobe_over_cap;
+using testing::RandomInput;
+using testing::view_direction;
+
+double expansion(const std::vector<float>& terms, int order, const Vec3d& u) {
+    std::vector<double> basis(static_cast<std::size_t>(coefficient_count(order)));
+    sh_basis(u, order, basis.data());
+    double sum = 0;
+    for (int l = 0; l < order; ++l) {
+        for (int m = 0; m <= l; ++m) {
+            sum += static_cast<double>(terms[cosine_index(l, m)]) * basis[coefficient_index(l, m)];
+        }
+    }
+    return sum;
+}
+
+std::vector<float> terms_of(const WarpedFit& fit, double cosine, int order) {
+    std::vector<float> terms(static_cast<std::size_t>(cosine_count(order)));
+    fit.coefficients(cosine, order, terms.data());
+    return terms;
+}
+
+/// L2 errors over the warped sphere, relative to the albedo, and over directions, relative to the lobe.
+struct Measured {
+    double warped, direction;
+};
+
+Measured measure(const WarpedFit& fit, double cosine, int order) {
+    const Warp warp = fit.warp(cosine);
+    const Vec3d view = view_direction(cosine);
+    const std::vector<float> terms = terms_of(fit, cosine, order);
+    const GaussRule& heights = gauss_rule(64);
+    const double z0 = warp.horizon_height();
+    double warped = 0;
+    double direction = 0;
+    double norm = 0;
+    double albedo = 0;
+    constexpr int kAround = 96;
+    for (std::size_t i = 0; i < heights.nodes.size(); ++i) {
+        const double z = z0 + (1 - z0) * heights.nodes[i];
+        const double s = std::sqrt((1 - z) * (1 + z));
+        for (int j = 0; j < kAround; ++j) {
+            const double phi = std::numbers::pi * (j + 0.5) / kAround;
+            const Vec3d u(s * std::cos(phi), s * std::sin(phi), z);
+            const double weight = (1 - z0) * heights.weights[i] * 2 * std::numbers::pi / kAround;
+            const double density = warp.density(u);
+            const double g = lobe_value(fit.shape(), warp.direction(u), view) * density;
+            const double error = expansion(terms, order, u) - g;
+            warped += weight * error * error;
+            direction += weight * error * error / density;
+            norm += weight * g * g / density;
+            albedo += weight * g;
+        }
+    }
+    return {std::sqrt(warped) / albedo, std::sqrt(direction / norm)};
+}
+
+TEST(WarpedFit, FewBandsDescribeAnyRoughness) {
+    for (const double alpha : {0.0025, 0.05, 0.3, 1.0}) {
+        const WarpedFit fit(GgxShape{alpha});
+        EXPECT_LE(fit.shading_error(0.9, 8), 5e-4) << alpha;
+        EXPECT_LE(fit.shading_error(0.5, 12), 5e-4) << alpha;
+        EXPECT_LE(fit.shading_error(0.3, 16), 5e-4) << alpha;
+        EXPECT_LE(fit.order_for(0.3, 1e-3), 16) << alpha;
+        EXPECT_GT(fit.order_for(0.3, 1e-3), 0) << alpha;
+    }
+}
+
+TEST(WarpedFit, ErrorsAreTheMeasuredOnes) {
+    RandomInput random(31);
+    for (const Fresnel fresnel : {Fresnel::one, Fresnel::schlick, Fresnel::dielectric}) {
+        for (int i = 0; i < 8; ++i) {
+            const WarpedFit fit(GgxShape{random.log_uniform(0.003, 1), fresnel, 1.5});
+            const double cosine = random.uniform(0.3, 1);
+            for (const int order : {4, 8, 16}) {
+                const Measured truth = measure(fit, cosine, order);
+                const double bound = std::sqrt(2.0 / (order * order * order)) * truth.warped;
+                // Errors are interpolated between views and roughnesses, like coefficients; 1e-5 is what that costs.
+                EXPECT_LE(std::abs(fit.shading_error(cosine, order) - bound), 0.1 * bound + 2e-5);
+                EXPECT_LE(std::abs(fit.residual(cosine, order) - truth.direction), 0.1 * truth.direction + 1e-3);
+            }
+        }
+    }
+}
+
+TEST(WarpedFit, TablesInterpolateAcrossRoughnessAndView) {
+    // Against a fit made at this very roughness: a jump of the warp anywhere in the table would stand out.
+    RandomInput random(32);
+    for (int i = 0; i < 40; ++i) {
+        const double alpha = random.log_uniform(0.001, 1);
+        const double cosine = random.uniform(0.2, 1);
+        const WarpedFit table(GgxShape{alpha});
+        const double interpolated = measure(table, cosine, 8).warped;
+        const WarpedFit own(GgxShape{alpha}, 8);
+        const double fitted = measure(own, cosine, 8).warped;
+        EXPECT_LE(interpolated, fitted + 3e-4) << "alpha " << alpha << " cos " << cosine;
+    }
+}
+
+TEST(WarpedFit, WarpsAreSmooth) {
+    for (double x = -7; x < 0; x += 0.01) {
+        const auto narrowness = [&](double log_alpha, double cosine) {
+            return std::log(1 / std::sqrt(lobe_warp(GgxShape{std::exp(log_alpha)}, cosine)
+                                              .density(lobe_warp(GgxShape{std::exp(log_alpha)}, cosine)
+                                                           .warped({-std::sqrt(1 - cosine * cosine), 0, cosine}))));
+        };
+        for (const double cosine : {0.05, 0.4, 0.9}) {
+            const double second =
+                narrowness(x + 0.01, cosine) - 2 * narrowness(x, cosine) + narrowness(x - 0.01, cosine);
+            EXPECT_LE(std::abs(second), 2e-4);  // step² times a second derivative of at most two
+        }
+    }
+}
+
+TEST(WarpedFit, AlbedoIsTheIntegral) {
+    for (const double alpha : {0.01, 0.2, 1.0}) {
+        for (const double cosine : {0.05, 0.3, 1.0}) {
+            const double truth = lobe_over_cap({alpha}, cosine, {0, 0, 1}, std::numbers::pi / 2, 16);
+            EXPECT_NEAR(WarpedFit(GgxShape{alpha}).albedo(cosine), truth, 2e-3) << alpha << " " << cosine;
+        }
+    }
+}
+
+TEST(WarpedFit, TheTableIsSmall) {
+    EXPECT_LE(prepare_ggx_table(), 4'000'000U);
+}
+
+TEST(WarpedFit, EqualShapesShareTheirFit) {
+    EXPECT_EQ(warped_fit(GgxShape{0.123}), warped_fit(GgxShape{0.123}));
+    EXPECT_NE(warped_fit(GgxShape{0.123}), warped_fit(GgxShape{0.124}));
+    EXPECT_NE(warped_fit(GgxShape{0.123}), warped_fit(GgxShape{0.123}, 8));
+}
+
+}  // namespace
+}  // namespace shlight
