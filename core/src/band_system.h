@@ -37,16 +37,20 @@ class BandSystem {
     /// x[0 … l] from right[1 … l].
     void solve(const T* right, T* x) const {
         // N decays where Q grows, so Q is summed upwards and N downwards; a prefix difference would lose all digits.
-        std::array<T, kMaxOrder> above;
+        // Both sums run in one loop because each step of either waits for the one before.
+        std::array<T, kMaxOrder> below, above;
+        T upwards = 0;
+        T downwards = 0;
         above[l_] = 0;
-        for (int m = l_ - 1; m >= 0; --m) {
-            above[m] = sin_tilt_ * (above[m + 1] + n_hat_[m + 1] * right[m + 1]);
+        for (int m = 1, k = l_; m <= l_; ++m, --k) {
+            upwards = sin_tilt_ * upwards + q_hat_[m] * right[m];
+            below[m] = upwards;
+            downwards = sin_tilt_ * (downwards + n_hat_[k] * right[k]);
+            above[k - 1] = downwards;
         }
-        T below = 0;
         x[0] = scale_ * q_hat_[0] * above[0];
         for (int m = 1; m <= l_; ++m) {
-            below = sin_tilt_ * below + q_hat_[m] * right[m];
-            x[m] = scale_ * (n_hat_[m] * below + q_hat_[m] * above[m]);
+            x[m] = scale_ * (n_hat_[m] * below[m] + q_hat_[m] * above[m]);
         }
     }
 
@@ -68,11 +72,17 @@ T null_component(int l, const T* null, const T* x) {
     return null[0] * x[0] + 2 * sum;
 }
 
-/// Replaces the part of x along the null vector by the one that zonal integral ∫ P_l(ω·L) demands.
+/// The multiple of N that x lacks for the zonal integral ∫ P_l(ω·L) to be right.
+template <class T>
+T missing_null_component(int l, const T* null, T zonal_integral, const T* x) {
+    const T four_pi_over = static_cast<T>(4 * std::numbers::pi_v<T>) / static_cast<T>(2 * l + 1);
+    return zonal_integral - four_pi_over * null_component(l, null, x);
+}
+
+/// Replaces the part of x along the null vector by the one that the zonal integral ∫ P_l(ω·L) demands.
 template <class T>
 void set_null_component(int l, const T* null, T zonal_integral, T* x) {
-    const T four_pi_over = static_cast<T>(4 * std::numbers::pi_v<T>) / static_cast<T>(2 * l + 1);
-    const T correction = zonal_integral - four_pi_over * null_component(l, null, x);
+    const T correction = missing_null_component(l, null, zonal_integral, x);
     for (int m = 0; m <= l; ++m) {
         x[m] += correction * null[m];
     }

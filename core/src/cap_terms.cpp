@@ -81,24 +81,34 @@ struct HorizonArc {
     }
 };
 
+/// The integrals ∫ P̄_l^m cos mφ of one band, m = 0 … l, about the azimuth of the cap's axis, in two parts whose sum
+/// is left to whoever wants it.
+template <class T>
+struct Band {
+    const T* particular;
+    const T* null;  // P̄_l^m(cosθ), the zonal function about the cap's axis
+    T share;
+
+    T operator[](int m) const { return particular[m] + share * null[m]; }
+};
+
 /// Circles that do not cross: the light's own zonal integrals, the horizon's, or, where both cover the sphere between
 /// them, the sum of both less the whole sphere, which has no bands above 0.
 template <class T, class Visit>
 void uncrossed_bands(const Cap<T>& cap, const Horizon<T>& horizon, int order, const Visit& visit) {
-    const T two_pi = 2 * std::numbers::pi_v<T>;
     LegendreRows<T> legendre(cap.cos_tilt, cap.sin_tilt * cap.sin_tilt);
     ZonalIntegrals<T> zonal(cap.cos_half, cap.sin_half);
-    std::array<T, kMaxOrder> sin_tilt_powers, band;
+    std::array<T, kMaxOrder> sin_tilt_powers, null;
+    std::array<T, kMaxOrder> particular{};
     powers(cap.sin_tilt, order, sin_tilt_powers.data());
     for (int l = 1; l < order; ++l) {
         legendre.advance();
-        const T share = two_pi / static_cast<T>(l * (l + 1));
-        const T lambda = cap.edge > 0 ? share * zonal.next_edge() : T(0);
         for (int m = 0; m <= l; ++m) {
-            band[m] = lambda * legendre[m] * sin_tilt_powers[m];
+            null[m] = legendre[m] * sin_tilt_powers[m];
         }
-        band[0] += cap.arc > 0 ? share * horizon.slopes(l)[0] : T(0);
-        visit(l, band.data());
+        const T scale = 2 * std::numbers::pi_v<T> / static_cast<T>(l * (l + 1));
+        particular[0] = cap.arc > 0 ? scale * horizon.slopes(l)[0] : T(0);
+        visit(l, Band<T>{particular.data(), null.data(), cap.edge > 0 ? scale * zonal.next_edge() : T(0)});
     }
 }
 
@@ -107,7 +117,7 @@ void crossed_bands(const Cap<T>& cap, const Horizon<T>& horizon, int order, cons
     const HorizonArc<T> arc(cap, order);
     LegendreRows<T> legendre(cap.cos_tilt, cap.sin_tilt * cap.sin_tilt);
     ZonalIntegrals<T> zonal(cap.cos_half, cap.sin_half);
-    std::array<T, kMaxOrder> sin_tilt_powers, right, null, band;
+    std::array<T, kMaxOrder> sin_tilt_powers, right, null, particular;
     powers(cap.sin_tilt, order, sin_tilt_powers.data());
     for (int l = 1; l < order; ++l) {
         legendre.advance();
@@ -124,22 +134,25 @@ void crossed_bands(const Cap<T>& cap, const Horizon<T>& horizon, int order, cons
         const T four_pi_over = 4 * std::numbers::pi_v<T> / static_cast<T>(2 * l + 1);
         const T zonal_integral =
             (2 * cap.edge * zonal.next_edge() + four_pi_over * along_horizon) / static_cast<T>(l * (l + 1));
-        BandSystem<T>(l, cap.cos_tilt, cap.sin_tilt, legendre.row()).solve(right.data(), band.data());
-        set_null_component(l, null.data(), zonal_integral, band.data());
-        visit(l, band.data());
+        BandSystem<T>(l, cap.cos_tilt, cap.sin_tilt, legendre.row()).solve(right.data(), particular.data());
+        const T share = missing_null_component(l, null.data(), zonal_integral, particular.data());
+        visit(l, Band<T>{particular.data(), null.data(), share});
     }
 }
 
-/// visit(l, ∫ P̄_l^m cos mφ), m = 0 … l, about the azimuth of the cap's axis, for each band.
+/// visit(l, band) for each band from 1 on.
 template <class T, class Visit>
 void for_each_band(const Cap<T>& cap, const Horizon<T>& horizon, int order, const Visit& visit) {
-    const T zero = cap.solid_angle * LegendreConstants<T>::get().diagonal[0];
-    visit(0, &zero);
     if (cap.crossing) {
         crossed_bands(cap, horizon, order, visit);
     } else {
         uncrossed_bands(cap, horizon, order, visit);
     }
+}
+
+template <class T>
+T band_zero(const Cap<T>& cap) {
+    return cap.solid_angle * LegendreConstants<T>::get().diagonal[0];
 }
 
 /// √2 cos mφ and √2 sin mφ of the cap's azimuth, 1 and 0 for m = 0.
@@ -160,7 +173,8 @@ struct Azimuth {
 
 template <class T>
 void clipped_cap_terms(const Cap<T>& cap, const Horizon<T>& horizon, int order, T* cosine_terms) {
-    for_each_band(cap, horizon, order, [&](int l, const T* band) {
+    cosine_terms[0] = band_zero(cap);
+    for_each_band(cap, horizon, order, [&](int l, const Band<T>& band) {
         T* terms = cosine_terms + cosine_index(l, 0);
         terms[0] = band[0];
         for (int m = 1; m <= l; ++m) {
@@ -171,15 +185,23 @@ void clipped_cap_terms(const Cap<T>& cap, const Horizon<T>& horizon, int order, 
 
 template <class T>
 T shade_cap(const Cap<T>& cap, const Horizon<T>& horizon, const T* lobe_terms, int order) {
+    if (cap.solid_angle <= 0) {
+        return 0;
+    }
     const Azimuth<T> azimuth(cap, order);
-    T sum = 0;
-    for_each_band(cap, horizon, order, [&](int l, const T* band) {
+    T radiance = lobe_terms[0] * band_zero(cap);
+    for_each_band(cap, horizon, order, [&](int l, const Band<T>& band) {
         const T* terms = lobe_terms + cosine_index(l, 0);
+        T with_particular = 0;
+        T with_null = 0;
         for (int m = 0; m <= l; ++m) {
-            sum += terms[m] * azimuth.cosine[m] * band[m];
+            const T turned = terms[m] * azimuth.cosine[m];
+            with_particular += turned * band.particular[m];
+            with_null += turned * band.null[m];
         }
+        radiance += with_particular + band.share * with_null;
     });
-    return sum;
+    return radiance;
 }
 
 template <class T>
@@ -190,12 +212,14 @@ void cap_coefficients(const Cap<T>& cap, int order, bool clip, T* coefficients) 
         return;
     }
     const Azimuth<T> azimuth(cap, order);
-    for_each_band(kept, Horizon<T>::plane(), order, [&](int l, const T* band) {
+    coefficients[0] = band_zero(kept);
+    for_each_band(kept, Horizon<T>::plane(), order, [&](int l, const Band<T>& band) {
         T* out = coefficients + coefficient_index(l, 0);
         out[0] = band[0];
         for (int m = 1; m <= l; ++m) {
-            out[m] = band[m] * azimuth.cosine[m];
-            out[-m] = band[m] * azimuth.sine[m];
+            const T value = band[m];
+            out[m] = value * azimuth.cosine[m];
+            out[-m] = value * azimuth.sine[m];
         }
     });
 }

@@ -196,9 +196,25 @@ struct WarpedCase {
     CapInput light;
 };
 
+/// Half angle and tilt of a light whose circle is all but the horizon, above it or below.
+Sides against_the_plane(RandomInput& random) {
+    const double tilt = random.log_uniform(1e-14, 1e-2);
+    const Sides s{tilt, kPi / 2 + tilt * random.uniform(-1.5, 1.5), kPi / 2};
+    return random.chance(0.7) ? s : Sides{kPi - s.tilt, s.half, s.horizon};
+}
+
 /// A third of the lights is clipped; the others may be anywhere, many of them where the lobe is.
 WarpedCase warped_case(RandomInput& random, double least_narrowness) {
     WarpedCase c{random.uniform(-1.5, 1.5), random.log_uniform(least_narrowness, 1), {}};
+    if (random.chance(0.1)) {
+        const Sides s = against_the_plane(random);
+        c.light = {random.at_tilt(s.tilt), CapInput::Kind::angle, s.half};
+        if (random.chance(0.5)) {
+            c.light.kind = CapInput::Kind::sphere;
+            c.light.size = glm::length(c.light.axis) * (1 - random.log_uniform(1e-15, 1e-4));
+        }
+        return c;
+    }
     const double half = random.log_uniform(0.01, 1.4);
     Vec3d axis = random.direction();
     if (random.chance(1.0 / 3)) {
