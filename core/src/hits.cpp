@@ -38,6 +38,7 @@ void Hits::clear() {
     material.clear();
     sample.clear();
     radiance.clear();
+    noise.clear();
     pixel_begin.assign(1, 0);
 }
 
@@ -50,6 +51,7 @@ void Hits::add(const SurfacePoint& surface, const Vec3d& towards_viewer, const R
     material.push_back(surface.material);
     sample.push_back(sample_index);
     radiance.push_back(emission);
+    noise.emplace_back(0);
 }
 
 }  // namespace shlight

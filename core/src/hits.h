@@ -31,6 +31,12 @@ ShadingFrame shading_frame(const Vec3d& position, const Vec3d& normal, const Vec
 /// surface is shaded as seen at a grazing angle.
 float view_cosine(const ShadingFrame& frame, const Vec3d& towards_viewer);
 
+/// Which of its camera rays each pixel of a group takes: those numbered first … first + count - 1.
+struct SampleRange {
+    std::uint32_t first, count;
+    std::uint32_t shadow_rays;  ///< per camera ray and light, at most
+};
+
 /// Hits in the order of pixels, and of samples within each.
 struct Hits {
     std::vector<ShadingFrame> frame;
@@ -40,6 +46,7 @@ struct Hits {
     std::vector<std::uint32_t> material;
     std::vector<std::uint32_t> sample;           ///< number of the camera ray within its pixel
     std::vector<Rgb> radiance;                   ///< towards the camera, summed up
+    std::vector<Rgb> noise;                      ///< the part of its variance that comes from shadow rays
     std::vector<std::size_t> pixel_begin = {0};  ///< pixel p has the hits pixel_begin[p] … pixel_begin[p + 1] - 1
 
     std::size_t size() const { return frame.size(); }

@@ -2,19 +2,20 @@
 #include "shlight/render.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <string>
+#include <vector>
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include "checks.h"
-#include "hits.h"
-#include "material_orders.h"
-#include "shading_points.h"
+#include "pixel_batch.h"
+#include "refinement.h"
 #include "shlight/sampling.h"
-#include "unshadowed.h"
-#include "visibility.h"
 
 namespace shlight {
 namespace {
@@ -23,16 +24,24 @@ constexpr int kMostSamples = 1 << 20;
 constexpr std::int64_t kMostRaysPerPixel = 1 << 22;
 constexpr std::int64_t kMostPixels = 1 << 28;
 
-/// Camera rays that a tile holds at a time, and its largest edge: enough for long batches, few enough for the cache.
-constexpr std::int64_t kTileSamples = 4096;
+/// Camera rays that a batch holds at a time, and the largest edge of the tiles of the first pass: enough for long
+/// batches, few enough for the cache.
+constexpr std::int64_t kBatchSamples = 4096;
 constexpr int kLargestTile = 32;
 
-/// Lights whose unshadowed values are held at a time.
-constexpr std::size_t kLightBlock = 8;
+/// An adaptive pixel has up to 4^kMostLevel times the rays of the first pass. Each round can follow something
+/// thin by one pixel more.
+constexpr int kMostLevel = 2;
+constexpr int kMostRounds = 8;
+/// Of the camera rays that are added, where the settings allow as many.
+constexpr std::uint32_t kLeastShadowRays = 2;
 
-int tile_edge(int pixel_samples) {
+/// The share of progress that is left to all later passes.
+constexpr double kLaterShare = 0.4;
+
+int tile_edge(std::uint32_t pixel_samples) {
     int edge = kLargestTile;
-    while (edge > 1 && std::int64_t{edge} * edge * pixel_samples > kTileSamples) {
+    while (edge > 1 && std::int64_t{edge} * edge * pixel_samples > kBatchSamples) {
         edge /= 2;
     }
     return edge;
@@ -41,143 +50,6 @@ int tile_edge(int pixel_samples) {
 struct Tile {
     int left, top, right, bottom;  // pixels; right and bottom excluded
 };
-
-/// Everything that the tiles of one picture share and only read.
-struct Picture {
-    const CompiledScene* scene;
-    const Camera* camera;
-    RenderSettings settings;
-    int width, height;
-    Window window;
-    std::vector<glm::dvec2> pixel_points;
-    std::vector<OrderedMaterial> materials;
-    std::size_t lobe_stride = 1;
-
-    Picture(const CompiledScene& s, const Camera& c, int w, int h, const RenderSettings& r)
-        : scene(&s),
-          camera(&c),
-          settings(r),
-          width(w),
-          height(h),
-          window(c.window(w, h)),
-          pixel_points(hammersley(static_cast<std::uint32_t>(r.pixel_samples))) {
-        for (const Material& material : s.materials()) {
-            materials.emplace_back(material.bsdf, r);
-            lobe_stride = std::max(lobe_stride, materials.back().lobes().size());
-        }
-    }
-};
-
-/// Renders one tile after another; one per thread.
-class TileRenderer {
-  public:
-    explicit TileRenderer(const Picture& picture)
-        : picture_(&picture),
-          unshadowed_(picture.lobe_stride),
-          shadowed_(picture.scene->rays(), picture.settings, picture.materials, picture.lobe_stride) {}
-
-    void render(const Tile& tile, std::span<float> image) {
-        trace_camera_rays(tile);
-        points_.assign(hits_, picture_->materials, picture_->lobe_stride, picture_->scene->lights(),
-                       picture_->settings.tolerance, report_);
-        unshadowed_.group(points_);
-        add_lights(tile);
-        write_pixels(tile, image);
-    }
-
-    RenderReport report() const {
-        RenderReport report = report_;
-        report.shadow_rays = shadowed_.rays_traced();
-        return report;
-    }
-
-  private:
-    void trace_camera_rays(const Tile& tile);
-    void add_lights(const Tile& tile);
-    void write_pixels(const Tile& tile, std::span<float> image) const;
-
-    const Picture* picture_;
-    RenderReport report_;
-    std::vector<Ray> rays_;
-    std::vector<RayHit> ray_hits_;
-    Hits hits_;
-    ShadingPoints points_;
-    Unshadowed unshadowed_;
-    ShadowedLight shadowed_;
-    std::vector<std::uint32_t> pixel_seeds_;
-};
-
-void TileRenderer::trace_camera_rays(const Tile& tile) {
-    const Picture& p = *picture_;
-    const auto samples = static_cast<std::uint32_t>(p.settings.pixel_samples);
-    rays_.clear();
-    for (int row = tile.top; row < tile.bottom; ++row) {
-        for (int column = tile.left; column < tile.right; ++column) {
-            for (std::uint32_t sample = 0; sample < samples; ++sample) {
-                const double x = (column + p.pixel_points[sample].x) / p.width;
-                const double y = (row + p.pixel_points[sample].y) / p.height;
-                rays_.push_back(p.camera->ray(p.window.left + x * (p.window.right - p.window.left),
-                                              p.window.top + y * (p.window.bottom - p.window.top)));
-            }
-        }
-    }
-    ray_hits_.resize(rays_.size());
-    p.scene->rays().intersect(rays_, ray_hits_);
-    hits_.clear();
-    for (std::size_t first = 0; first < rays_.size(); first += samples) {
-        for (std::uint32_t sample = 0; sample < samples; ++sample) {
-            const RayHit& hit = ray_hits_[first + sample];
-            if (!hit.missed()) {
-                const Vec3f& direction = rays_[first + sample].direction;
-                const SurfacePoint surface = p.scene->surface(hit, direction);
-                hits_.add(surface, -glm::normalize(Vec3d(direction)), p.scene->materials()[surface.material].emission,
-                          sample);
-            }
-        }
-        hits_.end_pixel();
-    }
-    report_.hits += hits_.size();
-}
-
-void TileRenderer::add_lights(const Tile& tile) {
-    const auto lights = picture_->scene->lights();
-    for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
-        const auto block = lights.subspan(first, std::min(kLightBlock, lights.size() - first));
-        unshadowed_.compute(points_, picture_->materials, block);
-        for (std::size_t i = 0; i < block.size(); ++i) {
-            pixel_seeds_.clear();
-            for (int row = tile.top; row < tile.bottom; ++row) {
-                for (int column = tile.left; column < tile.right; ++column) {
-                    const std::uint32_t pixel =
-                        hash(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row));
-                    pixel_seeds_.push_back(hash(pixel, static_cast<std::uint32_t>(first + i)));
-                }
-            }
-            shadowed_.add(block[i], unshadowed_.light(i), points_.of_hit, pixel_seeds_, hits_);
-        }
-    }
-}
-
-void TileRenderer::write_pixels(const Tile& tile, std::span<float> image) const {
-    const auto samples = static_cast<float>(picture_->settings.pixel_samples);
-    std::size_t pixel = 0;
-    for (int row = tile.top; row < tile.bottom; ++row) {
-        for (int column = tile.left; column < tile.right; ++column, ++pixel) {
-            Vec3d sum(0);
-            for (std::size_t hit = hits_.pixel_begin[pixel]; hit < hits_.pixel_begin[pixel + 1]; ++hit) {
-                sum += Vec3d(hits_.radiance[hit]);
-            }
-            const auto count = static_cast<float>(hits_.pixel_begin[pixel + 1] - hits_.pixel_begin[pixel]);
-            const Rgb color(sum / static_cast<double>(samples));
-            const std::size_t offset = 4 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(picture_->width) +
-                                            static_cast<std::size_t>(column));
-            image[offset] = color.x;
-            image[offset + 1] = color.y;
-            image[offset + 2] = color.z;
-            image[offset + 3] = count / samples;
-        }
-    }
-}
 
 std::vector<Tile> tiles_of(int width, int height, int edge) {
     std::vector<Tile> tiles;
@@ -189,12 +61,136 @@ std::vector<Tile> tiles_of(int width, int height, int edge) {
     return tiles;
 }
 
+std::vector<Pixel> pixels_of(const Tile& tile) {
+    std::vector<Pixel> pixels;
+    for (int row = tile.top; row < tile.bottom; ++row) {
+        for (int column = tile.left; column < tile.right; ++column) {
+            pixels.push_back({column, row});
+        }
+    }
+    return pixels;
+}
+
+bool is_adaptive(const RenderSettings& settings) {
+    return settings.adaptive && settings.pixel_samples > 1;
+}
+
+std::uint32_t base_samples(const RenderSettings& settings) {
+    const auto samples = static_cast<std::uint32_t>(settings.pixel_samples);
+    return is_adaptive(settings) ? std::bit_ceil(samples) : samples;
+}
+
+int most_level(const RenderSettings& settings) {
+    int level = is_adaptive(settings) ? kMostLevel : 0;
+    while (level > 0 && std::int64_t{base_samples(settings)} << (2 * level) > kMostSamples) {
+        --level;
+    }
+    return level;
+}
+
+std::vector<glm::dvec2> pixel_points(const RenderSettings& settings) {
+    const std::uint32_t base = base_samples(settings);
+    return is_adaptive(settings) ? nested_points(base << (2 * most_level(settings))) : hammersley(base);
+}
+
+/// One render: the first pass over all pixels, and passes over fewer of them.
+class Passes {
+  public:
+    Passes(const Picture& picture, std::span<float> image, const Progress& progress)
+        : picture_(&picture),
+          image_(image),
+          progress_(progress),
+          refinement_(picture.width, picture.height, base_samples(picture.settings), most_level(picture.settings)),
+          batches_([&picture] { return PixelBatch(picture); }) {}
+
+    void run();
+    RenderReport report();
+
+  private:
+    void first_pass();
+    void refine(const RefinementGroup& group);
+    void render(std::span<const Pixel> pixels, int from, int to);
+    void run_parallel(std::size_t count, double share_after, const std::function<void(std::size_t)>& body);
+
+    const Picture* picture_;
+    std::span<float> image_;
+    const Progress& progress_;
+    double share_ = 0;  // of the work, as reported
+    Refinement refinement_;
+    tbb::enumerable_thread_specific<PixelBatch> batches_;
+};
+
+void Passes::run() {
+    first_pass();
+    if (is_adaptive(picture_->settings)) {
+        refinement_.set_mean(image_);
+        for (int round = 0; round < kMostRounds; ++round) {
+            const auto groups = refinement_.next_round(image_);
+            if (groups.empty()) break;
+            for (const RefinementGroup& group : groups) {
+                refine(group);
+            }
+        }
+    }
+    if (progress_ && !progress_(1.0)) {
+        throw RenderCancelled();
+    }
+}
+
+void Passes::run_parallel(std::size_t count, double share_after, const std::function<void(std::size_t)>& body) {
+    const Progress progress = [&](double share) { return progress_(share_ + share * (share_after - share_)); };
+    parallel_for(count, picture_->settings.threads, body, progress_ ? progress : Progress());
+    share_ = share_after;
+}
+
+void Passes::first_pass() {
+    const auto tiles = tiles_of(picture_->width, picture_->height, tile_edge(refinement_.samples(0)));
+    run_parallel(tiles.size(), is_adaptive(picture_->settings) ? 1 - kLaterShare : 1.0,
+                 [&](std::size_t i) { render(pixels_of(tiles[i]), -1, 0); });
+}
+
+void Passes::refine(const RefinementGroup& group) {
+    const std::size_t rays = refinement_.samples(group.to) - refinement_.samples(group.from);
+    const std::size_t count = kBatchSamples / std::clamp<std::size_t>(rays, 1, kBatchSamples);
+    const std::span<const Pixel> pixels(group.pixels);
+    // How many passes are left is not known.
+    run_parallel((pixels.size() + count - 1) / count, (1 + share_) / 2, [&](std::size_t i) {
+        render(pixels.subspan(i * count, std::min(count, pixels.size() - i * count)), group.from, group.to);
+    });
+}
+
+void Passes::render(std::span<const Pixel> pixels, int from, int to) {
+    const auto most_shadow_rays = static_cast<std::uint32_t>(picture_->settings.shadow_rays);
+    // A pixel's many rays share the work of resolving its penumbrae.
+    const std::uint32_t shadow_rays =
+        std::max(std::min(most_shadow_rays, kLeastShadowRays), most_shadow_rays >> (2 * to));
+    const std::uint32_t most = std::max<std::uint32_t>(
+        refinement_.samples(0), std::min<std::uint32_t>(kBatchSamples, kMostRaysPerPixel / std::max(shadow_rays, 1U)));
+    std::vector<PixelSums> sums(pixels.size());
+    for (std::uint32_t first = refinement_.samples(from); first < refinement_.samples(to);) {
+        const std::uint32_t count = std::min(most, refinement_.samples(to) - first);
+        batches_.local().add(pixels, {first, count, shadow_rays}, sums);
+        first += count;
+    }
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        refinement_.merge(pixels[i], to, sums[i], image_);
+    }
+}
+
 void add(RenderReport& sum, const RenderReport& part) {
     std::transform(sum.order_counts.begin(), sum.order_counts.end(), part.order_counts.begin(),
                    sum.order_counts.begin(), std::plus<>());
     sum.hits += part.hits;
     sum.over_tolerance += part.over_tolerance;
     sum.shadow_rays += part.shadow_rays;
+}
+
+RenderReport Passes::report() {
+    RenderReport report;
+    for (const PixelBatch& batch : batches_) {
+        add(report, batch.report());
+    }
+    return report;
 }
 
 void check_range(const char* name, std::int64_t value, std::int64_t least, std::int64_t most) {
@@ -224,15 +220,10 @@ RenderReport render(const CompiledScene& scene, const Camera& camera, int width,
     check_render(settings, width, height);
     check_size("image", image.size(), 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     const auto start = std::chrono::steady_clock::now();
-    const Picture picture(scene, camera, width, height, settings);
-    const std::vector<Tile> tiles = tiles_of(width, height, tile_edge(settings.pixel_samples));
-    tbb::enumerable_thread_specific<TileRenderer> renderers([&] { return TileRenderer(picture); });
-    parallel_for(
-        tiles.size(), settings.threads, [&](std::size_t i) { renderers.local().render(tiles[i], image); }, progress);
-    RenderReport report;
-    for (const TileRenderer& renderer : renderers) {
-        add(report, renderer.report());
-    }
+    const Picture picture(scene, camera, width, height, settings, pixel_points(settings));
+    Passes passes(picture, image, progress);
+    passes.run();
+    RenderReport report = passes.report();
     report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return report;
 }

@@ -63,6 +63,22 @@ glm::dvec2 sobol(std::uint32_t index, std::uint32_t seed) {
             unit(reverse_bits(scramble_reversed(pascal(index), hash(seed, 1))))};
 }
 
+std::uint32_t shuffled(std::uint32_t index, std::uint32_t seed) {
+    return reverse_bits(scramble_reversed(reverse_bits(index), hash(seed, 2)));
+}
+
+std::vector<glm::dvec2> nested_points(std::uint32_t count) {
+    // Sobol points sit in the corners of the smallest cells. The shift by 1/3 moves them inside, at every level.
+    constexpr std::uint32_t kShift = 0x55555555U;
+    // The first bit decides on all the others.
+    const auto coordinate = [](std::uint32_t x) { return unit(((x >> 31) != 0 ? x ^ 0x7FFFFFFFU : x) ^ kShift); };
+    std::vector<glm::dvec2> points(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        points[i] = {coordinate(reverse_bits(i)), coordinate(reverse_bits(pascal(i)))};
+    }
+    return points;
+}
+
 std::vector<glm::dvec2> hammersley(std::uint32_t count) {
     // The radical inverses of 0 … count-1 are even for powers of two only; their ranks are for any count.
     std::vector<std::uint32_t> by_inverse(count);

@@ -53,20 +53,16 @@ class RayStart {
 
 }  // namespace
 
-ShadowedLight::ShadowedLight(const RayTracer& tracer, const RenderSettings& settings,
+ShadowedLight::ShadowedLight(const RayTracer& tracer, std::uint32_t most_rays,
                              std::span<const OrderedMaterial> materials, std::size_t lobe_stride)
-    : tracer_(&tracer),
-      materials_(materials),
-      lobe_stride_(lobe_stride),
-      ray_count_(static_cast<std::uint32_t>(settings.shadow_rays)),
-      pixel_samples_(static_cast<std::uint32_t>(settings.pixel_samples)) {
-    const std::uint32_t least = (kLeastFirstPoints + pixel_samples_ - 1) / pixel_samples_;
-    first_ray_count_ = std::min(ray_count_, std::max((ray_count_ + 3) / 4, least));
-}
+    : tracer_(&tracer), materials_(materials), lobe_stride_(lobe_stride), most_rays_(most_rays) {}
 
-void ShadowedLight::add(const Light& light, std::span<const float> unshadowed,
+void ShadowedLight::add(const Light& light, const SampleRange& samples, std::span<const float> unshadowed,
                         std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds,
                         Hits& hits) {
+    samples_ = samples;
+    const std::uint32_t least = (kLeastFirstPoints + samples.count - 1) / samples.count;
+    first_ray_count_ = std::min(samples.shadow_rays, std::max((samples.shadow_rays + 3) / 4, least));
     unshadowed_ = unshadowed;
     point_of_hit_ = point_of_hit;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
@@ -93,10 +89,12 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
     if (lit_.empty()) {
         return;
     }
-    const Phase first = {0, first_ray_count_, 0};
-    const Phase second = {pixel_samples_ * first_ray_count_, ray_count_ - first_ray_count_,
+    // No two ranges of samples share a point.
+    const std::uint32_t first_point = samples_.first * most_rays_;
+    const Phase first = {first_point, first_ray_count_, 0};
+    const Phase second = {first_point + samples_.count * first_ray_count_, samples_.shadow_rays - first_ray_count_,
                           lit_.size() * first_ray_count_};
-    if (ray_count_ > 0) {
+    if (samples_.shadow_rays > 0) {
         trace(light, hits, first, seed);
         const auto blocked = std::count(blocked_.begin(), blocked_.end(), 1);
         if (blocked == static_cast<std::ptrdiff_t>(blocked_.size())) {
@@ -108,7 +106,7 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
             return;
         }
     }
-    shade(light, {}, hits);
+    shade_unblocked(light, hits);
 }
 
 void ShadowedLight::trace(const Light& light, const Hits& hits, const Phase& phase, std::uint32_t seed) {
@@ -127,9 +125,9 @@ void ShadowedLight::trace(const Light& light, const Hits& hits, const Phase& pha
             polygon_sampler_.reset(std::get<PolygonLight>(light), frame);
         }
         const RayStart start(frame, hits.shadow_origin[hit], clearance(light, frame));
-        const std::uint32_t first_point = phase.first_point + hits.sample[hit] * phase.rays_per_hit;
+        const std::uint32_t first_point = phase.first_point + (hits.sample[hit] - samples_.first) * phase.rays_per_hit;
         for (std::uint32_t ray = 0; ray < phase.rays_per_hit; ++ray) {
-            const glm::dvec2 point = sobol(first_point + ray, seed);
+            const glm::dvec2 point = sobol(shuffled(first_point + ray, seed), seed);
             const LightSample sample = cap_sampler ? cap_sampler->sample(point) : polygon_sampler_.sample(point);
             const std::size_t index = phase.offset + i * phase.rays_per_hit + ray;
             directions_[index] = Vec3f(sample.direction);
@@ -141,44 +139,84 @@ void ShadowedLight::trace(const Light& light, const Hits& hits, const Phase& pha
     rays_traced_ += rays_.size();
 }
 
-float ShadowedLight::visible_share(const LobeShape& shape, const Vec3d& towards_viewer, std::size_t lit_index,
-                                   std::span<const Phase> phases) const {
-    double lobe_all = 0;
-    double lobe_seen = 0;
-    double all = 0;
-    double seen = 0;
+ShadowedLight::RaySums ShadowedLight::sum(const LobeShape& shape, const Vec3d& towards_viewer, std::size_t lit_index,
+                                          std::span<const Phase> phases) const {
+    RaySums sums;
     for (const Phase& phase : phases) {
         for (std::size_t ray = 0; ray < phase.rays_per_hit; ++ray) {
             const std::size_t index = phase.offset + lit_index * phase.rays_per_hit + ray;
             const double weight = weights_[index];
             const double lobe_weight = weight * lobe_value(shape, Vec3d(directions_[index]), towards_viewer);
-            all += weight;
-            lobe_all += lobe_weight;
+            sums.all += weight;
+            sums.lobe_all += lobe_weight;
             if (blocked_[index] == 0) {
-                seen += weight;
-                lobe_seen += lobe_weight;
+                sums.seen += weight;
+                sums.lobe_seen += lobe_weight;
             }
         }
     }
-    if (lobe_all > 0) {
-        return static_cast<float>(lobe_seen / lobe_all);
-    }
-    return all > 0 ? static_cast<float>(seen / all) : 0.0F;
+    return sums;
 }
 
-void ShadowedLight::shade(const Light& light, std::span<const Phase> phases, Hits& hits) const {
+Rgb ShadowedLight::scaled_radiance(const Light& light, const Hits& hits, std::size_t hit, std::size_t lobe) const {
+    return materials_[hits.material[hit]].lobes()[lobe].lobe().scale(hits.cos_theta_o[hit]) * radiance_of(light) *
+           unshadowed(hit, lobe);
+}
+
+void ShadowedLight::shade_unblocked(const Light& light, Hits& hits) const {
+    for (const std::size_t hit : lit_) {
+        for (std::size_t lobe = 0; lobe < materials_[hits.material[hit]].lobes().size(); ++lobe) {
+            if (unshadowed(hit, lobe) > 0) {
+                hits.radiance[hit] += scaled_radiance(light, hits, hit, lobe);
+            }
+        }
+    }
+}
+
+void ShadowedLight::shade(const Light& light, std::span<const Phase> phases, Hits& hits) {
+    deviation_.assign(lit_.size(), Rgb(0));
+    for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+        shade_lobe(light, lobe, phases, hits);
+    }
+    for (std::size_t i = 0; i < lit_.size(); ++i) {
+        hits.noise[lit_[i]] += deviation_[i] * deviation_[i];
+    }
+}
+
+void ShadowedLight::shade_lobe(const Light& light, std::size_t lobe, std::span<const Phase> phases, Hits& hits) {
+    const auto has_lobe = [&](std::size_t hit) {
+        return lobe < materials_[hits.material[hit]].lobes().size() && unshadowed(hit, lobe) > 0;
+    };
+    const auto [first, last] = std::minmax_element(
+        lit_.begin(), lit_.end(), [&](std::size_t a, std::size_t b) { return point_of_hit_[a] < point_of_hit_[b]; });
+    const std::uint32_t first_point = point_of_hit_[*first];
+    hit_sums_.assign(lit_.size(), {});
+    point_sums_.assign(point_of_hit_[*last] - first_point + 1, {});
     for (std::size_t i = 0; i < lit_.size(); ++i) {
         const std::size_t hit = lit_[i];
-        const float cosine = hits.cos_theta_o[hit];
-        const Vec3d towards_viewer(std::sqrt(1.0 - static_cast<double>(cosine) * cosine), 0, cosine);
-        const auto& lobes = materials_[hits.material[hit]].lobes();
-        for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
-            const float value = unshadowed(hit, lobe);
-            if (!(value > 0)) continue;
-            const LobeShape& shape = lobes[lobe].lobe().fit->shape();
-            const float share = phases.empty() ? 1.0F : visible_share(shape, towards_viewer, i, phases);
-            hits.radiance[hit] += lobes[lobe].lobe().scale(cosine) * radiance_of(light) * (value * share);
-        }
+        if (!has_lobe(hit)) continue;
+        const double cosine = hits.cos_theta_o[hit];
+        const Vec3d towards_viewer(std::sqrt(1.0 - cosine * cosine), 0, cosine);
+        const LobeShape& shape = materials_[hits.material[hit]].lobes()[lobe].lobe().fit->shape();
+        hit_sums_[i] = sum(shape, towards_viewer, i, phases);
+        RaySums& of_point = point_sums_[point_of_hit_[hit] - first_point];
+        of_point.all += hit_sums_[i].all;
+        of_point.lobe_all += hit_sums_[i].lobe_all;
+        ++of_point.hits;
+    }
+    for (std::size_t i = 0; i < lit_.size(); ++i) {
+        const std::size_t hit = lit_[i];
+        if (!has_lobe(hit)) continue;
+        const RaySums& of_point = point_sums_[point_of_hit_[hit] - first_point];
+        const double count = of_point.hits;
+        const double share = of_point.lobe_all > 0 ? count * hit_sums_[i].lobe_seen / of_point.lobe_all
+                             : of_point.all > 0    ? count * hit_sums_[i].seen / of_point.all
+                                                   : 0.0;
+        const Rgb unblocked = scaled_radiance(light, hits, hit, lobe);
+        hits.radiance[hit] += unblocked * static_cast<float>(share);
+        // The lobes of a hit share its rays.
+        const double own_share = hit_sums_[i].all > 0 ? hit_sums_[i].seen / hit_sums_[i].all : 0;
+        deviation_[i] += unblocked * static_cast<float>(std::sqrt(own_share * (1 - own_share) / samples_.shadow_rays));
     }
 }
 

@@ -101,6 +101,7 @@ inline RenderSettings analytic_settings() {
     RenderSettings settings;
     settings.pixel_samples = 1;
     settings.shadow_rays = 0;
+    settings.adaptive = false;
     return settings;
 }
 

@@ -5,11 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <stdexcept>
 #include <vector>
 
 #include "render_scenes.h"
@@ -388,101 +385,10 @@ TEST(RenderImage, GlossyFloorAgainstCubature) {
     }
 }
 
-TEST(RenderImage, CameraLooksAlongMinusZWithYUp) {
-    // Four squares of different emission in the plane z = -2 of a turned camera.
-    const glm::dmat4 to_world = look_at({3, -4, 2}, {0, 1, 0.5});
-    Scene scene;
-    for (int i = 0; i < 4; ++i) {
-        Mesh mesh = floor_mesh(0.4F);
-        mesh.emission = {Rgb(static_cast<float>(i + 1))};
-        const Vec3d offset(i % 2 == 0 ? -0.5 : 0.5, i < 2 ? 0.5 : -0.5, -2);
-        mesh.transforms = {to_world * frame_matrix({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, offset)};
-        scene.add_mesh(mesh);
-    }
-    const auto corners = [&](const Camera& camera) {
-        const Image image = render_image(scene, camera, 4, 4, analytic_settings());
-        return std::array{image.red(1, 1), image.red(2, 1), image.red(1, 2), image.red(2, 2)};
-    };
-    const std::array<float, 4> expected = {1, 2, 3, 4};
-    EXPECT_EQ(corners(Camera(to_world, 2 * std::atan(0.5))), expected);
-    EXPECT_EQ(corners(Camera(to_world, Window{-0.5, 0.5, -0.5, 0.5}, Projection::perspective)), expected);
-    EXPECT_EQ(corners(Camera(to_world, Window{-1, 1, -1, 1}, Projection::orthographic)), expected);
-    // A shifted window shows only the upper right square.
-    const Image shifted = render_image(scene, Camera(to_world, Window{0.1, 0.4, 0.1, 0.4}, Projection::perspective), 2,
-                                       2, analytic_settings());
-    EXPECT_EQ(shifted.red(0, 0), 2);
-    EXPECT_EQ(shifted.red(1, 1), 2);
-}
-
-TEST(RenderImage, ClippingIsByDepthAlongTheAxis) {
-    Mesh wall = floor_mesh(100, -2);
-    wall.emission = {Rgb(1)};
-    Scene scene;
-    scene.add_mesh(wall);
-    const Window wide = {-3, 3, -3, 3};  // at the corner the ray is four times as long as the depth
-    const auto alpha = [&](const ClipRange& clip, Projection projection) {
-        const Image image =
-            render_image(scene, Camera(glm::dmat4(1), wide, projection, clip), 8, 8, analytic_settings());
-        float sum = 0;
-        for (int i = 0; i < 64; ++i) {
-            sum += image.alpha(i % 8, i / 8);
-        }
-        return sum / 64;
-    };
-    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
-        EXPECT_EQ(alpha({0, 2.001}, projection), 1);
-        EXPECT_EQ(alpha({0, 1.999}, projection), 0);
-        EXPECT_EQ(alpha({1.999, 100}, projection), 1);
-        EXPECT_EQ(alpha({2.001, 100}, projection), 0);
-    }
-}
-
-TEST(RenderImage, CoverageIsTheShareOfThePixel) {
-    // The floor covers the left 37.5 % of the only pixel: 6 of 16 columns of stratified samples.
-    Mesh mesh = floor_mesh(1);
-    mesh.transforms = {frame_matrix({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1.25, 0, 0})};
-    mesh.emission = {Rgb(1)};
-    Scene scene;
-    scene.add_mesh(mesh);
-    RenderSettings settings = analytic_settings();
-    settings.pixel_samples = 16;
-    const Image image = render_image(scene, camera_above(1), 1, 1, settings);
-    EXPECT_EQ(image.alpha(0, 0), 6.0F / 16);
-    EXPECT_EQ(image.red(0, 0), 6.0F / 16);
-}
-
 TEST(RenderImage, EmptySceneIsTransparentBlack) {
     const Image image = render_image(Scene(), camera_above(1), 3, 2, RenderSettings());
     EXPECT_EQ(image.values, std::vector<float>(24, 0.0F));
     EXPECT_EQ(image.report.hits, 0U);
-}
-
-TEST(RenderImage, BadArgumentsAreTurnedDown) {
-    const auto rejects = [](auto change, int width = 4, int height = 4) {
-        RenderSettings settings;
-        change(settings);
-        EXPECT_THROW(check_render(settings, width, height), std::invalid_argument);
-    };
-    rejects([](RenderSettings& s) { s.order = 65; });
-    rejects([](RenderSettings& s) { s.order = -1; });
-    rejects([](RenderSettings& s) { s.tolerance = 0; });
-    rejects([](RenderSettings& s) { s.tolerance = std::numeric_limits<double>::quiet_NaN(); });
-    rejects([](RenderSettings& s) { s.pixel_samples = 0; });
-    rejects([](RenderSettings& s) { s.shadow_rays = -1; });
-    rejects([](RenderSettings& s) { s.threads = -1; });
-    rejects([](RenderSettings&) {}, 0, 4);
-    rejects([](RenderSettings&) {}, 4, -1);
-    rejects([](RenderSettings&) {}, 1 << 20, 1 << 20);
-    EXPECT_THROW(Camera(glm::dmat4(0), 1), std::invalid_argument);
-    EXPECT_THROW(Camera(glm::dmat4(1), kPi), std::invalid_argument);
-    EXPECT_THROW(Camera(glm::dmat4(1), Window{1, 1, 0, 1}, Projection::perspective), std::invalid_argument);
-    EXPECT_THROW(Camera(glm::dmat4(1), Window{0, 1, 0, 1}, Projection::perspective, {2, 2}), std::invalid_argument);
-    Mesh flat = floor_mesh(1);
-    flat.transforms = {frame_matrix({1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 0})};
-    EXPECT_THROW(Scene().add_mesh(flat), std::invalid_argument);
-    Mesh torn = floor_mesh(1);
-    torn.triangles[1].x = 4;
-    EXPECT_THROW(Scene().add_mesh(torn), std::invalid_argument);
 }
 
 }  // namespace

@@ -17,9 +17,14 @@ namespace shlight {
 struct RenderSettings {
     int order = 0;            ///< 1 … 64, or 0: for each lobe and view the smallest that meets the tolerance
     double tolerance = 1e-3;  ///< L2 error of a lobe's fit ÷ norm of the whole f·cos of the material, at the same view
-    int pixel_samples = 16;   ///< camera rays per pixel, spread evenly over its square
+    int pixel_samples = 16;   ///< camera rays per pixel, spread evenly over its square; see adaptive
     int shadow_rays = 16;     ///< per camera ray and light, at most; 0: no shadows
     int threads = 0;          ///< 0: all cores
+    /// pixel_samples are the least that a pixel gets: they are rounded up to a power of two, and 4 or 16 times as many
+    /// are spread over a pixel, up to 2^20, where they disagree so much that its mean may be wrong by more than some 1
+    /// %, or where a neighbour saw something that may have been missed. One ray per pixel cannot disagree and stays
+    /// one.
+    bool adaptive = true;
 };
 
 /// What the picture took.
@@ -36,10 +41,10 @@ struct RenderReport {
 /// width or height < 1, or more than 2^28 pixels.
 void check_render(const RenderSettings& settings, int width, int height);
 
-/// image: height × width × RGBA, row 0 on top, linear, premultiplied; alpha is the share of camera rays that met a
-/// surface. The picture depends on nothing but scene, camera, size and settings; not on the number of threads. Throws
-/// as check_render does, also for an image of another size; RenderCancelled when progress returns false; what progress
-/// throws.
+/// image: height × width × RGBA, row 0 on top, linear, premultiplied, the mean of all camera rays of each pixel; alpha
+/// is the share of them that met a surface. The picture depends on nothing but scene, camera, size and settings; not on
+/// the number of threads. Throws as check_render does, also for an image of another size; RenderCancelled when progress
+/// returns false; what progress throws.
 RenderReport render(const CompiledScene& scene, const Camera& camera, int width, int height,
                     const RenderSettings& settings, std::span<float> image, const Progress& progress = {});
 

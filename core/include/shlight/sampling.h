@@ -18,6 +18,19 @@ std::uint32_t hash(std::uint32_t a, std::uint32_t b);
 /// of area 2^-k. Coordinates lie strictly between 0 and 1.
 glm::dvec2 sobol(std::uint32_t index, std::uint32_t seed);
 
+/// Another index in place of each, another order for each seed: aligned blocks of 2^k indices stay together. Sequences
+/// of different seeds become unrelated even where both are taken in the order of their indices.
+std::uint32_t shuffled(std::uint32_t index, std::uint32_t seed);
+
+/// Points that can be continued: the first of a longer set are those of a shorter one. The first 2^k, and each aligned
+/// block of 2^k, have one point in each elementary interval of area 2^-k; each odd point is its even predecessor
+/// reflected at the centre, so that any even number of them is centred. The same for every pixel: edges get even steps
+/// and no noise.
+///
+/// Linearly scrambled Sobol points, which keeps their intervals: where the first bit of a coordinate is set, all the
+/// bits below are flipped. Indices that differ in bit 0 differ in both first bits only, and so in all bits now.
+std::vector<glm::dvec2> nested_points(std::uint32_t count);
+
 /// A Hammersley set, its coordinates spread evenly over 0 … 1 for any count: each of the `count` equal strips of either
 /// axis has one point at its middle. The same for every pixel: edges get even steps and no noise.
 std::vector<glm::dvec2> hammersley(std::uint32_t count);

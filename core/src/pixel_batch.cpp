@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "pixel_batch.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "shlight/sampling.h"
+
+namespace shlight {
+namespace {
+
+/// Lights whose unshadowed values are held at a time.
+constexpr std::size_t kLightBlock = 8;
+
+}  // namespace
+
+Vec3d PixelSums::variance() const {
+    const double count = rays;
+    const Vec3d mean = radiance / count;
+    // The variance of a coordinate over its unit interval is 1/12.
+    const Vec3d linear = 12.0 * (along_x * along_x + along_y * along_y) / (count * count);
+    return glm::max(squares / count - mean * mean - linear, Vec3d(0));
+}
+
+Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const RenderSettings& r,
+                 std::vector<glm::dvec2> points)
+    : scene(&s), camera(&c), settings(r), width(w), height(h), window(c.window(w, h)), pixel_points(std::move(points)) {
+    for (const Material& material : s.materials()) {
+        materials.emplace_back(material.bsdf, r);
+        lobe_stride = std::max(lobe_stride, materials.back().lobes().size());
+    }
+}
+
+PixelBatch::PixelBatch(const Picture& picture)
+    : picture_(&picture),
+      unshadowed_(picture.lobe_stride),
+      shadowed_(picture.scene->rays(), static_cast<std::uint32_t>(picture.settings.shadow_rays), picture.materials,
+                picture.lobe_stride) {}
+
+void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums) {
+    trace_camera_rays(pixels, samples);
+    points_.assign(hits_, picture_->materials, picture_->lobe_stride, picture_->scene->lights(),
+                   picture_->settings.tolerance, report_);
+    unshadowed_.group(points_);
+    add_lights(pixels, samples);
+    add_up(samples, sums);
+}
+
+RenderReport PixelBatch::report() const {
+    RenderReport report = report_;
+    report.shadow_rays = shadowed_.rays_traced();
+    return report;
+}
+
+void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples) {
+    const Picture& p = *picture_;
+    rays_.clear();
+    for (const Pixel& pixel : pixels) {
+        for (std::uint32_t i = 0; i < samples.count; ++i) {
+            const double x = (pixel.column + p.pixel_points[samples.first + i].x) / p.width;
+            const double y = (pixel.row + p.pixel_points[samples.first + i].y) / p.height;
+            rays_.push_back(p.camera->ray(p.window.left + x * (p.window.right - p.window.left),
+                                          p.window.top + y * (p.window.bottom - p.window.top)));
+        }
+    }
+    ray_hits_.resize(rays_.size());
+    p.scene->rays().intersect(rays_, ray_hits_);
+    hits_.clear();
+    for (std::size_t first = 0; first < rays_.size(); first += samples.count) {
+        for (std::uint32_t i = 0; i < samples.count; ++i) {
+            const RayHit& hit = ray_hits_[first + i];
+            if (!hit.missed()) {
+                const Vec3f& direction = rays_[first + i].direction;
+                const SurfacePoint surface = p.scene->surface(hit, direction);
+                hits_.add(surface, -glm::normalize(Vec3d(direction)), p.scene->materials()[surface.material].emission,
+                          samples.first + i);
+            }
+        }
+        hits_.end_pixel();
+    }
+    report_.hits += hits_.size();
+}
+
+void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& samples) {
+    const auto lights = picture_->scene->lights();
+    for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
+        const auto block = lights.subspan(first, std::min(kLightBlock, lights.size() - first));
+        unshadowed_.compute(points_, picture_->materials, block);
+        for (std::size_t i = 0; i < block.size(); ++i) {
+            pixel_seeds_.clear();
+            for (const Pixel& pixel : pixels) {
+                const std::uint32_t seed =
+                    hash(static_cast<std::uint32_t>(pixel.column), static_cast<std::uint32_t>(pixel.row));
+                pixel_seeds_.push_back(hash(seed, static_cast<std::uint32_t>(first + i)));
+            }
+            shadowed_.add(block[i], samples, unshadowed_.light(i), points_.of_hit, pixel_seeds_, hits_);
+        }
+    }
+}
+
+void PixelBatch::add_up(const SampleRange& samples, std::span<PixelSums> sums) const {
+    for (std::size_t pixel = 0; pixel < hits_.pixel_count(); ++pixel) {
+        PixelSums& sum = sums[pixel];
+        sum.rays += samples.count;
+        sum.hits += static_cast<std::uint32_t>(hits_.pixel_begin[pixel + 1] - hits_.pixel_begin[pixel]);
+        for (std::size_t hit = hits_.pixel_begin[pixel]; hit < hits_.pixel_begin[pixel + 1]; ++hit) {
+            const Vec3d radiance(hits_.radiance[hit]);
+            const glm::dvec2 place = picture_->pixel_points[hits_.sample[hit]] - 0.5;
+            sum.radiance += radiance;
+            sum.squares += radiance * radiance - Vec3d(hits_.noise[hit]);
+            sum.along_x += place.x * radiance;
+            sum.along_y += place.y * radiance;
+        }
+    }
+}
+
+}  // namespace shlight

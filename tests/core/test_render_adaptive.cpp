@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: MIT
+//
+// Camera rays where they are needed: exact areas of edges and wires, what neighbours see, the cost, and the same bits
+// however the picture is cut.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "render_scenes.h"
+#include "shlight/sampling.h"
+
+namespace shlight {
+namespace {
+
+using namespace testing;
+
+RenderSettings unshadowed_settings(bool adaptive) {
+    RenderSettings settings;
+    settings.shadow_rays = 0;
+    settings.adaptive = adaptive;
+    return settings;
+}
+
+/// A glowing rectangle in the plane z = 0: half sizes, turned about z, then moved.
+Mesh glowing(double half_x, double half_y, double angle, const Vec3d& place, float radiance = 1) {
+    Mesh mesh = floor_mesh(1);
+    mesh.emission = {Rgb(radiance)};
+    mesh.bsdfs = {Bsdf()};
+    mesh.transforms = {frame_matrix({half_x * std::cos(angle), half_x * std::sin(angle), 0},
+                                    {-half_y * std::sin(angle), half_y * std::cos(angle), 0}, {0, 0, 1}, place)};
+    return mesh;
+}
+
+/// The area of a convex polygon inside x0 … x0 + 1, y0 … y0 + 1, by Sutherland and Hodgman's clipping.
+double area_in_square(std::vector<glm::dvec2> polygon, double x0, double y0) {
+    for (int side = 0; side < 4; ++side) {
+        const int axis = side % 2;
+        const double sign = side < 2 ? 1 : -1;
+        const double limit = (axis == 0 ? x0 : y0) + (side < 2 ? 0 : 1);
+        std::vector<glm::dvec2> kept;
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            const glm::dvec2& a = polygon[i];
+            const glm::dvec2& b = polygon[(i + 1) % polygon.size()];
+            const double da = sign * (a[axis] - limit);
+            const double db = sign * (b[axis] - limit);
+            if (da >= 0) kept.push_back(a);
+            if ((da >= 0) != (db >= 0)) kept.push_back(a + da / (da - db) * (b - a));
+        }
+        polygon = kept;
+    }
+    double twice = 0;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const glm::dvec2& a = polygon[i];
+        const glm::dvec2& b = polygon[(i + 1) % polygon.size()];
+        twice += a.x * b.y - a.y * b.x;
+    }
+    return std::abs(twice) / 2;
+}
+
+/// Where `glowing` lies in a picture of camera_above(half_size) with rows upside down: corners in pixels.
+std::vector<glm::dvec2> corners(double half_x, double half_y, double angle, const Vec3d& place, int size,
+                                double half_size) {
+    const double scale = size / (2 * half_size);
+    std::vector<glm::dvec2> result;
+    for (const glm::dvec2 sign : {glm::dvec2(-1, -1), glm::dvec2(1, -1), glm::dvec2(1, 1), glm::dvec2(-1, 1)}) {
+        const double u = sign.x * half_x;
+        const double v = sign.y * half_y;
+        const double x = place.x + u * std::cos(angle) - v * std::sin(angle);
+        const double y = place.y + u * std::sin(angle) + v * std::cos(angle);
+        result.emplace_back((x + half_size) * scale, (half_size - y) * scale);
+    }
+    return result;
+}
+
+TEST(RenderAdaptive, TheCoverageOfAHalfPlaneConvergesToItsArea) {
+    // Pixels of unit size, the edge at any place and angle. 256 cells of a pixel, some 16 to 32 of them cut: each errs
+    // by less than 1/256, most of which cancels.
+    double squares = 0;
+    double plain_squares = 0;
+    int count = 0;
+    for (int i = 0; i < 24; ++i) {
+        const double angle = 0.07 + 0.27 * i;
+        const Vec3d direction(std::cos(angle), std::sin(angle), 0);
+        const Vec3d place = (-50 + 0.4 * std::cos(2.3 * i)) * direction;
+        Scene scene;
+        scene.add_mesh(glowing(50, 50, angle, place));
+        const double truth = area_in_square(corners(50, 50, angle, place, 1, 0.5), 0, 0);
+        const Image fine = render_image(scene, camera_above(0.5), 1, 1, unshadowed_settings(true));
+        const Image plain = render_image(scene, camera_above(0.5), 1, 1, unshadowed_settings(false));
+        EXPECT_EQ(fine.alpha(0, 0), fine.red(0, 0));
+        if (truth < 0.01 || truth > 0.99) continue;  // may be missed, without harm
+        EXPECT_LE(std::abs(fine.alpha(0, 0) - truth), 0.02) << angle;
+        squares += std::pow(fine.alpha(0, 0) - truth, 2);
+        plain_squares += std::pow(plain.alpha(0, 0) - truth, 2);
+        ++count;
+    }
+    EXPECT_GE(count, 15);
+    EXPECT_LE(std::sqrt(squares / count), 0.007);
+    EXPECT_LE(squares, plain_squares / 5);
+}
+
+TEST(RenderAdaptive, AThinWireHasItsArea) {
+    // 1/8 pixel wide and across 64 pixels at a slant: 16 rays meet it twice a pixel or so.
+    constexpr int kSize = 64;
+    const double half = kSize / 2.0;  // pixels of unit size
+    const double angle = 0.3;
+    Scene scene;
+    scene.add_mesh(glowing(25, 1.0 / 16, angle, {0.2, 0.3, 0}));
+    const auto wire = corners(25, 1.0 / 16, angle, {0.2, 0.3, 0}, kSize, half);
+    const auto mean_square = [&](const Image& image) {
+        double squares = 0;
+        double sum = 0;
+        for (int row = 0; row < kSize; ++row) {
+            for (int column = 0; column < kSize; ++column) {
+                squares += std::pow(image.red(column, row) - area_in_square(wire, column, row), 2);
+                sum += image.red(column, row);
+            }
+        }
+        EXPECT_LE(std::abs(sum - 50.0 / 8), 0.05 * 50 / 8);
+        return squares / 60;  // some pixels that it crosses
+    };
+    const double fine = mean_square(render_image(scene, camera_above(half), kSize, kSize, unshadowed_settings(true)));
+    const double plain = mean_square(render_image(scene, camera_above(half), kSize, kSize, unshadowed_settings(false)));
+    EXPECT_LE(std::sqrt(fine), 0.008);
+    EXPECT_LE(fine, plain / 10);
+}
+
+TEST(RenderAdaptive, WhatRaysMissIsFoundThroughNeighbours) {
+    // A bright wire of 1/64 pixel: 16 rays see it in one pixel of four. In each of the others it is found by following
+    // it from there, but for a few that 256 rays miss too.
+    constexpr int kSize = 32;
+    const double half = kSize / 2.0;
+    Scene scene;
+    scene.add_mesh(glowing(12, 1.0 / 128, 0.2, {0.1, 0.2, 0}, 100));
+    const auto wire = corners(12, 1.0 / 128, 0.2, {0.1, 0.2, 0}, kSize, half);
+    const auto missed = [&](bool adaptive) {
+        const Image image = render_image(scene, camera_above(half), kSize, kSize, unshadowed_settings(adaptive));
+        int count = 0;
+        for (int row = 0; row < kSize; ++row) {
+            for (int column = 0; column < kSize; ++column) {
+                count += area_in_square(wire, column, row) > 0.9 / 64 && image.red(column, row) == 0 ? 1 : 0;
+            }
+        }
+        return count;
+    };
+    EXPECT_GE(missed(false), 10);
+    EXPECT_LE(missed(true), 2);
+}
+
+TEST(RenderAdaptive, RaysGoWhereTheyAreNeededOnly) {
+    constexpr int kSize = 64;
+    Scene flat;
+    flat.add_mesh(floor_mesh(40, 0, Bsdf::lambert(Rgb(0.5F))));
+    flat.add_sphere_light({0, 0, 30}, 5, Rgb(3));
+    const Image even = render_image(flat, camera_above(16), kSize, kSize, unshadowed_settings(true));
+    EXPECT_EQ(even.report.hits, 16U * kSize * kSize) << "a smooth gradient";
+    Scene edge = flat;
+    edge.add_mesh(glowing(40, 40, 0, {-40.1, 0, 1}));  // one column of pixels has its edge
+    const Image half = render_image(edge, camera_above(16), kSize, kSize, unshadowed_settings(true));
+    EXPECT_GT(half.report.hits, 16U * kSize * kSize);
+    EXPECT_LE(half.report.hits, 16U * kSize * (kSize + 15 + 2 * 3)) << "16 times in one column, 4 times beside it";
+    RenderSettings one = unshadowed_settings(true);
+    one.pixel_samples = 1;
+    const Image aliased = render_image(edge, camera_above(16), kSize, kSize, one);
+    EXPECT_EQ(aliased.report.hits, 1U * kSize * kSize);
+    one.adaptive = false;
+    EXPECT_EQ(aliased.values, render_image(edge, camera_above(16), kSize, kSize, one).values);
+    RenderSettings odd = unshadowed_settings(true);
+    odd.pixel_samples = 5;
+    EXPECT_EQ(render_image(flat, camera_above(16), kSize, kSize, odd).report.hits, 8U * kSize * kSize);
+}
+
+TEST(RenderAdaptive, APenumbraIsNotRefinedWithoutEnd) {
+    Scene scene;
+    scene.add_mesh(floor_mesh(10));
+    scene.add_mesh(glowing(0.5, 0.5, 0.3, {0, 0, 1}, 0));
+    scene.add_polygon_light({{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}}, Rgb(2));
+    RenderSettings settings;
+    const Image image = render_image(scene, camera_above(2, 0.9), 48, 48, settings);  // from below the blocker
+    EXPECT_LE(image.report.hits, 16U * 48 * 48 * 4);
+}
+
+/// Edges, a thin wire and a lit ball about the origin, on black, so that a shift keeps the picture's mean.
+Scene spread_scene() {
+    Scene scene;
+    scene.add_mesh(sphere_mesh({0, 0, 0.3}, 0.3, 12, true));
+    scene.add_mesh(glowing(0.45, 0.003, 0.5, {0, 0, 1}, 20));
+    scene.add_sphere_light({1, -1, 2}, 0.5, Rgb(3));
+    return scene;
+}
+
+TEST(RenderAdaptive, AShiftOfTheWindowShiftsThePicture) {
+    // Other tiles, other batches of pixels that are refined, other neighbours at hand. Powers of two keep the rays.
+    const glm::dmat4 above = frame_matrix({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 10});
+    const auto picture = [&](int right, int up) {
+        const double x = right / 32.0;
+        const double y = up / 32.0;
+        return render_image(spread_scene(), Camera(above, Window{x - 1, x + 1, y - 1, y + 1}, Projection::orthographic),
+                            64, 64, unshadowed_settings(true));
+    };
+    const Image middle = picture(0, 0);
+    const Image shifted = picture(5, 11);
+    EXPECT_GT(middle.report.hits, 0U);
+    EXPECT_EQ(shifted.report.hits, middle.report.hits);
+    for (int row = 11; row < 64; ++row) {
+        for (int column = 0; column < 64 - 5; ++column) {
+            ASSERT_EQ(shifted.color(column, row), middle.color(column + 5, row - 11)) << column << ", " << row;
+            ASSERT_EQ(shifted.alpha(column, row), middle.alpha(column + 5, row - 11));
+        }
+    }
+}
+
+TEST(RenderAdaptive, ManyRaysOfAPixelGoInSlices) {
+    // More rays than a batch holds, and a wire that needs all: against its area.
+    Scene scene;
+    scene.add_mesh(glowing(50, 0.005, 0.3, {0.1, 0.05, 0}));
+    RenderSettings settings = unshadowed_settings(true);
+    settings.pixel_samples = 1024;
+    const Image image = render_image(scene, camera_above(0.5), 1, 1, settings);
+    const double truth = area_in_square(corners(50, 0.005, 0.3, {0.1, 0.05, 0}, 1, 0.5), 0, 0);
+    EXPECT_EQ(std::round(image.alpha(0, 0) * 16384), image.alpha(0, 0) * 16384) << "so many rays";
+    EXPECT_NE(std::round(image.alpha(0, 0) * 4096), image.alpha(0, 0) * 4096) << "and no fewer";
+    EXPECT_LE(std::abs(image.alpha(0, 0) - truth), 3e-4);
+}
+
+TEST(RenderAdaptive, ProgressNeverFallsAndRefiningCanBeCancelled) {
+    const Scene scene = spread_scene();
+    std::vector<double> shares;
+    RenderSettings settings;
+    render_image(scene, camera_above(1), 64, 64, settings, [&](double share) {
+        shares.push_back(share);
+        return true;
+    });
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_EQ(shares.back(), 1);
+    EXPECT_EQ(std::count(shares.begin(), shares.end(), 1.0), 1);
+    EXPECT_THROW(render_image(scene, camera_above(1), 64, 64, settings, [](double share) { return share < 0.65; }),
+                 RenderCancelled);
+}
+
+TEST(RenderAdaptive, NestedPointsAreEvenAndCentredAtEveryLevel) {
+    const std::vector<glm::dvec2> points = nested_points(256);
+    for (std::uint32_t bits = 0; bits <= 8; ++bits) {
+        for (std::uint32_t columns = 0; columns <= bits; ++columns) {
+            for (std::uint32_t block = 0; block < 256U >> bits; ++block) {
+                std::set<std::pair<int, int>> cells;
+                for (std::uint32_t i = block << bits; i < (block + 1) << bits; ++i) {
+                    cells.emplace(static_cast<int>(points[i].x * (1U << columns)),
+                                  static_cast<int>(points[i].y * (1U << (bits - columns))));
+                }
+                EXPECT_EQ(cells.size(), 1U << bits) << "block " << block << ", columns 2^" << columns;
+            }
+        }
+    }
+    glm::dvec2 sum(0);
+    for (std::uint32_t i = 0; i < 256; ++i) {
+        sum += points[i] - 0.5;
+        EXPECT_LE(glm::length(sum), i % 2 == 1 ? 1e-12 : 1.0) << i;
+    }
+}
+
+}  // namespace
+}  // namespace shlight
