@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "checks.h"
-#include "exact_sums.h"
+#include "light_checks.h"
 
 namespace shlight {
 namespace {
@@ -17,17 +17,6 @@ constexpr double kPi = std::numbers::pi;
 /// 1 - x for x = cos α, without cancellation.
 double one_minus(double cosine, double sine) {
     return cosine > 0 ? sine * sine / (1 + cosine) : 1 - cosine;
-}
-
-void check_sphere(const Vec3d& center, double radius, double epsilon) {
-    check_finite("centers", center);
-    if (!(std::isfinite(radius) && radius > 0)) {
-        reject("radii must be positive and finite");
-    }
-    // Contact within the rounding of the inputs is contact.
-    if (difference_of_squares({center.x, center.y, center.z}, radius) < -4 * epsilon * radius * radius) {
-        reject("radii: the shading point lies inside a sphere (|center| < radius)");
-    }
 }
 
 void check_cap(const Vec3d& axis, double half_angle) {
@@ -171,10 +160,8 @@ Cap<T> warped_cap(const Circle& light, double crossing_squared, const Warp& warp
 
 template <class T>
 Cap<T> Cap<T>::of_sphere(const Vec3d& center, double radius, const Warp& warp) {
+    const Circle light = circle_of_sphere(center, radius);
     const double distance = length(center);
-    // |c|² - r² and r² - c_z² by exact products: near contact and tangency they are small differences of the inputs.
-    const double tangent_squared = std::max(0.0, difference_of_squares({center.x, center.y, center.z}, radius));
-    const Circle light{center / distance, std::sqrt(tangent_squared) / distance, std::min(1.0, radius / distance)};
     const double crossing_squared = (radius - center.z) * (radius + center.z) / (distance * distance);
     return warped_cap<T>(light, crossing_squared, warp);
 }
