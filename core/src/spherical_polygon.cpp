@@ -46,15 +46,19 @@ std::vector<Vec3<Real>> clipped_by_horizon(std::span<const Vec3<Real>> v) {
     return kept;
 }
 
-/// Unit vectors, with the side from a to b the longest. Where that is nearly half a turn, a·(b×c) and
-/// 1 + a·b + b·c + c·a both vanish as the square of a + b: they are formed from a + b and from c's distance to its
-/// neighbour b or to a.
+/// The side from a to b is the longest. Where it is nearly half a turn, a·(b×c) and 1 + a·b + b·c + c·a of the unit
+/// vectors both vanish as the square of a + b: they are formed from that sum and from c's distance to its neighbour b
+/// or a. The sum, in turn, lies across the chord b - a in their plane, where a×(b-a) has every digit.
 template <class Real>
 Real solid_angle_with_long_side(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c) {
-    const Vec3<Real> sum = a + b;
-    const bool near_b = glm::dot(b, c) > glm::dot(a, c);
-    const Vec3<Real>& neighbour = near_b ? b : a;
-    const Vec3<Real> step = c - neighbour;
+    const Real la = glm::length(a);
+    const Real lb = glm::length(b);
+    const Vec3<Real> chord = b / lb - a / la;
+    const Vec3<Real> sum = glm::cross(chord, glm::cross(a, b - a)) * (2 / (la * lb * glm::dot(chord, chord)));
+    const Vec3<Real> end = c / glm::length(c);
+    const bool near_b = glm::dot(chord, c) > 0;
+    const Vec3<Real> neighbour = near_b ? b / lb : a / la;
+    const Vec3<Real> step = end - neighbour;
     const Real triple = glm::dot(sum, glm::cross(neighbour, step));
     return 2 * std::atan2(near_b ? triple : -triple, glm::dot(sum, sum + step));
 }
@@ -72,12 +76,9 @@ Real triangle_solid_angle(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<R
     const Real product = la * lb * lc;
     const Real least = std::min({ab, bc, ca});
     if (least < -product / 2) {
-        const Vec3<Real> u = a / la;
-        const Vec3<Real> v = b / lb;
-        const Vec3<Real> w = c / lc;
-        return least == ab   ? solid_angle_with_long_side(u, v, w)
-               : least == bc ? solid_angle_with_long_side(v, w, u)
-                             : solid_angle_with_long_side(w, u, v);
+        return least == ab   ? solid_angle_with_long_side(a, b, c)
+               : least == bc ? solid_angle_with_long_side(b, c, a)
+                             : solid_angle_with_long_side(c, a, b);
     }
     const Real triple = glm::dot(a, glm::cross(b - a, c - a));
     return 2 * std::atan2(triple, product + ab + bc + ca);
