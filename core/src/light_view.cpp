@@ -3,27 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-
-#include "shlight/cap.h"
-#include "shlight/polygon.h"
 
 namespace shlight {
-namespace {
-
-Cap<float> cap_of(const CapView& cap) {
-    switch (cap.kind) {
-        case CapView::Kind::sphere:
-            return Cap<float>::of_sphere(cap.center, cap.radius);
-        case CapView::Kind::facing_disk:
-            return Cap<float>::of_facing_disk(cap.center, cap.radius);
-        case CapView::Kind::inside:
-            break;
-    }
-    return Cap<float>::about_axis(Vec3d(0, 0, 1), std::numbers::pi / 2);
-}
-
-}  // namespace
 
 std::optional<CapView> view(const SphereLight& light, const ShadingFrame& frame) {
     const Vec3d center = frame.point_to_local(light.center);
@@ -70,17 +51,19 @@ double least_distance(const Light& light, const Vec3d& position) {
                     glm::length(polygon.center - position) - polygon.radius);
 }
 
-void light_coefficients(const CapView& cap, int order, float* coefficients) {
-    cap_coefficients(cap_of(cap), order, true, coefficients);
-}
-
-void light_coefficients(const PolygonLight& light, const ShadingFrame& frame, int order, std::vector<Vec3f>& vertices,
-                        float* coefficients) {
-    vertices.clear();
-    for (const Vec3d& v : light.vertices) {
-        vertices.emplace_back(frame.point_to_local(v));
+Circle circle_of(const CapView& cap) {
+    switch (cap.kind) {
+        case CapView::Kind::sphere:
+            return circle_of_sphere(cap.center, cap.radius);
+        case CapView::Kind::facing_disk: {
+            const double distance = glm::length(cap.center);
+            const double slant = std::hypot(distance, cap.radius);
+            return {cap.center / distance, distance / slant, cap.radius / slant};
+        }
+        case CapView::Kind::inside:
+            break;
     }
-    polygon_coefficients<float>(std::span<const Vec3f>(vertices), order, true, coefficients);
+    return {{0, 0, 1}, 0, 1};
 }
 
 }  // namespace shlight

@@ -9,6 +9,7 @@
 #include "hits.h"
 #include "shlight/light.h"
 #include "shlight/types.h"
+#include "shlight/warp.h"
 
 namespace shlight {
 
@@ -34,9 +35,7 @@ bool is_seen(const Light& light, const ShadingFrame& frame, double error);
 /// At least this far away lies every point of the light; 0 where that is not known.
 double least_distance(const Light& light, const Vec3d& position);
 
-/// Coefficients of the light at one hit, order² values.
-void light_coefficients(const CapView& cap, int order, float* coefficients);
-void light_coefficients(const PolygonLight& light, const ShadingFrame& frame, int order, std::vector<Vec3f>& vertices,
-                        float* coefficients);
+/// The directions to the light.
+Circle circle_of(const CapView& cap);
 
 }  // namespace shlight

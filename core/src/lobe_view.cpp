@@ -89,6 +89,7 @@ LobeAtView::LobeAtView(const LobeShape& shape, const WarpedFit* fit, double cos_
     tolerance_ = tolerance * fit->albedo(cos_theta_o);
     order_ = auto_order ? fit->order_for(cos_theta_o, tolerance) : fit->orders().front();
     if (order_ > 0) {
+        met_ = fit->shading_error(cos_theta_o, order_) <= tolerance;
         warp_ = fit->warp(cos_theta_o);
         horizon_.emplace(warp_, order_);
         terms_.resize(static_cast<std::size_t>(cosine_count(order_)));
@@ -102,27 +103,27 @@ float LobeAtView::mirrored() const {
 
 LobeRadiance LobeAtView::radiance(const Circle& cap) const {
     if (cap.axis.z <= -cap.sine) {
-        return {0, 0, 0};
+        return {0, 0, 0, true};
     }
     if (is_mirror(shape_)) {
         const Vec3d mirrored_view(-view_.x, 0, view_.z);
-        return {glm::dot(mirrored_view, cap.axis) >= cap.cosine ? mirrored() : 0.0F, 0, 0};
+        return {glm::dot(mirrored_view, cap.axis) >= cap.cosine ? mirrored() : 0.0F, 0, 0, true};
     }
     if (choose_ && cap.axis.z >= cap.sine) {
         const double size = relative_size(ggx(), view_, cap.axis, std::atan2(cap.sine, cap.cosine));
         const int rings = cap_rings(size, tolerance_);
         if (rings > 0 && (rings <= kCheapRings || order_ == 0)) {
             const CubatureSum sum = cap_cubature(ggx(), view_, cap, rings);
-            return {static_cast<float>(sum.value), 0, sum.points};
+            return {static_cast<float>(sum.value), 0, sum.points, true};
         }
     }
     if (order_ > 0) {
-        return {shade_cap(Cap<float>::inside(cap, warp_), *horizon_, terms_.data(), order_), order_, 0};
+        return {shade_cap(Cap<float>::inside(cap, warp_), *horizon_, terms_.data(), order_), order_, 0, met_};
     }
     const CapOutline outline = cap_outline(cap);
     const OutlineIntegral integral =
         outline_integral(ggx(), view_.z, std::span(outline.arcs).first(outline.count), tolerance_);
-    return {static_cast<float>(integral.value), 0, integral.points};
+    return {static_cast<float>(integral.value), 0, integral.points, integral.error <= tolerance_};
 }
 
 bool LobeAtView::reflects_into(const SphericalPolygon<double>& polygon) const {
@@ -141,28 +142,28 @@ bool LobeAtView::reflects_into(const SphericalPolygon<double>& polygon) const {
 
 LobeRadiance LobeAtView::radiance(const SphericalPolygon<double>& polygon) const {
     if (polygon.empty()) {
-        return {0, 0, 0};
+        return {0, 0, 0, true};
     }
     if (is_mirror(shape_)) {
-        return {reflects_into(polygon) ? mirrored() : 0.0F, 0, 0};
+        return {reflects_into(polygon) ? mirrored() : 0.0F, 0, 0, true};
     }
     if (choose_) {
         const Extent extent = extent_of(polygon);
         const int points = polygon_points(relative_size(ggx(), view_, extent.middle, extent.half_angle), tolerance_);
         if (points > 0 && (points <= kCheapPoints || order_ == 0)) {
             const CubatureSum sum = polygon_cubature(ggx(), view_, polygon, points);
-            return {static_cast<float>(sum.value), 0, sum.points};
+            return {static_cast<float>(sum.value), 0, sum.points, true};
         }
     }
     if (order_ > 0) {
         const float value = warp_.is_identity()
                                 ? shade_polygon(polygon, warp_, terms_.data(), order_)
                                 : shade_region(PolygonRegion<double>(polygon, warp_), terms_.data(), order_);
-        return {value, order_, 0};
+        return {value, order_, 0, met_};
     }
     const std::vector<OutlineArc> outline = polygon_outline(polygon);
     const OutlineIntegral integral = outline_integral(ggx(), view_.z, outline, tolerance_);
-    return {static_cast<float>(integral.value), 0, integral.points};
+    return {static_cast<float>(integral.value), 0, integral.points, integral.error <= tolerance_};
 }
 
 }  // namespace shlight

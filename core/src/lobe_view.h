@@ -23,6 +23,7 @@ struct LobeRadiance {
     float value;
     int order;   ///< of the harmonics, or 0
     int points;  ///< of the cubature, or 0; both 0: hidden, or a mirror's image
+    bool met;    ///< the tolerance, by what the method estimates
 };
 
 class LobeAtView {
@@ -49,6 +50,7 @@ class LobeAtView {
     double tolerance_ = 0;  // absolute, of the radiance
     bool choose_;
     int order_ = 0;
+    bool met_ = true;  // by the order
     Warp warp_;
     std::optional<Horizon<float>> horizon_;
     std::vector<float> terms_;

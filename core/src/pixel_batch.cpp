@@ -26,7 +26,7 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
                  std::vector<glm::dvec2> points)
     : scene(&s), camera(&c), settings(r), width(w), height(h), window(c.window(w, h)), pixel_points(std::move(points)) {
     for (const Material& material : s.materials()) {
-        materials.emplace_back(material.bsdf, r);
+        materials.emplace_back(material.bsdf, r.order, r.tolerance);
         lobe_stride = std::max(lobe_stride, materials.back().lobes().size());
     }
 }
@@ -39,9 +39,7 @@ PixelBatch::PixelBatch(const Picture& picture)
 
 void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums) {
     trace_camera_rays(pixels, samples);
-    points_.assign(hits_, picture_->materials, picture_->lobe_stride, picture_->scene->lights(),
-                   picture_->settings.tolerance, report_);
-    unshadowed_.group(points_);
+    points_.assign(hits_, picture_->materials, picture_->scene->lights(), picture_->settings.tolerance);
     add_lights(pixels, samples);
     add_up(samples, sums);
 }
@@ -85,7 +83,7 @@ void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& sa
     const auto lights = picture_->scene->lights();
     for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
         const auto block = lights.subspan(first, std::min(kLightBlock, lights.size() - first));
-        unshadowed_.compute(points_, picture_->materials, block);
+        unshadowed_.compute(points_, picture_->materials, block, report_);
         for (std::size_t i = 0; i < block.size(); ++i) {
             pixel_seeds_.clear();
             for (const Pixel& pixel : pixels) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hits.h"
-#include "material_orders.h"
+#include "material_lobes.h"
 #include "shading_points.h"
 #include "shlight/camera.h"
 #include "shlight/render.h"
@@ -45,7 +45,7 @@ struct Picture {
     int width, height;
     Window window;
     std::vector<glm::dvec2> pixel_points;  ///< where each camera ray of a pixel goes through its unit square
-    std::vector<OrderedMaterial> materials;
+    std::vector<MaterialLobes> materials;
     std::size_t lobe_stride = 1;
 };
 

@@ -180,6 +180,8 @@ void Passes::render(std::span<const Pixel> pixels, int from, int to) {
 void add(RenderReport& sum, const RenderReport& part) {
     std::transform(sum.order_counts.begin(), sum.order_counts.end(), part.order_counts.begin(),
                    sum.order_counts.begin(), std::plus<>());
+    sum.cubature_count += part.cubature_count;
+    sum.mirror_count += part.mirror_count;
     sum.hits += part.hits;
     sum.over_tolerance += part.over_tolerance;
     sum.shadow_rays += part.shadow_rays;

@@ -10,6 +10,9 @@
 namespace shlight {
 namespace {
 
+/// For materials without a narrow lobe: of cosθ and the horizon.
+constexpr double kWidestSpread = 1.3;
+
 Vec3d towards_viewer(const Hits& hits, std::size_t hit) {
     const double cosine = hits.cos_theta_o[hit];
     return std::sqrt(1 - cosine * cosine) * hits.frame[hit].x + cosine * hits.frame[hit].z;
@@ -25,18 +28,12 @@ double nearest(std::span<const Light> lights, const Vec3d& position) {
 
 }  // namespace
 
-int ShadingPoints::largest_order(std::size_t point) const {
-    const auto first = orders_.begin() + static_cast<std::ptrdiff_t>(point * lobe_stride_);
-    return *std::max_element(first, first + static_cast<std::ptrdiff_t>(lobe_stride_));
-}
-
 void ShadingPoints::clear() {
     frame.clear();
     cos_theta_o.clear();
     error.clear();
     material.clear();
     of_hit.clear();
-    orders_.clear();
     members_.clear();
 }
 
@@ -52,19 +49,15 @@ bool ShadingPoints::joins(const Hits& hits, std::size_t hit, std::size_t point) 
     return difference <= members.spread;
 }
 
-void ShadingPoints::start(const Hits& hits, std::size_t hit, std::span<const OrderedMaterial> materials,
-                          std::span<const Light> lights, double tolerance) {
-    const OrderedMaterial& lobes = materials[hits.material[hit]];
-    orders_.resize(orders_.size() + lobe_stride_, 0);
-    const auto orders = std::span(orders_).last(lobe_stride_).first(lobes.lobes().size());
-    const bool met = lobes.choose_orders(hits.cos_theta_o[hit], orders);
+void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, std::span<const Light> lights,
+                          double tolerance) {
     frame.push_back(hits.frame[hit]);
     cos_theta_o.push_back(hits.cos_theta_o[hit]);
     error.push_back(hits.error[hit]);
     material.push_back(hits.material[hit]);
-    const double spread = 8 * std::sqrt(tolerance) / (largest_order(size() - 1) + 4);
-    members_.push_back({towards_viewer(hits, hit), spread, nearest(lights, hits.frame[hit].origin), met, Vec3d(0),
-                        Vec3d(0), Vec3d(0), 0});
+    const double spread = std::sqrt(tolerance) * std::min(kWidestSpread, lobes.narrowest(hits.cos_theta_o[hit]));
+    members_.push_back(
+        {towards_viewer(hits, hit), spread, nearest(lights, hits.frame[hit].origin), Vec3d(0), Vec3d(0), Vec3d(0), 0});
 }
 
 void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t point) {
@@ -76,7 +69,7 @@ void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t po
     of_hit.push_back(static_cast<std::uint32_t>(point));
 }
 
-void ShadingPoints::finish(std::size_t point, RenderReport& report) {
+void ShadingPoints::finish(std::size_t point) {
     const Members& members = members_[point];
     if (members.count > 1) {
         const Vec3d viewer = glm::normalize(members.towards_viewer);
@@ -84,17 +77,11 @@ void ShadingPoints::finish(std::size_t point, RenderReport& report) {
                                      glm::normalize(members.normal), viewer);
         cos_theta_o[point] = view_cosine(frame[point], viewer);
     }
-    report.over_tolerance += members.met ? 0 : members.count;
-    for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-        const int lobe_order = order(point, lobe);
-        report.order_counts[static_cast<std::size_t>(lobe_order)] += lobe_order > 0 ? members.count : 0;
-    }
 }
 
-void ShadingPoints::assign(const Hits& hits, std::span<const OrderedMaterial> materials, std::size_t lobe_stride,
-                           std::span<const Light> lights, double tolerance, RenderReport& report) {
+void ShadingPoints::assign(const Hits& hits, std::span<const MaterialLobes> materials, std::span<const Light> lights,
+                           double tolerance) {
     clear();
-    lobe_stride_ = lobe_stride;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
         const std::size_t first_point = size();
         for (std::size_t hit = hits.pixel_begin[pixel]; hit < hits.pixel_begin[pixel + 1]; ++hit) {
@@ -103,12 +90,12 @@ void ShadingPoints::assign(const Hits& hits, std::span<const OrderedMaterial> ma
                 ++point;
             }
             if (point == size()) {
-                start(hits, hit, materials, lights, tolerance);
+                start(hits, hit, materials[hits.material[hit]], lights, tolerance);
             }
             add_member(hits, hit, point);
         }
         for (std::size_t point = first_point; point < size(); ++point) {
-            finish(point, report);
+            finish(point);
         }
     }
 }

@@ -11,26 +11,23 @@
 #include <vector>
 
 #include "hits.h"
-#include "material_orders.h"
+#include "material_lobes.h"
 #include "shlight/light.h"
-#include "shlight/render.h"
 
 namespace shlight {
 
 class ShadingPoints {
   public:
     /// One point for hits of a pixel with the same material whose normal, direction to the viewer and directions to
-    /// lights differ by less than 8 √tolerance / (order + 4) in sum. The mean of a lobe of this order over so small a
-    /// spread is its value at the mean up to a fraction of the tolerance: what is left is the second difference.
-    /// lobe_stride: at least the number of lobes of any material. Adds to the report what the hits take.
-    void assign(const Hits& hits, std::span<const OrderedMaterial> materials, std::size_t lobe_stride,
-                std::span<const Light> lights, double tolerance, RenderReport& report);
+    /// lights differ in sum by less than √tolerance times the least distance over which the material's f·cos changes.
+    /// The mean of a lobe over so small a spread is its value at the mean up to a fraction of the tolerance: what is
+    /// left is the second difference.
+    void assign(const Hits& hits, std::span<const MaterialLobes> materials, std::span<const Light> lights,
+                double tolerance);
 
     std::size_t size() const { return frame.size(); }
-    /// The order of one lobe at a point; 0: black.
-    int order(std::size_t point, std::size_t lobe) const { return orders_[point * lobe_stride_ + lobe]; }
-    /// The largest of them.
-    int largest_order(std::size_t point) const;
+    /// Hits that share a point.
+    std::uint32_t hit_count(std::size_t point) const { return members_[point].count; }
 
     std::vector<ShadingFrame> frame;
     std::vector<float> cos_theta_o;
@@ -44,20 +41,17 @@ class ShadingPoints {
         Vec3d first_towards_viewer;
         double spread;         // allowed difference from the first
         double nearest_light;  // distance
-        bool met;              // the tolerance, by the lobes' orders
         Vec3d position, normal, towards_viewer;
         std::uint32_t count;
     };
 
     void clear();
     bool joins(const Hits& hits, std::size_t hit, std::size_t point) const;
-    void start(const Hits& hits, std::size_t hit, std::span<const OrderedMaterial> materials,
-               std::span<const Light> lights, double tolerance);
+    void start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, std::span<const Light> lights,
+               double tolerance);
     void add_member(const Hits& hits, std::size_t hit, std::size_t point);
-    void finish(std::size_t point, RenderReport& report);
+    void finish(std::size_t point);
 
-    std::size_t lobe_stride_ = 1;
-    std::vector<std::uint8_t> orders_;  // points × lobe_stride
     std::vector<Members> members_;
 };
 

@@ -53,8 +53,8 @@ class RayStart {
 
 }  // namespace
 
-ShadowedLight::ShadowedLight(const RayTracer& tracer, std::uint32_t most_rays,
-                             std::span<const OrderedMaterial> materials, std::size_t lobe_stride)
+ShadowedLight::ShadowedLight(const RayTracer& tracer, std::uint32_t most_rays, std::span<const MaterialLobes> materials,
+                             std::size_t lobe_stride)
     : tracer_(&tracer), materials_(materials), lobe_stride_(lobe_stride), most_rays_(most_rays) {}
 
 void ShadowedLight::add(const Light& light, const SampleRange& samples, std::span<const float> unshadowed,
@@ -159,7 +159,7 @@ ShadowedLight::RaySums ShadowedLight::sum(const LobeShape& shape, const Vec3d& t
 }
 
 Rgb ShadowedLight::scaled_radiance(const Light& light, const Hits& hits, std::size_t hit, std::size_t lobe) const {
-    return materials_[hits.material[hit]].lobes()[lobe].lobe().scale(hits.cos_theta_o[hit]) * radiance_of(light) *
+    return materials_[hits.material[hit]].lobes()[lobe].scale(hits.cos_theta_o[hit]) * radiance_of(light) *
            unshadowed(hit, lobe);
 }
 
@@ -197,7 +197,7 @@ void ShadowedLight::shade_lobe(const Light& light, std::size_t lobe, std::span<c
         if (!has_lobe(hit)) continue;
         const double cosine = hits.cos_theta_o[hit];
         const Vec3d towards_viewer(std::sqrt(1.0 - cosine * cosine), 0, cosine);
-        const LobeShape& shape = materials_[hits.material[hit]].lobes()[lobe].lobe().fit->shape();
+        const LobeShape& shape = materials_[hits.material[hit]].lobes()[lobe].shape;
         hit_sums_[i] = sum(shape, towards_viewer, i, phases);
         RaySums& of_point = point_sums_[point_of_hit_[hit] - first_point];
         of_point.all += hit_sums_[i].all;

@@ -14,7 +14,7 @@
 
 #include "hits.h"
 #include "light_sampling.h"
-#include "material_orders.h"
+#include "material_lobes.h"
 #include "shlight/light.h"
 #include "shlight/ray_tracer.h"
 #include "shlight/render.h"
@@ -25,7 +25,7 @@ namespace shlight {
 class ShadowedLight {
   public:
     /// most_rays: per camera ray and light, of any call of add().
-    ShadowedLight(const RayTracer& tracer, std::uint32_t most_rays, std::span<const OrderedMaterial> materials,
+    ShadowedLight(const RayTracer& tracer, std::uint32_t most_rays, std::span<const MaterialLobes> materials,
                   std::size_t lobe_stride);
 
     /// Adds one light to the hits' radiance and noise. samples: what the hits are of; unshadowed: see
@@ -63,7 +63,7 @@ class ShadowedLight {
     Rgb scaled_radiance(const Light& light, const Hits& hits, std::size_t hit, std::size_t lobe) const;
 
     const RayTracer* tracer_;
-    std::span<const OrderedMaterial> materials_;
+    std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
     std::uint32_t most_rays_;
     std::uint64_t rays_traced_ = 0;

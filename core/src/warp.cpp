@@ -16,7 +16,7 @@ double squared_length(const Vec3d& v) {
 }  // namespace
 
 Circle circle_of_sphere(const Vec3d& center, double radius) {
-    const double distance = glm::length(center);
+    const double distance = std::hypot(center.x, center.y, center.z);
     const double tangent_squared = std::max(0.0, difference_of_squares({center.x, center.y, center.z}, radius));
     return {center / distance, std::sqrt(tangent_squared) / distance, std::min(1.0, radius / distance)};
 }

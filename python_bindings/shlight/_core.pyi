@@ -52,6 +52,10 @@ class RenderReport:
     @property
     def order_shares(self) -> dict[int, float]: ...
     @property
+    def cubature_share(self) -> float: ...
+    @property
+    def mirror_share(self) -> float: ...
+    @property
     def over_tolerance(self) -> float: ...
     @property
     def hits(self) -> int: ...
@@ -106,6 +110,7 @@ def render(
     shadow_rays: int = 16,
     threads: int = 0,
     progress: Callable[[float], object] | None = None,
+    adaptive: bool = True,
     return_report: Literal[False] = False,
 ) -> NDArray[np.float32]: ...
 @overload
@@ -120,5 +125,6 @@ def render(
     shadow_rays: int = 16,
     threads: int = 0,
     progress: Callable[[float], object] | None = None,
+    adaptive: bool = True,
     return_report: Literal[True],
 ) -> tuple[NDArray[np.float32], RenderReport]: ...

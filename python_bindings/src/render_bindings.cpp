@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <string>
 
 #include "arrays.h"
@@ -25,9 +26,11 @@ constexpr const char* kRenderDoc = R"(Render the direct light of a scene.
 
 scene: a Scene with a camera.
 width, height: pixels.
-order: 1 ... 64, or "auto": each lobe takes at each view the smallest order that meets the tolerance.
-tolerance: L2 error of a lobe's fit / norm of the whole f*cos of its material, > 0.
-pixel_samples: camera rays per pixel, over a box of one pixel.
+order: 1 ... 64: harmonics of this order for every light, or "auto": for each lobe, view and light the cheapest of
+    harmonics in the lobe's warp and cubature that meets the tolerance.
+tolerance: error of the reflected radiance / (the light's radiance * the material's albedo), > 0.
+pixel_samples: camera rays per pixel, over a box of one pixel; rounded up to a power of two if adaptive.
+adaptive: take up to 16 times as many where they disagree, as at edges, unless pixel_samples is 1.
 shadow_rays: per camera ray and light, at most; a quarter of them where light and shadow are plain. 0: no shadows.
 threads: at most; 0: all cores. The image does not depend on it.
 progress: is called with the finished share, 0 ... 1, about every 50 ms; returning False cancels. What it raises ends
@@ -42,23 +45,24 @@ struct Report {
     RenderReport core;
     double build_seconds;
 
+    double share(std::uint64_t count) const {
+        const std::uint64_t harmonics =
+            std::accumulate(core.order_counts.begin(), core.order_counts.end(), std::uint64_t{0});
+        const std::uint64_t all = harmonics + core.cubature_count + core.mirror_count;
+        return all == 0 ? 0.0 : static_cast<double>(count) / static_cast<double>(all);
+    }
     std::map<int, double> order_shares() const {
-        std::uint64_t all = 0;
-        for (const std::uint64_t count : core.order_counts) {
-            all += count;
-        }
         std::map<int, double> shares;
         for (std::size_t order = 0; order < core.order_counts.size(); ++order) {
             if (core.order_counts[order] > 0) {
-                shares[static_cast<int>(order)] =
-                    static_cast<double>(core.order_counts[order]) / static_cast<double>(all);
+                shares[static_cast<int>(order)] = share(core.order_counts[order]);
             }
         }
         return shares;
     }
-    double over_tolerance() const {
-        return core.hits == 0 ? 0.0 : static_cast<double>(core.over_tolerance) / static_cast<double>(core.hits);
-    }
+    double cubature_share() const { return share(core.cubature_count); }
+    double mirror_share() const { return share(core.mirror_count); }
+    double over_tolerance() const { return share(core.over_tolerance); }
     std::string repr() const {
         return "RenderReport(hits=" + std::to_string(core.hits) + ", shadow_rays=" + std::to_string(core.shadow_rays) +
                ", over_tolerance=" + std::to_string(over_tolerance()) +
@@ -128,9 +132,10 @@ std::pair<std::shared_ptr<const CompiledScene>, double> compiled(SceneObject& ob
 
 py::object render_scene(SceneObject& scene, std::int64_t width, std::int64_t height, const py::object& order,
                         double tolerance, std::int64_t pixel_samples, std::int64_t shadow_rays, std::int64_t threads,
-                        const py::object& progress, bool return_report) {
-    const RenderSettings settings = {order_from(order), tolerance, clamp_to_int(pixel_samples),
-                                     clamp_to_int(shadow_rays), clamp_to_int(threads)};
+                        const py::object& progress, bool adaptive, bool return_report) {
+    const RenderSettings settings = {order_from(order),           tolerance,
+                                     clamp_to_int(pixel_samples), clamp_to_int(shadow_rays),
+                                     clamp_to_int(threads),       adaptive};
     const int columns = clamp_to_int(width);
     const int rows = clamp_to_int(height);
     check_render(settings, columns, rows);
@@ -159,9 +164,12 @@ void bind_render(py::module_& m) {
     py::register_exception<RenderCancelled>(m, "RenderCancelled", PyExc_RuntimeError);
     py::class_<Report>(m, "RenderReport", "What a picture took.")
         .def_property_readonly("order_shares", &Report::order_shares,
-                               "Share of the lobes of camera hits by the order they took.")
+                               "Shares of what was shaded by harmonics, by their order. Once is a lobe of a camera hit "
+                               "under a light that it sees.")
+        .def_property_readonly("cubature_share", &Report::cubature_share, "Share of what was shaded by cubature.")
+        .def_property_readonly("mirror_share", &Report::mirror_share, "Share of what showed a light's own image.")
         .def_property_readonly("over_tolerance", &Report::over_tolerance,
-                               "Share of camera hits where no order up to 64 met the tolerance.")
+                               "Share whose estimated error exceeds the tolerance.")
         .def_property_readonly(
             "hits", [](const Report& r) { return r.core.hits; }, "Camera rays that met a surface.")
         .def_property_readonly(
@@ -172,7 +180,7 @@ void bind_render(py::module_& m) {
         .def("__repr__", &Report::repr);
     m.def("render", &render_scene, kRenderDoc, "scene"_a, "width"_a, "height"_a, py::kw_only(), "order"_a = "auto",
           "tolerance"_a = 1e-3, "pixel_samples"_a = 16, "shadow_rays"_a = 16, "threads"_a = 0,
-          "progress"_a = py::none(), "return_report"_a = false);
+          "progress"_a = py::none(), "adaptive"_a = true, "return_report"_a = false);
 }
 
 }  // namespace shlight::python

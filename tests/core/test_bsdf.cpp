@@ -142,7 +142,7 @@ TEST(Bsdf, RejectsBadInput) {
         names("f0", [&] { Bsdf::ggx(0.5F, {0.5F, 0.5F, bad}); });
         names("factor", [&] { Bsdf::lambert(Rgb(0.5F)).scaled({bad, 1, 1}); });
     }
-    for (const float bad : {0.0F, -0.5F, 1.01F, nan}) {
+    for (const float bad : {-0.5F, 1.01F, nan}) {
         names("roughness", [&] { Bsdf::ggx(bad, Rgb(0.5F)); });
     }
     for (const float bad : {1.0F, 0.5F, -1.5F, nan, inf}) {

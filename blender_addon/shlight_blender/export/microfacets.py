@@ -15,7 +15,6 @@ from .nodes import RGB, rgb
 
 Remark = Callable[[str], None]  # takes a text for the export's report
 NEGLIGIBLE = 4e-3  # smallest share of a lobe's energy worth a second lobe
-SMOOTHEST = 0.03  # roughness of a drawn mirror
 ROUGHEST_COMPENSATED = 0.75  # up to here 1 + c (1 - E) is within 3 % of what it stands for
 
 
@@ -84,21 +83,13 @@ def _bounce_weights(roughness: float, mean_fresnel: RGB) -> RGB | None:
     return np.asarray(bounced * ((lost / albedo).sum() / lost.sum()))
 
 
-def usable_roughness(roughness: float, remark: Remark) -> float:
-    """Roughness clamped to what a lobe can have; a sharp mirror is drawn as the smoothest lobe."""
-    if roughness < SMOOTHEST:
-        remark(f"roughness below {SMOOTHEST:g} is not supported; {SMOOTHEST:g} is used")
-    return min(max(roughness, SMOOTHEST), 1.0)
-
-
 def _remark_on_bounces(roughness: float, remark: Remark) -> None:
     if roughness > ROUGHEST_COMPENSATED:
         remark(f"light bouncing within the surface is approximate for a roughness above {ROUGHEST_COMPENSATED:g}")
 
 
 def glossy_lobe(color: RGB, roughness: float, multiple_bounces: bool, remark: Remark) -> shlight.Bsdf:
-    """GGX lobe whose reflectance is `color` at every angle, as Cycles' Glossy BSDF."""
-    roughness = usable_roughness(roughness, remark)
+    """GGX lobe whose reflectance is `color` at every angle, as Cycles' Glossy BSDF; roughness 0 is a mirror."""
     whole = shlight.Bsdf.ggx(roughness, 1.0)
     again = _bounce_weights(roughness, color) if multiple_bounces else None
     if again is not None:
@@ -114,7 +105,6 @@ def metal_lobe(f0: RGB, roughness: float, multiple_bounces: bool, remark: Remark
     The light of further bounces is that of the part with constant Fresnel; Schlick's rise towards grazing angles,
     one 21st of the hemisphere, gets none.
     """
-    roughness = usable_roughness(roughness, remark)
     again = _bounce_weights(roughness, f0 + (1.0 - f0) / 21.0) if multiple_bounces else None
     if again is None:
         return shlight.Bsdf.ggx(roughness, rgb(f0))

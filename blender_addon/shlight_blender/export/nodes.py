@@ -108,6 +108,10 @@ class ConstantReader:
         value = self._value(node, node.inputs[name], groups)
         return value if isinstance(value, float) else float(value @ REC709_LUMINANCE)
 
+    def share(self, node: Any, name: str, groups: tuple[Any, ...] = ()) -> float:
+        """Value of the input `name` as a number, clamped to 0 … 1 as Cycles does."""
+        return min(max(float(np.nan_to_num(self.number(node, name, groups))), 0.0), 1.0)
+
     def color(self, node: Any, name: str, groups: tuple[Any, ...] = ()) -> RGB:
         """Value of the input `name` as linear RGB, never negative; numbers count as grey."""
         value = self._value(node, node.inputs[name], groups)

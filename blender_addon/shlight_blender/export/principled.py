@@ -15,7 +15,7 @@ import numpy as np
 import shlight
 
 from ..compat import PRINCIPLED
-from .microfacets import Remark, metal_lobe, usable_roughness
+from .microfacets import Remark, metal_lobe
 from .nodes import RGB, rgb
 from .surface import Surface, SurfaceReader, lambert
 
@@ -36,8 +36,8 @@ def read_principled(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -
 
 def _read_layered(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> shlight.Bsdf | None:
     base = reader.color(node, "Base Color", groups)
-    metallic = min(max(reader.number(node, "Metallic", groups), 0.0), 1.0)
-    roughness = reader.number(node, "Roughness", groups)
+    metallic = reader.share(node, "Metallic", groups)
+    roughness = reader.share(node, "Roughness", groups)
     tint = reader.color(node, "Specular Tint", groups)
     remark = reader.remarks(node)
     surface = Surface()
@@ -69,15 +69,15 @@ def _dielectric_over(
     if ior == 1.0:
         return diffuse
     f0 = rgb(np.clip(reflectance * tint, 0.0, 1.0))
-    specular = shlight.Bsdf.ggx(usable_roughness(roughness, remark), f0, ior=ior)
+    specular = shlight.Bsdf.ggx(roughness, f0, ior=ior)
     return specular if diffuse is None else shlight.Bsdf.layer(specular, diffuse)
 
 
 def _read_sum(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> shlight.Bsdf | None:
     base = reader.color(node, "Base Color", groups)
-    metallic = min(max(reader.number(node, "Metallic", groups), 0.0), 1.0)
+    metallic = reader.share(node, "Metallic", groups)
     remark = reader.remarks(node)
-    roughness = usable_roughness(reader.number(node, "Roughness", groups), remark)
+    roughness = reader.share(node, "Roughness", groups)
     specular = max(reader.number(node, "Specular", groups), 0.0)
     tint = reader.number(node, "Specular Tint", groups)
     if node.distribution == "MULTI_GGX":

@@ -19,12 +19,12 @@ def _diffuse(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> Surfa
 def _glossy(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> Surface:
     reader.ignore_linked(node, groups, "Normal", "Tangent")
     reader.ignore_unless(node, groups, "Anisotropy", 0.0)
-    if node.distribution not in {"GGX", "MULTI_GGX", "SHARP"}:
-        reader.report.add(reader.at(node), f"distribution {node.distribution} is not supported; GGX is used")
     color = reader.color(node, "Color", groups)
     if not color.any():
         return Surface()
-    roughness = 0.0 if node.distribution == "SHARP" else reader.number(node, "Roughness", groups)
+    roughness = 0.0 if node.distribution == "SHARP" else reader.share(node, "Roughness", groups)
+    if node.distribution not in {"GGX", "MULTI_GGX"} and roughness > 0.0:  # all distributions end in the same mirror
+        reader.report.add(reader.at(node), f"distribution {node.distribution} is not supported; GGX is used")
     multiple_bounces = node.distribution == "MULTI_GGX"
     return Surface(glossy_lobe(color, roughness, multiple_bounces, reader.remarks(node)))
 
@@ -37,7 +37,7 @@ def _emission(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> Surf
 
 
 def _mix(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> Surface:
-    factor = min(max(reader.number(node, node.inputs[0].name, groups), 0.0), 1.0)
+    factor = reader.share(node, node.inputs[0].name, groups)
     # The two shader inputs share their name; a branch of weight 0 does not show and is not even looked at.
     first = Surface() if factor == 1.0 else reader.surface(node.inputs[1], groups).scaled(1.0 - factor)
     second = Surface() if factor == 0.0 else reader.surface(node.inputs[2], groups).scaled(factor)

@@ -81,9 +81,11 @@ def table(figures: dict[str, Any]) -> str:
 
 
 def _details(shlight: dict[str, Any]) -> list[str]:
-    shares = sorted((int(order), share) for order, share in shlight["order_shares"].items() if share > 0)
-    orders = ", ".join(f"{order}: {share:.1%}" for order, share in shares)
-    lines = [f"orders: {orders or 'none'}; over tolerance: {shlight['over_tolerance']:.2%} of the camera hits"]
+    orders = sorted((int(order), share) for order, share in shlight["order_shares"].items())
+    shares = [(f"order {order}", share) for order, share in orders]
+    shares += [("cubature", shlight["cubature_share"]), ("mirrors", shlight["mirror_share"])]
+    shaded = ", ".join(f"{name}: {share:.1%}" for name, share in shares if share > 0)
+    lines = [f"shaded by {shaded or 'nothing'}; over tolerance: {shlight['over_tolerance']:.2%}"]
     if shlight["unsupported"]:
         lines.append("not supported by shlight:")
     for message in shlight["unsupported"]:

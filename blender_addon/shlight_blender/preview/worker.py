@@ -91,6 +91,8 @@ class Worker:
             "build_seconds": statistics.build_seconds,
             "render_seconds": statistics.render_seconds,
             "order_shares": {str(order): share for order, share in statistics.order_shares.items()},
+            "cubature_share": statistics.cubature_share,
+            "mirror_share": statistics.mirror_share,
             "over_tolerance": statistics.over_tolerance,
             "hits": statistics.hits,
             "shadow_rays": statistics.shadow_rays,

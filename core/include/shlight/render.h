@@ -15,8 +15,8 @@
 namespace shlight {
 
 struct RenderSettings {
-    int order = 0;            ///< 1 … 64, or 0: for each lobe and view the smallest that meets the tolerance
-    double tolerance = 1e-3;  ///< L2 error of a lobe's fit ÷ norm of the whole f·cos of the material, at the same view
+    int order = 0;  ///< 1 … 64: harmonics of this order for every light; 0: the cheapest that meets the tolerance
+    double tolerance = 1e-3;  ///< error of a light's reflected radiance ÷ (its own radiance × the material's albedo)
     int pixel_samples = 16;   ///< camera rays per pixel, spread evenly over its square; see adaptive
     int shadow_rays = 16;     ///< per camera ray and light, at most; 0: no shadows
     int threads = 0;          ///< 0: all cores
@@ -29,9 +29,12 @@ struct RenderSettings {
 
 /// What the picture took.
 struct RenderReport {
-    std::array<std::uint64_t, kMaxOrder + 1> order_counts{};  ///< lobes of camera hits, by the order they took
+    // A lobe of a camera hit under a light that it sees is shaded once, by …
+    std::array<std::uint64_t, kMaxOrder + 1> order_counts{};  ///< … harmonics of this order
+    std::uint64_t cubature_count = 0;                         ///< … values of f·cos
+    std::uint64_t mirror_count = 0;                           ///< … the light's own image
+    std::uint64_t over_tolerance = 0;                         ///< of these, where the estimate exceeds the tolerance
     std::uint64_t hits = 0;                                   ///< camera rays that met a surface
-    std::uint64_t over_tolerance = 0;                         ///< of these, where no order met the tolerance
     std::uint64_t shadow_rays = 0;
     double seconds = 0;
 };
