@@ -16,21 +16,47 @@ struct RuleError {
     double reach, power;
 };
 
+/// Points on a circle about a cap's axis that divides the cap's area at `inside`; weights of a rule sum to 1.
+struct Ring {
+    double inside, weight;
+    int spokes;
+};
+
+/// The middle; one ring, degree 3; the middle and one ring, degree 5; Gauss's three rings, degree 7 around.
+constexpr std::array<Ring, 1> kOnePoint = {Ring{0, 1, 1}};
+constexpr std::array<Ring, 1> kFourPoints = {Ring{0.5, 1, 4}};
+constexpr std::array<Ring, 2> kSevenPoints = {Ring{0, 0.25, 1}, {2.0 / 3, 0.75, 6}};
+constexpr std::array<Ring, 3> kTwentyFourPoints = {
+    Ring{0.112701665379258, 5.0 / 18, 8}, {0.5, 4.0 / 9, 8}, {0.887298334620742, 5.0 / 18, 8}};
+
 /// Measured over random lobes, views and lights (95th percentile).
 constexpr std::array<RuleError, 4> kCapRules = {RuleError{0.7, 2}, {1.0, 4}, {1.0, 6}, {1.0, 8}};
-/// From two points along a side on: a product rule of one point is not even exact for linear functions.
-constexpr std::array<RuleError, 3> kPolygonRules = {RuleError{1.0, 4}, {1.4, 6}, {1.5, 8}};
+
+std::span<const Ring> cap_rule(int number) {
+    switch (number) {
+        case 1:
+            return kOnePoint;
+        case 2:
+            return kFourPoints;
+        case 3:
+            return kSevenPoints;
+        default:
+            return kTwentyFourPoints;
+    }
+}
+
+/// Of three and seven points a triangle, then product rules.
+constexpr std::array<RuleError, 4> kPolygonRules = {RuleError{1.5, 4}, {1.65, 6}, {1.6, 8}, {1.6, 10}};
+
+std::span<const TrianglePoint> polygon_rule(int number) {
+    return number == 1 ? three_point_rule() : number == 2 ? seven_point_rule() : product_rule(number + 1);
+}
 
 int smallest_rule(std::span<const RuleError> rules, double size, double tolerance) {
-    constexpr double kOwnShare = 1;
-    for (std::size_t i = 0; i < rules.size(); ++i) {
-        const double relative = std::pow(size / rules[i].reach, rules[i].power);
-        // A light of relative size x receives at most about x² of the albedo.
-        if (relative * std::min(1.0, size * size) <= tolerance && relative <= kOwnShare * tolerance) {
-            return static_cast<int>(i) + 1;
-        }
-    }
-    return 0;
+    const auto* rule = std::find_if(rules.data(), rules.data() + rules.size(), [&](const RuleError& error) {
+        return std::pow(size / error.reach, error.power) <= tolerance;
+    });
+    return rule == rules.data() + rules.size() ? 0 : static_cast<int>(rule - rules.data()) + 1;
 }
 
 }  // namespace
@@ -42,43 +68,41 @@ double relative_size(const GgxShape& shape, const Vec3d& view, const Vec3d& midd
     return half_angle / std::hypot(half.x, half.y, shape.alpha * half.z);
 }
 
-int cap_rings(double relative_size, double tolerance) {
+int cap_rule_number(double relative_size, double tolerance) {
     return smallest_rule(kCapRules, relative_size, tolerance);
 }
 
-int polygon_points(double relative_size, double tolerance) {
-    const int rule = smallest_rule(kPolygonRules, relative_size, tolerance);
-    return rule > 0 ? rule + 1 : 0;
+int polygon_rule_number(double relative_size, double tolerance) {
+    return smallest_rule(kPolygonRules, relative_size, tolerance);
 }
 
-CubatureSum cap_cubature(const GgxShape& shape, const Vec3d& view, const Circle& cap, int rings) {
+CubatureSum cap_cubature(const GgxShape& shape, const Vec3d& view, const Circle& cap, int rule_number) {
     const double height = cap.sine * cap.sine / (1 + cap.cosine);  // 1 - cosσ
-    if (rings == 1) {
-        return {2 * std::numbers::pi * height * lobe_value(shape, cap.axis, view), 1};
-    }
     const Vec3d side = std::abs(cap.axis.z) < 0.9 ? Vec3d(0, 0, 1) : Vec3d(1, 0, 0);
     const Vec3d u = glm::normalize(glm::cross(side, cap.axis));
     const Vec3d v = glm::cross(cap.axis, u);
-    const GaussRule& rule = gauss_rule(rings - 1);
-    const int spokes = 2 * rings;
     double sum = 0;
-    for (std::size_t ring = 0; ring < rule.nodes.size(); ++ring) {
-        const double drop = height * rule.nodes[ring];  // 1 - cosine of the ring's angle
+    int points = 0;
+    double phase = 0;  // half a step from ring to ring
+    for (const Ring& ring : cap_rule(rule_number)) {
+        const double drop = height * ring.inside;  // 1 - cosine of the ring's angle
         const double sine = std::sqrt(drop * (2 - drop));
         double around = 0;
-        for (int i = 0; i < spokes; ++i) {
-            const double phi = 2 * std::numbers::pi * (i + 0.5 * static_cast<double>(ring % 2)) / spokes;
+        for (int i = 0; i < ring.spokes; ++i) {
+            const double phi = 2 * std::numbers::pi * (i + phase) / ring.spokes;
             around += lobe_value(shape, (1 - drop) * cap.axis + sine * (std::cos(phi) * u + std::sin(phi) * v), view);
         }
-        sum += rule.weights[ring] * around;
+        sum += ring.weight * around / ring.spokes;
+        points += ring.spokes;
+        phase = 0.5 - phase;
     }
-    return {2 * std::numbers::pi * height * sum / spokes, spokes * (rings - 1)};
+    return {2 * std::numbers::pi * height * sum, points};
 }
 
 CubatureSum polygon_cubature(const GgxShape& shape, const Vec3d& view, const SphericalPolygon<double>& polygon,
-                             int points) {
+                             int rule_number) {
     const std::vector<Vec3d>& v = polygon.directions();
-    const GaussRule& rule = gauss_rule(points);
+    const auto rule = polygon_rule(rule_number);
     double sum = 0;
     double weights = 0;
     for (std::size_t i = 1; i + 1 < v.size(); ++i) {
@@ -87,7 +111,7 @@ CubatureSum polygon_cubature(const GgxShape& shape, const Vec3d& view, const Sph
         });
     }
     // As for coefficients: the area of a tiny polygon drowns in the rounding of unit vectors, its solid angle does not.
-    const int count = points * points * static_cast<int>(v.size() - 2);
+    const int count = static_cast<int>(rule.size() * (v.size() - 2));
     return {weights > 0 ? sum * polygon.solid_angle() / weights : 0.0, count};
 }
 

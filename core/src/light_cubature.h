@@ -14,21 +14,21 @@ namespace shlight {
 /// middle. middle: unit direction; a bound from above. Precondition: shape.alpha > 0.
 double relative_size(const GgxShape& shape, const Vec3d& view, const Vec3d& middle, double half_angle);
 
-/// The smallest rule of a kind whose error, of a light of this relative size, is ≤ tolerance, absolute in units of the
-/// lobe's albedo, and a few times the tolerance relative to the light's own value; 0 if the light is too large.
-/// cap_rings: rings of points, 2k + 2 on ring number k of the rule with k rings; one ring of one point is the middle.
-int cap_rings(double relative_size, double tolerance);
-int polygon_points(double relative_size, double tolerance);
+/// The smallest rule for caps or polygons whose error, of a light of this relative size, is at most `tolerance`,
+/// absolute in units of the lobe's albedo and relative to the light's own value; 0 if the light is too large for any.
+/// Caps: 1, 4, 7, 24 points. Polygons: 3, 7, 16, 25 points a triangle.
+int cap_rule_number(double relative_size, double tolerance);
+int polygon_rule_number(double relative_size, double tolerance);
 
 struct CubatureSum {
     double value;
     int points;
 };
 
-/// ∫ f·cos over a cap that lies above the horizon. rings: of cap_rings.
-CubatureSum cap_cubature(const GgxShape& shape, const Vec3d& view, const Circle& cap, int rings);
-/// ∫ f·cos over a polygon clipped by the horizon. points: along a triangle's side.
+/// ∫ f·cos over a cap that lies above the horizon.
+CubatureSum cap_cubature(const GgxShape& shape, const Vec3d& view, const Circle& cap, int rule_number);
+/// ∫ f·cos over a polygon clipped by the horizon.
 CubatureSum polygon_cubature(const GgxShape& shape, const Vec3d& view, const SphericalPolygon<double>& polygon,
-                             int points);
+                             int rule_number);
 
 }  // namespace shlight

@@ -14,9 +14,12 @@
 namespace shlight {
 namespace {
 
-/// Rules of at most these sizes are cheaper than harmonics of the orders that glossy lobes take.
-constexpr int kCheapRings = 3;
-constexpr int kCheapPoints = 2;
+/// Rules up to these are cheaper than harmonics of the orders that glossy lobes take.
+constexpr int kCheapCapRule = 3;
+constexpr int kCheapPolygonRule = 2;
+
+/// Of a polygon of one radian, as a relative size: the projection of the sphere onto a plane varies as a lobe does.
+constexpr double kFlatness = 1.2;
 
 /// The outline of a cap above the horizon.
 struct CapOutline {
@@ -86,7 +89,8 @@ LobeAtView::LobeAtView(const LobeShape& shape, const WarpedFit* fit, double cos_
     if (fit == nullptr) {
         return;
     }
-    tolerance_ = tolerance * fit->albedo(cos_theta_o);
+    tolerance_ = tolerance;
+    albedo_ = fit->albedo(cos_theta_o);
     order_ = auto_order ? fit->order_for(cos_theta_o, tolerance) : fit->orders().front();
     if (order_ > 0) {
         met_ = fit->shading_error(cos_theta_o, order_) <= tolerance;
@@ -111,9 +115,9 @@ LobeRadiance LobeAtView::radiance(const Circle& cap) const {
     }
     if (choose_ && cap.axis.z >= cap.sine) {
         const double size = relative_size(ggx(), view_, cap.axis, std::atan2(cap.sine, cap.cosine));
-        const int rings = cap_rings(size, tolerance_);
-        if (rings > 0 && (rings <= kCheapRings || order_ == 0)) {
-            const CubatureSum sum = cap_cubature(ggx(), view_, cap, rings);
+        const int rule = cap_rule_number(size, tolerance_);
+        if (rule > 0 && (rule <= kCheapCapRule || order_ == 0)) {
+            const CubatureSum sum = cap_cubature(ggx(), view_, cap, rule);
             return {static_cast<float>(sum.value), 0, sum.points, true};
         }
     }
@@ -122,8 +126,8 @@ LobeRadiance LobeAtView::radiance(const Circle& cap) const {
     }
     const CapOutline outline = cap_outline(cap);
     const OutlineIntegral integral =
-        outline_integral(ggx(), view_.z, std::span(outline.arcs).first(outline.count), tolerance_);
-    return {static_cast<float>(integral.value), 0, integral.points, integral.error <= tolerance_};
+        outline_integral(ggx(), view_.z, std::span(outline.arcs).first(outline.count), tolerance_ * albedo_);
+    return {static_cast<float>(integral.value), 0, integral.points, integral.error <= tolerance_ * albedo_};
 }
 
 bool LobeAtView::reflects_into(const SphericalPolygon<double>& polygon) const {
@@ -149,9 +153,11 @@ LobeRadiance LobeAtView::radiance(const SphericalPolygon<double>& polygon) const
     }
     if (choose_) {
         const Extent extent = extent_of(polygon);
-        const int points = polygon_points(relative_size(ggx(), view_, extent.middle, extent.half_angle), tolerance_);
-        if (points > 0 && (points <= kCheapPoints || order_ == 0)) {
-            const CubatureSum sum = polygon_cubature(ggx(), view_, polygon, points);
+        const double size =
+            std::max(relative_size(ggx(), view_, extent.middle, extent.half_angle), kFlatness * extent.half_angle);
+        const int rule = polygon_rule_number(size, tolerance_);
+        if (rule > 0 && (rule <= kCheapPolygonRule || order_ == 0)) {
+            const CubatureSum sum = polygon_cubature(ggx(), view_, polygon, rule);
             return {static_cast<float>(sum.value), 0, sum.points, true};
         }
     }
@@ -162,8 +168,8 @@ LobeRadiance LobeAtView::radiance(const SphericalPolygon<double>& polygon) const
         return {value, order_, 0, met_};
     }
     const std::vector<OutlineArc> outline = polygon_outline(polygon);
-    const OutlineIntegral integral = outline_integral(ggx(), view_.z, outline, tolerance_);
-    return {static_cast<float>(integral.value), 0, integral.points, integral.error <= tolerance_};
+    const OutlineIntegral integral = outline_integral(ggx(), view_.z, outline, tolerance_ * albedo_);
+    return {static_cast<float>(integral.value), 0, integral.points, integral.error <= tolerance_ * albedo_};
 }
 
 }  // namespace shlight

@@ -47,7 +47,8 @@ class LobeAtView {
 
     LobeShape shape_;
     Vec3d view_;
-    double tolerance_ = 0;  // absolute, of the radiance
+    double tolerance_ = 0;  // of the radiance ÷ albedo
+    double albedo_ = 0;
     bool choose_;
     int order_ = 0;
     bool met_ = true;  // by the order

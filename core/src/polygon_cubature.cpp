@@ -7,6 +7,7 @@
 
 #include "gauss_legendre.h"
 #include "shlight/basis.h"
+#include "triangle_cubature.h"
 
 namespace shlight {
 namespace {
@@ -29,36 +30,19 @@ int points_per_side(int order, double side) {
     return std::clamp(static_cast<int>(std::ceil(points)), 2, kMaxGaussPoints);
 }
 
-/// Adds the integral over a small triangle. It is projected onto the plane that touches the sphere at its middle, where
-/// the density is smooth however unevenly far away the polygon's own vertices are.
-/// Returns the sum of the weights.
+/// Adds the integral over a small triangle. Returns the sum of the weights.
 template <class T>
 Wider<T> add_small_triangle(const Triangle<Wider<T>>& t, Wider<T> side, int order, T* coefficients) {
     using Real = Wider<T>;
-    const Vec3<Real> axis = glm::normalize(t.a + t.b + t.c);
-    const Vec3<Real> a = t.a / glm::dot(t.a, axis);
-    const Vec3<Real> ab = t.b / glm::dot(t.b, axis) - a;
-    const Vec3<Real> ac = t.c / glm::dot(t.c, axis) - a;
-    const Real area = glm::dot(axis, glm::cross(ab, ac));
     const int count = coefficient_count(order);
-    const GaussRule& rule = gauss_rule(points_per_side<T>(order, static_cast<double>(side)));
     std::array<T, static_cast<std::size_t>(coefficient_count(kMaxOrder))> basis;
-    Real total = 0;
-    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-        const Real u = rule.nodes[i];
-        for (std::size_t j = 0; j < rule.nodes.size(); ++j) {
-            const Real v = rule.nodes[j];
-            const Vec3<Real> p = a + u * ((1 - v) * ab + v * ac);
-            const Real length = glm::length(p);
-            const Real weight = Real(rule.weights[i]) * rule.weights[j] * u * area / (length * length * length);
-            total += weight;
-            sh_basis(Vec3<T>(p / length), order, basis.data());
-            for (int k = 0; k < count; ++k) {
-                coefficients[k] += static_cast<T>(weight) * basis[k];
-            }
+    const auto rule = product_rule(points_per_side<T>(order, static_cast<double>(side)));
+    return visit_triangle(t.a, t.b, t.c, rule, [&](const Vec3<Real>& direction, Real weight) {
+        sh_basis(Vec3<T>(direction), order, basis.data());
+        for (int k = 0; k < count; ++k) {
+            coefficients[k] += static_cast<T>(weight) * basis[k];
         }
-    }
-    return total;
+    });
 }
 
 template <class T>
