@@ -11,9 +11,19 @@
 namespace shlight {
 namespace {
 
-/// Relative error of a rule for a light of relative size x, about (x / reach)^power.
+/// Relative error of a rule for a light of relative size x, about (x / reach)^(2 half_power).
 struct RuleError {
-    double reach, power;
+    double reach;
+    int half_power;
+
+    double operator()(double size) const {
+        const double square = size * size / (reach * reach);
+        double error = square;
+        for (int i = 1; i < half_power; ++i) {
+            error *= square;
+        }
+        return error;
+    }
 };
 
 /// Points on a circle about a cap's axis that divides the cap's area at `inside`; weights of a rule sum to 1.
@@ -30,7 +40,7 @@ constexpr std::array<Ring, 3> kTwentyFourPoints = {
     Ring{0.112701665379258, 5.0 / 18, 8}, {0.5, 4.0 / 9, 8}, {0.887298334620742, 5.0 / 18, 8}};
 
 /// Measured over random lobes, views and lights (95th percentile).
-constexpr std::array<RuleError, 4> kCapRules = {RuleError{0.7, 2}, {1.0, 4}, {1.0, 6}, {1.0, 8}};
+constexpr std::array<RuleError, 4> kCapRules = {RuleError{0.7, 1}, {1.0, 2}, {1.0, 3}, {1.0, 4}};
 
 std::span<const Ring> cap_rule(int number) {
     switch (number) {
@@ -46,16 +56,15 @@ std::span<const Ring> cap_rule(int number) {
 }
 
 /// Of three and seven points a triangle, then product rules.
-constexpr std::array<RuleError, 4> kPolygonRules = {RuleError{1.5, 4}, {1.65, 6}, {1.6, 8}, {1.6, 10}};
+constexpr std::array<RuleError, 4> kPolygonRules = {RuleError{1.5, 2}, {1.65, 3}, {1.6, 4}, {1.6, 5}};
 
 std::span<const TrianglePoint> polygon_rule(int number) {
     return number == 1 ? three_point_rule() : number == 2 ? seven_point_rule() : product_rule(number + 1);
 }
 
 int smallest_rule(std::span<const RuleError> rules, double size, double tolerance) {
-    const auto* rule = std::find_if(rules.data(), rules.data() + rules.size(), [&](const RuleError& error) {
-        return std::pow(size / error.reach, error.power) <= tolerance;
-    });
+    const auto* rule = std::find_if(rules.data(), rules.data() + rules.size(),
+                                    [&](const RuleError& error) { return error(size) <= tolerance; });
     return rule == rules.data() + rules.size() ? 0 : static_cast<int>(rule - rules.data()) + 1;
 }
 

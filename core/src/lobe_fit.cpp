@@ -133,15 +133,6 @@ double LobeFit::residual(double cos_theta_o, int order) const {
                         [&](int node) { return static_cast<double>(residuals_[node * kMaxOrder + order - 1]); });
 }
 
-OrderChoice LobeFit::order_for(double cos_theta_o, double tolerance) const {
-    for (const int order : kOrderLadder) {
-        if (residual(cos_theta_o, order) <= tolerance) {
-            return {order, true};
-        }
-    }
-    return {kOrderLadder.back(), false};
-}
-
 std::shared_ptr<const LobeTable> LobeFit::table(int order) const {
     const auto* found = std::find(kOrderLadder.begin(), kOrderLadder.end(), order);
     if (found != kOrderLadder.end()) {

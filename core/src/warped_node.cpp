@@ -234,6 +234,7 @@ void fit_warped_node(const GgxShape& shape, double cos_theta_o, const NodeLayout
                           std::max(0.0, d.norms.direction - kept.direction)};
     const HeightBasis basis = height_basis(d, highest);
     std::vector<DegreeFit> fits;
+    fits.reserve(static_cast<std::size_t>(highest));
     for (int m = 0; m < highest; ++m) {
         fits.emplace_back(d, basis, m, highest);
     }

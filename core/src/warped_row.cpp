@@ -46,7 +46,8 @@ CubicStencil::CubicStencil(double position, int least, int count)
                t * (t - 1) * (t - 2) / 6};
 }
 
-WarpedRow::WarpedRow(const NodeLayout& layout, std::vector<float> nodes) : layout_(layout), nodes_(std::move(nodes)) {}
+WarpedRow::WarpedRow(NodeLayout layout, std::vector<float> nodes)
+    : layout_(std::move(layout)), nodes_(std::move(nodes)) {}
 
 float WarpedRow::value(double cos_theta_o, std::size_t offset) const {
     const CubicStencil s = view_stencil(cos_theta_o);
@@ -63,7 +64,7 @@ void WarpedRow::coefficients(double cos_theta_o, std::size_t which, float* cosin
     const int count = cosine_count(order);
     std::fill_n(cosine_terms, count, 0.0F);
     for (int k = 0; k < 4; ++k) {
-        const std::size_t node = static_cast<std::size_t>(std::abs(s.first + k));
+        const auto node = static_cast<std::size_t>(std::abs(s.first + k));
         const float* terms = &nodes_[node * layout_.size() + layout_.coefficients(which)];
         const float w = s.weights[k];
         if (s.first + k >= 0) {

@@ -53,7 +53,7 @@ struct CubicStencil {
 
 class WarpedRow {
   public:
-    WarpedRow(const NodeLayout& layout, std::vector<float> nodes);
+    WarpedRow(NodeLayout layout, std::vector<float> nodes);
 
     const NodeLayout& layout() const { return layout_; }
     std::span<const float> nodes() const { return nodes_; }

@@ -86,8 +86,6 @@ TEST(LobeFit, LambertIsExactFromOrderTwo) {
         }
         EXPECT_LE(fit.residual(0.3, order), 1e-7);
     }
-    EXPECT_EQ(fit.order_for(0.3, 1e-3).order, 2);
-    EXPECT_TRUE(fit.order_for(0.3, 1e-3).met);
     EXPECT_NEAR(fit.albedo(0.5), 1, 1e-12);
     EXPECT_NEAR(fit.norm(0.5), std::sqrt(2 / (3 * std::numbers::pi)), 1e-12);
     EXPECT_NEAR(measured_residual(fit, 0.3, 1), fit.residual(0.3, 1), 1e-3);
@@ -148,23 +146,6 @@ TEST(LobeFit, ErrorFallsWithTheOrder) {
             }
         }
     }
-}
-
-TEST(LobeFit, TakesTheSmallestOrderThatWillDo) {
-    const LobeFit rough{GgxShape{0.5}};
-    for (const double tolerance : {0.3, 0.03, 1e-3, 1e-4}) {
-        const OrderChoice choice = rough.order_for(0.8, tolerance);
-        EXPECT_TRUE(choice.met);
-        EXPECT_LE(rough.residual(0.8, choice.order), tolerance);
-        for (const int order : kOrderLadder) {
-            if (order < choice.order) {
-                EXPECT_GT(rough.residual(0.8, order), tolerance);
-            }
-        }
-    }
-    const OrderChoice sharp = LobeFit{GgxShape{0.02}}.order_for(0.3, 1e-3);
-    EXPECT_EQ(sharp.order, kMaxOrder);
-    EXPECT_FALSE(sharp.met);
 }
 
 TEST(LobeFit, AlbedoAndNormAreIntegrals) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A lobe as spherical harmonics: the least-squares fit of f·cos over the *upper hemisphere*.
+// A lobe as plain spherical harmonics, without a warp, for those who want coefficients: the least-squares fit of f·cos
+// over the *upper hemisphere*.
 //
 // Light coefficients are clipped at the horizon exactly, so below it the expansion may be anything; fitting only what
 // counts spares the ringing of a projection over the whole sphere. docs/algorithms.md derives the fit.
@@ -17,7 +18,7 @@
 
 namespace shlight {
 
-/// Orders that a hit may choose from. Between neighbours the cost grows by about two, the error by much more.
+/// Orders whose tables are kept: those that are asked for again.
 inline constexpr std::array<int, 12> kOrderLadder = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
 
 /// The coefficients of one order, tabulated over the view angle and interpolated.
@@ -36,12 +37,6 @@ class LobeTable {
     std::vector<float> nodes_;
 };
 
-/// The order that a hit takes, and whether it meets the tolerance (no order up to 64 may).
-struct OrderChoice {
-    int order;
-    bool met;
-};
-
 /// All fits of one shape.
 class LobeFit {
   public:
@@ -54,8 +49,6 @@ class LobeFit {
     double norm(double cos_theta_o) const;
     /// L2 error of the fit over the upper hemisphere ÷ norm, for any order 1 … 64.
     double residual(double cos_theta_o, int order) const;
-    /// The smallest order of the ladder with residual ≤ tolerance.
-    OrderChoice order_for(double cos_theta_o, double tolerance) const;
     /// The table of one order: kept for those of the ladder, solved for the others.
     std::shared_ptr<const LobeTable> table(int order) const;
 
