@@ -137,16 +137,16 @@ void compare(std::size_t count, int order, std::uint64_t seed) {
     }
 }
 
-const std::size_t kMore = testing::all_tests() ? 10 : 1;
+const std::size_t kMore = testing::all_tests() ? 40 : 1;
 
 TEST(PolygonWarped, AgreesWithReferenceAtOrder1) {
-    compare(100 * kMore, 1, 700);
+    compare(30 * kMore, 1, 700);
 }
 TEST(PolygonWarped, AgreesWithReferenceAtOrder16) {
-    compare(100 * kMore, 16, 720);
+    compare(30 * kMore, 16, 720);
 }
 TEST(PolygonWarped, AgreesWithReferenceAtOrder32) {
-    compare(20 * kMore, 32, 740);
+    compare(8 * kMore, 32, 740);
 }
 
 /// The reference against product cubature over the polygon itself, and against more nodes.
