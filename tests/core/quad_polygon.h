@@ -10,11 +10,6 @@
 
 namespace shlight::truth {
 
-/// The two numbers that define a shlight::Warp.
-struct WarpInput {
-    double tilt, narrowness;
-};
-
 /// order² coefficients of the image of a polygon that is clipped by the horizon: the slices of quad_truth.h, summed
 /// along the image of each edge.
 Coefficients warped_polygon(std::span<const Vec3d> vertices, const WarpInput& warp, int order, int extra_nodes = 0);

@@ -248,7 +248,7 @@ TEST(CapHorizon, WarpedLightsAgreeWithReference) {
     on_two_threads(cases.size(), [&](std::size_t i) {
         const WarpedCase& c = cases[i];
         const Warp warp(c.tilt, c.narrowness);
-        const truth::Coefficients reference = truth::warped_cap(c.light, c.tilt, c.narrowness, kOrder);
+        const truth::Coefficients reference = truth::warped_cap(c.light, {c.tilt, c.narrowness}, kOrder);
         const auto error = [&]<class T>(T /*precision*/) {
             const std::vector<T> computed = coefficients(cap_of<T>(c.light, warp), Horizon<T>(warp, kOrder), kOrder);
             return truth::largest_error(reference, kOrder, computed.data()) / scale_of(reference);

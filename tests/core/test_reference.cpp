@@ -120,8 +120,8 @@ TEST(Reference, WarpedCapsHaveConverged) {
         const CapInput input = random_clipped_cap(random);
         const double tilt = random.uniform(-1.5, 1.5);
         const double narrowness = i == 0 ? 1 : random.log_uniform(1e-3, 1);
-        const Coefficients reference = truth::warped_cap(input, tilt, narrowness, 12);
-        largest = worst(largest, difference(reference, truth::warped_cap(input, tilt, narrowness, 12, 8)));
+        const Coefficients reference = truth::warped_cap(input, {tilt, narrowness}, 12);
+        largest = worst(largest, difference(reference, truth::warped_cap(input, {tilt, narrowness}, 12, 8)));
         if (i == 0) {
             largest = worst(largest, difference(reference, truth::cap(input, 12, true)));
         }
