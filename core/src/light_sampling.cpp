@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "shlight/cap.h"
 #include "spherical_polygon.h"
 
 namespace shlight {
@@ -77,6 +78,7 @@ CapSampler::CapSampler(const CapView& cap)
     const double sine = cap.radius / (sphere ? distance_ : std::hypot(distance_, cap.radius));
     const double cosine = sphere ? std::sqrt(std::max(0.0, (1 - sine) * (1 + sine))) : sine * distance_ / cap.radius;
     one_minus_cos_ = sine * sine / (1 + cosine);
+    sine_ = sine;
     cut_ = axis_height_ < sine;
     if (axis_height_ < 0) {
         widest_ = std::acos(std::clamp(-axis_height_ * cosine / (tilt_ * sine), -1.0, 1.0));
@@ -99,6 +101,19 @@ LightSample CapSampler::sample(const glm::dvec2& point) const {
     const double sine = std::sqrt(drop * (2 - drop));
     const Vec3d direction = (1 - drop) * axis_ + (sine * toward_up) * up_ + (sine * std::sin(azimuth)) * across_;
     return {direction, distance(direction, 1 - drop), 2 * widest_ * (to - from)};
+}
+
+double CapSampler::solid_angle() const {
+    return cut_ ? Cap<double>::inside(circle_of(cap_)).solid_angle : 2 * pi * one_minus_cos_;
+}
+
+std::optional<double> CapSampler::meets(const Vec3d& direction) const {
+    const double cosine = glm::dot(direction, axis_);
+    // By the sine: cosines of small caps are all nearly 1.
+    if (cap_.kind != CapView::Kind::inside && !(cosine > 0 && glm::length(glm::cross(direction, axis_)) <= sine_)) {
+        return std::nullopt;
+    }
+    return distance(direction, cosine);
 }
 
 double CapSampler::distance(const Vec3d& direction, double cosine) const {
@@ -152,6 +167,20 @@ void PolygonSampler::add_clipped(const Vec3d& a, const Vec3d& b, const Vec3d& c)
     }
 }
 
+bool PolygonSampler::Piece::contains(const Vec3d& direction) const {
+    const double ab = glm::dot(direction, glm::cross(a, b));
+    const double bc = glm::dot(direction, glm::cross(b, c));
+    const double ca = glm::dot(direction, glm::cross(c, a));
+    return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
+}
+
+std::optional<double> PolygonSampler::meets(const Vec3d& direction) const {
+    const double distance = height_ / glm::dot(normal_, direction);
+    const bool met = distance > 0 && std::any_of(pieces_.begin(), pieces_.end(),
+                                                 [&](const Piece& piece) { return piece.contains(direction); });
+    return met ? std::optional(distance) : std::nullopt;
+}
+
 LightSample PolygonSampler::sample(glm::dvec2 point) const {
     if (!(total_ > 0)) {
         return {Vec3d(0, 0, 1), 0, 0};
@@ -173,6 +202,15 @@ LightSample PolygonSampler::sample(glm::dvec2 point) const {
     // dω = |cos at the light| dA / distance²
     const double density = piece->area * std::abs(height_) / (distance * distance * distance);
     return {target / distance, distance, total_ / piece->solid_angle * density};
+}
+
+void LightSampler::reset(const Light& light, const ShadingFrame& frame) {
+    if (const auto* sphere = std::get_if<SphereLight>(&light)) {
+        cap_.emplace(*view(*sphere, frame));
+    } else {
+        cap_.reset();
+        polygon_.reset(std::get<PolygonLight>(light), frame);
+    }
 }
 
 }  // namespace shlight

@@ -3,7 +3,8 @@
 // Directions to a light from a hit, spread over what of it lies above the horizon.
 //
 // Both samplers turn a point of the unit square into a direction and a weight: the mean of weight · g(direction) over
-// evenly spread points is the integral of g over the solid angle of the light above the horizon.
+// evenly spread points is the integral of g over the solid angle of the light above the horizon. Both also meet a light
+// with a ray in a given direction.
 #pragma once
 
 #include <optional>
@@ -27,6 +28,10 @@ class CapSampler {
   public:
     explicit CapSampler(const CapView& cap);
     LightSample sample(const glm::dvec2& point) const;
+    /// Above the horizon.
+    double solid_angle() const;
+    /// To the light's surface along a unit direction above the horizon; nothing where it misses.
+    std::optional<double> meets(const Vec3d& direction) const;
 
   private:
     double distance(const Vec3d& direction, double cosine) const;  // to the light's surface
@@ -36,6 +41,7 @@ class CapSampler {
     Vec3d axis_, up_, across_;           // up: at right angles to the axis, towards the zenith
     double axis_height_ = 1, tilt_ = 0;  // the axis' elevation: sine and cosine
     double one_minus_cos_ = 1;           // of the half angle
+    double sine_ = 1;                    // likewise
     bool cut_ = false;                   // by the horizon
     double widest_;                      // azimuth about the axis, from `up`, where the light ends
 };
@@ -61,10 +67,15 @@ class PolygonSampler {
     void reset(const PolygonLight& light, const ShadingFrame& frame);
     /// Where nothing lies above the horizon, a sample of no weight and no distance.
     LightSample sample(glm::dvec2 point) const;
+    /// Above the horizon.
+    double solid_angle() const { return total_; }
+    /// As CapSampler::meets.
+    std::optional<double> meets(const Vec3d& direction) const;
 
   private:
     struct Piece {
         Vec3d a, b, c;
+        bool contains(const Vec3d& direction) const;
         double solid_angle;
         double area;                                 // where it is sampled by area
         std::optional<SphericalTriangle> spherical;  // where it is not
@@ -75,6 +86,21 @@ class PolygonSampler {
     double total_ = 0;
     Vec3d normal_{0};
     double height_ = 0;  // of the plane over the hit, along the normal
+};
+
+/// Either of them. Precondition: the light is seen.
+class LightSampler {
+  public:
+    void reset(const Light& light, const ShadingFrame& frame);
+    LightSample sample(const glm::dvec2& point) const { return cap_ ? cap_->sample(point) : polygon_.sample(point); }
+    double solid_angle() const { return cap_ ? cap_->solid_angle() : polygon_.solid_angle(); }
+    std::optional<double> meets(const Vec3d& direction) const {
+        return cap_ ? cap_->meets(direction) : polygon_.meets(direction);
+    }
+
+  private:
+    std::optional<CapSampler> cap_;
+    PolygonSampler polygon_;
 };
 
 }  // namespace shlight

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include "shadow_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "lobe_sampling.h"
+#include "ray_rounding.h"
+#include "shlight/sampling.h"
+
+namespace shlight {
+namespace {
+
+constexpr std::uint32_t kLightOnly = std::numeric_limits<std::uint32_t>::max();
+
+/// A lobe takes rays of its own only where more than this share of them could meet the light.
+constexpr double kLeastShare = 0.1;
+
+/// Where on the light a shadow ray ends, relative to the point sampled: a polygon may lie in a mesh's face, its own or
+/// one that it is mounted on, and must not be blocked by it. A float ray strays in proportion to its length too.
+Vec3d clearance(const Light& light, const ShadingFrame& frame) {
+    const auto* polygon = std::get_if<PolygonLight>(&light);
+    if (polygon == nullptr) {
+        return Vec3d(0);
+    }
+    const double distance = polygon->error + kRayRounding * glm::length(frame.origin - polygon->center);
+    const bool front = glm::dot(polygon->normal, frame.origin - polygon->vertices[0]) > 0;
+    return (front ? distance : -distance) * polygon->normal;
+}
+
+/// Shadow rays of one hit, in float but for the way from the rounded origin.
+class RayStart {
+  public:
+    RayStart(const ShadingFrame& frame, const Vec3d& origin, const Vec3d& target_offset)
+        : origin_(origin),
+          x_(frame.x),
+          y_(frame.y),
+          z_(frame.z),
+          offset_(frame.to_local(frame.origin - Vec3d(origin_) + target_offset)) {}
+
+    /// To a point in the shading frame, all but the last few roundings.
+    Ray towards(const Vec3d& local_target) const {
+        const Vec3f way(local_target + offset_);
+        return {origin_, 0.0F, way.x * x_ + way.y * y_ + way.z * z_, 1.0F - 0x1p-22F};
+    }
+
+  private:
+    Vec3f origin_, x_, y_, z_;
+    Vec3d offset_;
+};
+
+Vec3d view_of(const Hits& hits, std::size_t hit) {
+    const double cosine = hits.cos_theta_o[hit];
+    return {std::sqrt(1.0 - cosine * cosine), 0, cosine};
+}
+
+}  // namespace
+
+/// What the rays of one hit have in common.
+class ShadowRays::Drawing {
+  public:
+    Drawing(const Light& light, const Hits& hits, std::size_t hit, const RayPhase& phase, std::uint32_t seed)
+        : hit_material(hits.material[hit]),
+          view(view_of(hits, hit)),
+          start(hits.frame[hit], hits.shadow_origin[hit], clearance(light, hits.frame[hit])),
+          rays(phase.rays_per_hit),
+          mirror_rays(phase.first ? 1 : 0),
+          first_point_(phase.first_point + (hits.sample[hit] - phase.first_sample) * phase.rays_per_hit),
+          seed_(seed) {}
+
+    /// Of one set of rays; each has a sequence of its own.
+    glm::dvec2 point(std::size_t set, std::uint32_t ray) const {
+        const std::uint32_t seed = set == 0 ? seed_ : hash(seed_, 2 + static_cast<std::uint32_t>(set));
+        return sobol(shuffled(first_point_ + ray, seed), seed);
+    }
+
+    std::uint32_t hit_material;
+    Vec3d view;
+    RayStart start;
+    std::uint32_t rays;         // of each set, but …
+    std::uint32_t mirror_rays;  // … for mirrors
+
+  private:
+    std::uint32_t first_point_, seed_;
+};
+
+ShadowRays::ShadowRays(const RayTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride)
+    : tracer_(&tracer), lobe_stride_(lobe_stride), lobes_(materials) {
+    for (const MaterialLobes& material : materials) {
+        Material& sets = materials_.emplace_back();
+        for (const Lobe& lobe : material.lobes()) {
+            const auto* ggx = std::get_if<GgxShape>(&lobe.shape);
+            if (ggx == nullptr) {
+                sets.set_of_lobe.push_back(kLightOnly);
+                continue;
+            }
+            const auto known = std::find(sets.alphas.begin(), sets.alphas.end(), ggx->alpha);
+            sets.set_of_lobe.push_back(static_cast<std::uint32_t>(known - sets.alphas.begin()));
+            if (known == sets.alphas.end()) {
+                sets.alphas.push_back(ggx->alpha);
+            }
+        }
+        set_stride_ = std::max(set_stride_, 1 + sets.alphas.size());
+    }
+}
+
+void ShadowRays::trace(const Light& light, const Hits& hits, const LitHits& lit, const RayPhase& phase,
+                       std::uint32_t seed) {
+    if (phase.first) {
+        directions_.clear();
+        weights_.clear();
+        blocked_.clear();
+        runs_.clear();
+        solid_angles_.assign(lit.hit.size() * set_stride_, 0.0);
+    }
+    rays_.clear();
+    const std::size_t before = blocked_.size();
+    for (std::size_t i = 0; i < lit.hit.size(); ++i) {
+        light_sampler_.reset(light, hits.frame[lit.hit[i]]);
+        draw(Drawing(light, hits, lit.hit[i], phase, seed), lit, i);
+    }
+    blocked_.resize(directions_.size());
+    tracer_->occluded(rays_, std::span(blocked_).subspan(before));
+    rays_traced_ += rays_.size();
+}
+
+bool ShadowRays::shines(const LitHits& lit, std::size_t lit_index, const Material& material, std::uint32_t set) const {
+    for (std::size_t lobe = 0; lobe < material.set_of_lobe.size(); ++lobe) {
+        if (material.set_of_lobe[lobe] == set && lit.shines[lit_index * lobe_stride_ + lobe] != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void ShadowRays::draw(const Drawing& drawing, const LitHits& lit, std::size_t lit_index) {
+    const Material& material = materials_[drawing.hit_material];
+    bool mirrors_only = !shines(lit, lit_index, material, kLightOnly);
+    for (std::uint32_t set = 0; set < material.alphas.size(); ++set) {
+        mirrors_only = mirrors_only && !(material.alphas[set] > 0 && shines(lit, lit_index, material, set));
+    }
+    std::size_t begin = directions_.size();
+    const auto end_run = [&] {
+        runs_.push_back({begin, directions_.size()});
+        begin = directions_.size();
+    };
+    if (!mirrors_only) {
+        for (std::uint32_t ray = 0; ray < drawing.rays; ++ray) {
+            const LightSample sample = light_sampler_.sample(drawing.point(0, ray));
+            push(drawing, sample.direction, sample.distance, sample.weight);
+        }
+    }
+    end_run();
+    for (std::uint32_t set = 0; set + 1 < set_stride_; ++set) {
+        if (set < material.alphas.size() && shines(lit, lit_index, material, set)) {
+            draw_lobes(drawing, lit_index, set);
+        }
+        end_run();
+    }
+}
+
+void ShadowRays::draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set) {
+    const double alpha = materials_[drawing.hit_material].alphas[set];
+    const LobeSampler sampler(alpha, drawing.view);
+    const double solid_angle = light_sampler_.solid_angle();
+    if (alpha > 0 && !(solid_angle * sampler.largest_density() > kLeastShare)) {
+        return;
+    }
+    solid_angles_[lit_index * set_stride_ + 1 + set] = solid_angle;
+    const std::uint32_t rays = alpha > 0 ? drawing.rays : drawing.mirror_rays;
+    for (std::uint32_t ray = 0; ray < rays; ++ray) {
+        const Vec3d direction = sampler.sample(drawing.point(1 + set, ray));
+        const std::optional<double> distance = direction.z > 0 ? light_sampler_.meets(direction) : std::nullopt;
+        if (distance) {
+            push(drawing, direction, *distance, solid_angle);
+        }
+    }
+}
+
+void ShadowRays::push(const Drawing& drawing, const Vec3d& direction, double distance, double weight) {
+    directions_.emplace_back(direction);
+    weights_.push_back(static_cast<float>(weight));
+    rays_.push_back(drawing.start.towards(distance * direction));
+}
+
+std::size_t ShadowRays::blocked_count() const {
+    return static_cast<std::size_t>(std::count(blocked_.begin(), blocked_.end(), 1));
+}
+
+RaySums ShadowRays::sum(const Hits& hits, const LitHits& lit, std::size_t lit_index, std::size_t lobe) const {
+    const std::size_t hit = lit.hit[lit_index];
+    const LobeShape& shape = lobes_[hits.material[hit]].lobes()[lobe].shape;
+    const Material& material = materials_[hits.material[hit]];
+    const std::uint32_t set = material.set_of_lobe[lobe];
+    const Vec3d view = view_of(hits, hit);
+    const bool mirror = is_mirror(shape);
+    const double solid_angle = set == kLightOnly ? 0.0 : solid_angles_[lit_index * set_stride_ + 1 + set];
+    const LobeSampler sampler(set == kLightOnly ? 1.0 : material.alphas[set], view);
+    RaySums sums;
+    const auto add = [&](const Run& run) {
+        for (std::size_t i = run.begin; i < run.end; ++i) {
+            const Vec3d direction(directions_[i]);
+            double value = mirror ? 1.0 : weights_[i] * lobe_value(shape, direction, view);
+            if (!mirror && solid_angle > 0) {
+                // The weights are those of points even in solid angle; so p_light is one over that.
+                value /= 1 + solid_angle * sampler.density(direction);
+            }
+            sums.all += value;
+            sums.squares += value * value;
+            sums.seen += blocked_[i] == 0 ? value : 0;
+        }
+    };
+    for (std::size_t base = lit_index * set_stride_; base < runs_.size(); base += solid_angles_.size()) {
+        if (!mirror) {
+            add(runs_[base]);
+        }
+        if (set != kLightOnly) {
+            add(runs_[base + 1 + set]);
+        }
+    }
+    return sums;
+}
+
+}  // namespace shlight

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+//
+// Directions of lobes: their density against f·cos and against counts, and where they meet lights.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "light_sampling.h"
+#include "lobe_sampling.h"
+#include "random_input.h"
+#include "shlight/bsdf.h"
+#include "shlight/sampling.h"
+
+namespace shlight {
+namespace {
+
+using namespace testing;
+
+constexpr std::uint32_t kPoints = 1 << 14;
+
+Vec3d view_at(double cosine) {
+    return {std::sqrt((1 - cosine) * (1 + cosine)), 0, cosine};
+}
+
+TEST(RenderShadowsSampling, LobeDirectionsHaveTheirDensity) {
+    // The mean of f·cos/density over the directions is the albedo, from the fit; f·cos is never much above the density.
+    for (const double roughness : {0.01, 0.1, 0.3, 0.7, 1.0}) {
+        const Bsdf bsdf = Bsdf::ggx(static_cast<float>(roughness), Rgb(1));
+        const auto& lobe = bsdf.lobes()[0];
+        for (const double cosine : {0.05, 0.3, 0.8, 1.0}) {
+            const Vec3d view = view_at(cosine);
+            const double alpha = std::get<GgxShape>(lobe.shape).alpha;
+            const LobeSampler sampler(alpha, view);
+            double sum = 0;
+            for (std::uint32_t i = 0; i < kPoints; ++i) {
+                const Vec3d direction = sampler.sample(sobol(i, 3));
+                ASSERT_LE(std::abs(glm::length(direction) - 1), 1e-12);
+                if (direction.z <= 0) continue;
+                const double density = sampler.density(direction);
+                const double ratio = lobe_value(lobe.shape, direction, view) / density;
+                EXPECT_LE(density, sampler.largest_density() * (1 + 1e-9));
+                ASSERT_LE(ratio, 1 + 1e-9) << "G₂/G₁";
+                sum += ratio / kPoints;
+            }
+            EXPECT_LE(std::abs(sum - lobe.albedo(cosine)), 2e-3) << roughness << ", cosine " << cosine;
+        }
+    }
+}
+
+TEST(RenderShadowsSampling, LobeDirectionsFallIntoCapsByTheirDensity) {
+    // Shares of directions within cones, against the density summed over even points of the cones.
+    RandomInput random(21);
+    for (int i = 0; i < 60; ++i) {
+        const double alpha = random.log_uniform(0.003, 1);
+        const Vec3d view = view_at(random.uniform(0.05, 1));
+        const LobeSampler sampler(alpha, view);
+        const double half_angle = std::min(1.2, 2 * alpha * random.log_uniform(0.3, 3));
+        Vec3d axis = glm::normalize(Vec3d(-view.x, 0, view.z) + alpha * random.direction());
+        axis.z = std::abs(axis.z);
+        const CapView cap = {CapView::Kind::sphere, axis, std::sin(half_angle)};
+        if (cap.radius >= axis.z) continue;  // above the horizon, where the density is that of all directions
+        const CapSampler light(cap);
+        double inside = 0;
+        double integral = 0;
+        for (std::uint32_t k = 0; k < kPoints; ++k) {
+            const Vec3d direction = sampler.sample(sobol(k, 4));
+            inside += direction.z > 0 && light.meets(direction) ? 1.0 / kPoints : 0;
+            const LightSample sample = light.sample(sobol(k, 5));
+            integral += sample.weight * sampler.density(sample.direction) / kPoints;
+        }
+        // An area is counted by n even points to about n^-3/4 = 7e-4.
+        EXPECT_LE(std::abs(inside - integral), 3e-3) << "alpha " << alpha << ", view " << view.z;
+    }
+}
+
+TEST(RenderShadowsSampling, AMirrorHasOneDirection) {
+    const LobeSampler sampler(0, view_at(0.3));
+    for (std::uint32_t i = 0; i < 16; ++i) {
+        const Vec3d expected(-view_at(0.3).x, 0, 0.3);
+        EXPECT_LE(glm::length(sampler.sample(sobol(i, 6)) - expected), 1e-15);
+    }
+}
+
+/// Where samples lie, rays meet the light at the same distance; the share of even directions that do is the solid
+/// angle.
+void expect_met(const Light& light) {
+    const ShadingFrame frame = {Vec3d(0), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    LightSampler sampler;
+    sampler.reset(light, frame);
+    double weight = 0;
+    int missed = 0;
+    double met = 0;
+    for (std::uint32_t i = 0; i < kPoints; ++i) {
+        const LightSample sample = sampler.sample(sobol(i, 8));
+        weight += sample.weight / kPoints;
+        const auto distance = sampler.meets(sample.direction);
+        missed += distance ? 0 : 1;  // an edge may be missed by rounding
+        if (distance) {
+            // A sphere is met at a grazing angle near its outline.
+            EXPECT_LE(std::abs(*distance - sample.distance), 1e-6 * sample.distance);
+        }
+        const glm::dvec2 p = sobol(i, 9);
+        const double radius = std::sqrt(1 - p.x * p.x);
+        const double azimuth = 2 * std::numbers::pi * p.y;
+        met += sampler.meets({radius * std::cos(azimuth), radius * std::sin(azimuth), p.x}) ? 1.0 / kPoints : 0;
+    }
+    EXPECT_LE(missed, 2);
+    EXPECT_LE(std::abs(weight - sampler.solid_angle()), 1e-3 * weight);
+    EXPECT_LE(std::abs(2 * std::numbers::pi * met - sampler.solid_angle()), 2 * std::numbers::pi * 3e-3);
+}
+
+TEST(RenderShadowsSampling, RaysMeetLightsWhereTheyAre) {
+    for (const bool disk : {false, true}) {
+        expect_met(make_sphere_light({0.3, 0.2, 1}, 0.6, Rgb(1), disk));
+        expect_met(make_sphere_light({1, 0.2, 0.1}, 0.7, Rgb(1), disk));   // cut by the horizon
+        expect_met(make_sphere_light({1, 0.2, -0.2}, 0.6, Rgb(1), disk));  // its middle below it
+    }
+    expect_met(make_sphere_light({0.1, 0.2, 0.3}, 1, Rgb(1), false));  // around the hit
+    for (const bool two_sided : {false, true}) {
+        // Concave and near, cut by the horizon, wound either way.
+        expect_met(make_polygon_light({{-1, -1, 0.5}, {0, -0.2, 0.5}, {1, -1, 0.5}, {0, 1, 0.5}}, Rgb(1), two_sided));
+        expect_met(make_polygon_light({{1, -1, -1}, {1, -1, 1}, {1, 1, 1}, {1, 1, -1}}, Rgb(1), two_sided));
+        expect_met(make_polygon_light({{1, -1, -1}, {1, 1, -1}, {1, 1, 1}, {1, -1, 1}}, Rgb(1), two_sided));
+    }
+}
+
+}  // namespace
+}  // namespace shlight
