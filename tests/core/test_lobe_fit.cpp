@@ -99,7 +99,7 @@ TEST(LobeFit, ResidualIsTheMeasuredError) {
             const LobeFit fit{GgxShape{alpha, fresnel, 1.5}};
             for (int i = 0; i < 3; ++i) {
                 const double cos_theta_o = i == 0 ? 1 : random.uniform(0.15, 1);
-                for (const int order : {1, 2, 4, 8, 16, 32}) {
+                for (const int order : {1, 4, 16, 32}) {
                     const double claimed = fit.residual(cos_theta_o, order);
                     const double measured = measured_residual(fit, cos_theta_o, order);
                     EXPECT_NEAR(measured, claimed, 0.05 * claimed + 2e-5)

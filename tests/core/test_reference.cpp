@@ -134,7 +134,7 @@ TEST(Reference, PolygonsHaveConverged) {
     RandomInput random(3);
     double largest = 0;
     for (const int order : {8, 16, 33, 64}) {
-        for (int i = 0; i < 400 / order; ++i) {
+        for (int i = 0; i < 200 / order; ++i) {
             const std::vector<Vec3d> vertices = random_polygon(random, random.log_uniform(1e-6, 100));
             for (const bool clip : {true, false}) {
                 const Coefficients reference = truth::polygon(vertices, order, clip);
