@@ -4,7 +4,7 @@
 // do not describe. Seen from the half vector every GGX lobe is the same bell, whatever its roughness and the view:
 // with s = (h_x, h_y) / (α h_z) it is 1/(π (1 + s²)²), times factors that vary slowly. Green's theorem turns the
 // integral over the light's image in that plane into one along its outline, of a radial integral from the bell's
-// middle. Neither is large or narrow for small α or grazing views. docs/algorithms.md derives it.
+// middle. Small α makes neither narrow, grazing views only somewhat. docs/algorithms.md derives it.
 #pragma once
 
 #include <span>
