@@ -9,8 +9,11 @@ HIGHEST_ORDER = 64
 
 # Blender keeps no reference to the strings of an enum.
 ORDER_ITEMS = [
-    ("AUTO", "Automatic", "For every point the lowest order that meets the tolerance"),
-    *((str(order), str(order), f"Order {order} everywhere") for order in range(1, HIGHEST_ORDER + 1)),
+    ("AUTO", "Automatic", "For every point and light the cheapest way that meets the tolerance"),
+    *(
+        (str(order), str(order), f"Spherical harmonics of order {order} for every light")
+        for order in range(1, HIGHEST_ORDER + 1)
+    ),
 ]
 
 
@@ -19,14 +22,15 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
 
     order: bpy.props.EnumProperty(
         name="Order",
-        description="Order of the spherical harmonics: the number of bands with which a reflection is described",
+        description="Order of the spherical harmonics: number of bands that describe how a surface reflects",
         items=ORDER_ITEMS,
         default="AUTO",
     )
     tolerance: bpy.props.FloatProperty(
         name="Tolerance",
-        description="Relative error of a reflection that the automatic order may make",
-        default=1e-3,
+        description="Error that the automatic order may make: of a light's reflection, relative to the light's own "
+        "radiance times the material's reflectance",
+        default=3e-4,
         min=1e-6,
         max=0.5,
         soft_min=1e-4,
@@ -36,7 +40,7 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
     )
     pixel_samples: bpy.props.IntProperty(
         name="Pixel Samples",
-        description="Camera rays per pixel; they smooth edges, the light itself has no noise",
+        description="Least number of camera rays per pixel; where they disagree, at edges, more are taken",
         default=16,
         min=1,
         max=4096,

@@ -107,7 +107,9 @@ def test_the_figures_tell_how_they_came_about(example: tuple[Path, tuple[int, st
     settings = figures["shlight"]["settings"]
     assert (settings["shadow_rays"], settings["pixel_samples"]) == (4, 2)
     assert settings["tolerance"] == pytest.approx(0.01)
-    assert sum(figures["shlight"]["order_shares"].values()) == pytest.approx(1)
+    shares = figures["shlight"]
+    ways = [*shares["order_shares"].values(), shares["cubature_share"], shares["mirror_share"]]
+    assert sum(ways) == pytest.approx(1)
     assert figures["shlight"]["unsupported"] == []
     for name in ("shlight", "cycles_same_time"):
         times = figures[name]["times"]

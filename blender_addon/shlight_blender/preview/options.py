@@ -96,9 +96,9 @@ def _parser() -> argparse.ArgumentParser:
     add("--threads", type=_whole(0), default=0, metavar="N", help="threads of all renders (default: 0, all cores)")
     group = parser.add_argument_group("settings of shlight (default: the scene's)")
     add = group.add_argument
-    add("--order", type=_order, metavar="N", help="order of the spherical harmonics, 1 to 64, or auto")
-    add("--tolerance", type=_tolerance, metavar="X", help="relative error that the automatic order may make")
-    add("--pixel-samples", type=_whole(1), metavar="N", help="camera rays per pixel")
+    add("--order", type=_order, metavar="N", help="harmonics of order 1 to 64, or auto: the cheapest way")
+    add("--tolerance", type=_tolerance, metavar="X", help="error of auto, ÷ (light's radiance × albedo)")
+    add("--pixel-samples", type=_whole(1), metavar="N", help="camera rays per pixel, at least")
     add("--shadow-rays", type=_whole(0), metavar="N", help="rays towards each light, 0: no shadows, in Cycles neither")
     return parser
 
