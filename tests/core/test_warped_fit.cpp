@@ -113,6 +113,17 @@ TEST(WarpedFit, TablesInterpolateAcrossRoughnessAndView) {
     }
 }
 
+TEST(WarpedFit, ViewsInterpolateUpToTheNormal) {
+    // Beyond the normal a view is the mirror image of one before it.
+    for (const double alpha : {0.01, 0.2, 0.7}) {
+        const WarpedFit fit(GgxShape{alpha});
+        const double along = measure(fit, 1, 8).warped;
+        for (const double tilt : {0.02, 0.05, 0.08, 0.11}) {
+            EXPECT_LE(measure(fit, std::cos(tilt), 8).warped, along + 2e-4) << "alpha " << alpha << " tilt " << tilt;
+        }
+    }
+}
+
 TEST(WarpedFit, WarpsAreSmooth) {
     for (double x = -7; x < 0; x += 0.01) {
         const auto narrowness = [&](double log_alpha, double cosine) {

@@ -152,6 +152,24 @@ def test_tighter_tolerances_cost_more() -> None:
     assert list(seconds.values()) == sorted(seconds.values())
 
 
+@pytest.mark.parametrize("cosine", [0.1, 0.2, 0.4])
+def test_tolerances_are_relative_to_the_albedo(cosine: float) -> None:
+    """A lobe that is dark but at grazing angles, beside the same at a much smaller tolerance."""
+    rng = np.random.default_rng(10)
+    bsdf = Bsdf.ggx(0.4, 0)
+    lights = [random_light(rng, k % 3, 0.16, cosine) for k in range(300)]
+    centers, radii = np.array([axis for axis, _ in lights]), np.sin([half_angle for _, half_angle in lights])
+    quads = np.array([random_quad(rng, *light) for light in lights])
+    for shade in (
+        lambda tolerance: shlight.shade_spheres(centers, radii, bsdf, cosine, tolerance=tolerance),
+        lambda tolerance: shlight.shade_polygons(quads, bsdf, cosine, tolerance=tolerance),
+    ):
+        for tolerance in (1e-2, 1e-3):
+            errors = np.abs(shade(tolerance) - shade(1e-6)) / albedo(bsdf, cosine)
+            assert np.quantile(errors, 0.99) <= 2 * tolerance
+            assert errors.max() <= 10 * tolerance
+
+
 @pytest.mark.parametrize("name", MATERIALS)
 def test_materials_match_dense_cubature(name: str) -> None:
     """Colour, Fresnel curves, layers and sums, under a light of each kind."""
