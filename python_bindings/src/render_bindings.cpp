@@ -31,7 +31,8 @@ order: 1 ... 64: harmonics of this order for every light, or "auto": for each lo
 tolerance: error of the reflected radiance / (the light's radiance * the material's albedo), > 0.
 pixel_samples: camera rays per pixel, over a box of one pixel; rounded up to a power of two if adaptive.
 adaptive: take up to 16 times as many where they disagree, as at edges, unless pixel_samples is 1.
-shadow_rays: per camera ray and light, at most; a quarter of them where light and shadow are plain. 0: no shadows.
+shadow_rays: per camera ray and light, at most, and again for each roughness of the material's glossy lobes; a quarter
+    of them where light and shadow are plain. 0: no shadows.
 threads: at most; 0: all cores. The image does not depend on it.
 progress: is called with the finished share, 0 ... 1, about every 50 ms; returning False cancels. What it raises ends
     the render and is raised here.

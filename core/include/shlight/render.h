@@ -18,8 +18,9 @@ struct RenderSettings {
     int order = 0;  ///< 1 … 64: harmonics of this order for every light; 0: the cheapest that meets the tolerance
     double tolerance = 3e-4;  ///< error of a light's reflected radiance ÷ (its own radiance × the material's albedo)
     int pixel_samples = 16;   ///< camera rays per pixel, spread evenly over its square; see adaptive
-    int shadow_rays = 16;     ///< per camera ray and light, at most; 0: no shadows
-    int threads = 0;          ///< 0: all cores
+    /// Per camera ray and light, at most, and again for each roughness of the glossy lobes; 0: no shadows.
+    int shadow_rays = 16;
+    int threads = 0;  ///< 0: all cores
     /// pixel_samples are the least that a pixel gets: they are rounded up to a power of two, and 4 or 16 times as many
     /// are spread over a pixel, up to 2^20, where they disagree so much that its mean may be wrong by more than some 1
     /// %, or where a neighbour saw something that may have been missed. One ray per pixel cannot disagree and stays
