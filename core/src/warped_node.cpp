@@ -18,8 +18,8 @@ namespace shlight {
 namespace {
 
 /// Tikhonov's λ against Gram eigenvalues of at most 1: keeps what the fit does below the horizon, where nothing asks
-/// for it, from growing; a relative error of about √λ/10 is its price, a tenth of that where fits are broad.
-constexpr double kLambda = 1e-6;
+/// for it, from growing. Its price is an error of about 1e-5 of the albedo.
+constexpr double kLambda = 1e-7;
 
 /// Squared L2 norms of a density: over the warped sphere and, with weight du/dω, over directions.
 struct Norms {
@@ -214,9 +214,20 @@ class DegreeFit {
     std::vector<double> factor_, reduced_;
 };
 
-/// A cap's coefficients fall as λ_l ≤ √(8π/l³) (Funk–Hecke), and what the fit lacks lies in bands ≥ order.
-double shading_error(double warped_norm, int order, double albedo) {
-    return albedo > 0 ? std::sqrt(2.0 / (order * order * order)) * warped_norm / albedo : 0.0;
+/// A cap's coefficients fall as λ_l ≤ √(8π/l³) (Funk–Hecke), and what the fit lacks lies in bands ≥ order, but for what
+/// λ takes from the low ones: that shows in the whole, missing light, which a large light receives undiminished.
+double shading_error(double warped_norm, double missing_light, int order, double albedo) {
+    return albedo > 0 ? (std::sqrt(2.0 / (order * order * order)) * warped_norm + std::abs(missing_light)) / albedo
+                      : 0.0;
+}
+
+/// ∫ of a density given as Fourier coefficients over the warped hemisphere.
+double integral(const WarpedDensity& d, std::span<const double> fourier) {
+    double sum = 0;
+    for (std::size_t i = 0; i < d.heights.size(); ++i) {
+        sum += 2 * std::numbers::pi * d.weights[i] * fourier[i * static_cast<std::size_t>(d.waves)];
+    }
+    return sum;
 }
 
 }  // namespace
@@ -251,8 +262,8 @@ void fit_warped_node(const GgxShape& shape, double cos_theta_o, const NodeLayout
             }
         }
         const Norms rest = norms(d, missing);
-        out[NodeLayout::shading_error(which)] =
-            static_cast<float>(shading_error(std::sqrt(rest.warped + beyond.warped), order, albedo));
+        out[NodeLayout::shading_error(which)] = static_cast<float>(
+            shading_error(std::sqrt(rest.warped + beyond.warped), integral(d, missing), order, albedo));
         out[NodeLayout::residual(which)] = static_cast<float>(
             d.norms.direction > 0 ? std::sqrt((rest.direction + beyond.direction) / d.norms.direction) : 0.0);
     }
