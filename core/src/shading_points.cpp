@@ -55,7 +55,7 @@ void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes
     cos_theta_o.push_back(hits.cos_theta_o[hit]);
     error.push_back(hits.error[hit]);
     material.push_back(hits.material[hit]);
-    const double spread = std::sqrt(tolerance) * std::min(kWidestSpread, lobes.narrowest(hits.cos_theta_o[hit]));
+    const double spread = std::sqrt(3 * tolerance) * std::min(kWidestSpread, lobes.narrowest(hits.cos_theta_o[hit]));
     members_.push_back(
         {towards_viewer(hits, hit), spread, nearest(lights, hits.frame[hit].origin), Vec3d(0), Vec3d(0), Vec3d(0), 0});
 }

@@ -19,9 +19,9 @@ namespace shlight {
 class ShadingPoints {
   public:
     /// One point for hits of a pixel with the same material whose normal, direction to the viewer and directions to
-    /// lights differ in sum by less than √tolerance times the least distance over which the material's f·cos changes.
-    /// The mean of a lobe over so small a spread is its value at the mean up to a fraction of the tolerance: what is
-    /// left is the second difference.
+    /// lights differ in sum by less than √(3 tolerance) times the least distance over which the material's f·cos
+    /// changes. The mean of a lobe over so small a spread is its value at the mean up to a fraction of the tolerance:
+    /// what is left is the second difference.
     void assign(const Hits& hits, std::span<const MaterialLobes> materials, std::span<const Light> lights,
                 double tolerance);
 

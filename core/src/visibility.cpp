@@ -51,6 +51,12 @@ void ShadowedLight::find_lit(const Light& light, const Hits& hits, std::size_t b
     }
 }
 
+bool ShadowedLight::is_glossy(std::uint32_t material) const {
+    const auto lobes = materials_[material].lobes();
+    return std::any_of(lobes.begin(), lobes.end(),
+                       [](const Lobe& lobe) { return std::holds_alternative<GgxShape>(lobe.shape); });
+}
+
 void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits) {
     find_lit(light, hits, begin, end);
     if (lit_.hit.empty()) {
@@ -61,7 +67,8 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
         const std::uint32_t first_point = samples_.first * most_rays_;
         rays_.trace(light, hits, lit_, {true, first_point, samples_.first, first_ray_count_}, seed);
         const std::size_t blocked = rays_.blocked_count();
-        if (blocked > 0 && blocked == rays_.count()) {
+        // Few rays may miss the part of a light that is seen, and a glossy lobe may have its peak there.
+        if (blocked > 0 && blocked == rays_.count() && !is_glossy(hits.material[lit_.hit[0]])) {
             return;
         }
         if (blocked > 0) {

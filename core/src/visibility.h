@@ -34,6 +34,7 @@ class ShadowedLight {
     std::uint64_t rays_traced() const { return rays_.rays_traced(); }
 
   private:
+    bool is_glossy(std::uint32_t material) const;
     void add_pixel(const Light& light, std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits);
     void find_lit(const Light& light, const Hits& hits, std::size_t begin, std::size_t end);
     /// The value of one lobe at a hit.

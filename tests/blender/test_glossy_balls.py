@@ -55,7 +55,7 @@ def cases() -> Iterator[Any]:
         yield pytest.param(roughness, light, shadowed, marks=marks, id=name)
 
 
-@pytest.mark.parametrize(("roughness", "light", "shadowed"), cases())
+@pytest.mark.parametrize(("roughness", "light", "shadowed"), list(cases()))
 def test_ball(studio: Any, roughness: float, light: str, shadowed: bool) -> None:
     look_at_ball(studio, roughness, light)
     studio.scene.shlight.use_shadows = shadowed

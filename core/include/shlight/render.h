@@ -16,7 +16,7 @@ namespace shlight {
 
 struct RenderSettings {
     int order = 0;  ///< 1 … 64: harmonics of this order for every light; 0: the cheapest that meets the tolerance
-    double tolerance = 3e-4;  ///< error of a light's reflected radiance ÷ (its own radiance × the material's albedo)
+    double tolerance = 1e-4;  ///< error of a light's reflected radiance ÷ (its own radiance × the material's albedo)
     int pixel_samples = 16;   ///< camera rays per pixel, spread evenly over its square; see adaptive
     /// Per camera ray and light, at most, and again for each roughness of the glossy lobes; 0: no shadows.
     int shadow_rays = 16;
