@@ -4,7 +4,7 @@
 // McGuire 2018, "Combining analytic direct illumination and stochastic shadows").
 //
 // The ratio is exact where a light is wholly seen or wholly hidden; noise lives in penumbrae only. So a quarter of the
-// rays goes first, and where all those of a pixel agree, the rest is spared.
+// rays goes first, and where all those of a pixel agree, the rest is spared, but on glossy surfaces in shadow.
 #pragma once
 
 #include <cstdint>

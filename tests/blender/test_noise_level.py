@@ -40,5 +40,5 @@ def test_smooth_surfaces_lie_within_three_standard_errors(shared_scene: Any) -> 
     within = np.abs(difference) <= 3 * standard_error(*halves)
     # 99.7 % of a normal distribution; the error is itself an estimate from 25 pixels and two halves.
     assert within[smooth].mean() >= 0.97
-    # Hits of a pixel share an evaluation where they agree within the tolerance of 1e-3: half of it is left to that.
+    # Hits of a pixel share an evaluation where they agree within a fraction of 1e-3: half of that is left to it.
     assert abs(difference[smooth].sum() / reference[..., :3][smooth].sum()) <= 5e-4
