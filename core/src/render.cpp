@@ -33,8 +33,9 @@ constexpr int kLargestTile = 32;
 /// thin by one pixel more.
 constexpr int kMostLevel = 2;
 constexpr int kMostRounds = 8;
-/// Of the camera rays that are added, where the settings allow as many.
-constexpr std::uint32_t kLeastShadowRays = 2;
+/// Of each camera ray that is added, where the settings allow as many. With fewer the ratio of a glossy lobe, whose
+/// peak may then be among none of them, is far too large where the peak is hidden.
+constexpr std::uint32_t kLeastShadowRays = 8;
 
 /// The share of progress that is left to all later passes.
 constexpr double kLaterShare = 0.4;
