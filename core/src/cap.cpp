@@ -168,9 +168,7 @@ Cap<T> Cap<T>::of_sphere(const Vec3d& center, double radius, const Warp& warp) {
 
 template <class T>
 Cap<T> Cap<T>::of_facing_disk(const Vec3d& center, double radius, const Warp& warp) {
-    const double distance = length(center);
-    const double slant = std::hypot(distance, radius);
-    return inside({center / distance, distance / slant, radius / slant}, warp);
+    return inside(circle_of_facing_disk(center, radius), warp);
 }
 
 template <class T>

@@ -55,11 +55,8 @@ Circle circle_of(const CapView& cap) {
     switch (cap.kind) {
         case CapView::Kind::sphere:
             return circle_of_sphere(cap.center, cap.radius);
-        case CapView::Kind::facing_disk: {
-            const double distance = glm::length(cap.center);
-            const double slant = std::hypot(distance, cap.radius);
-            return {cap.center / distance, distance / slant, cap.radius / slant};
-        }
+        case CapView::Kind::facing_disk:
+            return circle_of_facing_disk(cap.center, cap.radius);
         case CapView::Kind::inside:
             break;
     }

@@ -2,6 +2,7 @@
 #include "lobe_view.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "light_cubature.h"

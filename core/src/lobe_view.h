@@ -5,7 +5,6 @@
 // lobe, by spherical harmonics in the lobe's warp, or along its outline.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>

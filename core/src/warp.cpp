@@ -21,6 +21,12 @@ Circle circle_of_sphere(const Vec3d& center, double radius) {
     return {center / distance, std::sqrt(tangent_squared) / distance, std::min(1.0, radius / distance)};
 }
 
+Circle circle_of_facing_disk(const Vec3d& center, double radius) {
+    const double distance = std::hypot(center.x, center.y, center.z);
+    const double slant = std::hypot(distance, radius);
+    return {center / distance, distance / slant, radius / slant};
+}
+
 Warp::Warp(double tilt, double narrowness) : sin_tilt_(std::sin(tilt)), cos_tilt_(std::cos(tilt)) {
     const double r = 1 - narrowness;
     const double scale = 1 + r * r;

@@ -20,6 +20,8 @@ struct Circle {
 /// The circle inside which a sphere is seen from the origin; precondition 0 < radius ≤ |center|, all finite.
 /// |c|² - r² by exact products: near contact it is a small difference of the inputs.
 Circle circle_of_sphere(const Vec3d& center, double radius);
+/// The same of a disk that always faces the origin: half angle atan(radius / |center|); center ≠ 0.
+Circle circle_of_facing_disk(const Vec3d& center, double radius);
 
 /// Directions ω of the shading frame ↔ warped directions u, in a frame whose z axis is the middle of the warped
 /// horizon: the upper hemisphere becomes the cap u_z ≥ horizon_height(). The plane y = 0 stays the plane y = 0.
