@@ -19,16 +19,6 @@ double one_minus(double cosine, double sine) {
     return cosine > 0 ? sine * sine / (1 + cosine) : 1 - cosine;
 }
 
-void check_cap(const Vec3d& axis, double half_angle) {
-    check_finite("axes", axis);
-    if (axis == Vec3d(0)) {
-        reject("axes contains a zero vector");
-    }
-    if (!(half_angle > 0 && half_angle <= kPi * (1 + 1e-7))) {
-        reject("half_angles must lie in (0, π]");
-    }
-}
-
 double length(const Vec3d& v) {
     return std::hypot(std::hypot(v.x, v.y), v.z);  // no overflow, no underflow
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "checks.h"
 #include "exact_sums.h"
@@ -18,6 +19,16 @@ void check_sphere(const Vec3d& center, double radius, double epsilon) {
     // Contact within the rounding of the inputs is contact.
     if (difference_of_squares({center.x, center.y, center.z}, radius) < -4 * epsilon * radius * radius) {
         reject("radii: the shading point lies inside a sphere (|center| < radius)");
+    }
+}
+
+void check_cap(const Vec3d& axis, double half_angle) {
+    check_finite("axes", axis);
+    if (axis == Vec3d(0)) {
+        reject("axes contains a zero vector");
+    }
+    if (!(half_angle > 0 && half_angle <= std::numbers::pi * (1 + 1e-7))) {
+        reject("half_angles must lie in (0, π]");
     }
 }
 

@@ -14,6 +14,9 @@ namespace shlight {
 /// counts as contact.
 void check_sphere(const Vec3d& center, double radius, double epsilon);
 
+/// An axis that is finite and not zero, a half angle in (0, π] with room for rounding.
+void check_cap(const Vec3d& axis, double half_angle);
+
 /// Finite and planar to the precision of T, in which the vertices were given.
 template <class T>
 void check_polygon(std::span<const Vec3<Wider<T>>> vertices);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "light_cubature.h"
+#include "light_outline.h"
 #include "lobe_outline.h"
 #include "polygon_boundary.h"
 #include "polygon_region.h"
@@ -21,46 +22,6 @@ constexpr int kCheapPolygonRule = 2;
 
 /// Of a polygon of one radian, as a relative size: the projection of the sphere onto a plane varies as a lobe does.
 constexpr double kFlatness = 1.2;
-
-/// The outline of a cap above the horizon.
-struct CapOutline {
-    std::array<OutlineArc, 2> arcs;
-    std::size_t count;
-};
-
-CapOutline cap_outline(const Circle& cap) {
-    const Vec3d& axis = cap.axis;
-    if (axis.z <= -cap.sine) {
-        return {{}, 0};
-    }
-    if (axis.z >= cap.sine) {
-        const Vec3d side = std::abs(axis.z) < 0.9 ? Vec3d(0, 0, 1) : Vec3d(1, 0, 0);
-        const Vec3d from = cap.cosine * axis + cap.sine * glm::normalize(glm::cross(side, axis));
-        return {{OutlineArc{cap, from, from, true}}, 1};
-    }
-    // The circle meets z = 0 at the azimuths φ_L ± acos(c / sinθ_L). Seen from outside, with z up, +φ is to the right.
-    const double radial = std::hypot(axis.x, axis.y);
-    const double c = std::min(1.0, cap.cosine / radial);
-    const double s = std::sqrt((1 - c) * (1 + c));
-    const double x = radial > 0 ? axis.x / radial : 1.0;
-    const double y = radial > 0 ? axis.y / radial : 0.0;
-    const Vec3d right(x * c - y * s, y * c + x * s, 0);
-    const Vec3d left(x * c + y * s, y * c - x * s, 0);
-    const Circle horizon{{0, 0, 1}, 0, 1};
-    return {{OutlineArc{cap, right, left, false}, OutlineArc{horizon, left, right, false}}, 2};
-}
-
-std::vector<OutlineArc> polygon_outline(const SphericalPolygon<double>& polygon) {
-    std::vector<OutlineArc> arcs;
-    const std::vector<Vec3d>& v = polygon.directions();
-    for (std::size_t i = 0; i < v.size(); ++i) {
-        const double length = glm::length(polygon.edge_cross(i));
-        if (length > 0) {
-            arcs.push_back({{polygon.edge_cross(i) / length, 0, 1}, v[i], v[(i + 1) % v.size()], false});
-        }
-    }
-    return arcs;
-}
 
 /// The middle of a polygon and the greatest distance of a vertex from it, as directions.
 struct Extent {
@@ -125,9 +86,7 @@ LobeRadiance LobeAtView::radiance(const Circle& cap) const {
     if (order_ > 0) {
         return {shade_cap(Cap<float>::inside(cap, warp_), *horizon_, terms_.data(), order_), order_, 0, met_};
     }
-    const CapOutline outline = cap_outline(cap);
-    const OutlineIntegral integral =
-        outline_integral(ggx(), view_.z, std::span(outline.arcs).first(outline.count), tolerance_ * albedo_);
+    const OutlineIntegral integral = outline_integral(ggx(), view_.z, CapOutline(cap).arcs(), tolerance_ * albedo_);
     return {static_cast<float>(integral.value), 0, integral.points, integral.error <= tolerance_ * albedo_};
 }
 

@@ -10,7 +10,7 @@ from shlight._load import load_core
 
 load_core()
 
-from shlight import images  # noqa: E402
+from shlight import images, methods  # noqa: E402
 from shlight._core import Bsdf, RenderCancelled, RenderReport, Scene, render  # noqa: E402
 from shlight.coefficients import (  # noqa: E402
     cap_coefficients,
@@ -32,6 +32,7 @@ __all__ = [
     "cap_coefficients",
     "evaluate",
     "images",
+    "methods",
     "polygon_coefficients",
     "render",
     "sh_basis",

@@ -4,11 +4,15 @@
 Every function broadcasts over leading axes, spreads them over `threads` cores (0: all; the result does not depend on
 it), takes arrays of the right type without a copy, and raises ValueError naming the argument for bad input.
 `dtype` (float32 or float64) is the precision of inputs, arithmetic and result.
+
+`method` "exact" is the library's own; `tolerance`, `samples`, `seed` and `sampling` are options of some of the other
+methods that there are to compare with (shlight.methods).
 """
 
 from __future__ import annotations
 
 import math
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
@@ -26,6 +30,7 @@ from shlight._arrays import (
     rows,
     shaped,
 )
+from shlight.methods import coefficient_options
 
 
 def sh_basis(directions: ArrayLike, order: int, dtype: DTypeLike = np.float32, *, threads: int = 0) -> Floats:
@@ -65,6 +70,10 @@ def sphere_coefficients(
     method: str = "exact",
     dtype: DTypeLike = np.float32,
     threads: int = 0,
+    tolerance: float | None = None,
+    samples: int | None = None,
+    seed: int | None = None,
+    sampling: Literal["solid_angle", "area"] | None = None,
 ) -> Floats:
     """Coefficients of sphere lights of unit radiance: the basis integrated over the cap that each covers.
 
@@ -72,13 +81,17 @@ def sphere_coefficients(
     clip: keep only what lies above the horizon z ≥ 0. Returns (..., order²).
     Zhou & Wei 2020, Eq. 4 with unit radiance; the recurrence is derived in docs/algorithms.md.
     """
-    _check_method(method)
+    options = coefficient_options(method, tolerance=tolerance, samples=samples, seed=seed, sampling=sampling)
     c = checked_array("centers", centers, dtype, core_axes=1)
     r = checked_array("radii", radii, dtype)
     check_last("centers", c, 3)
     shape = broadcast(centers=c.shape[:-1], radii=r.shape)
     n = checked_order(order)
-    flat = _core.sphere_coefficients(rows(c, shape, 3), rows(r, shape), n, bool(clip), checked_threads(threads))
+    lights = (rows(c, shape, 3), rows(r, shape))
+    if method == "exact":
+        flat = _core.sphere_coefficients(*lights, n, bool(clip), checked_threads(threads))
+    else:
+        flat = _core.method_sphere_coefficients(method, *lights, n, bool(clip), options, checked_threads(threads))
     return flat.reshape(*shape, n * n)
 
 
@@ -91,19 +104,27 @@ def cap_coefficients(
     method: str = "exact",
     dtype: DTypeLike = np.float32,
     threads: int = 0,
+    tolerance: float | None = None,
+    samples: int | None = None,
+    seed: int | None = None,
+    sampling: Literal["solid_angle", "area"] | None = None,
 ) -> Floats:
     """Coefficients of spherical caps.
 
     axes: (..., 3), of any length > 0; half_angles: (...), radians in (0, π].
     clip: keep only what lies above the horizon z ≥ 0. Returns (..., order²).
     """
-    _check_method(method)
+    options = coefficient_options(method, tolerance=tolerance, samples=samples, seed=seed, sampling=sampling)
     a = checked_array("axes", axes, dtype, core_axes=1)
     h = checked_array("half_angles", half_angles, dtype)
     check_last("axes", a, 3)
     shape = broadcast(axes=a.shape[:-1], half_angles=h.shape)
     n = checked_order(order)
-    flat = _core.cap_coefficients(rows(a, shape, 3), rows(h, shape), n, bool(clip), checked_threads(threads))
+    lights = (rows(a, shape, 3), rows(h, shape))
+    if method == "exact":
+        flat = _core.cap_coefficients(*lights, n, bool(clip), checked_threads(threads))
+    else:
+        flat = _core.method_cap_coefficients(method, *lights, n, bool(clip), options, checked_threads(threads))
     return flat.reshape(*shape, n * n)
 
 
@@ -115,6 +136,10 @@ def polygon_coefficients(
     method: str = "exact",
     dtype: DTypeLike = np.float32,
     threads: int = 0,
+    tolerance: float | None = None,
+    samples: int | None = None,
+    seed: int | None = None,
+    sampling: Literal["solid_angle", "area"] | None = None,
 ) -> Floats:
     """Coefficients of planar polygons of unit radiance, seen from the origin.
 
@@ -122,13 +147,17 @@ def polygon_coefficients(
     A polygon without area or seen edge-on gives zeros. clip: keep only what lies above the horizon z ≥ 0.
     Returns (..., order²).
     """
-    _check_method(method)
+    options = coefficient_options(method, tolerance=tolerance, samples=samples, seed=seed, sampling=sampling)
     v = checked_array("vertices", vertices, dtype, core_axes=2)
     check_last("vertices", v, 3)
     if v.shape[-2] < 3:
         raise ValueError(f"vertices: a polygon needs at least 3, got {v.shape[-2]}")
     n = checked_order(order)
-    flat = _core.polygon_coefficients(v.reshape(-1, *v.shape[-2:]), n, bool(clip), checked_threads(threads))
+    lights = (v.reshape(-1, *v.shape[-2:]),)
+    if method == "exact":
+        flat = _core.polygon_coefficients(*lights, n, bool(clip), checked_threads(threads))
+    else:
+        flat = _core.method_polygon_coefficients(method, *lights, n, bool(clip), options, checked_threads(threads))
     return flat.reshape(*v.shape[:-2], n * n)
 
 
@@ -157,8 +186,3 @@ def _order_of(name: str, coefficients: Floats) -> int:
     if order * order != count or not 1 <= order <= MAX_ORDER:
         raise ValueError(f"{name}: the last axis must have order² entries with order 1 … {MAX_ORDER}, got {count}")
     return order
-
-
-def _check_method(method: str) -> None:
-    if method != "exact":
-        raise ValueError(f"method must be 'exact', got {method!r}")

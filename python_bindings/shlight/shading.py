@@ -8,7 +8,6 @@ the true f·cos, and a roughness of 0 shows the light's own image. Nothing here 
 
 from __future__ import annotations
 
-import math
 from typing import Any, Literal, overload
 
 import numpy as np
@@ -24,9 +23,13 @@ from shlight._arrays import (
     checked_threads,
     rows,
 )
+from shlight.methods import checked_tolerance, shading_options
 
 Radiance = NDArray[np.float32]
 Effort = NDArray[np.int32]
+Sampling = Literal["solid_angle", "area", "bsdf", "mis"]
+
+DEFAULT_TOLERANCE = 1e-3
 
 
 @overload
@@ -37,8 +40,12 @@ def shade_spheres(
     cos_theta_o: ArrayLike,
     *,
     order: int | Literal["auto"] = ...,
-    tolerance: float = ...,
+    tolerance: float | None = ...,
     threads: int = ...,
+    method: str = ...,
+    samples: int | None = ...,
+    seed: int | None = ...,
+    sampling: Sampling | None = ...,
     return_effort: Literal[False] = ...,
 ) -> Radiance: ...
 @overload
@@ -49,8 +56,12 @@ def shade_spheres(
     cos_theta_o: ArrayLike,
     *,
     order: int | Literal["auto"] = ...,
-    tolerance: float = ...,
+    tolerance: float | None = ...,
     threads: int = ...,
+    method: str = ...,
+    samples: int | None = ...,
+    seed: int | None = ...,
+    sampling: Sampling | None = ...,
     return_effort: Literal[True],
 ) -> tuple[Radiance, Effort]: ...
 def shade_spheres(
@@ -60,8 +71,12 @@ def shade_spheres(
     cos_theta_o: ArrayLike,
     *,
     order: int | Literal["auto"] = "auto",
-    tolerance: float = 1e-3,
+    tolerance: float | None = None,
     threads: int = 0,
+    method: str = "auto",
+    samples: int | None = None,
+    seed: int | None = None,
+    sampling: Sampling | None = None,
     return_effort: bool = False,
 ) -> Radiance | tuple[Radiance, Effort]:
     """Radiance reflected of sphere lights of unit radiance towards ω_o = (sinθ_o, 0, cosθ_o), clipped by the horizon.
@@ -69,7 +84,8 @@ def shade_spheres(
     centers: (..., 3), radii: (...), in the shading frame, any unit of length; 0 < radius ≤ |center|.
     cos_theta_o: (...), in [0, 1]. Leading axes broadcast; lights that share a view should be neighbours along the last.
     order: "auto" for whatever meets the tolerance, or 1 … 64 for harmonics of that order.
-    tolerance: of the radiance ÷ the material's albedo at that view, in each colour channel.
+    tolerance: of the radiance ÷ the material's albedo at that view, in each colour channel; 1e-3 where none is given.
+    method: "auto", or one of shlight.methods.shading_methods(), with its options.
 
     Returns (..., 3), float32. With return_effort also (...), int32: per light the largest order, or number of values
     of f·cos, that a lobe of the material took; 0 where a light is hidden or mirrored.
@@ -79,8 +95,14 @@ def shade_spheres(
     cosines = checked_array("cos_theta_o", cos_theta_o, np.float64)
     check_last("centers", c, 3)
     shape = broadcast(centers=c.shape[:-1], radii=r.shape, cos_theta_o=cosines.shape)
-    settings = _settings(order, tolerance, threads)
-    flat = _core.shade_spheres(rows(c, shape, 3), rows(r, shape), bsdf, rows(cosines, shape), *settings)
+    lights = (rows(c, shape, 3), rows(r, shape), bsdf, rows(cosines, shape))
+    if method == "auto":
+        flat = _core.shade_spheres(*lights, *_settings(order, tolerance, threads, samples, seed, sampling))
+    else:
+        options = shading_options(
+            method, _order(order), tolerance=tolerance, samples=samples, seed=seed, sampling=sampling
+        )
+        flat = _core.method_shade_spheres(method, *lights, options, checked_threads(threads))
     return _result(*flat, shape, return_effort)
 
 
@@ -91,8 +113,12 @@ def shade_polygons(
     cos_theta_o: ArrayLike,
     *,
     order: int | Literal["auto"] = ...,
-    tolerance: float = ...,
+    tolerance: float | None = ...,
     threads: int = ...,
+    method: str = ...,
+    samples: int | None = ...,
+    seed: int | None = ...,
+    sampling: Sampling | None = ...,
     return_effort: Literal[False] = ...,
 ) -> Radiance: ...
 @overload
@@ -102,8 +128,12 @@ def shade_polygons(
     cos_theta_o: ArrayLike,
     *,
     order: int | Literal["auto"] = ...,
-    tolerance: float = ...,
+    tolerance: float | None = ...,
     threads: int = ...,
+    method: str = ...,
+    samples: int | None = ...,
+    seed: int | None = ...,
+    sampling: Sampling | None = ...,
     return_effort: Literal[True],
 ) -> tuple[Radiance, Effort]: ...
 def shade_polygons(
@@ -112,8 +142,12 @@ def shade_polygons(
     cos_theta_o: ArrayLike,
     *,
     order: int | Literal["auto"] = "auto",
-    tolerance: float = 1e-3,
+    tolerance: float | None = None,
     threads: int = 0,
+    method: str = "auto",
+    samples: int | None = None,
+    seed: int | None = None,
+    sampling: Sampling | None = None,
     return_effort: bool = False,
 ) -> Radiance | tuple[Radiance, Effort]:
     """As shade_spheres, for planar polygons.
@@ -127,20 +161,29 @@ def shade_polygons(
         raise ValueError(f"vertices: a polygon needs at least 3, got {v.shape[-2]}")
     cosines = checked_array("cos_theta_o", cos_theta_o, np.float64)
     shape = broadcast(vertices=v.shape[:-2], cos_theta_o=cosines.shape)
-    settings = _settings(order, tolerance, threads)
-    flat = _core.shade_polygons(rows(v, shape, *v.shape[-2:]), bsdf, rows(cosines, shape), *settings)
+    lights = (rows(v, shape, *v.shape[-2:]), bsdf, rows(cosines, shape))
+    if method == "auto":
+        flat = _core.shade_polygons(*lights, *_settings(order, tolerance, threads, samples, seed, sampling))
+    else:
+        options = shading_options(
+            method, _order(order), tolerance=tolerance, samples=samples, seed=seed, sampling=sampling
+        )
+        flat = _core.method_shade_polygons(method, *lights, options, checked_threads(threads))
     return _result(*flat, shape, return_effort)
 
 
-def _settings(order: int | Literal["auto"], tolerance: float, threads: int) -> tuple[int, float, int]:
-    n = 0 if isinstance(order, str) and order == "auto" else checked_order(order)
-    try:
-        checked = float(tolerance)
-    except (TypeError, ValueError):
-        raise ValueError(f"tolerance must be a number, got {tolerance!r}") from None
-    if not (math.isfinite(checked) and checked > 0):
-        raise ValueError(f"tolerance must be positive and finite, got {tolerance!r}")
-    return n, checked, checked_threads(threads)
+def _order(order: int | Literal["auto"]) -> int:
+    return 0 if isinstance(order, str) and order == "auto" else checked_order(order)
+
+
+def _settings(
+    order: int | Literal["auto"], tolerance: float | None, threads: int, *of_other_methods: Any
+) -> tuple[int, float, int]:
+    for name, value in zip(("samples", "seed", "sampling"), of_other_methods, strict=True):
+        if value is not None:
+            raise ValueError(f"{name} does not apply to method 'auto'")
+    given = DEFAULT_TOLERANCE if tolerance is None else checked_tolerance(tolerance)
+    return _order(order), given, checked_threads(threads)
 
 
 def _result(radiance: Floats, effort: Any, shape: tuple[int, ...], return_effort: bool) -> Any:

@@ -8,6 +8,7 @@ namespace shlight::python {
 void bind_coefficients(pybind11::module_& m);
 void bind_bsdf(pybind11::module_& m);
 void bind_shading(pybind11::module_& m);
+void bind_methods(pybind11::module_& m);
 void bind_scene(pybind11::module_& m);
 void bind_render(pybind11::module_& m);
 

@@ -6,6 +6,7 @@ PYBIND11_MODULE(_core, m) {
     shlight::python::bind_coefficients(m);
     shlight::python::bind_bsdf(m);
     shlight::python::bind_shading(m);
+    shlight::python::bind_methods(m);
     shlight::python::bind_scene(m);
     shlight::python::bind_render(m);
 }

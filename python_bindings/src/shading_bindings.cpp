@@ -4,27 +4,11 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "chunks.h"
+#include "shaded.h"
 #include "shlight/light_shading.h"
 
 namespace shlight::python {
 namespace {
-
-/// Radiance (count, 3) and effort (count), as they are returned and as they are filled.
-struct Shaded {
-    Array<float> radiance;
-    Array<std::int32_t> effort;
-    std::span<Rgb> colors;
-    std::span<std::int32_t> efforts;
-
-    explicit Shaded(std::size_t count)
-        : radiance({static_cast<py::ssize_t>(count), py::ssize_t{3}}), effort(static_cast<py::ssize_t>(count)) {
-        static_assert(sizeof(Rgb) == 3 * sizeof(float));
-        colors = {reinterpret_cast<Rgb*>(radiance.mutable_data()), count};
-        efforts = {effort.mutable_data(), count};
-    }
-
-    py::tuple result() const { return py::make_tuple(radiance, effort); }
-};
 
 py::tuple spheres(const Array<double>& centers, const Array<double>& radii, const Bsdf& bsdf,
                   const Array<double>& cos_theta_o, int order, double tolerance, int threads) {

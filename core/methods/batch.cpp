@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+#include "batch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "checks.h"
+#include "light_checks.h"
+#include "shlight/sampling.h"
+
+namespace shlight::methods {
+namespace {
+
+void check_method_order(const Method& method, int order) {
+    if (order < 1 || order > method.largest_order) {
+        reject("order must be 1 … " + std::to_string(method.largest_order) + " for method '" +
+               std::string(method.name) + "', got " + std::to_string(order));
+    }
+}
+
+[[noreturn]] void reject_light(const Method& method, const char* lights) {
+    reject("method '" + std::string(method.name) + "' does not know " + lights);
+}
+
+void check_vertex_count(int vertex_count) {
+    if (vertex_count < 3) {
+        reject("vertices: a polygon needs at least 3, got " + std::to_string(vertex_count));
+    }
+}
+
+std::uint32_t seed_of(const Options& options, std::size_t index) {
+    return hash(options.seed, static_cast<std::uint32_t>(index));
+}
+
+/// light(i): checked, the light number i.
+template <class T, class Light>
+void each_cap(const Method& method, std::size_t count, int order, bool clip, Options options, std::size_t first,
+              std::span<T> coefficients, const Light& light) {
+    check_method_order(method, order);
+    const CapFunction<T> function = functions_of<T>(method).cap;
+    if (function == nullptr) {
+        reject_light(method, "spheres and caps");
+    }
+    const auto row = static_cast<std::size_t>(coefficient_count(order));
+    check_size("coefficients", coefficients.size(), count * row);
+    const Options given = options;
+    for (std::size_t i = 0; i < count; ++i) {
+        options.seed = seed_of(given, first + i);
+        function(light(i), order, clip, options, coefficients.data() + i * row);
+    }
+}
+
+/// A material's lobes at the last view that was asked for.
+class MaterialAtView {
+  public:
+    MaterialAtView(const ShadingMethod& method, const Bsdf& bsdf, const Options& options)
+        : method_(method), lobes_(bsdf.lobes()), options_(options) {
+        if (std::any_of(lobes_.begin(), lobes_.end(), [](const Lobe& lobe) { return is_mirror(lobe.shape); })) {
+            reject("bsdf: method '" + std::string(method.name) + "' does not know perfect mirrors");
+        }
+    }
+
+    void look(double cos_theta_o) {
+        if (!(cos_theta_o >= 0 && cos_theta_o <= 1)) {
+            reject("cos_theta_o must lie in [0, 1]");
+        }
+        if (cos_theta_o == cos_theta_o_) {
+            return;
+        }
+        cos_theta_o_ = cos_theta_o;
+        views_.clear();
+        for (const Lobe& lobe : lobes_) {
+            views_.push_back(method_.make(lobe.shape, cos_theta_o, options_));
+        }
+    }
+
+    template <class Region>
+    Rgb radiance(const Region& region, std::size_t index, std::int32_t& effort) const {
+        Rgb sum(0);
+        effort = 0;
+        for (std::size_t i = 0; i < lobes_.size(); ++i) {
+            const std::uint32_t seed = hash(seed_of(options_, index), static_cast<std::uint32_t>(i));
+            const Reflected r = views_[i]->radiance(region, seed);
+            sum += lobes_[i].scale(static_cast<float>(cos_theta_o_)) * static_cast<float>(r.value);
+            effort = std::max(effort, static_cast<std::int32_t>(r.points > 0 ? r.points : options_.order));
+        }
+        return sum;
+    }
+
+  private:
+    const ShadingMethod& method_;
+    const std::vector<Lobe>& lobes_;
+    Options options_;
+    double cos_theta_o_ = -1;
+    std::vector<std::unique_ptr<LobeIntegrator>> views_;
+};
+
+template <class Region>
+void shade_each(const ShadingMethod& method, const Bsdf& bsdf, std::span<const double> cos_theta_o,
+                const Options& options, std::size_t first, std::span<Rgb> radiance, std::span<std::int32_t> effort,
+                const Region& region) {
+    check_size("cos_theta_o", cos_theta_o.size(), radiance.size());
+    check_size("effort", effort.size(), radiance.size());
+    if (method.harmonic && (options.order < 1 || options.order > kMaxOrder)) {
+        reject("order must be 1 … " + std::to_string(kMaxOrder) + " for method '" + std::string(method.name) + "'");
+    }
+    if (method.sampled && options.samples < 1) {
+        reject("samples must be at least 1");
+    }
+    MaterialAtView at_view(method, bsdf, options);
+    for (std::size_t i = 0; i < radiance.size(); ++i) {
+        at_view.look(cos_theta_o[i]);
+        radiance[i] = at_view.radiance(region(i), first + i, effort[i]);
+    }
+}
+
+}  // namespace
+
+template <class T>
+void sphere_coefficients(const Method& method, std::span<const Vec3<T>> centers, std::span<const T> radii, int order,
+                         bool clip, const Options& options, std::size_t first, std::span<T> coefficients) {
+    check_size("radii", radii.size(), centers.size());
+    each_cap(method, centers.size(), order, clip, options, first, coefficients, [&](std::size_t i) {
+        const Vec3d center(centers[i]);
+        check_sphere(center, radii[i], std::numeric_limits<T>::epsilon());
+        return CapLight{CapLight::Kind::sphere, center, radii[i]};
+    });
+}
+
+template <class T>
+void cap_coefficients(const Method& method, std::span<const Vec3<T>> axes, std::span<const T> half_angles, int order,
+                      bool clip, const Options& options, std::size_t first, std::span<T> coefficients) {
+    check_size("half_angles", half_angles.size(), axes.size());
+    each_cap(method, axes.size(), order, clip, options, first, coefficients, [&](std::size_t i) {
+        const Vec3d axis(axes[i]);
+        check_cap(axis, half_angles[i]);
+        return CapLight{CapLight::Kind::angle, axis, half_angles[i]};
+    });
+}
+
+template <class T>
+void polygon_coefficients(const Method& method, std::span<const Vec3<T>> vertices, int vertex_count, int order,
+                          bool clip, const Options& options, std::size_t first, std::span<T> coefficients) {
+    check_method_order(method, order);
+    const PolygonFunction<T> function = functions_of<T>(method).polygon;
+    if (function == nullptr) {
+        reject_light(method, "polygons");
+    }
+    check_vertex_count(vertex_count);
+    const auto k = static_cast<std::size_t>(vertex_count);
+    const auto row = static_cast<std::size_t>(coefficient_count(order));
+    const std::size_t count = vertices.size() / k;
+    check_size("vertices", vertices.size(), count * k);
+    check_size("coefficients", coefficients.size(), count * row);
+    Options own = options;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto polygon = vertices.subspan(i * k, k);
+        const std::vector<Vec3<Wider<T>>> exact(polygon.begin(), polygon.end());
+        check_polygon<T>(exact);
+        own.seed = seed_of(options, first + i);
+        function(polygon, order, clip, own, coefficients.data() + i * row);
+    }
+}
+
+void shade_spheres(const ShadingMethod& method, std::span<const Vec3d> centers, std::span<const double> radii,
+                   const Bsdf& bsdf, std::span<const double> cos_theta_o, const Options& options, std::size_t first,
+                   std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+    check_size("radii", radii.size(), centers.size());
+    check_size("radiance", radiance.size(), centers.size());
+    shade_each(method, bsdf, cos_theta_o, options, first, radiance, effort, [&](std::size_t i) {
+        check_sphere(centers[i], radii[i], std::numeric_limits<float>::epsilon());
+        return circle_of_sphere(centers[i], radii[i]);
+    });
+}
+
+void shade_polygons(const ShadingMethod& method, std::span<const Vec3d> vertices, int vertex_count, const Bsdf& bsdf,
+                    std::span<const double> cos_theta_o, const Options& options, std::size_t first,
+                    std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+    check_vertex_count(vertex_count);
+    const auto k = static_cast<std::size_t>(vertex_count);
+    check_size("vertices", vertices.size(), radiance.size() * k);
+    shade_each(method, bsdf, cos_theta_o, options, first, radiance, effort, [&](std::size_t i) {
+        const auto polygon = vertices.subspan(i * k, k);
+        check_polygon<float>(polygon);
+        return SphericalPolygon<double>(polygon, true);
+    });
+}
+
+#define SHLIGHT_INSTANTIATE(T)                                                                                  \
+    template void sphere_coefficients(const Method&, std::span<const Vec3<T>>, std::span<const T>, int, bool,   \
+                                      const Options&, std::size_t, std::span<T>);                               \
+    template void cap_coefficients(const Method&, std::span<const Vec3<T>>, std::span<const T>, int, bool,      \
+                                   const Options&, std::size_t, std::span<T>);                                  \
+    template void polygon_coefficients(const Method&, std::span<const Vec3<T>>, int, int, bool, const Options&, \
+                                       std::size_t, std::span<T>);
+SHLIGHT_INSTANTIATE(float)
+SHLIGHT_INSTANTIATE(double)
+#undef SHLIGHT_INSTANTIATE
+
+}  // namespace shlight::methods

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+//
+// The library's own, to be measured beside the others.
+#include "method.h"
+#include "shlight/cap.h"
+#include "shlight/polygon.h"
+
+namespace shlight::methods {
+namespace {
+
+template <class T>
+void cap(const CapLight& light, int order, bool clip, const Options& /*options*/, T* coefficients) {
+    const Cap<T> made = light.kind == CapLight::Kind::sphere ? Cap<T>::of_sphere(light.axis, light.size)
+                                                             : Cap<T>::about_axis(light.axis, light.size);
+    cap_coefficients(made, order, clip, coefficients);
+}
+
+template <class T>
+void polygon(std::span<const Vec3<T>> vertices, int order, bool clip, const Options& /*options*/, T* coefficients) {
+    polygon_coefficients(vertices, order, clip, coefficients);
+}
+
+}  // namespace
+
+Method exact() {
+    return {"exact",
+            "docs/algorithms.md: ladder recurrences in the degree, O(n²)",
+            kMaxOrder,
+            false,
+            false,
+            {&cap<float>, &polygon<float>},
+            {&cap<double>, &polygon<double>}};
+}
+
+}  // namespace shlight::methods

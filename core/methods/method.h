@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+//
+// Other ways to the same numbers: what the paper proposes and compares with, and plain numerical integration. They are
+// here to be measured; nothing that renders calls them.
+//
+// A method is one file that defines `Method name()` or `ShadingMethod name()`, and one line in registry.cpp.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "shlight/lobe_shape.h"
+#include "shlight/types.h"
+#include "shlight/warp.h"
+#include "spherical_polygon.h"
+
+namespace shlight::methods {
+
+/// Where random directions are taken from.
+enum class Sampling {
+    solid_angle,  ///< uniform over the light as seen from the shading point
+    area,         ///< uniform over the light's surface: a sphere's whole surface, the polygon's plane
+    bsdf,         ///< as the material reflects (shading only)
+    mis,          ///< solid_angle and bsdf, weighed by the balance heuristic (Veach & Guibas 1995; shading only)
+};
+
+/// What a method may be told beyond the light; each ignores what it has no use for.
+struct Options {
+    double tolerance = 0;  ///< adaptive methods: error ÷ L_00, in shading radiance ÷ albedo; 0: what T can hold
+    int order = 0;         ///< shading by harmonics: 1 … 64
+    int samples = 256;     ///< random methods: directions a light (mis: half of each kind); cubature: points
+    std::uint32_t seed = 0;
+    Sampling sampling = Sampling::solid_angle;
+};
+
+/// A cap as it was given, in doubles that hold it exactly.
+struct CapLight {
+    enum class Kind { sphere, angle };
+    Kind kind;
+    Vec3d axis;   ///< of any length > 0; of a sphere its centre
+    double size;  ///< of a sphere its radius, 0 < radius ≤ |axis|; else the half angle, in (0, π]
+};
+
+/// The same as directions and angles, worked out in double and rounded once.
+template <class T>
+struct CapAngles {
+    Vec3<T> axis;  ///< unit
+    T half_angle, cos_half, sin_half;
+    explicit CapAngles(const CapLight& light);
+};
+
+/// order² coefficients of unit radiance, clipped at z ≥ 0 or whole. Preconditions as in cap.h and polygon.h, which the
+/// caller has checked; 1 ≤ order ≤ largest_order. May throw std::invalid_argument naming an option that does not fit.
+template <class T>
+using CapFunction = void (*)(const CapLight& light, int order, bool clip, const Options& options, T* coefficients);
+template <class T>
+using PolygonFunction = void (*)(std::span<const Vec3<T>> vertices, int order, bool clip, const Options& options,
+                                 T* coefficients);
+
+template <class T>
+struct Functions {
+    CapFunction<T> cap = nullptr;  ///< null: the method does not know caps
+    PolygonFunction<T> polygon = nullptr;
+};
+
+/// A way to coefficients.
+struct Method {
+    std::string_view name;
+    std::string_view source;  ///< paper and equations, for readers of charts
+    int largest_order;
+    bool adaptive;  ///< takes a tolerance
+    bool random;    ///< takes samples, seed and sampling
+    Functions<float> single;
+    Functions<double> twofold;
+};
+
+template <class T>
+const Functions<T>& functions_of(const Method& method) {
+    if constexpr (std::is_same_v<T, float>) {
+        return method.single;
+    } else {
+        return method.twofold;
+    }
+}
+
+/// ∫ f·cos over a light of unit radiance, and how many values of f·cos it took (0: none, harmonics).
+struct Reflected {
+    double value;
+    int points;
+};
+
+/// One lobe at one view, made once for many lights.
+class LobeIntegrator {
+  public:
+    LobeIntegrator() = default;
+    LobeIntegrator(const LobeIntegrator&) = delete;
+    LobeIntegrator& operator=(const LobeIntegrator&) = delete;
+    virtual ~LobeIntegrator() = default;
+    /// A cap in the shading frame; what lies below the horizon does not count. seed: of random methods, the light's
+    /// own.
+    virtual Reflected radiance(const Circle& cap, std::uint32_t seed) const = 0;
+    /// A polygon that was clipped by the horizon.
+    virtual Reflected radiance(const SphericalPolygon<double>& polygon, std::uint32_t seed) const = 0;
+};
+
+/// A way from light to reflected radiance. No mirrors: precondition alpha > 0 for GGX.
+struct ShadingMethod {
+    std::string_view name;
+    std::string_view source;
+    bool harmonic;  ///< takes an order
+    bool adaptive;  ///< takes a tolerance
+    bool sampled;   ///< takes samples
+    bool random;    ///< takes seed and sampling
+    std::unique_ptr<LobeIntegrator> (*make)(const LobeShape& shape, double cos_theta_o, const Options& options);
+};
+
+/// All that are registered, in the order of charts.
+std::span<const Method> all_methods();
+std::span<const ShadingMethod> all_shading_methods();
+
+/// Throws std::invalid_argument naming `method` and what there is.
+const Method& find_method(std::string_view name);
+const ShadingMethod& find_shading_method(std::string_view name);
+
+}  // namespace shlight::methods

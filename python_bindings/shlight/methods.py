@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""Other ways to the same numbers, as `method=` of the coefficient and shading functions, to compare with.
+
+"exact" (coefficients) and "auto" (shading) are the library's own; `coefficient_methods()` and `shading_methods()` list
+the others with their sources. Each takes the options that make sense for it and refuses the rest:
+
+    tolerance   adaptive methods: error ÷ L_00, in shading radiance ÷ albedo; the default is what the type can hold
+    samples     random methods: directions per light; cubature: points
+    seed        random methods: an integer 0 … 2³²-1; the result depends on it and on nothing else
+    sampling    random methods: "solid_angle" or "area" of the light; in shading also "bsdf" and "mis"
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Iterable
+from typing import Any, TypeVar
+
+from shlight import _core
+
+__all__ = ["coefficient_methods", "shading_methods"]
+
+_Method = TypeVar("_Method", _core.Method, _core.ShadingMethod)
+
+DEFAULT_SAMPLES = 256
+
+
+def coefficient_methods() -> dict[str, _core.Method]:
+    """What `method=` of sphere_, cap_ and polygon_coefficients may be, by name, "exact" first."""
+    return {method.name: method for method in _core.all_methods()}
+
+
+def shading_methods() -> dict[str, _core.ShadingMethod]:
+    """What `method=` of shade_spheres and shade_polygons may be beside "auto", by name."""
+    return {method.name: method for method in _core.all_shading_methods()}
+
+
+def coefficient_options(method: str, **given: Any) -> _core.MethodOptions:
+    """Checks the options that were given (None: not) against the method's, and converts them."""
+    found = _named(method, coefficient_methods())
+    takes = {"tolerance": found.adaptive, "samples": found.random, "seed": found.random, "sampling": found.random}
+    return _options(method, takes, given, order=0, sampling="solid_angle")
+
+
+def shading_options(method: str, order: int, **given: Any) -> _core.MethodOptions:
+    """As coefficient_options. order: 0 where none was given."""
+    found = _named(method, shading_methods(), extra=["auto"])
+    takes = {"tolerance": found.adaptive, "samples": found.sampled, "seed": found.random, "sampling": found.random}
+    if found.harmonic and order == 0:
+        raise ValueError(f"order must be 1 … 64 for method {method!r}")
+    if order > 0 and not found.harmonic:
+        raise ValueError(f"order does not apply to method {method!r}")
+    return _options(method, takes, given, order=order, sampling="mis")
+
+
+def _named(name: str, methods: dict[str, _Method], extra: Iterable[str] = ()) -> _Method:
+    if not isinstance(name, str) or name not in methods:
+        known = ", ".join(repr(known) for known in [*extra, *methods])
+        raise ValueError(f"method must be one of {known}, got {name!r}")
+    return methods[name]
+
+
+def _options(
+    method: str, takes: dict[str, bool], given: dict[str, Any], *, order: int, sampling: str
+) -> _core.MethodOptions:
+    for name, value in given.items():
+        if value is not None and not takes[name]:
+            raise ValueError(f"{name} does not apply to method {method!r}")
+    chosen = {name: value for name, value in given.items() if value is not None}
+    if "tolerance" in chosen:
+        chosen["tolerance"] = checked_tolerance(chosen["tolerance"])
+    if "samples" in chosen:
+        chosen["samples"] = _integer("samples", chosen["samples"], 1, 2**24)
+    if "seed" in chosen:
+        chosen["seed"] = _integer("seed", chosen["seed"], 0, 2**32 - 1)
+    defaults = {"tolerance": 0.0, "samples": DEFAULT_SAMPLES, "seed": 0, "sampling": sampling}
+    return _core.MethodOptions(order=order, **{**defaults, **chosen})
+
+
+def checked_tolerance(value: Any) -> float:
+    try:
+        checked = float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"tolerance must be a number, got {value!r}") from None
+    if not (math.isfinite(checked) and checked > 0):
+        raise ValueError(f"tolerance must be positive and finite, got {value!r}")
+    return checked
+
+
+def _integer(name: str, value: Any, least: int, largest: int) -> int:
+    try:
+        n = operator.index(value)
+    except TypeError:
+        raise ValueError(f"{name} must be an integer, got {value!r}") from None
+    if not least <= n <= largest:
+        raise ValueError(f"{name} must be {least} … {largest}, got {n}")
+    return n

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+//
+// What shading functions return.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "arrays.h"
+#include "shlight/types.h"
+
+namespace shlight::python {
+
+/// Radiance (count, 3) and effort (count), as they are returned and as they are filled.
+struct Shaded {
+    Array<float> radiance;
+    Array<std::int32_t> effort;
+    std::span<Rgb> colors;
+    std::span<std::int32_t> efforts;
+
+    explicit Shaded(std::size_t count)
+        : radiance({static_cast<py::ssize_t>(count), py::ssize_t{3}}), effort(static_cast<py::ssize_t>(count)) {
+        static_assert(sizeof(Rgb) == 3 * sizeof(float));
+        colors = {reinterpret_cast<Rgb*>(radiance.mutable_data()), count};
+        efforts = {effort.mutable_data(), count};
+    }
+
+    py::tuple result() const { return py::make_tuple(radiance, effort); }
+};
+
+}  // namespace shlight::python
