@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: MIT
+"""The methods as series of points, their times and their errors."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+import shlight
+from shlight import methods
+
+from .lights import Kind, Lights
+from .style import styles
+
+PRECISIONS = ("float32", "float64")
+TRUTH = "reference"
+SAMPLES = (64, 1024)  # of random methods
+LOOSE = 1e-3  # tolerance of adaptive methods, beside what the type can hold
+
+
+@dataclass(frozen=True)
+class Series:
+    """One method with its options: a line in a figure."""
+
+    label: str
+    method: str
+    largest_order: int
+    color: str
+    marker: str
+    dashes: str = "-"
+    options: dict[str, Any] = field(default_factory=dict)
+
+    def coefficients(self, lights: Lights, order: int, dtype: DTypeLike) -> NDArray[Any]:
+        return lights.coefficients(self.method, order, dtype, **self.options)
+
+
+def all_series(kind: Kind) -> list[Series]:
+    """Whatever is registered for this kind of light, "exact" first: random methods with few and with many samples,
+    adaptive ones to the last digit and to a loose tolerance."""
+    known = {
+        method.name: method
+        for method in methods.coefficient_methods().values()
+        if method.name != TRUTH and (method.knows_caps if kind == "sphere" else method.knows_polygons)
+    }
+    look = styles(list(known))
+    found = []
+    for name, method in known.items():
+        variants: list[tuple[str, str, dict[str, Any]]] = [(name, "-", {})]
+        if method.random:
+            variants = [
+                (f"{name}, {samples} samples", dashes, {"samples": samples})
+                for samples, dashes in zip(SAMPLES, (":", "-"), strict=True)
+            ]
+        elif method.adaptive:
+            variants.append((f"{name} to {LOOSE:g}", ":", {"tolerance": LOOSE}))
+        for label, dashes, options in variants:
+            found.append(Series(label, name, method.largest_order, *look[name], dashes, options))
+    return found
+
+
+def truth(lights: Lights, order: int, step: Callable[[float], None] | None = None) -> NDArray[np.float64]:
+    """The coefficients in 113 bits, rounded to double; those of lower orders are the first of them."""
+    parts = []
+    for first in range(0, len(lights), 64):
+        if step is not None:
+            step(first / len(lights))
+        part = lights.take(slice(first, first + 64))
+        parts.append(part.coefficients(TRUTH, order, np.float64, threads=0))
+    return np.concatenate(parts)
+
+
+def relative_errors(
+    values: NDArray[Any], true: NDArray[np.float64], least: NDArray[np.float64] | float = 0.0
+) -> NDArray[np.float64]:
+    """Of each light the largest |coefficient − truth| ÷ its L_00; infinite where a coefficient is not finite.
+
+    least: L_00 counts as no less. true: of the same or of a larger order.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        errors = np.abs(values.astype(np.float64) - true[:, : values.shape[1]]).max(axis=1)
+    errors[~np.isfinite(values).all(axis=1)] = np.inf
+    return errors / np.maximum(true[:, 0], least)
+
+
+def batch_size(series: Series, lights: Lights, order: int, dtype: DTypeLike, budget: float, most: int) -> int:
+    """How many lights take about `budget` seconds: at least some different ones, at most `most`."""
+    least = min(8, len(lights), most)
+    count = least
+    while True:
+        batch = lights.repeated(count).in_type(dtype)
+        spent = _seconds(lambda b=batch: series.coefficients(b, order, dtype))  # type: ignore[misc]
+        if spent >= budget / 4 or count == most:
+            return int(np.clip(count * budget / spent, least, most))
+        # What a call costs in itself hides what so few lights take.
+        count = min(4 * count, most)
+
+
+def best_seconds(
+    all_of: Sequence[Series], lights: Lights, order: int, dtype: DTypeLike, *, rounds: int, budget: float = 0.005
+) -> list[float]:
+    """Seconds per light on one core, of the fastest of some rounds in which the series take turns: other work of the
+    machine only adds to it. budget: about the seconds of one batch. NaN: above the largest order of the method."""
+    works: list[tuple[Callable[[], object], int] | None] = []
+    for series in all_of:
+        if order > series.largest_order:
+            works.append(None)
+            continue
+        # Results that fit into a cache.
+        count = batch_size(series, lights, order, dtype, budget, 2**19 // order**2)
+        batch = lights.repeated(count).in_type(dtype)
+        works.append((lambda s=series, b=batch: s.coefficients(b, order, dtype), count))  # type: ignore[misc]
+    best = [np.nan if work is None else np.inf for work in works]
+    for _ in range(rounds):
+        for i, work in enumerate(works):
+            if work is not None:
+                best[i] = min(best[i], _seconds(work[0]) / work[1])
+    return best
+
+
+def _seconds(work: Callable[[], object]) -> float:
+    """Of the processor: one core's time, without that in which others had the core."""
+    start = time.process_time()
+    work()
+    return time.process_time() - start
+
+
+def exponent(orders: Sequence[int], seconds: Sequence[float], first: int = 8) -> float:
+    """p of seconds ∝ orderᵖ, fitted from order `first` on."""
+    pairs = [(n, t) for n, t in zip(orders, seconds, strict=True) if n >= first and np.isfinite(t)]
+    if len(pairs) < 2:
+        return float("nan")
+    n, t = np.log(np.array(pairs)).T
+    return float(np.polyfit(n, t, 1)[0])
+
+
+def condition_of_lobes(order: int) -> NDArray[np.float64] | None:
+    """Condition numbers of the matrices that make harmonics of lobes, for bands 0 … order-1; None: not offered."""
+    found = getattr(shlight._core, "lobe_conditions", None)
+    return None if found is None else np.asarray(found(order))
