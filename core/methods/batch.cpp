@@ -189,15 +189,17 @@ void shade_polygons(const ShadingMethod& method, std::span<const Vec3d> vertices
     });
 }
 
-#define SHLIGHT_INSTANTIATE(T)                                                                                  \
-    template void sphere_coefficients(const Method&, std::span<const Vec3<T>>, std::span<const T>, int, bool,   \
-                                      const Options&, std::size_t, std::span<T>);                               \
-    template void cap_coefficients(const Method&, std::span<const Vec3<T>>, std::span<const T>, int, bool,      \
-                                   const Options&, std::size_t, std::span<T>);                                  \
-    template void polygon_coefficients(const Method&, std::span<const Vec3<T>>, int, int, bool, const Options&, \
-                                       std::size_t, std::span<T>);
-SHLIGHT_INSTANTIATE(float)
-SHLIGHT_INSTANTIATE(double)
-#undef SHLIGHT_INSTANTIATE
+template void sphere_coefficients(const Method&, std::span<const Vec3<float>>, std::span<const float>, int, bool,
+                                  const Options&, std::size_t, std::span<float>);
+template void cap_coefficients(const Method&, std::span<const Vec3<float>>, std::span<const float>, int, bool,
+                               const Options&, std::size_t, std::span<float>);
+template void polygon_coefficients(const Method&, std::span<const Vec3<float>>, int, int, bool, const Options&,
+                                   std::size_t, std::span<float>);
+template void sphere_coefficients(const Method&, std::span<const Vec3<double>>, std::span<const double>, int, bool,
+                                  const Options&, std::size_t, std::span<double>);
+template void cap_coefficients(const Method&, std::span<const Vec3<double>>, std::span<const double>, int, bool,
+                               const Options&, std::size_t, std::span<double>);
+template void polygon_coefficients(const Method&, std::span<const Vec3<double>>, int, int, bool, const Options&,
+                                   std::size_t, std::span<double>);
 
 }  // namespace shlight::methods

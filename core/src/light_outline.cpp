@@ -6,7 +6,7 @@
 
 namespace shlight {
 
-CapOutline::CapOutline(const Circle& cap) : arcs_{}, count_(0) {
+CapOutline::CapOutline(const Circle& cap) {
     const Vec3d& axis = cap.axis;
     if (axis.z <= -cap.sine) {
         return;

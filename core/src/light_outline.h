@@ -20,8 +20,8 @@ class CapOutline {
     std::span<const OutlineArc> arcs() const { return std::span(arcs_).first(count_); }
 
   private:
-    std::array<OutlineArc, 2> arcs_;
-    std::size_t count_;
+    std::array<OutlineArc, 2> arcs_{};
+    std::size_t count_ = 0;
 };
 
 /// The outline of a polygon that was clipped by the horizon.

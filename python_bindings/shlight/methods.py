@@ -46,7 +46,7 @@ def coefficient_options(method: str, **given: Any) -> _core.MethodOptions:
 def shading_options(method: str, order: int, **given: Any) -> _core.MethodOptions:
     """As coefficient_options. order: 0 where none was given."""
     found = _named(method, shading_methods(), extra=["auto"])
-    takes = {"tolerance": found.adaptive, "samples": found.sampled, "seed": found.random, "sampling": found.random}
+    takes = {"tolerance": True, "samples": found.sampled, "seed": found.random, "sampling": found.random}
     if found.harmonic and order == 0:
         raise ValueError(f"order must be 1 … 64 for method {method!r}")
     if order > 0 and not found.harmonic:

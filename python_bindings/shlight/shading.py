@@ -29,8 +29,6 @@ Radiance = NDArray[np.float32]
 Effort = NDArray[np.int32]
 Sampling = Literal["solid_angle", "area", "bsdf", "mis"]
 
-DEFAULT_TOLERANCE = 1e-3
-
 
 @overload
 def shade_spheres(
@@ -40,7 +38,7 @@ def shade_spheres(
     cos_theta_o: ArrayLike,
     *,
     order: int | Literal["auto"] = ...,
-    tolerance: float | None = ...,
+    tolerance: float = ...,
     threads: int = ...,
     method: str = ...,
     samples: int | None = ...,
@@ -56,7 +54,7 @@ def shade_spheres(
     cos_theta_o: ArrayLike,
     *,
     order: int | Literal["auto"] = ...,
-    tolerance: float | None = ...,
+    tolerance: float = ...,
     threads: int = ...,
     method: str = ...,
     samples: int | None = ...,
@@ -71,7 +69,7 @@ def shade_spheres(
     cos_theta_o: ArrayLike,
     *,
     order: int | Literal["auto"] = "auto",
-    tolerance: float | None = None,
+    tolerance: float = 1e-3,
     threads: int = 0,
     method: str = "auto",
     samples: int | None = None,
@@ -84,8 +82,9 @@ def shade_spheres(
     centers: (..., 3), radii: (...), in the shading frame, any unit of length; 0 < radius ≤ |center|.
     cos_theta_o: (...), in [0, 1]. Leading axes broadcast; lights that share a view should be neighbours along the last.
     order: "auto" for whatever meets the tolerance, or 1 … 64 for harmonics of that order.
-    tolerance: of the radiance ÷ the material's albedo at that view, in each colour channel; 1e-3 where none is given.
-    method: "auto", or one of shlight.methods.shading_methods(), with its options.
+    tolerance: of the radiance ÷ the material's albedo at that view, in each colour channel.
+    method: "auto", or one of shlight.methods.shading_methods(), with its options; those of a fixed size ignore the
+    tolerance.
 
     Returns (..., 3), float32. With return_effort also (...), int32: per light the largest order, or number of values
     of f·cos, that a lobe of the material took; 0 where a light is hidden or mirrored.
@@ -113,7 +112,7 @@ def shade_polygons(
     cos_theta_o: ArrayLike,
     *,
     order: int | Literal["auto"] = ...,
-    tolerance: float | None = ...,
+    tolerance: float = ...,
     threads: int = ...,
     method: str = ...,
     samples: int | None = ...,
@@ -128,7 +127,7 @@ def shade_polygons(
     cos_theta_o: ArrayLike,
     *,
     order: int | Literal["auto"] = ...,
-    tolerance: float | None = ...,
+    tolerance: float = ...,
     threads: int = ...,
     method: str = ...,
     samples: int | None = ...,
@@ -142,7 +141,7 @@ def shade_polygons(
     cos_theta_o: ArrayLike,
     *,
     order: int | Literal["auto"] = "auto",
-    tolerance: float | None = None,
+    tolerance: float = 1e-3,
     threads: int = 0,
     method: str = "auto",
     samples: int | None = None,
@@ -177,13 +176,12 @@ def _order(order: int | Literal["auto"]) -> int:
 
 
 def _settings(
-    order: int | Literal["auto"], tolerance: float | None, threads: int, *of_other_methods: Any
+    order: int | Literal["auto"], tolerance: float, threads: int, *of_other_methods: Any
 ) -> tuple[int, float, int]:
     for name, value in zip(("samples", "seed", "sampling"), of_other_methods, strict=True):
         if value is not None:
             raise ValueError(f"{name} does not apply to method 'auto'")
-    given = DEFAULT_TOLERANCE if tolerance is None else checked_tolerance(tolerance)
-    return _order(order), given, checked_threads(threads)
+    return _order(order), checked_tolerance(tolerance), checked_threads(threads)
 
 
 def _result(radiance: Floats, effort: Any, shape: tuple[int, ...], return_effort: bool) -> Any:
