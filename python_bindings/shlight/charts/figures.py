@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
-from . import growth
+from . import growth, speed_error, stability
 from .figure import Figure
 
 FIGURES = [
+    Figure("speed_error", "Time against error", speed_error.draw),
+    Figure("stability", "Where methods fail", stability.draw),
     Figure("growth", "Time against order", growth.draw),
 ]

@@ -51,25 +51,37 @@ class Lights:
         return Lights(self.kind, tuple(array.astype(dtype) for array in self.arrays))
 
 
-def spheres(elevation: Array, half_angle: Array, azimuth: Array | float = 0.0) -> Lights:
+def spheres(elevation: Array, half_angle: Array | float, azimuth: Array | float = 0.0) -> Lights:
     """Sphere lights at distance 1. elevation: of the centre above the horizon."""
-    up, flat, around = np.broadcast_arrays(np.sin(elevation), np.cos(elevation), azimuth)
-    centers = np.stack([flat * np.cos(around), flat * np.sin(around), up], axis=-1)
-    return Lights("sphere", (_rounded(centers), _rounded(np.sin(half_angle))))
+    el, half, around = np.broadcast_arrays(elevation, half_angle, azimuth)
+    centers = np.stack([np.cos(el) * np.cos(around), np.cos(el) * np.sin(around), np.sin(el)], axis=-1)
+    return Lights("sphere", (_rounded(centers), _rounded(np.sin(half))))
 
 
-def squares(elevation: Array, half_angle: Array, azimuth: Array | float = 0.0) -> Lights:
+def squares(elevation: Array, half_angle: Array | float, azimuth: Array | float = 0.0) -> Lights:
     """Squares at distance 1 that face the shading point, two edges level; the middles of the edges are seen at
     `half_angle` from the centre."""
     el, half, around = np.broadcast_arrays(elevation, half_angle, azimuth)
-    corners = []
-    for side, top in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
-        # Height and distance of an edge, without a difference that cancels where it is level with the horizon.
-        up, out = np.sin(el + top * half) / np.cos(half), np.cos(el + top * half) / np.cos(half)
-        across = side * np.tan(half)
-        corner = [out * np.cos(around) - across * np.sin(around), out * np.sin(around) + across * np.cos(around), up]
-        corners.append(np.stack(corner, axis=-1))
+    # Distance and height of the lower and of the upper edge, without a difference that cancels at the horizon.
+    out, up = (np.stack([f(el - half), f(el + half)], axis=-1) / np.cos(half)[..., None] for f in (np.cos, np.sin))
+    toward = np.stack([np.cos(around), np.sin(around)], axis=-1)
+    level = np.tan(half)[..., None] * np.stack([-np.sin(around), np.cos(around)], axis=-1)
+    middles = out[..., None] * toward[..., None, :]
+    # With x and y in fixed point the two level edges stay parallel, and the corners in one plane, in float32 too.
+    step = _grid(np.abs(middles).max(axis=(-1, -2)) + np.abs(level).max(axis=-1))[..., None]
+    across = step * np.round(level / step)
+    lower, upper = (step * np.round(middles[..., i, :] / step) for i in (0, 1))
+    corners = [
+        np.concatenate([flat, up[..., i : i + 1]], axis=-1)
+        for flat, i in ((lower - across, 0), (lower + across, 0), (upper + across, 1), (upper - across, 1))
+    ]
     return Lights("polygon", (_rounded(np.stack(corners, axis=-2)),))
+
+
+def _grid(largest: Array) -> Array:
+    """The step of fixed-point numbers up to `largest` that float32 holds."""
+    step: Array = 2.0 ** (np.ceil(np.log2(largest)) - 24)
+    return step
 
 
 def _rounded(values: Array) -> Array:
@@ -106,25 +118,31 @@ def _small(rng: np.random.Generator, count: int) -> Lights:
 
 def _polygon_clipped(rng: np.random.Generator, count: int) -> Lights:
     size = rng.uniform(0.2, 1.0, count)
-    return _quads(rng, rng.uniform(-0.5, 0.5, count) * size, size)
+    return _parallelograms(rng, rng.uniform(-0.3, 0.5, count) * size, size)
 
 
 def _polygon_small(rng: np.random.Generator, count: int) -> Lights:
-    return _quads(rng, rng.uniform(0.1, np.pi / 2, count), _log_uniform(rng, 1e-3, 3e-2, count))
+    return _parallelograms(rng, rng.uniform(0.1, np.pi / 2, count), _log_uniform(rng, 1e-3, 3e-2, count))
 
 
-def _quads(rng: np.random.Generator, elevation: Array, size: Array) -> Lights:
-    """Quadrangles about a centre at distance 1, corners at 0.7 … 1.3 times `size` from it, tilted by up to 1 rad."""
+def _parallelograms(rng: np.random.Generator, elevation: Array, size: Array) -> Lights:
+    """Parallelograms about a centre at distance 1: half diagonals of 0.8 … 1.2 times `size`, tilt up to 0.7 rad."""
     count = len(size)
     center = spheres(elevation, size, _around(rng, count)).arrays[0]
-    tilt = rng.uniform(-1, 1, (count, 3)) * np.tan(1.0) / np.sqrt(3)
+    tilt = rng.uniform(-1, 1, (count, 3)) * np.tan(0.7) / np.sqrt(3)
     normal = _unit(center + tilt - center * np.sum(tilt * center, axis=-1, keepdims=True))
     u = _unit(np.cross(normal, rng.normal(size=(count, 3))))
     v = np.cross(normal, u)
-    angle = np.pi / 2 * (np.arange(4) + rng.uniform(-0.3, 0.3, (count, 4)))
-    reach = size[:, None] * rng.uniform(0.7, 1.3, (count, 4))
-    across, along = (reach * np.cos(angle))[..., None], (reach * np.sin(angle))[..., None]
-    return Lights("polygon", (_rounded(center[:, None] + across * u[:, None] + along * v[:, None]),))
+    skew = np.pi / 2 + rng.uniform(-0.5, 0.5, (count, 1))
+    reach = size[:, None] * rng.uniform(0.8, 1.2, (count, 2))
+    # In fixed point their sums are exact, and the corners in one plane, in float32 too.
+    step = _grid(np.full((count, 1), 4.0))
+    middle, first, second = (
+        step * np.round(part / step)
+        for part in (center, reach[:, :1] * u, reach[:, 1:] * (np.cos(skew) * u + np.sin(skew) * v))
+    )
+    corners = [middle + first, middle + second, middle - first, middle - second]
+    return Lights("polygon", (_rounded(np.stack(corners, axis=1)),))
 
 
 def _around(rng: np.random.Generator, count: int) -> Array:
@@ -143,6 +161,6 @@ CLASSES = [
     LightClass("sphere_whole", "spheres above the horizon, half angle 0.2 … 1 rad", "sphere", _whole),
     LightClass("sphere_clipped", "spheres cut by the horizon, half angle 0.2 … 1 rad", "sphere", _clipped),
     LightClass("sphere_small", "small spheres, half angle 0.001 … 0.03 rad", "sphere", _small),
-    LightClass("polygon_clipped", "quadrangles at the horizon, half size 0.2 … 1", "polygon", _polygon_clipped),
-    LightClass("polygon_small", "small quadrangles, half size 0.001 … 0.03", "polygon", _polygon_small),
+    LightClass("polygon_clipped", "parallelograms at the horizon, half diagonal 0.2 … 1", "polygon", _polygon_clipped),
+    LightClass("polygon_small", "small parallelograms, half diagonal 0.001 … 0.03", "polygon", _polygon_small),
 ]

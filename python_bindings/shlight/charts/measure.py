@@ -63,13 +63,19 @@ def all_series(kind: Kind) -> list[Series]:
     return found
 
 
+def main_series(kind: Kind) -> list[Series]:
+    """One series for each method: adaptive ones to the last digit, random ones with many samples."""
+    last = {series.method: series for series in all_series(kind) if "tolerance" not in series.options}
+    return list(last.values())
+
+
 def truth(lights: Lights, order: int, step: Callable[[float], None] | None = None) -> NDArray[np.float64]:
     """The coefficients in 113 bits, rounded to double; those of lower orders are the first of them."""
     parts = []
-    for first in range(0, len(lights), 64):
+    for first in range(0, len(lights), 128):
         if step is not None:
             step(first / len(lights))
-        part = lights.take(slice(first, first + 64))
+        part = lights.take(slice(first, first + 128))
         parts.append(part.coefficients(TRUTH, order, np.float64, threads=0))
     return np.concatenate(parts)
 
@@ -93,7 +99,8 @@ def batch_size(series: Series, lights: Lights, order: int, dtype: DTypeLike, bud
     count = least
     while True:
         batch = lights.repeated(count).in_type(dtype)
-        spent = _seconds(lambda b=batch: series.coefficients(b, order, dtype))  # type: ignore[misc]
+        # Of two, for the first may have to wake something up.
+        spent = min(_seconds(lambda b=batch: series.coefficients(b, order, dtype)) for _ in range(2))  # type: ignore[misc]
         if spent >= budget / 4 or count == most:
             return int(np.clip(count * budget / spent, least, most))
         # What a call costs in itself hides what so few lights take.

@@ -36,8 +36,8 @@ _KNOWN = {
 # Of all others, in the order in which they come.
 _FURTHER = [(BROWN, "h"), (OLIVE, "p"), (DARK, "*"), ("#A6761D", "X"), ("#1B6E5A", "d"), ("#B0003A", "H")]
 
-# What a map says where it has no number.
-HIDDEN, NOT_FINITE = "#DDDDDD", "#E5007D"
+# Of maps, where there is no number, and where it is beyond the scale.
+HIDDEN, NOT_FINITE, WORSE = "#DDDDDD", "#E5007D", "#FF8C1A"
 
 _LOOK: dict[Any, Any] = {
     "figure.dpi": 110,
