@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .figure import Drawn, Run, Table
 from .lights import CLASSES, LightClass, Lights
 from .measure import PRECISIONS, Series, all_series, batch_size, best_seconds, relative_errors, truth
-from .style import canvas
+from .style import canvas, decades
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -93,8 +93,8 @@ def _draw_picture(run: Run, light_class: LightClass, precision: str, points: lis
             _draw_series(panel, series, own, [getattr(p, which) for p in own], LOWEST[precision])
         panel.set(xscale="log", yscale="log", xlabel="µs per light, one core")
         panel.set_title(f"{which} error of the lights")
-    low, high = panels[0].get_ylim()
-    panels[0].set_ylim(max(low, LOWEST[precision] / 3), min(high, 3 * HIGHEST))
+    panels[0].set_xlim(decades(panels[0].get_xlim()))
+    panels[0].set_ylim(decades(panels[0].get_ylim()))
     panels[0].set_ylabel("largest error of a coefficient ÷ L$_{00}$")
     picture.suptitle(f"{light_class.title}; {precision}; numbers are orders")
     picture.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)

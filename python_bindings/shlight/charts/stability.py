@@ -28,6 +28,7 @@ LIMIT = 1e-3
 AZIMUTH = 0.6  # no axis of the frame, where errors might cancel
 SMALLEST, LARGEST, LARGEST_ZOOMED = 1e-4, 1.5, 1.4
 EXPONENTS = {"float32": range(-8, 1), "float64": range(-16, 1, 2)}  # of the colours
+NEAREST, FARTHEST = 1e-7, 1e-1  # of a zoomed axis, both ways from 0
 UNKNOWN, COVERED = np.nan, -1.0  # in maps: not measured; hidden below the horizon
 
 
@@ -39,29 +40,24 @@ class Region:
     title: str
     x_label: str
     elevation: Callable[[Array, Array], Array]  # from x and the half angle
-    nearest: float  # x runs from here to `farthest`, both ways and over 0, in logarithmic steps; 0: in even steps
-    farthest: float
+    zoomed: bool  # x runs from NEAREST to FARTHEST, both ways and over 0, in logarithmic steps; else over all degrees
     orders_drawn: Sequence[int]
 
     def xs(self, quick: bool) -> Array:
-        if self.nearest == 0:
-            return np.linspace(-self.farthest, self.farthest, 13 if quick else 61)
-        one_way = np.geomspace(self.nearest, self.farthest, 7 if quick else 25)
+        if not self.zoomed:
+            return np.linspace(-90, 90, 13 if quick else 61)
+        one_way = np.geomspace(NEAREST, FARTHEST, 7 if quick else 25)
         return np.concatenate([-one_way[::-1], [0.0], one_way])
 
     def half_angles(self, quick: bool) -> Array:
-        return np.geomspace(SMALLEST, LARGEST if self.nearest == 0 else LARGEST_ZOOMED, 9 if quick else 37)
+        return np.geomspace(SMALLEST, LARGEST_ZOOMED if self.zoomed else LARGEST, 9 if quick else 37)
 
 
 REGIONS = [
-    Region("map", "all lights", "elevation [°]", lambda x, half: np.radians(x), 0, 90, ORDERS),
-    Region("horizon", "centre at the horizon", "elevation [rad]", lambda x, half: x, 1e-7, 1e-1, ORDERS[-1:]),
-    Region(
-        "sets", "lower edge at the horizon", "edge's elevation [rad]", lambda x, half: x + half, 1e-7, 0.1, ORDERS[-1:]
-    ),
-    Region(
-        "rises", "upper edge at the horizon", "edge's elevation [rad]", lambda x, half: x - half, 1e-7, 0.1, ORDERS[-1:]
-    ),
+    Region("map", "all lights", "elevation [°]", lambda x, half: np.radians(x), False, ORDERS),
+    Region("horizon", "centre at the horizon", "elevation [rad]", lambda x, half: x, True, ORDERS[-1:]),
+    Region("sets", "lower edge at the horizon", "edge's elevation [rad]", lambda x, half: x + half, True, ORDERS[-1:]),
+    Region("rises", "upper edge at the horizon", "edge's elevation [rad]", lambda x, half: x - half, True, ORDERS[-1:]),
 ]
 KINDS: dict[Kind, str] = {"sphere": "spheres", "polygon": "facing squares"}
 
@@ -163,7 +159,8 @@ def _draw_picture(run: Run, maps: list[Map]) -> None:
             if precision == PRECISIONS[0]:
                 panel.set_title(label.replace(", ", "\n"))
         row[0].set_ylabel(f"{precision}\nhalf angle σ [rad]")
-        picture.colorbar(image, ax=list(row), label="error ÷ L$_{00}$", aspect=16, extend="max")
+        bar = picture.colorbar(image, ax=list(row), label="error ÷ L$_{00}$", aspect=16)
+        bar.set_ticks([10.0**e for e in EXPONENTS[precision]], labels=[_power(10.0**e) for e in EXPONENTS[precision]])
     for panel in panels[-1]:
         panel.set_xlabel(first.region.x_label)
     title = f"{KINDS[first.kind]}, {first.region.title}, order {first.order}"
@@ -185,14 +182,14 @@ def _draw_map(panel: Axes, of: Map, quick: bool) -> Any:
     from matplotlib.colors import BoundaryNorm
 
     bounds = [10.0**exponent for exponent in EXPONENTS[of.precision]]
-    colors = mpl.colormaps["viridis"].resampled(len(bounds) - 1).with_extremes(over=WORSE)
+    colors = mpl.colormaps["viridis"].resampled(len(bounds)).with_extremes(over=WORSE)
     known = _filled(of.errors)
     finite = np.isfinite(known) & (known != COVERED)
     panel.set_facecolor(HIDDEN)
     image = panel.imshow(
         np.ma.masked_where(~finite, np.maximum(known, bounds[0])),
         cmap=colors,
-        norm=BoundaryNorm(bounds, colors.N),
+        norm=BoundaryNorm(bounds, len(bounds), extend="max"),
         origin="lower",
         aspect="auto",
         interpolation="nearest",
@@ -202,11 +199,13 @@ def _draw_map(panel: Axes, of: Map, quick: bool) -> Any:
     panel.imshow(broken, origin="lower", aspect="auto", interpolation="nearest")
     panel.grid(visible=False)
     xs, half_angles = of.region.xs(quick), of.region.half_angles(quick)
-    if of.region.nearest == 0:
+    if not of.region.zoomed:
         panel.set_xticks(np.interp([-90, -45, 0, 45, 90], xs, np.arange(xs.size)), ["−90", "−45", "0", "45", "90"])
     else:
-        shown = [xs[0], 0.0, xs[-1]]
-        panel.set_xticks(np.searchsorted(xs, shown), [_power(x) for x in shown])
+        shown = np.array([-1e-2, 0.0, 1e-2])
+        panel.set_xticks(
+            np.interp(_log_both_ways(shown), _log_both_ways(xs), np.arange(xs.size)), [_power(x) for x in shown]
+        )
     decades = np.array([1e-4, 1e-3, 1e-2, 1e-1, 1.0])
     at = np.interp(np.log(decades), np.log(half_angles), np.arange(half_angles.size))
     panel.set_yticks(at, [_power(x) for x in decades])
@@ -217,6 +216,11 @@ def _power(x: float) -> str:
     if x in (0.0, 1.0):
         return f"{x:g}"
     return f"{'−' if x < 0 else ''}$10^{{{round(np.log10(abs(x)))}}}$"
+
+
+def _log_both_ways(x: Array) -> Array:
+    """Even steps for numbers that grow from NEAREST both ways."""
+    return np.sign(x) * np.log(np.maximum(np.abs(x) / NEAREST, 1.0) * np.e)
 
 
 def _filled(errors: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -85,6 +86,12 @@ def canvas(width: float, height: float) -> Canvas:
     made = Canvas(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(made)
     return made
+
+
+def decades(limits: tuple[float, float]) -> tuple[float, float]:
+    """The limits of a logarithmic axis, widened to powers of ten."""
+    low, high = limits
+    return 10.0 ** math.floor(math.log10(low)), 10.0 ** math.ceil(math.log10(high))
 
 
 def order_axis(axes: Axes, orders: Sequence[int]) -> None:
