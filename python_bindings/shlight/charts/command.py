@@ -115,7 +115,7 @@ def _work_folder(out: Path) -> Iterator[Path]:
     try:
         folder = tempfile.TemporaryDirectory(prefix=".shlight-charts-", dir=place)
     except OSError as error:
-        raise OSError(error.errno, error.strerror, str(out)) from None
+        raise ChartsError(f"cannot write to {out}: {error.strerror}", 2) from None
     with folder as name:
         yield Path(name)
 

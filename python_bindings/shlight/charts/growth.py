@@ -11,6 +11,7 @@ from .measure import PRECISIONS, all_series, best_seconds, exponent
 from .style import canvas, order_axis
 
 ORDERS = (2, 4, 6, 8, 12, 16, 24, 32, 48, 64)
+LIBRARY = "exact"
 SHOWN = ("sphere_whole", "sphere_clipped", "polygon_clipped")
 
 
@@ -56,12 +57,13 @@ def draw(run: Run) -> Drawn:
     panels[0].set_ylabel("µs per light, one core, float32")
     run.save(picture, "growth")
     run.csv("growth", ["lights", "precision", "method", "order", "microseconds"], rows)
-    clipped = exponents["sphere_clipped", "float32", "exact"]
-    polygons = exponents["polygon_clipped", "float32", "exact"]
-    others = [power for (_, _, label), power in exponents.items() if label != "exact"]
+    library, others = (
+        [power for (_, _, label), power in exponents.items() if (label == LIBRARY) == own and np.isfinite(power)]
+        for own in (True, False)
+    )
     text = (
         "Time for the coefficients of one light on one core, with the exponent of its growth from order 8 on. "
-        f"The library's own grows as n^{clipped:.1f} for clipped spheres and n^{polygons:.1f} for clipped polygons"
+        f"The library's own grows as n^{min(library):.1f} … n^{max(library):.1f}"
     )
     text += f", the others as n^{min(others):.1f} … n^{max(others):.1f}." if others else "."
     header = ["lights", "precision", "method", "exponent", "orders", "µs at n = 8", "µs at n = 32"]
