@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
-from . import growth, speed_error, stability
+from . import growth, order_error, speed_error, stability
 from .figure import Figure
 
 FIGURES = [
     Figure("speed_error", "Time against error", speed_error.draw),
     Figure("stability", "Where methods fail", stability.draw),
     Figure("growth", "Time against order", growth.draw),
+    Figure("order_error", "Order against error, for each material", order_error.draw),
 ]

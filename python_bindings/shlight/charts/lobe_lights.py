@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: MIT
+"""Sphere lights about a glossy lobe, what shading methods make of them, and how long they take."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import shlight
+from shlight._arrays import Floats
+
+from .lobes import view_direction
+
+
+@dataclass(frozen=True)
+class LobeLights:
+    """Lights of unit radiance at distance 1, in the shading frame, and the view ω_o = (sinθ_o, 0, cosθ_o)."""
+
+    cos_o: float
+    centers: Floats  # (k, 3)
+    radii: Floats  # (k,)
+
+    def __len__(self) -> int:
+        return len(self.radii)
+
+    def shade(self, bsdf: shlight.Bsdf, method: str, **options: Any) -> Floats:
+        """(k,) reflected radiance, of the first channel."""
+        shaded: Floats = shlight.shade_spheres(
+            self.centers, self.radii, bsdf, self.cos_o, method=method, threads=options.pop("threads", 1), **options
+        )
+        return shaded[:, 0].astype(np.float64)
+
+    def timed(self, bsdf: shlight.Bsdf, method: str, count: int, **options: Any) -> Callable[[], object]:
+        """Work for a clock: `count` lights, these over and over, each under a view of its own as the hits of a picture
+        with one light have; what a method prepares for a view is then paid for by each light."""
+        which = np.arange(count) % len(self)
+        centers, radii = self.centers[which], self.radii[which]
+        cosines = self.cos_o - 1e-6 * np.arange(count) / count
+        return lambda: shlight.shade_spheres(centers, radii, bsdf, cosines, method=method, threads=1, **options)
+
+
+def about_lobe(rng: np.random.Generator, alpha: float, cos_o: float, half_angles: Floats) -> LobeLights:
+    """A third of the lights cut by the horizon, half of those below the mirror direction; a third about the mirror
+    direction, as far off as lobe and light reach; a third anywhere above."""
+    count = len(half_angles)
+    axes = rng.normal(size=(count, 3))
+    kind = np.arange(count) % 3
+    height = np.sin(rng.uniform(-0.9, 1, count) * half_angles)
+    azimuth = np.where(rng.random(count) < 0.5, np.pi + rng.uniform(-0.6, 0.6, count), rng.uniform(0, 2 * np.pi, count))
+    flat = np.sqrt(1 - height**2)
+    cut = np.stack([flat * np.cos(azimuth), flat * np.sin(azimuth), height], axis=-1)
+    near = view_direction(cos_o) * [-1, 1, 1] + 0.4 * (half_angles + 2 * alpha)[:, None] * axes
+    axes[:, 2] = abs(axes[:, 2])
+    near[:, 2] = abs(near[:, 2])
+    axes = np.where((kind == 0)[:, None], cut, np.where((kind == 1)[:, None], near, axes))
+    return LobeLights(cos_o, axes / np.linalg.norm(axes, axis=-1, keepdims=True), np.sin(half_angles))
+
+
+def best_seconds(works: Sequence[Callable[[], object]], rounds: int) -> list[float]:
+    """Processor seconds of the fastest of some rounds in which the works take turns: other work only adds to it."""
+    best = [float("inf")] * len(works)
+    for _ in range(rounds):
+        for i, work in enumerate(works):
+            start = time.process_time()
+            work()
+            best[i] = min(best[i], time.process_time() - start)
+    return best
