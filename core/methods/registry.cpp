@@ -9,6 +9,9 @@
 // One line for each method.
 #define SHLIGHT_METHODS(METHOD) \
     METHOD(exact)               \
+    METHOD(zhou_wei)            \
+    METHOD(snyder)              \
+    METHOD(wang_ramamoorthi)    \
     METHOD(reference)
 
 #define SHLIGHT_SHADING_METHODS(METHOD) \

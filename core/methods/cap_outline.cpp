@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "cap_outline.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace shlight::methods {
+namespace {
+
+/// 1 - |cosσ| without cancellation.
+template <class T>
+T lack(const CapAngles<T>& cap) {
+    return cap.sin_half * cap.sin_half / (1 + std::abs(cap.cos_half));
+}
+
+template <class T>
+constexpr T kTurn = 2 * std::numbers::pi_v<T>;
+
+/// sin²θ - cos²σ, positive where the circles cross; of its two forms the one with the smaller squares.
+template <class T>
+T squared_chord(const CapAngles<T>& cap, T sin_tilt) {
+    const T cos_tilt = cap.axis.z;
+    return cap.sin_half < std::abs(cap.cos_half) ? (cap.sin_half - cos_tilt) * (cap.sin_half + cos_tilt)
+                                                 : (sin_tilt - cap.cos_half) * (sin_tilt + cap.cos_half);
+}
+
+}  // namespace
+
+template <class T>
+CapOutline<T>::CapOutline(const CapAngles<T>& cap, bool clip) {
+    const T sin_tilt = std::hypot(cap.axis.x, cap.axis.y);
+    const T chord2 = clip ? squared_chord(cap, sin_tilt) : T(0);
+    crossing = chord2 > 0;
+    if (crossing) {
+        set_crossing(cap, sin_tilt, std::sqrt(chord2));
+    } else if (!clip || (cap.cos_half >= 0 && cap.axis.z > 0)) {
+        edge = kTurn<T>;
+        solid_angle = kTurn<T> * (cap.cos_half > 0 ? lack(cap) : 1 - cap.cos_half);
+    } else if (cap.cos_half < 0) {
+        // Either the cap holds the upper hemisphere, or the two cover the sphere together: then the edges add, and the
+        // areas but for the whole sphere.
+        edge = cap.axis.z > 0 ? T(0) : kTurn<T>;
+        horizon = kTurn<T>;
+        solid_angle = cap.axis.z > 0 ? kTurn<T> : -kTurn<T> * cap.cos_half;
+    }
+}
+
+/// The area by Gauss and Bonnet, Ω/2 = ψ_0 (1 - cosσ) + (β - ψ_0), where ψ_0 is half the edge and β the turn at the
+/// crossing: Eq. 21 without its differences of large angles. A cap beyond a hemisphere is what its complement leaves.
+template <class T>
+void CapOutline<T>::set_crossing(const CapAngles<T>& cap, T sin_tilt, T chord) {
+    const T cosine = cap.cos_half;
+    const T cos_tilt = cap.axis.z;
+    const T half_edge = std::atan2(chord, -cosine * cos_tilt);
+    edge = 2 * half_edge;
+    horizon = 2 * std::atan2(chord, cosine);
+
+    const T turn = std::atan2(std::copysign(lack(cap), cosine) * chord * cos_tilt,
+                              chord * chord + std::abs(cosine) * cos_tilt * cos_tilt);
+    const T area = 2 * (half_edge * lack(cap) + turn);
+    solid_angle = cosine < 0 ? kTurn<T> - area : area;
+
+    const T scale = 1 / (sin_tilt * std::hypot(chord, cosine));
+    const T along_x = scale * cosine * cap.axis.x;
+    const T along_y = scale * cosine * cap.axis.y;
+    const T across_x = scale * chord * -cap.axis.y;
+    const T across_y = scale * chord * cap.axis.x;
+    left = {along_x - across_x, along_y - across_y, 0};
+    right = {along_x + across_x, along_y + across_y, 0};
+}
+
+template struct CapOutline<float>;
+template struct CapOutline<double>;
+
+}  // namespace shlight::methods

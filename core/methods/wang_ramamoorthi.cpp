@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+//
+// Polygons: zonal integrals by recurrences along the edges, which are arcs of great circles (Wang & Ramamoorthi 2018,
+// as Zhou & Wei 2020 use it for quads).
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "arc_recurrence.h"
+#include "method.h"
+
+namespace shlight::methods {
+namespace {
+
+/// Solid angle of a triangle, signed by its winding (Van Oosterom & Strackee 1983); the triple product of edges, so
+/// that a small triangle keeps its digits.
+template <class T>
+T triangle_solid_angle(const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& c) {
+    const T la = glm::length(a);
+    const T lb = glm::length(b);
+    const T lc = glm::length(c);
+    const Vec3<T> ua = a / la;
+    const Vec3<T> ub = b / lb;
+    const Vec3<T> uc = c / lc;
+    const T triple = glm::dot(ua, glm::cross((b - a) / lb, (c - a) / lc));
+    return 2 * std::atan2(triple, 1 + glm::dot(ua, ub) + glm::dot(ub, uc) + glm::dot(uc, ua));
+}
+
+/// Takes the vertices of the clipped polygon one after the other; the edges' integrals and the fan's area add up.
+template <class T>
+class PolygonIntegrals {
+  public:
+    explicit PolygonIntegrals(int order) : order_(order) { clear_boundary(boundary, order); }
+
+    void add(const Vec3<T>& vertex) {
+        if (count_ == 0) {
+            first_ = vertex;
+            ends_[0].set(glm::normalize(vertex), order_);
+        } else {
+            add_edge(vertex);
+            if (count_ > 1) {
+                solid_angle += triangle_solid_angle(first_, last_, vertex);
+            }
+        }
+        last_ = vertex;
+        ++count_;
+    }
+    void close() {
+        if (count_ > 2) {
+            add_edge(first_);
+        }
+    }
+
+    LobeTable<T> boundary;
+    T solid_angle = 0;
+
+  private:
+    void add_edge(const Vec3<T>& to) {
+        const Vec3<T> normal = glm::cross(last_, to - last_) / (glm::length(last_) * glm::length(to));
+        const T sine = glm::length(normal);
+        if (!(sine > 0)) {
+            return;
+        }
+        LobePoint<T>& begin = ends_[present_];
+        LobePoint<T>& end = ends_[1 - present_];
+        end.set(glm::normalize(to), order_);
+        const T angle = std::atan2(sine, glm::dot(begin.point, end.point));
+        add_great_arc({normal / sine, T(0), T(1), angle}, begin, end, order_, boundary);
+        present_ = 1 - present_;
+    }
+
+    int order_;
+    int count_ = 0;
+    std::size_t present_ = 0;  // which of ends_ is the last vertex
+    Vec3<T> first_, last_;
+    std::array<LobePoint<T>, 2> ends_;
+};
+
+template <class T>
+void polygon(std::span<const Vec3<T>> vertices, int order, bool clip, const Options& /*options*/, T* coefficients) {
+    PolygonIntegrals<T> sums(order);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const Vec3<T>& a = vertices[i];
+        const Vec3<T>& b = vertices[(i + 1) % vertices.size()];
+        if (!clip || a.z >= 0) {
+            sums.add(a);
+        }
+        if (clip && ((a.z < 0 && b.z > 0) || (a.z > 0 && b.z < 0))) {
+            const T share = a.z / (a.z - b.z);
+            sums.add({a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), T(0)});
+        }
+    }
+    sums.close();
+    if (sums.solid_angle == 0) {
+        std::fill_n(coefficients, coefficient_count(order), T(0));
+        return;
+    }
+    const T orientation = sums.solid_angle < 0 ? T(-1) : T(1);
+    zonal_coefficients(sums.boundary, orientation, std::abs(sums.solid_angle), order, coefficients);
+}
+
+}  // namespace
+
+Method wang_ramamoorthi() {
+    return {"wang_ramamoorthi",
+            "Wang & Ramamoorthi 2018: zonal factorization, Legendre recurrences along great arcs",
+            kMaxZonalOrder,
+            false,
+            false,
+            {nullptr, &polygon<float>},
+            {nullptr, &polygon<double>}};
+}
+
+}  // namespace shlight::methods

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+#include "zonal_factorization.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "shlight/basis.h"
+
+namespace shlight::methods {
+namespace {
+
+/// The direction that the recurrences see.
+template <class T>
+Vec3d rounded_direction(std::size_t lobe) {
+    return Vec3d(Vec3<T>(lobe_directions()[lobe]));
+}
+
+/// Square, row by row.
+struct Matrix {
+    explicit Matrix(std::size_t n) : size(n), values(n * n) {}
+    double& operator()(std::size_t row, std::size_t column) { return values[row * size + column]; }
+    double operator()(std::size_t row, std::size_t column) const { return values[row * size + column]; }
+
+    std::size_t size;
+    std::vector<double> values;
+};
+
+/// Y_lm(ω_d): a row for each of the first 2l + 1 directions, a column for each m.
+template <class T>
+Matrix band_matrix(int l) {
+    Matrix matrix(static_cast<std::size_t>(2 * l + 1));
+    std::array<double, coefficient_count(kMaxZonalOrder)> basis;
+    for (std::size_t d = 0; d < matrix.size; ++d) {
+        sh_basis(glm::normalize(rounded_direction<T>(d)), l + 1, basis.data());
+        for (std::size_t m = 0; m < matrix.size; ++m) {
+            matrix(d, m) = basis[static_cast<std::size_t>(l * l) + m];
+        }
+    }
+    return matrix;
+}
+
+/// By Gauss and Jordan, with pivots.
+Matrix inverse(Matrix a) {
+    const std::size_t n = a.size;
+    Matrix b(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        b(i, i) = 1;
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+        std::size_t pivot = k;
+        for (std::size_t i = k + 1; i < n; ++i) {
+            pivot = std::abs(a(i, k)) > std::abs(a(pivot, k)) ? i : pivot;
+        }
+        const double scale = 1 / a(pivot, k);
+        for (std::size_t j = 0; j < n; ++j) {
+            std::swap(a(k, j), a(pivot, j));
+            std::swap(b(k, j), b(pivot, j));
+            a(k, j) *= scale;
+            b(k, j) *= scale;
+        }
+        for (std::size_t i = 0; i < n; ++i) {
+            const double factor = a(i, k);
+            if (i == k || factor == 0) {
+                continue;
+            }
+            for (std::size_t j = 0; j < n; ++j) {
+                a(i, j) -= factor * a(k, j);
+                b(i, j) -= factor * b(k, j);
+            }
+        }
+    }
+    return b;
+}
+
+/// The singular values, squared: one-sided Jacobi turns pairs of columns until all are orthogonal.
+std::vector<double> squared_singular_values(Matrix a) {
+    const std::size_t n = a.size;
+    const auto product = [&](std::size_t p, std::size_t q) {
+        double sum = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            sum += a(i, p) * a(i, q);
+        }
+        return sum;
+    };
+    for (bool turned = true; turned;) {
+        turned = false;
+        for (std::size_t p = 0; p < n; ++p) {
+            for (std::size_t q = p + 1; q < n; ++q) {
+                const double pp = product(p, p);
+                const double qq = product(q, q);
+                const double pq = product(p, q);
+                if (std::abs(pq) <= 1e-12 * std::sqrt(pp * qq)) {
+                    continue;
+                }
+                turned = true;
+                const double angle = std::atan2(2 * pq, pp - qq) / 2;
+                const double c = std::cos(angle);
+                const double s = std::sin(angle);
+                for (std::size_t i = 0; i < n; ++i) {
+                    const double x = a(i, p);
+                    a(i, p) = c * x + s * a(i, q);
+                    a(i, q) = c * a(i, q) - s * x;
+                }
+            }
+        }
+    }
+    std::vector<double> squares(n);
+    for (std::size_t p = 0; p < n; ++p) {
+        squares[p] = product(p, p);
+    }
+    return squares;
+}
+
+/// From S_l(ω_d), 2l + 1 directions, to L_lm: a row of 2l + 1 coefficients for each direction, band after band.
+template <class T>
+struct Factorization {
+    std::vector<T> rows;
+
+    Factorization() {
+        for (int l = 1; l < kMaxZonalOrder; ++l) {
+            const Matrix solved = inverse(band_matrix<T>(l));
+            const double factor = (2 * l + 1) / (4 * std::numbers::pi);
+            for (std::size_t d = 0; d < solved.size; ++d) {
+                for (std::size_t m = 0; m < solved.size; ++m) {
+                    rows.push_back(static_cast<T>(factor * solved(m, d)));
+                }
+            }
+        }
+    }
+    static const Factorization& get() {
+        static const Factorization factorization;
+        return factorization;
+    }
+};
+
+/// Eq. 10, in place.
+template <class T>
+void surface_integrals(LobeTable<T>& integrals, T orientation, int order) {
+    const std::size_t columns = lobe_columns(order);
+    for (int l = 1; l < order; ++l) {
+        LobeRow<T>& row = integrals[static_cast<std::size_t>(l)];
+        const T scale = orientation * static_cast<T>(2 * l - 1) / static_cast<T>(l * (l + 1));
+        if (l < 3) {
+            for (std::size_t i = 0; i < columns; ++i) {
+                row[i] *= scale;
+            }
+            continue;
+        }
+        const LobeRow<T>& before = integrals[static_cast<std::size_t>(l - 2)];
+        const T carry = static_cast<T>((l - 2) * (l - 1)) / static_cast<T>(l * (l + 1));
+        for (std::size_t i = 0; i < columns; ++i) {
+            row[i] = scale * row[i] + carry * before[i];
+        }
+    }
+}
+
+}  // namespace
+
+template <class T>
+const LobeAxes<T>& LobeAxes<T>::get() {
+    static const LobeAxes axes = [] {
+        LobeAxes made;
+        for (std::size_t i = 0; i < kLobeColumns; ++i) {
+            const Vec3<T> direction(rounded_direction<T>(std::min(i, kMaxLobes - 1)));
+            made.x[i] = direction.x;
+            made.y[i] = direction.y;
+            made.z[i] = direction.z;
+        }
+        return made;
+    }();
+    return axes;
+}
+
+template <class T>
+void zonal_coefficients(LobeTable<T>& integrals, T orientation, T solid_angle, int order, T* coefficients) {
+    coefficients[0] = solid_angle / std::sqrt(4 * std::numbers::pi_v<T>);
+    surface_integrals(integrals, orientation, order);
+    const T* weights = Factorization<T>::get().rows.data();
+    for (int l = 1; l < order; ++l) {
+        const auto width = static_cast<std::size_t>(2 * l + 1);
+        const LobeRow<T>& integral = integrals[static_cast<std::size_t>(l)];
+        std::array<T, kMaxLobes> sum{};
+        for (std::size_t d = 0; d < width; ++d, weights += width) {
+            for (std::size_t m = 0; m < width; ++m) {
+                sum[m] += integral[d] * weights[m];
+            }
+        }
+        std::copy_n(sum.begin(), width, coefficients + l * l);
+    }
+}
+
+double lobe_condition(int band) {
+    const std::vector<double> squares = squared_singular_values(band_matrix<double>(band));
+    const auto [least, largest] = std::minmax_element(squares.begin(), squares.end());
+    return std::sqrt(*largest / *least);
+}
+
+template struct LobeAxes<float>;
+template struct LobeAxes<double>;
+template void zonal_coefficients(LobeTable<float>&, float, float, int, float*);
+template void zonal_coefficients(LobeTable<double>&, double, double, int, double*);
+
+}  // namespace shlight::methods

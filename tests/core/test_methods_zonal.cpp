@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+//
+// The zonal methods against the 113-bit reference: right where the light is easy, in both precisions as good as they
+// are known to be, and lost where they are known to be lost. Errors are the largest over all coefficients of a light,
+// relative to its L_00.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "batch.h"
+#include "error_record.h"
+#include "lobe_directions.h"
+#include "method.h"
+#include "quad_truth.h"
+#include "random_input.h"
+#include "random_polygon.h"
+#include "zonal_factorization.h"
+
+namespace shlight {
+namespace {
+
+using methods::find_method;
+using testing::as_float;
+using testing::ErrorRecord;
+using testing::RandomInput;
+using testing::Vertices;
+using truth::CapInput;
+using Kind = truth::CapInput::Kind;
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kDegree = kPi / 180;
+
+template <class T>
+std::vector<T> cap(const char* method, const Vec3d& axis, double half, int order, bool clip = true) {
+    std::vector<T> result(coefficient_count(order), std::numeric_limits<T>::quiet_NaN());
+    const Vec3<T> rounded(axis);
+    const auto half_angle = static_cast<T>(half);
+    methods::cap_coefficients<T>(find_method(method), std::span(&rounded, 1), std::span(&half_angle, 1), order, clip,
+                                 {}, 0, result);
+    return result;
+}
+
+template <class T>
+std::vector<T> polygon(const char* method, const Vertices& vertices, int order, bool clip) {
+    std::vector<T> result(coefficient_count(order), std::numeric_limits<T>::quiet_NaN());
+    const std::vector<Vec3<T>> rounded(vertices.begin(), vertices.end());
+    methods::polygon_coefficients<T>(find_method(method), rounded, static_cast<int>(vertices.size()), order, clip, {},
+                                     0, result);
+    return result;
+}
+
+double relative(const truth::Coefficients& reference, double largest) {
+    return largest == 0 ? 0 : largest / reference.high[0];
+}
+
+/// Error of a cap whose input is rounded to T before anybody sees it.
+template <class T>
+double cap_error(const char* method, Vec3d axis, double half, int order, bool clip = true) {
+    axis = Vec3d(Vec3<T>(axis));
+    half = static_cast<T>(half);
+    const truth::Coefficients reference = truth::cap({axis, Kind::angle, half}, order, clip);
+    return relative(reference, truth::largest_error(reference, order, cap<T>(method, axis, half, order, clip).data()));
+}
+
+template <class T>
+double polygon_error(const char* method, Vertices vertices, int order, bool clip) {
+    for (Vec3d& v : vertices) {
+        v = Vec3d(Vec3<T>(v));
+    }
+    const truth::Coefficients reference = truth::polygon(vertices, order, clip);
+    return relative(reference,
+                    truth::largest_error(reference, order, polygon<T>(method, vertices, order, clip).data()));
+}
+
+/// A cap as the angles of its axis and edge, both in radians.
+struct CapLight {
+    Vec3d axis;
+    double half;
+    bool clip = true;
+};
+
+/// 10° and more from tangency, and the centre as far from the horizon.
+CapLight easy(RandomInput& random) {
+    const double half = random.uniform(0.2, 1);
+    double tilt = 0;
+    do {
+        tilt = random.uniform(0, kPi / 2 + half - 10 * kDegree);
+    } while (std::abs(tilt - kPi / 2) < 10 * kDegree || std::abs(tilt - kPi / 2 + half) < 10 * kDegree);
+    return {random.log_uniform(0.1, 10) * random.at_tilt(tilt), half, random.chance(0.8)};
+}
+
+/// Wider than a hemisphere: holding the upper one, covering the sphere together with it, or crossing the horizon.
+CapLight wide(RandomInput& random) {
+    return {random.direction(), random.uniform(0.5 * kPi, 0.97 * kPi), random.chance(0.9)};
+}
+
+/// The axis along a lobe or against it, where the height is the same all along the edge.
+CapLight along_a_lobe(RandomInput& random) {
+    const Vec3d lobe = methods::lobe_directions()[static_cast<std::size_t>(random.integer(0, 62))];
+    return {random.chance(0.5) ? lobe : -lobe, random.uniform(0.3, 3), random.chance(0.5)};
+}
+
+/// The axis along z, against it, or in the horizon.
+CapLight upright(RandomInput& random) {
+    const int way = random.integer(0, 2);
+    Vec3d axis = random.at_tilt(kPi / 2);
+    axis.z = 0;
+    return {way == 0 ? axis : Vec3d(0, 0, way == 1 ? 1 : -1), random.uniform(0.3, 3)};
+}
+
+void compare_caps(const char* name, CapLight (*draw)(RandomInput&), const char* method, int order, double bound64,
+                  double bound32, std::uint64_t seed) {
+    constexpr std::size_t kCount = 60;
+    RandomInput random(seed);
+    std::vector<CapLight> lights(kCount);
+    std::generate(lights.begin(), lights.end(), [&] { return draw(random); });
+    ErrorRecord errors64(kCount);
+    ErrorRecord errors32(kCount);
+    testing::on_two_threads(kCount, [&](std::size_t i) {
+        const auto& [axis, half, clip] = lights[i];
+        errors64[i] = cap_error<double>(method, axis, half, order, clip);
+        errors32[i] = cap_error<float>(method, axis, half, order, clip);
+    });
+    const std::string text = std::string(method) + ", " + name + ", n = " + std::to_string(order);
+    errors64.publish(text + ", float64");
+    errors32.publish(text + ", float32");
+    EXPECT_LE(errors64.largest(), bound64) << text;
+    EXPECT_LE(errors32.largest(), bound32) << text;
+}
+
+void compare_easy_caps(const char* method, int order, double bound64, double bound32) {
+    compare_caps("easy", easy, method, order, bound64, bound32, 700);
+    compare_caps("wide", wide, method, order, bound64, bound32, 701);
+    compare_caps("along a lobe", along_a_lobe, method, order, bound64, bound32, 702);
+    compare_caps("upright", upright, method, order, bound64, bound32, 703);
+}
+
+TEST(ZonalCaps, LegendreRecurrencesAreRight) {
+    compare_easy_caps("zhou_wei", 1, 1e-14, 3e-6);
+    compare_easy_caps("zhou_wei", 2, 1e-12, 1e-4);
+    compare_easy_caps("zhou_wei", 3, 1e-12, 1e-3);
+    compare_easy_caps("zhou_wei", 10, 1e-11, 1e-2);
+    compare_easy_caps("zhou_wei", 32, 1e-10, 1e-1);
+}
+
+TEST(ZonalCaps, MonomialRecurrencesAreRight) {
+    compare_easy_caps("snyder", 1, 1e-14, 3e-6);
+    compare_easy_caps("snyder", 2, 1e-12, 1e-4);
+    compare_easy_caps("snyder", 3, 1e-12, 1e-3);
+    compare_easy_caps("snyder", 10, 1e-9, 1e-1);
+}
+
+/// In front, turned by up to 60°, none of its sides short; clipped or not.
+Vertices easy_quad(RandomInput& random) {
+    const Vec3d center = random.log_uniform(0.1, 10) * random.at_tilt(random.uniform(0, 1.3));
+    const Vec3d normal = glm::normalize(center) + 0.8 * random.direction();
+    const double half = random.uniform(0.3, 1) * glm::length(center);
+    return testing::star(random, center, testing::Plane(random, normal), 4, 0.6, half, half);
+}
+
+Vertices concave(RandomInput& random) {
+    const Vec3d center = random.at_tilt(random.uniform(0, 1.3));
+    return testing::star(random, center, testing::Plane(random, center), 2 * random.integer(3, 5), 0.3, 0.8, 0.8);
+}
+
+/// A wall that stands on the horizon's plane.
+Vertices wall(RandomInput& random) {
+    const Vec3d across = random.at_tilt(kPi / 2);
+    const Vec3d foot(across.x, across.y, 0);
+    const Vec3d side = random.uniform(0.3, 1) * Vec3d(-foot.y, foot.x, 0);
+    const Vec3d up = random.uniform(0.3, 2) * Vec3d(0, 0, 1);
+    return {foot - side, foot + side, foot + side + up, foot - side + up};
+}
+
+void compare_polygons(const char* name, Vertices (*draw)(RandomInput&), int order, double bound64, double bound32) {
+    constexpr std::size_t kCount = 60;
+    RandomInput random(710);
+    std::vector<Vertices> polygons(kCount);
+    for (Vertices& vertices : polygons) {
+        vertices = draw(random);
+        if (random.chance(0.5)) {
+            std::reverse(vertices.begin(), vertices.end());
+        }
+    }
+    ErrorRecord errors64(kCount);
+    ErrorRecord errors32(kCount);
+    testing::on_two_threads(kCount, [&](std::size_t i) {
+        errors64[i] = polygon_error<double>("wang_ramamoorthi", polygons[i], order, i % 4 != 0);
+        errors32[i] = polygon_error<float>("wang_ramamoorthi", polygons[i], order, i % 4 != 0);
+    });
+    const std::string text = std::string(name) + ", n = " + std::to_string(order);
+    errors64.publish(text + ", float64");
+    errors32.publish(text + ", float32");
+    EXPECT_LE(errors64.largest(), bound64) << text;
+    EXPECT_LE(errors32.largest(), bound32) << text;
+}
+
+TEST(ZonalPolygons, LegendreRecurrencesAreRight) {
+    struct Class {
+        const char* name;
+        Vertices (*draw)(RandomInput&);
+    };
+    for (const auto& [name, draw] : {Class{"easy quads", easy_quad}, Class{"concave", concave}, Class{"walls", wall}}) {
+        compare_polygons(name, draw, 1, 1e-13, 3e-5);
+        compare_polygons(name, draw, 2, 1e-11, 3e-3);
+        compare_polygons(name, draw, 3, 1e-11, 3e-3);
+        compare_polygons(name, draw, 10, 1e-11, 1e-2);
+        compare_polygons(name, draw, 32, 1e-10, 1e-1);
+    }
+}
+
+TEST(ZonalPolygons, SeeNothingBelowTheHorizonOrEdgeOn) {
+    for (const Vertices& vertices :
+         {Vertices{{1, 0, -1}, {0, 1, -1}, {-1, -1, -1}}, Vertices{{1, 0, 0}, {2, 0, 0}, {2, 0, 1}},
+          Vertices{{1, 0, 1}, {2, 0, 1}, {1, 0, 1}}}) {
+        const std::vector<double> none = polygon<double>("wang_ramamoorthi", vertices, 8, true);
+        EXPECT_TRUE(std::all_of(none.begin(), none.end(), [](double c) { return c == 0; }));
+    }
+}
+
+TEST(ZonalCaps, SeeNothingBelowTheHorizon) {
+    for (const char* method : {"zhou_wei", "snyder"}) {
+        for (const Vec3d& axis : {Vec3d(0, 0, -1), Vec3d(1, 0, -1), Vec3d(0.2, 0.1, -0.7)}) {
+            const std::vector<float> none = cap<float>(method, axis, 0.5, 8);
+            EXPECT_TRUE(std::all_of(none.begin(), none.end(), [](float c) { return c == 0; }));
+        }
+    }
+}
+}  // namespace
+}  // namespace shlight
