@@ -19,7 +19,7 @@ from typing import Any, TypeVar
 
 from shlight import _core
 
-__all__ = ["coefficient_methods", "shading_methods"]
+__all__ = ["coefficient_methods", "lobe_condition", "shading_methods"]
 
 _Method = TypeVar("_Method", _core.Method, _core.ShadingMethod)
 
@@ -34,6 +34,12 @@ def coefficient_methods() -> dict[str, _core.Method]:
 def shading_methods() -> dict[str, _core.ShadingMethod]:
     """What `method=` of shade_spheres and shade_polygons may be beside "auto", by name."""
     return {method.name: method for method in _core.all_shading_methods()}
+
+
+def lobe_condition(band: int) -> float:
+    """The condition number of the zonal factorization of one band, 0 … 31, by which zhou_wei, snyder and
+    wang_ramamoorthi multiply the errors of their integrals over lobes."""
+    return _core.lobe_condition(_integer("band", band, 0, 31))
 
 
 def coefficient_options(method: str, **given: Any) -> _core.MethodOptions:

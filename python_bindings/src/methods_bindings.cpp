@@ -8,6 +8,7 @@
 #include "bindings.h"
 #include "chunks.h"
 #include "shaded.h"
+#include "zonal_factorization.h"
 
 namespace shlight::python {
 namespace {
@@ -156,6 +157,15 @@ void bind_methods(py::module_& m) {
         const auto all = methods::all_shading_methods();
         return std::vector<ShadingMethod>(all.begin(), all.end());
     });
+    m.def(
+        "lobe_condition",
+        [](int band) {
+            if (band < 0 || band >= methods::kMaxZonalOrder) {
+                throw std::invalid_argument("band must be 0 … " + std::to_string(methods::kMaxZonalOrder - 1));
+            }
+            return methods::lobe_condition(band);
+        },
+        py::arg("band"));
     bind_for<float>(m);
     bind_for<double>(m);
     m.def("method_shade_spheres", &spheres, py::arg("method"), py::arg("centers").noconvert(),
