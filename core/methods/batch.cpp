@@ -53,6 +53,19 @@ void each_cap(const Method& method, std::size_t count, int order, bool clip, Opt
     }
 }
 
+/// A polygon that the horizon clips, and as it was given.
+struct SeenPolygon {
+    SphericalPolygon<double> kept;
+    std::span<const Vec3d> vertices;
+};
+
+Reflected radiance_of(const LobeIntegrator& lobe, const Circle& cap, std::uint32_t seed) {
+    return lobe.radiance(cap, seed);
+}
+Reflected radiance_of(const LobeIntegrator& lobe, const SeenPolygon& polygon, std::uint32_t seed) {
+    return lobe.radiance_of_plane(polygon.kept, polygon.vertices, seed);
+}
+
 /// A material's lobes at the last view that was asked for.
 class MaterialAtView {
   public:
@@ -83,7 +96,7 @@ class MaterialAtView {
         effort = 0;
         for (std::size_t i = 0; i < lobes_.size(); ++i) {
             const std::uint32_t seed = hash(seed_of(options_, index), static_cast<std::uint32_t>(i));
-            const Reflected r = views_[i]->radiance(region, seed);
+            const Reflected r = radiance_of(*views_[i], region, seed);
             sum += lobes_[i].scale(static_cast<float>(cos_theta_o_)) * static_cast<float>(r.value);
             effort = std::max(effort, static_cast<std::int32_t>(r.points > 0 ? r.points : options_.order));
         }
@@ -185,7 +198,7 @@ void shade_polygons(const ShadingMethod& method, std::span<const Vec3d> vertices
     shade_each(method, bsdf, cos_theta_o, options, first, radiance, effort, [&](std::size_t i) {
         const auto polygon = vertices.subspan(i * k, k);
         check_polygon<float>(polygon);
-        return SphericalPolygon<double>(polygon, true);
+        return SeenPolygon{SphericalPolygon<double>(polygon, true), polygon};
     });
 }
 

@@ -103,6 +103,11 @@ class LobeIntegrator {
     virtual Reflected radiance(const Circle& cap, std::uint32_t seed) const = 0;
     /// A polygon that was clipped by the horizon.
     virtual Reflected radiance(const SphericalPolygon<double>& polygon, std::uint32_t seed) const = 0;
+    /// The same; vertices: before clipping, for those whose random points lie in the polygon's plane.
+    virtual Reflected radiance_of_plane(const SphericalPolygon<double>& polygon, std::span<const Vec3d> /*vertices*/,
+                                        std::uint32_t seed) const {
+        return radiance(polygon, seed);
+    }
 };
 
 /// A way from light to reflected radiance. No mirrors: precondition alpha > 0 for GGX.

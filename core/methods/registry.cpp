@@ -12,12 +12,17 @@
     METHOD(zhou_wei)            \
     METHOD(snyder)              \
     METHOD(wang_ramamoorthi)    \
+    METHOD(quadrature)          \
+    METHOD(monte_carlo)         \
     METHOD(reference)
 
 #define SHLIGHT_SHADING_METHODS(METHOD) \
     METHOD(plain_harmonics)             \
     METHOD(warped_harmonics)            \
-    METHOD(outline)
+    METHOD(outline)                     \
+    METHOD(cubature)                    \
+    METHOD(quadrature_shading)          \
+    METHOD(monte_carlo_shading)
 
 namespace shlight::methods {
 

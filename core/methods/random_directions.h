@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+//
+// Random directions from the origin with their densities: to a light, uniform in solid angle or over its surface, and
+// as a lobe reflects.
+//
+// A sampler turns a point of the unit square into a direction. The samplers of lights do not know of the horizon: what
+// of a light lies below counts as dark.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "light_sampling.h"
+#include "lobe_sampling.h"
+#include "shlight/lobe_shape.h"
+#include "shlight/types.h"
+#include "shlight/warp.h"
+#include "spherical_polygon.h"
+
+namespace shlight::methods {
+
+struct RandomDirection {
+    Vec3d direction;  ///< unit
+    double density;   ///< per solid angle; 0: counts nothing
+};
+
+/// Uniform in the cone of a cap, of any half angle.
+class ConeSampler {
+  public:
+    explicit ConeSampler(const Circle& cap);
+    RandomDirection sample(const glm::dvec2& point) const;
+    /// 0 outside.
+    double density(const Vec3d& direction) const;
+
+  private:
+    Circle cap_;
+    Vec3d across_, up_;
+    double height_;   // 1 - cosine of the half angle
+    double density_;  // inside
+};
+
+/// Uniform over the whole surface of a sphere, of which the back counts nothing.
+class SphereSurfaceSampler {
+  public:
+    /// circle: as which the sphere is seen.
+    explicit SphereSurfaceSampler(const Circle& circle) : circle_(circle) {}
+    RandomDirection sample(const glm::dvec2& point) const;
+
+  private:
+    Circle circle_;
+};
+
+/// Uniform over the disk at right angles to its axis that covers a cap of half angle < π/2.
+class DiskSampler {
+  public:
+    explicit DiskSampler(const Circle& cap);
+    RandomDirection sample(const glm::dvec2& point) const;
+
+  private:
+    Circle cap_;
+    Vec3d across_, up_;
+};
+
+/// Triangles, sampled in proportion to their solid angles or areas, and uniformly each. Those that a concave polygon's
+/// fan wants taken away are drawn too, and what is then outside counts nothing.
+class TriangleSampler {
+  public:
+    enum class Uniform { in_solid_angle, in_area };
+
+    explicit TriangleSampler(Uniform uniform = Uniform::in_solid_angle) : uniform_(uniform) {}
+    /// The triangles of a fan. Vertices of any length > 0, in one plane or, in solid angle, on one sphere.
+    TriangleSampler(Uniform uniform, std::span<const Vec3d> polygon);
+
+    /// Keeps its memory.
+    void clear();
+    /// Corners of any length > 0, of one winding for triangles side by side.
+    void add(const Vec3d& first, const Vec3d& second, const Vec3d& third);
+    /// Nothing to sample: no area, or edge-on.
+    bool empty() const { return pieces_.empty(); }
+    /// Precondition: not empty.
+    RandomDirection sample(glm::dvec2 point) const;
+    /// 0 outside.
+    double density(const Vec3d& direction) const;
+
+  private:
+    struct Piece {
+        Vec3d a, ab, ac;
+        double volume;  // a · (ab × ac), signed
+        double size;    // solid angle or area
+        std::optional<SphericalTriangle> spherical;
+
+        bool contains(const Vec3d& direction) const;
+        /// Of a direction inside, times the size.
+        double relative_density(const Vec3d& direction) const;
+    };
+
+    Uniform uniform_;
+    std::vector<Piece> pieces_;
+    double total_ = 0;
+    int positive_ = 0, negative_ = 0;  // pieces by the sign of their volume
+};
+
+/// As a lobe that is no mirror reflects the view: microfacets as the viewer sees them, or by the cosine.
+class ReflectionSampler {
+  public:
+    /// view: unit, above the horizon, in the xz-plane.
+    ReflectionSampler(const LobeShape& shape, const Vec3d& view);
+    /// May lie below the horizon.
+    Vec3d sample(const glm::dvec2& point) const;
+    /// 0 below the horizon.
+    double density(const Vec3d& direction) const;
+
+  private:
+    std::optional<LobeSampler> glossy_;
+};
+
+}  // namespace shlight::methods

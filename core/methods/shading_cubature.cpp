@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+//
+// Reflected radiance by a given number of values of the true f·cos: rings about the axis of a cap that lies above the
+// horizon, product rules on the patches of other regions. Sums are scaled to the light's solid angle.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "gauss_legendre.h"
+#include "kept_region.h"
+#include "light_cubature.h"
+#include "method.h"
+#include "shlight/cap.h"
+
+namespace shlight::methods {
+namespace {
+
+/// The library's own rules for caps, by their points.
+constexpr std::array kLibraryRules = {1, 4, 7, 24};
+
+/// Rings about a cap's axis: Gauss's rule for the area, and even steps around. Calls visit(direction, weight).
+template <class Visit>
+void visit_rings(const Circle& cap, int points, const Visit& visit) {
+    const int count = std::clamp(static_cast<int>(std::lround(std::sqrt(points / 2.0))), 1, kMaxGaussPoints);
+    const int spokes = points / count;
+    const Vec3d side = std::abs(cap.axis.z) < 0.9 ? Vec3d(0, 0, 1) : Vec3d(1, 0, 0);
+    const Vec3d x = glm::normalize(glm::cross(side, cap.axis));
+    const Vec3d y = glm::cross(cap.axis, x);
+    const double area = cap.sine * cap.sine / (1 + cap.cosine);  // 1 - cosσ
+    const GaussRule& rule = gauss_rule(count);
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+        const double drop = area * rule.nodes[i];
+        const double across = std::sqrt(drop * (2 - drop));
+        for (int j = 0; j < spokes; ++j) {
+            const double azimuth = 2 * std::numbers::pi * (j + 0.5 * static_cast<double>(i % 2)) / spokes;
+            visit((1 - drop) * cap.axis + across * (std::cos(azimuth) * x + std::sin(azimuth) * y),
+                  rule.weights[i] / spokes);
+        }
+    }
+}
+
+class CubatureLobe : public LobeIntegrator {
+  public:
+    CubatureLobe(const LobeShape& shape, double cos_theta_o, int points)
+        : shape_(shape), view_(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o), points_(points) {}
+
+    Reflected radiance(const Circle& cap, std::uint32_t /*seed*/) const override {
+        if (cap.axis.z <= -cap.sine) {
+            return {0, 1};
+        }
+        const bool whole = cap.axis.z >= cap.sine;
+        const auto* ggx = std::get_if<GgxShape>(&shape_);
+        if (ggx != nullptr && whole && points_ <= kLibraryRules.back()) {
+            const auto rules = std::count_if(kLibraryRules.begin(), kLibraryRules.end(),
+                                             [&](int points) { return points <= points_; });
+            const CubatureSum sum = cap_cubature(*ggx, view_, cap, static_cast<int>(rules));
+            return {sum.value, sum.points};
+        }
+        const double solid_angle = Cap<double>::inside(cap).solid_angle;
+        if (!whole) {
+            return over_patches(KeptRegion::of_cap(cap, true), solid_angle);
+        }
+        if (points_ < 4) {
+            return {solid_angle * reflected(cap.axis), 1};
+        }
+        Sum sum;
+        visit_rings(cap, points_, [&](const Vec3d& at, double weight) { sum.add(weight, reflected(at)); });
+        return sum.scaled_to(solid_angle);
+    }
+
+    Reflected radiance(const SphericalPolygon<double>& polygon, std::uint32_t /*seed*/) const override {
+        if (polygon.empty()) {
+            return {0, 1};
+        }
+        return over_patches(KeptRegion::of_polygon(polygon), polygon.solid_angle());
+    }
+
+  private:
+    struct Sum {
+        double values = 0, weights = 0;
+        int points = 0;
+        void add(double weight, double value) {
+            values += weight * value;
+            weights += weight;
+            ++points;
+        }
+        Reflected scaled_to(double solid_angle) const {
+            return {weights > 0 ? values * (solid_angle / weights) : 0.0, points};
+        }
+    };
+
+    Reflected over_patches(const KeptRegion& region, double solid_angle) const {
+        const std::vector<Patch> patches = region.patches();
+        const int each = points_ / static_cast<int>(patches.size());
+        if (each < 1) {
+            return {solid_angle * reflected(region.middle()), 1};
+        }
+        const int along = std::clamp(static_cast<int>(std::sqrt(each)), 1, kMaxGaussPoints);
+        const GaussRule& from_hub = gauss_rule(along);
+        const GaussRule& edge = gauss_rule(std::min(each / along, kMaxGaussPoints));
+        Sum sum;
+        for (const Patch& patch : patches) {
+            for (std::size_t j = 0; j < edge.nodes.size(); ++j) {
+                const Spoke spoke = patch.spoke(edge.nodes[j]);
+                for (std::size_t i = 0; i < from_hub.nodes.size(); ++i) {
+                    const WeightedDirection at = patch.at(spoke, from_hub.nodes[i]);
+                    sum.add(at.weight * edge.weights[j] * from_hub.weights[i], reflected(at.direction));
+                }
+            }
+        }
+        return sum.scaled_to(solid_angle);
+    }
+
+    double reflected(const Vec3d& direction) const { return lobe_value(shape_, direction, view_); }
+
+    LobeShape shape_;
+    Vec3d view_;
+    int points_;
+};
+
+std::unique_ptr<LobeIntegrator> make(const LobeShape& shape, double cos_theta_o, const Options& options) {
+    return std::make_unique<CubatureLobe>(shape, cos_theta_o, options.samples);
+}
+
+}  // namespace
+
+ShadingMethod cubature() {
+    return {"cubature", "Gauss × trapezoid rules on the true f·cos over the light", false, false, true, false, &make};
+}
+
+}  // namespace shlight::methods

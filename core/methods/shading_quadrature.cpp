@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+//
+// Reflected radiance by adaptive cubature of the true f·cos: the truth for the other methods.
+//
+// About the mirror direction, with the angles near it magnified as much as the lobe is narrow, f·cos is broad; a light
+// that is small as seen from there is integrated about its own middle.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "adaptive_cubature.h"
+#include "method.h"
+
+namespace shlight::methods {
+namespace {
+
+constexpr double kDefaultTolerance = 1e-10;
+constexpr std::size_t kMostPoints = std::size_t{1} << 22;
+/// Lobes darker than this need no better.
+constexpr double kSmallestAlbedo = 1e-5;
+constexpr int kSmallestSide = 8;
+constexpr int kLargestSide = 27;
+
+struct LobeValue {
+    LobeShape shape;
+    Vec3d view;
+    void operator()(const Vec3d& direction, double* value) const { *value = lobe_value(shape, direction, view); }
+};
+
+class QuadratureLobe : public LobeIntegrator {
+  public:
+    QuadratureLobe(const LobeShape& shape, double cos_theta_o, double tolerance)
+        : lobe_{shape, Vec3d(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o)},
+          mirrored_(-lobe_.view.x, 0, lobe_.view.z) {
+        if (const auto* ggx = std::get_if<GgxShape>(&shape)) {
+            magnification_ = std::max(1.0, 1 / (2 * ggx->alpha));
+        } else {
+            mirrored_ = Vec3d(0, 0, 1);
+        }
+        const Circle hemisphere = {Vec3d(0, 0, 1), 0, 1};
+        tolerance_ = kSmallestAlbedo;
+        const double albedo = over(KeptRegion::of_cap(hemisphere, true)).value;
+        tolerance_ = tolerance * std::max(albedo, kSmallestAlbedo);
+    }
+
+    Reflected radiance(const Circle& cap, std::uint32_t /*seed*/) const override {
+        return over(KeptRegion::of_cap(cap, true));
+    }
+    Reflected radiance(const SphericalPolygon<double>& polygon, std::uint32_t /*seed*/) const override {
+        return over(KeptRegion::of_polygon(polygon));
+    }
+
+  private:
+    Reflected over(const KeptRegion& region) const {
+        if (region.empty()) {
+            return {0, 1};
+        }
+        const double distance = std::acos(std::clamp(glm::dot(region.middle(), mirrored_), -1.0, 1.0));
+        const bool apart = distance > 2 * region.extent();
+        const std::vector<Patch> patches = apart ? region.patches() : region.patches_about(mirrored_, magnification_);
+        const double rounding = 16 * std::numeric_limits<double>::epsilon();
+        AdaptiveCubature<double, LobeValue> cubature(lobe_, 1,
+                                                     {tolerance_, rounding, kSmallestSide, kLargestSide, kMostPoints});
+        double sum = 0;
+        cubature.add(patches, &sum);
+        return {sum, static_cast<int>(std::max<std::size_t>(1, cubature.points()))};
+    }
+
+    LobeValue lobe_;
+    Vec3d mirrored_;
+    double magnification_ = 1;
+    double tolerance_ = 0;  // absolute
+};
+
+std::unique_ptr<LobeIntegrator> make(const LobeShape& shape, double cos_theta_o, const Options& options) {
+    const double tolerance = options.tolerance > 0 ? options.tolerance : kDefaultTolerance;
+    return std::make_unique<QuadratureLobe>(shape, cos_theta_o, tolerance);
+}
+
+}  // namespace
+
+ShadingMethod quadrature_shading() {
+    return {"quadrature", "adaptive Gauss cubature of f·cos over the light", false, true, false, false, &make};
+}
+
+}  // namespace shlight::methods
