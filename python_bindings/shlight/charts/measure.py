@@ -94,15 +94,14 @@ def relative_errors(
 
 
 def batch_size(series: Series, lights: Lights, order: int, dtype: DTypeLike, budget: float, most: int) -> int:
-    """How many lights take about `budget` seconds: at least some different ones, at most `most`."""
-    least = min(8, len(lights), most)
-    count = least
+    """How many lights take about `budget` seconds: 1 … most."""
+    count = 1
     while True:
         batch = lights.repeated(count).in_type(dtype)
         # Of two, for the first may have to wake something up.
         spent = min(_seconds(lambda b=batch: series.coefficients(b, order, dtype)) for _ in range(2))  # type: ignore[misc]
         if spent >= budget / 4 or count == most:
-            return int(np.clip(count * budget / spent, least, most))
+            return int(np.clip(count * budget / spent, 1, most))
         # What a call costs in itself hides what so few lights take.
         count = min(4 * count, most)
 
@@ -117,14 +116,16 @@ def best_seconds(
         if order > series.largest_order:
             works.append(None)
             continue
-        # Results that fit into a cache.
-        count = batch_size(series, lights, order, dtype, budget, 2**19 // order**2)
+        # Results that fit into a cache, and of slow methods more than one light, for their times differ.
+        most = 2**19 // order**2
+        count = max(batch_size(series, lights, order, dtype, budget, most), min(4, len(lights)))
         batch = lights.repeated(count).in_type(dtype)
         works.append((lambda s=series, b=batch: s.coefficients(b, order, dtype), count))  # type: ignore[misc]
     best = [np.nan if work is None else np.inf for work in works]
-    for _ in range(rounds):
+    for turn in range(rounds):
         for i, work in enumerate(works):
-            if work is not None:
+            # What takes long is measured well in two.
+            if work is not None and (turn < 2 or best[i] * work[1] < 4 * budget):
                 best[i] = min(best[i], _seconds(work[0]) / work[1])
     return best
 

@@ -164,10 +164,13 @@ def _draw_picture(run: Run, maps: list[Map]) -> None:
     for panel in panels[-1]:
         panel.set_xlabel(first.region.x_label)
     title = f"{KINDS[first.kind]}, {first.region.title}, order {first.order}"
-    picture.suptitle(title[0].upper() + title[1:])
+    if first.region.zoomed:
+        title += " (elevations in logarithmic steps from ±10$^{-7}$ both ways)"
+    title = title[0].upper() + title[1:]
+    picture.suptitle(title)
     picture.legend(handles=_legend(), loc="outside lower center", ncols=3)
     name = f"stability_{first.kind}_{first.region.name}_{first.order}"
-    run.save(picture, name, f"{title[0].upper()}{title[1:]}")
+    run.save(picture, name, title.replace("10$^{-7}$", "1e-7"))
 
 
 def _legend() -> list[Any]:
@@ -251,7 +254,11 @@ def _table(maps: list[Map]) -> Table:
         cells.setdefault((KINDS[m.kind], m.region.title, m.series.label), {})[m.precision, m.order] = text
     header = ["lights", "region", "method", *(f"{precision}, n = {order}" for precision, order in columns)]
     rows = [[*key, *(of.get(column, "") for column in columns)] for key, of in cells.items()]
-    return Table(f"Worst finite error ÷ L_00 · share of lights above {LIMIT:g} · share not finite", header, rows)
+    title = (
+        f"Worst finite error ÷ L_00 · share of visible lights above {LIMIT:g} · share not finite "
+        f"(L_00 of what the horizon keeps, or {LEAST_SHARE:g} of the whole light's if that is more)"
+    )
+    return Table(title, header, rows)
 
 
 def _explanation(maps: list[Map]) -> str:
