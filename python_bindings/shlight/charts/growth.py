@@ -1,70 +1,142 @@
 # SPDX-License-Identifier: MIT
-"""Time against order, and the exponents of its growth (Zhou & Wei 2020, Fig. 6)."""
+"""Time against order, the exponents of its growth (Zhou & Wei 2020, Fig. 6), and what the lobes' matrices amplify."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
 import numpy as np
+from numpy.typing import NDArray
+
+from shlight.methods import lobe_condition
 
 from .figure import Drawn, Run, Table
-from .lights import CLASSES
-from .measure import PRECISIONS, all_series, best_seconds, exponent
-from .style import canvas, order_axis
+from .lights import CLASSES, LightClass
+from .measure import PRECISIONS, Series, all_series, best_seconds, exponent
+from .style import BLUE, canvas, order_axis
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 ORDERS = (2, 4, 6, 8, 12, 16, 24, 32, 48, 64)
+QUICK_ORDERS = (2, 8, 16, 32, 64)
+BANDS = 32
 LIBRARY = "exact"
 SHOWN = ("sphere_whole", "sphere_clipped", "polygon_clipped")
 
 
+@dataclass(frozen=True)
+class Curve:
+    """One method's times."""
+
+    light_class: LightClass
+    precision: str
+    series: Series
+    orders: Sequence[int]
+    seconds: NDArray[np.float64]
+
+    def exponent(self) -> float:
+        return exponent(self.orders, list(self.seconds))
+
+
 def draw(run: Run) -> Drawn:
-    orders = [n for n in ORDERS if not run.quick or n in (2, 8, 16, 32, 64)]
-    classes = [c for c in CLASSES if c.name in SHOWN]
-    shape = (3 if run.quick else 10, 0.003 if run.quick else 0.006)
-    picture = canvas(13, 5.6)
-    panels = picture.subplots(1, len(classes), sharey=True)
-    rows, table = [], []
-    exponents = {}
-    for i, (panel, light_class) in enumerate(zip(panels, classes, strict=True)):
-        lights = light_class.lights(run.seed, 64)
+    orders = QUICK_ORDERS if run.quick else ORDERS
+    cases = [(c, precision) for c in CLASSES if c.name in SHOWN for precision in PRECISIONS]
+    curves: list[Curve] = []
+    for i, (light_class, precision) in enumerate(cases):
         all_of = all_series(light_class.kind)
-        for j, precision in enumerate(PRECISIONS):
-            times = []
-            for k, order in enumerate(orders):
-                share = (i + (j + k / len(orders)) / len(PRECISIONS)) / len(classes)
-                run.step(share, f"{light_class.name} {precision} order {order}")
-                times.append(best_seconds(all_of, lights, order, precision, rounds=shape[0], budget=shape[1]))
-            for series, seconds in zip(all_of, np.transpose(times), strict=True):
-                power = exponent(orders, list(seconds))
-                exponents[light_class.name, precision, series.label] = power
-                reach = max(n for n, t in zip(orders, seconds, strict=True) if np.isfinite(t))
-                cells = [f"{1e6 * seconds[orders.index(n)]:.2f}" for n in (8, 32)]
-                table.append([light_class.name, precision, series.label, f"{power:.2f}", f"8 … {reach}", *cells])
-                for order, second in zip(orders, seconds, strict=True):
-                    if np.isfinite(second):
-                        rows.append([light_class.name, precision, series.label, order, f"{1e6 * second:.4g}"])
-                if precision == "float32":
-                    panel.plot(
-                        orders,
-                        1e6 * seconds,
-                        color=series.color,
-                        marker=series.marker,
-                        ls=series.dashes,
-                        label=f"{series.label}: n^{power:.1f}",
-                    )
+        lights = light_class.lights(run.seed, 64)
+        times = []
+        for k, order in enumerate(orders):
+            run.step((i + k / len(orders)) / len(cases), f"{light_class.name} {precision} order {order}")
+            rounds, budget = (3, 0.003) if run.quick else (15, 0.006)
+            times.append(best_seconds(all_of, lights, order, precision, rounds=rounds, budget=budget))
+        for series, seconds in zip(all_of, np.transpose(times), strict=True):
+            curves.append(Curve(light_class, precision, series, orders, seconds))
+    _draw_times(run, curves)
+    conditions = [lobe_condition(band) for band in range(BANDS)]
+    _draw_conditions(run, conditions)
+    run.csv("growth", ["lights", "precision", "method", "order", "microseconds"], _numbers(curves))
+    run.csv("growth_condition", ["band", "condition"], [[i, f"{c:.6g}"] for i, c in enumerate(conditions)])
+    return Drawn(_explanation(curves, conditions), [_exponents(curves), _conditions(conditions)])
+
+
+def _draw_times(run: Run, curves: list[Curve]) -> None:
+    shown = [c for c in curves if c.precision == "float32"]
+    classes = list(dict.fromkeys(c.light_class for c in shown))
+    picture = canvas(13, 6.2)
+    panels = picture.subplots(1, len(classes), sharey=True)
+    for panel, light_class in zip(panels, classes, strict=True):
+        for curve in shown:
+            if curve.light_class == light_class:
+                _draw_curve(panel, curve)
         panel.set_title(light_class.title.replace(", half", "\nhalf"))
         order_axis(panel, [2, 4, 8, 16, 32, 64])
         panel.set_yscale("log")
-        panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14))
+        panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), title="from n = 8 on")
     panels[0].set_ylabel("µs per light, one core, float32")
-    run.save(picture, "growth")
-    run.csv("growth", ["lights", "precision", "method", "order", "microseconds"], rows)
+    run.save(picture, "growth", "Times in float32, and the exponents of their growth")
+
+
+def _draw_curve(panel: Axes, curve: Curve) -> None:
+    series = curve.series
+    panel.plot(
+        curve.orders,
+        1e6 * curve.seconds,
+        color=series.color,
+        marker=series.marker,
+        ls=series.dashes,
+        label=f"{series.label}: n$^{{{curve.exponent():.1f}}}$",
+    )
+
+
+def _draw_conditions(run: Run, conditions: list[float]) -> None:
+    picture = canvas(7, 4)
+    panel = picture.subplots()
+    panel.plot(range(BANDS), conditions, color=BLUE, marker="o", ms=4)
+    panel.set(yscale="log", xlabel="band l", ylabel="condition number")
+    panel.set_xticks([0, 5, 10, 15, 20, 25, 31])
+    panel.set_title("Matrices of the 2l + 1 lobes of zonal factorization")
+    run.save(picture, "growth_condition", "How much the lobes' matrices may amplify an error")
+
+
+def _numbers(curves: list[Curve]) -> list[list[object]]:
+    return [
+        [c.light_class.name, c.precision, c.series.label, order, f"{1e6 * second:.4g}"]
+        for c in curves
+        for order, second in zip(c.orders, c.seconds, strict=True)
+        if np.isfinite(second)
+    ]
+
+
+def _exponents(curves: list[Curve]) -> Table:
+    rows = []
+    for c in curves:
+        reach = max(order for order, second in zip(c.orders, c.seconds, strict=True) if np.isfinite(second))
+        times = dict(zip(c.orders, 1e6 * c.seconds, strict=True))
+        cells = [f"{times[n]:.2f}" if np.isfinite(times[n]) else "" for n in (8, 32)]
+        rows.append([c.light_class.name, c.precision, c.series.label, f"{c.exponent():.2f}", f"8 … {reach}", *cells])
+    header = ["lights", "precision", "method", "exponent", "orders", "µs at n = 8", "µs at n = 32"]
+    return Table("Growth of time with the order n", header, rows)
+
+
+def _conditions(conditions: list[float]) -> Table:
+    bands = (1, 3, 7, 15, 23, 31)
+    rows = [["condition number", *(f"{conditions[band]:.3g}" for band in bands)]]
+    return Table("Matrices of the lobes of zonal factorization", ["band", *map(str, bands)], rows)
+
+
+def _explanation(curves: list[Curve], conditions: list[float]) -> str:
     library, others = (
-        [power for (_, _, label), power in exponents.items() if (label == LIBRARY) == own and np.isfinite(power)]
+        [power for c in curves if (c.series.label == LIBRARY) == own and np.isfinite(power := c.exponent())]
         for own in (True, False)
     )
-    text = (
-        "Time for the coefficients of one light on one core, with the exponent of its growth from order 8 on. "
-        f"The library's own grows as n^{min(library):.1f} … n^{max(library):.1f}"
+    compared = f", the others' as n^{min(others):.1f} … n^{max(others):.1f}" if others else ""
+    return (
+        "Time for the coefficients of one light on one core over the order n, with the exponent of its growth from "
+        "n = 8 on, and the condition numbers that zonal factorization pays for its lobes. "
+        f"The library's own time grows as n^{min(library):.1f} … n^{max(library):.1f}{compared}; the lobes' matrix of "
+        f"band 15 has the condition number {conditions[15]:.2g}."
     )
-    text += f", the others as n^{min(others):.1f} … n^{max(others):.1f}." if others else "."
-    header = ["lights", "precision", "method", "exponent", "orders", "µs at n = 8", "µs at n = 32"]
-    return Drawn(text, [Table("Growth of time with the order n, fitted from n = 8 on", header, table)])

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-import shlight
 from shlight import methods
 
 from .lights import Kind, Lights
@@ -144,9 +143,3 @@ def exponent(orders: Sequence[int], seconds: Sequence[float], first: int = 8) ->
         return float("nan")
     n, t = np.log(np.array(pairs)).T
     return float(np.polyfit(n, t, 1)[0])
-
-
-def condition_of_lobes(order: int) -> NDArray[np.float64] | None:
-    """Condition numbers of the matrices that make harmonics of lobes, for bands 0 … order-1; None: not offered."""
-    found = getattr(shlight._core, "lobe_conditions", None)
-    return None if found is None else np.asarray(found(order))

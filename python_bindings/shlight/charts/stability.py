@@ -162,15 +162,14 @@ def _draw_picture(run: Run, maps: list[Map]) -> None:
         bar = picture.colorbar(image, ax=list(row), label="error ÷ L$_{00}$", aspect=16)
         bar.set_ticks([10.0**e for e in EXPONENTS[precision]], labels=[_power(10.0**e) for e in EXPONENTS[precision]])
     for panel in panels[-1]:
-        panel.set_xlabel(first.region.x_label)
+        scale = "\nlogarithmic from ±10$^{-7}$" if first.region.zoomed else ""
+        panel.set_xlabel(first.region.x_label + scale)
     title = f"{KINDS[first.kind]}, {first.region.title}, order {first.order}"
-    if first.region.zoomed:
-        title += " (elevations in logarithmic steps from ±10$^{-7}$ both ways)"
     title = title[0].upper() + title[1:]
     picture.suptitle(title)
     picture.legend(handles=_legend(), loc="outside lower center", ncols=3)
     name = f"stability_{first.kind}_{first.region.name}_{first.order}"
-    run.save(picture, name, title.replace("10$^{-7}$", "1e-7"))
+    run.save(picture, name, title)
 
 
 def _legend() -> list[Any]:
