@@ -51,19 +51,19 @@ class ArcRecurrence {
   private:
     /// c, e and f hold band l - 2 and get band l; d_ holds band l - 1 and gets band l.
     void step(int l, const LobeRow<T>& c_before, LobeRow<T>& c, LobeRow<T>& e, LobeRow<T>& f, LobeRow<T>& boundary) {
+        const auto row = static_cast<std::size_t>(l);
         const auto degree = static_cast<T>(l);
         const T twice = static_cast<T>(2 * l - 1);
-        const T forth = twice / degree;
-        const T back = (degree - 1) / degree;
-        const T share = 1 / (degree + 1);
+        const T forth = kZonal<T>.forth[row];
+        const T back = kZonal<T>.back[row];
+        const T share = kZonal<T>.share[row];
         for (std::size_t i = 0; i < columns_; ++i) {
             const T before = c_before[i];
             c[i] = forth * d_[i] - back * c[i];  // Eq. 15
             e[i] += twice * before;              // Eq. 18
             T sum = degree * before + factor_[i] * e[i];
             if constexpr (kKind != ArcKind::circle) {
-                sum += to_->legendre[static_cast<std::size_t>(l)][i] * to_sine_[i] -
-                       from_->legendre[static_cast<std::size_t>(l)][i] * from_sine_[i];
+                sum += to_->legendre[row][i] * to_sine_[i] - from_->legendre[row][i] * from_sine_[i];
             }
             if constexpr (kKind == ArcKind::great) {
                 d_[i] = share * sum;
@@ -98,12 +98,11 @@ void LobePoint<T>::set(const Vec3<T>& unit, int order) {
     LobeAxes<T>::get().dot(unit, columns, height);
     std::fill_n(legendre[0].begin(), columns, T(1));
     std::copy_n(height.begin(), columns, legendre[1].begin());
-    for (int l = 2; l < order - 1; ++l) {
-        const auto row = static_cast<std::size_t>(l);
-        const T forth = static_cast<T>(2 * l - 1) / static_cast<T>(l);
-        const T back = static_cast<T>(l - 1) / static_cast<T>(l);
+    for (std::size_t l = 2; l + 1 < static_cast<std::size_t>(order); ++l) {
+        const T forth = kZonal<T>.forth[l];
+        const T back = kZonal<T>.back[l];
         for (std::size_t i = 0; i < columns; ++i) {
-            legendre[row][i] = forth * height[i] * legendre[row - 1][i] - back * legendre[row - 2][i];
+            legendre[l][i] = forth * height[i] * legendre[l - 1][i] - back * legendre[l - 2][i];
         }
     }
 }

@@ -61,9 +61,9 @@ void add_moments(const CircleArc<T>& arc, const Vec3<T>& from, const Vec3<T>& to
     std::fill_n(moment.begin(), columns, arc.angle);
     for (int k = 1; k < order; ++k) {
         LobeRow<T>& row = moments[static_cast<std::size_t>(k - 1)];
-        const T ahead = static_cast<T>(2 * k - 1) / static_cast<T>(k);
-        const T back = static_cast<T>(k - 1) / static_cast<T>(k);
-        const T share = 1 / static_cast<T>(k);
+        const T ahead = kZonal<T>.forth[static_cast<std::size_t>(k)];
+        const T back = kZonal<T>.back[static_cast<std::size_t>(k)];
+        const T share = kZonal<T>.share[static_cast<std::size_t>(k - 1)];  // 1 / k
         for (std::size_t i = 0; i < columns; ++i) {
             const T h = along[i];
             const T a = arc.cosine * h;

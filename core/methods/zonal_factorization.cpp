@@ -114,7 +114,8 @@ std::vector<double> squared_singular_values(Matrix a) {
     return squares;
 }
 
-/// From S_l(ω_d), 2l + 1 directions, to L_lm: a row of 2l + 1 coefficients for each direction, band after band.
+/// From S_l(ω_d) to L_lm, band after band: a row of coefficients for each direction, both in whole groups of lobes, the
+/// surplus being zero.
 template <class T>
 struct Factorization {
     std::vector<T> rows;
@@ -123,11 +124,14 @@ struct Factorization {
         for (int l = 1; l < kMaxZonalOrder; ++l) {
             const Matrix solved = inverse(band_matrix<T>(l));
             const double factor = (2 * l + 1) / (4 * std::numbers::pi);
+            const std::size_t width = lobe_columns(l + 1);
+            std::vector<T> band(width * width);
             for (std::size_t d = 0; d < solved.size; ++d) {
                 for (std::size_t m = 0; m < solved.size; ++m) {
-                    rows.push_back(static_cast<T>(factor * solved(m, d)));
+                    band[d * width + m] = static_cast<T>(factor * solved(m, d));
                 }
             }
+            rows.insert(rows.end(), band.begin(), band.end());
         }
     }
     static const Factorization& get() {
@@ -140,19 +144,35 @@ struct Factorization {
 template <class T>
 void surface_integrals(LobeTable<T>& integrals, T orientation, int order) {
     const std::size_t columns = lobe_columns(order);
-    for (int l = 1; l < order; ++l) {
-        LobeRow<T>& row = integrals[static_cast<std::size_t>(l)];
-        const T scale = orientation * static_cast<T>(2 * l - 1) / static_cast<T>(l * (l + 1));
+    for (std::size_t l = 1; l < static_cast<std::size_t>(order); ++l) {
+        LobeRow<T>& row = integrals[l];
+        const T outer = orientation * kZonal<T>.outer[l];
         if (l < 3) {
             for (std::size_t i = 0; i < columns; ++i) {
-                row[i] *= scale;
+                row[i] *= outer;
             }
             continue;
         }
-        const LobeRow<T>& before = integrals[static_cast<std::size_t>(l - 2)];
-        const T carry = static_cast<T>((l - 2) * (l - 1)) / static_cast<T>(l * (l + 1));
+        const LobeRow<T>& before = integrals[l - 2];
+        const T inner = kZonal<T>.inner[l];
         for (std::size_t i = 0; i < columns; ++i) {
-            row[i] = scale * row[i] + carry * before[i];
+            row[i] = outer * row[i] + inner * before[i];
+        }
+    }
+}
+
+/// Σ_d S_l(ω_d) · row d. Four rows at a time, so that the sums need not be fetched and put back for each.
+template <class T>
+void combine(const LobeRow<T>& integral, const T* rows, std::size_t width, std::array<T, kLobeColumns>& sums) {
+    static_assert(kLobeGroup == 4);
+    std::fill_n(sums.begin(), width, T(0));
+    for (std::size_t d = 0; d < width; d += kLobeGroup, rows += kLobeGroup * width) {
+        const T s0 = integral[d];
+        const T s1 = integral[d + 1];
+        const T s2 = integral[d + 2];
+        const T s3 = integral[d + 3];
+        for (std::size_t m = 0; m < width; ++m) {
+            sums[m] += (s0 * rows[m] + s1 * rows[width + m]) + (s2 * rows[2 * width + m] + s3 * rows[3 * width + m]);
         }
     }
 }
@@ -178,17 +198,13 @@ template <class T>
 void zonal_coefficients(LobeTable<T>& integrals, T orientation, T solid_angle, int order, T* coefficients) {
     coefficients[0] = solid_angle / std::sqrt(4 * std::numbers::pi_v<T>);
     surface_integrals(integrals, orientation, order);
-    const T* weights = Factorization<T>::get().rows.data();
+    const T* rows = Factorization<T>::get().rows.data();
+    std::array<T, kLobeColumns> sums;
     for (int l = 1; l < order; ++l) {
-        const auto width = static_cast<std::size_t>(2 * l + 1);
-        const LobeRow<T>& integral = integrals[static_cast<std::size_t>(l)];
-        std::array<T, kMaxLobes> sum{};
-        for (std::size_t d = 0; d < width; ++d, weights += width) {
-            for (std::size_t m = 0; m < width; ++m) {
-                sum[m] += integral[d] * weights[m];
-            }
-        }
-        std::copy_n(sum.begin(), width, coefficients + l * l);
+        const std::size_t width = lobe_columns(l + 1);
+        combine(integrals[static_cast<std::size_t>(l)], rows, width, sums);
+        std::copy_n(sums.begin(), 2 * l + 1, coefficients + coefficient_index(l, -l));
+        rows += width * width;
     }
 }
 

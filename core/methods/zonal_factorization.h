@@ -16,14 +16,15 @@
 
 namespace shlight::methods {
 
-/// Lobes are the columns of all tables; loops run over whole groups of them, padded by copies of the last lobe.
+/// The columns of all tables are lobes, in whole groups: those of the next orders, and last a copy of the last.
 inline constexpr std::size_t kLobeGroup = 4;
-inline constexpr std::size_t kLobeColumns = (kMaxLobes + kLobeGroup - 1) / kLobeGroup * kLobeGroup;
 
 /// The columns that an order has to fill.
 constexpr std::size_t lobe_columns(int order) {
     return (static_cast<std::size_t>(lobe_count(order)) + kLobeGroup - 1) / kLobeGroup * kLobeGroup;
 }
+
+inline constexpr std::size_t kLobeColumns = lobe_columns(kMaxZonalOrder);
 
 /// One value for each lobe.
 template <class T>
@@ -47,6 +48,29 @@ struct LobeAxes {
         }
     }
 };
+
+/// Factors of the recurrences, by band.
+template <class T>
+struct ZonalConstants {
+    std::array<T, kMaxZonalOrder> forth, back;   ///< (2l-1) / l and (l-1) / l: P_l = forth z P_{l-1} - back P_{l-2}
+    std::array<T, kMaxZonalOrder> share;         ///< 1 / (l+1)
+    std::array<T, kMaxZonalOrder> inner, outer;  ///< S_l = outer B_{l-1} + inner S_{l-2}
+
+    constexpr ZonalConstants() : forth{}, back{}, share{}, inner{}, outer{} {
+        share[0] = 1;
+        for (int l = 1; l < kMaxZonalOrder; ++l) {
+            const auto i = static_cast<std::size_t>(l);
+            forth[i] = static_cast<T>(static_cast<double>(2 * l - 1) / l);
+            back[i] = static_cast<T>(static_cast<double>(l - 1) / l);
+            share[i] = static_cast<T>(1.0 / (l + 1));
+            outer[i] = static_cast<T>(static_cast<double>(2 * l - 1) / (l * (l + 1)));
+            inner[i] = static_cast<T>(static_cast<double>((l - 2) * (l - 1)) / (l * (l + 1)));
+        }
+    }
+};
+
+template <class T>
+inline constexpr ZonalConstants<T> kZonal;
 
 /// Coefficients of a region, order² values. integrals: in row l + 1 the boundary integrals B_l, l = 0 … order - 2; they
 /// are overwritten by S_l in row l. orientation: -1 if the region lay on the right.
