@@ -8,7 +8,6 @@
 #include "light_cubature.h"
 #include "light_outline.h"
 #include "lobe_outline.h"
-#include "polygon_boundary.h"
 #include "polygon_region.h"
 #include "polygon_shading.h"
 #include "shlight/cap.h"

@@ -11,6 +11,7 @@
 #include "light_checks.h"
 #include "polygon_boundary.h"
 #include "polygon_cubature.h"
+#include "polygon_edge_points.h"
 #include "polygon_shading.h"
 #include "shlight/shading.h"
 #include "spherical_polygon.h"
@@ -18,22 +19,36 @@
 namespace shlight {
 namespace {
 
-/// Below this solid angle Ω the edges' contributions, each of order one, cancel to too few digits: their sum is wrong
-/// by about 5e-16 / Ω of L_00, at the hand-over 5e-10 (float) and 5e-13 (double).
+/// Below this solid angle Ω the recurrences' contributions, each of order one, cancel to too few digits: their sum is
+/// wrong by about 5e-16 / Ω of L_00.
 template <class T>
 constexpr double kSmallestForBoundary = std::is_same_v<T, float> ? 1e-6 : 1e-3;
 
-/// Up to this many points along a triangle's side cubature is the faster one.
-constexpr int kFewPoints = 4;
+/// Below this ratio of solid angle to length of outline Gauss points on the edges, too, cancel to too few digits: their
+/// sum is wrong by about 1e-15 of L_00 ÷ that ratio.
+template <class T>
+constexpr double kNarrowestForEdges = std::is_same_v<T, float> ? 1e-9 : 2e-3;
+
+/// Up to this many points on an edge they are faster than its recurrences; more where they feed one number.
+constexpr int kPointsForCoefficients = 15;
+constexpr int kPointsForShading = 22;
 
 template <class T>
-PolygonMethod better_method(const SphericalPolygon<Wider<T>>& polygon, int order) {
+bool edge_points_are_better(const PolygonRegion<Wider<T>>& region, int order, int points) {
     if (order <= 2) {
-        return PolygonMethod::boundary;  // closed form
+        return false;  // closed form, without either
     }
-    const bool cancels = polygon.solid_angle() < kSmallestForBoundary<T>;
-    return cancels || cubature_points<T>(polygon, order) <= kFewPoints ? PolygonMethod::cubature
-                                                                       : PolygonMethod::boundary;
+    return region.solid_angle() < kSmallestForBoundary<T> ||
+           edge_points<T>(region, order) <= points * static_cast<int>(region.arcs().size());
+}
+
+template <class T>
+bool is_narrow(const SphericalPolygon<Wider<T>>& polygon, const PolygonRegion<Wider<T>>& region) {
+    Wider<T> outline = 0;
+    for (const Arc<Wider<T>>& arc : region.arcs()) {
+        outline += arc.angle;
+    }
+    return polygon.solid_angle() < kNarrowestForEdges<T> * outline;
 }
 
 template <class T>
@@ -42,13 +57,19 @@ void integrate(const SphericalPolygon<Wider<T>>& polygon, int order, T* coeffici
         std::fill_n(coefficients, coefficient_count(order), T(0));
         return;
     }
-    if (method == PolygonMethod::automatic) {
-        method = better_method<T>(polygon, order);
-    }
     if (method == PolygonMethod::cubature) {
         polygon_by_cubature(polygon, order, coefficients);
+        return;
+    }
+    const PolygonRegion<Wider<T>> region(polygon, Warp());
+    if (method == PolygonMethod::boundary) {
+        boundary_coefficients(region, order, coefficients);
+    } else if (method == PolygonMethod::edge_points) {
+        edge_point_coefficients(region, order, coefficients);
+    } else if (order > 2 && is_narrow<T>(polygon, region)) {  // up to order 2 there is a closed form
+        polygon_by_cubature(polygon, order, coefficients);
     } else {
-        region_coefficients(PolygonRegion<Wider<T>>(polygon, Warp()), order, coefficients);
+        region_coefficients(region, order, coefficients);
     }
 }
 
@@ -59,6 +80,21 @@ SphericalPolygon<Wider<T>> clipped(std::span<const Vec3<T>> vertices) {
 }
 
 }  // namespace
+
+template <class T>
+void region_coefficients(const PolygonRegion<Wider<T>>& region, int order, T* coefficients) {
+    if (edge_points_are_better<T>(region, order, kPointsForCoefficients)) {
+        edge_point_coefficients(region, order, coefficients);
+    } else {
+        boundary_coefficients(region, order, coefficients);
+    }
+}
+
+template <class T>
+T shade_region(const PolygonRegion<Wider<T>>& region, const T* lobe_terms, int order) {
+    return edge_points_are_better<T>(region, order, kPointsForShading) ? shade_by_edge_points(region, lobe_terms, order)
+                                                                       : shade_by_boundary(region, lobe_terms, order);
+}
 
 template <class T>
 void polygon_coefficients(std::span<const Vec3<T>> vertices, int order, bool clip, T* coefficients,
@@ -101,11 +137,12 @@ void warped_polygon_coefficients(std::span<const Vec3<T>> vertices, const Warp& 
 
 template <class T>
 T shade_polygon(const SphericalPolygon<Wider<T>>& polygon, const Warp& warp, const T* lobe_terms, int order) {
-    if (!warp.is_identity()) {
-        return shade_region(PolygonRegion<Wider<T>>(polygon, warp), lobe_terms, order);
+    const PolygonRegion<Wider<T>> region(polygon, warp);
+    if (!warp.is_identity() || order <= 2 || !is_narrow<T>(polygon, region)) {
+        return shade_region(region, lobe_terms, order);
     }
     std::array<T, coefficient_count(kMaxOrder)> coefficients;
-    integrate(polygon, order, coefficients.data(), PolygonMethod::automatic);
+    polygon_by_cubature(polygon, order, coefficients.data());
     return shade_cosine(coefficients.data(), lobe_terms, order);
 }
 
@@ -114,6 +151,10 @@ T shade_polygon(std::span<const Vec3<T>> vertices, const Warp& warp, const T* lo
     return shade_polygon(clipped<T>(vertices), warp, lobe_terms, order);
 }
 
+template void region_coefficients(const PolygonRegion<double>&, int, float*);
+template void region_coefficients(const PolygonRegion<long double>&, int, double*);
+template float shade_region(const PolygonRegion<double>&, const float*, int);
+template double shade_region(const PolygonRegion<long double>&, const double*, int);
 template void polygon_coefficients(std::span<const Vec3f>, int, bool, float*, PolygonMethod);
 template void polygon_coefficients(std::span<const Vec3d>, int, bool, double*, PolygonMethod);
 template void polygon_coefficients(std::span<const Vec3f>, int, int, bool, std::span<float>, PolygonMethod);

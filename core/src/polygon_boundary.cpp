@@ -232,25 +232,10 @@ double stokes_factor(int l) {
     return 1 / static_cast<double>(l * (l + 1));
 }
 
-/// Bands 0 and 1 in closed form, at their indices: the solid angle and the vector irradiance,
-///   ∫ u du = ½ Σ [ s² ψ L + c L × (to - from) ]   (Lambert 1760 for c = 0).
-/// In the wider type the cancellation of an unwarped polygon's edges leaves every digit of T.
-template <class Real>
-std::array<Real, 4> low_bands(const PolygonRegion<Real>& region) {
-    Vec3<Real> sum(0);
-    for (const Arc<Real>& arc : region.arcs()) {
-        sum += arc.sine * arc.sine * arc.angle * arc.axis;
-        sum += arc.cosine * glm::cross(arc.axis, arc.to - arc.from);
-    }
-    constexpr Real kPi = std::numbers::pi_v<Real>;
-    sum *= std::sqrt(3 / (4 * kPi)) / 2;
-    return {region.solid_angle() * std::sqrt(1 / (4 * kPi)), sum.y, sum.z, sum.x};
-}
-
 }  // namespace
 
 template <class T>
-void region_coefficients(const PolygonRegion<Wider<T>>& region, int order, T* coefficients) {
+void boundary_coefficients(const PolygonRegion<Wider<T>>& region, int order, T* coefficients) {
     // In double for either T: what the sum over the arcs loses grows as 1/Ω, and most lights are small.
     std::array<double, coefficient_count(kMaxOrder)> sum;
     std::fill_n(sum.begin(), coefficient_count(order), 0.0);
@@ -266,13 +251,13 @@ void region_coefficients(const PolygonRegion<Wider<T>>& region, int order, T* co
     });
     const auto to_result = [](auto c) { return static_cast<T>(c); };
     std::transform(sum.begin(), sum.begin() + coefficient_count(order), coefficients, to_result);
-    const auto low = low_bands(region);
+    const auto low = region.low_bands();
     std::transform(low.begin(), low.begin() + std::min(4, coefficient_count(order)), coefficients, to_result);
 }
 
 template <class T>
-T shade_region(const PolygonRegion<Wider<T>>& region, const T* lobe_terms, int order) {
-    const auto low = low_bands(region);
+T shade_by_boundary(const PolygonRegion<Wider<T>>& region, const T* lobe_terms, int order) {
+    const auto low = region.low_bands();
     auto sum = static_cast<double>(low[0]) * static_cast<double>(lobe_terms[0]);
     if (order > 1) {
         sum += static_cast<double>(low[2]) * static_cast<double>(lobe_terms[1]) +
@@ -289,9 +274,9 @@ T shade_region(const PolygonRegion<Wider<T>>& region, const T* lobe_terms, int o
     return static_cast<T>(sum);
 }
 
-template void region_coefficients(const PolygonRegion<double>&, int, float*);
-template void region_coefficients(const PolygonRegion<long double>&, int, double*);
-template float shade_region(const PolygonRegion<double>&, const float*, int);
-template double shade_region(const PolygonRegion<long double>&, const double*, int);
+template void boundary_coefficients(const PolygonRegion<double>&, int, float*);
+template void boundary_coefficients(const PolygonRegion<long double>&, int, double*);
+template float shade_by_boundary(const PolygonRegion<double>&, const float*, int);
+template double shade_by_boundary(const PolygonRegion<long double>&, const double*, int);
 
 }  // namespace shlight

@@ -10,10 +10,10 @@ namespace shlight {
 
 /// order² coefficients.
 template <class T>
-void region_coefficients(const PolygonRegion<Wider<T>>& region, int order, T* coefficients);
+void boundary_coefficients(const PolygonRegion<Wider<T>>& region, int order, T* coefficients);
 
 /// Σ f_lm L_lm with a lobe's cosine terms, cosine_count(order) values.
 template <class T>
-T shade_region(const PolygonRegion<Wider<T>>& region, const T* lobe_terms, int order);
+T shade_by_boundary(const PolygonRegion<Wider<T>>& region, const T* lobe_terms, int order);
 
 }  // namespace shlight

@@ -77,18 +77,6 @@ void polygon_by_cubature(const SphericalPolygon<Wider<T>>& polygon, int order, T
     std::for_each_n(coefficients, coefficient_count(order), [correction](T& c) { c *= correction; });
 }
 
-template <class T>
-int cubature_points(const SphericalPolygon<Wider<T>>& polygon, int order) {
-    const auto& v = polygon.directions();
-    Wider<T> longest = 0;
-    for (std::size_t i = 1; i < v.size(); ++i) {
-        longest = std::max({longest, glm::length(v[i] - v[0]), glm::length(v[i] - v[i - 1])});
-    }
-    return points_per_side<T>(order, std::min(static_cast<double>(longest), kLongestSide));
-}
-
-template int cubature_points<float>(const SphericalPolygon<double>&, int);
-template int cubature_points<double>(const SphericalPolygon<long double>&, int);
 template void polygon_by_cubature(const SphericalPolygon<double>&, int, float*);
 template void polygon_by_cubature(const SphericalPolygon<long double>&, int, double*);
 

@@ -9,8 +9,4 @@ namespace shlight {
 template <class T>
 void polygon_by_cubature(const SphericalPolygon<Wider<T>>& polygon, int order, T* coefficients);
 
-/// Points along a triangle's side that this takes.
-template <class T>
-int cubature_points(const SphericalPolygon<Wider<T>>& polygon, int order);
-
 }  // namespace shlight

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace shlight {
 namespace {
@@ -65,6 +66,18 @@ PolygonRegion<Real>::PolygonRegion(const SphericalPolygon<Real>& polygon, const 
         solid_angle_ -= arcs_.back().cosine * arcs_.back().angle;
     }
     solid_angle_ = std::max(solid_angle_, Real(0));
+}
+
+template <class Real>
+std::array<Real, 4> PolygonRegion<Real>::low_bands() const {
+    Vec3<Real> sum(0);
+    for (const Arc<Real>& arc : arcs_) {
+        sum += arc.sine * arc.sine * arc.angle * arc.axis;
+        sum += arc.cosine * glm::cross(arc.axis, arc.to - arc.from);
+    }
+    constexpr Real kPi = std::numbers::pi_v<Real>;
+    sum *= std::sqrt(3 / (4 * kPi)) / 2;
+    return {solid_angle_ * std::sqrt(1 / (4 * kPi)), sum.y, sum.z, sum.x};
 }
 
 template class PolygonRegion<double>;

@@ -4,6 +4,7 @@
 // the polygon's own great-circle edges (docs/algorithms.md, "Regions bounded by circular arcs").
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "shlight/warp.h"
@@ -31,6 +32,10 @@ class PolygonRegion {
     /// Of the image; about 1e-16 · (number of edges) wrong, less for a small image. What the coefficients lose to
     /// cancellation follows from it, see polygon.h.
     Real solid_angle() const { return solid_angle_; }
+    /// Bands 0 and 1 in closed form, at their indices: the solid angle and the vector irradiance,
+    ///   ∫ u du = ½ Σ [ s² ψ L + c L × (to - from) ]   (Lambert 1760 for c = 0).
+    /// In the wider type the cancellation of an unwarped polygon's edges leaves every digit of T.
+    std::array<Real, 4> low_bands() const;
 
   private:
     std::vector<Arc<Real>> arcs_;

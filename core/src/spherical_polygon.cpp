@@ -113,6 +113,8 @@ SphericalPolygon<Real>::SphericalPolygon(std::span<const Vec3<Real>> vertices, b
         solid_angle_ = 0;
         return;
     }
+    directions_.reserve(v.size());
+    edge_crosses_.reserve(v.size());
     for (std::size_t i = 0; i < v.size(); ++i) {
         const Vec3<Real>& a = v[i];
         const Vec3<Real>& b = v[(i + 1) % v.size()];

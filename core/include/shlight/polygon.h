@@ -2,8 +2,9 @@
 //
 // Planar polygons seen from the shading point, clipped by the horizon z ≥ 0.
 //
-// Large ones by Stokes' theorem and recurrences in the degree, O(order²) per edge; small or thin ones, whose edges
-// would cancel, by Gauss cubature; docs/algorithms.md derives both and says where one hands over to the other.
+// By Stokes' theorem along the edges: with Gauss points, or with recurrences in the degree where edges are long and the
+// order is high; those so small or thin that the edges would cancel, by Gauss cubature. docs/algorithms.md derives all
+// three and says where one hands over to the other.
 #pragma once
 
 #include <span>
@@ -13,8 +14,8 @@
 
 namespace shlight {
 
-/// How a polygon is integrated; `automatic` is right except where the two are compared.
-enum class PolygonMethod { automatic, boundary, cubature };
+/// How a polygon is integrated; `automatic` is right except where the three are compared.
+enum class PolygonMethod { automatic, boundary, edge_points, cubature };
 
 /// Coefficients of one polygon, order² values.
 /// vertices: k ≥ 3, planar, finite, in the shading frame, in either winding: the region counts, not its orientation.
