@@ -387,7 +387,7 @@ def test_growth_draws_what_is_registered(tmp_path: Path, monkeypatch: pytest.Mon
 @pytest.mark.usefixtures("only_exact_and_dummy")
 def test_speed_and_error_of_what_is_registered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(speed_error, "CLASSES", CLASSES[1:2])
-    monkeypatch.setattr(speed_error, "ORDERS", (1, 2, 8, 16))
+    monkeypatch.setattr(speed_error, "QUICK_ORDERS", (1, 2, 8, 16))
     result, rows, shares = drawn("speed_error", speed_error.draw, tmp_path)
     assert increasing(shares)
     for precision, floor in (("float32", 3e-6), ("float64", 1e-13)):

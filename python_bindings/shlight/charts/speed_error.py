@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,10 +19,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ORDERS = (1, 2, 4, 8, 16, 32)
+QUICK_ORDERS = (2, 8, 32)
 DRAWN_FROM = 2  # order 1 is the solid angle alone
 LOWEST = {"float32": 1e-9, "float64": 1e-18}  # errors below are drawn here
 HIGHEST = 1e3  # errors above, and what is not finite
 LIBRARY = "exact"
+PLACES = [(4, 3), (4, -10), (-9, 4), (-10, -10)]  # of the numbers beside the points, so that they share the room
 
 
 @dataclass(frozen=True)
@@ -41,14 +44,15 @@ Measured = dict[tuple[str, str], list[Point]]  # by class and precision
 
 def draw(run: Run) -> Drawn:
     measured: Measured = {}
+    orders = QUICK_ORDERS if run.quick else ORDERS
     for i, light_class in enumerate(CLASSES):
         run.step(i / len(CLASSES), f"{light_class.name}, truth")
         lights = light_class.lights(run.seed, 16 if run.quick else 200)
-        true = truth(lights, ORDERS[-1])
+        true = truth(lights, orders[-1])
         for j, precision in enumerate(PRECISIONS):
             points = []
-            for k, order in enumerate(ORDERS):
-                share = (i + (1 + j + k / len(ORDERS)) / (1 + len(PRECISIONS))) / len(CLASSES)
+            for k, order in enumerate(orders):
+                share = (i + (1 + j + k / len(orders)) / (1 + len(PRECISIONS))) / len(CLASSES)
                 run.step(share, f"{light_class.name} {precision} order {order}")
                 points += _points(run.quick, all_series(light_class.kind), lights, true, order, precision)
             measured[light_class.name, precision] = points
@@ -57,15 +61,15 @@ def draw(run: Run) -> Drawn:
             _draw_picture(run, light_class, precision, measured[light_class.name, precision])
     header = ["lights", "precision", "method", "order", "microseconds", "median_error", "worst_error", "count"]
     run.csv("speed_error", header, _numbers(measured))
-    return Drawn(_explanation(measured), [_ratios(measured), _errors(measured)])
+    return Drawn(_explanation(measured), [_ratios(measured, orders), _errors(measured, orders[-3:])])
 
 
 def _points(
     quick: bool, all_of: list[Series], lights: Lights, true: NDArray[np.float64], order: int, precision: str
 ) -> list[Point]:
     able = [series for series in all_of if order <= series.largest_order]
-    rounds, batch, budget = (3, 0.002, 0.02) if quick else (9, 0.005, 0.5)
-    seconds = best_seconds(able, lights, order, precision, rounds=rounds, budget=batch)
+    rounds, batch, least, budget = (3, 0.003, 1, 0.01) if quick else (15, 0.005, 4, 0.15)
+    seconds = best_seconds(able, lights, order, precision, rounds=rounds, budget=batch, least=least)
     points = []
     for series, second in zip(able, seconds, strict=True):
         # Of slow methods the first of the lights: as many as there is time for.
@@ -88,9 +92,10 @@ def _draw_picture(run: Run, light_class: LightClass, precision: str, points: lis
     picture = canvas(13, 6.2)
     panels = picture.subplots(1, 2, sharex=True, sharey=True)
     for panel, which in zip(panels, ("median", "worst"), strict=True):
-        for series in all_of_points(points):
+        for i, series in enumerate(all_of_points(points)):
             own = [p for p in points if p.series == series and p.order >= DRAWN_FROM]
-            _draw_series(panel, series, own, [getattr(p, which) for p in own], LOWEST[precision])
+            errors = [getattr(p, which) for p in own]
+            _draw_series(panel, series, own, errors, LOWEST[precision], PLACES[i % len(PLACES)])
         panel.set(xscale="log", yscale="log", xlabel="µs per light, one core")
         panel.set_title(f"{which} error of the lights")
     panels[0].set_xlim(decades(panels[0].get_xlim()))
@@ -105,7 +110,9 @@ def all_of_points(points: list[Point]) -> list[Series]:
     return [p.series for p in points if p.order == min(q.order for q in points)]
 
 
-def _draw_series(panel: Axes, series: Series, points: list[Point], errors: list[float], lowest: float) -> None:
+def _draw_series(
+    panel: Axes, series: Series, points: list[Point], errors: list[float], lowest: float, place: tuple[int, int]
+) -> None:
     times = [p.microseconds for p in points]
     heights = np.clip(np.nan_to_num(errors, posinf=HIGHEST), lowest, HIGHEST)
     panel.plot(times, heights, color=series.color, marker=series.marker, ls=series.dashes, label=series.label, ms=5)
@@ -113,14 +120,14 @@ def _draw_series(panel: Axes, series: Series, points: list[Point], errors: list[
         panel.annotate(
             str(point.order),
             (point.microseconds, height),
-            xytext=(4, 3),
+            xytext=place,
             textcoords="offset points",
             color=series.color,
             fontsize=8,
         )
 
 
-def _ratios(measured: Measured) -> Table:
+def _ratios(measured: Measured, orders: Sequence[int]) -> Table:
     """Times of the library ÷ those of each other method."""
     rows = []
     for (name, precision), points in measured.items():
@@ -128,14 +135,13 @@ def _ratios(measured: Measured) -> Table:
         for series in all_of_points(points):
             times = {p.order: p.microseconds for p in points if p.series == series}
             if series.label != LIBRARY:
-                cells = [f"{library[n] / times[n]:.2g}" if n in times else "" for n in ORDERS]
+                cells = [f"{library[n] / times[n]:.2g}" if n in times else "" for n in orders]
                 rows.append([name, precision, series.label, *cells])
-    header = ["lights", "precision", "other method", *(f"n = {n}" for n in ORDERS)]
+    header = ["lights", "precision", "other method", *(f"n = {n}" for n in orders)]
     return Table("Time of `exact` ÷ time of the other method", header, rows)
 
 
-def _errors(measured: Measured) -> Table:
-    shown = (8, 16, 32)
+def _errors(measured: Measured, shown: Sequence[int]) -> Table:
     rows = []
     for (name, precision), points in measured.items():
         for series in all_of_points(points):

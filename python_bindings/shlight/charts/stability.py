@@ -134,7 +134,7 @@ def _errors(
     quick: bool,
 ) -> NDArray[np.float64]:
     """The map of a method; of a slow one only every so many-th row and column."""
-    affordable = batch_size(series, lights, order, precision, 0.03 if quick else 1.0, len(lights))
+    affordable = batch_size(series, lights, order, precision, 0.01 if quick else 1.0, len(lights))
     stride = int(np.ceil(np.sqrt(len(lights) / affordable)))
     wanted = np.zeros((len(lights) // columns, columns), dtype=bool)
     wanted[::stride, ::stride] = True
