@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from . import growth, order_error, speed_error, stability
+from . import growth, order_error, speed_error, stability, which_method
 from .figure import Figure
 
 FIGURES = [
@@ -11,4 +11,5 @@ FIGURES = [
     Figure("stability", "Where methods fail", stability.draw),
     Figure("growth", "Time against order", growth.draw),
     Figure("order_error", "Order against error, for each material", order_error.draw),
+    Figure("which_method", "Which method where", which_method.draw),
 ]

@@ -87,8 +87,8 @@ def knot(center: Point, size: float, thickness: float) -> Mesh:
     side /= np.linalg.norm(side, axis=-1, keepdims=True)
     up = np.cross(along, side)
     phi = 2 * math.pi * np.arange(40) / 40
-    tube = np.cos(phi)[:, None] * side[:, None] + np.sin(phi)[:, None] * up[:, None]
-    # ∂phi × ∂t points inwards for (side, up, along) right-handed, so phi runs second.
+    # Turned so that ∂t × ∂phi points outwards.
+    tube = np.cos(phi)[:, None] * side[:, None] - np.sin(phi)[:, None] * up[:, None]
     return grid_mesh(np.asarray(center) + path[:, None] + thickness * tube, closed=(True, True))
 
 
