@@ -5,13 +5,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "light_sampling.h"
+
 namespace shlight::methods {
 namespace {
 
 using std::numbers::pi;
 
-/// Below this solid angle a spherical triangle's angles lose digits, and a flat one does as well.
-constexpr double kSmallestSpherical = 1e-5;
+/// Below this solid angle [sr] a flat triangle does as well as a spherical one, whose angles lose digits: the density
+/// of one with unit corners varies by about the solid angle itself.
+constexpr double kSmallestSpherical = 0.01;
 
 Vec3d perpendicular(const Vec3d& axis) {
     const Vec3d side = std::abs(axis.z) < 0.9 ? Vec3d(0, 0, 1) : Vec3d(1, 0, 0);
@@ -89,16 +92,14 @@ void TriangleSampler::add(const Vec3d& first, const Vec3d& second, const Vec3d& 
     const Vec3d a = in_area ? first : glm::normalize(first);
     const Vec3d b = in_area ? second : glm::normalize(second);
     const Vec3d c = in_area ? third : glm::normalize(third);
-    Piece piece = {a, b - a, c - a, 0, 0, std::nullopt};
+    Piece piece = {a, b - a, c - a, 0, 0, false};
     const Vec3d normal = glm::cross(piece.ab, piece.ac);
     piece.volume = glm::dot(a, normal);
     piece.size = in_area ? glm::length(normal) / 2 : std::abs(triangle_solid_angle(first, second, third));
     if (!(piece.size > 0 && piece.volume != 0)) {
         return;
     }
-    if (!in_area && piece.size >= kSmallestSpherical) {
-        piece.spherical.emplace(a, b, c);
-    }
+    piece.spherical = !in_area && piece.size >= kSmallestSpherical;
     total_ += piece.size;
     ++(piece.volume > 0 ? positive_ : negative_);
     pieces_.push_back(piece);
@@ -132,7 +133,7 @@ RandomDirection TriangleSampler::sample(glm::dvec2 point) const {
     point.x = std::min(left / piece->size, 1.0);
     Vec3d direction;
     if (piece->spherical) {
-        direction = piece->spherical->sample(point);
+        direction = SphericalTriangle(piece->a, piece->a + piece->ab, piece->a + piece->ac).sample(point);
     } else {
         const double root = std::sqrt(point.x);
         direction = glm::normalize(piece->a + root * ((1 - point.y) * piece->ab + point.y * piece->ac));

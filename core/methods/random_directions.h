@@ -13,7 +13,6 @@
 
 #include <glm/vec2.hpp>
 
-#include "light_sampling.h"
 #include "lobe_sampling.h"
 #include "shlight/lobe_shape.h"
 #include "shlight/types.h"
@@ -88,9 +87,9 @@ class TriangleSampler {
   private:
     struct Piece {
         Vec3d a, ab, ac;
-        double volume;  // a · (ab × ac), signed
-        double size;    // solid angle or area
-        std::optional<SphericalTriangle> spherical;
+        double volume;   // a · (ab × ac), signed
+        double size;     // solid angle or area
+        bool spherical;  // or flat
 
         bool contains(const Vec3d& direction) const;
         /// Of a direction inside, times the size.

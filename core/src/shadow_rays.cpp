@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "lobe_sampling.h"
-#include "ray_rounding.h"
+#include "ray_start.h"
 #include "shlight/sampling.h"
 
 namespace shlight {
@@ -17,39 +17,6 @@ constexpr std::uint32_t kLightOnly = std::numeric_limits<std::uint32_t>::max();
 
 /// A lobe takes rays of its own only where more than this share of them could meet the light.
 constexpr double kLeastShare = 0.1;
-
-/// Where on the light a shadow ray ends, relative to the point sampled: a polygon may lie in a mesh's face, its own or
-/// one that it is mounted on, and must not be blocked by it. A float ray strays in proportion to its length too.
-Vec3d clearance(const Light& light, const ShadingFrame& frame) {
-    const auto* polygon = std::get_if<PolygonLight>(&light);
-    if (polygon == nullptr) {
-        return Vec3d(0);
-    }
-    const double distance = polygon->error + kRayRounding * glm::length(frame.origin - polygon->center);
-    const bool front = glm::dot(polygon->normal, frame.origin - polygon->vertices[0]) > 0;
-    return (front ? distance : -distance) * polygon->normal;
-}
-
-/// Shadow rays of one hit, in float but for the way from the rounded origin.
-class RayStart {
-  public:
-    RayStart(const ShadingFrame& frame, const Vec3d& origin, const Vec3d& target_offset)
-        : origin_(origin),
-          x_(frame.x),
-          y_(frame.y),
-          z_(frame.z),
-          offset_(frame.to_local(frame.origin - Vec3d(origin_) + target_offset)) {}
-
-    /// To a point in the shading frame, all but the last few roundings.
-    Ray towards(const Vec3d& local_target) const {
-        const Vec3f way(local_target + offset_);
-        return {origin_, 0.0F, way.x * x_ + way.y * y_ + way.z * z_, 1.0F - 0x1p-22F};
-    }
-
-  private:
-    Vec3f origin_, x_, y_, z_;
-    Vec3d offset_;
-};
 
 Vec3d view_of(const Hits& hits, std::size_t hit) {
     const double cosine = hits.cos_theta_o[hit];

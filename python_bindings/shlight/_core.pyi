@@ -111,6 +111,16 @@ def method_shade_polygons(
 
 class RenderCancelled(RuntimeError): ...  # noqa: N818  the name says what happened, not what went wrong
 
+def render_monte_carlo(
+    scene: Scene,
+    width: int,
+    height: int,
+    samples: int,
+    seed: int,
+    threads: int,
+    progress: Callable[[float], object] | None,
+) -> NDArray[np.float32]: ...
+
 class RenderReport:
     @property
     def order_shares(self) -> dict[int, float]: ...

@@ -14,12 +14,15 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from shlight import _core
 
-__all__ = ["coefficient_methods", "lobe_condition", "shading_methods"]
+__all__ = ["coefficient_methods", "lobe_condition", "render_monte_carlo", "shading_methods"]
 
 _Method = TypeVar("_Method", _core.Method, _core.ShadingMethod)
 
@@ -40,6 +43,27 @@ def lobe_condition(band: int) -> float:
     """The condition number of the zonal factorization of one band, 0 … 31, by which zhou_wei, snyder and
     wang_ramamoorthi multiply the errors of their integrals over lobes."""
     return _core.lobe_condition(_integer("band", band, 0, 31))
+
+
+def render_monte_carlo(
+    scene: _core.Scene,
+    width: int,
+    height: int,
+    *,
+    samples: int,
+    seed: int = 0,
+    threads: int = 0,
+    progress: Callable[[float], object] | None = None,
+) -> NDArray[np.float32]:
+    """Render as shlight.render does, by plain Monte Carlo: unbiased and noisy.
+
+    samples: 1 … 2²⁰ camera rays per pixel, through random points of its square. Where one meets a surface, each light
+    gets a direction uniform in its solid angle, and one direction as the material reflects serves all lights, both
+    weighed by the balance heuristic and followed by shadow rays.
+    seed: 0 … 2³²-1; the image depends on it and not on threads. progress, result and errors: as of shlight.render.
+    """
+    checked_seed = _integer("seed", seed, 0, 2**32 - 1)
+    return _core.render_monte_carlo(scene, width, height, samples, checked_seed, threads, progress)
 
 
 def coefficient_options(method: str, **given: Any) -> _core.MethodOptions:

@@ -11,5 +11,6 @@ void bind_shading(pybind11::module_& m);
 void bind_methods(pybind11::module_& m);
 void bind_scene(pybind11::module_& m);
 void bind_render(pybind11::module_& m);
+void bind_monte_carlo_render(pybind11::module_& m);
 
 }  // namespace shlight::python

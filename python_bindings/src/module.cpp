@@ -9,4 +9,5 @@ PYBIND11_MODULE(_core, m) {
     shlight::python::bind_methods(m);
     shlight::python::bind_scene(m);
     shlight::python::bind_render(m);
+    shlight::python::bind_monte_carlo_render(m);
 }

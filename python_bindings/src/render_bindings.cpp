@@ -15,7 +15,7 @@
 
 #include "arrays.h"
 #include "bindings.h"
-#include "scene_bindings.h"
+#include "render_calls.h"
 
 using namespace pybind11::literals;
 
@@ -86,51 +86,6 @@ int order_from(const py::object& order) {
     return static_cast<int>(value);
 }
 
-/// Numbers that do not fit an int are as much out of range as the largest that does.
-int clamp_to_int(std::int64_t value) {
-    return static_cast<int>(
-        std::clamp<std::int64_t>(value, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
-}
-
-bool is_false(const py::object& value) {
-    return (PyBool_Check(value.ptr()) != 0 || py::isinstance(value, py::module_::import("numpy").attr("bool_"))) &&
-           !value.cast<bool>();
-}
-
-/// Runs in the calling thread, which does not hold the GIL while it waits: signals are seen, and the callback called.
-Progress progress_from(const py::object& callback) {
-    if (!callback.is_none() && PyCallable_Check(callback.ptr()) == 0) {
-        throw std::invalid_argument("progress must be callable or None");
-    }
-    return [&callback](double share) {
-        const py::gil_scoped_acquire acquire;
-        if (PyErr_CheckSignals() != 0) {
-            throw py::error_already_set();
-        }
-        return callback.is_none() || !is_false(callback(share));
-    };
-}
-
-/// The compiled scene of the object as it is now, and the seconds that building it has taken.
-std::pair<std::shared_ptr<const CompiledScene>, double> compiled(SceneObject& object, int threads) {
-    if (object.compiled) {
-        return {object.compiled, 0.0};
-    }
-    // A copy, since other Python threads may add to the object meanwhile.
-    const Scene scene = object.scene;
-    const std::uint64_t revision = object.revision;
-    const auto start = std::chrono::steady_clock::now();
-    std::shared_ptr<const CompiledScene> result;
-    {
-        const py::gil_scoped_release release;
-        result = scene.compile(threads);
-    }
-    if (object.revision == revision) {
-        object.compiled = result;
-    }
-    return {result, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
-}
-
 py::object render_scene(SceneObject& scene, std::int64_t width, std::int64_t height, const py::object& order,
                         double tolerance, std::int64_t pixel_samples, std::int64_t shadow_rays, std::int64_t threads,
                         const py::object& progress, bool adaptive, bool return_report) {
@@ -141,10 +96,7 @@ py::object render_scene(SceneObject& scene, std::int64_t width, std::int64_t hei
     const int rows = clamp_to_int(height);
     check_render(settings, columns, rows);
     const Progress report_progress = progress_from(progress);
-    if (!scene.camera) {
-        throw std::invalid_argument("scene has no camera: call set_camera() or set_camera_window()");
-    }
-    const Camera camera = *scene.camera;
+    const Camera camera = camera_of(scene);
     const auto [compiled_scene, build_seconds] = compiled(scene, settings.threads);
     py::array_t<float> image({rows, columns, 4});
     const std::span<float> pixels(image.mutable_data(), static_cast<std::size_t>(image.size()));

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+#include "monte_carlo_render.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include "checks.h"
+#include "hits.h"
+#include "light_sampling.h"
+#include "light_view.h"
+#include "random_directions.h"
+#include "random_numbers.h"
+#include "ray_start.h"
+#include "shlight/render.h"
+#include "surface_reflection.h"
+
+namespace shlight::methods {
+namespace {
+
+constexpr int kMostSamples = 1 << 20;
+/// Camera rays that are followed at a time.
+constexpr std::size_t kBatch = 4096;
+
+/// A light as a hit sees it.
+class LightInView {
+  public:
+    /// Precondition: the light is seen.
+    void reset(const Light& light, const ShadingFrame& frame) {
+        if (const auto* sphere = std::get_if<SphereLight>(&light)) {
+            const CapView cap = *view(*sphere, frame);
+            cone_.emplace(circle_of(cap));
+            cap_.emplace(cap);
+            return;
+        }
+        cone_.reset();
+        const auto& polygon = std::get<PolygonLight>(light);
+        normal_ = frame.to_local(polygon.normal);
+        height_ = glm::dot(polygon.normal, polygon.vertices[0] - frame.origin);
+        triangles_.clear();
+        for (const Triangle& t : polygon.triangles) {
+            triangles_.add(frame.point_to_local(polygon.vertices[t.x]), frame.point_to_local(polygon.vertices[t.y]),
+                           frame.point_to_local(polygon.vertices[t.z]));
+        }
+    }
+    RandomDirection sample(const glm::dvec2& point) const {
+        if (cone_) {
+            return cone_->sample(point);
+        }
+        return triangles_.empty() ? RandomDirection{normal_, 0} : triangles_.sample(point);
+    }
+    double density(const Vec3d& direction) const {
+        return cone_ ? cone_->density(direction) : triangles_.density(direction);
+    }
+    /// To the light's surface, in a direction of positive density.
+    std::optional<double> distance(const Vec3d& direction) const {
+        return cone_ ? cap_->meets(direction) : std::optional(height_ / glm::dot(normal_, direction));
+    }
+
+  private:
+    std::optional<ConeSampler> cone_;
+    std::optional<CapSampler> cap_;
+    TriangleSampler triangles_;
+    Vec3d normal_{0};
+    double height_ = 0;
+};
+
+const Rgb& radiance_of(const Light& light) {
+    return std::visit([](const auto& l) -> const Rgb& { return l.radiance; }, light);
+}
+
+struct Picture {
+    const CompiledScene& scene;
+    const Camera& camera;
+    int width, height;
+    MonteCarloSettings settings;
+    Window window;
+
+    std::size_t samples() const { return static_cast<std::size_t>(settings.samples); }
+    std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+};
+
+/// Renders pixels; one per thread.
+class Worker {
+  public:
+    explicit Worker(const Picture& picture) : picture_(&picture) {}
+    /// Pixels by their number in the image.
+    void render(std::size_t first, std::size_t count, std::span<float> image);
+
+  private:
+    void trace_camera_rays(std::size_t first, std::size_t samples);
+    void shade(std::size_t hit);
+    void shade(const Light& light, std::size_t hit, const RandomDirection& reflected, const Rgb& reflected_value);
+    void push(const RayStart& start, const Vec3d& direction, const Rgb& radiance, std::size_t hit);
+
+    const Picture* picture_;
+    std::vector<RandomNumbers> random_;  // of each pixel
+    std::vector<Vec3d> radiance_;        // likewise, summed up
+    std::vector<std::size_t> covered_;   // likewise
+    std::vector<Ray> rays_;
+    std::vector<RayHit> ray_hits_;
+    Hits hits_;
+    std::vector<std::size_t> pixel_of_hit_;
+    SurfaceReflection reflection_;
+    LightInView light_;
+    std::vector<Ray> shadow_rays_;
+    std::vector<Rgb> shadowed_;              // what each would bring
+    std::vector<std::size_t> pixel_of_ray_;  // to which
+    std::vector<std::uint8_t> blocked_;
+};
+
+void Worker::render(std::size_t first, std::size_t count, std::span<float> image) {
+    random_.clear();
+    for (std::size_t pixel = first; pixel < first + count; ++pixel) {
+        random_.emplace_back(hash(picture_->settings.seed, static_cast<std::uint32_t>(pixel)));
+    }
+    radiance_.assign(count, Vec3d(0));
+    covered_.assign(count, 0);
+    const std::size_t most = std::max<std::size_t>(1, kBatch / count);
+    for (std::size_t done = 0; done < picture_->samples(); done += most) {
+        trace_camera_rays(first, std::min(most, picture_->samples() - done));
+        shadow_rays_.clear();
+        shadowed_.clear();
+        pixel_of_ray_.clear();
+        for (std::size_t hit = 0; hit < hits_.size(); ++hit) {
+            radiance_[pixel_of_hit_[hit]] += Vec3d(hits_.radiance[hit]);
+            ++covered_[pixel_of_hit_[hit]];
+            shade(hit);
+        }
+        blocked_.resize(shadow_rays_.size());
+        picture_->scene.rays().occluded(shadow_rays_, blocked_);
+        for (std::size_t i = 0; i < blocked_.size(); ++i) {
+            if (blocked_[i] == 0) {
+                radiance_[pixel_of_ray_[i]] += Vec3d(shadowed_[i]);
+            }
+        }
+    }
+    const auto samples = static_cast<double>(picture_->settings.samples);
+    for (std::size_t i = 0; i < count; ++i) {
+        float* rgba = &image[4 * (first + i)];
+        for (int channel = 0; channel < 3; ++channel) {
+            rgba[channel] = static_cast<float>(radiance_[i][channel] / samples);
+        }
+        rgba[3] = static_cast<float>(static_cast<double>(covered_[i]) / samples);
+    }
+}
+
+void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
+    const Picture& p = *picture_;
+    const auto columns = static_cast<std::size_t>(p.width);
+    rays_.clear();
+    for (std::size_t pixel = 0; pixel < random_.size(); ++pixel) {
+        const auto column = static_cast<double>((first + pixel) % columns);
+        const auto row = static_cast<double>((first + pixel) / columns);
+        for (std::size_t i = 0; i < samples; ++i) {
+            const glm::dvec2 place = random_[pixel].point();
+            const double x = (column + place.x) / p.width;
+            const double y = (row + place.y) / p.height;
+            rays_.push_back(p.camera.ray(p.window.left + x * (p.window.right - p.window.left),
+                                         p.window.top + y * (p.window.bottom - p.window.top)));
+        }
+    }
+    ray_hits_.resize(rays_.size());
+    p.scene.rays().intersect(rays_, ray_hits_);
+    hits_.clear();
+    pixel_of_hit_.clear();
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+        if (!ray_hits_[i].missed()) {
+            const SurfacePoint surface = p.scene.surface(ray_hits_[i], rays_[i].direction);
+            hits_.add(surface, -glm::normalize(Vec3d(rays_[i].direction)),
+                      p.scene.materials()[surface.material].emission, 0);
+            pixel_of_hit_.push_back(i / samples);
+        }
+    }
+}
+
+void Worker::shade(std::size_t hit) {
+    reflection_.reset(picture_->scene.materials()[hits_.material[hit]].bsdf, hits_.cos_theta_o[hit]);
+    RandomNumbers& random = random_[pixel_of_hit_[hit]];
+    const double choice = random.next();
+    const RandomDirection reflected = reflection_.sample(choice, random.point());
+    const Rgb value = reflected.density > 0 ? reflection_.value(reflected.direction) : Rgb(0);
+    for (const Light& light : picture_->scene.lights()) {
+        if (is_seen(light, hits_.frame[hit], hits_.error[hit])) {
+            shade(light, hit, reflected, value);
+        }
+    }
+}
+
+void Worker::shade(const Light& light, std::size_t hit, const RandomDirection& reflected, const Rgb& reflected_value) {
+    const ShadingFrame& frame = hits_.frame[hit];
+    light_.reset(light, frame);
+    const RayStart start(frame, hits_.shadow_origin[hit], clearance(light, frame));
+    const Rgb& radiance = radiance_of(light);
+    const RandomDirection to_light = light_.sample(random_[pixel_of_hit_[hit]].point());
+    if (to_light.density > 0) {
+        const double density = to_light.density + reflection_.density(to_light.direction);
+        push(start, to_light.direction,
+             radiance * reflection_.value(to_light.direction) * static_cast<float>(1 / density), hit);
+    }
+    if (const double other = reflected.density > 0 ? light_.density(reflected.direction) : 0; other > 0) {
+        push(start, reflected.direction,
+             radiance * reflected_value * static_cast<float>(1 / (other + reflected.density)), hit);
+    }
+    const Vec3d mirror(-reflection_.view().x, 0, reflection_.view().z);
+    if (reflection_.mirrored() != Rgb(0) && light_.density(mirror) > 0) {
+        push(start, mirror, radiance * reflection_.mirrored(), hit);
+    }
+}
+
+void Worker::push(const RayStart& start, const Vec3d& direction, const Rgb& radiance, std::size_t hit) {
+    if (radiance == Rgb(0)) {
+        return;
+    }
+    if (const std::optional<double> distance = light_.distance(direction)) {
+        shadow_rays_.push_back(start.towards(*distance * direction));
+        shadowed_.push_back(radiance);
+        pixel_of_ray_.push_back(pixel_of_hit_[hit]);
+    }
+}
+
+}  // namespace
+
+void check_monte_carlo(const MonteCarloSettings& settings, int width, int height) {
+    RenderSettings common;
+    common.threads = settings.threads;
+    check_render(common, width, height);
+    if (settings.samples < 1 || settings.samples > kMostSamples) {
+        reject("samples must be 1 … " + std::to_string(kMostSamples) + ", got " + std::to_string(settings.samples));
+    }
+}
+
+void render_monte_carlo(const CompiledScene& scene, const Camera& camera, int width, int height,
+                        const MonteCarloSettings& settings, std::span<float> image, const Progress& progress) {
+    check_monte_carlo(settings, width, height);
+    const Picture picture = {scene, camera, width, height, settings, camera.window(width, height)};
+    check_size("image", image.size(), 4 * picture.pixels());
+    tbb::enumerable_thread_specific<Worker> workers([&picture] { return Worker(picture); });
+    const std::size_t each = std::max<std::size_t>(1, kBatch / picture.samples());
+    parallel_for(
+        (picture.pixels() + each - 1) / each, settings.threads,
+        [&](std::size_t i) { workers.local().render(i * each, std::min(each, picture.pixels() - i * each), image); },
+        progress);
+}
+
+}  // namespace shlight::methods

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "render_calls.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <stdexcept>
+
+namespace shlight::python {
+
+namespace py = pybind11;
+
+namespace {
+
+bool is_false(const py::object& value) {
+    return (PyBool_Check(value.ptr()) != 0 || py::isinstance(value, py::module_::import("numpy").attr("bool_"))) &&
+           !value.cast<bool>();
+}
+
+}  // namespace
+
+int clamp_to_int(std::int64_t value) {
+    return static_cast<int>(
+        std::clamp<std::int64_t>(value, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
+}
+
+Progress progress_from(const py::object& callback) {
+    if (!callback.is_none() && PyCallable_Check(callback.ptr()) == 0) {
+        throw std::invalid_argument("progress must be callable or None");
+    }
+    return [&callback](double share) {
+        const py::gil_scoped_acquire acquire;
+        if (PyErr_CheckSignals() != 0) {
+            throw py::error_already_set();
+        }
+        return callback.is_none() || !is_false(callback(share));
+    };
+}
+
+const Camera& camera_of(const SceneObject& scene) {
+    if (!scene.camera) {
+        throw std::invalid_argument("scene has no camera: call set_camera() or set_camera_window()");
+    }
+    return *scene.camera;
+}
+
+std::pair<std::shared_ptr<const CompiledScene>, double> compiled(SceneObject& object, int threads) {
+    if (object.compiled) {
+        return {object.compiled, 0.0};
+    }
+    // A copy, since other Python threads may add to the object meanwhile.
+    const Scene scene = object.scene;
+    const std::uint64_t revision = object.revision;
+    const auto start = std::chrono::steady_clock::now();
+    std::shared_ptr<const CompiledScene> result;
+    {
+        const py::gil_scoped_release release;
+        result = scene.compile(threads);
+    }
+    if (object.revision == revision) {
+        object.compiled = result;
+    }
+    return {result, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+}
+
+}  // namespace shlight::python

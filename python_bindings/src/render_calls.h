@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+//
+// What functions that render have in common.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "scene_bindings.h"
+#include "shlight/parallel.h"
+
+namespace shlight::python {
+
+/// Numbers that do not fit an int are as much out of range as the largest that does.
+int clamp_to_int(std::int64_t value);
+
+/// Runs in the calling thread, which does not hold the GIL while it waits: signals are seen, and the callback called.
+/// Throws std::invalid_argument naming `progress` unless it is callable or None; keeps a reference to the argument.
+Progress progress_from(const pybind11::object& callback);
+
+/// Throws std::invalid_argument naming `scene` if it has no camera.
+const Camera& camera_of(const SceneObject& scene);
+
+/// The compiled scene of the object as it is now, and the seconds that building it has taken.
+std::pair<std::shared_ptr<const CompiledScene>, double> compiled(SceneObject& object, int threads);
+
+}  // namespace shlight::python
