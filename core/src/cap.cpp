@@ -8,6 +8,7 @@
 
 #include "checks.h"
 #include "light_checks.h"
+#include "safe_length.h"
 
 namespace shlight {
 namespace {
@@ -19,8 +20,9 @@ double one_minus(double cosine, double sine) {
     return cosine > 0 ? sine * sine / (1 + cosine) : 1 - cosine;
 }
 
-double length(const Vec3d& v) {
-    return std::hypot(std::hypot(v.x, v.y), v.z);  // no overflow, no underflow
+/// The sine of a unit vector's angle to z.
+double sine_of_tilt(const Vec3d& unit) {
+    return std::sqrt(unit.x * unit.x + unit.y * unit.y);
 }
 
 /// The circles of a light and of the horizon, and the triangle of their poles and a point where they cross. Each pair
@@ -41,7 +43,7 @@ void complete(Contact& contact) {
     const double c = contact.light.cosine;
     const double z = contact.height;
     const double cos_tilt = contact.light.axis.z;
-    const double sin_tilt = std::hypot(contact.light.axis.x, contact.light.axis.y);
+    const double sin_tilt = sine_of_tilt(contact.light.axis);
     const double own = c * contact.sine * contact.sine;
     const double other = z * contact.light.sine * contact.light.sine;
     const double sum = (c + z) * one_minus(cos_tilt, sin_tilt);
@@ -114,10 +116,10 @@ template <class T>
 Cap<T> make_cap(const Contact& contact) {
     const auto r = [](double x) { return static_cast<T>(x); };
     const Vec3d& axis = contact.light.axis;
-    const double sin_tilt = std::hypot(axis.x, axis.y);
+    const double sin_tilt = sine_of_tilt(axis);
     const bool crossing = contact.chord > 0;
     const Kept kept = crossing ? kept_with_crossing(contact) : kept_without_crossing(contact);
-    const double radius = std::hypot(contact.chord, contact.arc);
+    const double radius = crossing ? safe_length({contact.chord, contact.arc, 0}) : 1;
     return {r(axis.z),
             r(sin_tilt),
             r(sin_tilt > 0 ? axis.x / sin_tilt : 1.0),
@@ -142,7 +144,9 @@ Cap<T> warped_cap(const Circle& light, double crossing_squared, const Warp& warp
     const double scale = shrink * contact.sine;
     contact.chord = std::sqrt(std::max(0.0, crossing_squared)) * scale;
     contact.corner = light.axis.z * scale;
-    complete(contact);
+    if (contact.chord > 0) {
+        complete(contact);
+    }
     return make_cap<T>(contact);
 }
 
@@ -151,7 +155,7 @@ Cap<T> warped_cap(const Circle& light, double crossing_squared, const Warp& warp
 template <class T>
 Cap<T> Cap<T>::of_sphere(const Vec3d& center, double radius, const Warp& warp) {
     const Circle light = circle_of_sphere(center, radius);
-    const double distance = length(center);
+    const double distance = safe_length(center);
     const double crossing_squared = (radius - center.z) * (radius + center.z) / (distance * distance);
     return warped_cap<T>(light, crossing_squared, warp);
 }
@@ -164,13 +168,13 @@ Cap<T> Cap<T>::of_facing_disk(const Vec3d& center, double radius, const Warp& wa
 template <class T>
 Cap<T> Cap<T>::about_axis(const Vec3d& axis, double half_angle, const Warp& warp) {
     const double half = std::min(half_angle, kPi);
-    return inside({axis / length(axis), std::cos(half), std::sin(half)}, warp);
+    return inside({axis / safe_length(axis), std::cos(half), std::sin(half)}, warp);
 }
 
 template <class T>
 Cap<T> Cap<T>::inside(const Circle& circle, const Warp& warp) {
     // sin²σ - L_z² = sin²θ - cos²σ, from the smaller pair: near hemispheres may be seen straight above or below.
-    const double sin_tilt = std::hypot(circle.axis.x, circle.axis.y);
+    const double sin_tilt = sine_of_tilt(circle.axis);
     const double crossing_squared = circle.sine < std::abs(circle.cosine)
                                         ? (circle.sine - circle.axis.z) * (circle.sine + circle.axis.z)
                                         : (sin_tilt - circle.cosine) * (sin_tilt + circle.cosine);
@@ -190,7 +194,7 @@ Cap<T> Cap<T>::against(double horizon_height, double horizon_sine, const Vec3d& 
     const double nested = whole * less_theta;
     const double apart = less_sigma * less_eta;
     const double chord = 2 * std::sqrt(std::max(0.0, nested * apart));
-    return make_cap<T>({{axis / length(axis), std::cos(sigma), std::sin(sigma)},
+    return make_cap<T>({{axis / safe_length(axis), std::cos(sigma), std::sin(sigma)},
                         horizon_height,
                         horizon_sine,
                         chord,

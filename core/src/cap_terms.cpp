@@ -98,8 +98,8 @@ template <class T, class Visit>
 void uncrossed_bands(const Cap<T>& cap, const Horizon<T>& horizon, int order, const Visit& visit) {
     LegendreRows<T> legendre(cap.cos_tilt, cap.sin_tilt * cap.sin_tilt);
     ZonalIntegrals<T> zonal(cap.cos_half, cap.sin_half);
-    std::array<T, kMaxOrder> sin_tilt_powers, null;
-    std::array<T, kMaxOrder> particular{};
+    std::array<T, kMaxOrder> sin_tilt_powers, null, particular;
+    std::fill_n(particular.begin(), order, T(0));
     powers(cap.sin_tilt, order, sin_tilt_powers.data());
     for (int l = 1; l < order; ++l) {
         legendre.advance();
@@ -211,8 +211,11 @@ void cap_coefficients(const Cap<T>& cap, int order, bool clip, T* coefficients) 
         std::fill_n(coefficients, coefficient_count(order), T(0));
         return;
     }
-    const Azimuth<T> azimuth(cap, order);
     coefficients[0] = band_zero(kept);
+    if (order == 1) {
+        return;
+    }
+    const Azimuth<T> azimuth(cap, order);
     for_each_band(kept, Horizon<T>::plane(), order, [&](int l, const Band<T>& band) {
         T* out = coefficients + coefficient_index(l, 0);
         out[0] = band[0];

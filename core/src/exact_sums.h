@@ -27,6 +27,11 @@ class CompensatedSum {
 
 /// |v|² - r² without the cancellation of |v| ≈ r.
 inline double difference_of_squares(const std::array<double, 3>& v, double r) {
+    const double minuend = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    const double subtrahend = r * r;
+    if (minuend > 4 * subtrahend) {
+        return minuend - subtrahend;  // nothing cancels
+    }
     CompensatedSum sum;
     for (const double x : v) {
         sum.add_product(x, x);

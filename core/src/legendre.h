@@ -47,10 +47,10 @@ class LegendreRows {
   public:
     LegendreRows(T z, T sine_squared) : z_(z), near_pole_(sine_squared < T(0.0156)) {
         row_[0] = constants_.diagonal[0];
+        other_[0] = 0;
         if (near_pole_) {
             distance_ = sine_squared / (1 + std::abs(z));
             state_[0] = 1;
-            other_[0] = 0;
         }
     }
 
@@ -106,7 +106,7 @@ class LegendreRows {
     int l_ = 0;
     std::array<T, kMaxOrder> row_;
     std::array<T, kMaxOrder> state_;
-    std::array<T, kMaxOrder> other_{};
+    std::array<T, kMaxOrder> other_;
 };
 
 /// out[m] = base^m for m = 0 … count-1.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "exact_sums.h"
+#include "safe_length.h"
 
 namespace shlight {
 namespace {
@@ -16,13 +17,13 @@ double squared_length(const Vec3d& v) {
 }  // namespace
 
 Circle circle_of_sphere(const Vec3d& center, double radius) {
-    const double distance = std::hypot(center.x, center.y, center.z);
+    const double distance = safe_length(center);
     const double tangent_squared = std::max(0.0, difference_of_squares({center.x, center.y, center.z}, radius));
     return {center / distance, std::sqrt(tangent_squared) / distance, std::min(1.0, radius / distance)};
 }
 
 Circle circle_of_facing_disk(const Vec3d& center, double radius) {
-    const double distance = std::hypot(center.x, center.y, center.z);
+    const double distance = safe_length(center);
     const double slant = std::hypot(distance, radius);
     return {center / distance, distance / slant, radius / slant};
 }
