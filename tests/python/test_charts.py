@@ -347,13 +347,15 @@ def rows_of(file: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(stream))
 
 
-def drawn(figure: str, draw: Callable[[Run], Drawn], folder: Path) -> tuple[Drawn, list[dict[str, str]], list[float]]:
+def drawn(
+    figure: str, draw: Callable[[Run], Drawn], folder: Path, numbers: str = ""
+) -> tuple[Drawn, list[dict[str, str]], list[float]]:
     """The figure, the rows of its CSV, and the shares that it reported."""
     shares: list[float] = []
     run = Run(figure, folder, quick=True, report=lambda share, _: shares.append(share))
     with style.look():
         result = draw(run)
-    return result, rows_of(folder / f"{figure}.csv"), shares
+    return result, rows_of(folder / f"{numbers or figure}.csv"), shares
 
 
 def increasing(shares: Iterable[float]) -> bool:
@@ -408,12 +410,14 @@ def test_speed_and_error_of_what_is_registered(tmp_path: Path, monkeypatch: pyte
 def test_a_map_of_what_is_registered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stability, "REGIONS", stability.REGIONS[:1])
     monkeypatch.setattr(stability, "KINDS", {"sphere": "spheres"})
-    result, rows, shares = drawn("stability", stability.draw, tmp_path)
+    result, rows, shares = drawn("stability", stability.draw, tmp_path, "stability_sphere_map_8")
     assert increasing(shares)
-    assert names(tmp_path) == ["stability.csv", "stability_sphere_map_16.png", "stability_sphere_map_8.png"]
+    assert names(tmp_path) == [f"stability_sphere_map_{order}.{kind}" for order in (16, 8) for kind in ("csv", "png")]
     for row in rows:
-        hidden = np.radians(float(row["x"])) < -float(row["half_angle"])
-        assert (row["error"] == "hidden") == hidden
+        hidden = np.radians(float(row["elevation [°]"])) < -float(row["half angle [rad]"])
+        for method, least, most in (("exact", 0, 3e-6), ("dummy", 1e-6, 1.1e-2)):
+            error = row[f"{method}, float32"]
+            assert error == "hidden" if hidden else least <= float(error) <= most
     table = {row[2]: row[3:] for row in result.tables[0].rows}
     assert all(cell.endswith(" · 0.0 % · 0.0 %") for cell in table["exact"])
     assert [bool(cell) for cell in table["dummy"]] == [True, False, True, False]

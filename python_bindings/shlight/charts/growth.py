@@ -51,7 +51,7 @@ def draw(run: Run) -> Drawn:
         times = []
         for k, order in enumerate(orders):
             run.step((i + k / len(orders)) / len(cases), f"{light_class.name} {precision} order {order}")
-            rounds, budget, least = (3, 0.003, 1) if run.quick else (15, 0.006, 4)
+            rounds, budget, least = (3, 0.003, 1) if run.quick else (11, 0.005, 4)
             times.append(best_seconds(all_of, lights, order, precision, rounds=rounds, budget=budget, least=least))
         for series, seconds in zip(all_of, np.transpose(times), strict=True):
             curves.append(Curve(light_class, precision, series, orders, seconds))

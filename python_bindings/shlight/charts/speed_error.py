@@ -22,7 +22,7 @@ ORDERS = (1, 2, 4, 8, 16, 32)
 QUICK_ORDERS = (2, 8, 32)
 DRAWN_FROM = 2  # order 1 is the solid angle alone
 LOWEST = {"float32": 1e-9, "float64": 1e-18}  # errors below are drawn here
-HIGHEST = 1e3  # errors above, and what is not finite
+HIGHEST = 1e4  # errors above, and what is not finite, are drawn here with an arrow
 LIBRARY = "exact"
 PLACES = [(4, 3), (4, -10), (-9, 4), (-10, -10)]  # of the numbers beside the points, so that they share the room
 
@@ -68,7 +68,7 @@ def _points(
     quick: bool, all_of: list[Series], lights: Lights, true: NDArray[np.float64], order: int, precision: str
 ) -> list[Point]:
     able = [series for series in all_of if order <= series.largest_order]
-    rounds, batch, least, budget = (3, 0.003, 1, 0.01) if quick else (15, 0.005, 4, 0.15)
+    rounds, batch, least, budget = (3, 0.003, 1, 0.01) if quick else (11, 0.004, 4, 0.1)
     seconds = best_seconds(able, lights, order, precision, rounds=rounds, budget=batch, least=least)
     points = []
     for series, second in zip(able, seconds, strict=True):
@@ -101,7 +101,7 @@ def _draw_picture(run: Run, light_class: LightClass, precision: str, points: lis
     panels[0].set_xlim(decades(panels[0].get_xlim()))
     panels[0].set_ylim(decades(panels[0].get_ylim()))
     panels[0].set_ylabel("largest error of a coefficient ÷ L$_{00}$")
-    picture.suptitle(f"{light_class.title}; {precision}; numbers are orders")
+    picture.suptitle(f"{light_class.title}; {precision}; numbers are orders (↑: error beyond the scale)")
     picture.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
     run.save(picture, f"speed_error_{light_class.name}_{precision}", f"{light_class.title}, {precision}")
 
@@ -116,9 +116,9 @@ def _draw_series(
     times = [p.microseconds for p in points]
     heights = np.clip(np.nan_to_num(errors, posinf=HIGHEST), lowest, HIGHEST)
     panel.plot(times, heights, color=series.color, marker=series.marker, ls=series.dashes, label=series.label, ms=5)
-    for point, height in zip(points, heights, strict=True):
+    for point, height, error in zip(points, heights, errors, strict=True):
         panel.annotate(
-            str(point.order),
+            f"{point.order}{'' if error <= HIGHEST else ' ↑'}",
             (point.microseconds, height),
             xytext=place,
             textcoords="offset points",

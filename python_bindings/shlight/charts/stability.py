@@ -95,11 +95,11 @@ def draw(run: Run) -> Drawn:
     places = [(kind, region) for kind in KINDS for region in REGIONS]
     for i, (kind, region) in enumerate(places):
         maps += _measure(run, kind, region, lambda share, text, i=i: run.step((i + share) / len(places), text))  # type: ignore[misc]
-        for order in region.orders_drawn:
-            drawn = [m for m in maps if (m.kind, m.region, m.order) == (kind, region, order)]
-            _draw_picture(run, drawn)
-    header = ["lights", "region", "order", "precision", "method", "x", "half_angle", "error"]
-    run.csv("stability", header, _numbers(maps, run.quick))
+        for order in ORDERS:
+            together = [m for m in maps if (m.kind, m.region, m.order) == (kind, region, order)]
+            if order in region.orders_drawn:
+                _draw_picture(run, together)
+            _write_numbers(run, together)
     return Drawn(_explanation(maps), [_table(maps)])
 
 
@@ -134,7 +134,7 @@ def _errors(
     quick: bool,
 ) -> NDArray[np.float64]:
     """The map of a method; of a slow one only every so many-th row and column."""
-    affordable = batch_size(series, lights, order, precision, 0.01 if quick else 1.0, len(lights))
+    affordable = batch_size(series, lights, order, precision, 0.01 if quick else 0.4, len(lights))
     stride = int(np.ceil(np.sqrt(len(lights) / affordable)))
     wanted = np.zeros((len(lights) // columns, columns), dtype=bool)
     wanted[::stride, ::stride] = True
@@ -168,8 +168,7 @@ def _draw_picture(run: Run, maps: list[Map]) -> None:
     title = title[0].upper() + title[1:]
     picture.suptitle(title)
     picture.legend(handles=_legend(), loc="outside lower center", ncols=3)
-    name = f"stability_{first.kind}_{first.region.name}_{first.order}"
-    run.save(picture, name, title)
+    run.save(picture, _name(first), title)
 
 
 def _legend() -> list[Any]:
@@ -234,15 +233,27 @@ def _filled(errors: NDArray[np.float64]) -> NDArray[np.float64]:
     return filled
 
 
-def _numbers(maps: list[Map], quick: bool) -> list[list[object]]:
-    rows: list[list[object]] = []
-    for m in maps:
-        xs, half_angles = m.region.xs(quick), m.region.half_angles(quick)
-        for i, j in np.argwhere(~np.isnan(m.errors)):
-            error = "hidden" if m.errors[i, j] == COVERED else f"{m.errors[i, j]:.3g}"
-            place = [f"{xs[j]:.4g}", f"{half_angles[i]:.4g}"]
-            rows.append([m.kind, m.region.name, m.order, m.precision, m.series.label, *place, error])
-    return rows
+def _write_numbers(run: Run, maps: list[Map]) -> None:
+    """A row for each light, a column for each method and precision."""
+    first = maps[0]
+    xs, half_angles = first.region.xs(run.quick), first.region.half_angles(run.quick)
+    header = [first.region.x_label, "half angle [rad]", *(f"{m.series.label}, {m.precision}" for m in maps)]
+    rows = (
+        [f"{x:.4g}", f"{half:.4g}", *(_text(m.errors[i, j]) for m in maps)]
+        for i, half in enumerate(half_angles)
+        for j, x in enumerate(xs)
+    )
+    run.csv(_name(first), header, rows)
+
+
+def _text(error: float) -> str:
+    if np.isnan(error):
+        return ""
+    return "hidden" if error == COVERED else f"{error:.2e}"
+
+
+def _name(of: Map) -> str:
+    return f"stability_{of.kind}_{of.region.name}_{of.order}"
 
 
 def _table(maps: list[Map]) -> Table:
