@@ -15,7 +15,7 @@ import pytest
 
 import shlight
 from shlight import methods
-from shlight.charts import lobes, order_error, style, which_method
+from shlight.charts import lobe_lights, lobes, order_error, style, which_method
 from shlight.charts.figure import Drawn, Run
 from shlight.charts.lobe_lights import about_lobe, best_seconds
 
@@ -82,7 +82,9 @@ def test_oren_nayar() -> None:
             there = rough.value(lobes.view_direction(cos_i) * [sign, 1, 1], cos_o) / cos_i
             back = rough.value(lobes.view_direction(cos_o) * [sign, 1, 1], cos_i) / cos_o
             assert there == pytest.approx(back, rel=1e-12)
-    # Seen from where the light comes from it is brightest.
+    # Away from the light it is as dark from everywhere; seen from where the light comes from it is brightest.
+    away = [rough.value(lobes.view_direction(c) * [-1, 1, 1], 0.4) / c for c in (0.1, 0.5, 0.9)]
+    np.testing.assert_allclose(away, away[0], rtol=1e-12)
     assert rough.value(lobes.view_direction(0.5), 0.5) > 1.2 * rough.value(lobes.view_direction(0.5) * [-1, 1, 1], 0.5)
 
 
@@ -102,15 +104,19 @@ def test_lights_about_a_lobe() -> None:
     assert (lights.centers[2::3, 2] >= 0).all()
 
 
-def test_the_fastest_round_counts() -> None:
-    waits = iter([3, 1, 2])
+def test_the_fastest_round_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    now, turns = [0.0], []
+    monkeypatch.setattr(lobe_lights.time, "process_time", lambda: now[0])
 
-    def work() -> None:
-        until = 2_000_00 * next(waits)
-        sum(range(until))
+    def work(name: str, seconds: list[float]) -> Any:
+        def spend() -> None:
+            turns.append(name)
+            now[0] += seconds.pop(0)
 
-    slow = best_seconds([lambda: sum(range(6_000_00))], 1)[0]
-    assert 0 < best_seconds([work], 3)[0] < 0.8 * slow
+        return spend
+
+    assert best_seconds([work("a", [3, 1, 2]), work("b", [5, 6, 4])], 3) == [1, 4]
+    assert turns == ["a", "b"] * 3
 
 
 # --- order against error ------------------------------------------------------------------------------------------
