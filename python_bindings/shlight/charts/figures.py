@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from . import growth, order_error, speed_error, stability, which_method
+from . import growth, order_error, pictures, speed_error, stability, which_method
 from .figure import Figure
 
 FIGURES = [
@@ -12,4 +12,5 @@ FIGURES = [
     Figure("growth", "Time against order", growth.draw),
     Figure("order_error", "Order against error, for each material", order_error.draw),
     Figure("which_method", "Which method where", which_method.draw),
+    Figure("pictures", "Equal time and equal quality", pictures.draw),
 ]

@@ -266,7 +266,8 @@ def _draw_maps(picture: Any, kind: str, cells: list[Cell], grid: Grid) -> None:
 
     panels = picture.subplots(len(TOLERANCES), len(VIEWS), sharex=True, sharey=True)
     times = [choice.microseconds for cell in cells for choice in cell.choices if choice.way is not None]
-    norm = LogNorm(min(times), max(times))
+    least, most = min(times), max(times)
+    norm = LogNorm(least, most)
     for panel, (t, cos_o) in zip(panels.ravel(), np.ndindex(len(TOLERANCES), len(VIEWS)), strict=True):
         shown = {(cell.roughness, cell.half_angle): cell.choices[t] for cell in cells if cell.cos_o == VIEWS[cos_o]}
         choices = [[shown[roughness, half_angle] for half_angle in grid.half_angles] for roughness in grid.roughnesses]
@@ -284,7 +285,7 @@ def _draw_maps(picture: Any, kind: str, cells: list[Cell], grid: Grid) -> None:
         bar = picture.colorbar(
             ScalarMappable(norm, "cividis"), ax=panels, location="bottom", aspect=60, shrink=0.6, pad=0.01
         )
-        ticks = [m * 10.0**e for e in range(-2, 4) for m in (1, 2, 5) if norm.vmin <= m * 10.0**e <= norm.vmax]
+        ticks = [m * 10.0**e for e in range(-2, 4) for m in (1, 2, 5) if least <= m * 10.0**e <= most]
         bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks])
         bar.minorticks_off()
         bar.set_label("µs per light, one core")
