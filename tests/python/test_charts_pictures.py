@@ -33,6 +33,45 @@ def test_the_references_noise_does_not_count_as_error() -> None:
     assert str(pictures.Error(3e-5, 2e-6)) == "3.0e-05"
 
 
+def test_equal_time_and_equal_quality(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures of noise, on a clock that they turn themselves: 2 s, and 0.1 s a sample."""
+    now = [0.0]
+    monkeypatch.setattr(pictures.time, "perf_counter", lambda: now[0])
+    truth = np.ones((200, 300, 4))
+    seeds: list[int] = []
+
+    def harmonics(scene: Any, effort: Any, rays: Any, order: Any, **options: Any) -> Any:
+        now[0] += 2.0
+        return noisy(np.random.default_rng(1), truth, 0.02)
+
+    def monte_carlo(scene: Any, effort: Any, samples: int, *, seed: int, **options: Any) -> Any:
+        now[0] += 0.1 * samples
+        seeds.append(seed)
+        return noisy(np.random.default_rng([seed, samples]), truth, 0.2 / np.sqrt(samples))
+
+    monkeypatch.setattr(pictures, "_harmonics", harmonics)
+    monkeypatch.setattr(pictures, "_monte_carlo", monte_carlo)
+    effort = replace(pictures.QUICK, half_samples=256, samples=(1, 16), most_samples=120)
+    setting = replace(pictures.SETTINGS[0], build=lambda: None)
+    found = pictures.compare(setting, effort, 7, lambda share, text: None)
+    assert found.equal_time.effort == "20 samples a pixel"
+    assert found.equal_time.seconds == pytest.approx(2.0)
+    assert found.shown.error.value == pytest.approx(4e-4 / 1.01, rel=0.1)
+    # (0.2 / 0.02)² samples have the same error, 0.1 s each.
+    assert found.reached
+    assert found.samples_for_quality == pytest.approx(100, rel=0.1)
+    assert found.seconds_for_quality == pytest.approx(10, rel=0.1)
+    assert found.equal_quality.error.value == pytest.approx(found.shown.error.value, rel=0.15)
+    assert pictures._by_monte_carlo(found, found.shown) == pytest.approx(10, rel=0.1)
+    # The reference shares no random number with what is compared to it.
+    assert seeds[:2] == [8, 9]
+    assert set(seeds[2:]) == {7}
+    fewer = pictures.compare(setting, replace(effort, most_samples=50), 7, lambda share, text: None)
+    assert not fewer.reached
+    assert fewer.equal_quality.effort == "50 samples a pixel"
+    assert fewer.seconds_for_quality == pytest.approx(10, rel=0.1)
+
+
 @pytest.mark.parametrize(
     ("mesh", "closed"),
     [
