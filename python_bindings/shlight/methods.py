@@ -62,8 +62,9 @@ def render_monte_carlo(
     weighed by the balance heuristic and followed by shadow rays.
     seed: 0 … 2³²-1; the image depends on it and not on threads. progress, result and errors: as of shlight.render.
     """
+    count = _integer("samples", samples, 1, 2**20)
     checked_seed = _integer("seed", seed, 0, 2**32 - 1)
-    return _core.render_monte_carlo(scene, width, height, samples, checked_seed, threads, progress)
+    return _core.render_monte_carlo(scene, width, height, count, checked_seed, threads, progress)
 
 
 def coefficient_options(method: str, **given: Any) -> _core.MethodOptions:

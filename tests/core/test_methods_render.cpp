@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+//
+// Pictures by Monte Carlo: their mean is what the library renders, within their own standard error.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "monte_carlo_render.h"
+#include "render_scenes.h"
+
+namespace shlight {
+namespace {
+
+using methods::MonteCarloSettings;
+using methods::render_monte_carlo;
+using namespace testing;
+
+constexpr int kSize = 8;
+
+using Picture = std::vector<float>;
+
+Picture picture(const CompiledScene& scene, const Camera& camera, const MonteCarloSettings& settings,
+                const Progress& progress = {}) {
+    Picture image(4 * kSize * kSize, -1.0F);
+    render_monte_carlo(scene, camera, kSize, kSize, settings, image, progress);
+    return image;
+}
+
+/// A floor and a wall of a material, a shade, and one light of each kind.
+Scene room(const Bsdf& bsdf, const std::string& lights) {
+    Scene scene;
+    scene.add_mesh(floor_mesh(3, 0, bsdf));
+    Mesh shade = floor_mesh(0.4F, 0.5F);
+    scene.add_mesh(shade);
+    const auto has = [&](char kind) { return lights.find(kind) != std::string::npos; };
+    if (has('s')) {
+        scene.add_sphere_light({0.5, 0.25, 1.5}, 0.5, {4, 2, 1});
+    }
+    if (has('d')) {
+        scene.add_sphere_light({-1, -0.5, 0.8}, 0.4, {1, 2, 4}, true);
+    }
+    if (has('i')) {
+        scene.add_sphere_light({0, 0, 0}, 1.2, {1, 1, 1});  // most of what is seen lies within
+    }
+    if (has('p')) {
+        scene.add_polygon_light({{-1, 0.5, 1.5}, {0, 0.1, 1.5}, {1, 0.5, 1.5}, {0, -0.8, 1.5}}, {-1, 2, 3});
+        scene.add_polygon_light({{-1, 1.5, -1}, {-1, 1.5, 1}, {1, 1.5, 1}, {1, 1.5, -1}}, {2, 1, 0.5});
+        scene.add_polygon_light({{1, 1.5, -1}, {1, 1.5, 1}, {-1, 1.5, 1}, {-1, 1.5, -1}}, {2, 1, 0.5});
+    }
+    if (has('e')) {
+        Mesh glowing;
+        glowing.vertices = {{1.2F, -1, 0.1F}, {1.2F, 1, 0.1F}, {1.2F, 1, 0.9F}, {1.2F, -1, 0.9F}};
+        glowing.triangles = {{0, 1, 2}, {0, 2, 3}};
+        glowing.bsdfs = {Bsdf()};
+        glowing.emission = {Rgb(3)};
+        scene.add_mesh(glowing);
+    }
+    return scene;
+}
+
+struct Case {
+    const char* name;
+    Bsdf bsdf;
+    const char* lights;
+};
+
+/// Sums over pixels of what each run gives beside the truth, and how far that is off in standard errors.
+void check_mean(const Case& c) {
+    constexpr int kRuns = 10;
+    const auto scene = room(c.bsdf, c.lights).compile();
+    const Camera camera(look_at({0.5, -3, 2.5}, {0, 0, 0.2}), 0.9);
+    RenderSettings fine;
+    fine.pixel_samples = 400;
+    fine.shadow_rays = 32;
+    fine.adaptive = false;
+    fine.tolerance = 1e-4;
+    Picture expected(4 * kSize * kSize);
+    render(*scene, camera, kSize, kSize, fine, expected);
+    std::vector<Picture> runs;
+    for (std::uint32_t seed = 0; seed < kRuns; ++seed) {
+        runs.push_back(picture(*scene, camera, {.samples = 128, .seed = 50 + seed}));
+    }
+    for (std::size_t channel = 0; channel < 4; ++channel) {
+        double truth = 0;
+        std::vector<double> totals(kRuns, 0.0);
+        for (std::size_t i = channel; i < expected.size(); i += 4) {
+            truth += expected[i];
+            for (std::size_t run = 0; run < kRuns; ++run) {
+                totals[run] += runs[run][i];
+            }
+        }
+        double mean = 0;
+        for (const double total : totals) {
+            mean += total / kRuns;
+        }
+        double squares = 0;
+        for (const double total : totals) {
+            squares += (total - mean) * (total - mean);
+        }
+        const double error = std::sqrt(squares / (kRuns * (kRuns - 1)));
+        std::printf("%-24s channel %zu: %+.1e of the truth, %.1f standard errors\n", c.name, channel, mean / truth - 1,
+                    (mean - truth) / error);
+        EXPECT_LE(std::abs(mean - truth), 5 * error) << c.name << " channel " << channel;
+        EXPECT_LE(error, 0.03 * std::abs(truth)) << c.name << " channel " << channel;
+    }
+}
+
+TEST(MonteCarloRender, TheMeanIsWhatTheLibraryRenders) {
+    const Bsdf lambert = Bsdf::lambert(Rgb(0.5F));
+    const Bsdf gold = Bsdf::ggx(0.3F, {0.9F, 0.6F, 0.2F});
+    const Bsdf plastic = Bsdf::layer(Bsdf::ggx(0.25F, Rgb(0.04F), 1.45F), Bsdf::lambert({0.1F, 0.5F, 0.8F}));
+    const Bsdf mirror = Bsdf::ggx(0, {0.9F, 0.6F, 0.2F}) + Bsdf::lambert(Rgb(0.1F));
+    for (const Case& c : {Case{"lambert, spheres", lambert, "sd"},
+                          {"lambert, inside", lambert, "i"},
+                          {"lambert, polygons", lambert, "p"},
+                          {"lambert, glowing mesh", lambert, "e"},
+                          {"gold, spheres", gold, "sd"},
+                          {"gold, inside", gold, "i"},
+                          {"gold, polygons", gold, "pe"},
+                          {"plastic, all", plastic, "sdpe"},
+                          {"mirror, all", mirror, "sdpe"}}) {
+        check_mean(c);
+    }
+}
+
+TEST(MonteCarloRender, DependsOnTheSeedAndNotOnThreads) {
+    const auto scene = room(Bsdf::ggx(0.5F, Rgb(0.8F)), "sp").compile();
+    const Camera camera = camera_above(2);
+    const Picture one = picture(*scene, camera, {.samples = 9, .seed = 4, .threads = 1});
+    for (const int threads : {2, 3, 0}) {
+        EXPECT_EQ(picture(*scene, camera, {.samples = 9, .seed = 4, .threads = threads}), one) << threads;
+    }
+    EXPECT_NE(picture(*scene, camera, {.samples = 9, .seed = 5, .threads = 1}), one);
+}
+
+TEST(MonteCarloRender, NoLightIsBlackAndNothingIsTransparent) {
+    Scene scene;
+    scene.add_mesh(floor_mesh(1));
+    const Picture image = picture(*scene.compile(), camera_above(2), {.samples = 64});
+    double covered = 0;
+    for (std::size_t i = 0; i < image.size(); i += 4) {
+        EXPECT_EQ(std::abs(image[i]) + std::abs(image[i + 1]) + std::abs(image[i + 2]), 0.0F);
+        covered += image[i + 3] / (kSize * kSize);
+    }
+    EXPECT_NEAR(covered, 0.25, 1e-6);  // its edges lie between pixels
+}
+
+TEST(MonteCarloRender, LongPixelsAreCutIntoBatches) {
+    const auto scene = room(Bsdf::lambert(Rgb(0.5F)), "s").compile();
+    std::vector<float> few(4, -1.0F);
+    std::vector<float> many(4, -1.0F);
+    render_monte_carlo(*scene, camera_above(0.1), 1, 1, {.samples = 4096}, few);
+    render_monte_carlo(*scene, camera_above(0.1), 1, 1, {.samples = 3 * 4096 + 1}, many);
+    EXPECT_EQ(many[3], 1.0F);
+    EXPECT_NE(few, many);
+    EXPECT_NEAR(few[0], many[0], 0.1 * few[0]);
+}
+
+template <class Call>
+std::string message(const Call& call) {
+    try {
+        call();
+    } catch (const std::invalid_argument& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(MonteCarloRender, BadArgumentsAreNamed) {
+    const auto scene = room(Bsdf::lambert(Rgb(0.5F)), "s").compile();
+    const Camera camera = camera_above(2);
+    const auto names = [&](const MonteCarloSettings& settings, int width, int height, std::size_t size) {
+        std::vector<float> image(size);
+        const std::string text = message([&] { render_monte_carlo(*scene, camera, width, height, settings, image); });
+        return text.substr(0, text.find(' '));
+    };
+    EXPECT_EQ(names({.samples = 0}, 2, 2, 16), "samples");
+    EXPECT_EQ(names({.samples = (1 << 20) + 1}, 2, 2, 16), "samples");
+    EXPECT_EQ(names({.threads = -1}, 2, 2, 16), "threads");
+    EXPECT_EQ(names({}, 0, 2, 16), "width");
+    EXPECT_EQ(names({}, 2, 0, 16), "height");
+    EXPECT_EQ(names({}, 2, 2, 15), "image");
+    EXPECT_EQ(names({}, 2, 2, 16), "");
+}
+
+TEST(MonteCarloRender, ProgressRisesAndCancels) {
+    const auto scene = room(Bsdf::lambert(Rgb(0.5F)), "s").compile();
+    double last = 0;
+    picture(*scene, camera_above(2), {.samples = 64}, [&](double share) {
+        EXPECT_GE(share, last);
+        last = share;
+        return true;
+    });
+    EXPECT_EQ(last, 1);
+    EXPECT_THROW(picture(*scene, camera_above(2), {.samples = 1 << 18}, [](double) { return false; }), RenderCancelled);
+}
+
+}  // namespace
+}  // namespace shlight

@@ -1,0 +1,344 @@
+# SPDX-License-Identifier: MIT
+"""`method=` and what belongs to it: every method on easy lights, options, seeds, threads, and Monte Carlo pictures."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import shlight
+from shlight import Bsdf, methods
+
+AXES = np.array([[0.3, 0.2, 0.9], [-0.6, 0.1, 0.5], [0.2, -0.7, 0.3]])
+AXES /= np.linalg.norm(AXES, axis=1, keepdims=True)
+HALF_ANGLES = np.array([0.3, 0.4, 0.6])
+RADII = np.sin(HALF_ANGLES)
+QUADS = AXES[:, None] + 0.4 * np.array([[1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0]])
+
+COEFFICIENT_METHODS = methods.coefficient_methods()
+SHADING_METHODS = methods.shading_methods()
+RANDOM = [name for name, method in COEFFICIENT_METHODS.items() if method.random]
+
+Call = Callable[..., Any]
+
+
+def caps(**given: Any) -> NDArray[Any]:
+    return shlight.cap_coefficients(AXES, HALF_ANGLES, given.pop("order", 4), **given)
+
+
+def polygons(**given: Any) -> NDArray[Any]:
+    return shlight.polygon_coefficients(QUADS, given.pop("order", 4), **given)
+
+
+def shaded(**given: Any) -> Any:
+    return shlight.shade_spheres(AXES, RADII, given.pop("bsdf", Bsdf.ggx(0.6, 0.8)), 0.7, **given)
+
+
+def expect_value_error(name: str, call: Call) -> None:
+    with pytest.raises(ValueError, match=f"^{name}"):
+        call()
+
+
+# --- coefficients -------------------------------------------------------------------------------------------------
+
+
+def test_the_library_comes_first_and_each_method_names_its_source() -> None:
+    assert next(iter(COEFFICIENT_METHODS)) == "exact"
+    expected = {"exact", "reference", "quadrature", "monte_carlo", "zhou_wei", "snyder", "wang_ramamoorthi"}
+    assert expected <= set(COEFFICIENT_METHODS)
+    assert {"plain_harmonics", "warped_harmonics", "cubature", "quadrature", "monte_carlo"} <= set(SHADING_METHODS)
+    for method in [*COEFFICIENT_METHODS.values(), *SHADING_METHODS.values()]:
+        assert method.source
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("name", sorted(COEFFICIENT_METHODS))
+def test_every_method_knows_easy_lights(name: str, dtype: Any) -> None:
+    method = COEFFICIENT_METHODS[name]
+    assert method.knows_caps or method.knows_polygons
+    options: dict[str, Any] = {"samples": 4096} if method.random else {}
+    tolerance = 0.2 if method.random else 1e-3 if dtype == np.float32 else 1e-9
+    for known, call in [(method.knows_caps, caps), (method.knows_polygons, polygons)]:
+        if not known:
+            expect_value_error("method", lambda call=call: call(method=name))
+            continue
+        for clip in (True, False):
+            expected = call(method="reference", dtype=np.float64, clip=clip)
+            computed = call(method=name, dtype=dtype, clip=clip, **options)
+            assert computed.dtype == dtype
+            errors = np.abs(computed - expected).max(axis=-1) / expected[..., 0]
+            assert (errors <= tolerance).all(), (name, errors)
+
+
+def test_spheres_are_caps() -> None:
+    for name in ("quadrature", "monte_carlo"):
+        options: dict[str, Any] = {"method": name, "dtype": np.float64}
+        spheres = shlight.sphere_coefficients(3 * AXES, 3 * RADII, 4, **options)
+        np.testing.assert_allclose(spheres, caps(**options), rtol=0, atol=1e-12)
+
+
+def test_methods_broadcast() -> None:
+    many = shlight.cap_coefficients(AXES[:, None], HALF_ANGLES, 3, method="quadrature", dtype=np.float64)
+    assert many.shape == (3, 3, 9)
+    one = shlight.cap_coefficients(AXES[1], HALF_ANGLES[2], 3, method="quadrature", dtype=np.float64)
+    np.testing.assert_array_equal(many[1, 2], one)
+
+
+def test_a_tolerance_is_kept() -> None:
+    exact = caps(dtype=np.float64)
+    errors = []
+    for tolerance in (1e-1, 1e-5):
+        rough = caps(method="quadrature", dtype=np.float64, tolerance=tolerance)
+        errors.append(np.max(np.abs(rough - exact).max(axis=-1) / exact[:, 0]))
+        assert errors[-1] <= tolerance
+    assert errors[0] > 10 * errors[1]
+
+
+@pytest.mark.parametrize("name", RANDOM)
+@pytest.mark.parametrize("sampling", ["solid_angle", "area"])
+def test_random_coefficients_depend_on_the_seed_only(name: str, sampling: Any) -> None:
+    axes = np.tile(AXES, (600, 1))  # more than a thread takes at once
+    half_angles = np.tile(HALF_ANGLES, 600)
+
+    def compute(seed: int, threads: int) -> NDArray[Any]:
+        options: dict[str, Any] = {"method": name, "sampling": sampling, "samples": 5}
+        return shlight.cap_coefficients(axes, half_angles, 2, seed=seed, threads=threads, **options)
+
+    once = compute(1, 1)
+    np.testing.assert_array_equal(compute(1, 2), once)
+    assert (compute(2, 1) != once).any(axis=-1).all()
+    # Each light of a batch has random numbers of its own.
+    assert len(np.unique(once[::3, 0] if sampling == "area" else once[::3, 1])) == 600
+
+
+def test_errors_fall_with_the_square_root_of_the_samples() -> None:
+    axes = np.tile(AXES, (200, 1))
+    half_angles = np.tile(HALF_ANGLES, 200)
+
+    def error(samples: int) -> float:
+        given: dict[str, Any] = {"method": "monte_carlo", "samples": samples, "dtype": np.float64}
+        difference = shlight.cap_coefficients(axes, half_angles, 4, **given) - np.tile(caps(dtype=np.float64), (200, 1))
+        return float(np.sqrt((difference**2).mean()))
+
+    assert 3.5 <= error(16) / error(256) <= 4.5
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("method", {"method": "best"}),
+        ("method", {"method": None}),
+        ("order", {"method": "zhou_wei", "order": 33}),
+        ("tolerance", {"tolerance": 1e-3}),
+        ("samples", {"samples": 4}),
+        ("seed", {"seed": 4}),
+        ("sampling", {"sampling": "area"}),
+        ("samples", {"method": "quadrature", "samples": 4}),
+        ("tolerance", {"method": "monte_carlo", "tolerance": 1e-3}),
+        ("tolerance", {"method": "quadrature", "tolerance": 0}),
+        ("tolerance", {"method": "quadrature", "tolerance": float("nan")}),
+        ("tolerance", {"method": "quadrature", "tolerance": "much"}),
+        ("samples", {"method": "monte_carlo", "samples": 0}),
+        ("samples", {"method": "monte_carlo", "samples": 1.5}),
+        ("seed", {"method": "monte_carlo", "seed": -1}),
+        ("seed", {"method": "monte_carlo", "seed": 2**32}),
+        ("sampling", {"method": "monte_carlo", "sampling": "bsdf"}),
+        ("sampling", {"method": "monte_carlo", "sampling": "mis"}),
+        ("sampling", {"method": "monte_carlo", "sampling": "everywhere"}),
+    ],
+)
+def test_bad_coefficient_options(name: str, options: dict[str, Any]) -> None:
+    expect_value_error(name, lambda: caps(**options))
+
+
+def test_bad_lights() -> None:
+    for name in ("quadrature", "monte_carlo"):
+        options: dict[str, Any] = {"method": name}
+        expect_value_error("half_angles", lambda: shlight.cap_coefficients(AXES, 0.0, 3, **options))  # noqa: B023
+        expect_value_error("axes", lambda: shlight.cap_coefficients([0, 0, 0], 0.2, 3, **options))  # noqa: B023
+        expect_value_error("radii", lambda: shlight.sphere_coefficients(AXES, 2.0, 3, **options))  # noqa: B023
+        flat = np.zeros((3, 3))
+        np.testing.assert_array_equal(shlight.polygon_coefficients(flat, 3, **options), 0)
+    expect_value_error(
+        "half_angles",
+        lambda: shlight.cap_coefficients(AXES, 1.7, 3, method="monte_carlo", sampling="area"),
+    )
+
+
+# --- shading ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", sorted(SHADING_METHODS))
+def test_every_shading_method_knows_easy_lights(name: str) -> None:
+    method = SHADING_METHODS[name]
+    options: dict[str, Any] = {}
+    if method.harmonic:
+        options["order"] = 32
+    if method.sampled:
+        options["samples"] = 20000 if method.random else 400
+    expected = shaded(method="quadrature")
+    computed, effort = shaded(method=name, return_effort=True, **options)
+    np.testing.assert_allclose(computed, expected, rtol=0, atol=0.02 if method.random else 2e-3)
+    assert (effort > 0).all()
+    if method.sampled:
+        assert (effort <= options["samples"]).all()
+    bsdf = Bsdf.ggx(0.6, 0.8)
+    np.testing.assert_allclose(
+        shlight.shade_polygons(QUADS, bsdf, 0.7, method=name, **options),
+        shlight.shade_polygons(QUADS, bsdf, 0.7, method="quadrature"),
+        rtol=0,
+        atol=0.02 if method.random else 2e-3,
+    )
+
+
+def test_a_lambertian_floor_has_a_closed_form() -> None:
+    above = AXES[:, 2] > RADII
+    expected = 0.5 * (RADII**2 * AXES[:, 2])[above]
+    for options in ({"method": "quadrature"}, {"method": "cubature", "samples": 200}):
+        given: dict[str, Any] = options
+        computed = shaded(bsdf=Bsdf.lambert(0.5), **given)
+        np.testing.assert_allclose(computed[above, 0], expected, rtol=1e-6)
+
+
+@pytest.mark.parametrize("sampling", ["solid_angle", "area", "bsdf", "mis"])
+def test_random_shading_is_right_and_depends_on_the_seed_only(sampling: Any) -> None:
+    axes = np.tile(AXES, (600, 1))
+    radii = np.tile(RADII, 600)
+    bsdf = Bsdf.layer(Bsdf.ggx(0.4, 0.04, ior=1.5), Bsdf.lambert([0.2, 0.4, 0.8]))
+
+    def compute(seed: int, threads: int) -> NDArray[Any]:
+        options: dict[str, Any] = {"method": "monte_carlo", "sampling": sampling, "samples": 16}
+        return shlight.shade_spheres(axes, radii, bsdf, 0.7, seed=seed, threads=threads, **options)
+
+    once = compute(1, 1)
+    np.testing.assert_array_equal(compute(1, 2), once)
+    assert (compute(2, 1) != once).any()
+    expected = shlight.shade_spheres(AXES, RADII, bsdf, 0.7, method="quadrature").astype(np.float64)
+    draws = once.reshape(600, 3, 3).astype(np.float64)
+    standard_error = draws.std(axis=0, ddof=1) / np.sqrt(600)
+    assert (np.abs(draws.mean(axis=0) - expected) <= 5 * standard_error + 1e-6).all()
+    np.testing.assert_array_equal(  # polygons too
+        shlight.shade_polygons(QUADS, bsdf, 0.7, method="monte_carlo", sampling=sampling, seed=3),
+        shlight.shade_polygons(QUADS, bsdf, 0.7, method="monte_carlo", sampling=sampling, seed=3),
+    )
+
+
+def test_light_below_the_horizon_is_dark() -> None:
+    for name in SHADING_METHODS:
+        options: dict[str, Any] = {"order": 4} if SHADING_METHODS[name].harmonic else {}
+        hidden = shlight.shade_spheres([0, 0.1, -1], 0.5, Bsdf.ggx(0.6, 0.8), 0.7, method=name, **options)
+        np.testing.assert_array_equal(hidden, 0)
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("method", {"method": "best"}),
+        ("samples", {"samples": 4}),
+        ("seed", {"seed": 4}),
+        ("sampling", {"sampling": "mis"}),
+        ("order", {"method": "plain_harmonics"}),
+        ("order", {"method": "quadrature", "order": 4}),
+        ("samples", {"method": "quadrature", "samples": 4}),
+        ("seed", {"method": "cubature", "seed": 4}),
+        ("samples", {"method": "cubature", "samples": 0}),
+        ("sampling", {"method": "monte_carlo", "sampling": "everywhere"}),
+        ("bsdf", {"method": "quadrature", "bsdf": Bsdf.ggx(0, 1)}),
+        ("bsdf", {"method": "outline", "bsdf": Bsdf.lambert(0.5)}),
+    ],
+)
+def test_bad_shading_options(name: str, options: dict[str, Any]) -> None:
+    expect_value_error(name, lambda: shaded(**options))
+
+
+# --- pictures -----------------------------------------------------------------------------------------------------
+
+
+def lit_floor() -> shlight.Scene:
+    scene = shlight.Scene()
+    floor = np.array([[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]])
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    scene.add_mesh(floor, faces, bsdf=Bsdf.ggx(0.5, [0.9, 0.6, 0.2]) + Bsdf.lambert(0.3))
+    scene.add_mesh(floor / 30 + [0.2, 0, 0.6], faces)
+    scene.add_sphere_light([0.5, 0.25, 1.5], 0.5, [4, 2, 1])
+    to_world = np.eye(4)
+    to_world[2, 3] = 10
+    scene.set_camera_window(to_world, -2, 2, -2, 2, orthographic=True)
+    return scene
+
+
+def test_pictures_agree_with_the_library() -> None:
+    expected = shlight.render(lit_floor(), 8, 6, pixel_samples=256, shadow_rays=64, adaptive=False)
+    runs = np.array([methods.render_monte_carlo(lit_floor(), 8, 6, samples=256, seed=i) for i in range(10)])
+    assert runs.dtype == np.float32
+    assert runs.shape == (10, 6, 8, 4)
+    np.testing.assert_array_equal(runs[..., 3], 1)
+    totals = runs.astype(np.float64).sum(axis=(1, 2))
+    standard_error = totals.std(axis=0, ddof=1) / np.sqrt(len(runs))
+    off = np.abs(totals.mean(axis=0) - expected.astype(np.float64).sum(axis=(0, 1)))
+    assert (off <= 5 * standard_error).all()
+    assert (standard_error[:3] <= 0.01 * totals.mean(axis=0)[:3]).all()
+
+
+def test_noise_falls_with_the_square_root_of_the_samples() -> None:
+    def noise(samples: int) -> float:
+        a, b = (methods.render_monte_carlo(lit_floor(), 16, 16, samples=samples, seed=seed) for seed in (1, 2))
+        return float(np.sqrt(((a - b)[..., :3] ** 2).mean()))
+
+    assert 2.8 <= noise(16) / noise(256) <= 5.6
+
+
+def test_threads_do_not_change_a_bit() -> None:
+    one = methods.render_monte_carlo(lit_floor(), 33, 17, samples=3, seed=7, threads=1)
+    np.testing.assert_array_equal(methods.render_monte_carlo(lit_floor(), 33, 17, samples=3, seed=7, threads=2), one)
+    assert (methods.render_monte_carlo(lit_floor(), 33, 17, samples=3, seed=8) != one).any()
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("samples", {"samples": 0}),
+        ("samples", {"samples": 2**20 + 1}),
+        ("samples", {"samples": 2**70 - 2**69}),
+        ("seed", {"seed": -1}),
+        ("seed", {"seed": 0.5}),
+        ("threads", {"threads": -1}),
+        ("width", {"width": 0}),
+        ("height", {"height": 0}),
+        ("progress", {"progress": 3}),
+        ("scene", {"scene": shlight.Scene()}),
+    ],
+)
+def test_bad_picture_arguments(name: str, options: dict[str, Any]) -> None:
+    given: dict[str, Any] = {"scene": lit_floor(), "width": 4, "height": 4, "samples": 4, **options}
+    expect_value_error(name, lambda: methods.render_monte_carlo(**given))
+
+
+def test_progress_of_pictures_rises_and_cancels() -> None:
+    shares: list[float] = []
+    threads: set[int] = set()
+
+    def progress(share: float) -> None:
+        shares.append(share)
+        threads.add(threading.get_ident())
+
+    methods.render_monte_carlo(lit_floor(), 100, 100, samples=16, progress=progress)
+    assert threads == {threading.get_ident()}
+    assert shares == sorted(shares)
+    assert shares[-1] == 1
+    start = time.monotonic()
+    with pytest.raises(shlight.RenderCancelled):
+        methods.render_monte_carlo(lit_floor(), 2000, 2000, samples=256, progress=lambda share: False)
+    assert time.monotonic() - start < 10
+
+    def failing(share: float) -> None:
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        methods.render_monte_carlo(lit_floor(), 2000, 2000, samples=256, progress=failing)
