@@ -171,6 +171,13 @@ def ways(family: str) -> list[which_method.Way]:
     return [which_method.Way(known[family], size) for size in known[family].sizes]
 
 
+@pytest.mark.parametrize(("roughness", "half_angle"), [(1.0, 0.01), (0.4, 0.2), (0.1, 1.0)])
+def test_the_truth_is_better_than_any_tolerance(roughness: float, half_angle: float) -> None:
+    cell = place(roughness, half_angle)
+    outline = cell.lights.shade(cell.bsdf, "outline", tolerance=1e-7 * cell.brightest)
+    np.testing.assert_allclose(cell.truth, outline, rtol=0, atol=1e-5 * cell.brightest)
+
+
 def test_the_cheapest_way_that_meets_the_tolerance() -> None:
     cell = place()
     cell.tolerant = []

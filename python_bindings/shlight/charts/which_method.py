@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 VIEWS = (1.0, 0.5, 0.15)
 TOLERANCES = (1e-2, 1e-3, 1e-4)
-TRUTH, TRUTH_TOLERANCE = "quadrature", 1e-8
+TRUTH, TRUTH_TOLERANCE = "quadrature", 1e-10  # ÷ albedo, of which small lights reflect 1e-5
 TIMED_ROUGHNESS = 0.5
 BATCH_SECONDS = 1e-3
 FEWEST_LIGHTS, MOST_LIGHTS = 3, 1920  # of a batch
@@ -50,21 +50,14 @@ class Family:
 
 ORDERS = (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
 SAMPLES = tuple(4**k for k in range(2, 8))
+POINTS = (4, 7, 24, 48, 96, 192, 384, 768)
 ERRORS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5)
 
 KNOWN = [
     Family("point", "one point", "cubature", AMBER, "black", "samples", (1,)),
     Family("plain", "harmonics of order n", "plain_harmonics", ORANGE, "white", "order", ORDERS),
     Family("warped", "warped harmonics of order n", "warped_harmonics", BLUE, "white", "order", ORDERS),
-    Family(
-        "cubature",
-        "cubature of k points",
-        "cubature",
-        GREEN,
-        "white",
-        "samples",
-        (4, 7, 24, 48, 96, 192, 384, 768),
-    ),
+    Family("cubature", "cubature of k points", "cubature", GREEN, "white", "samples", POINTS),
     Family("outline", "outline", "outline", PINK, "black", "tolerance", ERRORS),
     Family(
         "monte_carlo", "Monte Carlo, k samples", "monte_carlo", DARK, "white", "samples", SAMPLES, {"sampling": "mis"}
@@ -98,7 +91,7 @@ class Way:
     size: float
 
     def options(self, scale: float) -> dict[str, Any]:
-        """scale: what tolerances are parts of, ÷ what the method takes them to be parts of."""
+        """scale: what a tolerance is a part of."""
         option = self.family.option
         value = self.size * scale if option == "tolerance" else int(self.size)
         return {option: value, **self.family.fixed} if option else {}
