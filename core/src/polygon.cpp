@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <type_traits>
 
 #include "checks.h"
@@ -29,26 +30,29 @@ constexpr double kSmallestForBoundary = std::is_same_v<T, float> ? 1e-6 : 1e-3;
 template <class T>
 constexpr double kNarrowestForEdges = std::is_same_v<T, float> ? 1e-9 : 2e-3;
 
-/// Up to this many points on an edge they are faster than its recurrences; more where they feed one number.
+/// Up to this order Gauss points on the edges are faster than the edges' recurrences, however many it takes.
+constexpr int kEdgePointsUpTo = 8;
+/// Up to this many points on an edge they are faster at any order; more where they feed one number.
 constexpr int kPointsForCoefficients = 15;
 constexpr int kPointsForShading = 22;
+/// Times as many where they go through the recurrences in float.
+constexpr double kFloatGain = 1.8;
 
 template <class T>
 bool edge_points_are_better(const PolygonRegion<Wider<T>>& region, int order, int points) {
     if (order <= 2) {
         return false;  // closed form, without either
     }
-    return region.solid_angle() < kSmallestForBoundary<T> ||
-           edge_points<T>(region, order) <= points * static_cast<int>(region.arcs().size());
+    if (order <= kEdgePointsUpTo || region.solid_angle() < kSmallestForBoundary<T>) {
+        return true;
+    }
+    const double limit = edge_points_in_float<T>(region) ? kFloatGain * points : points;
+    return edge_points<T>(region, order) <= limit * static_cast<double>(region.arcs().size());
 }
 
 template <class T>
 bool is_narrow(const SphericalPolygon<Wider<T>>& polygon, const PolygonRegion<Wider<T>>& region) {
-    Wider<T> outline = 0;
-    for (const Arc<Wider<T>>& arc : region.arcs()) {
-        outline += arc.angle;
-    }
-    return polygon.solid_angle() < kNarrowestForEdges<T> * outline;
+    return polygon.solid_angle() < kNarrowestForEdges<T> * region.outline();
 }
 
 template <class T>
@@ -59,6 +63,10 @@ void integrate(const SphericalPolygon<Wider<T>>& polygon, int order, T* coeffici
     }
     if (method == PolygonMethod::cubature) {
         polygon_by_cubature(polygon, order, coefficients);
+        return;
+    }
+    if (order == 1) {
+        *coefficients = static_cast<T>(polygon.solid_angle() * std::sqrt(1 / (4 * std::numbers::pi_v<Wider<T>>)));
         return;
     }
     const PolygonRegion<Wider<T>> region(polygon, Warp());

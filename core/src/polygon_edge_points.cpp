@@ -6,58 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <type_traits>
 
 #include "gauss_legendre.h"
 #include "legendre.h"
+#include "point_batch.h"
 
 namespace shlight {
 namespace {
-
-/// Two points side by side: the vector type of GCC and Clang, every operator of which is one instruction.
-using Pair = double __attribute__((vector_size(2 * sizeof(double))));
-
-constexpr Pair both(double x) {
-    return Pair{x, x};
-}
-
-double sum_of(const Pair& pair) {
-    return pair[0] + pair[1];
-}
-
-/// Points u on the boundary, each with ν ds = (L - c u) dψ times its weight. Those of several arcs go through the
-/// recurrences together.
-class Batch {
-  public:
-    static constexpr int kPoints = kMaxGaussPoints;
-    using Values = std::array<Pair, kPoints / 2>;
-
-    Values x, y, z, normal_x, normal_y, normal_z;
-
-    int size() const { return size_; }
-    int pairs() const { return (size_ + 1) / 2; }
-    void clear() { size_ = 0; }
-
-    void add(const Vec3d& u, const Vec3d& normal) {
-        const int pair = size_ / 2;
-        const int lane = size_ % 2;
-        x[pair][lane] = u.x;
-        y[pair][lane] = u.y;
-        z[pair][lane] = u.z;
-        normal_x[pair][lane] = normal.x;
-        normal_y[pair][lane] = normal.y;
-        normal_z[pair][lane] = normal.z;
-        ++size_;
-    }
-    /// Adds points without weight up to a multiple of `count`.
-    void pad(int count) {
-        while (size_ % count != 0) {
-            add({0, 0, 1}, Vec3d(0));
-        }
-    }
-
-  private:
-    int size_ = 0;
-};
 
 /// How an arc is cut: `pieces` of equal length with `points` each.
 struct Division {
@@ -66,15 +22,23 @@ struct Division {
 
 /// Along a piece a harmonic is a sum of waves of at most κ radians to either side of its middle, and by Bernstein's
 /// inequality no derivative is larger than that of the fastest. So k Gauss points err by at most
-///   E_k = 2^{2k+1} k!⁴ κ^{2k} / ((2k+1) (2k)!³),     E_{k+1} = E_k κ² (k+1) / (2 (2k+1)² (2k+3)),
+///   E_k = 2^{2k+1} k!⁴ κ^{2k} / ((2k+1) (2k)!³),     E_{k+1} = E_k κ² growth[k],
 /// times the largest value and half the length. 0 if even the largest rule errs by more.
 int points_for(double kappa, double tolerance) {
-    double error = 2;
-    for (int k = 0; k < kMaxGaussPoints; ++k) {
-        if (k > 0 && error <= tolerance) {
+    static constexpr auto growth = [] {
+        std::array<double, kMaxGaussPoints> g{};
+        for (int k = 0; k < kMaxGaussPoints; ++k) {
+            g[static_cast<std::size_t>(k)] = (k + 1) / (2.0 * (2 * k + 1) * (2 * k + 1) * (2 * k + 3));
+        }
+        return g;
+    }();
+    const double square = kappa * kappa;
+    double error = 2 * square * growth[0];
+    for (int k = 1; k < kMaxGaussPoints; ++k) {
+        if (error <= tolerance) {
             return k;
         }
-        error *= kappa * kappa * (k + 1) / (2.0 * (2 * k + 1) * (2 * k + 1) * (2 * k + 3));
+        error *= square * growth[static_cast<std::size_t>(k)];
     }
     return 0;
 }
@@ -111,20 +75,21 @@ double tolerance_for(const PolygonRegion<Wider<T>>& region, int order) {
 }
 
 /// The points of one piece of an arc from its middle outwards; `turned` is the middle's angle from the arc's start.
-template <class Real>
-void add_piece(const Arc<Real>& arc, double turned, double half, int count, Batch& batch) {
-    const Vec3d axis(arc.axis);
-    const auto cosine = static_cast<double>(arc.cosine);
-    const Vec3d center = cosine * axis;
-    const Vec3d start = Vec3d(arc.from) - center;
-    const Vec3d middle = std::cos(turned) * start + std::sin(turned) * glm::cross(axis, start);
-    const Vec3d along = glm::cross(axis, middle);
+template <class R, class Real>
+void add_piece(const Arc<Real>& arc, double turned, double half, int count, PointBatch<R>& batch) {
+    const Vec3<R> axis(arc.axis);
+    const auto cosine = static_cast<R>(arc.cosine);
+    const Vec3<R> center = cosine * axis;
+    const Vec3<R> start = Vec3<R>(arc.from) - center;
+    const auto turn = static_cast<R>(turned);
+    const Vec3<R> middle = std::cos(turn) * start + std::sin(turn) * glm::cross(axis, start);
+    const Vec3<R> along = glm::cross(axis, middle);
     const GaussRule& rule = gauss_rule(count);
     for (int i = 0; i < (count + 1) / 2; ++i) {
-        const double angle = half * (1 - 2 * rule.nodes[i]);
-        const double weight = 2 * half * rule.weights[i];
-        const Vec3d ahead = std::sin(angle) * along;
-        const Vec3d base = center + std::cos(angle) * middle;
+        const auto angle = static_cast<R>(half * (1 - 2 * rule.nodes[i]));
+        const auto weight = static_cast<R>(2 * half * rule.weights[i]);
+        const Vec3<R> ahead = std::sin(angle) * along;
+        const Vec3<R> base = center + std::cos(angle) * middle;
         batch.add(base - ahead, weight * (axis - cosine * (base - ahead)));
         if (2 * i + 1 < count) {
             batch.add(base + ahead, weight * (axis - cosine * (base + ahead)));
@@ -132,11 +97,11 @@ void add_piece(const Arc<Real>& arc, double turned, double half, int count, Batc
     }
 }
 
-/// use(batch) until all points of all arcs were in one; batches are padded to multiples of `multiple`.
-template <class T, class Use>
+/// use(batch) until all points of all arcs were in one; batches are padded to multiples of `multiple` points.
+template <class T, class R, class Use>
 void for_each_batch(const PolygonRegion<Wider<T>>& region, int order, int multiple, Use use) {
     const double tolerance = tolerance_for<T>(region, order);
-    Batch batch;
+    PointBatch<R> batch;
     const auto flush = [&] {
         batch.pad(multiple);
         use(batch);
@@ -146,7 +111,7 @@ void for_each_batch(const PolygonRegion<Wider<T>>& region, int order, int multip
         const Division division = division_of(arc, order, tolerance);
         const double half = static_cast<double>(arc.angle) / (2 * division.pieces);
         for (int piece = 0; piece < division.pieces; ++piece) {
-            if (batch.size() + division.points > Batch::kPoints) {
+            if (batch.size() + division.points > PointBatch<R>::kPoints) {
                 flush();
             }
             add_piece(arc, (2 * piece + 1) * half, half, division.points, batch);
@@ -200,12 +165,13 @@ class DegreeSteps {
 };
 
 /// Sums over a batch's points, degree after degree.
+template <class R>
 class Moments {
   public:
-    explicit Moments(const Batch& batch) : pairs_(batch.pairs()), batch_(batch) {
-        for (int i = 0; i < pairs_; ++i) {
-            re_[i] = both(1);
-            im_[i] = both(0);
+    explicit Moments(const PointBatch<R>& batch) : packs_(batch.packs()), batch_(batch) {
+        for (int i = 0; i < packs_; ++i) {
+            re_[i] = all(R(1));
+            im_[i] = all(R(0));
         }
     }
 
@@ -214,7 +180,7 @@ class Moments {
         start_degree();
         const DegreeStep* step = DegreeSteps::get().of_degree(m);
         for (int l = m; l < order; l += 2, step += 2) {
-            const Two sums = next_two_bands(step[0].beta, step[1].beta);
+            const Two sums = next_two_bands(static_cast<R>(step[0].beta), static_cast<R>(step[1].beta));
             add(sums.first, step[0], coefficients + coefficient_index(l, 0), m);
             if (l + 1 < order) {
                 add(sums.second, step[1], coefficients + coefficient_index(l + 1, 0), m);
@@ -224,22 +190,22 @@ class Moments {
 
   private:
     struct Sums {
-        Pair down_re = both(0), down_im = both(0), same_re = both(0), same_im = both(0);
+        Pack<R> down_re, down_im, same_re, same_im;
     };
     struct Two {
         Sums first, second;
     };
     struct Point {
-        Pair z, p, before, down_re, down_im, same_re, same_im;
+        Pack<R> z, p, before, down_re, down_im, same_re, same_im;
     };
 
     void start_degree() {
-        for (int i = 0; i < pairs_; ++i) {
-            const Pair re = re_[i];
-            const Pair im = im_[i];
+        for (int i = 0; i < packs_; ++i) {
+            const Pack<R> re = re_[i];
+            const Pack<R> im = im_[i];
             points_[i] = {batch_.z[i],
-                          both(1),
-                          both(0),
+                          all(R(1)),
+                          all(R(0)),
                           batch_.normal_z[i] * re,
                           batch_.normal_z[i] * im,
                           batch_.normal_x[i] * re - batch_.normal_y[i] * im,
@@ -249,19 +215,20 @@ class Moments {
         }
     }
 
-    static void accumulate(Sums& sums, const Pair& p, const Point& point) {
+    static void accumulate(Sums& sums, const Pack<R>& p, const Point& point) {
         sums.down_re += p * point.down_re;
         sums.down_im += p * point.down_im;
         sums.same_re += p * point.same_re;
         sums.same_im += p * point.same_im;
     }
 
-    Two next_two_bands(double beta, double next_beta) {
-        Two two;
-        for (int i = 0; i < pairs_; ++i) {
+    Two next_two_bands(R beta, R next_beta) {
+        // Field by field: GCC clears a whole structure by an instruction that takes longer than a few points.
+        Two two{{all(R(0)), all(R(0)), all(R(0)), all(R(0))}, {all(R(0)), all(R(0)), all(R(0)), all(R(0))}};
+        for (int i = 0; i < packs_; ++i) {
             Point& point = points_[i];
-            const Pair p = point.p;
-            const Pair next = point.z * p - beta * point.before;
+            const Pack<R> p = point.p;
+            const Pack<R> next = point.z * p - beta * point.before;
             accumulate(two.first, p, point);
             accumulate(two.second, next, point);
             point.before = next;
@@ -279,10 +246,10 @@ class Moments {
         }
     }
 
-    int pairs_;
-    const Batch& batch_;
-    Batch::Values re_, im_;  // (x + iy)^{m-1}
-    std::array<Point, Batch::kPoints / 2> points_;
+    int packs_;
+    const PointBatch<R>& batch_;
+    typename PointBatch<R>::Values re_, im_;  // (x + iy)^{m-1}
+    std::array<Point, PointBatch<R>::kPacks> points_;
 };
 
 /// The potential F = Σ f_lm Y_lm / (l(l+1)), as steps: degree after degree, l = m … order-1.
@@ -297,48 +264,86 @@ void potential_steps(const T* lobe_terms, int order, DegreeStep* out) {
     }
 }
 
-/// Points of a batch that go through potential_integral at once.
-constexpr int kBlock = 4;
+/// Packs of a batch that go through potential_integral at once, to hide the latency of the recurrence.
+constexpr int kBlock = 2;
 
-/// Σ ν·∇F ds over kBlock points from the pair `first` on.
-double potential_integral(const Batch& batch, int first, const DegreeStep* step, int order) {
-    constexpr int kPairs = kBlock / 2;
-    using Values = std::array<Pair, kPairs>;
+/// Σ ν·∇F ds over kBlock packs from `first` on.
+template <class R>
+double potential_integral(const PointBatch<R>& batch, int first, const DegreeStep* step, int order) {
+    using Values = std::array<Pack<R>, kBlock>;
     Values z, re, im, sum;
-    for (int i = 0; i < kPairs; ++i) {
+    for (int i = 0; i < kBlock; ++i) {
         z[i] = batch.z[first + i];
-        re[i] = both(1);
-        im[i] = sum[i] = both(0);
+        re[i] = all(R(1));
+        im[i] = sum[i] = all(R(0));
     }
     for (int m = 1; m < order; ++m) {
         Values p, before, down, same;
-        for (int i = 0; i < kPairs; ++i) {
-            p[i] = both(1);
-            before[i] = down[i] = same[i] = both(0);
+        for (int i = 0; i < kBlock; ++i) {
+            p[i] = all(R(1));
+            before[i] = down[i] = same[i] = all(R(0));
         }
         for (int l = m; l < order; ++l, ++step) {
-            for (int i = 0; i < kPairs; ++i) {
-                down[i] += step->down * p[i];
-                same[i] += step->same * p[i];
-                const Pair next = z[i] * p[i] - step->beta * before[i];
+            const auto of_down = static_cast<R>(step->down);
+            const auto of_same = static_cast<R>(step->same);
+            const auto beta = static_cast<R>(step->beta);
+            for (int i = 0; i < kBlock; ++i) {
+                down[i] += of_down * p[i];
+                same[i] += of_same * p[i];
+                const Pack<R> next = z[i] * p[i] - beta * before[i];
                 before[i] = p[i];
                 p[i] = next;
             }
         }
-        for (int i = 0; i < kPairs; ++i) {
+        for (int i = 0; i < kBlock; ++i) {
             const int k = first + i;
             sum[i] += (batch.normal_z[k] * down[i] + batch.normal_x[k] * same[i]) * re[i] -
                       batch.normal_y[k] * same[i] * im[i];
-            const Pair next = re[i] * batch.x[k] - im[i] * batch.y[k];
+            const Pack<R> next = re[i] * batch.x[k] - im[i] * batch.y[k];
             im[i] = re[i] * batch.y[k] + im[i] * batch.x[k];
             re[i] = next;
         }
     }
     double total = 0;
-    for (const Pair& pair : sum) {
-        total += sum_of(pair);
+    for (const Pack<R>& pack : sum) {
+        total += sum_of(pack);
     }
     return total;
+}
+
+/// Adds all bands from 2 on.
+template <class T, class R>
+void add_moments(const PolygonRegion<Wider<T>>& region, int order, double* coefficients) {
+    for_each_batch<T, R>(region, order, kLanes<R>, [&](const PointBatch<R>& batch) {
+        Moments<R> moments(batch);
+        for (int m = 1; m < order; ++m) {
+            moments.add_degree(m, order, coefficients);
+        }
+    });
+}
+
+/// ∮ ν·∇F ds.
+template <class T, class R>
+double potential_integral(const PolygonRegion<Wider<T>>& region, int order, const DegreeStep* steps) {
+    double sum = 0;
+    for_each_batch<T, R>(region, order, kBlock * kLanes<R>, [&](const PointBatch<R>& batch) {
+        for (int pack = 0; pack < batch.packs(); pack += kBlock) {
+            sum += potential_integral(batch, pack, steps, order);
+        }
+    });
+    return sum;
+}
+
+/// work(R()) with the type that edge_points_in_float tells.
+template <class T, class Work>
+void in_wide_enough_type(const PolygonRegion<Wider<T>>& region, const Work& work) {
+    if constexpr (std::is_same_v<T, float>) {
+        if (edge_points_in_float<T>(region)) {
+            work(float());
+            return;
+        }
+    }
+    work(double());
 }
 
 }  // namespace
@@ -348,12 +353,7 @@ void edge_point_coefficients(const PolygonRegion<Wider<T>>& region, int order, T
     std::array<double, coefficient_count(kMaxOrder)> sum;
     std::fill_n(sum.begin(), coefficient_count(order), 0.0);
     if (order > 2) {
-        for_each_batch<T>(region, order, 2, [&](const Batch& batch) {
-            Moments moments(batch);
-            for (int m = 1; m < order; ++m) {
-                moments.add_degree(m, order, sum.data());
-            }
-        });
+        in_wide_enough_type<T>(region, [&]<class R>(R /*type*/) { add_moments<T, R>(region, order, sum.data()); });
     }
     const auto to_result = [](auto c) { return static_cast<T>(c); };
     std::transform(sum.begin(), sum.begin() + coefficient_count(order), coefficients, to_result);
@@ -372,13 +372,18 @@ T shade_by_edge_points(const PolygonRegion<Wider<T>>& region, const T* lobe_term
     if (order > 2) {
         std::array<DegreeStep, kCosineMax> steps;
         potential_steps(lobe_terms, order, steps.data());
-        for_each_batch<T>(region, order, kBlock, [&](const Batch& batch) {
-            for (int pair = 0; pair < batch.pairs(); pair += kBlock / 2) {
-                sum += potential_integral(batch, pair, steps.data(), order);
-            }
-        });
+        in_wide_enough_type<T>(
+            region, [&]<class R>(R /*type*/) { sum += potential_integral<T, R>(region, order, steps.data()); });
     }
     return static_cast<T>(sum);
+}
+
+template <class T>
+bool edge_points_in_float(const PolygonRegion<Wider<T>>& region) {
+    constexpr double kWideForFloat = 0.15;
+    const auto& arcs = region.arcs();
+    return std::is_same_v<T, float> && region.solid_angle() > kWideForFloat * region.outline() &&
+           std::all_of(arcs.begin(), arcs.end(), [](const auto& arc) { return arc.cosine == 0; });
 }
 
 template <class T>
@@ -396,6 +401,8 @@ template void edge_point_coefficients(const PolygonRegion<double>&, int, float*)
 template void edge_point_coefficients(const PolygonRegion<long double>&, int, double*);
 template float shade_by_edge_points(const PolygonRegion<double>&, const float*, int);
 template double shade_by_edge_points(const PolygonRegion<long double>&, const double*, int);
+template bool edge_points_in_float<float>(const PolygonRegion<double>&);
+template bool edge_points_in_float<double>(const PolygonRegion<long double>&);
 template int edge_points<float>(const PolygonRegion<double>&, int);
 template int edge_points<double>(const PolygonRegion<long double>&, int);
 

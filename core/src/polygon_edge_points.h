@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Regions bounded by circular arcs, by Stokes' theorem and Gauss points on the arcs (docs/algorithms.md, "Polygons").
-// T is float or double; everything runs in double for either.
+// T is float or double; nearly everything runs in double for either.
 #pragma once
 
 #include "polygon_region.h"
@@ -15,6 +15,12 @@ void edge_point_coefficients(const PolygonRegion<Wider<T>>& region, int order, T
 /// Σ f_lm L_lm with a lobe's cosine terms, cosine_count(order) values.
 template <class T>
 T shade_by_edge_points(const PolygonRegion<Wider<T>>& region, const T* lobe_terms, int order);
+
+/// Whether the points go through the recurrences in float, twice as many at once. What edges cancel to is about solid
+/// angle ÷ outline of what each has; great circles around a region with enough of that lose nothing that float could
+/// hold: the result is right to 1e-6 of L_00 at every order.
+template <class T>
+bool edge_points_in_float(const PolygonRegion<Wider<T>>& region);
 
 /// Gauss points on all arcs together that these take: more for long arcs and high orders.
 template <class T>

@@ -69,6 +69,15 @@ PolygonRegion<Real>::PolygonRegion(const SphericalPolygon<Real>& polygon, const 
 }
 
 template <class Real>
+Real PolygonRegion<Real>::outline() const {
+    Real length = 0;
+    for (const Arc<Real>& arc : arcs_) {
+        length += arc.sine * arc.angle;
+    }
+    return length;
+}
+
+template <class Real>
 std::array<Real, 4> PolygonRegion<Real>::low_bands() const {
     Vec3<Real> sum(0);
     for (const Arc<Real>& arc : arcs_) {

@@ -32,6 +32,8 @@ class PolygonRegion {
     /// Of the image; about 1e-16 · (number of edges) wrong, less for a small image. What the coefficients lose to
     /// cancellation follows from it, see polygon.h.
     Real solid_angle() const { return solid_angle_; }
+    /// Length of all arcs.
+    Real outline() const;
     /// Bands 0 and 1 in closed form, at their indices: the solid angle and the vector irradiance,
     ///   ∫ u du = ½ Σ [ s² ψ L + c L × (to - from) ]   (Lambert 1760 for c = 0).
     /// In the wider type the cancellation of an unwarped polygon's edges leaves every digit of T.

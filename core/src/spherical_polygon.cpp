@@ -86,8 +86,12 @@ Real triangle_solid_angle(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<R
 
 template <class Real>
 SphericalPolygon<Real>::SphericalPolygon(std::span<const Vec3<Real>> vertices, bool clip) {
-    std::vector<Vec3<Real>> v =
-        clip ? clipped_by_horizon(vertices) : std::vector<Vec3<Real>>(vertices.begin(), vertices.end());
+    std::vector<Vec3<Real>> kept;
+    std::span<const Vec3<Real>> v = vertices;
+    if (clip && std::any_of(v.begin(), v.end(), [](const Vec3<Real>& p) { return !(p.z >= 0); })) {
+        kept = clipped_by_horizon(vertices);
+        v = kept;
+    }
     if (v.size() < 3) {
         return;
     }
@@ -96,30 +100,33 @@ SphericalPolygon<Real>::SphericalPolygon(std::span<const Vec3<Real>> vertices, b
     Real farthest = 0;
     Real distance = 0;
     for (const Vec3<Real>& p : vertices) {
-        farthest = std::max(farthest, glm::length(p));
+        farthest = std::max(farthest, glm::dot(p, p));
         distance += glm::dot(normal, p) / static_cast<Real>(vertices.size());
     }
+    farthest = std::sqrt(farthest);
     constexpr Real kEdgeOn = 64 * std::numeric_limits<Real>::epsilon();
     if (!(std::abs(distance) > kEdgeOn * farthest * glm::length(normal))) {
         return;
     }
-    if (distance < 0) {
-        std::reverse(v.begin(), v.end());
-    }
-    for (std::size_t i = 1; i + 1 < v.size(); ++i) {
-        solid_angle_ += triangle_solid_angle(v[0], v[i], v[i + 1]);
+    const std::size_t count = v.size();
+    const auto vertex = [&](std::size_t i) -> const Vec3<Real>& { return v[distance < 0 ? count - 1 - i : i]; };
+    for (std::size_t i = 1; i + 1 < count; ++i) {
+        solid_angle_ += triangle_solid_angle(vertex(0), vertex(i), vertex(i + 1));
     }
     if (!(solid_angle_ > 0)) {
         solid_angle_ = 0;
         return;
     }
-    directions_.reserve(v.size());
-    edge_crosses_.reserve(v.size());
-    for (std::size_t i = 0; i < v.size(); ++i) {
-        const Vec3<Real>& a = v[i];
-        const Vec3<Real>& b = v[(i + 1) % v.size()];
-        directions_.push_back(a / glm::length(a));
-        edge_crosses_.push_back(glm::cross(a, b - a) / (glm::length(a) * glm::length(b)));
+    directions_.reserve(count);
+    edge_crosses_.reserve(count);
+    Real length = glm::length(vertex(0));
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec3<Real>& a = vertex(i);
+        const Vec3<Real>& b = vertex(i + 1 < count ? i + 1 : 0);
+        const Real next = glm::length(b);
+        directions_.push_back(a / length);
+        edge_crosses_.push_back(glm::cross(a, b - a) / (length * next));
+        length = next;
     }
 }
 
