@@ -203,6 +203,15 @@ def test_the_cheapest_way_that_meets_the_tolerance() -> None:
     assert [choice.way.family.name for choice in cell.cheapest(dearer, CLOCK)] == ["plain"] * 3
 
 
+def test_a_disturbed_measurement_does_not_choose() -> None:
+    one, two = ways("plain")[:2]
+    costs = [{one: a, two: b} for a, b in [(1.0, 2.0), (9.0, 2.1), (1.2, 2.2), (1.3, 2.3)]]
+    found = which_method.smoothed(costs)
+    np.testing.assert_allclose([here[one] for here in found], [1.2, 1.2, 1.3, 1.3])
+    np.testing.assert_allclose([here[two] for here in found], [2.1, 2.1, 2.2, 2.2])
+    assert which_method.smoothed(costs[:1]) == costs[:1]
+
+
 def test_nothing_meets_what_none_can_reach() -> None:
     cell = place(roughness=0.1)
     cell.tolerant = []

@@ -43,7 +43,7 @@ def draw(run: Run) -> Drawn:
     cases = [(lobe, cos_o) for lobe in lobes for cos_o in (VIEWS[:1] if run.quick else VIEWS)]
     for i, (lobe, cos_o) in enumerate(cases):
         run.step(0.7 * i / len(cases), lobe.name)
-        found[lobe.name, cos_o] = residuals(lobe, cos_o, orders, points=72 if run.quick else 128)
+        found[lobe.name, cos_o] = residuals(lobe, cos_o, orders, points=72 if run.quick else 96)
     costs = {}
     for k, method in enumerate(("plain_harmonics", "warped_harmonics")):
         run.step(0.7 + 0.15 * k, f"times of {method}")

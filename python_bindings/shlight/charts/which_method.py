@@ -145,11 +145,15 @@ def draw(run: Run) -> Drawn:
 def measure(run: Run, grid: Grid) -> list[Cell]:
     """Every cell. Roughness is the outer loop: fits are made once for each."""
     clock = Clock(rounds=2 if run.quick else 6)
+    known = families()
     costs = {}
     places = [(cos_o, half_angle) for cos_o in VIEWS for half_angle in grid.half_angles]
     for i, place in enumerate(places):
         run.step(0.2 * i / len(places), f"times, cosθ_o = {place[0]:g}")
-        costs[place] = _costs(clock, *place, run.seed, grid.lights)
+        costs[place] = _costs(clock, known, *place, run.seed, grid.lights)
+    for cos_o in VIEWS:
+        row = smoothed([costs[cos_o, half_angle] for half_angle in grid.half_angles])
+        costs.update(zip([(cos_o, half_angle) for half_angle in grid.half_angles], row, strict=True))
     cells = []
     todo = [(roughness, *place) for roughness in grid.roughnesses for place in places]
     for i, (roughness, cos_o, half_angle) in enumerate(todo):
@@ -158,6 +162,16 @@ def measure(run: Run, grid: Grid) -> list[Cell]:
         choices = at.cheapest(costs[cos_o, half_angle], clock)
         cells.append(Cell(cos_o, roughness, half_angle, tuple(choices)))
     return cells
+
+
+def smoothed(costs: Sequence[dict[Way, float]]) -> list[dict[Way, float]]:
+    """The median of three neighbours, which do nearly the same work: where two ways cost nearly the same, a disturbed
+    measurement must not choose."""
+    found = []
+    for i, here in enumerate(costs):
+        first = max(min(i - 1, len(costs) - 3), 0)
+        found.append({way: float(np.median([near[way] for near in costs[first : first + 3]])) for way in here})
+    return found
 
 
 def _lights(seed: int, roughness: float, cos_o: float, half_angle: float, count: int) -> LobeLights:
@@ -196,11 +210,13 @@ class Timed:
         return 5e-7 + 2e-9 * order**2 + 6e-8 * samples + (4e-6 if "tolerance" in self.options else 0)
 
 
-def _costs(clock: Clock, cos_o: float, half_angle: float, seed: int, count: int) -> dict[Way, float]:
+def _costs(
+    clock: Clock, known: list[Family], cos_o: float, half_angle: float, seed: int, count: int
+) -> dict[Way, float]:
     """Microseconds per light of all ways that do the same work whatever the roughness."""
     lights = _lights(seed, TIMED_ROUGHNESS, cos_o, half_angle, count)
     bsdf = shlight.Bsdf.ggx(TIMED_ROUGHNESS, 1.0)
-    ways = [Way(family, size) for family in families() if family.option != "tolerance" for size in family.sizes]
+    ways = [Way(family, size) for family in known if family.option != "tolerance" for size in family.sizes]
     calls = [Timed(way.family.method, way.options(1)) for way in ways]
     return dict(zip(ways, clock.microseconds(lights, bsdf, calls), strict=True))
 
