@@ -36,8 +36,8 @@ void polygon_coefficients(std::span<const Vec3<T>> vertices, int vertex_count, i
 /// Coefficients of the image of a polygon under a warp, order² values in the warped frame. The polygon is clipped by
 /// the true horizon first.
 /// vertices: as above, in the shading frame, true directions.
-/// Wrong by 1e-11 of L_00 where the image's solid angle Ω' is 10⁻³, in double and before the rounding to T, and by
-/// 10⁻¹⁴ / Ω' in general: the arcs of a small image cancel. docs/algorithms.md has the figures by Ω'.
+/// Wrong by 1e-10 of L_00 at most where the image's solid angle Ω' is 10⁻³, in double and before the rounding to T, and
+/// by 10⁻¹³ / Ω' in general: the arcs of a small image cancel. docs/algorithms.md has the figures by Ω'.
 /// Precondition, not checked: 1 ≤ order ≤ kMaxOrder, finite vertices.
 template <class T>
 void warped_polygon_coefficients(std::span<const Vec3<T>> vertices, const Warp& warp, int order, T* coefficients);
