@@ -94,15 +94,20 @@ void LobePoint<T>::set(const Vec3<T>& unit, int order) {
         return;
     }
     const std::size_t columns = lobe_columns(order);
-    LobeRow<T> height;
+    LobeRow<T> height, before, present;  // rows of their own: the compiler need not fear that rows of a table overlap
     LobeAxes<T>::get().dot(unit, columns, height);
-    std::fill_n(legendre[0].begin(), columns, T(1));
+    std::fill_n(before.begin(), columns, T(1));
+    std::copy_n(height.begin(), columns, present.begin());
     std::copy_n(height.begin(), columns, legendre[1].begin());
     for (std::size_t l = 2; l + 1 < static_cast<std::size_t>(order); ++l) {
+        LobeRow<T>& row = legendre[l];
         const T forth = kZonal<T>.forth[l];
         const T back = kZonal<T>.back[l];
         for (std::size_t i = 0; i < columns; ++i) {
-            legendre[l][i] = forth * height[i] * legendre[l - 1][i] - back * legendre[l - 2][i];
+            const T next = forth * height[i] * present[i] - back * before[i];
+            before[i] = present[i];
+            present[i] = next;
+            row[i] = next;
         }
     }
 }
