@@ -168,7 +168,7 @@ def _draw_picture(run: Run, maps: list[Map]) -> None:
     title = title[0].upper() + title[1:]
     picture.suptitle(title)
     picture.legend(handles=_legend(), loc="outside lower center", ncols=3)
-    run.save(picture, _name(first), title)
+    run.save(picture, _name(first), f"{title}; slow methods on coarser grids")
 
 
 def _legend() -> list[Any]:
