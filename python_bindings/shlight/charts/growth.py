@@ -81,14 +81,14 @@ def _draw_times(run: Run, curves: list[Curve]) -> None:
 
 
 def _draw_curve(panel: Axes, curve: Curve) -> None:
-    series = curve.series
+    series, power = curve.series, curve.exponent()
     panel.plot(
         curve.orders,
         1e6 * curve.seconds,
         color=series.color,
         marker=series.marker,
         ls=series.dashes,
-        label=f"{series.label}: n$^{{{curve.exponent():.1f}}}$",
+        label=f"{series.label}: n$^{{{power:.1f}}}$" if np.isfinite(power) else series.label,
     )
 
 
@@ -117,7 +117,8 @@ def _exponents(curves: list[Curve]) -> Table:
         reach = max(order for order, second in zip(c.orders, c.seconds, strict=True) if np.isfinite(second))
         times = dict(zip(c.orders, 1e6 * c.seconds, strict=True))
         cells = [f"{times[n]:.2f}" if np.isfinite(times[n]) else "" for n in (8, 32)]
-        rows.append([c.light_class.name, c.precision, c.series.label, f"{c.exponent():.2f}", f"8 … {reach}", *cells])
+        power = [f"{c.exponent():.2f}", f"8 … {reach}"] if np.isfinite(c.exponent()) else ["", ""]
+        rows.append([c.light_class.name, c.precision, c.series.label, *power, *cells])
     header = ["lights", "precision", "method", "exponent", "orders", "µs at n = 8", "µs at n = 32"]
     return Table("Growth of time with the order n", header, rows)
 

@@ -14,7 +14,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-import shlight
+from shlight import _core
+from shlight.methods import coefficient_options
 
 Array = NDArray[Any]
 Kind = Literal["sphere", "polygon"]
@@ -31,12 +32,15 @@ class Lights:
         return len(self.arrays[0])
 
     def coefficients(
-        self, method: str, order: int, dtype: DTypeLike, *, threads: int = 1, **options: Any
+        self, method: str, order: int, dtype: DTypeLike, *, clip: bool = True, threads: int = 1, **options: Any
     ) -> NDArray[Any]:
-        function = shlight.sphere_coefficients if self.kind == "sphere" else shlight.polygon_coefficients
+        """(lights, order²). The library's own goes through the same door as all others, which costs it some
+        nanoseconds more per light than its own would: their times are those of the methods."""
         given = [np.asarray(array, dtype=dtype) for array in self.arrays]
-        call: Callable[..., Any] = function
-        return call(*given, order=order, method=method, dtype=dtype, threads=threads, **options)
+        function: Callable[..., NDArray[Any]] = (
+            _core.method_sphere_coefficients if self.kind == "sphere" else _core.method_polygon_coefficients
+        )
+        return function(method, *given, order, clip, coefficient_options(method, **options), threads)
 
     def take(self, which: Any) -> Lights:
         """Some of the lights: a slice, indices or a mask."""
