@@ -29,6 +29,7 @@ AZIMUTH = 0.6  # no axis of the frame, where errors might cancel
 SMALLEST, LARGEST, LARGEST_ZOOMED = 1e-4, 1.5, 1.4
 EXPONENTS = {"float32": range(-8, 1), "float64": range(-16, 1, 2)}  # of the colours
 NEAREST, FARTHEST = 1e-7, 1e-1  # of a zoomed axis, both ways from 0
+SIZES = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)  # of the table by half angle
 UNKNOWN, COVERED = np.nan, -1.0  # in maps: not measured; hidden below the horizon
 
 
@@ -100,7 +101,7 @@ def draw(run: Run) -> Drawn:
             if order in region.orders_drawn:
                 _draw_picture(run, together)
             _write_numbers(run, together)
-    return Drawn(_explanation(maps), [_table(maps)])
+    return Drawn(_explanation(maps), [_table(maps), _table_by_size(maps, run.quick)])
 
 
 def _measure(run: Run, kind: Kind, region: Region, step: Callable[[float, str], None]) -> list[Map]:
@@ -269,6 +270,24 @@ def _table(maps: list[Map]) -> Table:
         f"(L_00 of what the horizon keeps, or {LEAST_SHARE:g} of the whole light's if that is more)"
     )
     return Table(title, header, rows)
+
+
+def _table_by_size(maps: list[Map], quick: bool) -> Table:
+    rows = []
+    for m in maps:
+        if (m.region.name, m.order) == ("map", max(ORDERS)):
+            half_angles = m.region.half_angles(quick)
+            cells = [_median_near(m, half_angles, size) for size in SIZES]
+            rows.append([KINDS[m.kind], m.precision, m.series.label, *cells])
+    header = ["lights", "precision", "method", *(f"σ = {size:g}" for size in SIZES)]
+    return Table(f"Median error ÷ L_00 by half angle, all elevations, n = {max(ORDERS)}", header, rows)
+
+
+def _median_near(of: Map, half_angles: Array, size: float) -> str:
+    """Over the lights within a quarter of a decade."""
+    errors = of.errors[np.abs(np.log10(half_angles / size)) <= 0.26]
+    known = errors[~np.isnan(errors) & (errors != COVERED)]
+    return f"{np.median(known):.0e}" if known.size else ""
 
 
 def _explanation(maps: list[Map]) -> str:
