@@ -51,7 +51,7 @@ PolygonRegion<Real>::PolygonRegion(const SphericalPolygon<Real>& polygon, const 
         if (!(sine > 0)) {
             continue;
         }
-        const Vec3<Real> pole = polygon.edge_cross(i) / sine;
+        const Vec3<Real> pole = polygon.edge_cross(i) * (1 / sine);
         if (warp.is_identity()) {
             arcs_.push_back({pole, 0, 1, std::atan2(sine, glm::dot(a, b)), a, b});
             continue;

@@ -101,9 +101,10 @@ SphericalPolygon<Real>::SphericalPolygon(std::span<const Vec3<Real>> vertices, b
     Real distance = 0;
     for (const Vec3<Real>& p : vertices) {
         farthest = std::max(farthest, glm::dot(p, p));
-        distance += glm::dot(normal, p) / static_cast<Real>(vertices.size());
+        distance += glm::dot(normal, p);
     }
     farthest = std::sqrt(farthest);
+    distance /= static_cast<Real>(vertices.size());
     constexpr Real kEdgeOn = 64 * std::numeric_limits<Real>::epsilon();
     if (!(std::abs(distance) > kEdgeOn * farthest * glm::length(normal))) {
         return;
@@ -119,14 +120,14 @@ SphericalPolygon<Real>::SphericalPolygon(std::span<const Vec3<Real>> vertices, b
     }
     directions_.reserve(count);
     edge_crosses_.reserve(count);
-    Real length = glm::length(vertex(0));
+    Real over_length = 1 / glm::length(vertex(0));
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3<Real>& a = vertex(i);
         const Vec3<Real>& b = vertex(i + 1 < count ? i + 1 : 0);
-        const Real next = glm::length(b);
-        directions_.push_back(a / length);
-        edge_crosses_.push_back(glm::cross(a, b - a) / (length * next));
-        length = next;
+        const Real over_next = 1 / glm::length(b);
+        directions_.push_back(a * over_length);
+        edge_crosses_.push_back(glm::cross(a, b - a) * (over_length * over_next));
+        over_length = over_next;
     }
 }
 
