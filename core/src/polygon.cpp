@@ -13,6 +13,7 @@
 #include "polygon_boundary.h"
 #include "polygon_cubature.h"
 #include "polygon_edge_points.h"
+#include "polygon_low_bands.h"
 #include "polygon_shading.h"
 #include "shlight/shading.h"
 #include "spherical_polygon.h"
@@ -24,6 +25,9 @@ namespace {
 /// wrong by about 5e-16 / Ω of L_00.
 template <class T>
 constexpr double kSmallestForBoundary = std::is_same_v<T, float> ? 1e-6 : 1e-3;
+
+/// Closed forms lose as much, in the wider type.
+constexpr double kSmallestForClosedForm = 1e-8;
 
 /// Below this ratio of solid angle to length of outline Gauss points on the edges, too, cancel to too few digits: their
 /// sum is wrong by about 1e-15 of L_00 ÷ that ratio.
@@ -76,6 +80,8 @@ void integrate(const SphericalPolygon<Wider<T>>& polygon, int order, T* coeffici
         edge_point_coefficients(region, order, coefficients);
     } else if (order > 2 && is_narrow<T>(polygon, region)) {  // up to order 2 there is a closed form
         polygon_by_cubature(polygon, order, coefficients);
+    } else if (order <= kLowOrder && polygon.solid_angle() > kSmallestForClosedForm) {
+        low_band_coefficients(region, order, coefficients);
     } else {
         region_coefficients(region, order, coefficients);
     }

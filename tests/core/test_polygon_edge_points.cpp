@@ -16,6 +16,7 @@
 
 #include "error_record.h"
 #include "polygon_boundary.h"
+#include "polygon_low_bands.h"
 #include "quad_truth.h"
 #include "random_polygon.h"
 #include "shlight/polygon.h"
@@ -219,6 +220,31 @@ TEST(PolygonEdgePoints, FloatIsForWideRegions) {
     EXPECT_TRUE(in_float(0.5, Warp()));
     EXPECT_FALSE(in_float(0.1, Warp()));
     EXPECT_FALSE(in_float(0.5, Warp(0.3, 0.5)));
+}
+
+/// Orders up to 4 need neither points nor recurrences.
+TYPED_TEST(PolygonEdgePointsTyped, LowBandsHaveClosedForms) {
+    using T = TypeParam;
+    RandomInput random(850);
+    constexpr std::size_t kCount = 200;
+    ErrorRecord errors(kCount);
+    for (std::size_t i = 0; i < kCount; ++i) {
+        const Vertices vertices = draw(kClasses.at(i % kClasses.size()), random);
+        const SphericalPolygon<Wider<T>> polygon = clipped<T>(vertices);
+        if (polygon.solid_angle() < 1e-8 || width(polygon) < (sizeof(T) == 8 ? 2e-3 : 1e-6)) {
+            continue;
+        }
+        const truth::Coefficients reference = truth::polygon(vertices, kLowOrder, true);
+        const PolygonRegion<Wider<T>> region(polygon, Warp());
+        for (int order = 1; order <= kLowOrder; ++order) {
+            std::vector<T> result(coefficient_count(order), std::numeric_limits<T>::quiet_NaN());
+            low_band_coefficients<T>(region, order, result.data());
+            const double error = truth::largest_error(reference, order, result.data()) / reference.high[0];
+            errors[i] = error <= errors[i] ? errors[i] : error;
+        }
+    }
+    errors.publish(std::string("closed forms, ") + (sizeof(T) == 8 ? "float64" : "float32"));
+    EXPECT_LE(errors.largest(), sizeof(T) == 8 ? 1e-13 : 3e-7);
 }
 
 TYPED_TEST(PolygonEdgePointsTyped, NothingIsZero) {
