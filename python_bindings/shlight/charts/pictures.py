@@ -78,11 +78,11 @@ FULL = Effort(
     seconds=1.0,
 )
 QUICK = Effort(
-    96,
-    60,
+    80,
+    50,
     half_samples=64,
     samples=(1, 8, 64),
-    most_samples=256,
+    most_samples=128,
     rays=((1, 1), (4, 4), (16, 4)),
     adaptive_rays=((2, 4), (4, 4)),
     rounds=2,
