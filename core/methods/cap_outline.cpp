@@ -60,13 +60,13 @@ void CapOutline<T>::set_crossing(const CapAngles<T>& cap, T sin_tilt, T chord) {
     const T area = 2 * (half_edge * lack(cap) + turn);
     solid_angle = cosine < 0 ? kTurn<T> - area : area;
 
-    const T scale = 1 / (sin_tilt * std::hypot(chord, cosine));
-    const T along_x = scale * cosine * cap.axis.x;
-    const T along_y = scale * cosine * cap.axis.y;
-    const T across_x = scale * chord * -cap.axis.y;
-    const T across_y = scale * chord * cap.axis.x;
-    left = {along_x - across_x, along_y - across_y, 0};
-    right = {along_x + across_x, along_y + across_y, 0};
+    const T radius = std::hypot(chord, cosine);  // sinθ but for rounding
+    const T along = cosine / radius;
+    const T across = chord / radius;
+    const T x = cap.axis.x / sin_tilt;
+    const T y = cap.axis.y / sin_tilt;
+    left = {along * x + across * y, along * y - across * x, 0};
+    right = {along * x - across * y, along * y + across * x, 0};
 }
 
 template struct CapOutline<float>;

@@ -43,11 +43,11 @@ struct CapLight {
     double size;  ///< of a sphere its radius, 0 < radius ≤ |axis|; else the half angle, in (0, π]
 };
 
-/// The same as directions and angles, worked out in double and rounded once.
+/// The same as an axis and an angle, worked out in double and rounded once.
 template <class T>
 struct CapAngles {
     Vec3<T> axis;  ///< unit
-    T half_angle, cos_half, sin_half;
+    T cos_half, sin_half;
     explicit CapAngles(const CapLight& light);
 };
 

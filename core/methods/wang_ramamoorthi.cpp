@@ -92,7 +92,7 @@ void polygon(std::span<const Vec3<T>> vertices, int order, bool clip, const Opti
         }
     }
     sums.close();
-    if (sums.solid_angle == 0) {
+    if (!(std::abs(sums.solid_angle) > 0)) {  // NaN: a vertex lies in the shading point, the plane is seen edge-on
         std::fill_n(coefficients, coefficient_count(order), T(0));
         return;
     }

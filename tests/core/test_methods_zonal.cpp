@@ -244,7 +244,7 @@ TEST(ZonalPolygons, LegendreRecurrencesAreRight) {
 TEST(ZonalPolygons, SeeNothingBelowTheHorizonOrEdgeOn) {
     for (const Vertices& vertices :
          {Vertices{{1, 0, -1}, {0, 1, -1}, {-1, -1, -1}}, Vertices{{1, 0, 0}, {2, 0, 0}, {2, 0, 1}},
-          Vertices{{1, 0, 1}, {2, 0, 1}, {1, 0, 1}}}) {
+          Vertices{{1, 0, 1}, {2, 0, 1}, {1, 0, 1}}, Vertices{{0, 0, 0}, {2, 0, 1}, {0, 1, 1}}}) {
         const std::vector<double> none = polygon<double>("wang_ramamoorthi", vertices, 8, true);
         EXPECT_TRUE(std::all_of(none.begin(), none.end(), [](double c) { return c == 0; }));
     }
@@ -345,6 +345,21 @@ TEST(ZonalCaps, StayFinite) {
             const std::vector<float> values = cap<float>(method, axis, half, 9);
             EXPECT_TRUE(std::all_of(values.begin(), values.end(), [](float c) { return std::isfinite(c); }))
                 << method << ": axis " << axis.x << " " << axis.y << " " << axis.z << ", half angle " << half;
+        }
+    }
+}
+
+/// A sphere in contact covers a hemisphere whose edge all but coincides with the horizon.
+TEST(ZonalCaps, StayRightForSpheresThatTouchFromAbove) {
+    for (const char* method : {"zhou_wei", "snyder"}) {
+        for (const float aside : {0.0F, 1e-30F, 1e-23F, 1e-22F, 1e-18F, 1e-12F, 1e-6F}) {
+            const Vec3f center(aside, -aside, 1);
+            const float radius = 1;
+            std::vector<float> values(25);
+            methods::sphere_coefficients<float>(find_method(method), std::span(&center, 1), std::span(&radius, 1), 5,
+                                                true, {}, 0, values);
+            const truth::Coefficients reference = truth::cap({Vec3d(0, 0, 1), Kind::angle, kPi / 2}, 5, true);
+            EXPECT_LE(truth::largest_error(reference, 5, values.data()), 2e-5) << method << ", aside " << aside;
         }
     }
 }
