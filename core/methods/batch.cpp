@@ -169,9 +169,11 @@ void polygon_coefficients(const Method& method, std::span<const Vec3<T>> vertice
     check_size("vertices", vertices.size(), count * k);
     check_size("coefficients", coefficients.size(), count * row);
     Options own = options;
+    std::vector<Vec3<Wider<T>>> exact(k);
     for (std::size_t i = 0; i < count; ++i) {
         const auto polygon = vertices.subspan(i * k, k);
-        const std::vector<Vec3<Wider<T>>> exact(polygon.begin(), polygon.end());
+        std::transform(polygon.begin(), polygon.end(), exact.begin(),
+                       [](const Vec3<T>& v) { return Vec3<Wider<T>>(v); });
         check_polygon<T>(exact);
         own.seed = seed_of(options, first + i);
         function(polygon, order, clip, own, coefficients.data() + i * row);

@@ -13,18 +13,24 @@
 namespace shlight::methods {
 namespace {
 
+template <class T>
+struct Vertex {
+    Vec3<T> position;
+    T distance;
+    Vec3<T> direction;
+
+    Vertex() = default;
+    explicit Vertex(const Vec3<T>& p) : position(p), distance(glm::length(p)), direction(p / distance) {}
+};
+
 /// Solid angle of a triangle, signed by its winding (Van Oosterom & Strackee 1983); the triple product of edges, so
 /// that a small triangle keeps its digits.
 template <class T>
-T triangle_solid_angle(const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& c) {
-    const T la = glm::length(a);
-    const T lb = glm::length(b);
-    const T lc = glm::length(c);
-    const Vec3<T> ua = a / la;
-    const Vec3<T> ub = b / lb;
-    const Vec3<T> uc = c / lc;
-    const T triple = glm::dot(ua, glm::cross((b - a) / lb, (c - a) / lc));
-    return 2 * std::atan2(triple, 1 + glm::dot(ua, ub) + glm::dot(ub, uc) + glm::dot(uc, ua));
+T triangle_solid_angle(const Vertex<T>& a, const Vertex<T>& b, const Vertex<T>& c) {
+    const T triple = glm::dot(
+        a.direction, glm::cross((b.position - a.position) / b.distance, (c.position - a.position) / c.distance));
+    return 2 * std::atan2(triple, 1 + glm::dot(a.direction, b.direction) + glm::dot(b.direction, c.direction) +
+                                      glm::dot(c.direction, a.direction));
 }
 
 /// Takes the vertices of the clipped polygon one after the other; the edges' integrals and the fan's area add up.
@@ -33,15 +39,16 @@ class PolygonIntegrals {
   public:
     explicit PolygonIntegrals(int order) : order_(order) { clear_boundary(boundary, order); }
 
-    void add(const Vec3<T>& vertex) {
+    void add(const Vec3<T>& position) {
+        const Vertex<T> vertex(position);
         if (count_ == 0) {
             first_ = vertex;
-            ends_[0].set(glm::normalize(vertex), order_);
+            ends_[0].set(vertex.direction, order_);
         } else {
             add_edge(vertex);
-            if (count_ > 1) {
-                solid_angle += triangle_solid_angle(first_, last_, vertex);
-            }
+        }
+        if (count_ > 1) {
+            solid_angle += triangle_solid_angle(first_, last_, vertex);
         }
         last_ = vertex;
         ++count_;
@@ -56,15 +63,18 @@ class PolygonIntegrals {
     T solid_angle = 0;
 
   private:
-    void add_edge(const Vec3<T>& to) {
-        const Vec3<T> normal = glm::cross(last_, to - last_) / (glm::length(last_) * glm::length(to));
+    void add_edge(const Vertex<T>& to) {
+        if (order_ < 2) {
+            return;
+        }
+        const Vec3<T> normal = glm::cross(last_.direction, (to.position - last_.position) / to.distance);
         const T sine = glm::length(normal);
         if (!(sine > 0)) {
             return;
         }
         LobePoint<T>& begin = ends_[present_];
         LobePoint<T>& end = ends_[1 - present_];
-        end.set(glm::normalize(to), order_);
+        end.set(to.direction, order_);
         const T angle = std::atan2(sine, glm::dot(begin.point, end.point));
         add_great_arc({normal / sine, T(0), T(1), angle}, begin, end, order_, boundary);
         present_ = 1 - present_;
@@ -73,7 +83,7 @@ class PolygonIntegrals {
     int order_;
     int count_ = 0;
     std::size_t present_ = 0;  // which of ends_ is the last vertex
-    Vec3<T> first_, last_;
+    Vertex<T> first_, last_;
     std::array<LobePoint<T>, 2> ends_;
 };
 
