@@ -52,11 +52,11 @@ struct LobeAxes {
 /// Factors of the recurrences, by band.
 template <class T>
 struct ZonalConstants {
-    std::array<T, kMaxZonalOrder> forth, back;   ///< (2l-1) / l and (l-1) / l: P_l = forth z P_{l-1} - back P_{l-2}
-    std::array<T, kMaxZonalOrder> share;         ///< 1 / (l+1)
-    std::array<T, kMaxZonalOrder> inner, outer;  ///< S_l = outer B_{l-1} + inner S_{l-2}
+    std::array<T, kMaxZonalOrder> forth{}, back{};   ///< (2l-1) / l and (l-1) / l: P_l = forth z P_{l-1} - back P_{l-2}
+    std::array<T, kMaxZonalOrder> share{};           ///< 1 / (l+1)
+    std::array<T, kMaxZonalOrder> inner{}, outer{};  ///< S_l = outer B_{l-1} + inner S_{l-2}
 
-    constexpr ZonalConstants() : forth{}, back{}, share{}, inner{}, outer{} {
+    constexpr ZonalConstants() {
         share[0] = 1;
         for (int l = 1; l < kMaxZonalOrder; ++l) {
             const auto i = static_cast<std::size_t>(l);

@@ -28,11 +28,9 @@ namespace shlight {
 namespace {
 
 using methods::find_method;
-using testing::as_float;
 using testing::ErrorRecord;
 using testing::RandomInput;
 using testing::Vertices;
-using truth::CapInput;
 using Kind = truth::CapInput::Kind;
 
 constexpr double kPi = std::numbers::pi;
@@ -72,7 +70,7 @@ struct CapLight {
 template <class T>
 std::vector<double> cap_errors(const char* method, const CapLight& light, const std::vector<int>& orders) {
     const Vec3d axis(Vec3<T>(light.axis));
-    const double half = static_cast<T>(light.half);
+    const auto half = static_cast<double>(static_cast<T>(light.half));
     const truth::Coefficients reference = truth::cap({axis, Kind::angle, half}, orders.back(), light.clip);
     std::vector<double> errors;
     for (const int n : orders) {
