@@ -155,11 +155,11 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
     rays_.clear();
     for (std::size_t pixel = 0; pixel < random_.size(); ++pixel) {
         const auto column = static_cast<double>((first + pixel) % columns);
-        const auto row = static_cast<double>((first + pixel) / columns);
+        const std::size_t above = (first + pixel) / columns;
         for (std::size_t i = 0; i < samples; ++i) {
             const glm::dvec2 place = random_[pixel].point();
             const double x = (column + place.x) / p.width;
-            const double y = (row + place.y) / p.height;
+            const double y = (static_cast<double>(above) + place.y) / p.height;
             rays_.push_back(p.camera.ray(p.window.left + x * (p.window.right - p.window.left),
                                          p.window.top + y * (p.window.bottom - p.window.top)));
         }
