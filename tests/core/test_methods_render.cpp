@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -134,6 +135,45 @@ TEST(MonteCarloRender, DependsOnTheSeedAndNotOnThreads) {
         EXPECT_EQ(picture(*scene, camera, {.samples = 9, .seed = 4, .threads = threads}), one) << threads;
     }
     EXPECT_NE(picture(*scene, camera, {.samples = 9, .seed = 5, .threads = 1}), one);
+}
+
+TEST(MonteCarloRender, AMountedLampIsNotBlockedByItsMount) {
+    // Tilted, so that neither the mesh's float vertices nor the rays lie in the lamp's plane exactly.
+    const Vec3d along = glm::normalize(Vec3d(1, 0.3, 0.2));
+    const Vec3d across = glm::normalize(glm::cross(Vec3d(0.1, 0.2, 1), along));
+    const Vec3d center(0.1, -0.2, 3);
+    const auto corners = [&](double half) {
+        return std::vector<Vec3d>{center - half * along - half * across, center - half * along + half * across,
+                                  center + half * along + half * across, center + half * along - half * across};
+    };
+    Scene free;
+    free.add_mesh(floor_mesh(3));
+    free.add_polygon_light(corners(0.5), Rgb(3));
+    Scene mounted = free;
+    Mesh mount;
+    for (const Vec3d& corner : corners(2)) {
+        mount.vertices.emplace_back(corner);
+    }
+    mount.triangles = {{0, 1, 2}, {0, 2, 3}};
+    mount.bsdfs = {Bsdf::lambert(Rgb(0.5F))};
+    mounted.add_mesh(mount);
+    const Camera below = camera_above(1, 1);
+    const Picture expected = picture(*free.compile(), below, {.samples = 512});
+    EXPECT_GT(expected[0], 0.01F);
+    EXPECT_EQ(picture(*mounted.compile(), below, {.samples = 512}), expected);
+}
+
+TEST(MonteCarloRender, PixelsHaveRandomNumbersOfTheirOwn) {
+    Scene scene;
+    scene.add_mesh(floor_mesh(9));
+    scene.add_sphere_light({0, 0, 0}, 50, Rgb(1));  // all pixels see the same
+    Picture image = picture(*scene.compile(), camera_above(1), {.samples = 1024});
+    std::set<float> values;
+    for (std::size_t i = 0; i < image.size(); i += 4) {
+        values.insert(image[i]);
+        EXPECT_NEAR(image[i], 0.5, 0.1);
+    }
+    EXPECT_GT(values.size(), std::size_t{kSize * kSize - 3});
 }
 
 TEST(MonteCarloRender, NoLightIsBlackAndNothingIsTransparent) {
