@@ -17,10 +17,10 @@ import shlight
 from shlight import methods
 from shlight.charts import lobe_lights, lobes, order_error, style, which_method
 from shlight.charts.figure import Drawn, Run
-from shlight.charts.lobe_lights import about_lobe, best_seconds
+from shlight.charts.lobe_lights import Clock, about_lobe, best_seconds
 
 ORDERS = [1, 2, 4, 8, 16, 64]
-CLOCK = which_method.Clock(rounds=1)
+CLOCK = Clock(rounds=1)
 
 
 # --- lobes --------------------------------------------------------------------------------------------------------

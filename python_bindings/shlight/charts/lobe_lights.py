@@ -15,6 +15,9 @@ from shlight._arrays import Floats
 
 from .lobes import view_direction
 
+BATCH_SECONDS = 1e-3
+FEWEST_LIGHTS, MOST_LIGHTS = 3, 1920  # of a batch
+
 
 @dataclass(frozen=True)
 class LobeLights:
@@ -69,3 +72,36 @@ def best_seconds(works: Sequence[Callable[[], object]], rounds: int) -> list[flo
             work()
             best[i] = min(best[i], time.process_time() - start)
     return best
+
+
+@dataclass(frozen=True)
+class Timed:
+    """A shading method and its options, for the clock."""
+
+    method: str
+    options: dict[str, Any]
+
+    @property
+    def seconds(self) -> float:
+        """About, of a light; for the size of batches."""
+        order, samples = self.options.get("order", 0), self.options.get("samples", 0)
+        return 5e-7 + 2e-9 * order**2 + 6e-8 * samples + (4e-6 if "tolerance" in self.options else 0)
+
+
+class Clock:
+    """Microseconds per light, without what a call from Python costs by itself."""
+
+    def __init__(self, rounds: int) -> None:
+        self._rounds = rounds
+        light = LobeLights(0.5, np.array([[0.0, 0.0, 1.0]]), np.array([0.1]))
+        call = light.timed(shlight.Bsdf.ggx(0.5, 1.0), "plain_harmonics", 1, order=2)
+        self._overhead = min(best_seconds([call], 50))
+
+    def microseconds(self, lights: LobeLights, bsdf: shlight.Bsdf, calls: Sequence[Timed]) -> list[float]:
+        works, counts = [], []
+        for call in calls:
+            counts.append(int(np.clip(BATCH_SECONDS / call.seconds, FEWEST_LIGHTS, MOST_LIGHTS)))
+            works.append(lights.timed(bsdf, call.method, counts[-1], **call.options))
+            lights.timed(bsdf, call.method, 1, **call.options)()  # the first call makes a fit
+        times = best_seconds(works, self._rounds)
+        return [1e6 * (t - self._overhead) / count for t, count in zip(times, counts, strict=True)]

@@ -20,7 +20,7 @@ from shlight import methods
 from shlight._arrays import Floats
 
 from .figure import Drawn, Run, Table
-from .lobe_lights import LobeLights, about_lobe, best_seconds
+from .lobe_lights import Clock, LobeLights, Timed, about_lobe
 from .style import AMBER, BLUE, BROWN, DARK, GREEN, HIDDEN, OLIVE, ORANGE, PINK, SKY, VIOLET, canvas
 
 if TYPE_CHECKING:
@@ -30,8 +30,6 @@ VIEWS = (1.0, 0.5, 0.15)
 TOLERANCES = (1e-2, 1e-3, 1e-4)
 TRUTH, TRUTH_TOLERANCE = "quadrature", 1e-10  # ÷ albedo, of which small lights reflect 1e-5
 TIMED_ROUGHNESS = 0.5
-BATCH_SECONDS = 1e-3
-FEWEST_LIGHTS, MOST_LIGHTS = 3, 1920  # of a batch
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,37 +175,6 @@ def smoothed(costs: Sequence[dict[Way, float]]) -> list[dict[Way, float]]:
 def _lights(seed: int, roughness: float, cos_o: float, half_angle: float, count: int) -> LobeLights:
     """The same random numbers for every cell, so that neighbours differ by what differs."""
     return about_lobe(np.random.default_rng(seed), roughness**2, cos_o, np.full(count, half_angle))
-
-
-class Clock:
-    """Microseconds per light, without what a call from Python costs by itself."""
-
-    def __init__(self, rounds: int) -> None:
-        self._rounds = rounds
-        light = LobeLights(0.5, np.array([[0.0, 0.0, 1.0]]), np.array([0.1]))
-        call = light.timed(shlight.Bsdf.ggx(TIMED_ROUGHNESS, 1.0), "plain_harmonics", 1, order=2)
-        self._overhead = min(best_seconds([call], 50))
-
-    def microseconds(self, lights: LobeLights, bsdf: shlight.Bsdf, calls: Sequence[Timed]) -> list[float]:
-        works, counts = [], []
-        for call in calls:
-            counts.append(int(np.clip(BATCH_SECONDS / call.seconds, FEWEST_LIGHTS, MOST_LIGHTS)))
-            works.append(lights.timed(bsdf, call.method, counts[-1], **call.options))
-            lights.timed(bsdf, call.method, 1, **call.options)()  # the first call makes a fit
-        times = best_seconds(works, self._rounds)
-        return [1e6 * (t - self._overhead) / count for t, count in zip(times, counts, strict=True)]
-
-
-@dataclass(frozen=True)
-class Timed:
-    method: str
-    options: dict[str, Any]
-
-    @property
-    def seconds(self) -> float:
-        """About, of a light; for the size of batches."""
-        order, samples = self.options.get("order", 0), self.options.get("samples", 0)
-        return 5e-7 + 2e-9 * order**2 + 6e-8 * samples + (4e-6 if "tolerance" in self.options else 0)
 
 
 def _costs(
