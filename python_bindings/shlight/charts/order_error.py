@@ -95,8 +95,8 @@ def _picture(run: Run, orders: list[int], found: Found, costs: dict[str, Floats]
     last.legend(loc="upper left")
     for panel in panels:
         panel.set_yscale("log")
-    last.set_yticks([0.2, 0.5, 1, 2, 5, 10, 20], ["0.2", "0.5", "1", "2", "5", "10", "20"])
-    last.set_ylim(0.2, 1.3 * most)
+    last.set_yticks([0.1, 0.2, 0.5, 1, 2, 5, 10, 20], ["0.1", "0.2", "0.5", "1", "2", "5", "10", "20"])
+    last.set_ylim(0.1, 1.3 * most)
     last.minorticks_off()
     for panel in panels:
         order_axis(panel, [1, 2, 4, 8, 16, 32, 64])
