@@ -71,7 +71,8 @@ Division division_of(const Arc<Real>& arc, int order, double tolerance) {
 /// L_00 is what errors are measured by.
 template <class T>
 double tolerance_for(const PolygonRegion<Wider<T>>& region, int order) {
-    return 0.25 * order * std::numeric_limits<T>::epsilon() * static_cast<double>(region.solid_angle());
+    const double share = edge_points_in_float<T>(region) ? 1 : 0.25;
+    return share * order * std::numeric_limits<T>::epsilon() * static_cast<double>(region.solid_angle());
 }
 
 /// The points of one piece of an arc from its middle outwards; `turned` is the middle's angle from the arc's start.
@@ -380,7 +381,7 @@ T shade_by_edge_points(const PolygonRegion<Wider<T>>& region, const T* lobe_term
 
 template <class T>
 bool edge_points_in_float(const PolygonRegion<Wider<T>>& region) {
-    constexpr double kWideForFloat = 0.15;
+    constexpr double kWideForFloat = 0.05;
     const auto& arcs = region.arcs();
     return std::is_same_v<T, float> && region.solid_angle() > kWideForFloat * region.outline() &&
            std::all_of(arcs.begin(), arcs.end(), [](const auto& arc) { return arc.cosine == 0; });

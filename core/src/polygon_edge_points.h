@@ -18,7 +18,7 @@ T shade_by_edge_points(const PolygonRegion<Wider<T>>& region, const T* lobe_term
 
 /// Whether the points go through the recurrences in float, twice as many at once. What edges cancel to is about solid
 /// angle ÷ outline of what each has; great circles around a region with enough of that lose nothing that float could
-/// hold: the result is right to 1e-6 of L_00 at every order.
+/// hold: the result is right to 4e-6 of L_00 at every order.
 template <class T>
 bool edge_points_in_float(const PolygonRegion<Wider<T>>& region);
 

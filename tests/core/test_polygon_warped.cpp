@@ -133,7 +133,7 @@ void compare(std::size_t count, int order, std::uint64_t seed) {
         // contact; both count up to 300 times where the image is small.
         EXPECT_LE(errors64.largest(), 1e-10) << name << ": " << describe(inputs[errors64.worst()]);
         // Only the result is rounded to float, except where there is no warp and the polygon is wide.
-        EXPECT_LE(errors32.largest(), 2e-6) << name << ": " << describe(inputs[errors32.worst()]);
+        EXPECT_LE(errors32.largest(), 5e-6) << name << ": " << describe(inputs[errors32.worst()]);
     }
 }
 
