@@ -31,7 +31,6 @@ namespace {
 
 using methods::AdaptiveCubature;
 using methods::ConeSampler;
-using methods::CubaturePlan;
 using methods::DiskSampler;
 using methods::find_method;
 using methods::find_shading_method;
@@ -143,7 +142,7 @@ void check_caps(const SphereKind& kind) {
     on_two_threads(kCount, [&](std::size_t i) {
         RandomInput random(i);
         const int order = i % 4 == 0 ? 16 : random.integer(1, 9);
-        const double half = rounded<T>(random.log_uniform(kind.smallest, kind.largest));
+        const auto half = rounded<T>(random.log_uniform(kind.smallest, kind.largest));
         const Vec3d axis = rounded<T>(kind.axis(random, half));
         const bool clip = i % 3 != 0;
         record[i] = relative_error(truth::cap({axis, Kind::angle, half}, order, clip), order,
