@@ -16,7 +16,8 @@
 namespace shlight::methods {
 namespace {
 
-constexpr double kDefaultTolerance = 1e-10;
+/// The least that makes sense: pieces about the mirror direction may be larger than what is left of their sum.
+constexpr double kLeastTolerance = 1e-10;
 constexpr std::size_t kMostPoints = std::size_t{1} << 22;
 /// Lobes darker than this need no better.
 constexpr double kSmallestAlbedo = 1e-5;
@@ -75,8 +76,7 @@ class QuadratureLobe : public LobeIntegrator {
 };
 
 std::unique_ptr<LobeIntegrator> make(const LobeShape& shape, double cos_theta_o, const Options& options) {
-    const double tolerance = options.tolerance > 0 ? options.tolerance : kDefaultTolerance;
-    return std::make_unique<QuadratureLobe>(shape, cos_theta_o, tolerance);
+    return std::make_unique<QuadratureLobe>(shape, cos_theta_o, std::max(options.tolerance, kLeastTolerance));
 }
 
 }  // namespace
