@@ -119,7 +119,7 @@ Cap<T> make_cap(const Contact& contact) {
     const double sin_tilt = sine_of_tilt(axis);
     const bool crossing = contact.chord > 0;
     const Kept kept = crossing ? kept_with_crossing(contact) : kept_without_crossing(contact);
-    const double radius = crossing ? safe_length({contact.chord, contact.arc, 0}) : 1;
+    const double across = crossing ? 1 / safe_length({contact.chord, contact.arc, 0}) : 0;
     return {r(axis.z),
             r(sin_tilt),
             r(sin_tilt > 0 ? axis.x / sin_tilt : 1.0),
@@ -127,8 +127,8 @@ Cap<T> make_cap(const Contact& contact) {
             r(contact.light.cosine),
             r(contact.light.sine),
             r(kept.arc),
-            r(crossing ? contact.arc / radius : 1.0),
-            r(crossing ? contact.chord / radius : 0.0),
+            r(crossing ? contact.arc * across : 1.0),
+            r(contact.chord * across),
             r(kept.edge),
             r(kept.solid_angle),
             crossing};

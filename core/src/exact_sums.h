@@ -25,12 +25,12 @@ class CompensatedSum {
     double high_ = 0, low_ = 0;
 };
 
-/// |v|² - r² without the cancellation of |v| ≈ r.
+/// |v|² - r² without the cancellation of |v| ≈ r: what plain arithmetic leaves to it is wrong by some 1e-15 of itself.
 inline double difference_of_squares(const std::array<double, 3>& v, double r) {
     const double minuend = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     const double subtrahend = r * r;
-    if (minuend > 4 * subtrahend) {
-        return minuend - subtrahend;  // nothing cancels
+    if (minuend > 1.25 * subtrahend) {
+        return minuend - subtrahend;
     }
     CompensatedSum sum;
     for (const double x : v) {

@@ -19,7 +19,8 @@ double squared_length(const Vec3d& v) {
 Circle circle_of_sphere(const Vec3d& center, double radius) {
     const double distance = safe_length(center);
     const double tangent_squared = std::max(0.0, difference_of_squares({center.x, center.y, center.z}, radius));
-    return {center / distance, std::sqrt(tangent_squared) / distance, std::min(1.0, radius / distance)};
+    const double inverse = 1 / distance;
+    return {center * inverse, std::sqrt(tangent_squared) * inverse, std::min(1.0, radius * inverse)};
 }
 
 Circle circle_of_facing_disk(const Vec3d& center, double radius) {
