@@ -4,7 +4,7 @@
 "exact" (coefficients) and "auto" (shading) are the library's own; `coefficient_methods()` and `shading_methods()` list
 the others with their sources. Each takes the options that make sense for it and refuses the rest:
 
-    tolerance   adaptive methods: error ÷ L_00, in shading radiance ÷ albedo; the default is what the type can hold
+    tolerance   adaptive methods: error ÷ L_00, by default what the type can hold; in shading radiance ÷ albedo
     samples     random methods: directions per light; cubature: points
     seed        random methods: an integer 0 … 2³²-1; the result depends on it and on nothing else
     sampling    random methods: "solid_angle" or "area" of the light; in shading also "bsdf" and "mis"
