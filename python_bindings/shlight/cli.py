@@ -12,10 +12,10 @@ import sys
 from collections.abc import Callable, Sequence
 from importlib import metadata
 
+from shlight.commands import INTERRUPTED
+
 GROUP = "shlight.commands"
-# What a shell reports of a process that the signal ended.
-INTERRUPTED = 130
-PIPE_CLOSED = 141
+PIPE_CLOSED = 141  # what a shell reports of a process that the signal ended
 
 
 def main(argv: Sequence[str] | None = None) -> int:

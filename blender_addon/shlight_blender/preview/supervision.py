@@ -13,6 +13,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from shlight.commands import CommandError
+
 from .options import Options
 from .progress import Progress
 
@@ -20,16 +22,8 @@ TICK_SECONDS = 0.2
 LOG = "blender.log"
 
 
-class PreviewError(Exception):
-    """The preview cannot go on; the message is for the user."""
-
-    def __init__(self, text: str, exit_code: int) -> None:
-        super().__init__(text)
-        self.exit_code = exit_code
-
-
 def run_worker(options: Options, folder: Path, progress: Progress) -> dict[str, Any]:
-    """Has the worker render into `folder` and returns its figures; PreviewError with its reason if it fails."""
+    """Has the worker render into `folder` and returns its figures; CommandError with its reason if it fails."""
     (folder / "request.json").write_text(json.dumps(options.to_data()), encoding="utf-8")
     read_end, write_end = os.pipe()
     with (folder / LOG).open("wb") as log:
@@ -46,7 +40,7 @@ def run_worker(options: Options, folder: Path, progress: Progress) -> dict[str, 
     try:
         return _follow(read_end, progress)
     except EOFError:
-        raise PreviewError(_last_words(process, folder), 1) from None
+        raise CommandError(_last_words(process, folder), 1) from None
     finally:
         os.close(read_end)
         # After its result the worker has nothing left to do but Blender's own end, which takes time and may crash.
@@ -68,7 +62,7 @@ def _follow(read_end: int, progress: Progress) -> dict[str, Any]:
         if message["kind"] == "stage":
             progress.stage(message["name"], message["expected_seconds"])
         elif message["kind"] == "error":
-            raise PreviewError(message["text"], message["exit_code"])
+            raise CommandError(message["text"], message["exit_code"])
         else:
             figures: dict[str, Any] = message["figures"]
             return figures

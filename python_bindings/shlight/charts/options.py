@@ -50,8 +50,6 @@ def _parser() -> argparse.ArgumentParser:
     add = parser.add_argument
     add("names", nargs="*", metavar="NAME", help="figures to draw (default: all)")
     add("--quick", action="store_true", help="coarser grids and fewer lights: all within a minute")
-    add(
-        "--out", metavar="DIR", default=str(Path("out") / "charts"), help="folder of the results (default: %(default)s)"
-    )
+    add("--out", metavar="DIR", default=DEFAULT_OUT, help="folder of the results (default: %(default)s)")
     add("--list", action="store_true", help="list the figures and do nothing else")
     return parser
