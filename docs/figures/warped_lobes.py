@@ -12,47 +12,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 import shlight
+from shlight.charts import lobes
+from shlight.charts.lobes import view_direction
 
 Array = NDArray[Any]
 
 
-def view_direction(cos_o: float) -> Array:
-    return np.array([np.sqrt(1 - cos_o**2), 0.0, cos_o])
-
-
-class Warp:
-    """The warp of a GGX lobe of width alpha seen under the cosine cos_o: u ↔ ω, the mirror direction in the middle."""
-
-    def __init__(self, alpha: float, cos_o: float) -> None:
-        width = 5 * alpha * cos_o**0.4
-        r = 1 - width / (1 + width**1.5) ** (2 / 3)
-        self.b = 2 * r / (1 + r * r)
-        self.gamma = 1 / np.sqrt(1 - self.b**2)
-        sin_o = np.sqrt(1 - cos_o**2)
-        to_boost = np.array([[cos_o, 0, sin_o], [0, 1, 0], [-sin_o, 0, cos_o]])  # rows: across, y, along the axis
-        image = np.array([sin_o, 0, self.gamma * cos_o])  # of the horizon (0; z), which is tilted in the boost's frame
-        length = np.linalg.norm(image)
-        self.horizon_height = -self.gamma * self.b * cos_o / length
-        x, _, z = image / length
-        self.to_boost = to_boost
-        self.to_warped = np.array([[z, 0, -x], [0, 1, 0], [x, 0, z]])
+class Warp(lobes.Warp):
+    """The warp of a GGX lobe of width alpha seen under the cosine cos_o, and what it does to directions and caps."""
 
     def warped(self, directions: Array) -> Array:
         d = directions @ self.to_boost.T
         along = d[..., 2:]
         u = np.concatenate([d[..., :2] / self.gamma, along - self.b], axis=-1) / (1 - self.b * along)
         return u @ self.to_warped.T
-
-    def direction(self, warped: Array) -> Array:
-        u = warped @ self.to_warped
-        along = u[..., 2:]
-        d = np.concatenate([u[..., :2] / self.gamma, along + self.b], axis=-1) / (1 + self.b * along)
-        return d @ self.to_boost
-
-    def density(self, warped: Array) -> Array:
-        """dω/du."""
-        along = (warped @ self.to_warped)[..., 2]
-        return 1 / (self.gamma * (1 + self.b * along)) ** 2
 
     def cap(self, axis: Array, half_angle: float) -> tuple[Array, float]:
         """The image of a cap: unit axis and half angle."""
