@@ -25,12 +25,6 @@ void check_method_order(const Method& method, int order) {
     reject("method '" + std::string(method.name) + "' does not know " + lights);
 }
 
-void check_vertex_count(int vertex_count) {
-    if (vertex_count < 3) {
-        reject("vertices: a polygon needs at least 3, got " + std::to_string(vertex_count));
-    }
-}
-
 std::uint32_t seed_of(const Options& options, std::size_t index) {
     return hash(options.seed, static_cast<std::uint32_t>(index));
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "light_sampling.h"
+#include "perpendicular.h"
 
 namespace shlight::methods {
 namespace {
@@ -15,11 +16,6 @@ using std::numbers::pi;
 /// Below this solid angle [sr] a flat triangle does as well as a spherical one, whose angles lose digits: the density
 /// of one with unit corners varies by about the solid angle itself.
 constexpr double kSmallestSpherical = 0.01;
-
-Vec3d perpendicular(const Vec3d& axis) {
-    const Vec3d side = std::abs(axis.z) < 0.9 ? Vec3d(0, 0, 1) : Vec3d(1, 0, 0);
-    return glm::normalize(glm::cross(side, axis));
-}
 
 double one_minus_cosine(const Circle& cap) {
     return cap.cosine > 0 ? cap.sine * cap.sine / (1 + cap.cosine) : 1 - cap.cosine;

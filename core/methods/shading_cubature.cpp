@@ -12,6 +12,7 @@
 #include "kept_region.h"
 #include "light_cubature.h"
 #include "method.h"
+#include "perpendicular.h"
 #include "shlight/cap.h"
 
 namespace shlight::methods {
@@ -25,8 +26,7 @@ template <class Visit>
 void visit_rings(const Circle& cap, int points, const Visit& visit) {
     const int count = std::clamp(static_cast<int>(std::lround(std::sqrt(points / 2.0))), 1, kMaxGaussPoints);
     const int spokes = points / count;
-    const Vec3d side = std::abs(cap.axis.z) < 0.9 ? Vec3d(0, 0, 1) : Vec3d(1, 0, 0);
-    const Vec3d x = glm::normalize(glm::cross(side, cap.axis));
+    const Vec3d x = perpendicular(cap.axis);
     const Vec3d y = glm::cross(cap.axis, x);
     const double area = cap.sine * cap.sine / (1 + cap.cosine);  // 1 - cosσ
     const GaussRule& rule = gauss_rule(count);

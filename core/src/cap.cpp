@@ -167,8 +167,7 @@ Cap<T> Cap<T>::of_facing_disk(const Vec3d& center, double radius, const Warp& wa
 
 template <class T>
 Cap<T> Cap<T>::about_axis(const Vec3d& axis, double half_angle, const Warp& warp) {
-    const double half = std::min(half_angle, kPi);
-    return inside({axis / safe_length(axis), std::cos(half), std::sin(half)}, warp);
+    return inside(circle_about_axis(axis, half_angle), warp);
 }
 
 template <class T>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 
 #include "checks.h"
 #include "exact_sums.h"
@@ -29,6 +30,12 @@ void check_cap(const Vec3d& axis, double half_angle) {
     }
     if (!(half_angle > 0 && half_angle <= std::numbers::pi * (1 + 1e-7))) {
         reject("half_angles must lie in (0, π]");
+    }
+}
+
+void check_vertex_count(int vertex_count) {
+    if (vertex_count < 3) {
+        reject("vertices: a polygon needs at least 3, got " + std::to_string(vertex_count));
     }
 }
 

@@ -17,6 +17,9 @@ void check_sphere(const Vec3d& center, double radius, double epsilon);
 /// An axis that is finite and not zero, a half angle in (0, π] with room for rounding.
 void check_cap(const Vec3d& axis, double half_angle);
 
+/// At least 3.
+void check_vertex_count(int vertex_count);
+
 /// Finite and planar to the precision of T, in which the vertices were given.
 template <class T>
 void check_polygon(std::span<const Vec3<Wider<T>>> vertices);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "perpendicular.h"
 #include "triangle_cubature.h"
 
 namespace shlight {
@@ -87,8 +88,7 @@ int polygon_rule_number(double relative_size, double tolerance) {
 
 CubatureSum cap_cubature(const GgxShape& shape, const Vec3d& view, const Circle& cap, int rule_number) {
     const double height = cap.sine * cap.sine / (1 + cap.cosine);  // 1 - cosσ
-    const Vec3d side = std::abs(cap.axis.z) < 0.9 ? Vec3d(0, 0, 1) : Vec3d(1, 0, 0);
-    const Vec3d u = glm::normalize(glm::cross(side, cap.axis));
+    const Vec3d u = perpendicular(cap.axis);
     const Vec3d v = glm::cross(cap.axis, u);
     double sum = 0;
     int points = 0;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "perpendicular.h"
+
 namespace shlight {
 
 CapOutline::CapOutline(const Circle& cap) {
@@ -12,8 +14,7 @@ CapOutline::CapOutline(const Circle& cap) {
         return;
     }
     if (axis.z >= cap.sine) {
-        const Vec3d side = std::abs(axis.z) < 0.9 ? Vec3d(0, 0, 1) : Vec3d(1, 0, 0);
-        const Vec3d from = cap.cosine * axis + cap.sine * glm::normalize(glm::cross(side, axis));
+        const Vec3d from = cap.cosine * axis + cap.sine * perpendicular(axis);
         arcs_[0] = {cap, from, from, true};
         count_ = 1;
         return;

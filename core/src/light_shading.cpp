@@ -104,9 +104,7 @@ void shade_polygons(std::span<const Vec3d> vertices, int vertex_count, const Bsd
                     std::span<const double> cos_theta_o, const ShadeSettings& settings, std::span<Rgb> radiance,
                     std::span<std::int32_t> effort) {
     check_settings(settings);
-    if (vertex_count < 3) {
-        reject("vertices: a polygon needs at least 3, got " + std::to_string(vertex_count));
-    }
+    check_vertex_count(vertex_count);
     const auto k = static_cast<std::size_t>(vertex_count);
     const std::size_t count = vertices.size() / k;
     check_size("vertices", vertices.size(), count * k);

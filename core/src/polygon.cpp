@@ -121,9 +121,7 @@ template <class T>
 void polygon_coefficients(std::span<const Vec3<T>> vertices, int vertex_count, int order, bool clip,
                           std::span<T> coefficients, PolygonMethod method) {
     check_order(order);
-    if (vertex_count < 3) {
-        reject("vertices: a polygon needs at least 3, got " + std::to_string(vertex_count));
-    }
+    check_vertex_count(vertex_count);
     const auto k = static_cast<std::size_t>(vertex_count);
     const auto row = static_cast<std::size_t>(coefficient_count(order));
     const std::size_t count = vertices.size() / k;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "exact_sums.h"
 #include "safe_length.h"
@@ -27,6 +28,11 @@ Circle circle_of_facing_disk(const Vec3d& center, double radius) {
     const double distance = safe_length(center);
     const double slant = std::hypot(distance, radius);
     return {center / distance, distance / slant, radius / slant};
+}
+
+Circle circle_about_axis(const Vec3d& axis, double half_angle) {
+    const double half = std::min(half_angle, std::numbers::pi);
+    return {axis / safe_length(axis), std::cos(half), std::sin(half)};
 }
 
 Warp::Warp(double tilt, double narrowness) : sin_tilt_(std::sin(tilt)), cos_tilt_(std::cos(tilt)) {

@@ -14,6 +14,7 @@
 
 #include "adaptive_cubature.h"
 #include "batch.h"
+#include "error_message.h"
 #include "error_record.h"
 #include "kept_region.h"
 #include "light_cubature.h"
@@ -44,6 +45,7 @@ using methods::Sampling;
 using methods::SphereSurfaceSampler;
 using methods::TriangleSampler;
 using testing::all_tests;
+using testing::error_message;
 using testing::ErrorRecord;
 using testing::on_two_threads;
 using testing::RandomInput;
@@ -576,26 +578,19 @@ TEST(NumericalMethods, SeedAndNumberPickTheRandomNumbers) {
     EXPECT_NE(compute(1, 0), compute(1, 1));
 }
 
-template <class Call>
-std::string message(const Call& call) {
-    try {
-        call();
-    } catch (const std::invalid_argument& error) {
-        return error.what();
-    }
-    return "";
-}
-
 TEST(NumericalMethods, OptionsThatDoNotFitAreNamed) {
     const Vec3d axis(0, 0, 1);
     const auto starts = [](const std::string& text, const std::string& with) { return text.rfind(with, 0) == 0; };
     for (const Sampling sampling : {Sampling::bsdf, Sampling::mis}) {
-        EXPECT_TRUE(starts(message([&] { of_cap<float>("monte_carlo", axis, 0.4, 3, true, {.sampling = sampling}); }),
-                           "sampling"));
+        EXPECT_TRUE(
+            starts(error_message([&] { of_cap<float>("monte_carlo", axis, 0.4, 3, true, {.sampling = sampling}); }),
+                   "sampling"));
     }
-    EXPECT_TRUE(starts(message([&] { of_cap<float>("monte_carlo", axis, 1.6, 3, true, {.sampling = Sampling::area}); }),
-                       "half_angles"));
-    EXPECT_TRUE(starts(message([&] { of_cap<float>("monte_carlo", axis, 0.4, 3, true, {.samples = 0}); }), "samples"));
+    EXPECT_TRUE(
+        starts(error_message([&] { of_cap<float>("monte_carlo", axis, 1.6, 3, true, {.sampling = Sampling::area}); }),
+               "half_angles"));
+    EXPECT_TRUE(
+        starts(error_message([&] { of_cap<float>("monte_carlo", axis, 0.4, 3, true, {.samples = 0}); }), "samples"));
 }
 
 // --- shading --------------------------------------------------------------------------------------------------------

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "error_message.h"
 #include "monte_carlo_render.h"
 #include "render_scenes.h"
 
@@ -199,22 +200,13 @@ TEST(MonteCarloRender, LongPixelsAreCutIntoBatches) {
     EXPECT_NEAR(few[0], many[0], 0.1 * few[0]);
 }
 
-template <class Call>
-std::string message(const Call& call) {
-    try {
-        call();
-    } catch (const std::invalid_argument& error) {
-        return error.what();
-    }
-    return "";
-}
-
 TEST(MonteCarloRender, BadArgumentsAreNamed) {
     const auto scene = room(Bsdf::lambert(Rgb(0.5F)), "s").compile();
     const Camera camera = camera_above(2);
     const auto names = [&](const MonteCarloSettings& settings, int width, int height, std::size_t size) {
         std::vector<float> image(size);
-        const std::string text = message([&] { render_monte_carlo(*scene, camera, width, height, settings, image); });
+        const std::string text =
+            testing::error_message([&] { render_monte_carlo(*scene, camera, width, height, settings, image); });
         return text.substr(0, text.find(' '));
     };
     EXPECT_EQ(names({.samples = 0}, 2, 2, 16), "samples");

@@ -22,6 +22,8 @@ struct Circle {
 Circle circle_of_sphere(const Vec3d& center, double radius);
 /// The same of a disk that always faces the origin: half angle atan(radius / |center|); center ≠ 0.
 Circle circle_of_facing_disk(const Vec3d& center, double radius);
+/// The circle of a half angle [rad] about an axis of any length > 0; 0 < half_angle, more than π counts as π.
+Circle circle_about_axis(const Vec3d& axis, double half_angle);
 
 /// Directions ω of the shading frame ↔ warped directions u, in a frame whose z axis is the middle of the warped
 /// horizon: the upper hemisphere becomes the cap u_z ≥ horizon_height(). The plane y = 0 stays the plane y = 0.
