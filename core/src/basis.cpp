@@ -2,49 +2,33 @@
 #include "shlight/basis.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
+#include <numeric>
+#include <vector>
 
 #include "checks.h"
-#include "legendre.h"
+#include "kernels/basis_kernel.h"
 
 namespace shlight {
 namespace {
 
+/// What is wrong with the directions, once a kernel has found that something is.
 template <class T>
-Vec3<T> checked_direction(const Vec3<T>& direction) {
-    check_finite("directions", direction);
-    // Scaling by the largest component first keeps the squares of tiny and huge vectors in range.
-    const T largest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
-    if (!(largest > 0)) {
-        reject("directions contains a zero vector");
+[[noreturn]] void reject_directions(std::span<const Vec3<T>> directions) {
+    for (const Vec3<T>& direction : directions) {
+        check_finite("directions", direction);
     }
-    return glm::normalize(direction / largest);
+    reject("directions contains a zero vector");
 }
+
+/// Directions whose basis is in the cache at a time.
+constexpr std::size_t kBlock = 64;
 
 }  // namespace
 
 template <class T>
 void sh_basis(const Vec3<T>& direction, int order, T* basis) {
-    std::array<T, kMaxOrder> cos_part;
-    std::array<T, kMaxOrder> sin_part;
-    complex_powers(direction.x, direction.y, order, cos_part.data(), sin_part.data());
-    for (int m = 1; m < order; ++m) {
-        cos_part[m] *= std::numbers::sqrt2_v<T>;
-        sin_part[m] *= std::numbers::sqrt2_v<T>;
-    }
-    LegendreRows<T> legendre(direction.z, direction.x * direction.x + direction.y * direction.y);
-    for (int l = 0;; legendre.advance()) {
-        T* band = basis + coefficient_index(l, 0);
-        band[0] = legendre[0];
-        for (int m = 1; m <= l; ++m) {
-            band[m] = legendre[m] * cos_part[m];
-            band[-m] = legendre[m] * sin_part[m];
-        }
-        if (++l == order) {
-            break;
-        }
+    if (!basis_rows(&direction, 1, order, basis)) {
+        reject_directions(std::span(&direction, 1));
     }
 }
 
@@ -53,8 +37,8 @@ void sh_basis(std::span<const Vec3<T>> directions, int order, std::span<T> basis
     check_order(order);
     const auto row = static_cast<std::size_t>(coefficient_count(order));
     check_size("basis", basis.size(), directions.size() * row);
-    for (std::size_t i = 0; i < directions.size(); ++i) {
-        sh_basis(checked_direction(directions[i]), order, basis.data() + i * row);
+    if (!basis_rows(directions.data(), directions.size(), order, basis.data())) {
+        reject_directions(directions);
     }
 }
 
@@ -64,14 +48,16 @@ void evaluate(std::span<const T> coefficients, std::span<const Vec3<T>> directio
     const auto row = static_cast<std::size_t>(coefficient_count(order));
     check_size("coefficients", coefficients.size(), directions.size() * row);
     check_size("values", values.size(), directions.size());
-    std::array<T, static_cast<std::size_t>(coefficient_count(kMaxOrder))> basis;
-    for (std::size_t i = 0; i < directions.size(); ++i) {
-        sh_basis(checked_direction(directions[i]), order, basis.data());
-        T sum = 0;
-        for (std::size_t k = 0; k < row; ++k) {
-            sum += coefficients[i * row + k] * basis[k];
+    std::vector<T> basis(std::min(kBlock, directions.size()) * row);
+    for (std::size_t first = 0; first < directions.size(); first += kBlock) {
+        const auto block = directions.subspan(first, std::min(kBlock, directions.size() - first));
+        if (!basis_rows(block.data(), block.size(), order, basis.data())) {
+            reject_directions(block);
         }
-        values[i] = sum;
+        for (std::size_t i = 0; i < block.size(); ++i) {
+            const T* own = coefficients.data() + (first + i) * row;
+            values[first + i] = std::inner_product(own, own + row, basis.data() + i * row, T(0));
+        }
     }
 }
 

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+//
+// Which instruction set the kernels use; for tests and measurements.
+#include <pybind11/stl.h>
+
+#include "bindings.h"
+#include "kernels/targets.h"
+
+namespace shlight::python {
+
+namespace py = pybind11;
+
+void bind_kernels(py::module_& m) {
+    m.def("kernel_targets", &kernel_targets);
+    m.def("kernel_target", &kernel_target);
+    m.def("force_kernel_target", &force_kernel_target, py::arg("target"));
+    force_kernel_target_of_environment();
+}
+
+}  // namespace shlight::python
