@@ -33,11 +33,11 @@ void sh_basis(const Vec3<T>& direction, int order, T* basis) {
 }
 
 template <class T>
-void sh_basis(std::span<const Vec3<T>> directions, int order, std::span<T> basis) {
+void sh_basis(std::span<const Vec3<T>> directions, int order, std::span<T> basis, Output output) {
     check_order(order);
     const auto row = static_cast<std::size_t>(coefficient_count(order));
     check_size("basis", basis.size(), directions.size() * row);
-    if (!basis_rows(directions.data(), directions.size(), order, basis.data())) {
+    if (!basis_rows(directions.data(), directions.size(), order, basis.data(), output)) {
         reject_directions(directions);
     }
 }
@@ -63,8 +63,8 @@ void evaluate(std::span<const T> coefficients, std::span<const Vec3<T>> directio
 
 template void sh_basis(const Vec3<float>&, int, float*);
 template void sh_basis(const Vec3<double>&, int, double*);
-template void sh_basis(std::span<const Vec3<float>>, int, std::span<float>);
-template void sh_basis(std::span<const Vec3<double>>, int, std::span<double>);
+template void sh_basis(std::span<const Vec3<float>>, int, std::span<float>, Output);
+template void sh_basis(std::span<const Vec3<double>>, int, std::span<double>, Output);
 template void evaluate(std::span<const float>, std::span<const Vec3<float>>, int, std::span<float>);
 template void evaluate(std::span<const double>, std::span<const Vec3<double>>, int, std::span<double>);
 

@@ -9,11 +9,17 @@
 #include <cstddef>
 
 #include "shlight/parallel.h"
+#include "shlight/types.h"
 
 namespace shlight::python {
 
 /// Lights a task takes at once: enough to hide the cost of handing it out, few enough to share evenly.
 inline constexpr std::size_t kChunk = 512;
+
+/// How a result of so many bytes is best written: what exceeds a core's own cache goes around it.
+inline Output output_of(std::size_t bytes) {
+    return bytes > (std::size_t{2} << 20) ? Output::streamed : Output::cached;
+}
 
 /// work(first, count) over chunks of 0 … total-1, without the GIL.
 template <class Work>

@@ -4,6 +4,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "chunks.h"
+#include "result_memory.h"
 #include "shlight/basis.h"
 #include "shlight/cap.h"
 #include "shlight/polygon.h"
@@ -15,7 +16,7 @@ namespace {
 template <class T>
 Array<T> rows(std::size_t count, int order) {
     check_order(order);
-    return Array<T>({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(coefficient_count(order))});
+    return uninitialized<T>({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(coefficient_count(order))});
 }
 
 /// The rows [first, first + count) of a matrix of order² columns.
@@ -30,8 +31,9 @@ Array<T> basis(const Array<T>& directions, int order, int threads) {
     const auto d = vectors("directions", directions);
     Array<T> out = rows<T>(d.size(), order);
     T* data = out.mutable_data();
+    const Output output = output_of(static_cast<std::size_t>(out.nbytes()));
     in_chunks(d.size(), threads, [&](std::size_t first, std::size_t count) {
-        sh_basis(d.subspan(first, count), order, slice(data, order, first, count));
+        sh_basis(d.subspan(first, count), order, slice(data, order, first, count), output);
     });
     return out;
 }

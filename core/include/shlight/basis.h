@@ -21,7 +21,7 @@ void sh_basis(const Vec3<T>& direction, int order, T* basis);
 /// basis: directions.size() × order², row by row.
 /// Throws std::invalid_argument for an order outside 1 … 64, a size that does not fit, a zero or non-finite direction.
 template <class T>
-void sh_basis(std::span<const Vec3<T>> directions, int order, std::span<T> basis);
+void sh_basis(std::span<const Vec3<T>> directions, int order, std::span<T> basis, Output output = Output::cached);
 
 /// values[i] = Σ coefficients[i·order² + k] · basis_k(directions[i]).
 /// Throws as sh_basis does.

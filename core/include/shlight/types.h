@@ -45,6 +45,10 @@ constexpr int cosine_index(int l, int m) {
     return l * (l + 1) / 2 + m;
 }
 
+/// How rows of coefficients reach memory. streamed: around the caches, which is faster where they, with what other
+/// calls write beside them, are larger than the caches.
+enum class Output { cached, streamed };
+
 /// Throws std::invalid_argument naming `order` unless 1 ≤ order ≤ kMaxOrder.
 void check_order(int order);
 

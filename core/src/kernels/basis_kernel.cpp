@@ -5,6 +5,7 @@
 #define HWY_TARGET_INCLUDE "kernels/basis_kernel.cpp"
 #include <hwy/foreach_target.h>
 // Highway's vocabulary, and what is compiled once per instruction set, come after it.
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -50,14 +51,14 @@ HWY_INLINE bool load(const T* rows, Directions<T>& u) {
 }
 
 template <class T, bool kAtPole>
-HWY_NOINLINE void write(const Directions<T>& u, std::size_t order, const RowPointers<T>& rows) {
+HWY_NOINLINE void write(const Directions<T>& u, std::size_t order, const RowPointers<T>& rows, Output output) {
     const Lanes<T> d;
     constexpr std::size_t kLanes = kLaneCount<Lanes<T>>;
     alignas(64) std::array<T, kMaxOrder * kLanes> cosine;
     alignas(64) std::array<T, kMaxOrder * kLanes> sine;
     complex_powers_in_lanes(d, u.x, u.y, std::numbers::sqrt2, order, cosine.data(), sine.data());
     LegendreLanes<T, kAtPole> legendre(u.z, u.sine_squared);
-    RowWriter<T> writer(rows);
+    RowWriter<T> writer(rows, output);
     for (std::size_t l = 0; l < order; ++l) {
         T* middle = writer.next() + l * kLanes;
         hn::Store(legendre[0], d, middle);
@@ -101,7 +102,7 @@ class PolarQueue {
         }
         Directions<T> u;
         if (load(&gathered[0].x, u)) {
-            write<T, true>(u, order_, rows);
+            write<T, true>(u, order_, rows, Output::cached);
         }
         count_ = 0;
     }
@@ -117,7 +118,7 @@ class PolarQueue {
 };
 
 template <class T>
-bool basis_rows_of(const Vec3<T>* directions, std::size_t count, std::size_t order, T* out) {
+bool basis_rows_of(const Vec3<T>* directions, std::size_t count, std::size_t order, T* out, Output output) {
     const Lanes<T> d;
     constexpr std::size_t kLanes = kLaneCount<Lanes<T>>;
     PolarQueue<T> polar(directions, order, out);
@@ -137,7 +138,7 @@ bool basis_rows_of(const Vec3<T>* directions, std::size_t count, std::size_t ord
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             rows[lane] = out + (first + std::min(lane, lanes - 1)) * order * order;
         }
-        write<T, false>(u, order, rows);
+        write<T, false>(u, order, rows, output);
         const auto at_pole = hn::Lt(u.sine_squared, all(d, kNearPole));
         if (!hn::AllFalse(d, at_pole)) {
             alignas(64) std::array<T, kLanes> sine_squared;
@@ -150,15 +151,19 @@ bool basis_rows_of(const Vec3<T>* directions, std::size_t count, std::size_t ord
         }
     }
     polar.flush();
+    if (output == Output::streamed) {
+        hwy::FlushStream();
+    }
     return true;
 }
 
-bool basis_rows_float(const Vec3<float>* directions, std::size_t count, std::size_t order, float* rows) {
-    return basis_rows_of(directions, count, order, rows);
+bool basis_rows_float(const Vec3<float>* directions, std::size_t count, std::size_t order, float* rows, Output output) {
+    return basis_rows_of(directions, count, order, rows, output);
 }
 
-bool basis_rows_double(const Vec3<double>* directions, std::size_t count, std::size_t order, double* rows) {
-    return basis_rows_of(directions, count, order, rows);
+bool basis_rows_double(const Vec3<double>* directions, std::size_t count, std::size_t order, double* rows,
+                       Output output) {
+    return basis_rows_of(directions, count, order, rows, output);
 }
 
 }  // namespace
@@ -172,12 +177,12 @@ namespace shlight {
 HWY_EXPORT(basis_rows_float);
 HWY_EXPORT(basis_rows_double);
 
-bool basis_rows(const Vec3<float>* directions, std::size_t count, int order, float* rows) {
-    return HWY_DYNAMIC_DISPATCH(basis_rows_float)(directions, count, static_cast<std::size_t>(order), rows);
+bool basis_rows(const Vec3<float>* directions, std::size_t count, int order, float* rows, Output output) {
+    return HWY_DYNAMIC_DISPATCH(basis_rows_float)(directions, count, static_cast<std::size_t>(order), rows, output);
 }
 
-bool basis_rows(const Vec3<double>* directions, std::size_t count, int order, double* rows) {
-    return HWY_DYNAMIC_DISPATCH(basis_rows_double)(directions, count, static_cast<std::size_t>(order), rows);
+bool basis_rows(const Vec3<double>* directions, std::size_t count, int order, double* rows, Output output) {
+    return HWY_DYNAMIC_DISPATCH(basis_rows_double)(directions, count, static_cast<std::size_t>(order), rows, output);
 }
 
 }  // namespace shlight

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 #include "kernels/lanes-inl.h"
@@ -49,15 +50,19 @@ HWY_INLINE void transpose_squares(D d, std::array<V<D>, kSquare<D>>& v) {
     }
 }
 
-/// Stores a vector's 128-bit blocks at column `column` of every kSquare-th row.
-template <class D, class T>
-HWY_INLINE void store_blocks(D d, V<D> v, T* const* rows, std::size_t column) {
-    if constexpr (hn::MaxLanes(d) > kSquare<D>) {
-        const hn::Half<D> half;
-        store_blocks(half, hn::LowerHalf(half, v), rows, column);
-        store_blocks(half, hn::UpperHalf(half, v), rows + hn::MaxLanes(half), column);
-    } else {
-        hn::StoreU(v, d, *rows + column);
+/// Block b of q[0] … q[3] → q[b], for vectors of four blocks; for vectors of two, blocks 0 and 1 of the pairs.
+template <class D>
+HWY_INLINE void transpose_blocks(D d, std::array<V<D>, 4>& q) {
+    if constexpr (hn::MaxLanes(d) == 4 * kSquare<D>) {
+        const auto even01 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(q[1]), q[0]);
+        const auto even23 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(q[3]), q[2]);
+        const auto odd01 = hn::OddEvenBlocks(q[1], hn::SwapAdjacentBlocks(q[0]));
+        const auto odd23 = hn::OddEvenBlocks(q[3], hn::SwapAdjacentBlocks(q[2]));
+        q = {hn::ConcatLowerLower(d, even23, even01), hn::ConcatLowerLower(d, odd23, odd01),
+             hn::ConcatUpperUpper(d, even23, even01), hn::ConcatUpperUpper(d, odd23, odd01)};
+    } else if constexpr (hn::MaxLanes(d) == 2 * kSquare<D>) {
+        q = {hn::ConcatLowerLower(d, q[1], q[0]), hn::ConcatLowerLower(d, q[3], q[2]),
+             hn::ConcatUpperUpper(d, q[1], q[0]), hn::ConcatUpperUpper(d, q[3], q[2])};
     }
 }
 
@@ -83,12 +88,16 @@ HWY_INLINE std::array<V<D>, kSquare<D>> load_columns(D d, const T* const* rows, 
     return v;
 }
 
-/// Collects the columns of a matrix as lanes and writes them to rows, a cache line of each row at a time.
-/// T: float or double; wide enough for a band at a time.
+/// Collects the columns of a matrix as lanes and writes them to rows, a whole cache line of each row at a time.
 template <class T>
 class RowWriter {
   public:
-    explicit RowWriter(const RowPointers<T>& rows) : rows_(rows) {}
+    /// Lines are streamed only if all rows begin at one.
+    RowWriter(const RowPointers<T>& rows, Output output) : rows_(rows), streamed_(output == Output::streamed) {
+        for (const T* row : rows) {
+            streamed_ &= reinterpret_cast<std::uintptr_t>(row) % 64 == 0;
+        }
+    }
 
     /// Where the next columns go, column after column of kLaneCount values each, at most 2 kMaxOrder - 1 of them.
     T* next() { return buffer_ + waiting_ * kLaneCount<D>; }
@@ -121,23 +130,31 @@ class RowWriter {
 
     HWY_INLINE void write_line(std::size_t first) {
         const D d;
-        constexpr std::size_t kSquares = kLine / kSquare<D>;
-        std::array<std::array<V<D>, kSquare<D>>, kSquares> squares;
-        for (std::size_t s = 0; s < kSquares; ++s) {
+        std::array<std::array<V<D>, kSquare<D>>, 4> squares;  // a line is four squares of either type
+        for (std::size_t s = 0; s < 4; ++s) {
             for (std::size_t j = 0; j < kSquare<D>; ++j) {
                 squares[s][j] = hn::Load(d, buffer_ + (first + s * kSquare<D> + j) * kLaneCount<D>);
             }
             transpose_squares(d, squares[s]);
         }
         for (std::size_t j = 0; j < kSquare<D>; ++j) {
-            for (std::size_t s = 0; s < kSquares; ++s) {
-                store_blocks(d, squares[s][j], rows_.data() + j, column_ + s * kSquare<D>);
+            std::array<V<D>, 4> q = {squares[0][j], squares[1][j], squares[2][j], squares[3][j]};
+            transpose_blocks(d, q);
+            constexpr std::size_t kParts = kLine / kLaneCount<D>;
+            for (std::size_t i = 0; i < 4; ++i) {
+                T* row = rows_[i / kParts * kSquare<D> + j] + column_ + i % kParts * kLaneCount<D>;
+                if (streamed_) {
+                    hn::Stream(q[i], d, row);
+                } else {
+                    hn::StoreU(q[i], d, row);
+                }
             }
         }
         column_ += kLine;
     }
 
     RowPointers<T> rows_;
+    bool streamed_;
     std::size_t waiting_ = 0;
     std::size_t column_ = 0;
     alignas(64) T buffer_[kColumns * kLaneCount<D>];
