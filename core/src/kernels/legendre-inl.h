@@ -11,14 +11,14 @@
 
 #include <hwy/highway.h>
 
+#include <array>
 #include <cstddef>
 
 #include "kernels/lanes-inl.h"
 #include "legendre.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 
 /// Below this sin²θ the pole is near: the recurrence in z would amplify the rounding of z, and of each step, by l².
 inline constexpr double kNearPole = 0.0156;
@@ -59,10 +59,12 @@ class LegendreLanes {
     }
 
   private:
-    using Row = T[static_cast<std::size_t>(kMaxOrder) * kLaneCount<D>];
+    using Row = std::array<T, static_cast<std::size_t>(kMaxOrder) * kLaneCount<D>>;
 
-    static HWY_INLINE V<D> get(const Row& row, std::size_t m) { return hn::Load(D(), row + m * kLaneCount<D>); }
-    static HWY_INLINE void put(Row& row, std::size_t m, V<D> value) { hn::Store(value, D(), row + m * kLaneCount<D>); }
+    static HWY_INLINE V<D> get(const Row& row, std::size_t m) { return hn::Load(D(), row.data() + m * kLaneCount<D>); }
+    static HWY_INLINE void put(Row& row, std::size_t m, V<D> value) {
+        hn::Store(value, D(), row.data() + m * kLaneCount<D>);
+    }
 
     /// other_ holds the band before.
     HWY_INLINE void advance_by_z() {
@@ -123,8 +125,7 @@ HWY_INLINE void complex_powers_in_lanes(D d, V<D> x, V<D> y, double scale, std::
     }
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

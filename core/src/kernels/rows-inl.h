@@ -11,17 +11,16 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
 #include "kernels/lanes-inl.h"
 #include "shlight/types.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 
 /// Side of a square of 128-bit blocks: 4 floats, 2 doubles.
 template <class D>
@@ -100,7 +99,7 @@ class RowWriter {
     }
 
     /// Where the next columns go, column after column of kLaneCount values each, at most 2 kMaxOrder - 1 of them.
-    T* next() { return buffer_ + waiting_ * kLaneCount<D>; }
+    T* next() { return buffer_.data() + waiting_ * kLaneCount<D>; }
 
     /// So many columns were put there.
     void add(std::size_t columns) {
@@ -109,7 +108,7 @@ class RowWriter {
         for (; done + kLine <= waiting_; done += kLine) {
             write_line(done);
         }
-        std::memmove(buffer_, buffer_ + done * kLaneCount<D>, (waiting_ - done) * kLaneCount<D> * sizeof(T));
+        std::copy(buffer_.data() + done * kLaneCount<D>, next(), buffer_.data());
         waiting_ -= done;
     }
 
@@ -133,7 +132,7 @@ class RowWriter {
         std::array<std::array<V<D>, kSquare<D>>, 4> squares;  // a line is four squares of either type
         for (std::size_t s = 0; s < 4; ++s) {
             for (std::size_t j = 0; j < kSquare<D>; ++j) {
-                squares[s][j] = hn::Load(d, buffer_ + (first + s * kSquare<D> + j) * kLaneCount<D>);
+                squares[s][j] = hn::Load(d, buffer_.data() + (first + s * kSquare<D> + j) * kLaneCount<D>);
             }
             transpose_squares(d, squares[s]);
         }
@@ -157,11 +156,10 @@ class RowWriter {
     bool streamed_;
     std::size_t waiting_ = 0;
     std::size_t column_ = 0;
-    alignas(64) T buffer_[kColumns * kLaneCount<D>];
+    alignas(64) std::array<T, kColumns * kLaneCount<D>> buffer_;
 };
 
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -23,6 +23,12 @@ std::int64_t& forced() {
     return target;
 }
 
+void use(std::int64_t target) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(target);
+    forced() = target;
+}
+
 }  // namespace
 
 std::vector<std::string> kernel_targets() {
@@ -48,9 +54,15 @@ void force_kernel_target(const std::string& target) {
         }
         reject("target: this machine has " + known + ", not " + target);
     }
-    hwy::SetSupportedTargetsForTest(*found);
-    hwy::GetChosenTarget().Update(*found);
-    forced() = *found;
+    use(*found);
+}
+
+ForcedKernelTarget::ForcedKernelTarget(const std::string& target) : before_(forced()) {
+    force_kernel_target(target);
+}
+
+ForcedKernelTarget::~ForcedKernelTarget() {
+    use(before_);
 }
 
 void force_kernel_target_of_environment() {

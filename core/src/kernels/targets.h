@@ -4,6 +4,7 @@
 // is chosen when the first one runs.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -26,13 +27,13 @@ void force_kernel_target_of_environment();
 /// Forces a target as long as it lives.
 class ForcedKernelTarget {
   public:
-    explicit ForcedKernelTarget(const std::string& target) : before_(kernel_target()) { force_kernel_target(target); }
-    ~ForcedKernelTarget() { force_kernel_target(before_); }
+    explicit ForcedKernelTarget(const std::string& target);
+    ~ForcedKernelTarget();
     ForcedKernelTarget(const ForcedKernelTarget&) = delete;
     ForcedKernelTarget& operator=(const ForcedKernelTarget&) = delete;
 
   private:
-    std::string before_;
+    std::int64_t before_;
 };
 
 }  // namespace shlight
