@@ -2,11 +2,11 @@
 #include "shlight/basis.h"
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 #include "checks.h"
 #include "kernels/basis_kernel.h"
+#include "kernels/dot_products.h"
 
 namespace shlight {
 namespace {
@@ -54,10 +54,7 @@ void evaluate(std::span<const T> coefficients, std::span<const Vec3<T>> directio
         if (!basis_rows(block.data(), block.size(), order, basis.data())) {
             reject_directions(block);
         }
-        for (std::size_t i = 0; i < block.size(); ++i) {
-            const T* own = coefficients.data() + (first + i) * row;
-            values[first + i] = std::inner_product(own, own + row, basis.data() + i * row, T(0));
-        }
+        dot_products(coefficients.data() + first * row, basis.data(), row, block.size(), values.data() + first);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "shlight/shading.h"
 
 #include "checks.h"
+#include "kernels/dot_products.h"
 
 namespace shlight {
 
@@ -11,13 +12,7 @@ void shade(std::span<const T> light, std::span<const T> bsdf, int order, std::sp
     const auto row = static_cast<std::size_t>(coefficient_count(order));
     check_size("light", light.size(), radiance.size() * row);
     check_size("bsdf", bsdf.size(), light.size());
-    for (std::size_t i = 0; i < radiance.size(); ++i) {
-        T sum = 0;
-        for (std::size_t k = 0; k < row; ++k) {
-            sum += light[i * row + k] * bsdf[i * row + k];
-        }
-        radiance[i] = sum;
-    }
+    dot_products(light.data(), bsdf.data(), row, radiance.size(), radiance.data());
 }
 
 template <class T>
