@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import signal
 import sys
 import tempfile
@@ -22,6 +23,13 @@ class CommandError(Exception):
     def __init__(self, text: str, exit_code: int) -> None:
         super().__init__(text)
         self.exit_code = exit_code
+
+
+class Parser(argparse.ArgumentParser):
+    """Says on one line what is wrong with a command line, and raises SystemExit(2)."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {message}\n")
 
 
 def run_command(name: str, work: Callable[[], None], *, when_interrupted: str) -> int:

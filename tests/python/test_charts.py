@@ -23,7 +23,7 @@ from shlight.charts import command, figures, growth, measure, options, speed_err
 from shlight.charts.figure import Drawn, Figure, Run, Table
 from shlight.charts.lights import CLASSES, LightClass, Lights, spheres, squares
 from shlight.charts.page import PAGE
-from shlight.charts.progress import Progress
+from shlight.progress import Progress
 
 # --- the command -------------------------------------------------------------------------------------------------
 

@@ -7,7 +7,9 @@ import argparse
 import re
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
+
+from shlight.commands import Parser
 
 DEFAULT_SCENE = "example_scene"
 LARGEST_SIDE = 16384
@@ -61,15 +63,8 @@ def _examples() -> Path:
     return next(folder for folder in folders if (folder / f"{DEFAULT_SCENE}.py").is_file())
 
 
-class _Parser(argparse.ArgumentParser):
-    """Says on one line what is wrong."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: {message}\n")
-
-
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+    parser = Parser(
         prog="shlight preview",
         description="Renders a scene with shlight, with Cycles in about the same time, and with Cycles at many "
         "samples as the reference; writes the pictures, a comparison and all figures.",

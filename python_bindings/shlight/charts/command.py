@@ -9,12 +9,12 @@ import time
 from pathlib import Path
 
 from shlight.commands import CommandError, check_folder, run_command, work_folder
+from shlight.progress import Progress
 
 from .figure import Drawn, Figure, Run, Table
 from .figures import FIGURES
 from .options import Options, parse
 from .page import PAGE, leave_part, page, part_of
-from .progress import Progress
 
 
 def main(argv: list[str] | None = None) -> int:

@@ -127,14 +127,14 @@ def _small(rng: np.random.Generator, count: int) -> Lights:
 
 def _polygon_clipped(rng: np.random.Generator, count: int) -> Lights:
     size = rng.uniform(0.2, 1.0, count)
-    return _parallelograms(rng, rng.uniform(-0.3, 0.5, count) * size, size)
+    return parallelograms(rng, rng.uniform(-0.3, 0.5, count) * size, size)
 
 
 def _polygon_small(rng: np.random.Generator, count: int) -> Lights:
-    return _parallelograms(rng, rng.uniform(0.1, np.pi / 2, count), _log_uniform(rng, 1e-3, 3e-2, count))
+    return parallelograms(rng, rng.uniform(0.1, np.pi / 2, count), _log_uniform(rng, 1e-3, 3e-2, count))
 
 
-def _parallelograms(rng: np.random.Generator, elevation: Array, size: Array) -> Lights:
+def parallelograms(rng: np.random.Generator, elevation: Array, size: Array) -> Lights:
     """Parallelograms about a centre at distance 1: half diagonals of 0.8 … 1.2 times `size`, tilt up to 0.7 rad."""
     count = len(size)
     center = spheres(elevation, size, _around(rng, count)).arrays[0]

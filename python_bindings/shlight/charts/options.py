@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-import argparse
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NoReturn
+
+from shlight.commands import Parser
 
 from .figure import Figure
 from .figures import FIGURES
@@ -34,15 +34,8 @@ def parse(argv: list[str]) -> Options:
     return Options(figures, given.quick, Path(given.out), given.list)
 
 
-class _Parser(argparse.ArgumentParser):
-    """Says on one line what is wrong."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: {message}\n")
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="shlight charts",
         description="Measures the library beside the methods that it is compared with, and draws the figures: PNG and "
         "CSV files and a page, index.html, that explains them.",

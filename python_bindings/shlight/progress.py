@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Progress on standard output: a bar that moves in a terminal, a line where a figure begins and ends elsewhere."""
+"""Progress on standard output: a bar that moves in a terminal, a line where a part begins and ends elsewhere."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ BAR_WIDTH = 24
 
 
 class Progress:
-    """Shows one figure after the other."""
+    """Shows one part of a command's work after the other."""
 
-    def __init__(self, figures: int, stream: TextIO | None = None) -> None:
+    def __init__(self, parts: int, stream: TextIO | None = None) -> None:
         self._stream = stream or sys.stdout
         self._moving = self._stream.isatty()
-        self._figures = figures
+        self._parts = parts
         self._begun = 0
         self._title = ""
         self._since = 0.0
 
     def begin(self, title: str) -> None:
         self._begun += 1
-        self._title, self._since = f"{self._begun}/{self._figures} {title}", time.monotonic()
+        self._title, self._since = f"{self._begun}/{self._parts} {title}", time.monotonic()
         if not self._moving:
             print(self._title, file=self._stream, flush=True)
 
     def step(self, share: float, text: str) -> None:
-        """Moves the bar of the figure: share 0 … 1."""
+        """Moves the bar of the part: share 0 … 1."""
         if not self._moving:
             return
         full = min(max(int(BAR_WIDTH * share), 0), BAR_WIDTH)
@@ -38,7 +38,7 @@ class Progress:
         self._stream.flush()
 
     def end(self) -> None:
-        """Ends the figure that is shown."""
+        """Ends the part that is shown."""
         elapsed = f"{time.monotonic() - self._since:.1f} s"
         if self._moving:
             self._stream.write(f"\r\033[K{self._title}: {elapsed}\n")

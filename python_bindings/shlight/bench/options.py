@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""The command line of `shlight bench`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from shlight.commands import Parser
+
+from .run import LIGHTS, QUICK_LIGHTS, QUICK_ROUNDS, ROUNDS, Section
+from .sections import SECTIONS
+
+DEFAULT_OUT = str(Path("out") / "bench" / "bench.json")
+
+
+@dataclass(frozen=True)
+class Options:
+    sections: list[Section]  # what to measure, in the order of the report
+    quick: bool
+    out: Path
+    compare: Path | None
+    read: Path | None
+    list: bool
+
+    @property
+    def lights(self) -> int:
+        return QUICK_LIGHTS if self.quick else LIGHTS
+
+    @property
+    def rounds(self) -> int:
+        return QUICK_ROUNDS if self.quick else ROUNDS
+
+
+def parse(argv: list[str]) -> Options:
+    """The options of a command line; prints the reason and raises SystemExit(2) where it is not understood."""
+    parser = _parser()
+    given = parser.parse_args(argv)
+    known = {section.name: section for section in SECTIONS}
+    unknown = [name for name in given.names if name not in known]
+    if unknown:
+        parser.error(f"there is no section '{unknown[0]}'; there are: {', '.join(known)}")
+    sections = [section for section in SECTIONS if not given.names or section.name in given.names]
+    compare, read = (None if file is None else Path(file) for file in (given.compare, given.read))
+    return Options(sections, given.quick, Path(given.out), compare, read, given.list)
+
+
+def _parser() -> Parser:
+    parser = Parser(
+        prog="shlight bench",
+        description="Measures how long the library's kernels take, as ratios of times that alternate in one run, and "
+        "what memory they need; prints tables and writes a JSON file.",
+    )
+    add = parser.add_argument
+    add("names", nargs="*", metavar="NAME", help="sections to measure (default: all)")
+    add("--quick", action="store_true", help=f"{QUICK_LIGHTS} lights rather than {LIGHTS}: all within a minute")
+    add("--out", metavar="FILE", default=DEFAULT_OUT, help="JSON file of the results (default: %(default)s)")
+    add("--compare", metavar="FILE", help="show the change against this JSON file of an earlier run")
+    add("--read", metavar="FILE", help="take the results from this JSON file instead of measuring")
+    add("--list", action="store_true", help="list the sections and do nothing else")
+    return parser

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""What a section is, and what it is given to measure with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from .rounds import ONE_THREAD, Clock, Seconds, Spread, Work, alternate
+from .row import Row
+
+LIGHTS, ROUNDS = 100_000, 11
+QUICK_LIGHTS, QUICK_ROUNDS = 10_000, 9
+RESULT_BYTES = 4e8  # of one call: more lights than this holds are not asked for
+
+
+@dataclass(frozen=True)
+class Run:
+    """One measurement of one section. step: told often how much is done, 0 … 1, and what comes now."""
+
+    section: str
+    lights: int
+    rounds: int
+    step: Callable[[float, str], None] = field(default=lambda share, text: None)
+
+    def count(self, order: int) -> int:
+        """How many lights' coefficients of an order fit into memory."""
+        return min(self.lights, int(RESULT_BYTES / (4 * order**2)))
+
+    def alternate(
+        self, works: Mapping[str, Work], part: tuple[int, int] = (0, 1), clock: Clock = ONE_THREAD
+    ) -> Seconds:
+        """rounds.alternate(). part: (i, k): the i-th of k such measurements of the section."""
+        i, k = part
+        return alternate(works, self.rounds, clock, lambda share, name: self.step((i + share) / k, name))
+
+    def ratio(
+        self, seconds: Seconds, name: str, other: str, *, unit: str, bound: float | None = None, row: str = ""
+    ) -> Row:
+        """Time of one work ÷ that of another, of each round. row: its name, if not that of the work."""
+        own, others = seconds[name], seconds[other]
+        detail = f"{nanoseconds(own)} ÷ {nanoseconds(others)}"
+        return Row.of(self.section, row or name, Spread.of(own / others), unit, bound=bound, detail=detail)
+
+
+@dataclass(frozen=True)
+class Section:
+    """Rows that are measured together."""
+
+    name: str  # on the command line
+    title: str
+    measure: Callable[[Run], list[Row]]
+
+
+def nanoseconds(seconds: object) -> str:
+    """The median, as text."""
+    value = 1e9 * Spread.of(seconds).median  # type: ignore[arg-type]
+    return f"{value:.1f} ns" if value < 1000 else f"{value / 1000:.2f} µs"

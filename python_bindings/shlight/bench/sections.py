@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: MIT
+"""All sections, in the order of the report."""
+
+from __future__ import annotations
+
+from . import against_methods, against_peer, growth, memory, targets, threads
+from .run import Section
+
+SECTIONS = [
+    Section("basis", "Basis ÷ sphericart's", against_peer.measure_basis),
+    Section("spheres", "Sphere lights ÷ sphericart's basis", against_peer.measure_spheres),
+    Section("warped", "Sphere lights under a glossy lobe ÷ sphericart's basis", against_peer.measure_warped),
+    Section("quads", "Quads, half of them clipped ÷ sphericart's basis", against_peer.measure_quads),
+    Section("methods", "The papers' methods", against_methods.measure),
+    Section("growth", "Growth with the order", growth.measure),
+    Section("threads", "Two threads", threads.measure),
+    Section("targets", "Instruction sets", targets.measure),
+    Section("memory", "Memory", memory.measure),
+]
+
+PEERED = {"basis", "spheres", "warped", "quads", "targets"}  # need sphericart

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: MIT
+"""The same kernels on every instruction set that the machine has: the time of each ÷ that of the best."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from shlight import _core
+
+from . import against_peer, inputs, kinds, peer
+from .rounds import Work
+from .row import Row
+from .run import Run
+
+ORDER = 16
+AVX2, LANES = "AVX2", 2.2  # a machine with no more than this may take so much longer than the bounds
+BOUNDS = {
+    "basis": against_peer.BASIS,
+    "clipped sphere": against_peer.CLIPPED,
+    "clipped sphere, fused": against_peer.FUSED,
+    "whole sphere": against_peer.WHOLE,
+    "warped lobe": against_peer.WARPED,
+    "quad, fused": against_peer.QUADS,
+}
+
+
+def measure(run: Run) -> list[Row]:
+    targets = _core.kernel_targets()
+    calls = kinds.works(run.lights, ORDER)
+    works = {f"{name}, {target}": _on(target, work) for name, work in calls.items() for target in targets}
+    works[against_peer.PEER] = peer.basis(inputs.directions(run.lights), ORDER)
+    try:
+        seconds = run.alternate(works)
+    finally:
+        _core.force_kernel_target(None)
+    best, *others = targets
+    rows = []
+    for name in calls:
+        for target in others:
+            row = f"{name}, n = {ORDER}, {target}"
+            rows.append(run.ratio(seconds, f"{name}, {target}", f"{name}, {best}", unit=f"× {best}", row=row))
+    if AVX2 in targets:
+        for name, bounds in BOUNDS.items():
+            row, bound = f"{name}, n = {ORDER}, {AVX2} ÷ {against_peer.PEER}", LANES * bounds[ORDER]
+            own = f"{name}, {AVX2}"
+            rows.append(run.ratio(seconds, own, against_peer.PEER, unit=against_peer.UNIT, bound=bound, row=row))
+    return rows
+
+
+def _on(target: str, work: Work) -> Work:
+    def call() -> None:
+        _core.force_kernel_target(target)
+        work.call()
+
+    checked: Callable[[], None] = call
+    return Work(checked, work.count)
