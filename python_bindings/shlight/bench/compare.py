@@ -9,6 +9,7 @@ from .row import Bench, Row
 from .table import aligned, number
 
 SAME_TO_COMPARE = ("processor", "instruction set", "cores")
+TRIFLE = 0.02
 
 
 @dataclass(frozen=True)
@@ -25,8 +26,9 @@ class Change:
 
     @property
     def beyond_spread(self) -> bool:
-        """Whether the quartiles of the two runs leave a gap between them."""
-        return self.new.low > self.old.high or self.new.high < self.old.low
+        """Whether the quartiles of the two runs leave a gap between them, and the change is no trifle."""
+        apart = self.new.low > self.old.high or self.new.high < self.old.low
+        return apart and not abs(self.ratio - 1) <= TRIFLE
 
 
 def changes(new: Bench, old: Bench) -> list[Change]:

@@ -18,7 +18,8 @@ from .row import Row
 from .run import Run
 
 ORDERS = (8, 16)
-MEGA = 1e6
+# glibc gives back to the system what is freed, so that only what is held counts.
+RETURN_AT_ONCE = {"MALLOC_MMAP_THRESHOLD_": "65536", "MALLOC_TRIM_THRESHOLD_": "0"}
 
 
 def measure(run: Run) -> list[Row]:
@@ -27,7 +28,7 @@ def measure(run: Run) -> list[Row]:
     for i, order in enumerate(ORDERS):
         for k, name in enumerate(names):
             run.step((i + k / len(names)) / len(ORDERS), f"{name}, n = {order}")
-            count = run.count(order)
+            count = run.count(order, 10 * run.lights)
             growth, result = (number / count for number in _probed(name, order, count))
             detail = f"result {result:.0f} MB, beside it {growth - result:.0f} MB"
             spread = Spread(growth, growth, growth)
@@ -37,7 +38,8 @@ def measure(run: Run) -> list[Row]:
 
 def _probed(name: str, order: int, count: int) -> tuple[float, float]:
     """Bytes by which the peak grew, and of the result."""
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    path = os.pathsep.join(part for part in sys.path if part)
+    environment = {**os.environ, "PYTHONPATH": path, **RETURN_AT_ONCE}
     command = [sys.executable, "-m", "shlight.bench.memory_probe", name, str(order), str(count)]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     if done.returncode != 0:

@@ -23,9 +23,9 @@ class Run:
     rounds: int
     step: Callable[[float, str], None] = field(default=lambda share, text: None)
 
-    def count(self, order: int) -> int:
-        """How many lights' coefficients of an order fit into memory."""
-        return min(self.lights, int(RESULT_BYTES / (4 * order**2)))
+    def count(self, order: int, wanted: int | None = None) -> int:
+        """As many lights as wanted (None: as usual), or as their coefficients of this order fit into memory."""
+        return min(self.lights if wanted is None else wanted, int(RESULT_BYTES / (4 * order**2)))
 
     def alternate(
         self, works: Mapping[str, Work], part: tuple[int, int] = (0, 1), clock: Clock = ONE_THREAD

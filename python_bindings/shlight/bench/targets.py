@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from shlight import _core
 
 from . import against_peer, inputs, kinds, peer
@@ -25,14 +23,14 @@ BOUNDS = {
 
 
 def measure(run: Run) -> list[Row]:
-    targets = _core.kernel_targets()
+    targets, usual = _core.kernel_targets(), _core.kernel_target()
     calls = kinds.works(run.lights, ORDER)
     works = {f"{name}, {target}": _on(target, work) for name, work in calls.items() for target in targets}
     works[against_peer.PEER] = peer.basis(inputs.directions(run.lights), ORDER)
     try:
         seconds = run.alternate(works)
     finally:
-        _core.force_kernel_target(None)
+        _core.force_kernel_target(usual)
     best, *others = targets
     rows = []
     for name in calls:
@@ -52,5 +50,4 @@ def _on(target: str, work: Work) -> Work:
         _core.force_kernel_target(target)
         work.call()
 
-    checked: Callable[[], None] = call
-    return Work(checked, work.count)
+    return Work(call, work.count)
