@@ -8,7 +8,7 @@ import numpy as np
 from . import inputs
 from .rounds import Spread, Work
 from .row import Row
-from .run import Run, nanoseconds
+from .run import Run, duration
 
 SPANS = ((16, 64), (8, 64))
 BOUNDS = {("clipped sphere", (16, 64)): 2.05}
@@ -28,7 +28,7 @@ def measure(run: Run) -> list[Row]:
         for low, high in SPANS:
             at_low, at_high = seconds[f"{name}, n = {low}"], seconds[f"{name}, n = {high}"]
             exponent = Spread.of(np.log(at_high / at_low) / np.log(high / low))
-            detail = f"{nanoseconds(at_low)} … {nanoseconds(at_high)}"
+            detail = f"{duration(at_low)} … {duration(at_high)}"
             bound = BOUNDS.get((name, (low, high)))
             row = f"{name}, n = {low} … {high}"
             rows.append(Row.of(run.section, row, exponent, "exponent", bound=bound, detail=detail))

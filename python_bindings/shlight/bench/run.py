@@ -6,11 +6,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from shlight._arrays import Floats
+
 from .rounds import ONE_THREAD, Clock, Seconds, Spread, Work, alternate
 from .row import Row
 
 LIGHTS, ROUNDS = 100_000, 11
 QUICK_LIGHTS, QUICK_ROUNDS = 10_000, 9
+UNITS = (("ns", 1e-9), ("µs", 1e-6), ("ms", 1e-3), ("s", 1.0))
 RESULT_BYTES = 4e8  # of one call: more lights than this holds are not asked for
 
 
@@ -39,7 +42,7 @@ class Run:
     ) -> Row:
         """Time of one work ÷ that of another, of each round. row: its name, if not that of the work."""
         own, others = seconds[name], seconds[other]
-        detail = f"{nanoseconds(own)} ÷ {nanoseconds(others)}"
+        detail = f"{duration(own)} ÷ {duration(others)}"
         return Row.of(self.section, row or name, Spread.of(own / others), unit, bound=bound, detail=detail)
 
 
@@ -52,7 +55,8 @@ class Section:
     measure: Callable[[Run], list[Row]]
 
 
-def nanoseconds(seconds: object) -> str:
-    """The median, as text."""
-    value = 1e9 * Spread.of(seconds).median  # type: ignore[arg-type]
-    return f"{value:.1f} ns" if value < 1000 else f"{value / 1000:.2f} µs"
+def duration(seconds: Floats) -> str:
+    """The median of some times, as text."""
+    value = Spread.of(seconds).median
+    unit, size = next(((unit, size) for unit, size in UNITS if value < 1000 * size), UNITS[-1])
+    return f"{value / size:.3g} {unit}"

@@ -6,7 +6,7 @@ from __future__ import annotations
 from . import kinds
 from .rounds import WALL, Spread
 from .row import Row
-from .run import Run, nanoseconds
+from .run import Run, duration
 
 ORDERS = (8, 16)
 BOUND = 1.8
@@ -22,7 +22,7 @@ def measure(run: Run) -> list[Row]:
         seconds = run.alternate(works, (i, len(ORDERS)), WALL)
         for name in names:
             one, two = seconds[f"{name}, 1"], seconds[f"{name}, 2"]
-            detail = f"{nanoseconds(one)} ÷ {nanoseconds(two)}"
+            detail = f"{duration(one)} ÷ {duration(two)}"
             row = f"{name}, n = {order}"
             spread = Spread.of(one / two)
             rows.append(Row.of(run.section, row, spread, "× as fast", bound=BOUND, bound_is="least", detail=detail))

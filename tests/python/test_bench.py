@@ -1,0 +1,408 @@
+# SPDX-License-Identifier: MIT
+"""The command `shlight bench` and what it measures with; no test depends on how fast anything is."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import shlight
+from shlight import _core
+from shlight.bench import (
+    against_methods,
+    against_peer,
+    command,
+    compare,
+    growth,
+    inputs,
+    kinds,
+    memory,
+    options,
+    peer,
+    sections,
+    table,
+    targets,
+    threads,
+)
+from shlight.bench.rounds import Spread, Work, alternate
+from shlight.bench.row import Bench, Row, read
+from shlight.bench.run import Run, Section
+from shlight.commands import CommandError
+
+# --- rounds and rows ---------------------------------------------------------------------------------------------
+
+
+class Clock:
+    """Time passes only in works."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+    def work(self, seconds: list[float], count: int = 1) -> Work:
+        """Takes these times, one turn after the other."""
+        left = iter(seconds)
+
+        def call() -> None:
+            self.now += next(left)
+
+        return Work(call, count)
+
+
+def test_works_take_turns_and_the_first_is_not_measured() -> None:
+    clock, turns = Clock(), []
+    works = {"a": clock.work([100, 1, 2, 3], 2), "b": clock.work([100, 10, 20, 30], 5)}
+    seconds = alternate(works, 3, clock, lambda share, name: turns.append((share, name)))
+    np.testing.assert_allclose(seconds["a"], [0.5, 1, 1.5])
+    np.testing.assert_allclose(seconds["b"], [2, 4, 6])
+    assert [name for _, name in turns] == ["a", "b"] * 4
+    shares = [share for share, _ in turns]
+    assert shares == sorted(shares)
+    assert 0 <= shares[0] < shares[-1] < 1
+
+
+def test_ratios_are_of_times_in_the_same_round() -> None:
+    # The machine is ten times as slow in the second half; the ratio is 1/2 throughout but for one round.
+    clock = Clock()
+    slow = [1.0] * 5 + [10.0] * 5
+    works = {"a": clock.work([s / 2 for s in slow]), "b": clock.work([*slow[:3], 4.0, *slow[4:]])}
+    seconds = alternate(works, 9, clock)
+    row = Run("basis", 1, 9).ratio(seconds, "a", "b", unit="× b", bound=0.6)
+    assert (row.value, row.low, row.high, row.met) == (0.5, 0.5, 0.5, True)
+    assert row.detail == "5 s ÷ 10 s"
+
+
+def test_median_and_quartiles_by_hand() -> None:
+    assert Spread.of(np.array([9.0, 1, 3, 2, 100])) == Spread(3, 2, 9)
+
+
+def made(value: float, name: str = "a", spread: float = 0.0, **more: object) -> Row:
+    return replace(Row("basis", name, value, value - spread, value + spread, "×"), **more)
+
+
+@pytest.mark.parametrize(
+    ("bound", "bound_is", "met"),
+    [(None, "most", None), (2.0, "most", True), (1.9, "most", False), (2.0, "least", True), (2.1, "least", False)],
+)
+def test_bounds(bound: float | None, bound_is: str, met: bool | None) -> None:
+    assert made(2.0, bound=bound, bound_is=bound_is).met is met
+
+
+def test_a_file_holds_what_was_measured(tmp_path: Path) -> None:
+    bench = Bench({"processor": "π"}, {"lights": 3, "rounds": 9}, [made(0.5, bound=0.6), made(2, "b", 0.25)])
+    file = tmp_path / "a.json"
+    file.write_text(bench.to_json(), encoding="utf-8")
+    assert read(file) == bench
+    assert json.loads(file.read_text(encoding="utf-8"))["rows"][0]["met"] is True
+
+
+@pytest.mark.parametrize(
+    "content", ["", "[]", "{}", '{"format": 1}', '{"format": 1, "machine": {}, "settings": {}, "rows": [{"name": 1}]}']
+)
+def test_other_files_are_refused(content: str, tmp_path: Path) -> None:
+    file = tmp_path / "other.json"
+    file.write_text(content)
+    with pytest.raises(CommandError, match=r"other\.json is not a file that shlight bench wrote"):
+        read(file)
+
+
+def test_what_is_not_a_number_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "nan.json"
+    file.write_text(Bench({}, {}, [made(1.0)]).to_json().replace("1.0", "NaN"))
+    with pytest.raises(CommandError, match="not a file that shlight bench wrote"):
+        read(file)
+    with pytest.raises(ValueError):
+        Bench({}, {}, [made(float("nan"))]).to_json()
+
+
+# --- comparison and tables ---------------------------------------------------------------------------------------
+
+
+def bench_of(*rows: Row, **machine: str) -> Bench:
+    return Bench({"processor": "x", **machine}, {"lights": 10, "rounds": 9}, list(rows))
+
+
+def test_changes_beyond_the_spread_are_flagged() -> None:
+    old = bench_of(made(1.0, "noisy", 0.2), made(1.0, "better", 0.01), made(2.0, "worse", 0.01), made(1.0, "trifle"),
+                   made(1.5, "scaling", 0.01, bound_is="least"), made(3.0, "gone"))  # fmt: skip
+    new = bench_of(made(1.3, "noisy", 0.2), made(0.8, "better", 0.01), made(3.0, "worse", 0.01), made(1.01, "trifle"),
+                   made(1.9, "scaling", 0.01, bound_is="least"), made(3.0, "new"))  # fmt: skip
+    found = {change.new.name: change for change in compare.changes(new, old)}
+    assert list(found) == ["noisy", "better", "worse", "trifle", "scaling"]
+    assert found["worse"].ratio == 1.5
+    text = compare.comparison(new, old)
+    flags = {cells[1]: cells[-1] for cells in map(split, text.splitlines()) if len(cells) == 6}
+    assert {name: flags[name] for name in found} == {
+        "noisy": "",
+        "better": "better",
+        "worse": "WORSE",
+        "trifle": "",
+        "scaling": "better",
+    }
+    assert "3 of 5 rows changed" in text
+
+
+def split(line: str) -> list[str]:
+    return [cell.strip() for cell in line.strip("|").split("|")]
+
+
+def test_other_machines_are_named() -> None:
+    text = compare.comparison(bench_of(made(1.0), processor="new"), bench_of(made(1.0), processor="old"))
+    assert text.startswith("not the same processor: new now, old before\n")
+    nothing = compare.comparison(bench_of(made(1.0)), bench_of(made(1.0, "other")))
+    assert nothing == "the two runs have no row in common"
+
+
+def test_a_table_lines_up() -> None:
+    rows = [made(0.5, "short", bound=0.6), made(1234.5, "a longer name", 2)]
+    lines = table.section("Title", rows).splitlines()
+    assert lines[:2] == ["Title", ""]
+    assert len({len(line) for line in lines[2:]}) == 1
+    assert split(lines[4]) == ["short", "0.5", "", "×", "≤ 0.6", "met"]
+    assert split(lines[5]) == ["a longer name", "1234", "1232 … 1236", "×", "", ""]
+
+
+# --- inputs ------------------------------------------------------------------------------------------------------
+
+
+def test_lights_are_what_their_names_say() -> None:
+    for kind, cut in (("clipped", 1.0), ("whole", 0.0), ("mixed", 0.25)):
+        lights = inputs.spheres(kind, 400)
+        assert lights.centers.dtype == lights.radii.dtype == np.float32
+        height, radii = lights.centers[:, 2], lights.radii
+        assert (height > -radii).all()
+        assert np.mean(height < radii) == cut
+    quads = inputs.quads(401)
+    heights = quads.vertices[..., 2]
+    below = (heights < 0).any(axis=1)
+    np.testing.assert_array_equal(below, np.arange(401) % 2 == 0)
+    assert (heights > 0).any(axis=1).all()
+    assert quads.vertices.dtype == np.float32
+    np.testing.assert_allclose(np.linalg.norm(inputs.directions(50), axis=-1), 1, atol=1e-6)
+
+
+def test_each_kind_of_work_is_the_call_that_it_names() -> None:
+    works = kinds.works(8, 5)
+    clipped, quads = inputs.spheres("clipped", 8), inputs.quads(8)
+    expected = {
+        "basis": shlight.sh_basis(inputs.directions(8), 5),
+        "clipped sphere": shlight.sphere_coefficients(clipped.centers, clipped.radii, 5),
+        "quad": shlight.polygon_coefficients(quads.vertices, 5),
+    }
+    for name, values in expected.items():
+        np.testing.assert_array_equal(works[name].call(), values)
+    assert {work.count for work in works.values()} == {8}
+
+
+def test_fused_work_takes_the_order_it_names() -> None:
+    lights = inputs.spheres("clipped", 8)
+    _, effort = shlight.shade_spheres(
+        lights.centers, lights.radii, shlight.Bsdf.lambert(1.0), inputs.LAMBERT_COSINE, order=16, return_effort=True
+    )
+    assert (effort == 16).all()
+
+
+# --- sections ----------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def own_peer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The library's own basis in place of sphericart's, which the tests do not need."""
+
+    def basis(directions: np.ndarray, order: int) -> Work:
+        return Work(lambda: shlight.sh_basis(directions, order, threads=1), len(directions))
+
+    monkeypatch.setattr(peer, "basis", basis)
+    monkeypatch.setattr(peer, "check_installed", lambda: None)
+
+
+@pytest.mark.usefixtures("own_peer")
+@pytest.mark.parametrize("section", [s for s in sections.SECTIONS if s.name not in ("memory",)], ids=lambda s: s.name)
+def test_a_small_run_of_each_section(section: Section) -> None:
+    shares: list[float] = []
+    before = _core.kernel_target()
+    rows = section.measure(Run(section.name, 12, 2, lambda share, text: shares.append(share)))
+    assert _core.kernel_target() == before
+    assert shares == sorted(shares)
+    assert 0 <= shares[0] <= shares[-1] <= 1
+    assert rows
+    assert len({row.name for row in rows}) == len(rows)
+    for row in rows:
+        assert row.section == section.name
+        assert np.isfinite(row.value)
+        assert row.low <= row.value <= row.high
+    Bench({}, {}, rows).to_json()
+
+
+def test_the_bounds_of_the_library() -> None:
+    assert against_peer.CLIPPED == {8: 0.5, 16: 0.4, 32: 0.3}
+    assert against_peer.FUSED == {8: 0.30, 16: 0.25, 32: 0.15}
+    assert growth.BOUNDS == {("clipped sphere", (16, 64)): 2.05}
+    assert (threads.BOUND, targets.LANES) == (1.8, 2.2)
+
+
+@pytest.mark.usefixtures("own_peer")
+def test_planted_times_give_their_ratios(monkeypatch: pytest.MonkeyPatch) -> None:
+    def planted(self: Run, works: dict[str, Work], part: object = None, clock: object = None) -> dict[str, np.ndarray]:
+        def seconds(name: str) -> float:
+            order = int(name.rpartition("n = ")[2]) if "n = " in name else 1
+            slow = {"sphericart": 4.0, "basis": 2.0, "clipped sphere": 1.0}.get(name, 3.0)
+            return slow * order**1.5
+
+        return {name: np.full(self.rounds, 1e-9 * seconds(name)) for name in works}
+
+    monkeypatch.setattr(Run, "alternate", planted)
+    run = Run("x", 12, 9)
+    assert [row.value for row in against_peer.measure_basis(run)] == [0.5] * 3
+    of_spheres = {row.name: row for row in against_peer.measure_spheres(run)}
+    assert of_spheres["clipped sphere, n = 32"].value == 0.25
+    assert of_spheres["clipped sphere, n = 32"].detail == "1 ns ÷ 4 ns"
+    assert of_spheres["clipped sphere, fused, n = 8"].met is False
+    for row in growth.measure(run):
+        assert row.value == pytest.approx(1.5)
+    assert [row.value for row in threads.measure(run)] == [1.0] * 14
+    assert {row.unit for row in against_methods.measure(run)} == {"× zhou_wei", "× wang_ramamoorthi"}
+
+
+def test_memory_is_what_a_call_adds() -> None:
+    count = 200_000
+    growth, result = memory._probed("basis", 8, count)
+    assert result == 4 * 64 * count
+    assert result * 0.98 <= growth <= result + 3e7
+
+
+def test_a_probe_that_fails_says_why() -> None:
+    with pytest.raises(CommandError, match=r"(?s)the memory of nothing could not be measured:.*KeyError"):
+        memory._probed("nothing", 8, 4)
+
+
+# --- the command -------------------------------------------------------------------------------------------------
+
+
+def measure_two(run: Run) -> list[Row]:
+    run.step(0.5, "two")
+    return [
+        replace(made(0.5, "first", bound=0.6), section=run.section),
+        replace(made(7.0, "second"), section=run.section),
+    ]
+
+
+def measure_in_vain(run: Run) -> list[Row]:
+    raise KeyboardInterrupt
+
+
+@pytest.fixture
+def use(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
+    """Puts other sections in place of the real ones."""
+
+    def put(*others: Section) -> None:
+        for module in (command, options):
+            monkeypatch.setattr(module, "SECTIONS", list(others))
+
+    return put
+
+
+TWO = Section("two", "Two rows", measure_two)
+VAIN = Section("vain", "In vain", measure_in_vain)
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_a_run_prints_tables_and_leaves_a_file(
+    tmp_path: Path, use: Callable[..., None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    use(TWO)
+    out = tmp_path / "new" / "a.json"
+    assert command.main(["--quick", "--out", str(out)]) == 0
+    assert names(out.parent) == ["a.json"]
+    bench = read(out)
+    assert [row.name for row in bench.rows] == ["first", "second"]
+    assert bench.settings == {"lights": options.QUICK_LIGHTS, "rounds": options.QUICK_ROUNDS}
+    assert bench.machine["instruction set"] == _core.kernel_target()
+    assert bench.machine["processor"]
+    said = capsys.readouterr().out
+    assert "1/1 Two rows\n" in said
+    assert "Two rows\n\n|" in said
+    assert "1 of 1 bounds are met\n" in said
+    assert said.endswith(f"results: {out}\n")
+
+
+def test_against_an_earlier_run(tmp_path: Path, use: Callable[..., None], capsys: pytest.CaptureFixture[str]) -> None:
+    use(TWO)
+    first, second = tmp_path / "1.json", tmp_path / "2.json"
+    assert command.main(["--out", str(first)]) == 0
+    first.write_text(first.read_text().replace("7.0", "3.5"))
+    assert command.main(["--out", str(second), "--compare", str(first)]) == 0
+    measured = capsys.readouterr().out
+    assert command.main(["--read", str(second), "--compare", str(first)]) == 0
+    reread = capsys.readouterr().out
+    for said in (measured, reread):
+        assert f"Change against {first}\n" in said
+        assert "1 of 2 rows changed" in said
+    assert names(tmp_path) == ["1.json", "2.json"]
+
+
+def test_an_interrupt_leaves_the_file_before(
+    tmp_path: Path, use: Callable[..., None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    use(TWO, VAIN)
+    out = tmp_path / "a.json"
+    out.write_text("before")
+    assert command.main(["--out", str(out)]) == 130
+    assert (names(tmp_path), out.read_text()) == (["a.json"], "before")
+    assert capsys.readouterr().err == "shlight bench: interrupted; nothing was written\n"
+
+
+def test_the_list(capsys: pytest.CaptureFixture[str]) -> None:
+    assert command.main(["--list"]) == 0
+    listed = [line.split()[0] for line in capsys.readouterr().out.splitlines()]
+    assert listed == [section.name for section in sections.SECTIONS]
+    assert len(set(listed)) == len(listed)
+    assert set(listed) >= sections.PEERED
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (["bases"], "there is no section 'bases'; there are: basis, "),
+        (["--rounds=3"], "unrecognized arguments: --rounds=3"),
+        (["--compare", "/nowhere/b.json"], "cannot read /nowhere/b.json: No such file or directory"),
+        (["--read", "/nowhere/b.json"], "cannot read /nowhere/b.json: No such file or directory"),
+        (["--out", "/"], "/ is a folder; --out wants a file"),
+        (["--out", "/dev/null/a.json"], "/dev/null is a file; --out wants a folder"),
+    ],
+)
+def test_bad_requests_are_named(arguments: list[str], complaint: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert command.main(arguments) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.startswith(f"shlight bench: {complaint}")
+    assert said.err.count("\n") == 1
+
+
+def test_a_missing_peer_is_named(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    assert command.main(["basis"]) == 1
+    expected = "shlight bench: the Python module sphericart is missing: pip install 'shlight[bench]'\n"
+    assert capsys.readouterr().err == expected
+
+
+def test_what_needs_no_peer_runs_without(tmp_path: Path) -> None:
+    code = (
+        "import sys; sys.modules['sphericart'] = None\n"
+        "from shlight.bench.command import main; sys.exit(main(['--list']))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "growth" in done.stdout
