@@ -19,6 +19,12 @@ namespace {
 
 constexpr auto kInterval = std::chrono::milliseconds(50);
 
+void check_threads(int threads) {
+    if (threads < 0) {
+        throw std::invalid_argument("threads must not be negative");
+    }
+}
+
 /// The work of one parallel_for, on a thread of its own so that the caller is free to report.
 class Work {
   public:
@@ -77,12 +83,23 @@ class Work {
     std::thread thread_;  // last: it uses all the others
 };
 
+/// Without anything to report the caller takes part, and what one thread does needs no scheduler: small batches of
+/// lights take less time than a thread takes to start.
+void run_unwatched(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
+    if (count > 1 && threads != 1) {
+        run_in_arena(threads, [&] { tbb::parallel_for(std::size_t{0}, count, body, tbb::simple_partitioner()); });
+        return;
+    }
+    check_threads(threads);
+    for (std::size_t i = 0; i < count; ++i) {
+        body(i);
+    }
+}
+
 }  // namespace
 
 void run_in_arena(int threads, const std::function<void()>& work) {
-    if (threads < 0) {
-        throw std::invalid_argument("threads must not be negative");
-    }
+    check_threads(threads);
     // More than the machine has would only make oneTBB warn.
     const int cores = tbb::info::default_concurrency();
     tbb::task_arena arena(threads == 0 ? cores : std::min(threads, cores));
@@ -91,16 +108,20 @@ void run_in_arena(int threads, const std::function<void()>& work) {
 
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body,
                   const Progress& progress) {
+    if (!progress) {
+        run_unwatched(count, threads, body);
+        return;
+    }
     if (count > 0) {
         Work work(count, threads, body);
         while (!work.wait()) {
-            if (progress && !progress(work.share())) {
+            if (!progress(work.share())) {
                 throw RenderCancelled();
             }
         }
         work.rethrow();
     }
-    if (progress && !progress(1.0)) {
+    if (!progress(1.0)) {
         throw RenderCancelled();
     }
 }

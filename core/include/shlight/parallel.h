@@ -23,7 +23,8 @@ using Progress = std::function<bool(double)>;
 void run_in_arena(int threads, const std::function<void()>& work);
 
 /// Runs body(i) once for each i < count, in any order, on at most `threads` threads, 0: all cores.
-/// The calling thread waits and calls `progress` about every 50 ms and once at the end; work goes on meanwhile.
+/// With `progress` the calling thread waits and calls it about every 50 ms and once at the end; work goes on meanwhile.
+/// Without, it takes part.
 /// Throws RenderCancelled after progress has returned false, and what body or progress throw; by then no body runs.
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body,
                   const Progress& progress = {});
