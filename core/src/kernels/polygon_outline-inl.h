@@ -1,0 +1,494 @@
+// SPDX-License-Identifier: MIT
+//
+// Polygons in lanes: cut by the horizon, warped, measured, and taken apart into arcs (docs/algorithms.md, "Polygons").
+// Included once per instruction set.
+#if defined(SHLIGHT_KERNELS_POLYGON_OUTLINE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHLIGHT_KERNELS_POLYGON_OUTLINE_INL_H_
+#undef SHLIGHT_KERNELS_POLYGON_OUTLINE_INL_H_
+#else
+#define SHLIGHT_KERNELS_POLYGON_OUTLINE_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <type_traits>
+#include <vector>
+
+#include "kernels/arc_points-inl.h"
+#include "kernels/arc_rows.h"
+#include "kernels/lanes-inl.h"
+#include "kernels/lobe_arrays.h"
+#include "kernels/polygon_array.h"
+#include "kernels/rows-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace shlight {
+namespace HWY_NAMESPACE {
+
+/// One number for each lane.
+template <class R>
+struct alignas(64) LaneValues : std::array<R, kLaneCount<Lanes<R>>> {};
+
+/// What a vector of polygons has at one edge, from vertex e to the next.
+template <class R>
+struct EdgeLanes {
+    using Values = LaneValues<R>;
+
+    Values x, y, z;                    ///< the vertex, as a multiple of the polygon's largest coordinate
+    Values cross_x, cross_y, cross_z;  ///< vertex × next, towards the interior
+    Values cut_x, cut_y;               ///< where the edge meets the horizon
+    Values share;                      ///< of the edge that is kept
+    Values crossing;                   ///< 1: enters, -1: leaves the upper half, from vertex to next
+    // The arc that is kept, as ArcRow; half is 0 if nothing is.
+    Values axis_x, axis_y, axis_z, middle_x, middle_y, middle_z, cosine, sine, half;
+    Values azimuth_cosine, azimuth_sine, azimuth;  ///< of the crossing
+};
+
+/// A vector of polygons.
+template <class R>
+struct PolygonLanes {
+    std::vector<EdgeLanes<R>> edges;
+    LaneValues<R> side;  ///< 1 or -1 by the winding, 0 if edge-on or without area
+};
+
+/// What a region is known by beside its arcs.
+template <class R>
+struct RegionLanes {
+    V<Lanes<R>> solid_angle, outline;
+    Vectors3<R> first_moment;  ///< ∫ u du
+};
+
+template <class R>
+HWY_INLINE V<Lanes<R>> get(const LaneValues<R>& values) {
+    return hn::Load(Lanes<R>(), values.data());
+}
+
+template <class R>
+HWY_INLINE void put(LaneValues<R>& values, V<Lanes<R>> v) {
+    hn::Store(v, Lanes<R>(), values.data());
+}
+
+/// Rounds lanes of doubles to lanes [offset, …) of R.
+template <class R>
+HWY_INLINE void put_rounded(LaneValues<R>& values, std::size_t offset, V<Doubles> v) {
+    if constexpr (std::is_same_v<R, double>) {
+        hn::Store(v, Doubles(), values.data() + offset);
+    } else {
+        const hn::Rebind<float, Doubles> d;
+        hn::StoreU(hn::DemoteTo(d, v), d, values.data() + offset);
+    }
+}
+
+/// Fills the first part of EdgeLanes in double, whatever R is: crosses, cuts and orientation are differences of the
+/// vertices. index: which polygon each lane has.
+template <class R>
+class EdgePreparation {
+    using D = Doubles;
+
+  public:
+    EdgePreparation(const PolygonArray& polygons, bool clip) : polygons_(polygons), clip_(clip) {
+        vertices_.resize(polygons.vertex_count * kWidth * 3);
+    }
+
+    void prepare(const std::uint32_t* index, PolygonLanes<R>& lanes) {
+        for (std::size_t offset = 0; offset < kLaneCount<Lanes<R>>; offset += kWidth) {
+            load(index + offset);
+            const V<D> side = seen_from();
+            put_rounded<R>(lanes.side, offset, side);
+            for (std::size_t e = 0; e < polygons_.vertex_count; ++e) {
+                fill(lanes.edges[e], offset, e, e + 1 < polygons_.vertex_count ? e + 1 : 0, side);
+            }
+        }
+    }
+
+  private:
+    static constexpr std::size_t kWidth = kLaneCount<D>;
+
+    HWY_INLINE Vectors3<double> vertex(std::size_t i) const {
+        const double* at = vertices_.data() + 3 * i * kWidth;
+        return {hn::LoadU(D(), at), hn::LoadU(D(), at + kWidth), hn::LoadU(D(), at + 2 * kWidth)};
+    }
+
+    HWY_INLINE void load(const std::uint32_t* index) {
+        const D d;
+        const hn::RebindToSigned<D> di;
+        alignas(64) std::array<std::int64_t, kWidth> start;
+        for (std::size_t lane = 0; lane < kWidth; ++lane) {
+            start[lane] = static_cast<std::int64_t>(3 * polygons_.vertex_count * index[lane]);
+        }
+        const auto first = hn::Load(di, start.data());
+        auto largest = hn::Zero(d);
+        for (std::size_t i = 0; i < 3 * polygons_.vertex_count; ++i) {
+            const auto v = hn::GatherIndex(d, polygons_.vertices + i, first);
+            largest = hn::Max(largest, hn::Abs(v));
+            hn::StoreU(v, d, vertices_.data() + i * kWidth);
+        }
+        const auto scale = hn::IfThenElseZero(hn::Gt(largest, hn::Zero(d)), hn::Div(all(d, 1), largest));
+        for (std::size_t i = 0; i < 3 * polygons_.vertex_count; ++i) {
+            double* v = vertices_.data() + i * kWidth;
+            hn::StoreU(hn::Mul(hn::LoadU(d, v), scale), d, v);
+        }
+    }
+
+    /// The side of the polygon's plane that the origin is on; neither if the polygon is seen edge-on or has no area.
+    HWY_INLINE V<D> seen_from() const {
+        const D d;
+        const Vectors3<double> v0 = vertex(0);
+        Vectors3<double> normal = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+        Vectors3<double> sum = v0 + vertex(1);
+        auto farthest = hn::Max(dot<double>(v0, v0), dot<double>(vertex(1), vertex(1)));
+        Vectors3<double> before = vertex(1) - v0;
+        for (std::size_t i = 2; i < polygons_.vertex_count; ++i) {
+            const Vectors3<double> v = vertex(i);
+            const Vectors3<double> after = v - v0;
+            normal = normal + cross<double>(before, after);
+            before = after;
+            sum = sum + v;
+            farthest = hn::Max(farthest, dot<double>(v, v));
+        }
+        constexpr double kEdgeOn = 64 * std::numeric_limits<double>::epsilon();
+        const auto distance =
+            hn::Mul(dot<double>(normal, sum), all(d, 1 / static_cast<double>(polygons_.vertex_count)));
+        const auto least = hn::Mul(all(d, kEdgeOn * kEdgeOn), hn::Mul(farthest, dot<double>(normal, normal)));
+        const auto seen = hn::Gt(hn::Mul(distance, distance), least);
+        return hn::IfThenElseZero(seen, hn::CopySign(all(d, 1), distance));
+    }
+
+    HWY_INLINE void fill(EdgeLanes<R>& edge, std::size_t offset, std::size_t from, std::size_t to, V<D> side) const {
+        const D d;
+        const Vectors3<double> a = vertex(from);
+        const Vectors3<double> b = vertex(to);
+        const Vectors3<double> c = cross<double>(a, b - a);
+        put_rounded<R>(edge.x, offset, a.x);
+        put_rounded<R>(edge.y, offset, a.y);
+        put_rounded<R>(edge.z, offset, a.z);
+        put_rounded<R>(edge.cross_x, offset, hn::Mul(c.x, side));
+        put_rounded<R>(edge.cross_y, offset, hn::Mul(c.y, side));
+        put_rounded<R>(edge.cross_z, offset, hn::Mul(c.z, side));
+        if (!clip_) {
+            return;
+        }
+        const auto zero = hn::Zero(d);
+        const auto one = all(d, 1);
+        const auto above_a = hn::Ge(a.z, zero);
+        const auto above_b = hn::Ge(b.z, zero);
+        const auto cuts = hn::Xor(above_a, above_b);
+        const auto t = hn::IfThenElseZero(cuts, hn::Div(a.z, hn::Sub(a.z, b.z)));
+        put_rounded<R>(edge.cut_x, offset, hn::MulAdd(t, hn::Sub(b.x, a.x), a.x));
+        put_rounded<R>(edge.cut_y, offset, hn::MulAdd(t, hn::Sub(b.y, a.y), a.y));
+        const auto kept_whole = hn::IfThenElseZero(above_a, one);
+        put_rounded<R>(edge.share, offset,
+                       hn::IfThenElse(cuts, hn::IfThenElse(above_a, t, hn::Sub(one, t)), kept_whole));
+        const auto crossing = hn::IfThenElseZero(cuts, hn::IfThenElse(above_b, one, hn::Neg(one)));
+        put_rounded<R>(edge.crossing, offset, crossing);
+    }
+
+    PolygonArray polygons_;
+    bool clip_;
+    std::vector<double> vertices_;
+};
+
+/// A vector's warps.
+struct WarpLanes {
+    using D = Doubles;
+    V<D> sin_tilt, cos_tilt, speed, one_minus_speed, gamma, horizon_x, horizon_z, height, sine;
+
+    WarpLanes(const WarpArrays& warps, const std::uint32_t* view) {
+        const D d;
+        const hn::RebindToSigned<D> di;
+        alignas(64) std::array<std::int64_t, kLaneCount<D>> wide;
+        std::copy_n(view, kLaneCount<D>, wide.begin());
+        const auto index = hn::Load(di, wide.data());
+        const auto at = [&](const double* values) HWY_ATTR { return hn::GatherIndex(d, values, index); };
+        sin_tilt = at(warps.sin_tilt);
+        cos_tilt = at(warps.cos_tilt);
+        speed = at(warps.speed);
+        one_minus_speed = at(warps.one_minus_speed);
+        gamma = at(warps.gamma);
+        horizon_x = at(warps.horizon_x);
+        horizon_z = at(warps.horizon_z);
+        height = at(warps.horizon_height);
+        sine = at(warps.horizon_sine);
+    }
+
+    struct Image {
+        Vectors3<double> axis;
+        V<D> cosine, inverse_length;
+    };
+    /// Warp::warped of the circle (cosine; axis), 1 - cosine = lack.
+    HWY_INLINE Image of_circle(const Vectors3<double>& axis, V<D> lack) const {
+        const D d;
+        const Vectors3<double> to_axis = {hn::Add(axis.x, sin_tilt), axis.y, hn::Sub(axis.z, cos_tilt)};
+        const auto gap = hn::Mul(all(d, 0.5), dot<double>(to_axis, to_axis));
+        const auto across = hn::MulAdd(cos_tilt, axis.x, hn::Mul(sin_tilt, axis.z));
+        const auto along = hn::Mul(gamma, hn::Add(one_minus_speed, hn::MulSub(speed, lack, gap)));
+        const auto cosine = hn::Mul(gamma, hn::Add(one_minus_speed, hn::MulSub(speed, gap, lack)));
+        const Vectors3<double> image = {hn::MulSub(horizon_z, across, hn::Mul(horizon_x, along)), axis.y,
+                                        hn::MulAdd(horizon_x, across, hn::Mul(horizon_z, along))};
+        const auto inverse = hn::Div(all(d, 1), hn::Sqrt(dot<double>(image, image)));
+        return {scaled<double>(image, inverse), hn::Mul(cosine, inverse), inverse};
+    }
+};
+
+/// Takes a vector of polygons apart. kClipped: some edges cross the horizon; kWarped: the result is the warps' images.
+template <class R, bool kClipped, bool kWarped>
+class Outline {
+    using D = Lanes<R>;
+    static_assert(!kWarped || std::is_same_v<R, double>);
+
+  public:
+    Outline(PolygonLanes<R>& lanes, const WarpLanes* warp) : lanes_(lanes), warp_(warp) {}
+
+    HWY_INLINE RegionLanes<R> region() {
+        const D d;
+        const auto zero = hn::Zero(d);
+        RegionLanes<R> region = {zero, zero, {zero, zero, zero}};
+        const End first = end(lanes_.edges.front());
+        reference_ = kClipped ? some_crossing() : first.u;
+        re_ = all(d, 1);
+        im_ = zero;
+        End from = first;
+        const std::size_t count = lanes_.edges.size();
+        for (std::size_t e = 0; e < count; ++e) {
+            const End to = e + 1 < count ? end(lanes_.edges[e + 1]) : first;
+            add_edge(lanes_.edges[e], from, to, region);
+            from = to;
+            if (e % 16 == 15) {
+                const auto scale = hn::Div(all(d, 1), hn::Add(hn::Abs(re_), hn::Abs(im_)));
+                re_ = hn::Mul(re_, scale);
+                im_ = hn::Mul(im_, scale);
+            }
+        }
+        // Half of what a region of at most half the sphere has: 0 … π.
+        auto half = arctangent(d, im_, re_);
+        half = hn::Add(half, hn::IfThenElseZero(hn::Lt(half, all(d, -1)), all(d, 2 * std::numbers::pi)));
+        region.solid_angle = hn::MulAdd(all(d, 2), half, region.solid_angle);
+        if constexpr (kClipped) {
+            add_horizon(region);
+        }
+        return region;
+    }
+
+  private:
+    /// Of an edge: a direction, and 1 ÷ the length that it has in the polygon.
+    struct End {
+        Vectors3<R> u;
+        V<D> inverse;
+    };
+    static HWY_INLINE V<D> inverse_root(V<D> square) {
+        const D d;
+        return hn::IfThenElseZero(hn::Gt(square, hn::Zero(d)), hn::Div(all(d, 1), hn::Sqrt(square)));
+    }
+    static HWY_INLINE End direction(const Vectors3<R>& v) {
+        const auto inverse = inverse_root(dot<R>(v, v));
+        return {scaled<R>(v, inverse), inverse};
+    }
+    static HWY_INLINE End end(const EdgeLanes<R>& edge) {
+        return direction({get<R>(edge.x), get<R>(edge.y), get<R>(edge.z)});
+    }
+    static HWY_INLINE End cut(const EdgeLanes<R>& edge) {
+        return direction({get<R>(edge.cut_x), get<R>(edge.cut_y), hn::Zero(D())});
+    }
+    static HWY_INLINE Vectors3<R> select(M<D> which, const Vectors3<R>& yes, const Vectors3<R>& no) {
+        return {hn::IfThenElse(which, yes.x, no.x), hn::IfThenElse(which, yes.y, no.y),
+                hn::IfThenElse(which, yes.z, no.z)};
+    }
+    static HWY_INLINE End select(M<D> which, const End& yes, const End& no) {
+        return {select(which, yes.u, no.u), hn::IfThenElse(which, yes.inverse, no.inverse)};
+    }
+
+    /// The horizon's arcs then add nothing to the fan of triangles.
+    HWY_INLINE Vectors3<R> some_crossing() const {
+        const D d;
+        Vectors3<R> found = {all(d, 1), hn::Zero(d), hn::Zero(d)};
+        for (const EdgeLanes<R>& edge : lanes_.edges) {
+            found = select(hn::Ne(get<R>(edge.crossing), hn::Zero(d)), cut(edge).u, found);
+        }
+        return found;
+    }
+
+    /// With M the middle, N the pole and h half the length, the triangle from a reference R to both ends has the solid
+    /// angle 2 arg (cos h + R·M + i sin h R·N): Van Oosterom & Strackee 1983, divided by 2 cos h, which vanishes where
+    /// the ends are opposite.
+    HWY_INLINE void add_edge(EdgeLanes<R>& edge, End a, End b, RegionLanes<R>& region) {
+        const D d;
+        const auto zero = hn::Zero(d);
+        const auto one = all(d, 1);
+        const Vectors3<R> c = {get<R>(edge.cross_x), get<R>(edge.cross_y), get<R>(edge.cross_z)};
+        const auto square = dot<R>(c, c);
+        const auto length = hn::Sqrt(square);
+        const Vectors3<R> pole = scaled<R>(c, hn::IfThenElseZero(hn::Gt(length, zero), hn::Div(one, length)));
+        auto sine_of_whole = length;
+        if constexpr (kClipped) {
+            const auto crossing = get<R>(edge.crossing);
+            const End at = cut(edge);
+            a = select(hn::Gt(crossing, zero), at, a);
+            b = select(hn::Lt(crossing, zero), at, b);
+            sine_of_whole = hn::Mul(length, get<R>(edge.share));
+        }
+        sine_of_whole = hn::Mul(sine_of_whole, hn::Mul(a.inverse, b.inverse));
+        const auto kept = hn::Gt(sine_of_whole, zero);
+        const auto cosine_of_whole = dot<R>(a.u, b.u);
+        // Half the length by its larger part; the middle by the ends' sum, or across their difference if that is
+        // longer.
+        const auto larger = hn::Sqrt(hn::Mul(all(d, 0.5), hn::Add(one, hn::Abs(cosine_of_whole))));
+        const auto over = hn::Div(all(d, 0.5), larger);
+        const auto smaller = hn::Mul(sine_of_whole, over);
+        const auto is_long = hn::Lt(cosine_of_whole, zero);
+        const auto sine = hn::IfThenElse(is_long, larger, smaller);
+        const auto cosine = hn::IfThenElse(is_long, smaller, larger);
+        Vectors3<R> middle = a.u + b.u;
+        if (!hn::AllFalse(d, is_long)) {
+            middle = select(is_long, sided(cross<R>(b.u - a.u, pole)), middle);
+        }
+        middle = scaled<R>(middle, over);
+        const auto fan_re = hn::IfThenElse(kept, hn::Add(cosine, dot<R>(reference_, middle)), one);
+        const auto fan_im = hn::IfThenElseZero(kept, hn::Mul(sine, dot<R>(reference_, pole)));
+        const auto next = hn::MulSub(re_, fan_re, hn::Mul(im_, fan_im));
+        im_ = hn::MulAdd(re_, fan_im, hn::Mul(im_, fan_re));
+        re_ = next;
+        if constexpr (kWarped) {
+            add_image(edge, pole, middle, sine, cosine, kept, region);
+        } else {
+            const auto half = hn::IfThenElseZero(kept, arctangent(d, sine, cosine));
+            put_arc(edge, pole, middle, half);
+            region.first_moment = region.first_moment + scaled<R>(pole, half);
+            region.outline = hn::MulAdd(all(d, 2), half, region.outline);
+        }
+    }
+
+    /// The pole points to the interior; a polygon wound the other way runs through its edges backwards.
+    HWY_INLINE Vectors3<R> sided(const Vectors3<R>& v) const { return scaled<R>(v, get<R>(lanes_.side)); }
+
+    static HWY_INLINE void put_arc(EdgeLanes<R>& edge, const Vectors3<R>& axis, const Vectors3<R>& middle, V<D> half) {
+        put<R>(edge.axis_x, axis.x);
+        put<R>(edge.axis_y, axis.y);
+        put<R>(edge.axis_z, axis.z);
+        put<R>(edge.middle_x, middle.x);
+        put<R>(edge.middle_y, middle.y);
+        put<R>(edge.middle_z, middle.z);
+        put<R>(edge.half, half);
+    }
+
+    /// The image of an edge, whose circle meets the one that has the edge as its diameter at right angles, before the
+    /// warp and after it: both axes and the arc's middle lie on one great circle, and an end of the arc makes a right
+    /// triangle with the two axes.
+    HWY_INLINE void add_image(EdgeLanes<R>& edge, const Vectors3<R>& pole, const Vectors3<R>& middle, V<D> sine,
+                              V<D> cosine, M<D> kept, RegionLanes<R>& region) {
+        const D d;
+        const auto one = all(d, 1);
+        const WarpLanes::Image arc = warp_->of_circle(pole, one);
+        const auto lack = hn::Div(hn::Mul(sine, sine), hn::Add(one, cosine));
+        const WarpLanes::Image diameter = warp_->of_circle(middle, lack);
+        const auto arc_sine = arc.inverse_length;
+        const auto rise = hn::Mul(sine, diameter.inverse_length);
+        const auto run = hn::Mul(arc_sine, diameter.cosine);
+        const auto half = hn::IfThenElseZero(kept, arctangent(d, rise, run));
+        const Vectors3<R> across = diameter.axis - scaled<R>(arc.axis, hn::Mul(arc.cosine, diameter.cosine));
+        const Vectors3<R> image_middle = direction(across).u;
+        put_arc(edge, arc.axis, image_middle, half);
+        put<R>(edge.cosine, arc.cosine);
+        put<R>(edge.sine, arc_sine);
+        // Gauss–Bonnet before and after: the warp keeps the angles at the corners, so only the arcs' turning differs.
+        const auto twice = hn::Add(half, half);
+        const auto turning = hn::IfThenElseZero(kept, hn::Mul(arc.cosine, twice));
+        region.solid_angle = hn::Sub(region.solid_angle, turning);
+        region.outline = hn::Add(region.outline, hn::IfThenElseZero(kept, hn::Mul(arc_sine, twice)));
+        const auto sine_of_half = hn::Mul(rise, inverse_root(hn::MulAdd(rise, rise, hn::Mul(run, run))));
+        const auto along = hn::IfThenElseZero(kept, hn::Mul(hn::Mul(arc_sine, arc_sine), half));
+        const auto radial = hn::IfThenElseZero(kept, hn::Mul(hn::Mul(arc_sine, arc.cosine), sine_of_half));
+        region.first_moment = region.first_moment + scaled<R>(arc.axis, along) - scaled<R>(image_middle, radial);
+    }
+
+    /// The arcs of the horizon between the crossings. Those of a planar polygon lie on one line, so they are less than
+    /// half a turn from each other.
+    HWY_INLINE void add_horizon(RegionLanes<R>& region) {
+        const D d;
+        const auto zero = hn::Zero(d);
+        const auto side = get<R>(lanes_.side);
+        auto length = zero;
+        auto fall_x = zero;
+        auto fall_y = zero;
+        for (EdgeLanes<R>& edge : lanes_.edges) {
+            const Vectors3<R> at = cut(edge).u;
+            const auto sine = hn::MulSub(reference_.x, at.y, hn::Mul(reference_.y, at.x));
+            const auto cosine = hn::MulAdd(reference_.x, at.x, hn::Mul(reference_.y, at.y));
+            const auto sign = hn::Mul(side, get<R>(edge.crossing));
+            auto azimuth = zero;
+            auto azimuth_cosine = at.x;
+            auto azimuth_sine = at.y;
+            if constexpr (kWarped) {
+                azimuth = warped_azimuth(sine, cosine);
+                const auto over = hn::Div(all(d, 1), hn::MulAdd(aberration(), at.x, all(d, 1)));
+                azimuth_cosine = hn::Mul(hn::Add(at.x, aberration()), over);
+                azimuth_sine = hn::Mul(hn::Mul(contraction(), at.y), over);
+                fall_x = hn::MulAdd(sign, azimuth_sine, fall_x);
+                fall_y = hn::MulAdd(sign, azimuth_cosine, fall_y);
+            } else {
+                azimuth = arctangent(d, sine, cosine);
+            }
+            put<R>(edge.azimuth, azimuth);
+            put<R>(edge.azimuth_cosine, azimuth_cosine);
+            put<R>(edge.azimuth_sine, azimuth_sine);
+            length = hn::Add(length, hn::IfThenElseZero(hn::Ne(sign, zero), hn::Mul(sign, azimuth)));
+        }
+        const auto half = all(d, 0.5);
+        if constexpr (kWarped) {
+            region.solid_angle = hn::NegMulAdd(warp_->height, length, region.solid_angle);
+            region.outline = hn::MulAdd(warp_->sine, length, region.outline);
+            const auto slant = hn::Mul(half, hn::Mul(warp_->height, warp_->sine));
+            region.first_moment.x = hn::NegMulAdd(slant, fall_x, region.first_moment.x);
+            region.first_moment.y = hn::MulAdd(slant, fall_y, region.first_moment.y);
+            region.first_moment.z =
+                hn::MulAdd(hn::Mul(half, hn::Mul(warp_->sine, warp_->sine)), length, region.first_moment.z);
+        } else {
+            region.outline = hn::Add(region.outline, length);
+            region.first_moment.z = hn::MulAdd(half, length, region.first_moment.z);
+        }
+    }
+
+    /// Along the horizon a warp is an aberration itself: tan(φ'/2) = √((1-β)/(1+β)) tan(φ/2), β = speed · sin tilt.
+    HWY_INLINE V<D> aberration() const { return hn::Mul(warp_->speed, warp_->sin_tilt); }
+    HWY_INLINE V<D> contraction() const {
+        const auto one = all(D(), 1);
+        return hn::Sqrt(hn::Mul(hn::Sub(one, aberration()), hn::Add(one, aberration())));
+    }
+    /// Cosine and sine of half an angle in -π … π.
+    static HWY_INLINE SineCosine<R> halved(V<D> sine, V<D> cosine) {
+        const D d;
+        const auto half = all(d, 0.5);
+        const auto larger = hn::Sqrt(hn::Mul(half, hn::Add(all(d, 1), hn::Abs(cosine))));
+        const auto smaller = hn::Div(hn::Mul(half, hn::Abs(sine)), larger);
+        const auto wide = hn::Lt(cosine, hn::Zero(d));
+        return {hn::CopySign(hn::IfThenElse(wide, larger, smaller), sine), hn::IfThenElse(wide, smaller, larger)};
+    }
+    /// Of a crossing at the given angle from the reference, without a jump in between.
+    HWY_INLINE V<D> warped_azimuth(V<D> sine, V<D> cosine) const {
+        const D d;
+        const auto one = all(d, 1);
+        const SineCosine<R> from = halved(reference_.y, reference_.x);
+        const SineCosine<R> turn = halved(sine, cosine);
+        const auto half_cosine = hn::MulSub(from.cosine, turn.cosine, hn::Mul(from.sine, turn.sine));
+        const auto half_sine = hn::MulAdd(from.sine, turn.cosine, hn::Mul(from.cosine, turn.sine));
+        const auto narrowing = hn::Div(contraction(), hn::Add(one, aberration()));
+        const auto half = arctangent(d, hn::Mul(narrowing, half_sine), half_cosine);
+        return hn::Add(half, half);
+    }
+
+    PolygonLanes<R>& lanes_;
+    const WarpLanes* warp_;
+    Vectors3<R> reference_;
+    V<D> re_, im_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace shlight
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+//
+// A lobe's potential along arcs, in lanes: its normal derivative at points, and along the horizon (docs/algorithms.md,
+// "Polygons"). Included once per instruction set.
+#if defined(SHLIGHT_KERNELS_POTENTIAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHLIGHT_KERNELS_POTENTIAL_INL_H_
+#undef SHLIGHT_KERNELS_POTENTIAL_INL_H_
+#else
+#define SHLIGHT_KERNELS_POTENTIAL_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "kernels/arc_points-inl.h"
+#include "kernels/lanes-inl.h"
+#include "kernels/lobe_arrays.h"
+#include "kernels/potential_constants.h"
+#include "kernels/rows-inl.h"
+#include "shlight/types.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace shlight {
+namespace HWY_NAMESPACE {
+
+/// The two series of each degree for a vector of lobes. kShared: one lobe in all lanes, and one number a coefficient.
+template <class R, bool kShared>
+class PotentialSeries {
+    using D = Lanes<R>;
+
+  public:
+    explicit PotentialSeries(int order) : order_(static_cast<std::size_t>(order)) {
+        const PotentialConstants& constants = PotentialConstants::of(order);
+        rise_.assign(constants.rise.begin(), constants.rise.end());
+        down_.resize(rise_.size() * kWidth);
+        same_.resize(rise_.size() * kWidth);
+    }
+
+    std::size_t order() const { return order_; }
+
+    /// rows: each lane's terms, readable up to the next multiple of four.
+    void set(const RowPointers<const float>& rows) {
+        const PotentialConstants& constants = PotentialConstants::of(static_cast<int>(order_));
+        if constexpr (kShared) {
+            for (std::size_t i = 0; i < rise_.size(); ++i) {
+                const float* f = rows[0] + constants.term[i];
+                down_[i] = static_cast<R>(constants.down[i] * static_cast<double>(f[-1]));
+                same_[i] = static_cast<R>(constants.same[i] * static_cast<double>(f[0]));
+            }
+        } else {
+            const D d;
+            load_terms(rows);
+            for (std::size_t i = 0; i < rise_.size(); ++i) {
+                const R* f = terms_.data() + constants.term[i] * kWidth;
+                hn::StoreU(hn::Mul(hn::LoadU(d, f - kWidth), all(d, constants.down[i])), d, down_.data() + i * kWidth);
+                hn::StoreU(hn::Mul(hn::LoadU(d, f), all(d, constants.same[i])), d, same_.data() + i * kWidth);
+            }
+        }
+    }
+
+    struct Pair {
+        V<D> down, same;
+    };
+    /// D_m and S_m at kPoints heights, by Clenshaw's recurrence b_l = c_l + rise z b_{l+1} - b_{l+2}.
+    /// first: where degree m begins; count: its terms.
+    template <std::size_t kPoints>
+    HWY_INLINE std::array<Pair, kPoints> sums(std::size_t first, std::size_t count,
+                                              const std::array<V<D>, kPoints>& z) const {
+        const D d;
+        std::array<Pair, kPoints> b;
+        std::array<Pair, kPoints> other;
+        for (std::size_t k = 0; k < kPoints; ++k) {
+            b[k] = {coefficient(down_, first), coefficient(same_, first)};
+            other[k] = {hn::Zero(d), hn::Zero(d)};
+        }
+        std::size_t i = first + 1;
+        const std::size_t end = first + count;
+        for (; i + 1 < end; i += 2) {
+            step(i, z, b, other);
+            step(i + 1, z, other, b);
+        }
+        if (i < end) {
+            step(i, z, b, other);
+            return other;
+        }
+        return b;
+    }
+
+  private:
+    static constexpr std::size_t kWidth = kShared ? 1 : kLaneCount<D>;
+
+    HWY_INLINE V<D> coefficient(const std::vector<R>& values, std::size_t i) const {
+        if constexpr (kShared) {
+            return hn::Set(D(), values[i]);
+        } else {
+            return hn::LoadU(D(), values.data() + i * kWidth);
+        }
+    }
+
+    /// before: b_{l+2}, becomes b_l.
+    template <std::size_t kPoints>
+    HWY_INLINE void step(std::size_t i, const std::array<V<D>, kPoints>& z, const std::array<Pair, kPoints>& b,
+                         std::array<Pair, kPoints>& before) const {
+        const auto rise = hn::Set(D(), rise_[i]);
+        const auto down = coefficient(down_, i);
+        const auto same = coefficient(same_, i);
+        for (std::size_t k = 0; k < kPoints; ++k) {
+            const auto slope = hn::Mul(rise, z[k]);
+            before[k].down = hn::MulAdd(slope, b[k].down, hn::Sub(down, before[k].down));
+            before[k].same = hn::MulAdd(slope, b[k].same, hn::Sub(same, before[k].same));
+        }
+    }
+
+    void load_terms(const RowPointers<const float>& rows) {
+        const std::size_t count = static_cast<std::size_t>(cosine_count(static_cast<int>(order_)));
+        terms_.resize((count + 3) / 4 * 4 * kWidth);
+        const hn::Rebind<float, D> of_float;
+        if constexpr (hn::MaxLanes(of_float) < kSquare<decltype(of_float)>) {
+            for (std::size_t i = 0; i < count * kWidth; ++i) {
+                terms_[i] = static_cast<R>(rows[i % kWidth][i / kWidth]);
+            }
+        } else {
+            for (std::size_t c = 0; c < count; c += kSquare<decltype(of_float)>) {
+                const auto columns = load_columns(of_float, rows.data(), c);
+                for (std::size_t j = 0; j < columns.size(); ++j) {
+                    R* column = terms_.data() + (c + j) * kWidth;
+                    if constexpr (std::is_same_v<R, float>) {
+                        hn::StoreU(columns[j], of_float, column);
+                    } else {
+                        hn::StoreU(hn::PromoteTo(D(), columns[j]), D(), column);
+                    }
+                }
+            }
+        }
+    }
+
+    std::size_t order_;
+    std::vector<R> rise_, down_, same_, terms_;
+};
+
+/// ν·∇F ds at points, ÷ weight · 2 half.
+template <class R, bool kShared, std::size_t kPoints>
+HWY_INLINE std::array<V<Lanes<R>>, kPoints> normal_derivatives(const PotentialSeries<R, kShared>& series,
+                                                               const std::array<ArcPoints<R>, kPoints>& points) {
+    using D = Lanes<R>;
+    std::array<V<D>, kPoints> z;
+    std::array<V<D>, kPoints> re;
+    std::array<V<D>, kPoints> im;
+    for (std::size_t k = 0; k < kPoints; ++k) {
+        z[k] = points[k].u.z;
+        re[k] = im[k] = hn::Zero(D());
+    }
+    std::size_t first = 0;
+    for (std::size_t count = 1; count < series.order(); first += count++) {
+        const auto sums = series.sums(first, count, z);
+        for (std::size_t k = 0; k < kPoints; ++k) {
+            const auto& [u, normal] = points[k];
+            const auto real = hn::MulAdd(normal.x, sums[k].same, hn::Mul(normal.z, sums[k].down));
+            const auto next = hn::MulAdd(re[k], u.x, hn::NegMulAdd(im[k], u.y, real));
+            im[k] = hn::MulAdd(re[k], u.y, hn::MulAdd(im[k], u.x, hn::Mul(normal.y, sums[k].same)));
+            re[k] = next;
+        }
+    }
+    return re;
+}
+
+/// ∫ ν·∇F ds along arcs in lanes, with so many Gauss points on each.
+template <class R, bool kGreat, bool kShared>
+HWY_INLINE V<Lanes<R>> arc_integral(const PotentialSeries<R, kShared>& series, const ArcLanes<R, kGreat>& arcs,
+                                    const GaussRule& rule) {
+    const Lanes<R> d;
+    const std::size_t points = rule.nodes.size();
+    const auto fraction = [&](std::size_t i) { return 1 - 2 * rule.nodes[i]; };
+    auto sum = hn::Zero(d);
+    const std::size_t pairs = points % 2 == 0 ? points / 2 : points > 1 ? points / 2 - 1 : 0;
+    for (std::size_t i = 0; i < pairs; ++i) {
+        const auto values = normal_derivatives<R, kShared, 2>(series, arcs.pair(fraction(i)));
+        sum = hn::MulAdd(hn::Add(values[0], values[1]), all(d, rule.weights[i]), sum);
+    }
+    if (points == 1) {
+        const auto value = normal_derivatives<R, kShared, 1>(series, {arcs.middle()});
+        sum = value[0];
+    } else if (points % 2 == 1) {
+        const auto [before, after] = arcs.pair(fraction(pairs));
+        const auto values = normal_derivatives<R, kShared, 3>(series, {before, after, arcs.middle()});
+        sum = hn::MulAdd(hn::Add(values[0], values[1]), all(d, rule.weights[pairs]), sum);
+        sum = hn::MulAdd(values[2], all(d, rule.weights[pairs + 1]), sum);
+    }
+    return hn::Mul(sum, arcs.angle());
+}
+
+/// Along the horizon z = z_0, s = √(1-z_0²): ν·∇F ds = Σ_m slopes[m] cos mφ dφ,
+///   slopes[m] = s^{m+2} D_{m+1}(z_0) - z_0 s^m S_m(z_0).
+template <class R, bool kShared>
+HWY_INLINE void horizon_slopes(const PotentialSeries<R, kShared>& series, V<Lanes<R>> height, V<Lanes<R>> sine,
+                               R* slopes) {
+    const Lanes<R> d;
+    constexpr std::size_t kWidth = kLaneCount<Lanes<R>>;
+    const std::size_t order = series.order();
+    std::array<V<Lanes<R>>, kMaxOrder + 1> power;
+    power[0] = all(d, 1);
+    for (std::size_t m = 1; m <= order; ++m) {
+        power[m] = hn::Mul(power[m - 1], sine);
+    }
+    std::size_t first = 0;
+    auto waiting = hn::Zero(d);
+    for (std::size_t count = 1; count < order; first += count++) {
+        const std::size_t m = order - count;
+        const auto sums = series.template sums<1>(first, count, {height})[0];
+        const auto of_same = hn::NegMulAdd(hn::Mul(height, power[m]), sums.same, waiting);
+        hn::StoreU(of_same, d, slopes + m * kWidth);
+        waiting = hn::Mul(power[m + 1], sums.down);
+    }
+    hn::StoreU(waiting, d, slopes);
+}
+
+/// Σ_m slopes[m] ∫ cos mφ dφ over arcs of the horizon.
+template <class R>
+HWY_INLINE V<Lanes<R>> horizon_integral(const R* slopes, std::size_t order, const RowPointers<const R>& rows) {
+    const Lanes<R> d;
+    constexpr std::size_t kWidth = kLaneCount<Lanes<R>>;
+    std::array<V<Lanes<R>>, 8> v;
+    for (std::size_t c = 0; c < 8; c += kSquare<Lanes<R>>) {
+        const auto columns = load_columns(d, rows.data(), c);
+        for (std::size_t j = 0; j < kSquare<Lanes<R>>; ++j) {
+            v[c + j] = columns[j];
+        }
+    }
+    auto from_re = v[0];
+    auto from_im = v[1];
+    auto to_re = v[2];
+    auto to_im = v[3];
+    const auto turn = [&](auto& re, auto& im, std::size_t by) HWY_ATTR {
+        const auto next = hn::MulSub(re, v[by], hn::Mul(im, v[by + 1]));
+        im = hn::MulAdd(re, v[by + 1], hn::Mul(im, v[by]));
+        re = next;
+    };
+    auto sum = hn::Mul(hn::LoadU(d, slopes), v[4]);
+    for (std::size_t m = 1; m < order; ++m) {
+        const auto slope = hn::Mul(hn::LoadU(d, slopes + m * kWidth), all(d, 1 / static_cast<double>(m)));
+        sum = hn::MulAdd(slope, hn::Sub(to_im, from_im), sum);
+        turn(from_re, from_im, 0);
+        turn(to_re, to_im, 2);
+    }
+    return sum;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace shlight
+HWY_AFTER_NAMESPACE();
+
+#endif
