@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings.h"
+#include "kernels/multiply_adds.h"
 #include "kernels/targets.h"
 
 namespace shlight::python {
@@ -14,6 +15,7 @@ void bind_kernels(py::module_& m) {
     m.def("kernel_targets", &kernel_targets);
     m.def("kernel_target", &kernel_target);
     m.def("force_kernel_target", &force_kernel_target, py::arg("target"));
+    m.def("multiply_adds", &multiply_adds, py::arg("rounds"));
     force_kernel_target_of_environment();
 }
 
