@@ -18,7 +18,9 @@ std::size_t multiply_adds_in_lanes(std::size_t rounds) {
     constexpr std::size_t kSums = 10;
     const Floats d;
     const auto half = all(d, 0.5);
-    auto a = hn::Iota(d, 0), b = a, c = a, e = a, f = a, g = a, h = a, i = a, j = a, k = a;
+    // Different from the start, or the compiler makes one of them.
+    auto a = all(d, 0), b = all(d, 1), c = all(d, 2), e = all(d, 3), f = all(d, 4);
+    auto g = all(d, 5), h = all(d, 6), i = all(d, 7), j = all(d, 8), k = all(d, 9);
     for (std::size_t round = 0; round < rounds; ++round) {
         a = hn::MulAdd(a, half, half);
         b = hn::MulAdd(b, half, half);
