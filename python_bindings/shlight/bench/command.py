@@ -48,7 +48,7 @@ def _work(arguments: list[str]) -> None:
 
 def _measured(options: Options) -> Bench:
     progress = Progress(len(options.sections))
-    rows: list[Row] = []
+    where, rows = machine.described(), list[Row]()
     try:
         for section in options.sections:
             progress.begin(section.title)
@@ -58,7 +58,7 @@ def _measured(options: Options) -> Bench:
         progress.interrupt()
         raise
     print()
-    return Bench(machine.described(), {"lights": options.lights, "rounds": options.rounds}, rows)
+    return Bench(where, {"lights": options.lights, "rounds": options.rounds}, rows)
 
 
 def _tell(bench: Bench) -> None:

@@ -8,6 +8,7 @@ import os
 import platform
 from pathlib import Path
 
+import shlight
 from shlight import _core
 
 
@@ -19,7 +20,7 @@ def described() -> dict[str, str]:
         "instruction set": _core.kernel_target(),
         "instruction sets": ", ".join(_core.kernel_targets()),
         "system": f"{platform.system()} {platform.release()}, {platform.machine()}",
-        "shlight": importlib.metadata.version("shlight"),
+        "shlight": shlight.__version__,
         "sphericart": _version("sphericart"),
         "numpy": _version("numpy"),
     }

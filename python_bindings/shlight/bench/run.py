@@ -26,6 +26,10 @@ class Run:
     rounds: int
     step: Callable[[float, str], None] = field(default=lambda share, text: None)
 
+    @property
+    def quick(self) -> bool:
+        return self.lights < LIGHTS
+
     def count(self, order: int, wanted: int | None = None) -> int:
         """As many lights as wanted (None: as usual), or as their coefficients of this order fit into memory."""
         return min(self.lights if wanted is None else wanted, int(RESULT_BYTES / (4 * order**2)))

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from . import against_methods, against_peer, growth, memory, targets, threads
+from . import against_methods, against_peer, growth, limits, memory, targets, threads
 from .run import Section
 
 SECTIONS = [
@@ -16,6 +16,7 @@ SECTIONS = [
     Section("threads", "Two threads", threads.measure),
     Section("targets", "Instruction sets", targets.measure),
     Section("memory", "Memory", memory.measure),
+    Section("limits", "Limits of the machine", limits.measure),
 ]
 
 PEERED = {"basis", "spheres", "warped", "quads", "targets"}  # need sphericart

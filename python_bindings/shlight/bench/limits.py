@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+"""How near the kernels come to what the machine can do: to its multiply-adds, and to its writes where they write.
+
+Both limits are measured in the same rounds: multiply-adds that wait for nothing, and the C library's memset over what
+no cache holds. Where the results fit into one, more than 100 % of memset is possible.
+"""
+
+from __future__ import annotations
+
+import ctypes
+
+import numpy as np
+
+from shlight import _core
+
+from . import kinds
+from .operations import OPERATIONS
+from .rounds import Spread, Work
+from .row import Row
+from .run import Run
+
+ORDERS = (8, 16, 32)
+PEAK, FILL = "multiply-adds", "memset"
+WRITING = ("basis", "clipped sphere", "whole sphere", "quad")
+GIGA = 1e9
+ROUNDS, FILL_BYTES = 200_000, 100_000_000
+
+
+def measure(run: Run) -> list[Row]:
+    rows: list[Row] = []
+    limits = {PEAK: _multiply_adds(), FILL: _fill()}
+    for i, order in enumerate(ORDERS):
+        works = {**limits, **kinds.works(run.count(order), order)}
+        seconds = run.alternate(works, (i, len(ORDERS)))
+        peak, fill = 2 / seconds[PEAK], 1 / seconds[FILL]
+        if not rows:
+            rows.append(Row.of(run.section, PEAK, Spread.of(peak / GIGA), "Gflop/s"))
+            rows.append(Row.of(run.section, FILL, Spread.of(fill / GIGA), "GB/s"))
+        for name in works:
+            if name in OPERATIONS:
+                flop = OPERATIONS[name](order)
+                done = flop / seconds[name]
+                detail = f"{flop} flop a light, {Spread.of(done / GIGA).median:.1f} Gflop/s"
+                row = f"{name}, n = {order}"
+                rows.append(Row.of(run.section, row, Spread.of(100 * done / peak), f"% of {PEAK}", detail=detail))
+            if name in WRITING:
+                written = 4 * order**2 / seconds[name]
+                detail = f"{4 * order**2} bytes a light, {Spread.of(written / GIGA).median:.1f} GB/s"
+                row = f"{name}, n = {order}, writes"
+                rows.append(Row.of(run.section, row, Spread.of(100 * written / fill), f"% of {FILL}", detail=detail))
+    return rows
+
+
+def _multiply_adds() -> Work:
+    count = _core.multiply_adds(ROUNDS)
+    return Work(lambda: _core.multiply_adds(ROUNDS), count)
+
+
+def _fill() -> Work:
+    # Not with zeros, which some machines write faster than anything else.
+    block = np.empty(FILL_BYTES, np.uint8)
+    return Work(lambda: ctypes.memset(block.ctypes.data, 1, FILL_BYTES), FILL_BYTES)
