@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 from shlight import methods
-from shlight.charts import command, figures, growth, measure, options, speed_error, stability, style
+from shlight.charts import command, figures, fused, growth, measure, options, speed_error, stability, style
 from shlight.charts.figure import Drawn, Figure, Run, Table
 from shlight.charts.lights import CLASSES, LightClass, Lights, spheres, squares
 from shlight.charts.page import PAGE
@@ -340,6 +340,20 @@ def test_the_truth_is_that_of_the_lights() -> None:
     np.testing.assert_allclose(true[:, :9], lower, rtol=0, atol=1e-15)
 
 
+@pytest.mark.parametrize("order", [1, 2, 7])
+@pytest.mark.parametrize("light_class", [CLASSES[1], CLASSES[3]], ids=lambda c: c.name)
+def test_errors_of_fused_calls(order: int, light_class: LightClass) -> None:
+    (series,) = fused.fused_series("float32")
+    lights = light_class.lights(5, 12)
+    true = measure.truth(lights, order)
+    values = series.coefficients(lights, order, np.float32)
+    assert values.shape == (12, 1)
+    assert series.errors(values, true).max() <= 3e-6
+    np.testing.assert_allclose(series.errors(values + true[:, :1], true), 1, atol=1e-5)
+    assert np.isinf(series.errors(values * np.nan, true)).all()
+    assert fused.fused_series("float64") == []
+
+
 def test_the_exponent_of_growth() -> None:
     orders = [2, 4, 8, 16, 32, 64]
     seconds = [5.0, 5.0, *(1e-6 * n**1.7 for n in orders[2:5]), np.nan]
@@ -395,6 +409,13 @@ def test_growth_draws_what_is_registered(tmp_path: Path, monkeypatch: pytest.Mon
     assert increasing(shares)
     reached = {name: max(int(row["order"]) for row in rows if row["method"] == name) for name in ("exact", "dummy")}
     assert reached == {"exact": 64, "dummy": 8}
+    fused = [row for row in rows if "Eq. 5" in row["method"]]
+    assert {row["precision"] for row in fused} == {"float32"}
+    assert {(row["lights"], row["method"]) for row in fused} == {
+        ("sphere_whole", "exact, with Eq. 5"),
+        ("sphere_clipped", "exact, with Eq. 5"),
+        ("sphere_clipped", "glossy lobe, with Eq. 5"),
+    }
     assert all(float(row["microseconds"]) > 0 for row in rows)
     cells = {(row[0], row[1], row[2]): row[3] for row in result.tables[0].rows}
     assert 0 < float(cells["sphere_clipped", "float32", "exact"]) < 4
@@ -412,7 +433,7 @@ def test_speed_and_error_of_what_is_registered(tmp_path: Path, monkeypatch: pyte
         for row in own:
             error = float(row["worst_error"])
             assert float(row["median_error"]) <= error
-            assert error <= floor if row["method"] == "exact" else 1e-3 <= error <= 1.1e-2
+            assert error <= floor if row["method"].startswith("exact") else 1e-3 <= error <= 1.1e-2
         assert {row["order"] for row in own if row["method"] == "dummy"} == {"1", "2", "8"}
     ratios = result.tables[0].rows
     assert [row[:3] for row in ratios] == [["sphere_clipped", p, "dummy"] for p in ("float32", "float64")]

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from shlight.methods import lobe_condition
 
 from .figure import Drawn, Run, Table
+from .fused import fused_series, glossy_series
 from .lights import CLASSES, LightClass
 from .measure import PRECISIONS, Series, all_series, best_seconds, exponent
 from .style import BLUE, canvas, order_axis
@@ -46,7 +47,9 @@ def draw(run: Run) -> Drawn:
     cases = [(c, precision) for c in CLASSES if c.name in SHOWN for precision in PRECISIONS]
     curves: list[Curve] = []
     for i, (light_class, precision) in enumerate(cases):
-        all_of = all_series(light_class.kind)
+        all_of = all_series(light_class.kind) + fused_series(precision)
+        if light_class.name == "sphere_clipped":
+            all_of += glossy_series(light_class.kind, precision)
         lights = light_class.lights(run.seed, 64)
         times = []
         for k, order in enumerate(orders):
@@ -131,7 +134,7 @@ def _conditions(conditions: list[float]) -> Table:
 
 def _explanation(curves: list[Curve], conditions: list[float]) -> str:
     library, others = (
-        [power for c in curves if (c.series.label == LIBRARY) == own and np.isfinite(power := c.exponent())]
+        [power for c in curves if (c.series.method == LIBRARY) == own and np.isfinite(power := c.exponent())]
         for own in (True, False)
     )
     compared = f", the others' as n^{min(others):.1f} … n^{max(others):.1f}" if others else ""

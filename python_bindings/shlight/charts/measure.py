@@ -37,6 +37,10 @@ class Series:
     def coefficients(self, lights: Lights, order: int, dtype: DTypeLike) -> NDArray[Any]:
         return lights.coefficients(self.method, order, dtype, **self.options)
 
+    def errors(self, values: NDArray[Any], true: NDArray[np.float64]) -> NDArray[np.float64]:
+        """relative_errors() of what coefficients() gave; true: of the same order."""
+        return relative_errors(values, true)
+
 
 def all_series(kind: Kind) -> list[Series]:
     """Whatever is registered for this kind of light, "exact" first: random methods with few and with many samples,

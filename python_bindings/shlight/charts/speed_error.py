@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .figure import Drawn, Run, Table
+from .fused import fused_series
 from .lights import CLASSES, LightClass, Lights
-from .measure import PRECISIONS, Series, all_series, batch_size, best_seconds, relative_errors, truth
+from .measure import PRECISIONS, Series, all_series, batch_size, best_seconds, truth
 from .style import canvas, decades
 
 if TYPE_CHECKING:
@@ -54,7 +55,8 @@ def draw(run: Run) -> Drawn:
             for k, order in enumerate(orders):
                 share = (i + (1 + j + k / len(orders)) / (1 + len(PRECISIONS))) / len(CLASSES)
                 run.step(share, f"{light_class.name} {precision} order {order}")
-                points += _points(run.quick, all_series(light_class.kind), lights, true, order, precision)
+                all_of = all_series(light_class.kind) + fused_series(precision)
+                points += _points(run.quick, all_of, lights, true, order, precision)
             measured[light_class.name, precision] = points
     for light_class in CLASSES:
         for precision in PRECISIONS:
@@ -75,7 +77,7 @@ def _points(
         # Of slow methods the first of the lights: as many as there is time for.
         count = batch_size(series, lights, order, precision, budget, len(lights))
         values = series.coefficients(lights.take(slice(0, count)), order, precision)
-        errors = relative_errors(values, true[:count])
+        errors = series.errors(values, true[:count, : order * order])
         points.append(Point(series, order, 1e6 * second, float(np.median(errors)), float(errors.max()), count))
     return points
 
@@ -134,7 +136,7 @@ def _ratios(measured: Measured, orders: Sequence[int]) -> Table:
         library = {p.order: p.microseconds for p in points if p.series.label == LIBRARY}
         for series in all_of_points(points):
             times = {p.order: p.microseconds for p in points if p.series == series}
-            if series.label != LIBRARY:
+            if series.method != LIBRARY:
                 cells = [f"{library[n] / times[n]:.2g}" if n in times else "" for n in orders]
                 rows.append([name, precision, series.label, *cells])
     header = ["lights", "precision", "other method", *(f"n = {n}" for n in orders)]
@@ -160,7 +162,7 @@ def _explanation(measured: Measured) -> str:
         of_library = {p.order: p for p in points if p.series.label == LIBRARY}
         worst = max(p.worst for p in of_library.values())
         errors[precision] = max(worst, errors.get(precision, 0.0))
-        others = [p for p in points if p.series.label != LIBRARY]
+        others = [p for p in points if p.series.method != LIBRARY]
         cases += len(others)
         faster += sum(of_library[p.order].microseconds < p.microseconds for p in others)
     text = (
