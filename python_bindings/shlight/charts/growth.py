@@ -141,6 +141,7 @@ def _explanation(curves: list[Curve], conditions: list[float]) -> str:
     return (
         "Time for the coefficients of one light on one core over the order n, with the exponent of its growth from "
         "n = 8 on, and the condition numbers that zonal factorization pays for its lobes. "
+        "Stars are calls that take Eq. 5 at once, shade_spheres and shade_polygons. "
         f"The library's own time grows as n^{min(library):.1f} … n^{max(library):.1f}{compared}; the lobes' matrix of "
         f"band 15 has the condition number {conditions[15]:.2g}."
     )

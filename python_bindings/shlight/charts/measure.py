@@ -127,8 +127,9 @@ def best_seconds(
         if order > series.largest_order:
             works.append(None)
             continue
-        # Results that fit into a cache, and of slow methods more than one light, for their times differ.
-        most = 2**19 // order**2
+        # Batches as a user has them, whose results fit into a cache, and of slow methods more than one light, for their
+        # times differ.
+        most = 2**21 // order**2
         count = max(batch_size(series, lights, order, dtype, budget, most), least)
         batch = lights.repeated(count).in_type(dtype)
         works.append((lambda s=series, b=batch: s.coefficients(b, order, dtype), count))  # type: ignore[misc]

@@ -167,7 +167,7 @@ def _explanation(measured: Measured) -> str:
         faster += sum(of_library[p.order].microseconds < p.microseconds for p in others)
     text = (
         "Each line is a method, each point on it an order: left and low is better, and methods above their precision's "
-        "floor lose digits. "
+        "floor lose digits. Stars are calls that take Eq. 5 at once, with the error of Lambert's radiance. "
         f"The library's own errs by at most {errors['float32']:.0e} · L_00 in float32 and {errors['float64']:.0e} · "
         "L_00 in float64 at any order and light here"
     )
