@@ -53,11 +53,15 @@ struct SeenPolygon {
     std::span<const Vec3d> vertices;
 };
 
-Reflected radiance_of(const LobeIntegrator& lobe, const Circle& cap, std::uint32_t seed) {
-    return lobe.radiance(cap, seed);
+void radiances_of(const LobeIntegrator& lobe, std::span<const Circle> caps, std::span<const std::uint32_t> seeds,
+                  std::span<Reflected> results) {
+    lobe.radiances(caps, seeds, results);
 }
-Reflected radiance_of(const LobeIntegrator& lobe, const SeenPolygon& polygon, std::uint32_t seed) {
-    return lobe.radiance_of_plane(polygon.kept, polygon.vertices, seed);
+void radiances_of(const LobeIntegrator& lobe, std::span<const SeenPolygon> polygons,
+                  std::span<const std::uint32_t> seeds, std::span<Reflected> results) {
+    for (std::size_t i = 0; i < polygons.size(); ++i) {
+        results[i] = lobe.radiance_of_plane(polygons[i].kept, polygons[i].vertices, seeds[i]);
+    }
 }
 
 /// A material's lobes at the last view that was asked for.
@@ -84,17 +88,26 @@ class MaterialAtView {
         }
     }
 
+    /// Lights that share the view; index: of the first one.
     template <class Region>
-    Rgb radiance(const Region& region, std::size_t index, std::int32_t& effort) const {
-        Rgb sum(0);
-        effort = 0;
-        for (std::size_t i = 0; i < lobes_.size(); ++i) {
-            const std::uint32_t seed = hash(seed_of(options_, index), static_cast<std::uint32_t>(i));
-            const Reflected r = radiance_of(*views_[i], region, seed);
-            sum += lobes_[i].scale(static_cast<float>(cos_theta_o_)) * static_cast<float>(r.value);
-            effort = std::max(effort, static_cast<std::int32_t>(r.points > 0 ? r.points : options_.order));
+    void shade(std::span<const Region> regions, std::size_t index, std::span<Rgb> radiance,
+               std::span<std::int32_t> effort) {
+        std::fill(radiance.begin(), radiance.end(), Rgb(0));
+        std::fill(effort.begin(), effort.end(), 0);
+        seeds_.resize(regions.size());
+        results_.resize(regions.size());
+        for (std::size_t lobe = 0; lobe < lobes_.size(); ++lobe) {
+            for (std::size_t i = 0; i < regions.size(); ++i) {
+                seeds_[i] = hash(seed_of(options_, index + i), static_cast<std::uint32_t>(lobe));
+            }
+            radiances_of(*views_[lobe], regions, seeds_, results_);
+            const Rgb scale = lobes_[lobe].scale(static_cast<float>(cos_theta_o_));
+            for (std::size_t i = 0; i < regions.size(); ++i) {
+                const Reflected& r = results_[i];
+                radiance[i] += scale * static_cast<float>(r.value);
+                effort[i] = std::max(effort[i], static_cast<std::int32_t>(r.points > 0 ? r.points : options_.order));
+            }
         }
-        return sum;
     }
 
   private:
@@ -103,6 +116,8 @@ class MaterialAtView {
     Options options_;
     double cos_theta_o_ = -1;
     std::vector<std::unique_ptr<LobeIntegrator>> views_;
+    std::vector<std::uint32_t> seeds_;
+    std::vector<Reflected> results_;
 };
 
 template <class Region>
@@ -118,9 +133,15 @@ void shade_each(const ShadingMethod& method, const Bsdf& bsdf, std::span<const d
         reject("samples must be at least 1");
     }
     MaterialAtView at_view(method, bsdf, options);
-    for (std::size_t i = 0; i < radiance.size(); ++i) {
-        at_view.look(cos_theta_o[i]);
-        radiance[i] = at_view.radiance(region(i), first + i, effort[i]);
+    std::vector<decltype(region(0))> regions;
+    for (std::size_t begin = 0; begin < radiance.size(); begin += regions.size()) {
+        at_view.look(cos_theta_o[begin]);
+        regions.clear();
+        for (std::size_t i = begin; i < radiance.size() && cos_theta_o[i] == cos_theta_o[begin]; ++i) {
+            regions.push_back(region(i));
+        }
+        at_view.shade<decltype(region(0))>(regions, first + begin, radiance.subspan(begin, regions.size()),
+                                           effort.subspan(begin, regions.size()));
     }
 }
 

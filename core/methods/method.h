@@ -101,6 +101,13 @@ class LobeIntegrator {
     /// A cap in the shading frame; what lies below the horizon does not count. seed: of random methods, the light's
     /// own.
     virtual Reflected radiance(const Circle& cap, std::uint32_t seed) const = 0;
+    /// Many of them, one seed each.
+    virtual void radiances(std::span<const Circle> caps, std::span<const std::uint32_t> seeds,
+                           std::span<Reflected> results) const {
+        for (std::size_t i = 0; i < caps.size(); ++i) {
+            results[i] = radiance(caps[i], seeds[i]);
+        }
+    }
     /// A polygon that was clipped by the horizon.
     virtual Reflected radiance(const SphericalPolygon<double>& polygon, std::uint32_t seed) const = 0;
     /// The same; vertices: before clipping, for those whose random points lie in the polygon's plane.

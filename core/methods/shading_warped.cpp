@@ -1,35 +1,40 @@
 // SPDX-License-Identifier: MIT
 //
-// Harmonics of one order in the lobe's warp, and the library's own choice of the cheapest way.
-#include "lobe_view.h"
-#include "method.h"
+// Harmonics of one order in the lobe's warp.
+#include "harmonic_lobe.h"
+#include "material_views.h"
+#include "polygon_shading.h"
 
 namespace shlight::methods {
 namespace {
 
-class LibraryLobe : public LobeIntegrator {
+class WarpedHarmonics : public HarmonicLobe {
   public:
-    LibraryLobe(const LobeShape& shape, double cos_theta_o, int order, double tolerance)
-        : fit_(warped_fit(shape, order)), lobe_(shape, fit_.get(), cos_theta_o, tolerance, order == 0) {}
-    Reflected radiance(const Circle& cap, std::uint32_t /*seed*/) const override { return reflected(cap); }
+    WarpedHarmonics(const LobeShape& shape, double cos_theta_o, int order)
+        : material_(std::array{Lobe{shape, nullptr, Rgb(1), nullptr}}, order, 1) {
+        constexpr std::uint32_t kOnly = 0;
+        views_.assign(material_, {&cos_theta_o, 1}, false);
+        set(views_.lobe(0).arrays(order, {&kOnly, 1}));
+        warp_ = views_.lobe(0).warp(kOnly);
+    }
+    using HarmonicLobe::radiance;
     Reflected radiance(const SphericalPolygon<double>& polygon, std::uint32_t /*seed*/) const override {
-        return reflected(polygon);
+        if (polygon.empty()) {
+            return {0, 0};
+        }
+        return {lobe().warped ? shade_region(PolygonRegion<double>(polygon, warp_), lobe().terms, lobe().order)
+                              : shade_polygon(polygon, Warp(), lobe().terms, lobe().order),
+                0};
     }
 
   private:
-    template <class Region>
-    Reflected reflected(const Region& region) const {
-        const LobeRadiance r = lobe_.radiance(region);
-        return {r.value, r.points};
-    }
-
-    std::shared_ptr<const WarpedFit> fit_;
-    LobeAtView lobe_;
+    MaterialLobes material_;
+    MaterialViews views_;
+    Warp warp_;
 };
 
 std::unique_ptr<LobeIntegrator> make(const LobeShape& shape, double cos_theta_o, const Options& options) {
-    constexpr double kAnyTolerance = 1;
-    return std::make_unique<LibraryLobe>(shape, cos_theta_o, options.order, kAnyTolerance);
+    return std::make_unique<WarpedHarmonics>(shape, cos_theta_o, options.order);
 }
 
 }  // namespace

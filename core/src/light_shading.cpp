@@ -4,53 +4,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "checks.h"
+#include "circle_batch.h"
 #include "light_checks.h"
-#include "material_lobes.h"
-#include "spherical_polygon.h"
+#include "lobe_batch.h"
+#include "material_views.h"
 
 namespace shlight {
 namespace {
 
-/// A material, kept at the last view that was asked for: lights at one hit share it.
-class MaterialAtView {
-  public:
-    explicit MaterialAtView(const MaterialLobes& material) : material_(&material) {}
-
-    void look(double cos_theta_o) {
-        if (cos_theta_o == cos_theta_o_) {
-            return;
-        }
-        cos_theta_o_ = cos_theta_o;
-        views_.clear();
-        for (std::size_t lobe = 0; lobe < material_->lobes().size(); ++lobe) {
-            views_.push_back(material_->at(lobe, cos_theta_o));
-        }
-    }
-
-    template <class Region>
-    Rgb radiance(const Region& region, std::int32_t& effort) const {
-        Rgb sum(0);
-        effort = 0;
-        for (std::size_t lobe = 0; lobe < views_.size(); ++lobe) {
-            if (views_[lobe]) {
-                const LobeRadiance r = views_[lobe]->radiance(region);
-                // What rings below zero is no light.
-                sum += material_->lobes()[lobe].scale(static_cast<float>(cos_theta_o_)) * std::max(0.0F, r.value);
-                effort = std::max({effort, static_cast<std::int32_t>(r.order), static_cast<std::int32_t>(r.points)});
-            }
-        }
-        return sum;
-    }
-
-  private:
-    const MaterialLobes* material_;
-    double cos_theta_o_ = -1;
-    std::vector<std::optional<LobeAtView>> views_;
-};
+/// Lights that are prepared and sorted at a time: enough for long lists of each kind, few enough for the cache.
+constexpr std::size_t kChunk = 1024;
 
 void check_settings(const ShadeSettings& settings) {
     if (settings.order < 0 || settings.order > kMaxOrder) {
@@ -61,49 +30,137 @@ void check_settings(const ShadeSettings& settings) {
     }
 }
 
-void check_views(std::span<const double> cos_theta_o, std::size_t count) {
-    check_size("cos_theta_o", cos_theta_o.size(), count);
-    if (!std::all_of(cos_theta_o.begin(), cos_theta_o.end(), [](double c) { return c >= 0 && c <= 1; })) {
-        reject("cos_theta_o must lie in [0, 1]");
-    }
+const ShadeSettings& checked(const ShadeSettings& settings) {
+    check_settings(settings);
+    return settings;
 }
 
-/// region(i): the light number i.
-template <class Region>
-void shade_each(std::span<const double> cos_theta_o, const Bsdf& bsdf, const ShadeSettings& settings,
-                std::span<Rgb> radiance, std::span<std::int32_t> effort, const Region& region) {
-    const MaterialLobes material(bsdf, settings.order, settings.tolerance);
-    MaterialAtView at_view(material);
-    for (std::size_t i = 0; i < radiance.size(); ++i) {
-        at_view.look(cos_theta_o[i]);
-        std::int32_t taken = 0;
-        radiance[i] = at_view.radiance(region(i), taken);
-        if (!effort.empty()) {
-            effort[i] = taken;
-        }
+template <class T>
+void check_views(std::span<const T> cos_theta_o, std::size_t count) {
+    if (cos_theta_o.size() != 1) {
+        check_size("cos_theta_o", cos_theta_o.size(), count);
+    }
+    const bool valid = std::accumulate(cos_theta_o.begin(), cos_theta_o.end(), true,
+                                       [](bool all, T c) { return all & (c >= 0) & (c <= 1); });
+    if (!valid) {
+        reject("cos_theta_o must lie in [0, 1]");
     }
 }
 
 }  // namespace
 
-void shade_spheres(std::span<const Vec3d> centers, std::span<const double> radii, const Bsdf& bsdf,
-                   std::span<const double> cos_theta_o, const ShadeSettings& settings, std::span<Rgb> radiance,
-                   std::span<std::int32_t> effort) {
-    check_settings(settings);
-    check_size("radii", radii.size(), centers.size());
-    check_views(cos_theta_o, centers.size());
-    check_size("radiance", radiance.size(), centers.size());
-    check_size("effort", effort.size(), effort.empty() ? 0 : centers.size());
-    shade_each(cos_theta_o, bsdf, settings, radiance, effort, [&](std::size_t i) {
-        check_sphere(centers[i], radii[i], std::numeric_limits<float>::epsilon());
-        return circle_of_sphere(centers[i], radii[i]);
+class LightShaderWork {
+  public:
+    LightShaderWork(const Bsdf& bsdf, const ShadeSettings& settings)
+        : material_(bsdf.lobes(), settings.order, settings.tolerance) {}
+
+    /// shade_chunk(first, count) for each chunk, after its views were found.
+    template <class U, class Shade>
+    void in_chunks(std::span<const U> cos_theta_o, std::size_t count, const Shade& shade_chunk) {
+        for (std::size_t first = 0; first < count; first += kChunk) {
+            const std::size_t size = std::min(kChunk, count - first);
+            find_views(cos_theta_o, first, size);
+            shade_chunk(first, size);
+        }
+    }
+
+    template <class T>
+    void shade_spheres(const Vec3<T>* centers, const T* radii, std::span<Rgb> radiance,
+                       std::span<std::int32_t> effort) {
+        circles_.resize(radiance.size());
+        for (std::size_t i = 0; i < radiance.size(); ++i) {
+            check_sphere(Vec3d(centers[i]), radii[i], std::numeric_limits<float>::epsilon());
+            circles_.set(i, circle_of_sphere(Vec3d(centers[i]), radii[i]));
+        }
+        shade(circles_.arrays(), radiance, effort);
+    }
+
+    template <class T>
+    void shade_polygons(const Vec3<T>* vertices, std::size_t vertex_count, std::span<Rgb> radiance,
+                        std::span<std::int32_t> effort) {
+        vertices_.assign(vertices, vertices + radiance.size() * vertex_count);
+        kept_.clear();
+        for (std::size_t i = 0; i < radiance.size(); ++i) {
+            const auto polygon = std::span<const Vec3d>(vertices_).subspan(i * vertex_count, vertex_count);
+            check_polygon<float>(polygon);
+            kept_.emplace_back(polygon, true);
+        }
+        shade(PolygonLights{vertices_, static_cast<int>(vertex_count), kept_}, radiance, effort);
+    }
+
+  private:
+    /// Each change from light to light is a new view.
+    template <class U>
+    void find_views(std::span<const U> cos_theta_o, std::size_t first, std::size_t count) {
+        cosines_.clear();
+        view_of_.assign(count, 0);
+        if (cos_theta_o.size() == 1) {
+            cosines_.push_back(static_cast<double>(cos_theta_o[0]));
+        } else {
+            cosines_.resize(count);
+            std::uint32_t view = 0;
+            cosines_[0] = static_cast<double>(cos_theta_o[first]);
+            for (std::size_t i = 1; i < count; ++i) {
+                view += cos_theta_o[first + i] != cos_theta_o[first + i - 1] ? 1 : 0;
+                cosines_[view] = static_cast<double>(cos_theta_o[first + i]);
+                view_of_[i] = view;
+            }
+            cosines_.resize(view + std::size_t{1});
+        }
+        views_.assign(material_, cosines_, false);
+    }
+
+    template <class Lights>
+    void shade(const Lights& lights, std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+        std::fill(radiance.begin(), radiance.end(), Rgb(0));
+        std::fill(effort.begin(), effort.end(), 0);
+        for (std::size_t i = 0; i < views_.lobe_count(); ++i) {
+            LobeViews& lobe = views_.lobe(i);
+            batch_.shade(lobe, lights, view_of_);
+            const auto values = batch_.values();
+            for (std::size_t k = 0; k < radiance.size(); ++k) {
+                radiance[k] += lobe.scale(view_of_[k]) * values[k];
+            }
+            const auto taken = batch_.taken();
+            for (std::size_t k = 0; k < effort.size(); ++k) {
+                effort[k] = std::max(effort[k], taken[k].effort);
+            }
+        }
+    }
+
+    MaterialLobes material_;
+    MaterialViews views_;
+    LobeBatch batch_;
+    std::vector<double> cosines_;
+    std::vector<std::uint32_t> view_of_;
+    CircleBatch circles_;
+    std::vector<Vec3d> vertices_;
+    std::vector<SphericalPolygon<double>> kept_;
+};
+
+LightShader::LightShader(const Bsdf& bsdf, const ShadeSettings& settings)
+    : work_(std::make_unique<LightShaderWork>(bsdf, checked(settings))) {}
+LightShader::~LightShader() = default;
+LightShader::LightShader(LightShader&&) noexcept = default;
+LightShader& LightShader::operator=(LightShader&&) noexcept = default;
+
+template <class T, class U>
+void LightShader::spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, std::span<const U> cos_theta_o,
+                          std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+    const std::size_t count = centers.size();
+    check_size("radii", radii.size(), count);
+    check_views(cos_theta_o, count);
+    check_size("radiance", radiance.size(), count);
+    check_size("effort", effort.size(), effort.empty() ? 0 : count);
+    work_->in_chunks(cos_theta_o, count, [&](std::size_t first, std::size_t size) {
+        work_->shade_spheres(&centers[first], &radii[first], radiance.subspan(first, size),
+                             effort.empty() ? effort : effort.subspan(first, size));
     });
 }
 
-void shade_polygons(std::span<const Vec3d> vertices, int vertex_count, const Bsdf& bsdf,
-                    std::span<const double> cos_theta_o, const ShadeSettings& settings, std::span<Rgb> radiance,
-                    std::span<std::int32_t> effort) {
-    check_settings(settings);
+template <class T, class U>
+void LightShader::polygons(std::span<const Vec3<T>> vertices, int vertex_count, std::span<const U> cos_theta_o,
+                           std::span<Rgb> radiance, std::span<std::int32_t> effort) {
     check_vertex_count(vertex_count);
     const auto k = static_cast<std::size_t>(vertex_count);
     const std::size_t count = vertices.size() / k;
@@ -111,11 +168,33 @@ void shade_polygons(std::span<const Vec3d> vertices, int vertex_count, const Bsd
     check_views(cos_theta_o, count);
     check_size("radiance", radiance.size(), count);
     check_size("effort", effort.size(), effort.empty() ? 0 : count);
-    shade_each(cos_theta_o, bsdf, settings, radiance, effort, [&](std::size_t i) {
-        const auto polygon = vertices.subspan(i * k, k);
-        check_polygon<float>(polygon);
-        return SphericalPolygon<double>(polygon, true);
+    work_->in_chunks(cos_theta_o, count, [&](std::size_t first, std::size_t size) {
+        work_->shade_polygons(&vertices[first * k], k, radiance.subspan(first, size),
+                              effort.empty() ? effort : effort.subspan(first, size));
     });
 }
+
+void shade_spheres(std::span<const Vec3d> centers, std::span<const double> radii, const Bsdf& bsdf,
+                   std::span<const double> cos_theta_o, const ShadeSettings& settings, std::span<Rgb> radiance,
+                   std::span<std::int32_t> effort) {
+    LightShader(bsdf, settings).spheres(centers, radii, cos_theta_o, radiance, effort);
+}
+
+void shade_polygons(std::span<const Vec3d> vertices, int vertex_count, const Bsdf& bsdf,
+                    std::span<const double> cos_theta_o, const ShadeSettings& settings, std::span<Rgb> radiance,
+                    std::span<std::int32_t> effort) {
+    LightShader(bsdf, settings).polygons(vertices, vertex_count, cos_theta_o, radiance, effort);
+}
+
+#define SHLIGHT_INSTANTIATE(T, U)                                                                          \
+    template void LightShader::spheres(std::span<const Vec3<T>>, std::span<const T>, std::span<const U>,   \
+                                       std::span<Rgb>, std::span<std::int32_t>);                           \
+    template void LightShader::polygons(std::span<const Vec3<T>>, int, std::span<const U>, std::span<Rgb>, \
+                                        std::span<std::int32_t>);
+SHLIGHT_INSTANTIATE(float, float)
+SHLIGHT_INSTANTIATE(float, double)
+SHLIGHT_INSTANTIATE(double, float)
+SHLIGHT_INSTANTIATE(double, double)
+#undef SHLIGHT_INSTANTIATE
 
 }  // namespace shlight

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "lobe_view.h"
 #include "shlight/bsdf.h"
 #include "shlight/types.h"
 
@@ -17,12 +16,15 @@ class MaterialLobes {
   public:
     /// order: the only one, 1 … 64, or 0 to meet the tolerance: of the radiance ÷ albedo of the whole material, in each
     /// colour channel.
-    MaterialLobes(const Bsdf& bsdf, int order, double tolerance);
+    MaterialLobes(std::span<const Lobe> lobes, int order, double tolerance);
 
     /// Those that are not black.
     std::span<const Lobe> lobes() const { return lobes_; }
-    /// One lobe at one view; nothing if it is black there.
-    std::optional<LobeAtView> at(std::size_t lobe, double cos_theta_o) const;
+    /// What a lobe is shaded with; null for a mirror.
+    const WarpedFit* fit(std::size_t lobe) const { return auto_order_ ? lobes_[lobe].fit.get() : fits_[lobe].get(); }
+    /// Whether each view and light may have an order of its own; otherwise a fit has only one.
+    bool auto_order() const { return auto_order_; }
+    double tolerance() const { return tolerance_; }
     /// The least distance [rad] over which f·cos changes at this view: of its narrowest lobe; 0 for a mirror.
     double narrowest(double cos_theta_o) const;
 

@@ -26,7 +26,7 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
                  std::vector<glm::dvec2> points)
     : scene(&s), camera(&c), settings(r), width(w), height(h), window(c.window(w, h)), pixel_points(std::move(points)) {
     for (const Material& material : s.materials()) {
-        materials.emplace_back(material.bsdf, r.order, r.tolerance);
+        materials.emplace_back(material.bsdf.lobes(), r.order, r.tolerance);
         lobe_stride = std::max(lobe_stride, materials.back().lobes().size());
     }
 }

@@ -2,62 +2,110 @@
 #include "unshadowed.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "light_view.h"
 
 namespace shlight {
 namespace {
 
-void count(const LobeRadiance& r, std::uint32_t hits, RenderReport& report) {
-    if (r.order > 0) {
-        report.order_counts[static_cast<std::size_t>(r.order)] += hits;
-    } else if (r.points > 0) {
-        report.cubature_count += hits;
-    } else {
-        report.mirror_count += hits;
+/// Points that are shaded at a time, as many as fit the cache with what is known of their views.
+constexpr std::size_t kChunk = 1024;
+
+void count(const Taken& taken, std::uint32_t hits, RenderReport& report) {
+    switch (taken.way) {
+        case Taken::Way::nothing:
+            return;
+        case Taken::Way::mirror:
+            report.mirror_count += hits;
+            break;
+        case Taken::Way::harmonics:
+            report.order_counts[static_cast<std::size_t>(taken.effort)] += hits;
+            break;
+        case Taken::Way::cubature:
+            report.cubature_count += hits;
+            break;
     }
-    report.over_tolerance += r.met ? 0 : hits;
+    report.over_tolerance += taken.met ? 0 : hits;
 }
 
 }  // namespace
-
-template <class Region>
-void Unshadowed::shade(const Region& region, std::size_t light, std::size_t point, std::uint32_t hits,
-                       RenderReport& report) {
-    for (std::size_t lobe = 0; lobe < lobes_.size(); ++lobe) {
-        if (lobes_[lobe]) {
-            const LobeRadiance radiance = lobes_[lobe]->radiance(region);
-            // What rings below zero is no light.
-            values_[(light * lobe_stride_ + lobe) * point_count_ + point] = std::max(0.0F, radiance.value);
-            count(radiance, hits, report);
-        }
-    }
-}
 
 void Unshadowed::compute(const ShadingPoints& points, std::span<const MaterialLobes> materials,
                          std::span<const Light> lights, RenderReport& report) {
     point_count_ = points.size();
     values_.assign(lights.size() * lobe_stride_ * point_count_, 0.0F);
-    for (std::size_t point = 0; point < point_count_; ++point) {
-        const MaterialLobes& material = materials[points.material[point]];
-        lobes_.clear();
-        for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
-            lobes_.push_back(material.at(lobe, points.cos_theta_o[point]));
+    by_material_.resize(point_count_);
+    std::iota(by_material_.begin(), by_material_.end(), 0U);
+    std::stable_sort(by_material_.begin(), by_material_.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return points.material[a] < points.material[b]; });
+    const std::span<const std::uint32_t> sorted(by_material_);
+    for (std::size_t first = 0; first < point_count_;) {
+        const std::uint32_t material = points.material[sorted[first]];
+        std::size_t last = first + 1;
+        while (last < point_count_ && last < first + kChunk && points.material[sorted[last]] == material) {
+            ++last;
         }
-        const ShadingFrame& frame = points.frame[point];
-        for (std::size_t i = 0; i < lights.size(); ++i) {
-            if (const auto* sphere = std::get_if<SphereLight>(&lights[i])) {
-                if (const std::optional<CapView> cap = view(*sphere, frame)) {
-                    shade(circle_of(*cap), i, point, points.hit_count(point), report);
-                }
-            } else if (const auto& polygon = std::get<PolygonLight>(lights[i]);
-                       is_seen(polygon, frame, points.error[point])) {
-                vertices_.clear();
-                for (const Vec3d& v : polygon.vertices) {
-                    vertices_.push_back(frame.point_to_local(v));
-                }
-                shade(SphericalPolygon<double>(vertices_, true), i, point, points.hit_count(point), report);
+        shade(points, sorted.subspan(first, last - first), materials[material], lights, report);
+        first = last;
+    }
+}
+
+void Unshadowed::shade(const ShadingPoints& points, std::span<const std::uint32_t> some, const MaterialLobes& material,
+                       std::span<const Light> lights, RenderReport& report) {
+    cosines_.resize(some.size());
+    std::transform(some.begin(), some.end(), cosines_.begin(),
+                   [&](std::uint32_t point) { return double{points.cos_theta_o[point]}; });
+    views_.assign(material, cosines_, true);
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        integrate(points, some, lights[i], i, report);
+    }
+}
+
+void Unshadowed::see(const SphereLight& light, const ShadingPoints& points, std::span<const std::uint32_t> some) {
+    circles_.resize(some.size());
+    for (std::size_t i = 0; i < some.size(); ++i) {
+        if (const std::optional<CapView> cap = view(light, points.frame[some[i]])) {
+            circles_.set(seen_by_.size(), circle_of(*cap));
+            seen_by_.push_back(static_cast<std::uint32_t>(i));
+        }
+    }
+}
+
+void Unshadowed::see(const PolygonLight& light, const ShadingPoints& points, std::span<const std::uint32_t> some) {
+    vertices_.clear();
+    kept_.clear();
+    for (std::size_t i = 0; i < some.size(); ++i) {
+        const ShadingFrame& frame = points.frame[some[i]];
+        if (is_seen(light, frame, points.error[some[i]])) {
+            for (const Vec3d& v : light.vertices) {
+                vertices_.push_back(frame.point_to_local(v));
             }
+            kept_.emplace_back(std::span<const Vec3d>(vertices_).last(light.vertices.size()), true);
+            seen_by_.push_back(static_cast<std::uint32_t>(i));
+        }
+    }
+}
+
+void Unshadowed::integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
+                           std::size_t light_index, RenderReport& report) {
+    seen_by_.clear();
+    std::visit([&](const auto& shape) { see(shape, points, some); }, light);
+    if (seen_by_.empty()) {
+        return;
+    }
+    for (std::size_t lobe = 0; lobe < views_.lobe_count(); ++lobe) {
+        if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
+            batch_.shade(views_.lobe(lobe), PolygonLights{vertices_, static_cast<int>(polygon->vertices.size()), kept_},
+                         seen_by_);
+        } else {
+            batch_.shade(views_.lobe(lobe), circles_.arrays(), seen_by_);
+        }
+        float* values = &values_[(light_index * lobe_stride_ + lobe) * point_count_];
+        for (std::size_t k = 0; k < seen_by_.size(); ++k) {
+            const std::uint32_t point = some[seen_by_[k]];
+            values[point] = batch_.values()[k];
+            count(batch_.taken()[k], points.hit_count(point), report);
         }
     }
 }

@@ -4,11 +4,13 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
+#include "circle_batch.h"
+#include "lobe_batch.h"
 #include "material_lobes.h"
+#include "material_views.h"
 #include "shading_points.h"
 #include "shlight/light.h"
 #include "shlight/render.h"
@@ -29,15 +31,27 @@ class Unshadowed {
     }
 
   private:
-    /// The lobes of one point under one light.
-    template <class Region>
-    void shade(const Region& region, std::size_t light, std::size_t point, std::uint32_t hits, RenderReport& report);
+    /// Some points of one material, under all lights.
+    void shade(const ShadingPoints& points, std::span<const std::uint32_t> some, const MaterialLobes& material,
+               std::span<const Light> lights, RenderReport& report);
+    /// Finds which of the points a light shines on, and how they see it.
+    void see(const SphereLight& light, const ShadingPoints& points, std::span<const std::uint32_t> some);
+    void see(const PolygonLight& light, const ShadingPoints& points, std::span<const std::uint32_t> some);
+    void integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
+                   std::size_t light_index, RenderReport& report);
 
     std::size_t lobe_stride_;
     std::size_t point_count_ = 0;
-    std::vector<std::optional<LobeAtView>> lobes_;  // of the point at hand
     std::vector<float> values_;
+
+    std::vector<std::uint32_t> by_material_;
+    std::vector<double> cosines_;
+    MaterialViews views_;  // of some points
+    LobeBatch batch_;
+    std::vector<std::uint32_t> seen_by_;  // indices of these points
+    CircleBatch circles_;
     std::vector<Vec3d> vertices_;
+    std::vector<SphericalPolygon<double>> kept_;
 };
 
 }  // namespace shlight

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "legendre.h"
+#include "view_table.h"
 #include "warped_row.h"
 
 namespace shlight {
@@ -91,38 +92,37 @@ WarpedFit::WarpedFit(const LobeShape& shape, int order) : shape_(shape), order_(
         check_order(order);
     }
     if (const auto* ggx = std::get_if<GgxShape>(&shape)) {
-        row_ = std::make_shared<const WarpedRow>(make_row(*ggx, order));
+        table_ = std::make_shared<const ViewTable>(make_row(*ggx, order));
     }
 }
 
 std::vector<int> WarpedFit::orders() const {
-    if (row_) {
-        const auto orders = row_->layout().orders();
-        return {orders.begin(), orders.end()};
+    if (table_) {
+        return {table_->orders().begin(), table_->orders().end()};
     }
     return {order_ == 0 ? 2 : order_};
 }
 
 double WarpedFit::albedo(double cos_theta_o) const {
-    return row_ ? row_->value(cos_theta_o, NodeLayout::albedo()) : 1.0;
+    return table_ ? table_->head(cos_theta_o)[ViewTable::kAlbedo] : 1.0;
 }
 
 double WarpedFit::shading_error(double cos_theta_o, int order) const {
-    if (!row_) {
+    if (!table_) {
         return order == 1 ? 0.5 : 0.0;
     }
-    return std::max(0.0F, row_->value(cos_theta_o, NodeLayout::shading_error(row_->layout().which(order))));
+    return std::max(0.0F, table_->head(cos_theta_o)[ViewTable::kShadingErrors + table_->which(order)]);
 }
 
 double WarpedFit::residual(double cos_theta_o, int order) const {
-    if (!row_) {
+    if (!table_) {
         return order == 1 ? 0.5 : 0.0;  // of cosθ the mean explains three quarters of the square
     }
-    return std::max(0.0F, row_->value(cos_theta_o, NodeLayout::residual(row_->layout().which(order))));
+    return std::max(0.0F, table_->head(cos_theta_o)[ViewTable::kResiduals + table_->which(order)]);
 }
 
 int WarpedFit::order_for(double cos_theta_o, double tolerance) const {
-    if (row_ && cos_theta_o < kLeastFittedCosine) {
+    if (table_ && cos_theta_o < kLeastFittedCosine) {
         return 0;
     }
     for (const int order : orders()) {
@@ -138,8 +138,8 @@ Warp WarpedFit::warp(double cos_theta_o) const {
 }
 
 void WarpedFit::coefficients(double cos_theta_o, int order, float* cosine_terms) const {
-    if (row_) {
-        row_->coefficients(cos_theta_o, row_->layout().which(order), cosine_terms);
+    if (table_) {
+        table_->terms(cos_theta_o, table_->which(order), cosine_terms);
         return;
     }
     // z/π is one harmonic, and order 1 can only be the mean 1/(2π).

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "shlight/warped_fit.h"
 
@@ -15,11 +14,6 @@ namespace {
 
 /// artanh(sinθ_o) of the most grazing view that is fitted.
 const double kFarthestView = std::acosh(1 / kLeastFittedCosine);
-
-CubicStencil view_stencil(double cos_theta_o) {
-    const double cosine = std::clamp(cos_theta_o, kLeastFittedCosine, 1.0);
-    return {std::acosh(1 / cosine) / kFarthestView * (kWarpedViews - 1), -1, kWarpedViews};
-}
 
 }  // namespace
 
@@ -35,10 +29,6 @@ NodeLayout::NodeLayout(std::span<const int> orders)
     }
 }
 
-std::size_t NodeLayout::which(int order) const {
-    return static_cast<std::size_t>(std::find(orders_.begin(), orders_.end(), order) - orders_.begin());
-}
-
 CubicStencil::CubicStencil(double position, int least, int count)
     : first(std::clamp(static_cast<int>(std::floor(position)) - 1, least, count - 4)) {
     const auto t = static_cast<float>(position - first);  // 1 … 2 between the middle nodes
@@ -48,39 +38,6 @@ CubicStencil::CubicStencil(double position, int least, int count)
 
 WarpedRow::WarpedRow(NodeLayout layout, std::vector<float> nodes)
     : layout_(std::move(layout)), nodes_(std::move(nodes)) {}
-
-float WarpedRow::value(double cos_theta_o, std::size_t offset) const {
-    const CubicStencil s = view_stencil(cos_theta_o);
-    float sum = 0;
-    for (int k = 0; k < 4; ++k) {
-        sum += s.weights[k] * nodes_[static_cast<std::size_t>(std::abs(s.first + k)) * layout_.size() + offset];
-    }
-    return sum;
-}
-
-void WarpedRow::coefficients(double cos_theta_o, std::size_t which, float* cosine_terms) const {
-    const CubicStencil s = view_stencil(cos_theta_o);
-    const int order = layout_.orders()[which];
-    const int count = cosine_count(order);
-    std::fill_n(cosine_terms, count, 0.0F);
-    for (int k = 0; k < 4; ++k) {
-        const auto node = static_cast<std::size_t>(std::abs(s.first + k));
-        const float* terms = &nodes_[node * layout_.size() + layout_.coefficients(which)];
-        const float w = s.weights[k];
-        if (s.first + k >= 0) {
-            for (int i = 0; i < count; ++i) {
-                cosine_terms[i] += w * terms[i];
-            }
-            continue;
-        }
-        // Past the normal the view is mirrored: terms of odd degree change sign.
-        for (int l = 0, i = 0; l < order; ++l) {
-            for (int m = 0; m <= l; ++m, ++i) {
-                cosine_terms[i] += (m % 2 == 0 ? w : -w) * terms[i];
-            }
-        }
-    }
-}
 
 WarpedRow fit_warped_row(const GgxShape& shape, std::span<const int> orders) {
     const NodeLayout layout(orders);

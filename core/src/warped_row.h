@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The fits of one GGX shape at all view angles, and how to find what lies between them.
+// The fits of one GGX shape at all view angles.
 #pragma once
 
 #include <array>
@@ -30,8 +30,6 @@ class NodeLayout {
     static std::size_t shading_error(std::size_t which) { return 1 + 2 * which; }
     static std::size_t residual(std::size_t which) { return 2 + 2 * which; }
     std::size_t coefficients(std::size_t which) const { return first_[which]; }
-    /// Index of an order; precondition: it is one of orders().
-    std::size_t which(int order) const;
 
   private:
     std::vector<int> orders_;
@@ -57,9 +55,10 @@ class WarpedRow {
 
     const NodeLayout& layout() const { return layout_; }
     std::span<const float> nodes() const { return nodes_; }
-    /// Interpolates the value at an offset of the layout; for the even ones (all but coefficients).
-    float value(double cos_theta_o, std::size_t offset) const;
-    void coefficients(double cos_theta_o, std::size_t which, float* cosine_terms) const;
+    /// What is known at one view angle.
+    std::span<const float> node(int index) const {
+        return nodes().subspan(static_cast<std::size_t>(index) * layout_.size(), layout_.size());
+    }
 
   private:
     NodeLayout layout_;

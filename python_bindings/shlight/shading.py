@@ -89,15 +89,17 @@ def shade_spheres(
     Returns (..., 3), float32. With return_effort also (...), int32: per light the largest order, or number of values
     of f·cos, that a lobe of the material took; 0 where a light is hidden or mirrored.
     """
-    c = checked_array("centers", centers, np.float64, core_axes=1)
-    r = checked_array("radii", radii, np.float64)
-    cosines = checked_array("cos_theta_o", cos_theta_o, np.float64)
+    dtype = _given_type(centers, radii) if method == "auto" else np.float64
+    c = checked_array("centers", centers, dtype, core_axes=1)
+    r = checked_array("radii", radii, dtype)
+    cosines = _checked_views(cos_theta_o)
     check_last("centers", c, 3)
     shape = broadcast(centers=c.shape[:-1], radii=r.shape, cos_theta_o=cosines.shape)
-    lights = (rows(c, shape, 3), rows(r, shape), bsdf, rows(cosines, shape))
     if method == "auto":
-        flat = _core.shade_spheres(*lights, *_settings(order, tolerance, threads, samples, seed, sampling))
+        settings = _settings(order, tolerance, threads, samples, seed, sampling)
+        flat = _core.shade_spheres(rows(c, shape, 3), rows(r, shape), bsdf, _views(cosines, shape), *settings)
     else:
+        lights = (rows(c, shape, 3), rows(r, shape), bsdf, rows(cosines.astype(np.float64), shape))
         options = shading_options(
             method, _order(order), tolerance=tolerance, samples=samples, seed=seed, sampling=sampling
         )
@@ -154,21 +156,38 @@ def shade_polygons(
     vertices: (..., k, 3) with k ≥ 3, in the shading frame, in either winding: the region counts. A polygon without area
     or seen edge-on gives zeros.
     """
-    v = checked_array("vertices", vertices, np.float64, core_axes=2)
+    v = checked_array("vertices", vertices, _given_type(vertices) if method == "auto" else np.float64, core_axes=2)
     check_last("vertices", v, 3)
     if v.shape[-2] < 3:
         raise ValueError(f"vertices: a polygon needs at least 3, got {v.shape[-2]}")
-    cosines = checked_array("cos_theta_o", cos_theta_o, np.float64)
+    cosines = _checked_views(cos_theta_o)
     shape = broadcast(vertices=v.shape[:-2], cos_theta_o=cosines.shape)
-    lights = (rows(v, shape, *v.shape[-2:]), bsdf, rows(cosines, shape))
+    polygons = rows(v, shape, *v.shape[-2:])
     if method == "auto":
-        flat = _core.shade_polygons(*lights, *_settings(order, tolerance, threads, samples, seed, sampling))
+        settings = _settings(order, tolerance, threads, samples, seed, sampling)
+        flat = _core.shade_polygons(polygons, bsdf, _views(cosines, shape), *settings)
     else:
+        lights = (polygons, bsdf, rows(cosines.astype(np.float64), shape))
         options = shading_options(
             method, _order(order), tolerance=tolerance, samples=samples, seed=seed, sampling=sampling
         )
         flat = _core.method_shade_polygons(method, *lights, options, checked_threads(threads))
     return _result(*flat, shape, return_effort)
+
+
+def _given_type(*arrays: ArrayLike) -> type[np.floating[Any]]:
+    """float32 for arrays that are, float64 for all else."""
+    single = all(isinstance(a, np.ndarray | np.generic) and a.dtype == np.float32 for a in arrays)
+    return np.float32 if single else np.float64
+
+
+def _checked_views(cos_theta_o: ArrayLike) -> Floats:
+    return checked_array("cos_theta_o", cos_theta_o, _given_type(cos_theta_o))
+
+
+def _views(cosines: Floats, shape: tuple[int, ...]) -> Floats:
+    """One for each light, or one for all of them."""
+    return cosines.reshape(1) if cosines.size == 1 else rows(cosines, shape)
 
 
 def _order(order: int | Literal["auto"]) -> int:

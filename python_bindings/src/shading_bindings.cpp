@@ -1,48 +1,85 @@
 // SPDX-License-Identifier: MIT
 //
 // Flat batch functions; shlight/shading.py broadcasts in front of them.
+#include <tbb/enumerable_thread_specific.h>
+
 #include "arrays.h"
 #include "bindings.h"
-#include "chunks.h"
 #include "shaded.h"
 #include "shlight/light_shading.h"
+#include "shlight/parallel.h"
 
 namespace shlight::python {
 namespace {
 
-py::tuple spheres(const Array<double>& centers, const Array<double>& radii, const Bsdf& bsdf,
-                  const Array<double>& cos_theta_o, int order, double tolerance, int threads) {
+/// Lights a task takes at once, in chunks of the shader's own: a shared view is looked up once for each task.
+constexpr std::size_t kTask = 4096;
+
+/// work(shader, first, count) over parts of 0 … total-1, without the GIL; each thread has a shader of its own.
+template <class Work>
+void shade_parts(std::size_t total, const Bsdf& bsdf, const ShadeSettings& settings, int threads, const Work& work) {
+    const py::gil_scoped_release release;
+    tbb::enumerable_thread_specific<LightShader> shaders([&] { return LightShader(bsdf, settings); });
+    shaders.local();  // a setting that is wrong is wrong for no lights, too
+    parallel_for((total + kTask - 1) / kTask, threads, [&](std::size_t part) {
+        const std::size_t first = part * kTask;
+        work(shaders.local(), first, std::min(kTask, total - first));
+    });
+}
+
+/// The views of a part of the lights: those of each, or the one of all.
+template <class U>
+std::span<const U> part_of(std::span<const U> views, std::size_t first, std::size_t count) {
+    return views.size() == 1 ? views : views.subspan(first, count);
+}
+
+/// cos_theta_o: one for each light, or one for all.
+template <class T, class U>
+py::tuple spheres(const Array<T>& centers, const Array<T>& radii, const Bsdf& bsdf, const Array<U>& cos_theta_o,
+                  int order, double tolerance, int threads) {
     const auto c = vectors("centers", centers);
     const auto r = values(radii);
     const auto views = values(cos_theta_o);
     const Shaded out(c.size());
-    in_chunks(c.size(), threads, [&](std::size_t first, std::size_t count) {
-        shade_spheres(c.subspan(first, count), r.subspan(first, count), bsdf, views.subspan(first, count),
-                      {order, tolerance}, out.colors.subspan(first, count), out.efforts.subspan(first, count));
-    });
+    shade_parts(c.size(), bsdf, {order, tolerance}, threads,
+                [&](LightShader& shader, std::size_t first, std::size_t count) {
+                    shader.spheres(c.subspan(first, count), r.subspan(first, count), part_of(views, first, count),
+                                   out.colors.subspan(first, count), out.efforts.subspan(first, count));
+                });
     return out.result();
 }
 
-py::tuple polygons(const Array<double>& vertices, const Bsdf& bsdf, const Array<double>& cos_theta_o, int order,
-                   double tolerance, int threads) {
+template <class T, class U>
+py::tuple polygons(const Array<T>& vertices, const Bsdf& bsdf, const Array<U>& cos_theta_o, int order, double tolerance,
+                   int threads) {
     const auto v = vectors("vertices", vertices);
     const auto k = static_cast<std::size_t>(vertices.shape(1));
     const auto views = values(cos_theta_o);
-    const Shaded out(views.size());
-    in_chunks(views.size(), threads, [&](std::size_t first, std::size_t count) {
-        shade_polygons(v.subspan(first * k, count * k), static_cast<int>(k), bsdf, views.subspan(first, count),
-                       {order, tolerance}, out.colors.subspan(first, count), out.efforts.subspan(first, count));
-    });
+    const Shaded out(v.size() / k);
+    shade_parts(v.size() / k, bsdf, {order, tolerance}, threads,
+                [&](LightShader& shader, std::size_t first, std::size_t count) {
+                    shader.polygons(v.subspan(first * k, count * k), static_cast<int>(k), part_of(views, first, count),
+                                    out.colors.subspan(first, count), out.efforts.subspan(first, count));
+                });
     return out.result();
+}
+
+template <class T, class U>
+void bind(py::module_& m) {
+    m.def("shade_spheres", &spheres<T, U>, py::arg("centers").noconvert(), py::arg("radii").noconvert(),
+          py::arg("bsdf"), py::arg("cos_theta_o").noconvert(), py::arg("order"), py::arg("tolerance"),
+          py::arg("threads"));
+    m.def("shade_polygons", &polygons<T, U>, py::arg("vertices").noconvert(), py::arg("bsdf"),
+          py::arg("cos_theta_o").noconvert(), py::arg("order"), py::arg("tolerance"), py::arg("threads"));
 }
 
 }  // namespace
 
 void bind_shading(py::module_& m) {
-    m.def("shade_spheres", &spheres, py::arg("centers").noconvert(), py::arg("radii").noconvert(), py::arg("bsdf"),
-          py::arg("cos_theta_o").noconvert(), py::arg("order"), py::arg("tolerance"), py::arg("threads"));
-    m.def("shade_polygons", &polygons, py::arg("vertices").noconvert(), py::arg("bsdf"),
-          py::arg("cos_theta_o").noconvert(), py::arg("order"), py::arg("tolerance"), py::arg("threads"));
+    bind<float, float>(m);
+    bind<float, double>(m);
+    bind<double, float>(m);
+    bind<double, double>(m);
 }
 
 }  // namespace shlight::python

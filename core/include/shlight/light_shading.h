@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "shlight/bsdf.h"
@@ -17,15 +18,40 @@ struct ShadeSettings {
     double tolerance = 1e-3;  ///< of the radiance ÷ the material's albedo at the view, in each colour channel
 };
 
-/// radiance[i]: reflected towards ω_o = (sinθ_o, 0, cosθ_o) of a sphere light of unit radiance; centres and radii in
-/// the shading frame. effort: empty, or per light the largest order or number of cubature points that a lobe took; 0
-/// where the light is hidden or mirrored. Throws std::invalid_argument naming the argument: sizes that do not fit, an
-/// order outside 0 … 64, a tolerance ≤ 0 or not finite, cos_theta_o outside [0, 1], and as sphere_coefficients does.
+/// Shades batch after batch of lights of one material. Keeps its memory; one per thread.
+///
+/// Views: cos_theta_o of each light, or one for all of them; ω_o = (sinθ_o, 0, cosθ_o). Lights that share a view are
+/// cheaper as neighbours.
+/// radiance: reflected towards ω_o, of lights of unit radiance. effort: empty, or per light the largest order or number
+/// of values of f·cos that a lobe took; 0 where the light is hidden or mirrored.
+/// T, U: float or double. Results depend on nothing but a light and its view.
+class LightShader {
+  public:
+    /// Throws std::invalid_argument naming the argument: an order outside 0 … 64, a tolerance ≤ 0 or not finite.
+    LightShader(const Bsdf& bsdf, const ShadeSettings& settings);
+    ~LightShader();
+    LightShader(LightShader&&) noexcept;
+    LightShader& operator=(LightShader&&) noexcept;
+
+    /// Sphere lights, from centre and radius in the shading frame. Throws std::invalid_argument naming the argument:
+    /// sizes that do not fit, cos_theta_o outside [0, 1], and as sphere_coefficients does.
+    template <class T, class U>
+    void spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, std::span<const U> cos_theta_o,
+                 std::span<Rgb> radiance, std::span<std::int32_t> effort = {});
+
+    /// Planar polygons of vertex_count vertices each, in either winding; throws as polygon_coefficients does, too.
+    template <class T, class U>
+    void polygons(std::span<const Vec3<T>> vertices, int vertex_count, std::span<const U> cos_theta_o,
+                  std::span<Rgb> radiance, std::span<std::int32_t> effort = {});
+
+  private:
+    std::unique_ptr<class LightShaderWork> work_;
+};
+
+/// The same of one batch.
 void shade_spheres(std::span<const Vec3d> centers, std::span<const double> radii, const Bsdf& bsdf,
                    std::span<const double> cos_theta_o, const ShadeSettings& settings, std::span<Rgb> radiance,
                    std::span<std::int32_t> effort = {});
-
-/// The same for planar polygons of vertex_count vertices each, in either winding; throws as polygon_coefficients does.
 void shade_polygons(std::span<const Vec3d> vertices, int vertex_count, const Bsdf& bsdf,
                     std::span<const double> cos_theta_o, const ShadeSettings& settings, std::span<Rgb> radiance,
                     std::span<std::int32_t> effort = {});

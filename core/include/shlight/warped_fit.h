@@ -43,10 +43,12 @@ class WarpedFit {
     Warp warp(double cos_theta_o) const;
     /// Writes the cosine_count(order) cosine terms for one view angle; order: one of orders().
     void coefficients(double cos_theta_o, int order, float* cosine_terms) const;
+    /// Where many views are looked up at once; null for Lambert, which is known in closed form.
+    const class ViewTable* table() const { return table_.get(); }
 
   private:
     LobeShape shape_;
-    std::shared_ptr<const class WarpedRow> row_;  // null for Lambert, which is known in closed form
+    std::shared_ptr<const ViewTable> table_;
     int order_;
 };
 

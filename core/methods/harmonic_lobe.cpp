@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include "harmonic_lobe.h"
+
+#include <numeric>
+#include <vector>
+
+#include "circle_batch.h"
+#include "kernels/cap_shading.h"
+
+namespace shlight::methods {
+
+Reflected HarmonicLobe::radiance(const Circle& cap, std::uint32_t seed) const {
+    Reflected result{};
+    radiances({&cap, 1}, {&seed, 1}, {&result, 1});
+    return result;
+}
+
+void HarmonicLobe::radiances(std::span<const Circle> caps, std::span<const std::uint32_t> /*seeds*/,
+                             std::span<Reflected> results) const {
+    CircleBatch circles;
+    circles.resize(caps.size());
+    for (std::size_t i = 0; i < caps.size(); ++i) {
+        circles.set(i, caps[i]);
+    }
+    std::vector<std::uint32_t> circle_of(caps.size());
+    std::iota(circle_of.begin(), circle_of.end(), 0U);
+    const std::vector<std::uint32_t> view_of(caps.size(), 0);
+    std::vector<float> values(caps.size());
+    shade_caps(circles.arrays(), circle_of, lobe_, view_of, values);
+    for (std::size_t i = 0; i < caps.size(); ++i) {
+        results[i] = {values[i], 0};
+    }
+}
+
+}  // namespace shlight::methods

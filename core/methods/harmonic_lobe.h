@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+//
+// A lobe at one view as harmonics of one order: Eq. 5, by the library's own kernels.
+#pragma once
+
+#include "kernels/lobe_arrays.h"
+#include "method.h"
+
+namespace shlight::methods {
+
+class HarmonicLobe : public LobeIntegrator {
+  public:
+    Reflected radiance(const Circle& cap, std::uint32_t seed) const override;
+    void radiances(std::span<const Circle> caps, std::span<const std::uint32_t> seeds,
+                   std::span<Reflected> results) const override;
+
+  protected:
+    /// Of one view; what it points to lives as long as this.
+    void set(const LobeArrays& lobe) { lobe_ = lobe; }
+    const LobeArrays& lobe() const { return lobe_; }
+
+  private:
+    LobeArrays lobe_{};
+};
+
+}  // namespace shlight::methods

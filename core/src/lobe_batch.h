@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+//
+// Many lights under one lobe: each integrated in the cheapest way that meets the tolerance. As a mirror image, by a few
+// values of f·cos where it is small beside the lobe, by spherical harmonics in the lobe's warp, or along its outline.
+// Lights that take the same way are sorted together, so that each way is one call.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kernels/cap_shading.h"
+#include "light_outline.h"
+#include "material_views.h"
+#include "shlight/types.h"
+#include "spherical_polygon.h"
+
+namespace shlight {
+
+/// What a light's radiance took.
+struct Taken {
+    enum class Way : std::uint8_t { nothing, mirror, harmonics, cubature };
+
+    Way way;           ///< nothing: the light is hidden, or the lobe black
+    bool met;          ///< the tolerance, by what the way estimates
+    std::int32_t effort;  ///< order, or number of values of f·cos; else 0
+};
+
+/// Polygons of the same number of vertices in the shading frame, and what of them the horizon leaves.
+struct PolygonLights {
+    std::span<const Vec3d> vertices;
+    int vertex_count;
+    std::span<const SphericalPolygon<double>> kept;
+
+    std::size_t size() const { return kept.size(); }
+};
+
+/// Keeps its memory from call to call; one per thread.
+class LobeBatch {
+  public:
+    /// Circle i, clipped by the horizon, is seen by view view_of[i].
+    void shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of);
+    void shade(LobeViews& lobe, const PolygonLights& polygons, std::span<const std::uint32_t> view_of);
+
+    /// Of the last call: the reflected radiance of each light of unit radiance, without the lobe's scale, ≥ 0.
+    std::span<const float> values() const { return values_; }
+    std::span<const Taken> taken() const { return taken_; }
+
+  private:
+    /// What becomes of a light: nothing, a rule of cubature, its outline, or harmonics of order key - kHarmonics.
+    using Key = std::uint8_t;
+    static constexpr Key kNothing = 0, kOutline = 5, kHarmonics = 6;
+    static constexpr std::size_t kKeys = kHarmonics + kMaxOrder + 1;
+
+    template <class Lights>
+    void shade_any(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of);
+
+    bool is_hidden(const CircleArrays& circles, std::size_t light) const;
+    bool is_hidden(const PolygonLights& polygons, std::size_t light) const;
+    bool shows_mirrored(const CircleArrays& circles, std::size_t light, const Vec3d& direction) const;
+    bool shows_mirrored(const PolygonLights& polygons, std::size_t light, const Vec3d& direction) const;
+    /// The rule of cubature of each light, as choose_cap_rules.
+    void choose_rules(const LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of);
+    void choose_rules(const LobeViews& lobe, const PolygonLights& polygons, std::span<const std::uint32_t> view_of);
+    static int cheap_rule(const CircleArrays&);
+    static int cheap_rule(const PolygonLights&);
+
+    template <class Lights>
+    void mirror(const LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of);
+    template <class Lights>
+    void sort(const LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of);
+    template <class Lights>
+    void integrate(LobeViews& lobe, const Lights& lights, Key key);
+
+    void by_harmonics(LobeViews& lobe, const CircleArrays& circles, int order);
+    void by_harmonics(LobeViews& lobe, const PolygonLights& polygons, int order);
+    void by_rule(const LobeViews& lobe, const CircleArrays& circles, int rule);
+    void by_rule(const LobeViews& lobe, const PolygonLights& polygons, int rule);
+    void by_outline(const LobeViews& lobe, const CircleArrays& circles);
+    void by_outline(const LobeViews& lobe, const PolygonLights& polygons);
+    OutlineIntegral outline(const LobeViews& lobe, std::span<const OutlineArc> arcs, std::size_t view);
+    void finish_outline(const LobeViews& lobe, std::size_t item, const OutlineIntegral& integral);
+
+    std::vector<float> values_;
+    std::vector<Taken> taken_;
+    std::vector<std::uint8_t> rules_;
+    std::vector<Key> keys_;
+    std::vector<std::uint32_t> sorted_;                    // lights by key
+    std::array<std::uint32_t, kKeys + 1> begin_{};         // of each key in sorted_
+    std::span<const std::uint32_t> items_;                 // lights of the key at hand
+    std::vector<std::uint32_t> item_views_;                // and their views
+    std::vector<float> item_values_;
+};
+
+}  // namespace shlight
