@@ -25,6 +25,9 @@ class CircleBatch {
         members_[3][i] = circle.cosine;
         members_[4][i] = circle.sine;
     }
+    CircleOutput output() {
+        return {members_[0].data(), members_[1].data(), members_[2].data(), members_[3].data(), members_[4].data()};
+    }
     CircleArrays arrays() const {
         return {members_[0].data(), members_[1].data(), members_[2].data(), members_[3].data(), members_[4].data()};
     }

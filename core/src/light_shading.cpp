@@ -70,8 +70,8 @@ class LightShaderWork {
         circles_.resize(radiance.size());
         for (std::size_t i = 0; i < radiance.size(); ++i) {
             check_sphere(Vec3d(centers[i]), radii[i], std::numeric_limits<float>::epsilon());
-            circles_.set(i, circle_of_sphere(Vec3d(centers[i]), radii[i]));
         }
+        circles_of_spheres(std::span(centers, radiance.size()), radii, circles_.output());
         shade(circles_.arrays(), radiance, effort);
     }
 

@@ -5,10 +5,9 @@
 #include <cmath>
 
 #include "kernels/cap_cubature_kernel.h"
+#include "kernels/polygon_shading_kernel.h"
 #include "light_cubature.h"
 #include "lobe_outline.h"
-#include "polygon_region.h"
-#include "polygon_shading.h"
 
 namespace shlight {
 namespace {
@@ -216,15 +215,8 @@ void LobeBatch::by_harmonics(LobeViews& lobe, const CircleArrays& circles, int o
 }
 
 void LobeBatch::by_harmonics(LobeViews& lobe, const PolygonLights& polygons, int order) {
-    const LobeArrays arrays = lobe.arrays(order, item_views_);
-    for (std::size_t k = 0; k < items_.size(); ++k) {
-        const float* terms = arrays.terms + item_views_[k] * arrays.stride;
-        const SphericalPolygon<double>& polygon = polygons.kept[items_[k]];
-        item_values_[k] =
-            arrays.warped
-                ? shade_region(PolygonRegion<double>(polygon, lobe.warp(item_views_[k])), terms, order)
-                : shade_polygon(polygon, Warp(), terms, order);
-    }
+    shade_polygons(polygons.vertices, polygons.vertex_count, items_, lobe.arrays(order, item_views_), item_views_,
+                   item_values_);
 }
 
 void LobeBatch::by_rule(const LobeViews& lobe, const CircleArrays& circles, int rule) {
