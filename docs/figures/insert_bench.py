@@ -24,10 +24,10 @@ BLOCK = re.compile(r"(<!-- bench (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 def content(bench: Bench, name: str) -> str:
     """What belongs into a block; empty where the run has nothing for it."""
     if name == "machine":
-        machine = bench.machine
+        machine, settings = bench.machine, bench.settings
         return (
-            f"{machine['processor']}, {machine['cores']} cores, {machine['instruction set']}; {bench.settings['lights']} "
-            f"lights, medians of {bench.settings['rounds']} turns; sphericart {machine['sphericart']}.\n"
+            f"{machine['processor']}, {machine['cores']} cores, {machine['instruction set']}; {settings['lights']} "
+            f"lights, medians of {settings['rounds']} turns; sphericart {machine['sphericart']}.\n"
         )
     if name == "speed":
         rows = [row for row in bench.rows if row.bound is not None and row.section not in ("targets", "threads")]
