@@ -2,6 +2,7 @@
 #include "pixel_batch.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "shlight/sampling.h"
@@ -11,6 +12,23 @@ namespace {
 
 /// Lights whose unshadowed values are held at a time.
 constexpr std::size_t kLightBlock = 8;
+
+/// Times stages that follow each other.
+class StageClock {
+  public:
+    explicit StageClock(RenderReport& report) : report_(&report), since_(std::chrono::steady_clock::now()) {}
+
+    /// What passed since the stage before was this one.
+    void end(RenderStage stage) {
+        const auto now = std::chrono::steady_clock::now();
+        report_->stage_seconds[static_cast<std::size_t>(stage)] += std::chrono::duration<double>(now - since_).count();
+        since_ = now;
+    }
+
+  private:
+    RenderReport* report_;
+    std::chrono::steady_clock::time_point since_;
+};
 
 }  // namespace
 
@@ -38,10 +56,15 @@ PixelBatch::PixelBatch(const Picture& picture)
                 picture.lobe_stride) {}
 
 void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums) {
+    StageClock clock(report_);
     trace_camera_rays(pixels, samples);
+    clock.end(RenderStage::camera_rays);
     points_.assign(hits_, picture_->materials, picture_->scene->lights(), picture_->settings.tolerance);
+    clock.end(RenderStage::views);
     add_lights(pixels, samples);
+    StageClock last(report_);
     add_up(samples, sums);
+    last.end(RenderStage::pixels);
 }
 
 RenderReport PixelBatch::report() const {
@@ -81,9 +104,11 @@ void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRa
 
 void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& samples) {
     const auto lights = picture_->scene->lights();
+    StageClock clock(report_);
     for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
         const auto block = lights.subspan(first, std::min(kLightBlock, lights.size() - first));
         unshadowed_.compute(points_, picture_->materials, block, report_);
+        clock.end(RenderStage::light);
         for (std::size_t i = 0; i < block.size(); ++i) {
             pixel_seeds_.clear();
             for (const Pixel& pixel : pixels) {
@@ -93,6 +118,7 @@ void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& sa
             }
             shadowed_.add(block[i], samples, unshadowed_.light(i), points_.of_hit, pixel_seeds_, hits_);
         }
+        clock.end(RenderStage::shadows);
     }
 }
 

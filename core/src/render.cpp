@@ -186,6 +186,8 @@ void add(RenderReport& sum, const RenderReport& part) {
     sum.hits += part.hits;
     sum.over_tolerance += part.over_tolerance;
     sum.shadow_rays += part.shadow_rays;
+    std::transform(sum.stage_seconds.begin(), sum.stage_seconds.end(), part.stage_seconds.begin(),
+                   sum.stage_seconds.begin(), std::plus<>());
 }
 
 RenderReport Passes::report() {

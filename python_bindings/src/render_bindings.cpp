@@ -64,6 +64,13 @@ struct Report {
     double cubature_share() const { return share(core.cubature_count); }
     double mirror_share() const { return share(core.mirror_count); }
     double over_tolerance() const { return share(core.over_tolerance); }
+    py::dict stage_seconds() const {
+        py::dict seconds;
+        for (std::size_t stage = 0; stage < kRenderStages.size(); ++stage) {
+            seconds[kRenderStages[stage]] = core.stage_seconds[stage];
+        }
+        return seconds;
+    }
     std::string repr() const {
         return "RenderReport(hits=" + std::to_string(core.hits) + ", shadow_rays=" + std::to_string(core.shadow_rays) +
                ", over_tolerance=" + std::to_string(over_tolerance()) +
@@ -130,6 +137,9 @@ void bind_render(py::module_& m) {
         .def_readonly("build_seconds", &Report::build_seconds, "Time for building what rays are traced in; 0 if kept.")
         .def_property_readonly(
             "render_seconds", [](const Report& r) { return r.core.seconds; }, "Time for rendering.")
+        .def_property_readonly("stage_seconds", &Report::stage_seconds,
+                               "Time for each stage, summed over threads: camera rays; views, of the materials there; "
+                               "light, without shadows; shadows; pixels, adding up.")
         .def("__repr__", &Report::repr);
     m.def("render", &render_scene, kRenderDoc, "scene"_a, "width"_a, "height"_a, py::kw_only(), "order"_a = "auto",
           "tolerance"_a = 1e-4, "pixel_samples"_a = 16, "shadow_rays"_a = 16, "threads"_a = 0,

@@ -90,6 +90,7 @@ class Worker:
             "export_seconds": first.export_seconds,
             "build_seconds": statistics.build_seconds,
             "render_seconds": statistics.render_seconds,
+            "stage_seconds": statistics.stage_seconds,
             "order_shares": {str(order): share for order, share in statistics.order_shares.items()},
             "cubature_share": statistics.cubature_share,
             "mirror_share": statistics.mirror_share,

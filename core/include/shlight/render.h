@@ -28,6 +28,11 @@ struct RenderSettings {
     bool adaptive = true;
 };
 
+/// Where the time goes: tracing camera rays; materials at their views; light without shadows; shadow rays; and adding
+/// up what the rays of a pixel brought.
+enum class RenderStage { camera_rays, views, light, shadows, pixels };
+inline constexpr std::array<const char*, 5> kRenderStages = {"camera rays", "views", "light", "shadows", "pixels"};
+
 /// What the picture took.
 struct RenderReport {
     // A lobe of a camera hit under a light that it sees is shaded once, by …
@@ -38,6 +43,7 @@ struct RenderReport {
     std::uint64_t hits = 0;                                   ///< camera rays that met a surface
     std::uint64_t shadow_rays = 0;
     double seconds = 0;
+    std::array<double, kRenderStages.size()> stage_seconds{};  ///< by RenderStage, summed over threads
 };
 
 /// Throws std::invalid_argument naming the member or argument: order outside 0 … 64, tolerance ≤ 0 or not finite,

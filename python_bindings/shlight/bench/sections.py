@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from . import against_methods, against_peer, growth, limits, memory, targets, threads
+from . import against_methods, against_peer, growth, limits, memory, render, targets, threads
 from .run import Section
 
 SECTIONS = [
@@ -17,6 +17,7 @@ SECTIONS = [
     Section("targets", "Instruction sets", targets.measure),
     Section("memory", "Memory", memory.measure),
     Section("limits", "Limits of the machine", limits.measure),
+    Section("render", "Stages of a render", render.measure),
 ]
 
 PEERED = {"basis", "spheres", "warped", "quads", "targets"}  # need sphericart
