@@ -228,14 +228,17 @@ void expect_equal_radiance(
     for (std::size_t i = 0; i < count; ++i) {
         views.push_back(i % 7 == 0 ? 0.6 : random.uniform(0.05, 1));
     }
+    int material = 0;
     for (const Bsdf& bsdf : materials()) {
+        ++material;
         for (const int order : {2, 8, 16}) {
-            expect_agreement<float>(
-                name + "_" + std::to_string(order), 1, std::vector<double>(count, 1.0), [&](std::span<float> out) {
-                    std::vector<Rgb> radiance(count);
-                    shade(bsdf, views, order, radiance);
-                    std::transform(radiance.begin(), radiance.end(), out.begin(), [](const Rgb& r) { return r.x; });
-                });
+            expect_agreement<float>(name + "_" + std::to_string(material) + "_" + std::to_string(order), 1,
+                                    std::vector<double>(count, 1.0), [&](std::span<float> out) {
+                                        std::vector<Rgb> radiance(count);
+                                        shade(bsdf, views, order, radiance);
+                                        std::transform(radiance.begin(), radiance.end(), out.begin(),
+                                                       [](const Rgb& r) { return r.x; });
+                                    });
         }
     }
 }

@@ -14,4 +14,21 @@ def basis(n: int) -> int:
     return 2 * n * (n - 1) + n * (n - 1) + 6 * (n - 1) + 15
 
 
-OPERATIONS: Mapping[str, Callable[[int], int]] = {"basis": basis}
+def clipped_sphere(n: int) -> int:
+    """Each degree of each band: 7 a step of N downwards with its two sums, 10.5 one of Q upwards with the integral, 5
+    for the share of N and the turn by the azimuth, or for the two sums of Eq. 5. A band: 27; a degree: 19, its arcs and
+    powers."""
+    return 45 * n * (n - 1) // 4 + 27 * (n - 1) + 19 * n + 200
+
+
+def whole_sphere(n: int) -> int:
+    """Each degree of each band: 4 a step of N, 3 for the share and the turn."""
+    return 7 * n * (n - 1) // 2 + 24 * (n - 1) + 7 * n + 150
+
+
+OPERATIONS: Mapping[str, Callable[[int], int]] = {
+    "basis": basis,
+    "clipped sphere": clipped_sphere,
+    "clipped sphere, fused": clipped_sphere,
+    "whole sphere": whole_sphere,
+}
