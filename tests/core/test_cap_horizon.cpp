@@ -118,9 +118,9 @@ Case described(RandomInput& random, const Sides& s) {
 
 /// Terms of the azimuth 0 to all order² coefficients, to be compared with a reference at any azimuth.
 template <class T>
-std::vector<T> coefficients(const Cap<T>& cap, const Horizon<T>& horizon, int order) {
+std::vector<T> coefficients(const Cap<T>& cap, int order) {
     std::vector<T> terms(cosine_count(order), std::numeric_limits<T>::quiet_NaN());
-    clipped_cap_terms(cap, horizon, order, terms.data());
+    clipped_cap_terms(cap, order, terms.data());
     std::vector<T> result(coefficient_count(order));
     const double azimuth = std::atan2(static_cast<double>(cap.sin_azimuth), static_cast<double>(cap.cos_azimuth));
     for (int l = 0; l < order; ++l) {
@@ -140,7 +140,7 @@ double scale_of(const truth::Coefficients& reference) {
 template <class T>
 double error_of(const Case& c, const truth::Coefficients& reference) {
     const auto cap = Cap<T>::against(c.height, c.sine, c.light.axis, c.light.size);
-    const std::vector<T> computed = coefficients(cap, Horizon<T>(c.height, c.sine, kOrder), kOrder);
+    const std::vector<T> computed = coefficients(cap, kOrder);
     return truth::largest_error(reference, kOrder, computed.data()) / scale_of(reference);
 }
 
@@ -250,7 +250,7 @@ TEST(CapHorizon, WarpedLightsAgreeWithReference) {
         const Warp warp(c.tilt, c.narrowness);
         const truth::Coefficients reference = truth::warped_cap(c.light, {c.tilt, c.narrowness}, kOrder);
         const auto error = [&]<class T>(T /*precision*/) {
-            const std::vector<T> computed = coefficients(cap_of<T>(c.light, warp), Horizon<T>(warp, kOrder), kOrder);
+            const std::vector<T> computed = coefficients(cap_of<T>(c.light, warp), kOrder);
             return truth::largest_error(reference, kOrder, computed.data()) / scale_of(reference);
         };
         errors64[i] = error(0.0);
@@ -293,8 +293,7 @@ TEST(CapHorizon, IntegralsThroughAWarpAreThoseOverTheTrueLight) {
                 }
                 return sum / warp.density(u);
             });
-        const double computed =
-            shade_cap(cap_of<double>(c.light, warp), Horizon<double>(warp, order), lobe.data(), order);
+        const double computed = shade_cap(cap_of<double>(c.light, warp), lobe.data(), order);
         EXPECT_NEAR(computed, expected, 1e-8)
             << describe({0, 1, c.light}) << ", tilt " << c.tilt << ", narrowness " << c.narrowness;
     }
@@ -312,9 +311,8 @@ TYPED_TEST(CapHorizonLimits, ShadingIsTheSumOverTheTerms) {
     for (int i = 0; i < 200; ++i) {
         const int order = random.integer(1, 20);
         const Case c = described(random, i % 2 == 0 ? crossing(random) : anywhere(random));
-        const Horizon<T> horizon(c.height, c.sine, order);
         const auto cap = Cap<T>::against(c.height, c.sine, c.light.axis, c.light.size);
-        const std::vector<T> light = coefficients(cap, horizon, order);
+        const std::vector<T> light = coefficients(cap, order);
         std::vector<T> lobe(cosine_count(order));
         double expected = 0;
         double size = 0;
@@ -327,7 +325,7 @@ TYPED_TEST(CapHorizonLimits, ShadingIsTheSumOverTheTerms) {
                 size += std::abs(product);
             }
         }
-        const T computed = shade_cap(cap, horizon, lobe.data(), order);
+        const T computed = shade_cap(cap, lobe.data(), order);
         EXPECT_NEAR(computed, expected, 100 * std::numeric_limits<T>::epsilon() * size);
     }
 }
@@ -337,13 +335,6 @@ TYPED_TEST(CapHorizonLimits, NoWarpIsThePlane) {
     using T = TypeParam;
     RandomInput random(450);
     const int order = 12;
-    const Horizon<T> horizon(Warp(), order);
-    for (int l = 0; l < order; ++l) {
-        for (int m = 0; m <= l; ++m) {
-            EXPECT_EQ(horizon.values(l)[m], Horizon<T>::plane().values(l)[m]);
-            EXPECT_EQ(horizon.slopes(l)[m], Horizon<T>::plane().slopes(l)[m]);
-        }
-    }
     for (int i = 0; i < 50; ++i) {
         const double half = random.uniform(0.01, 3.1);
         const Vec3d axis = random.direction();
@@ -352,7 +343,7 @@ TYPED_TEST(CapHorizonLimits, NoWarpIsThePlane) {
         EXPECT_NEAR(plain.solid_angle, against.solid_angle, 10 * std::numeric_limits<T>::epsilon());
         std::vector<T> terms(cosine_count(order));
         std::vector<T> whole(coefficient_count(order));
-        clipped_cap_terms(plain, horizon, order, terms.data());
+        clipped_cap_terms(plain, order, terms.data());
         cap_coefficients(plain, order, true, whole.data());
         EXPECT_EQ(terms[0], whole[0]);
     }
@@ -372,9 +363,8 @@ TYPED_TEST(CapHorizonLimits, EverythingIsFinite) {
         const Vec3d axis = random.at_tilt(angle());
         const double half = std::max(angle(), 1e-30);
         const int order = i % 50 == 0 ? kMaxOrder : random.integer(1, 8);
-        const Horizon<T> horizon(std::cos(eta), std::sin(eta), order);
         const auto cap = Cap<T>::against(std::cos(eta), std::sin(eta), axis, half);
-        EXPECT_TRUE(std::isfinite(shade_cap(cap, horizon, lobe.data(), order)))
+        EXPECT_TRUE(std::isfinite(shade_cap(cap, lobe.data(), order)))
             << "horizon " << eta << ", half angle " << half << ", axis " << axis.x << ' ' << axis.y << ' ' << axis.z;
         EXPECT_GE(cap.solid_angle, 0);
         const Warp warp(random.uniform(-1.57, 1.57), random.log_uniform(1e-6, 1));
@@ -382,9 +372,8 @@ TYPED_TEST(CapHorizonLimits, EverythingIsFinite) {
         const Vec3d center = distance * (random.chance(0.1) ? Vec3d(0, 0, random.chance(0.5) ? 1 : -1) : axis);
         const double radius = random.chance(0.1) ? glm::length(center) : distance * random.log_uniform(1e-200, 0.999);
         if (radius > 0) {
-            const Horizon<T> warped(warp, order);
             const auto sphere = Cap<T>::of_sphere(center, radius, warp);
-            EXPECT_TRUE(std::isfinite(shade_cap(sphere, warped, lobe.data(), order)))
+            EXPECT_TRUE(std::isfinite(shade_cap(sphere, lobe.data(), order)))
                 << "center " << center.x << ' ' << center.y << ' ' << center.z << ", radius " << radius;
         }
     }

@@ -8,7 +8,6 @@
 
 #include <span>
 
-#include "shlight/horizon.h"
 #include "shlight/types.h"
 #include "shlight/warp.h"
 
@@ -29,6 +28,7 @@ struct Cap {
     T edge;         ///< ψ_0: the cap's edge is above the horizon within ψ_0 of its highest point; 0 … π
     T solid_angle;  ///< of the kept region
     bool crossing;  ///< whether the two circles cross; else arc and edge are 0 or π
+    T horizon_height, horizon_sine;  ///< z_0 and √(1 - z_0²), which a narrow warp needs beside it
 
     /// The cap of a sphere; precondition 0 < radius ≤ |center|, all finite.
     static Cap of_sphere(const Vec3d& center, double radius, const Warp& warp = Warp());
@@ -46,14 +46,14 @@ struct Cap {
 };
 
 /// Cosine terms S_lm = ∫ Y_lm over the kept region, m ≥ 0, about the azimuth of the cap's axis: cosine_count(order)
-/// values, with the √2 of the orthonormal basis. horizon: the one that the cap was made against, of this order or more.
+/// values, with the √2 of the orthonormal basis.
 template <class T>
-void clipped_cap_terms(const Cap<T>& cap, const Horizon<T>& horizon, int order, T* cosine_terms);
+void clipped_cap_terms(const Cap<T>& cap, int order, T* cosine_terms);
 
 /// Σ f_lm L_lm for a lobe's cosine terms f_lm, cosine_count(order) of them: clipped_cap_terms turned to the cap's
 /// azimuth and multiplied, band by band.
 template <class T>
-T shade_cap(const Cap<T>& cap, const Horizon<T>& horizon, const T* lobe_terms, int order);
+T shade_cap(const Cap<T>& cap, const T* lobe_terms, int order);
 
 /// Coefficients of one cap that was made against the plane z = 0, order² values. clip: keep only what lies above it.
 template <class T>

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+//
+// Constants of the recurrences of cap_bands-inl.h, the same for every light.
+#pragma once
+
+#include <array>
+
+#include "legendre.h"
+
+namespace shlight {
+
+/// What is needed at degree m of band l; c_m = √((l-m)(l+m+1)). Entries without a meaning are 0.
+template <class T>
+struct CapStep {
+    T down_climb, down_fall;  ///< 2m / c_{m-1}, c_m / c_{m-1}: from m to m-1, 1 ≤ m ≤ l
+    T up_climb, up_fall;      ///< 2m / c_m, c_{m-1} / c_m: from m to m+1, 1 ≤ m < l
+    T on_plane;               ///< even l-m: -P̄_l^m(0); odd l-m: 4π/(2l+1) dP̄_l^m/dz(0)
+    T ladder;                 ///< c_m
+};
+
+/// What is needed once in a band.
+template <class T>
+struct CapBand {
+    T diagonal;           ///< P̂_l^l
+    T casoratian;         ///< 2 / c_0
+    T four_pi_over;       ///< 4π / (2l+1)
+    T inverse_laplace;    ///< 1 / (l(l+1))
+    T at_pole;            ///< √((2l+1) / 4π), P̄_l^0(1)
+    T keep_rise, lessen;  ///< (l-1)/l and (2l-1)/l, of P_l - P_{l-1} near 1
+};
+
+template <class T>
+struct CapConstants {
+    std::array<CapStep<T>, kCosineMax> steps;
+    std::array<CapBand<T>, kMaxOrder> bands;
+
+    static const CapConstants& get();
+};
+
+extern template struct CapConstants<float>;
+extern template struct CapConstants<double>;
+
+}  // namespace shlight

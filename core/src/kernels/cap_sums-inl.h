@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+//
+// What is done with the bands of caps in lanes: written out as coefficients, or multiplied with lobes. Included once
+// per instruction set.
+#if defined(SHLIGHT_KERNELS_CAP_SUMS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHLIGHT_KERNELS_CAP_SUMS_INL_H_
+#undef SHLIGHT_KERNELS_CAP_SUMS_INL_H_
+#else
+#define SHLIGHT_KERNELS_CAP_SUMS_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "kernels/cap_bands-inl.h"
+#include "kernels/cap_lanes-inl.h"
+#include "kernels/legendre-inl.h"
+#include "kernels/rows-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace shlight {
+namespace HWY_NAMESPACE {
+
+/// Below this sine of a cap's tilt or of a horizon, unscaled recurrences would leave the range of T.
+template <class T>
+inline double least_unscaled_sine(std::size_t order) {
+    const double exponent = sizeof(T) == 4 ? -80 : -600;
+    return order > 1 ? std::exp2(exponent / static_cast<double>(order - 1)) : 0;
+}
+
+template <class D>
+HWY_INLINE M<D> needs_scaling(D d, const CapLanes<D>& cap, double least_sine) {
+    return hn::Lt(hn::Min(cap.sin_tilt, cap.horizon_sine), all(d, least_sine));
+}
+
+template <class D>
+HWY_INLINE V<D> band_zero(D d, const CapLanes<D>& cap) {
+    return hn::Mul(cap.solid_angle, all(d, std::numbers::inv_sqrtpi / 2));
+}
+
+/// √2 cos mφ and √2 sin mφ of the cap's azimuth, 1 and 0 for m = 0.
+template <class T>
+struct AzimuthLanes {
+    alignas(64) T cosine[static_cast<std::size_t>(kMaxOrder + 1) * kLaneCount<Lanes<T>>];
+    alignas(64) T sine[static_cast<std::size_t>(kMaxOrder + 1) * kLaneCount<Lanes<T>>];
+
+    HWY_INLINE AzimuthLanes(const CapLanes<Lanes<T>>& cap, std::size_t order) {
+        complex_powers_in_lanes(Lanes<T>(), cap.cos_azimuth, cap.sin_azimuth, std::numbers::sqrt2, order, cosine, sine);
+    }
+};
+
+/// Writes order² coefficients to each lane's row.
+template <class T>
+class CoefficientVisitor {
+    using D = Lanes<T>;
+
+  public:
+    HWY_INLINE CoefficientVisitor(const CapLanes<D>& cap, std::size_t order, const RowPointers<T>& rows)
+        : azimuth_(cap, order), writer_(rows) {
+        hn::Store(band_zero(D(), cap), D(), writer_.next());
+        writer_.add(1);
+    }
+
+    HWY_INLINE void term(std::size_t m, V<D> null) { values_.put(m, null); }
+    HWY_INLINE void term(std::size_t m, V<D> /*null*/, V<D> particular) { values_.put(m, particular); }
+
+    /// Of circles that do not cross.
+    HWY_INLINE void close(std::size_t l, V<D> share, V<D> extra) {
+        write(l, [&](std::size_t m) {
+            const auto value = hn::Mul(share, values_[m]);
+            return m == 0 ? hn::Add(value, extra) : value;
+        });
+    }
+    template <class Bands>
+    HWY_INLINE void close(std::size_t l, V<D> green, V<D> share, const Bands& bands) {
+        write(l, [&](std::size_t m) { return hn::MulAdd(share, bands.null(m), hn::Mul(green, values_[m])); });
+    }
+
+    void finish() { writer_.finish(); }
+
+  private:
+    template <class Value>
+    HWY_INLINE void write(std::size_t l, const Value& value_of) {
+        const D d;
+        constexpr std::size_t kLanes = kLaneCount<D>;
+        T* left = writer_.next() + l * kLanes;
+        T* right = left;
+        hn::Store(value_of(0), d, left);
+        for (std::size_t m = 1; m <= l; ++m) {
+            const auto value = value_of(m);
+            right += kLanes;
+            left -= kLanes;
+            hn::Store(hn::Mul(value, hn::Load(d, azimuth_.cosine + m * kLanes)), d, right);
+            hn::Store(hn::Mul(value, hn::Load(d, azimuth_.sine + m * kLanes)), d, left);
+        }
+        writer_.add(2 * l + 1);
+    }
+
+    AzimuthLanes<T> azimuth_;
+    RowWriter<T> writer_;
+    DegreeRow<T> values_;
+};
+
+/// Σ f_lm L_lm for lobes f, a vector for each term: f_lm at terms + cosine_index(l, m) · kLaneCount.
+template <class T>
+class ShadingVisitor {
+    using D = Lanes<T>;
+
+  public:
+    HWY_INLINE ShadingVisitor(const CapLanes<D>& cap, std::size_t order, const T* terms)
+        : azimuth_(cap, order), terms_(terms) {
+        const D d;
+        sum_ = hn::Mul(band_zero(d, cap), hn::Load(d, terms));
+        start();
+    }
+
+    HWY_INLINE void term(std::size_t m, V<D> null) { with_null_ = hn::MulAdd(turned(m), null, with_null_); }
+    HWY_INLINE void term(std::size_t m, V<D> null, V<D> particular) {
+        const auto t = turned(m);
+        with_null_ = hn::MulAdd(t, null, with_null_);
+        with_particular_ = hn::MulAdd(t, particular, with_particular_);
+    }
+
+    HWY_INLINE void close(std::size_t /*l*/, V<D> share, V<D> extra) {
+        sum_ = hn::MulAdd(extra, hn::Load(D(), band_), hn::MulAdd(share, with_null_, sum_));
+        start();
+    }
+    template <class Bands>
+    HWY_INLINE void close(std::size_t /*l*/, V<D> green, V<D> share, const Bands& /*bands*/) {
+        sum_ = hn::MulAdd(green, with_particular_, hn::MulAdd(share, with_null_, sum_));
+        start();
+    }
+
+    /// Which band comes next.
+    HWY_INLINE void open(std::size_t l) { band_ = terms_ + at(static_cast<int>(l), 0) * kLaneCount<D>; }
+    HWY_INLINE V<D> sum() const { return sum_; }
+
+  private:
+    HWY_INLINE void start() { with_null_ = with_particular_ = hn::Zero(D()); }
+    HWY_INLINE V<D> turned(std::size_t m) const {
+        const D d;
+        return hn::Mul(hn::Load(d, band_ + m * kLaneCount<D>), hn::Load(d, azimuth_.cosine + m * kLaneCount<D>));
+    }
+
+    AzimuthLanes<T> azimuth_;
+    const T* terms_;
+    const T* band_ = nullptr;
+    V<D> sum_, with_null_, with_particular_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace shlight
+HWY_AFTER_NAMESPACE();
+
+#endif
