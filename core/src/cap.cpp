@@ -100,7 +100,7 @@ void cap_coefficients(const Cap<T>& cap, int order, bool clip, T* coefficients) 
 
 template <class T>
 void sphere_coefficients(std::span<const Vec3<T>> centers, std::span<const T> radii, int order, bool clip,
-                         std::span<T> coefficients) {
+                         std::span<T> coefficients, Output output) {
     check_order(order);
     check_size("radii", radii.size(), centers.size());
     const auto row = static_cast<std::size_t>(coefficient_count(order));
@@ -110,12 +110,12 @@ void sphere_coefficients(std::span<const Vec3<T>> centers, std::span<const T> ra
             check_sphere(Vec3d(centers[i]), radii[i], std::numeric_limits<T>::epsilon());
         }
     }
-    sphere_rows(centers.data(), radii.data(), centers.size(), order, clip, coefficients.data());
+    sphere_rows(centers.data(), radii.data(), centers.size(), order, clip, coefficients.data(), output);
 }
 
 template <class T>
 void cap_coefficients(std::span<const Vec3<T>> axes, std::span<const T> half_angles, int order, bool clip,
-                      std::span<T> coefficients) {
+                      std::span<T> coefficients, Output output) {
     check_order(order);
     check_size("half_angles", half_angles.size(), axes.size());
     const auto row = static_cast<std::size_t>(coefficient_count(order));
@@ -128,7 +128,7 @@ void cap_coefficients(std::span<const Vec3<T>> axes, std::span<const T> half_ang
             check_cap(axis, half_angles[first + i]);
             circles[i] = circle_about_axis(axis, half_angles[first + i]);
         }
-        circle_rows(circles.data(), count, order, clip, coefficients.data() + first * row);
+        circle_rows(circles.data(), count, order, clip, coefficients.data() + first * row, output);
     }
 }
 
@@ -140,9 +140,13 @@ template float shade_cap(const Cap<float>&, const float*, int);
 template double shade_cap(const Cap<double>&, const double*, int);
 template void cap_coefficients(const Cap<float>&, int, bool, float*);
 template void cap_coefficients(const Cap<double>&, int, bool, double*);
-template void sphere_coefficients(std::span<const Vec3<float>>, std::span<const float>, int, bool, std::span<float>);
-template void sphere_coefficients(std::span<const Vec3<double>>, std::span<const double>, int, bool, std::span<double>);
-template void cap_coefficients(std::span<const Vec3<float>>, std::span<const float>, int, bool, std::span<float>);
-template void cap_coefficients(std::span<const Vec3<double>>, std::span<const double>, int, bool, std::span<double>);
+template void sphere_coefficients(std::span<const Vec3<float>>, std::span<const float>, int, bool, std::span<float>,
+                                  Output);
+template void sphere_coefficients(std::span<const Vec3<double>>, std::span<const double>, int, bool, std::span<double>,
+                                  Output);
+template void cap_coefficients(std::span<const Vec3<float>>, std::span<const float>, int, bool, std::span<float>,
+                               Output);
+template void cap_coefficients(std::span<const Vec3<double>>, std::span<const double>, int, bool, std::span<double>,
+                               Output);
 
 }  // namespace shlight

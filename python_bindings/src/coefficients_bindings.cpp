@@ -57,9 +57,10 @@ Array<T> spheres(const Array<T>& centers, const Array<T>& radii, int order, bool
     const auto r = values(radii);
     Array<T> out = rows<T>(c.size(), order);
     T* data = out.mutable_data();
+    const Output output = output_of(static_cast<std::size_t>(out.nbytes()));
     in_chunks(c.size(), threads, [&](std::size_t first, std::size_t count) {
         sphere_coefficients(c.subspan(first, count), r.subspan(first, count), order, clip,
-                            slice(data, order, first, count));
+                            slice(data, order, first, count), output);
     });
     return out;
 }
@@ -70,9 +71,10 @@ Array<T> caps(const Array<T>& axes, const Array<T>& half_angles, int order, bool
     const auto h = values(half_angles);
     Array<T> out = rows<T>(a.size(), order);
     T* data = out.mutable_data();
+    const Output output = output_of(static_cast<std::size_t>(out.nbytes()));
     in_chunks(a.size(), threads, [&](std::size_t first, std::size_t count) {
         cap_coefficients(a.subspan(first, count), h.subspan(first, count), order, clip,
-                         slice(data, order, first, count));
+                         slice(data, order, first, count), output);
     });
     return out;
 }

@@ -65,11 +65,11 @@ void cap_coefficients(const Cap<T>& cap, int order, bool clip, T* coefficients);
 /// a radius ≤ 0, a shading point inside a sphere (|center| < radius; contact is allowed).
 template <class T>
 void sphere_coefficients(std::span<const Vec3<T>> centers, std::span<const T> radii, int order, bool clip,
-                         std::span<T> coefficients);
+                         std::span<T> coefficients, Output output = Output::cached);
 
 /// Caps from axis (any length > 0) and half angle in (0, π] [rad]. Throws as sphere_coefficients does.
 template <class T>
 void cap_coefficients(std::span<const Vec3<T>> axes, std::span<const T> half_angles, int order, bool clip,
-                      std::span<T> coefficients);
+                      std::span<T> coefficients, Output output = Output::cached);
 
 }  // namespace shlight

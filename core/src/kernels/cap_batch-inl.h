@@ -26,6 +26,13 @@ namespace HWY_NAMESPACE {
 template <class T>
 using Chosen = std::array<std::uint32_t, kLaneCount<Lanes<T>>>;
 
+/// Lists ascend, and only the last light of one is repeated.
+template <class Indices>
+HWY_INLINE bool are_in_a_row(const Indices& chosen) {
+    const std::size_t last = chosen.size() - 1;
+    return chosen[last] - chosen[0] == last && chosen[last] != chosen[last - 1];
+}
+
 /// Lights of a chunk that have the same needs.
 class LightList {
   public:

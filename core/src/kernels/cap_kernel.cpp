@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/cap_kernel.h"
 
+#include <hwy/cache_control.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/cap_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -32,7 +34,7 @@ struct SphereSource {
         const Lanes<T> d;
         constexpr std::size_t kLanes = kLaneCount<Lanes<T>>;
         V<Lanes<T>> x, y, z, r;
-        if (chosen.back() - chosen.front() == kLanes - 1) {
+        if (are_in_a_row(chosen)) {
             hn::LoadInterleaved3(d, &centers[chosen.front()].x, x, y, z);
             r = hn::LoadU(d, radii + chosen.front());
         } else {
@@ -77,9 +79,14 @@ struct CircleSource {
                 fields[4][lane] = circle.sine;
             }
             CircleLanes<Doubles>& half = halves[first / kHalf];
-            half = {hn::Load(dd, fields[0].data()), hn::Load(dd, fields[1].data()), hn::Load(dd, fields[2].data()),
-                    hn::Load(dd, fields[3].data()), hn::Load(dd, fields[4].data()), hn::Zero(dd)};
-            half.crossing_squared = crossing_squared(dd, half);
+            half = {hn::Load(dd, fields[0].data()),
+                    hn::Load(dd, fields[1].data()),
+                    hn::Load(dd, fields[2].data()),
+                    hn::Load(dd, fields[3].data()),
+                    hn::Load(dd, fields[4].data()),
+                    hn::Zero(dd),
+                    hn::Zero(dd)};
+            set_squares(dd, half);
         }
         return narrowed_circle<T>(halves.front(), halves.back());
     }
@@ -93,8 +100,9 @@ struct CircleSource {
 };
 
 template <class T, bool kScaled>
-HWY_NOINLINE void write_crossed(const CapLanes<Lanes<T>>& cap, std::size_t order, const RowPointers<T>& rows) {
-    CoefficientVisitor<T> visit(cap, order, rows);
+HWY_NOINLINE void write_crossed(const CapLanes<Lanes<T>>& cap, std::size_t order, const RowPointers<T>& rows,
+                                Output output) {
+    CoefficientVisitor<T> visit(cap, order, rows, output);
     if (order > 1) {
         CrossedBands<T, true, kScaled> bands(cap, order);
         for (std::size_t l = 1; l < order; ++l) {
@@ -105,8 +113,9 @@ HWY_NOINLINE void write_crossed(const CapLanes<Lanes<T>>& cap, std::size_t order
 }
 
 template <class T, bool kScaled>
-HWY_NOINLINE void write_uncrossed(const CapLanes<Lanes<T>>& cap, std::size_t order, const RowPointers<T>& rows) {
-    CoefficientVisitor<T> visit(cap, order, rows);
+HWY_NOINLINE void write_uncrossed(const CapLanes<Lanes<T>>& cap, std::size_t order, const RowPointers<T>& rows,
+                                  Output output) {
+    CoefficientVisitor<T> visit(cap, order, rows, output);
     if (order > 1) {
         UncrossedBands<T, kScaled> bands(cap, order);
         for (std::size_t l = 1; l < order; ++l) {
@@ -120,8 +129,13 @@ HWY_NOINLINE void write_uncrossed(const CapLanes<Lanes<T>>& cap, std::size_t ord
 template <class T, class Source>
 class RowBatch {
   public:
-    RowBatch(const Source& source, std::size_t order, bool clip, T* rows)
-        : source_(source), order_(order), clip_(clip), rows_(rows), least_sine_(least_unscaled_sine<T>(order)) {}
+    RowBatch(const Source& source, std::size_t order, bool clip, T* rows, Output output)
+        : source_(source),
+          order_(order),
+          clip_(clip),
+          rows_(rows),
+          output_(output),
+          least_sine_(least_unscaled_sine<T>(order)) {}
 
     HWY_INLINE void run(std::size_t first, std::size_t last) {
         crossing_.clear();
@@ -147,14 +161,15 @@ class RowBatch {
         scaled_.clear();
         lights.for_each_vector<T>([&](const Chosen<T>& chosen) HWY_ATTR {
             const auto cap = load<kCrossing>(chosen);
-            write<kCrossing, false>(cap, chosen);
+            write<kCrossing, false>(cap, chosen, output_);
             const auto scaled = needs_scaling(D(), cap, least_sine_);
             if (!hn::AllFalse(D(), scaled)) {
                 scaled_.add_marked(D(), scaled, chosen);
             }
         });
-        scaled_.for_each_vector<T>([&](const Chosen<T>& chosen)
-                                       HWY_ATTR { write<kCrossing, true>(load<kCrossing>(chosen), chosen); });
+        scaled_.for_each_vector<T>([&](const Chosen<T>& chosen) HWY_ATTR {
+            write<kCrossing, true>(load<kCrossing>(chosen), chosen, Output::cached);
+        });
     }
 
     template <bool kCrossing>
@@ -169,15 +184,15 @@ class RowBatch {
     }
 
     template <bool kCrossing, bool kScaled>
-    HWY_INLINE void write(const CapLanes<D>& cap, const Chosen<T>& chosen) const {
+    HWY_INLINE void write(const CapLanes<D>& cap, const Chosen<T>& chosen, Output output) const {
         RowPointers<T> rows;
         for (std::size_t lane = 0; lane < rows.size(); ++lane) {
             rows[lane] = rows_ + chosen[lane] * order_ * order_;
         }
         if constexpr (kCrossing) {
-            write_crossed<T, kScaled>(cap, order_, rows);
+            write_crossed<T, kScaled>(cap, order_, rows, output);
         } else {
-            write_uncrossed<T, kScaled>(cap, order_, rows);
+            write_uncrossed<T, kScaled>(cap, order_, rows, output);
         }
     }
 
@@ -185,15 +200,19 @@ class RowBatch {
     std::size_t order_;
     bool clip_;
     T* rows_;
+    Output output_;
     double least_sine_;
     LightList crossing_, uncrossed_, scaled_;
 };
 
 template <class T, class Source>
-void rows_of(const Source& source, std::size_t count, std::size_t order, bool clip, T* rows) {
-    RowBatch<T, Source> batch(source, order, clip, rows);
+void rows_of(const Source& source, std::size_t count, std::size_t order, bool clip, T* rows, Output output) {
+    RowBatch<T, Source> batch(source, order, clip, rows, output);
     for (std::size_t first = 0; first < count; first += LightList::kMost) {
         batch.run(first, std::min(count, first + LightList::kMost));
+    }
+    if (output == Output::streamed) {
+        hwy::FlushStream();
     }
 }
 
@@ -236,18 +255,20 @@ bool sound_double(const Vec3<double>* centers, const double* radii, std::size_t 
     return sound(centers, radii, count);
 }
 void sphere_rows_float(const Vec3<float>* centers, const float* radii, std::size_t count, std::size_t order, bool clip,
-                       float* rows) {
-    rows_of(SphereSource<float>{centers, radii}, count, order, clip, rows);
+                       float* rows, Output output) {
+    rows_of(SphereSource<float>{centers, radii}, count, order, clip, rows, output);
 }
 void sphere_rows_double(const Vec3<double>* centers, const double* radii, std::size_t count, std::size_t order,
-                        bool clip, double* rows) {
-    rows_of(SphereSource<double>{centers, radii}, count, order, clip, rows);
+                        bool clip, double* rows, Output output) {
+    rows_of(SphereSource<double>{centers, radii}, count, order, clip, rows, output);
 }
-void circle_rows_float(const Circle* circles, std::size_t count, std::size_t order, bool clip, float* rows) {
-    rows_of(CircleSource<float>{circles}, count, order, clip, rows);
+void circle_rows_float(const Circle* circles, std::size_t count, std::size_t order, bool clip, float* rows,
+                       Output output) {
+    rows_of(CircleSource<float>{circles}, count, order, clip, rows, output);
 }
-void circle_rows_double(const Circle* circles, std::size_t count, std::size_t order, bool clip, double* rows) {
-    rows_of(CircleSource<double>{circles}, count, order, clip, rows);
+void circle_rows_double(const Circle* circles, std::size_t count, std::size_t order, bool clip, double* rows,
+                        Output output) {
+    rows_of(CircleSource<double>{circles}, count, order, clip, rows, output);
 }
 
 // Single caps: all lanes are the same light.
@@ -272,8 +293,15 @@ Cap<double> first_lane(const CapLanes<Doubles>& cap, bool crossing) {
 
 CircleLanes<Doubles> in_all_lanes(const Circle& circle) {
     const Doubles d;
-    return {hn::Set(d, circle.axis.x), hn::Set(d, circle.axis.y), hn::Set(d, circle.axis.z),
-            hn::Set(d, circle.cosine), hn::Set(d, circle.sine),   hn::Zero(d)};
+    CircleLanes<Doubles> lanes{hn::Set(d, circle.axis.x),
+                               hn::Set(d, circle.axis.y),
+                               hn::Set(d, circle.axis.z),
+                               hn::Set(d, circle.cosine),
+                               hn::Set(d, circle.sine),
+                               hn::Zero(d),
+                               hn::Zero(d)};
+    set_squares(d, lanes);
+    return lanes;
 }
 
 /// crossing_squared: null if it is to be taken from the circle.
@@ -281,7 +309,9 @@ void inside_circle(const Circle& circle, const double* crossing, const Circle& i
                    Cap<double>& out) {
     const Doubles d;
     CircleLanes<Doubles> light = in_all_lanes(circle);
-    light.crossing_squared = crossing == nullptr ? crossing_squared(d, light) : hn::Set(d, *crossing);
+    if (crossing != nullptr) {
+        light.crossing_squared = hn::Set(d, *crossing);
+    }
     const auto cap = cap_of_image(d, light, in_all_lanes(image), hn::Set(d, height), hn::Set(d, sine));
     out = first_lane(cap, hn::GetLane(light.crossing_squared) > 0);
 }
@@ -377,7 +407,7 @@ void row_of(const Cap<T>& cap, std::size_t order, T* row) {
     const auto lanes = in_all_lanes(cap);
     RowPointers<T> rows;
     rows.fill(row);
-    CoefficientVisitor<T> visit(lanes, order, rows);
+    CoefficientVisitor<T> visit(lanes, order, rows, Output::cached);
     with_bands<true>(cap, lanes, order, [&](auto&& bands) HWY_ATTR {
         for (std::size_t l = 1; l < order; ++l) {
             bands.solve(l, visit);
@@ -435,19 +465,21 @@ bool spheres_are_sound(const Vec3<double>* centers, const double* radii, std::si
     return HWY_DYNAMIC_DISPATCH(sound_double)(centers, radii, count);
 }
 
-void sphere_rows(const Vec3<float>* centers, const float* radii, std::size_t count, int order, bool clip, float* rows) {
-    HWY_DYNAMIC_DISPATCH(sphere_rows_float)(centers, radii, count, static_cast<std::size_t>(order), clip, rows);
+void sphere_rows(const Vec3<float>* centers, const float* radii, std::size_t count, int order, bool clip, float* rows,
+                 Output output) {
+    HWY_DYNAMIC_DISPATCH(sphere_rows_float)(centers, radii, count, static_cast<std::size_t>(order), clip, rows, output);
 }
 void sphere_rows(const Vec3<double>* centers, const double* radii, std::size_t count, int order, bool clip,
-                 double* rows) {
-    HWY_DYNAMIC_DISPATCH(sphere_rows_double)(centers, radii, count, static_cast<std::size_t>(order), clip, rows);
+                 double* rows, Output output) {
+    HWY_DYNAMIC_DISPATCH(sphere_rows_double)
+    (centers, radii, count, static_cast<std::size_t>(order), clip, rows, output);
 }
 
-void circle_rows(const Circle* circles, std::size_t count, int order, bool clip, float* rows) {
-    HWY_DYNAMIC_DISPATCH(circle_rows_float)(circles, count, static_cast<std::size_t>(order), clip, rows);
+void circle_rows(const Circle* circles, std::size_t count, int order, bool clip, float* rows, Output output) {
+    HWY_DYNAMIC_DISPATCH(circle_rows_float)(circles, count, static_cast<std::size_t>(order), clip, rows, output);
 }
-void circle_rows(const Circle* circles, std::size_t count, int order, bool clip, double* rows) {
-    HWY_DYNAMIC_DISPATCH(circle_rows_double)(circles, count, static_cast<std::size_t>(order), clip, rows);
+void circle_rows(const Circle* circles, std::size_t count, int order, bool clip, double* rows, Output output) {
+    HWY_DYNAMIC_DISPATCH(circle_rows_double)(circles, count, static_cast<std::size_t>(order), clip, rows, output);
 }
 
 Cap<double> cap_inside(const Circle& circle, double crossing_squared, const Warp& warp) {

@@ -16,13 +16,14 @@ bool spheres_are_sound(const Vec3<float>* centers, const float* radii, std::size
 bool spheres_are_sound(const Vec3<double>* centers, const double* radii, std::size_t count);
 
 /// order² coefficients of sphere i at rows + i · order². Precondition: check_sphere accepts them.
-void sphere_rows(const Vec3<float>* centers, const float* radii, std::size_t count, int order, bool clip, float* rows);
+void sphere_rows(const Vec3<float>* centers, const float* radii, std::size_t count, int order, bool clip, float* rows,
+                 Output output);
 void sphere_rows(const Vec3<double>* centers, const double* radii, std::size_t count, int order, bool clip,
-                 double* rows);
+                 double* rows, Output output);
 
 /// The same for the caps inside circles.
-void circle_rows(const Circle* circles, std::size_t count, int order, bool clip, float* rows);
-void circle_rows(const Circle* circles, std::size_t count, int order, bool clip, double* rows);
+void circle_rows(const Circle* circles, std::size_t count, int order, bool clip, float* rows, Output output);
+void circle_rows(const Circle* circles, std::size_t count, int order, bool clip, double* rows, Output output);
 
 /// The cap inside a circle, seen against the image of the plane z = 0. crossing_squared: sin²σ - L_z² before the warp.
 Cap<double> cap_inside(const Circle& circle, double crossing_squared, const Warp& warp);

@@ -34,12 +34,13 @@ struct CapLanes {
     V<D> height, horizon_sine;
 };
 
-/// As Circle (warp.h). crossing_squared: sin²σ - L_z², positive where the circle crosses the plane z = 0.
+/// As Circle (warp.h), and two squares that would lose digits if they were taken of rounded members.
 template <class D>
 struct CircleLanes {
     V<D> x, y, z;
     V<D> cosine, sine;
-    V<D> crossing_squared;
+    V<D> tilt_squared;      ///< sin²θ
+    V<D> crossing_squared;  ///< sin²σ - L_z², positive where the circle crosses the plane z = 0
 };
 
 /// As Warp (warp.h).
@@ -63,7 +64,7 @@ HWY_INLINE V<D> one_minus(D d, V<D> cosine, V<D> sine) {
 template <class D>
 HWY_INLINE void set_axis(D d, const CircleLanes<D>& circle, CapLanes<D>& cap) {
     cap.cos_tilt = circle.z;
-    cap.sin_tilt = hn::Sqrt(hn::MulAdd(circle.x, circle.x, hn::Mul(circle.y, circle.y)));
+    cap.sin_tilt = hn::Sqrt(circle.tilt_squared);
     cap.cos_half = circle.cosine;
     cap.sin_half = circle.sine;
     const auto tilted = hn::Gt(cap.sin_tilt, hn::Zero(d));
@@ -252,17 +253,18 @@ HWY_INLINE CapLanes<D> cap_off_plane(D d, const CircleLanes<D>& circle) {
     return cap;
 }
 
-/// sin²σ - L_z² = sin²θ - cos²σ of circles, from the smaller pair: near hemispheres may be seen straight above or
-/// below.
+/// sin²θ and sin²σ - L_z² = sin²θ - cos²σ from the other members, the latter from the smaller pair: near hemispheres
+/// may be seen straight above or below.
 template <class D>
-HWY_INLINE V<D> crossing_squared(D /*d*/, const CircleLanes<D>& circle) {
+HWY_INLINE void set_squares(D /*d*/, CircleLanes<D>& circle) {
+    circle.tilt_squared = hn::MulAdd(circle.x, circle.x, hn::Mul(circle.y, circle.y));
     const auto by_sine = hn::Mul(hn::Sub(circle.sine, circle.z), hn::Add(circle.sine, circle.z));
-    const auto sin_tilt = hn::Sqrt(hn::MulAdd(circle.x, circle.x, hn::Mul(circle.y, circle.y)));
+    const auto sin_tilt = hn::Sqrt(circle.tilt_squared);
     const auto by_cosine = hn::Mul(hn::Sub(sin_tilt, circle.cosine), hn::Add(sin_tilt, circle.cosine));
-    return hn::IfThenElse(hn::Lt(circle.sine, hn::Abs(circle.cosine)), by_sine, by_cosine);
+    circle.crossing_squared = hn::IfThenElse(hn::Lt(circle.sine, hn::Abs(circle.cosine)), by_sine, by_cosine);
 }
 
-/// The image of a circle under a warp (Warp::warped), without crossing_squared.
+/// The image of a circle under a warp (Warp::warped); its crossing_squared is not set.
 template <class D>
 HWY_INLINE CircleLanes<D> warped_circle(D d, const CircleLanes<D>& circle, const WarpLanes<D>& warp) {
     const auto one = all(d, 1);
@@ -280,8 +282,15 @@ HWY_INLINE CircleLanes<D> warped_circle(D d, const CircleLanes<D>& circle, const
     const auto z = hn::MulAdd(warp.horizon_x, across, hn::Mul(warp.horizon_z, along));
     const auto square = hn::MulAdd(x, x, hn::MulAdd(circle.y, circle.y, hn::Mul(z, z)));
     const auto scale = hn::Div(one, hn::Sqrt(square));
-    return {hn::Mul(x, scale),      hn::Mul(circle.y, scale),    hn::Mul(z, scale),
-            hn::Mul(cosine, scale), hn::Mul(circle.sine, scale), hn::Zero(d)};
+    const auto ux = hn::Mul(x, scale);
+    const auto uy = hn::Mul(circle.y, scale);
+    return {ux,
+            uy,
+            hn::Mul(z, scale),
+            hn::Mul(cosine, scale),
+            hn::Mul(circle.sine, scale),
+            hn::MulAdd(ux, ux, hn::Mul(uy, uy)),
+            hn::Zero(d)};
 }
 
 /// A light against the image of the plane z = 0. The warp is a Lorentz transform of the circles' 4-vectors (cosine;
@@ -296,7 +305,7 @@ HWY_INLINE CapLanes<D> cap_of_image(D d, const CircleLanes<D>& light, const Circ
     ContactLanes<D> contact{image, height, horizon_sine, zero, zero, zero, zero};
     contact.chord = hn::Mul(root(d, light.crossing_squared), scale);
     contact.corner = hn::Mul(light.z, scale);
-    complete(d, hn::Sqrt(hn::MulAdd(image.x, image.x, hn::Mul(image.y, image.y))), contact);
+    complete(d, hn::Sqrt(image.tilt_squared), contact);
     return cap_in_contact(d, contact);
 }
 
@@ -314,9 +323,13 @@ HWY_INLINE V<Lanes<T>> narrowed(V<Doubles> low, V<Doubles> high) {
 
 template <class T>
 HWY_INLINE CircleLanes<Lanes<T>> narrowed_circle(const CircleLanes<Doubles>& low, const CircleLanes<Doubles>& high) {
-    return {narrowed<T>(low.x, high.x),       narrowed<T>(low.y, high.y),
-            narrowed<T>(low.z, high.z),       narrowed<T>(low.cosine, high.cosine),
-            narrowed<T>(low.sine, high.sine), narrowed<T>(low.crossing_squared, high.crossing_squared)};
+    return {narrowed<T>(low.x, high.x),
+            narrowed<T>(low.y, high.y),
+            narrowed<T>(low.z, high.z),
+            narrowed<T>(low.cosine, high.cosine),
+            narrowed<T>(low.sine, high.sine),
+            narrowed<T>(low.tilt_squared, high.tilt_squared),
+            narrowed<T>(low.crossing_squared, high.crossing_squared)};
 }
 
 }  // namespace HWY_NAMESPACE

@@ -39,7 +39,7 @@ HWY_INLINE V<Doubles> gathered(const double* values, const std::uint32_t* indice
     return hn::Load(d, lanes.data());
 }
 
-HWY_INLINE bool are_in_a_row(const std::uint32_t* indices) {
+HWY_INLINE bool all_in_a_row(const std::uint32_t* indices) {
     bool result = true;
     for (std::size_t i = 1; i < kHalf; ++i) {
         result = result & (indices[i] == indices[0] + i);
@@ -49,16 +49,20 @@ HWY_INLINE bool are_in_a_row(const std::uint32_t* indices) {
 
 HWY_INLINE CircleLanes<Doubles> load_circle(const CircleArrays& circles, const std::uint32_t* indices) {
     const Doubles d;
-    const bool in_a_row = are_in_a_row(indices);
-    CircleLanes<Doubles> circle{gathered(circles.x, indices, in_a_row),    gathered(circles.y, indices, in_a_row),
-                                gathered(circles.z, indices, in_a_row),    gathered(circles.cosine, indices, in_a_row),
-                                gathered(circles.sine, indices, in_a_row), hn::Zero(d)};
-    circle.crossing_squared = crossing_squared(d, circle);
+    const bool in_a_row = all_in_a_row(indices);
+    CircleLanes<Doubles> circle{gathered(circles.x, indices, in_a_row),
+                                gathered(circles.y, indices, in_a_row),
+                                gathered(circles.z, indices, in_a_row),
+                                gathered(circles.cosine, indices, in_a_row),
+                                gathered(circles.sine, indices, in_a_row),
+                                hn::Zero(d),
+                                hn::Zero(d)};
+    set_squares(d, circle);
     return circle;
 }
 
 HWY_INLINE WarpLanes<Doubles> load_warp(const WarpArrays& warps, const std::uint32_t* indices) {
-    const bool in_a_row = are_in_a_row(indices);
+    const bool in_a_row = all_in_a_row(indices);
     const auto get = [&](const double* values) HWY_ATTR { return gathered(values, indices, in_a_row); };
     return {get(warps.sin_tilt),        get(warps.cos_tilt),       get(warps.speed),
             get(warps.one_minus_speed), get(warps.gamma),          get(warps.horizon_x),

@@ -55,7 +55,7 @@ HWY_INLINE V<D> tangent_squared(D d, V<D> x, V<D> y, V<D> z, V<D> r) {
     return hn::Add(high, low);
 }
 
-/// A power of two by which a vector is neither so small nor so large that its square would leave the range.
+/// A power of two by which no vector is so small or so large that its square would leave the range.
 template <class D>
 HWY_INLINE V<D> safe_scale(D d, V<D> x, V<D> y, V<D> z) {
     using T = Scalar<D>;
@@ -82,12 +82,51 @@ HWY_INLINE CircleLanes<D> circle_of_sphere_in_lanes(D d, V<D> x, V<D> y, V<D> z,
     const auto square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
     const auto inverse = hn::Div(all(d, 1), hn::Sqrt(square));
     const auto crossing = hn::Mul(hn::Mul(hn::Sub(r, z), inverse), hn::Mul(hn::Add(r, z), inverse));
-    return {hn::Mul(x, inverse),
-            hn::Mul(y, inverse),
+    const auto ux = hn::Mul(x, inverse);
+    const auto uy = hn::Mul(y, inverse);
+    return {ux,
+            uy,
             hn::Mul(z, inverse),
             hn::Mul(root(d, tangent_squared(d, x, y, z, r)), inverse),
             hn::Min(all(d, 1), hn::Mul(r, inverse)),
+            hn::MulAdd(ux, ux, hn::Mul(uy, uy)),
             crossing};
+}
+
+/// The same for floats, which fill half a vector of doubles: their products are exact there, and in range.
+struct HalfSpheres {
+    V<Doubles> z, tangent_squared, tilt_squared, crossing_squared;
+    V<Doubles> inverse;
+
+    HWY_INLINE HalfSpheres(V<Doubles> x, V<Doubles> y, V<Doubles> own_z, V<Doubles> r) {
+        const Doubles d;
+        const auto across = hn::MulAdd(x, x, hn::Mul(y, y));
+        const auto square = hn::MulAdd(own_z, own_z, across);
+        const auto inverse_square = hn::Div(all(d, 1), square);
+        inverse = hn::Sqrt(inverse_square);
+        z = hn::Mul(own_z, inverse);
+        tangent_squared = hn::Mul(hn::NegMulAdd(r, r, square), inverse_square);
+        tilt_squared = hn::Mul(across, inverse_square);
+        crossing_squared = hn::Mul(hn::Mul(hn::Sub(r, own_z), hn::Add(r, own_z)), inverse_square);
+    }
+};
+
+/// Only what errors would be multiplied by the order needs the doubles.
+HWY_INLINE CircleLanes<Floats> circle_of_sphere_in_lanes(Floats d, V<Floats> x, V<Floats> y, V<Floats> z, V<Floats> r) {
+    const Doubles dd;
+    const hn::Half<Floats> half;
+    const auto low = [&](V<Floats> v) HWY_ATTR { return hn::PromoteTo(dd, hn::LowerHalf(half, v)); };
+    const auto high = [&](V<Floats> v) HWY_ATTR { return hn::PromoteTo(dd, hn::UpperHalf(half, v)); };
+    const HalfSpheres a(low(x), low(y), low(z), low(r));
+    const HalfSpheres b(high(x), high(y), high(z), high(r));
+    const auto inverse = narrowed<float>(a.inverse, b.inverse);
+    return {hn::Mul(x, inverse),
+            hn::Mul(y, inverse),
+            narrowed<float>(a.z, b.z),
+            root(d, narrowed<float>(a.tangent_squared, b.tangent_squared)),
+            hn::Min(all(d, 1), hn::Mul(r, inverse)),
+            narrowed<float>(a.tilt_squared, b.tilt_squared),
+            narrowed<float>(a.crossing_squared, b.crossing_squared)};
 }
 
 }  // namespace HWY_NAMESPACE

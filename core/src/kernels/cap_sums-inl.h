@@ -58,8 +58,8 @@ class CoefficientVisitor {
     using D = Lanes<T>;
 
   public:
-    HWY_INLINE CoefficientVisitor(const CapLanes<D>& cap, std::size_t order, const RowPointers<T>& rows)
-        : azimuth_(cap, order), writer_(rows) {
+    HWY_INLINE CoefficientVisitor(const CapLanes<D>& cap, std::size_t order, const RowPointers<T>& rows, Output output)
+        : azimuth_(cap, order), writer_(rows, output) {
         hn::Store(band_zero(D(), cap), D(), writer_.next());
         writer_.add(1);
     }
