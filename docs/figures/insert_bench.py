@@ -3,8 +3,8 @@
 
 .venv/bin/python docs/figures/insert_bench.py out/bench/bench.json
 
-What stands between <!-- bench NAME --> and <!-- end --> becomes the table of section NAME, without quartiles and
-details for NAME "speed", which takes all rows with a bound, and the machine for NAME "machine".
+What stands between <!-- bench NAME --> and <!-- end --> becomes the table of section NAME, for NAME "speed" an overview
+of times against sphericart's, and for NAME "machine" where the run ran.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import re
 import sys
 from pathlib import Path
 
-from shlight.bench import table
+from shlight.bench import against_peer, table
 from shlight.bench.row import Bench, read
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -30,11 +30,22 @@ def content(bench: Bench, name: str) -> str:
             f"lights, medians of {settings['rounds']} turns; sphericart {machine['sphericart']}.\n"
         )
     if name == "speed":
-        rows = [row for row in bench.rows if row.bound is not None and row.section not in ("targets", "threads")]
-        cells = [[r.name, f"{table.number(r.value)} {r.unit}", *table.bound(r), r.detail] for r in rows]
-        return table.aligned(("", "measured", "asked for", "", "times"), cells) + "\n" if cells else ""
+        return overview(bench)
     rows = [row for row in bench.rows if row.section == name]
     return table.rows(rows) + "\n" if rows else ""
+
+
+def overview(bench: Bench) -> str:
+    """Ratios to sphericart's basis, and times: a line for each kind of work, a column for each order."""
+    lines: dict[str, dict[str, str]] = {}
+    for row in bench.rows:
+        if row.unit == against_peer.UNIT and row.section != "targets":
+            kind, _, order = row.name.rpartition(", ")
+            time = row.detail.partition(" ÷ ")[0]
+            lines.setdefault(kind, {})[order] = f"{table.number(row.value)} ({time})"
+    orders = list(dict.fromkeys(order for line in lines.values() for order in line))
+    cells = [[kind, *(line.get(order, "") for order in orders)] for kind, line in lines.items()]
+    return table.aligned((f"time {against_peer.UNIT}", *orders), cells) + "\n" if cells else ""
 
 
 def main() -> None:
