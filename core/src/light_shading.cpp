@@ -130,18 +130,37 @@ class LightShaderWork {
 
     template <class Lights>
     void shade(const Lights& lights, std::span<Rgb> radiance, std::span<std::int32_t> effort) {
-        std::fill(radiance.begin(), radiance.end(), Rgb(0));
-        std::fill(effort.begin(), effort.end(), 0);
+        if (views_.lobe_count() == 0) {
+            std::fill(radiance.begin(), radiance.end(), Rgb(0));
+            std::fill(effort.begin(), effort.end(), 0);
+        }
         for (std::size_t i = 0; i < views_.lobe_count(); ++i) {
             LobeViews& lobe = views_.lobe(i);
             batch_.shade(lobe, lights, view_of_);
-            const auto values = batch_.values();
-            for (std::size_t k = 0; k < radiance.size(); ++k) {
-                radiance[k] += lobe.scale(view_of_[k]) * values[k];
-            }
-            const auto taken = batch_.taken();
+            add(lobe, i == 0, radiance);
+            const auto efforts = batch_.efforts();
             for (std::size_t k = 0; k < effort.size(); ++k) {
-                effort[k] = std::max(effort[k], taken[k].effort);
+                effort[k] = i == 0 ? efforts[k] : std::max(effort[k], efforts[k]);
+            }
+        }
+    }
+
+    /// Adds what the batch found of a lobe, or sets the radiance to it.
+    void add(const LobeViews& lobe, bool first, std::span<Rgb> radiance) const {
+        const auto values = batch_.values();
+        if (lobe.has_weight()) {
+            for (std::size_t k = 0; k < radiance.size(); ++k) {
+                radiance[k] = lobe.scale(view_of_[k]) * values[k] + (first ? Rgb(0) : radiance[k]);
+            }
+        } else if (first) {
+            const Rgb color = lobe.scale(0);
+            for (std::size_t k = 0; k < radiance.size(); ++k) {
+                radiance[k] = color * values[k];
+            }
+        } else {
+            const Rgb color = lobe.scale(0);
+            for (std::size_t k = 0; k < radiance.size(); ++k) {
+                radiance[k] += color * values[k];
             }
         }
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "kernels/cap_cubature_kernel.h"
 #include "kernels/polygon_shading_kernel.h"
@@ -45,11 +46,12 @@ Vec3d mirrored(const Vec3d& view) {
     return {-view.x, 0, view.z};
 }
 
-std::size_t count_of(const CircleArrays&, std::span<const std::uint32_t> view_of) {
-    return view_of.size();
+/// The largest rule that is cheaper than harmonics of the orders that glossy lobes take.
+int cheap_rule(const CircleArrays&) {
+    return kCheapCapRule;
 }
-std::size_t count_of(const PolygonLights& polygons, std::span<const std::uint32_t>) {
-    return polygons.size();
+int cheap_rule(const PolygonLights&) {
+    return kCheapPolygonRule;
 }
 
 }  // namespace
@@ -64,38 +66,100 @@ void LobeBatch::shade(LobeViews& lobe, const PolygonLights& polygons, std::span<
 
 template <class Lights>
 void LobeBatch::shade_any(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of) {
-    const std::size_t count = count_of(lights, view_of);
-    values_.assign(count, 0.0F);
-    taken_.assign(count, {Taken::Way::nothing, true, 0});
-    if (is_mirror(lobe.shape())) {
-        mirror(lobe, lights, view_of);
+    values_.resize(view_of.size());
+    efforts_.resize(view_of.size());
+    alike_ = !lobe.chooses() && !is_mirror(lobe.shape()) && !lobe.any_black();
+    if (view_of.empty()) {
         return;
     }
-    sort(lobe, lights, view_of);
-    for (std::size_t key = kNothing + 1; key < kKeys; ++key) {
-        items_ = std::span(sorted_).subspan(begin_[key], begin_[key + 1] - begin_[key]);
-        if (items_.empty()) {
-            continue;
-        }
-        item_views_.resize(items_.size());
-        std::transform(items_.begin(), items_.end(), item_views_.begin(), [&](std::uint32_t i) { return view_of[i]; });
-        integrate(lobe, lights, static_cast<Key>(key));
+    if (alike_) {
+        shade_alike(lobe, lights, view_of);
+    } else {
+        shade_sorted(lobe, lights, view_of);
     }
 }
 
-bool LobeBatch::is_hidden(const CircleArrays& circles, std::size_t light) const {
+template <class Lights>
+void LobeBatch::shade_alike(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of) {
+    const std::size_t count = view_of.size();
+    if (const std::size_t known = all_.size(); known < count) {
+        all_.resize(count);
+        std::iota(all_.begin(), all_.end(), 0U);
+    }
+    items_ = std::span(all_).first(count);
+    item_views_ = view_of;
+    item_values_ = values_;
+    const int order = lobe.order(0);
+    by_harmonics(lobe, lights, order);
+    for (std::size_t i = 0; i < count; ++i) {
+        values_[i] = std::max(0.0F, values_[i]);
+        efforts_[i] = is_hidden(lights, i) ? 0 : order;
+    }
+}
+
+template <class Lights>
+void LobeBatch::shade_sorted(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of) {
+    std::fill(values_.begin(), values_.end(), 0.0F);
+    std::fill(efforts_.begin(), efforts_.end(), 0);
+    find_keys(lobe, lights, view_of);
+    sort();
+    gathered_views_.resize(view_of.size());
+    gathered_values_.resize(view_of.size());
+    for (std::size_t key = kNothing + 1; key < kKeys; ++key) {
+        const std::size_t count = begin_[key + 1] - begin_[key];
+        if (count == 0) {
+            continue;
+        }
+        items_ = std::span(sorted_).subspan(begin_[key], count);
+        std::transform(items_.begin(), items_.end(), gathered_views_.begin(),
+                       [&](std::uint32_t light) { return view_of[light]; });
+        item_views_ = std::span(gathered_views_).first(count);
+        item_values_ = std::span(gathered_values_).first(count);
+        integrate(lobe, lights, static_cast<Key>(key));
+        for (std::size_t k = 0; k < count; ++k) {
+            // What rings below zero is no light.
+            values_[items_[k]] = std::max(0.0F, item_values_[k]);
+        }
+    }
+}
+
+Way LobeBatch::way(std::size_t light) const {
+    if (alike_) {
+        return efforts_[light] > 0 ? Way::harmonics : Way::nothing;
+    }
+    const Key key = keys_[light];
+    return key == kNothing    ? Way::nothing
+           : key == kMirror   ? Way::mirror
+           : key > kHarmonics ? Way::harmonics
+                              : Way::cubature;
+}
+
+bool LobeBatch::met(const LobeViews& lobe, std::size_t light, std::size_t view) const {
+    switch (way(light)) {
+        case Way::nothing:
+        case Way::mirror:
+            return true;
+        case Way::harmonics:
+            return lobe.met(view);
+        case Way::cubature:
+            return keys_[light] != kOutline || missed_[light] == 0;
+    }
+    return true;
+}
+
+bool LobeBatch::is_hidden(const CircleArrays& circles, std::size_t light) {
     return circles.z[light] <= -circles.sine[light];
 }
 
-bool LobeBatch::is_hidden(const PolygonLights& polygons, std::size_t light) const {
+bool LobeBatch::is_hidden(const PolygonLights& polygons, std::size_t light) {
     return polygons.kept[light].empty();
 }
 
-bool LobeBatch::shows_mirrored(const CircleArrays& circles, std::size_t light, const Vec3d& direction) const {
+bool LobeBatch::shows_mirrored(const CircleArrays& circles, std::size_t light, const Vec3d& direction) {
     return glm::dot(direction, axis_of(circles, light)) >= circles.cosine[light];
 }
 
-bool LobeBatch::shows_mirrored(const PolygonLights& polygons, std::size_t light, const Vec3d& direction) const {
+bool LobeBatch::shows_mirrored(const PolygonLights& polygons, std::size_t light, const Vec3d& direction) {
     // The winding of the outline about the direction, as angles between neighbouring vertices.
     const std::vector<Vec3d>& v = polygons.kept[light].directions();
     double winding = 0;
@@ -105,21 +169,6 @@ bool LobeBatch::shows_mirrored(const PolygonLights& polygons, std::size_t light,
         winding += std::atan2(glm::dot(direction, glm::cross(a, b)), glm::dot(a, b));
     }
     return winding > 1 && std::any_of(v.begin(), v.end(), [&](const Vec3d& d) { return glm::dot(d, direction) > 0; });
-}
-
-template <class Lights>
-void LobeBatch::mirror(const LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of) {
-    for (std::size_t i = 0; i < values_.size(); ++i) {
-        const std::uint32_t view = view_of[i];
-        if (is_hidden(lights, i) || lobe.is_black(view)) {
-            continue;
-        }
-        const Vec3d direction = mirrored(lobe.positions().direction(view));
-        taken_[i].way = Taken::Way::mirror;
-        if (shows_mirrored(lights, i, direction)) {
-            values_[i] = static_cast<float>(fresnel_factor(lobe.ggx(), direction.z));
-        }
-    }
 }
 
 void LobeBatch::choose_rules(const LobeViews& lobe, const CircleArrays& circles,
@@ -135,78 +184,73 @@ void LobeBatch::choose_rules(const LobeViews& lobe, const PolygonLights& polygon
             continue;
         }
         const Extent extent = extent_of(polygons.kept[i]);
-        const double size =
-            std::max(relative_size(lobe.ggx(), lobe.positions().direction(view_of[i]), extent.middle, extent.half_angle),
-                     kFlatness * extent.half_angle);
+        const double size = std::max(
+            relative_size(lobe.ggx(), lobe.positions().direction(view_of[i]), extent.middle, extent.half_angle),
+            kFlatness * extent.half_angle);
         rules_[i] = static_cast<std::uint8_t>(polygon_rule_number(size, lobe.tolerances()[view_of[i]]));
     }
 }
 
-int LobeBatch::cheap_rule(const CircleArrays&) {
-    return kCheapCapRule;
-}
-int LobeBatch::cheap_rule(const PolygonLights&) {
-    return kCheapPolygonRule;
+template <class Lights>
+void LobeBatch::find_keys(const LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of) {
+    keys_.resize(view_of.size());
+    if (!lobe.chooses()) {
+        const auto key = is_mirror(lobe.shape()) ? kMirror : static_cast<Key>(kHarmonics + lobe.order(0));
+        for (std::size_t i = 0; i < view_of.size(); ++i) {
+            keys_[i] = is_hidden(lights, i) || lobe.is_black(view_of[i]) ? kNothing : key;
+        }
+        return;
+    }
+    rules_.resize(view_of.size());
+    choose_rules(lobe, lights, view_of);
+    const int cheap = cheap_rule(lights);
+    for (std::size_t i = 0; i < view_of.size(); ++i) {
+        const std::uint32_t view = view_of[i];
+        const int order = lobe.order(view);
+        const Key otherwise = order > 0 ? static_cast<Key>(kHarmonics + order) : kOutline;
+        const bool by_rule = rules_[i] != kNoCapRule && (rules_[i] <= cheap || order == 0);
+        const Key key = by_rule ? rules_[i] : otherwise;
+        keys_[i] = rules_[i] == kCapHidden || lobe.is_black(view) ? kNothing : key;
+    }
 }
 
-template <class Lights>
-void LobeBatch::sort(const LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of) {
-    const std::size_t count = values_.size();
-    keys_.resize(count);
-    if (lobe.chooses()) {
-        rules_.resize(count);
-        choose_rules(lobe, lights, view_of);
-        const int cheap = cheap_rule(lights);
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::uint32_t view = view_of[i];
-            const int order = lobe.order(view);
-            const Key otherwise = static_cast<Key>(order > 0 ? kHarmonics + order : kOutline);
-            const bool by_rule = rules_[i] != kNoCapRule && (rules_[i] <= cheap || order == 0);
-            const Key key = by_rule ? rules_[i] : otherwise;
-            keys_[i] = rules_[i] == kCapHidden || lobe.is_black(view) ? kNothing : key;
-        }
-    } else {
-        for (std::size_t i = 0; i < count; ++i) {
-            const bool nothing = is_hidden(lights, i) || lobe.is_black(view_of[i]);
-            keys_[i] = nothing ? kNothing : static_cast<Key>(kHarmonics + lobe.order(view_of[i]));
-        }
-    }
+void LobeBatch::sort() {
     begin_.fill(0);
     for (const Key key : keys_) {
         ++begin_[key + std::size_t{1}];
     }
-    for (std::size_t key = 1; key < begin_.size(); ++key) {
-        begin_[key] += begin_[key - 1];
-    }
-    sorted_.resize(count);
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    sorted_.resize(keys_.size());
     std::array<std::uint32_t, kKeys + 1> next = begin_;
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
         sorted_[next[keys_[i]]++] = static_cast<std::uint32_t>(i);
     }
 }
 
 template <class Lights>
 void LobeBatch::integrate(LobeViews& lobe, const Lights& lights, Key key) {
-    if (key == kOutline) {
+    if (key == kMirror) {
+        mirror(lobe, lights);
+    } else if (key == kOutline) {
+        missed_.resize(values_.size());
         by_outline(lobe, lights);
-        return;
-    }
-    item_values_.resize(items_.size());
-    Taken taken{Taken::Way::cubature, true, 0};
-    if (key > kHarmonics) {
+    } else if (key > kHarmonics) {
         by_harmonics(lobe, lights, key - kHarmonics);
-        taken = {Taken::Way::harmonics, true, key - kHarmonics};
+        for (const std::uint32_t light : items_) {
+            efforts_[light] = key - kHarmonics;
+        }
     } else {
         by_rule(lobe, lights, key);
     }
+}
+
+template <class Lights>
+void LobeBatch::mirror(const LobeViews& lobe, const Lights& lights) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
-        // What rings below zero is no light.
-        values_[items_[k]] = std::max(0.0F, item_values_[k]);
-    }
-    if (key > kHarmonics) {
-        for (std::size_t k = 0; k < items_.size(); ++k) {
-            taken_[items_[k]] = {taken.way, lobe.met(item_views_[k]), taken.effort};
-        }
+        const Vec3d direction = mirrored(lobe.positions().direction(item_views_[k]));
+        item_values_[k] = shows_mirrored(lights, items_[k], direction)
+                              ? static_cast<float>(fresnel_factor(lobe.ggx(), direction.z))
+                              : 0.0F;
     }
 }
 
@@ -221,44 +265,41 @@ void LobeBatch::by_harmonics(LobeViews& lobe, const PolygonLights& polygons, int
 
 void LobeBatch::by_rule(const LobeViews& lobe, const CircleArrays& circles, int rule) {
     integrate_caps(lobe.ggx(), circles, items_, lobe.positions().directions(), item_views_, rule, item_values_);
-    const Taken taken{Taken::Way::cubature, true, cap_rule_points(rule)};
+    const int points = cap_rule_points(rule);
     for (const std::uint32_t light : items_) {
-        taken_[light] = taken;
+        efforts_[light] = points;
     }
 }
 
 void LobeBatch::by_rule(const LobeViews& lobe, const PolygonLights& polygons, int rule) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
-        const CubatureSum sum = polygon_cubature(lobe.ggx(), lobe.positions().direction(item_views_[k]),
-                                                 polygons.kept[items_[k]], rule);
+        const CubatureSum sum =
+            polygon_cubature(lobe.ggx(), lobe.positions().direction(item_views_[k]), polygons.kept[items_[k]], rule);
         item_values_[k] = static_cast<float>(sum.value);
-        taken_[items_[k]] = {Taken::Way::cubature, true, sum.points};
+        efforts_[items_[k]] = sum.points;
     }
-}
-
-OutlineIntegral LobeBatch::outline(const LobeViews& lobe, std::span<const OutlineArc> arcs, std::size_t view) {
-    return outline_integral(lobe.ggx(), lobe.positions().cosine()[view], arcs, lobe.absolute_tolerance(view));
-}
-
-void LobeBatch::finish_outline(const LobeViews& lobe, std::size_t item, const OutlineIntegral& integral) {
-    const std::uint32_t light = items_[item];
-    const bool met = integral.error <= lobe.absolute_tolerance(item_views_[item]);
-    values_[light] = std::max(0.0F, static_cast<float>(integral.value));
-    taken_[light] = {Taken::Way::cubature, met, integral.points};
 }
 
 void LobeBatch::by_outline(const LobeViews& lobe, const CircleArrays& circles) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
         const std::uint32_t i = items_[k];
-        const CapOutline cap({axis_of(circles, i), circles.cosine[i], circles.sine[i]});
-        finish_outline(lobe, k, outline(lobe, cap.arcs(), item_views_[k]));
+        integrate_outline(lobe, k, CapOutline({axis_of(circles, i), circles.cosine[i], circles.sine[i]}).arcs());
     }
 }
 
 void LobeBatch::by_outline(const LobeViews& lobe, const PolygonLights& polygons) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
-        finish_outline(lobe, k, outline(lobe, polygon_outline(polygons.kept[items_[k]]), item_views_[k]));
+        integrate_outline(lobe, k, polygon_outline(polygons.kept[items_[k]]));
     }
+}
+
+void LobeBatch::integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const OutlineArc> arcs) {
+    const std::uint32_t view = item_views_[item];
+    const double tolerance = lobe.absolute_tolerance(view);
+    const OutlineIntegral integral = outline_integral(lobe.ggx(), lobe.positions().cosine()[view], arcs, tolerance);
+    item_values_[item] = static_cast<float>(integral.value);
+    efforts_[items_[item]] = integral.points;
+    missed_[items_[item]] = integral.error <= tolerance ? 0 : 1;
 }
 
 }  // namespace shlight

@@ -18,23 +18,15 @@
 
 namespace shlight {
 
-/// What a light's radiance took.
-struct Taken {
-    enum class Way : std::uint8_t { nothing, mirror, harmonics, cubature };
-
-    Way way;           ///< nothing: the light is hidden, or the lobe black
-    bool met;          ///< the tolerance, by what the way estimates
-    std::int32_t effort;  ///< order, or number of values of f·cos; else 0
-};
-
 /// Polygons of the same number of vertices in the shading frame, and what of them the horizon leaves.
 struct PolygonLights {
     std::span<const Vec3d> vertices;
     int vertex_count;
     std::span<const SphericalPolygon<double>> kept;
-
-    std::size_t size() const { return kept.size(); }
 };
+
+/// How a light's radiance was found; nothing: the light is hidden, or the lobe black.
+enum class Way { nothing, mirror, harmonics, cubature };
 
 /// Keeps its memory from call to call; one per thread.
 class LobeBatch {
@@ -43,54 +35,69 @@ class LobeBatch {
     void shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of);
     void shade(LobeViews& lobe, const PolygonLights& polygons, std::span<const std::uint32_t> view_of);
 
-    /// Of the last call: the reflected radiance of each light of unit radiance, without the lobe's scale, ≥ 0.
+    // Of the last call:
+    /// The reflected radiance of each light of unit radiance, without the lobe's scale, ≥ 0.
     std::span<const float> values() const { return values_; }
-    std::span<const Taken> taken() const { return taken_; }
+    /// The order, or number of values of f·cos, that each took; 0 where it is hidden or mirrored, or the lobe black.
+    std::span<const std::int32_t> efforts() const { return efforts_; }
+    Way way(std::size_t light) const;
+    /// Whether a light kept within the tolerance, by what its way estimates; only if the lobe, as given, was judged.
+    bool met(const LobeViews& lobe, std::size_t light, std::size_t view) const;
 
   private:
-    /// What becomes of a light: nothing, a rule of cubature, its outline, or harmonics of order key - kHarmonics.
+    /// What becomes of a light: nothing, a rule of cubature (1 …), something else, or harmonics of order
+    /// key - kHarmonics.
     using Key = std::uint8_t;
-    static constexpr Key kNothing = 0, kOutline = 5, kHarmonics = 6;
+    static constexpr Key kNothing = 0, kOutline = 5, kMirror = 6, kHarmonics = 7;
     static constexpr std::size_t kKeys = kHarmonics + kMaxOrder + 1;
 
     template <class Lights>
     void shade_any(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of);
+    /// All by harmonics of the only order.
+    template <class Lights>
+    void shade_alike(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of);
+    template <class Lights>
+    void shade_sorted(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of);
 
-    bool is_hidden(const CircleArrays& circles, std::size_t light) const;
-    bool is_hidden(const PolygonLights& polygons, std::size_t light) const;
-    bool shows_mirrored(const CircleArrays& circles, std::size_t light, const Vec3d& direction) const;
-    bool shows_mirrored(const PolygonLights& polygons, std::size_t light, const Vec3d& direction) const;
+    static bool is_hidden(const CircleArrays& circles, std::size_t light);
+    static bool is_hidden(const PolygonLights& polygons, std::size_t light);
+    static bool shows_mirrored(const CircleArrays& circles, std::size_t light, const Vec3d& direction);
+    static bool shows_mirrored(const PolygonLights& polygons, std::size_t light, const Vec3d& direction);
     /// The rule of cubature of each light, as choose_cap_rules.
     void choose_rules(const LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of);
     void choose_rules(const LobeViews& lobe, const PolygonLights& polygons, std::span<const std::uint32_t> view_of);
-    static int cheap_rule(const CircleArrays&);
-    static int cheap_rule(const PolygonLights&);
 
     template <class Lights>
-    void mirror(const LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of);
-    template <class Lights>
-    void sort(const LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of);
+    void find_keys(const LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of);
+    void sort();
     template <class Lights>
     void integrate(LobeViews& lobe, const Lights& lights, Key key);
 
+    template <class Lights>
+    void mirror(const LobeViews& lobe, const Lights& lights);
     void by_harmonics(LobeViews& lobe, const CircleArrays& circles, int order);
     void by_harmonics(LobeViews& lobe, const PolygonLights& polygons, int order);
     void by_rule(const LobeViews& lobe, const CircleArrays& circles, int rule);
     void by_rule(const LobeViews& lobe, const PolygonLights& polygons, int rule);
     void by_outline(const LobeViews& lobe, const CircleArrays& circles);
     void by_outline(const LobeViews& lobe, const PolygonLights& polygons);
-    OutlineIntegral outline(const LobeViews& lobe, std::span<const OutlineArc> arcs, std::size_t view);
-    void finish_outline(const LobeViews& lobe, std::size_t item, const OutlineIntegral& integral);
+    /// Of an item.
+    void integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const OutlineArc> arcs);
 
     std::vector<float> values_;
-    std::vector<Taken> taken_;
-    std::vector<std::uint8_t> rules_;
+    std::vector<std::int32_t> efforts_;
+
+    bool alike_ = false;
+    std::vector<std::uint8_t> rules_, missed_;  // missed_: the tolerance
     std::vector<Key> keys_;
-    std::vector<std::uint32_t> sorted_;                    // lights by key
-    std::array<std::uint32_t, kKeys + 1> begin_{};         // of each key in sorted_
-    std::span<const std::uint32_t> items_;                 // lights of the key at hand
-    std::vector<std::uint32_t> item_views_;                // and their views
-    std::vector<float> item_values_;
+    std::vector<std::uint32_t> sorted_;             // lights by key
+    std::array<std::uint32_t, kKeys + 1> begin_{};  // of each key in sorted_
+
+    std::span<const std::uint32_t> items_;       // lights of the key at hand
+    std::span<const std::uint32_t> item_views_;  // and their views
+    std::span<float> item_values_;
+    std::vector<std::uint32_t> all_, gathered_views_;
+    std::vector<float> gathered_values_;
 };
 
 }  // namespace shlight

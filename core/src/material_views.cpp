@@ -11,34 +11,40 @@
 
 namespace shlight {
 
-void ViewPositions::assign(std::span<const double> cos_theta_o) {
-    const std::size_t count = cos_theta_o.size();
-    cosine_.assign(cos_theta_o.begin(), cos_theta_o.end());
-    sine_.resize(count);
-    std::transform(cosine_.begin(), cosine_.end(), sine_.begin(),
-                   [](double cosine) { return std::sqrt((1 - cosine) * (1 + cosine)); });
-    rows_.resize(count);
-    weights_.resize(4 * count);
-    find_views(cosine_, rows_.data(), weights_.data());
-    if (const std::size_t known = all_.size(); known < count) {
-        all_.resize(count);
-        std::iota(all_.begin() + static_cast<std::ptrdiff_t>(known), all_.end(), static_cast<std::uint32_t>(known));
+void ViewPositions::assign(std::span<const double> cos_theta_o, bool tabulated) {
+    size_ = cos_theta_o.size();
+    if (const std::size_t room = padded_views(size_); cosine_.size() < room) {
+        for (std::vector<double>* array : {&cosine_, &sine_, &fitted_sine_, &fitted_cosine_}) {
+            array->resize(room);
+        }
+        log_cosine_.resize(room);
+        row_.resize(room);
+        weights_.resize(4 * room);
+        all_.resize(room);
+        std::iota(all_.begin(), all_.end(), 0U);
+    }
+    std::copy(cos_theta_o.begin(), cos_theta_o.end(), cosine_.begin());
+    if (tabulated) {
+        find_views(cosine_.data(), size_, arrays());
     }
 }
 
-void ViewPositions::interpolate(const float* table, std::size_t width, std::span<const std::uint32_t> views,
-                                float* out, std::size_t stride) const {
-    interpolate_views(table, width, rows_.data(), weights_.data(), views, out, stride);
+ViewOutput ViewPositions::arrays() {
+    return {sine_.data(), fitted_sine_.data(), fitted_cosine_.data(), log_cosine_.data(), row_.data(), weights_.data()};
 }
 
-void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, const ViewPositions& positions, bool judged) {
+void ViewPositions::interpolate(const float* table, std::size_t width, std::span<const std::uint32_t> views, float* out,
+                                std::size_t stride) const {
+    interpolate_views(table, width, row_.data(), weights_.data(), views, out, stride);
+}
+
+void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPositions& positions, bool judged) {
     lobe_ = &material.lobes()[lobe];
     fit_ = material.fit(lobe);
     positions_ = &positions;
     chooses_ = material.auto_order() && std::holds_alternative<GgxShape>(lobe_->shape) && !is_mirror(lobe_->shape);
     judged_ = judged;
     has_warps_ = false;
-    has_terms_.assign(positions.size(), 0);
     stride_ = 0;
     find_scales();
     if (judged_) {
@@ -81,15 +87,18 @@ void LobeViews::choose_orders(double tolerance, std::span<const float> allowance
     black_.assign(count, 0);
     met_.assign(count, 1);
     order_.assign(count, static_cast<std::uint8_t>(std::max(only, 0)));
+    any_black_ = false;
     if (!judged_) {
-        for (std::size_t view = 0; view < count; ++view) {
+        for (std::size_t view = 0; view < count && has_weight(); ++view) {
             black_[view] = scale(view) == Rgb(0) ? 1 : 0;
+            any_black_ = any_black_ || black_[view] != 0;
         }
         return;
     }
     tolerance_.resize(count);
     for (std::size_t view = 0; view < count; ++view) {
         black_[view] = std::isinf(allowances[view]) ? 1 : 0;
+        any_black_ = any_black_ || black_[view] != 0;
         tolerance_[view] = static_cast<float>(tolerance * allowances[view]);
         if (table == nullptr) {
             met_[view] = only != 1 || 0.5F <= tolerance_[view] ? 1 : 0;
@@ -108,36 +117,31 @@ void LobeViews::choose_orders(double tolerance, std::span<const float> allowance
     }
 }
 
-void LobeViews::prepare_warps() {
-    const std::size_t count = positions_->size();
-    warps_.resize(9 * count);
+WarpArrays LobeViews::warp_arrays() {
+    const std::size_t room = padded_views(positions_->size());
+    const ViewOutput views = positions_->arrays();
+    if (!has_warps_) {
+        warps_.resize(std::max(warps_.size(), 7 * room));
+    }
     double* w = warps_.data();
-    warp_views(ggx().alpha, positions_->cosine(),
-               {w, w + count, w + 2 * count, w + 3 * count, w + 4 * count, w + 5 * count, w + 6 * count, w + 7 * count,
-                w + 8 * count});
-    has_warps_ = true;
+    if (!has_warps_) {
+        warp_views(ggx().alpha, views, positions_->size(),
+                   {w, w + room, w + 2 * room, w + 3 * room, w + 4 * room, w + 5 * room, w + 6 * room});
+        has_warps_ = true;
+    }
+    return {views.fitted_sine, views.fitted_cosine, w,           w + room, w + 2 * room, w + 3 * room,
+            w + 4 * room,      w + 5 * room,        w + 6 * room};
 }
 
-LobeArrays LobeViews::arrays(int order, std::span<const std::uint32_t> used) {
-    const ViewTable* table = fit_->table();
-    const std::size_t count = positions_->size();
-    if (table == nullptr) {
-        if (has_terms_[0] == 0) {
-            terms_.grow(AlignedFloats::padded(static_cast<std::size_t>(cosine_count(order))));
-            fit_->coefficients(1, order, terms_.data());
-            has_terms_[0] = 1;
-        }
-        return {false, {}, terms_.data(), 0, order};
-    }
-    if (!has_warps_) {
-        prepare_warps();
-    }
+void LobeViews::interpolate_terms(std::size_t which, std::span<const std::uint32_t> used) {
+    const ViewTable& table = *fit_->table();
     if (stride_ == 0) {
         // Wide enough for any of the orders.
-        for (std::size_t i = 0; i < table->orders().size(); ++i) {
-            stride_ = std::max(stride_, table->width(i));
+        for (std::size_t i = 0; i < table.orders().size(); ++i) {
+            stride_ = std::max(stride_, table.width(i));
         }
-        terms_.grow(count * stride_);
+        terms_.grow(positions_->size() * stride_);
+        has_terms_.assign(positions_->size(), 0);
     }
     missing_.clear();
     for (const std::uint32_t view : used) {
@@ -146,21 +150,29 @@ LobeArrays LobeViews::arrays(int order, std::span<const std::uint32_t> used) {
             missing_.push_back(view);
         }
     }
-    const std::size_t which = table->which(order);
-    positions_->interpolate(table->terms(which), table->width(which), missing_, terms_.data(), stride_);
-    const double* w = warps_.data();
-    return {true,
-            {w, w + count, w + 2 * count, w + 3 * count, w + 4 * count, w + 5 * count, w + 6 * count, w + 7 * count,
-             w + 8 * count},
-            terms_.data(),
-            count == 1 ? 0 : stride_,
-            order};
+    positions_->interpolate(table.terms(which), table.width(which), missing_, terms_.data(), stride_);
+}
+
+LobeArrays LobeViews::arrays(int order, std::span<const std::uint32_t> used) {
+    const ViewTable* table = fit_->table();
+    if (table != nullptr) {
+        interpolate_terms(table->which(order), used);
+        return {true, warp_arrays(), terms_.data(), positions_->size() == 1 ? 0 : stride_, order};
+    }
+    if (stride_ == 0) {
+        stride_ = AlignedFloats::padded(static_cast<std::size_t>(cosine_count(order)));
+        terms_.grow(stride_);
+        fit_->coefficients(1, order, terms_.data());
+    }
+    return {false, {}, terms_.data(), 0, order};
 }
 
 void MaterialViews::assign(const MaterialLobes& material, std::span<const double> cos_theta_o, bool judged) {
     const bool weighed = judged || material.auto_order();
-    positions_.assign(cos_theta_o);
     lobe_count_ = material.lobes().size();
+    const bool tabulated = std::any_of(material.lobes().begin(), material.lobes().end(),
+                                       [](const Lobe& lobe) { return std::holds_alternative<GgxShape>(lobe.shape); });
+    positions_.assign(cos_theta_o, tabulated);
     if (lobes_.size() < lobe_count_) {
         lobes_.resize(lobe_count_);
     }

@@ -12,21 +12,20 @@ namespace {
 /// Points that are shaded at a time, as many as fit the cache with what is known of their views.
 constexpr std::size_t kChunk = 1024;
 
-void count(const Taken& taken, std::uint32_t hits, RenderReport& report) {
-    switch (taken.way) {
-        case Taken::Way::nothing:
-            return;
-        case Taken::Way::mirror:
+void count(Way way, int order, std::uint32_t hits, RenderReport& report) {
+    switch (way) {
+        case Way::nothing:
+            break;
+        case Way::mirror:
             report.mirror_count += hits;
             break;
-        case Taken::Way::harmonics:
-            report.order_counts[static_cast<std::size_t>(taken.effort)] += hits;
+        case Way::harmonics:
+            report.order_counts[static_cast<std::size_t>(order)] += hits;
             break;
-        case Taken::Way::cubature:
+        case Way::cubature:
             report.cubature_count += hits;
             break;
     }
-    report.over_tolerance += taken.met ? 0 : hits;
 }
 
 }  // namespace
@@ -105,7 +104,8 @@ void Unshadowed::integrate(const ShadingPoints& points, std::span<const std::uin
         for (std::size_t k = 0; k < seen_by_.size(); ++k) {
             const std::uint32_t point = some[seen_by_[k]];
             values[point] = batch_.values()[k];
-            count(batch_.taken()[k], points.hit_count(point), report);
+            count(batch_.way(k), batch_.efforts()[k], points.hit_count(point), report);
+            report.over_tolerance += batch_.met(views_.lobe(lobe), k, seen_by_[k]) ? 0 : points.hit_count(point);
         }
     }
 }

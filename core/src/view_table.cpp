@@ -14,11 +14,16 @@ static_assert(ViewTable::kResiduals + kWarpedOrders.size() <= ViewTable::kHeadWi
 
 /// One interpolated row.
 void interpolate_one(double cos_theta_o, const float* table, std::size_t width, float* out) {
-    std::uint32_t row = 0;
-    std::array<float, 4> weights;
-    find_views({&cos_theta_o, 1}, &row, weights.data());
+    std::array<double, kViewLanes> cosine;
+    cosine.fill(cos_theta_o);
+    std::array<double, kViewLanes> sine, fitted_sine, fitted_cosine;
+    std::array<float, kViewLanes> log_cosine;
+    std::array<std::uint32_t, kViewLanes> row;
+    std::array<float, 4 * kViewLanes> weights;
+    find_views(cosine.data(), 1,
+               {sine.data(), fitted_sine.data(), fitted_cosine.data(), log_cosine.data(), row.data(), weights.data()});
     constexpr std::uint32_t kFirst = 0;
-    interpolate_views(table, width, &row, weights.data(), {&kFirst, 1}, out, width);
+    interpolate_views(table, width, row.data(), weights.data(), {&kFirst, 1}, out, width);
 }
 
 }  // namespace

@@ -243,8 +243,7 @@ void integrate(const GgxShape& shape, const CircleArrays& circles, std::span<con
 
 template <Fresnel kFresnel>
 void integrate_any(const GgxShape& shape, const CircleArrays& circles, std::span<const std::uint32_t> circle_of,
-                   const ViewArrays& views, std::span<const std::uint32_t> view_of, int rule,
-                   std::span<float> values) {
+                   const ViewArrays& views, std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     if (views.shared) {
         integrate<kFresnel, Same>(shape, circles, circle_of, views, view_of, rule, values);
     } else {

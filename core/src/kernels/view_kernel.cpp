@@ -7,8 +7,6 @@
 // Highway's vocabulary, and what is compiled once per instruction set, come after it.
 #include <hwy/highway.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <hwy/contrib/math/math-inl.h>
@@ -23,95 +21,121 @@ namespace shlight {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr std::size_t kViewLanes = kLaneCount<Doubles>;
+constexpr std::size_t kLanes = kLaneCount<Floats>;
+static_assert(kViewLanes % kLanes == 0);
 
-/// What a vector of lanes reads and writes; at the end of the batch by way of buffers that are full.
-template <class Work>
-HWY_INLINE void in_vectors(std::span<const double> cos_theta_o, const Work& work) {
-    const Doubles d;
-    std::size_t first = 0;
-    for (; first + kViewLanes <= cos_theta_o.size(); first += kViewLanes) {
-        work(first, kViewLanes, hn::LoadU(d, cos_theta_o.data() + first));
-    }
-    if (const std::size_t rest = cos_theta_o.size() - first; rest > 0) {
-        alignas(64) std::array<double, kViewLanes> padded;
-        std::fill(std::copy_n(cos_theta_o.data() + first, rest, padded.begin()), padded.end(), 1.0);
-        work(first, rest, hn::Load(d, padded.data()));
-    }
+HWY_INLINE DoublePair load_pair(const double* from) {
+    return Neighbours(0).pair(from);
 }
-
-HWY_INLINE V<Doubles> fitted_cosine(V<Doubles> cos_theta_o) {
-    const Doubles d;
-    return hn::Min(hn::Max(cos_theta_o, all(d, kLeastFittedCosine)), all(d, 1));
+HWY_INLINE void store_pair(const DoublePair& pair, double* to) {
+    hn::StoreU(pair.low, Doubles(), to);
+    hn::StoreU(pair.high, Doubles(), to + kLaneCount<Doubles>);
+}
+template <class Function>
+HWY_INLINE DoublePair each(const Function& function, const DoublePair& a) {
+    return {function(a.low), function(a.high)};
+}
+template <class Function>
+HWY_INLINE DoublePair each(const Function& function, const DoublePair& a, const DoublePair& b) {
+    return {function(a.low, b.low), function(a.high, b.high)};
 }
 
 HWY_INLINE V<Doubles> sine_of(V<Doubles> cosine) {
-    const Doubles d;
-    const auto one = all(d, 1);
+    const auto one = all(Doubles(), 1);
     return hn::Sqrt(hn::Mul(hn::Sub(one, cosine), hn::Add(one, cosine)));
 }
 
-void find_views_in_lanes(std::span<const double> cos_theta_o, std::uint32_t* rows, float* weights) {
-    const HalfFloats d;
-    const hn::RebindToSigned<HalfFloats> di;
-    const float step = static_cast<float>((kWarpedViews - 1) / std::acosh(1 / kLeastFittedCosine));
-    in_vectors(cos_theta_o, [&](std::size_t first, std::size_t count, V<Doubles> given) HWY_ATTR {
-        const auto cosine = fitted_cosine(given);
+void find_views_in_lanes(const double* cos_theta_o, std::size_t count, const ViewOutput& out) {
+    const Floats d;
+    const hn::RebindToSigned<Floats> di;
+    const hn::RebindToUnsigned<Floats> du;
+    const auto step = static_cast<float>((kWarpedViews - 1) / std::acosh(1 / kLeastFittedCosine));
+    for (std::size_t i = 0; i < count; i += kLanes) {
+        const DoublePair given = load_pair(cos_theta_o + i);
+        const DoublePair cosine =
+            each([](V<Doubles> c)
+                     HWY_ATTR { return hn::Min(hn::Max(c, all(Doubles(), kLeastFittedCosine)), all(Doubles(), 1)); },
+                 given);
+        const DoublePair sine = each([](V<Doubles> c) HWY_ATTR { return sine_of(c); }, cosine);
+        store_pair(each([](V<Doubles> c) HWY_ATTR { return sine_of(c); }, given), out.sine + i);
+        store_pair(sine, out.fitted_sine + i);
+        store_pair(cosine, out.fitted_cosine + i);
+        const auto log_cosine = hn::Log(d, rounded(cosine));
+        hn::StoreU(log_cosine, d, out.log_cosine + i);
         // artanh(sinθ) = log((1 + sinθ) / cosθ).
-        const auto stretch = hn::Div(hn::Add(all(Doubles(), 1), sine_of(cosine)), cosine);
-        const auto position = hn::Mul(hn::Log(d, hn::DemoteTo(d, stretch)), hn::Set(d, step));
+        const auto stretch = hn::Sub(hn::Log(d, hn::Add(rounded(sine), all(d, 1))), log_cosine);
+        const auto position = hn::Max(hn::Zero(d), hn::Mul(stretch, hn::Set(d, step)));
         // Counted from the row beyond the normal; the stencil begins one row before the view.
-        auto row = hn::Min(hn::ConvertTo(di, position), hn::Set(di, kWarpedViews - 3));
+        const auto row = hn::Min(hn::ConvertTo(di, position), hn::Set(di, kWarpedViews - 3));
+        hn::StoreU(hn::BitCast(du, row), du, out.row + i);
         const auto t = hn::Sub(position, hn::Sub(hn::ConvertTo(d, row), all(d, 1)));
         const auto t1 = hn::Sub(t, all(d, 1));
         const auto t2 = hn::Sub(t, all(d, 2));
         const auto t3 = hn::Sub(t, all(d, 3));
         const auto outer = hn::Mul(t1, t2);
         const auto inner = hn::Mul(t, t3);
-        alignas(64) std::array<float, 4 * kViewLanes> buffer;
         hn::StoreInterleaved4(hn::Mul(hn::Mul(outer, t3), all(d, -1.0 / 6)), hn::Mul(hn::Mul(inner, t2), all(d, 0.5)),
                               hn::Mul(hn::Mul(inner, t1), all(d, -0.5)), hn::Mul(hn::Mul(outer, t), all(d, 1.0 / 6)), d,
-                              buffer.data());
-        std::copy_n(buffer.begin(), 4 * count, weights + 4 * first);
-        store_some(hn::RebindToUnsigned<HalfFloats>(), hn::BitCast(hn::RebindToUnsigned<HalfFloats>(), row), count,
-                   rows + first);
-    });
+                              out.weights + 4 * i);
+    }
 }
 
-void warp_views_in_lanes(double alpha, std::span<const double> cos_theta_o, const WarpOutput& out) {
+/// x^(-2/3) for 1 ≤ x < 1000 or so: Newton's method for r⁻³ = x², from a third of the exponent.
+HWY_INLINE V<Floats> power_minus_two_thirds(V<Floats> x) {
+    const Floats d;
+    const hn::RebindToSigned<Floats> di;
+    // The bits of a float are about its logarithm: those of r are k - ⅔ those of x, with k found by least error.
+    const auto bits = hn::ConvertTo(d, hn::BitCast(di, x));
+    auto r = hn::BitCast(d, hn::ConvertTo(di, hn::MulAdd(bits, all(d, -2.0 / 3), all(d, 1.77491e9))));
+    const auto square = hn::Mul(x, x);
+    for (int i = 0; i < 3; ++i) {
+        const auto cube = hn::Mul(hn::Mul(r, r), r);
+        r = hn::Mul(hn::Mul(r, all(d, 1.0 / 3)), hn::NegMulAdd(square, cube, all(d, 4)));
+    }
+    return r;
+}
+
+/// As Warp's constructor.
+HWY_INLINE void write_warps(V<Doubles> sine, V<Doubles> cosine, V<Doubles> narrowness, std::size_t i,
+                            const WarpOutput& out) {
     const Doubles d;
-    const HalfFloats df;
     const auto one = all(d, 1);
-    in_vectors(cos_theta_o, [&](std::size_t first, std::size_t count, V<Doubles> given) HWY_ATTR {
-        const auto cosine = fitted_cosine(given);
-        const auto sine = sine_of(cosine);
+    const auto r = hn::Sub(one, narrowness);
+    const auto scale = hn::MulAdd(r, r, one);
+    const auto reach = hn::Mul(narrowness, hn::Add(one, r));
+    const auto inverse = hn::Div(one, hn::Mul(scale, reach));
+    const auto over_scale = hn::Mul(inverse, reach);
+    const auto gamma = hn::Mul(hn::Mul(inverse, scale), scale);
+    const auto speed = hn::Mul(hn::Add(r, r), over_scale);
+    const auto tall = hn::Mul(gamma, cosine);
+    const auto over_length = hn::Div(one, hn::Sqrt(hn::MulAdd(tall, tall, hn::Mul(sine, sine))));
+    const auto horizon_z = hn::Mul(tall, over_length);
+    hn::StoreU(speed, d, out.speed + i);
+    hn::StoreU(hn::Mul(hn::Mul(narrowness, narrowness), over_scale), d, out.one_minus_speed + i);
+    hn::StoreU(gamma, d, out.gamma + i);
+    hn::StoreU(hn::Mul(sine, over_length), d, out.horizon_x + i);
+    hn::StoreU(horizon_z, d, out.horizon_z + i);
+    hn::StoreU(hn::Neg(hn::Mul(speed, horizon_z)), d, out.horizon_height + i);
+    hn::StoreU(over_length, d, out.horizon_sine + i);
+}
+
+void warp_views_in_lanes(double alpha, const ViewOutput& views, std::size_t count, const WarpOutput& out) {
+    const Floats d;
+    const Doubles wide;
+    const HalfFloats half;
+    for (std::size_t i = 0; i < count; i += kLanes) {
         // The narrowness w / (1 + w^1.5)^(2/3) of the width w = 5 α cos^0.4 θ_o. A float's rounding of it is one of the
         // warp, which all that is warped shares.
-        const auto width = hn::Mul(all(df, 5 * alpha),
-                                   hn::Exp(df, hn::Mul(all(df, 0.4), hn::Log(df, hn::DemoteTo(df, cosine)))));
-        const auto saturation = hn::Log(df, hn::MulAdd(width, hn::Sqrt(width), all(df, 1)));
-        const auto narrowness =
-            hn::PromoteTo(d, hn::Mul(width, hn::Exp(df, hn::Mul(all(df, -2.0 / 3), saturation))));
-        // As Warp's constructor.
-        const auto r = hn::Sub(one, narrowness);
-        const auto scale = hn::MulAdd(r, r, one);
-        const auto over_scale = hn::Div(one, scale);
-        const auto speed = hn::Mul(hn::Add(r, r), over_scale);
-        const auto gamma = hn::Div(scale, hn::Mul(narrowness, hn::Add(one, r)));
-        const auto tall = hn::Mul(gamma, cosine);
-        const auto over_length = hn::Div(one, hn::Sqrt(hn::MulAdd(tall, tall, hn::Mul(sine, sine))));
-        const auto horizon_z = hn::Mul(tall, over_length);
-        const auto store = [&](V<Doubles> value, double* to) HWY_ATTR { store_some(d, value, count, to + first); };
-        store(sine, out.sin_tilt);
-        store(cosine, out.cos_tilt);
-        store(speed, out.speed);
-        store(hn::Mul(hn::Mul(narrowness, narrowness), over_scale), out.one_minus_speed);
-        store(gamma, out.gamma);
-        store(hn::Mul(sine, over_length), out.horizon_x);
-        store(horizon_z, out.horizon_z);
-        store(hn::Neg(hn::Mul(speed, horizon_z)), out.horizon_height);
-        store(over_length, out.horizon_sine);
-    });
+        const auto log_cosine = hn::LoadU(d, views.log_cosine + i);
+        const auto width = hn::Mul(all(d, 5 * alpha), hn::Exp(d, hn::Mul(all(d, 0.4), log_cosine)));
+        const auto saturation = power_minus_two_thirds(hn::MulAdd(width, hn::Sqrt(width), all(d, 1)));
+        const auto narrowness = hn::Mul(width, saturation);
+        const DoublePair sine = load_pair(views.fitted_sine + i);
+        const DoublePair cosine = load_pair(views.fitted_cosine + i);
+        write_warps(sine.low, cosine.low, hn::PromoteTo(wide, hn::LowerHalf(half, narrowness)), i, out);
+        write_warps(sine.high, cosine.high, hn::PromoteTo(wide, hn::UpperHalf(half, narrowness)),
+                    i + kLaneCount<Doubles>, out);
+    }
 }
 
 void interpolate_in_lanes(const float* table, std::size_t width, const std::uint32_t* rows, const float* weights,
@@ -147,12 +171,12 @@ HWY_EXPORT(find_views_in_lanes);
 HWY_EXPORT(warp_views_in_lanes);
 HWY_EXPORT(interpolate_in_lanes);
 
-void find_views(std::span<const double> cos_theta_o, std::uint32_t* rows, float* weights) {
-    HWY_DYNAMIC_DISPATCH(find_views_in_lanes)(cos_theta_o, rows, weights);
+void find_views(const double* cos_theta_o, std::size_t count, const ViewOutput& out) {
+    HWY_DYNAMIC_DISPATCH(find_views_in_lanes)(cos_theta_o, count, out);
 }
 
-void warp_views(double alpha, std::span<const double> cos_theta_o, const WarpOutput& out) {
-    HWY_DYNAMIC_DISPATCH(warp_views_in_lanes)(alpha, cos_theta_o, out);
+void warp_views(double alpha, const ViewOutput& views, std::size_t count, const WarpOutput& out) {
+    HWY_DYNAMIC_DISPATCH(warp_views_in_lanes)(alpha, views, count, out);
 }
 
 void interpolate_views(const float* table, std::size_t width, const std::uint32_t* rows, const float* weights,

@@ -9,21 +9,36 @@
 
 namespace shlight {
 
-/// Where a view lies in a table of one row for each fitted view (warped_row.h), before which stands the row of the view
-/// beyond the normal: the first of four rows, and cubic weights of the four.
-/// rows: one for each view; weights: four for each.
-void find_views(std::span<const double> cos_theta_o, std::uint32_t* rows, float* weights);
+/// Arrays of views, here and of warps, have room for a multiple of this; what lies beyond the last view is overwritten.
+inline constexpr std::size_t kViewLanes = 16;
+constexpr std::size_t padded_views(std::size_t count) {
+    return (count + kViewLanes - 1) / kViewLanes * kViewLanes;
+}
 
-/// The members of WarpArrays, to be written.
+/// What is needed of a view to look up any lobe.
+struct ViewOutput {
+    double* sine;                         ///< sinθ_o
+    double *fitted_sine, *fitted_cosine;  ///< of the view's neighbour that is fitted
+    float* log_cosine;                    ///< of the same
+    /// Where it lies in a table of one row for each fitted view (warped_row.h), before which stands the row of the view
+    /// beyond the normal: the first of four rows, and four cubic weights.
+    std::uint32_t* row;
+    float* weights;
+};
+
+/// cos_theta_o: of `count` views, and finite up to padded_views(count).
+void find_views(const double* cos_theta_o, std::size_t count, const ViewOutput& out);
+
+/// The members of WarpArrays beside the tilt, to be written.
 struct WarpOutput {
-    double *sin_tilt, *cos_tilt;
     double *speed, *one_minus_speed, *gamma;
     double *horizon_x, *horizon_z;
     double *horizon_height, *horizon_sine;
 };
 
-/// The warps of a GGX lobe: those of lobe_warp(), whose logarithms are rounded to float here.
-void warp_views(double alpha, std::span<const double> cos_theta_o, const WarpOutput& out);
+/// The warps of a GGX lobe at the views that find_views found: those of lobe_warp(), whose narrowness is rounded to
+/// float here.
+void warp_views(double alpha, const ViewOutput& views, std::size_t count, const WarpOutput& out);
 
 /// Interpolated rows: for each i of `views` the weighted sum of four rows of a table of `width` columns, a multiple of
 /// 16, written to out + i · stride. table and out: aligned to 64 bytes, stride a multiple of 16.
