@@ -10,6 +10,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <type_traits>
@@ -127,8 +128,8 @@ class ArcLanes {
         middle_ = {v[4], v[5], v[6]};
         across_ = cross<R>(axis_, middle_);
         if constexpr (!kGreat) {
-            cosine_ = v[7];
-            sine_ = v[8];
+            cosine_ = v[8];
+            sine_ = v[9];
             center_ = scaled<R>(axis_, cosine_);
             normal_ = scaled<R>(axis_, hn::Mul(sine_, sine_));
         }
@@ -170,12 +171,12 @@ class ArcLanes {
     V<D> half_, cosine_, sine_;
 };
 
-/// Pointers to the rows of lanes first … of `count` of a list; the last is repeated.
+/// Pointers to a list's rows from `first` on, one a lane; the last is repeated.
 template <class R, class Row>
-HWY_INLINE RowPointers<const R> row_pointers(const RowList<Row>& rows, const std::uint32_t* index, std::size_t count) {
+HWY_INLINE RowPointers<const R> row_pointers(const RowList<Row>& rows, std::size_t first) {
     RowPointers<const R> pointers;
     for (std::size_t lane = 0; lane < pointers.size(); ++lane) {
-        pointers[lane] = rows[index[lane < count ? lane : count - 1]].data();
+        pointers[lane] = rows[std::min(first + lane, rows.size() - 1)].data();
     }
     return pointers;
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/arc_rows.h"
 
-#include <numeric>
-
 namespace shlight {
 namespace {
 
@@ -30,17 +28,6 @@ Division divided(double kappa, double tolerance) {
         }
     }
     return {8, kMaxGaussPoints};
-}
-
-ArcOrder::ArcOrder(const RowList<std::uint8_t>& points) : index_(points.size()) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        ++start_[points[i] + 1U];
-    }
-    std::partial_sum(start_.begin(), start_.end(), start_.begin());
-    auto next = start_;
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-        index_[next[points[i]]++] = i;
-    }
 }
 
 }  // namespace shlight

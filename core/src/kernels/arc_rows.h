@@ -5,7 +5,7 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "gauss_legendre.h"
@@ -14,82 +14,88 @@ namespace shlight {
 
 /// An arc of the circle {u : u·axis = cosine}, |τ| ≤ half from its middle:
 ///   u(τ) = cosine · axis + sine · (middle cosτ + axis × middle sinτ),   the interior on its left, u·axis > cosine.
-/// Four numbers a square, which is what rows are read by.
+/// 0 … 2 the axis, 3 half of the angle about it, 4 … 6 the middle, a unit vector across the axis, 7 the number of the
+/// region that it belongs to, 8 cosine, 9 sine (not there for great circles); rows are read four numbers at a time.
 template <class R>
-struct ArcRow {
-    std::array<R, 3> axis;    ///< unit
-    R half;                   ///< half its angle about the axis, > 0
-    std::array<R, 3> middle;  ///< unit, across the axis
-    R cosine, sine;           ///< 0 and 1 for a great circle
-    std::array<R, 3> unused;
+using ArcRow = std::array<R, 12>;
 
-    const R* data() const { return axis.data(); }
-    R* data() { return axis.data(); }
+/// An arc of the horizon, run through counter-clockwise about z: 0, 1 cosine and sine of the azimuth where it begins,
+/// 2, 3 of that where it ends, 4 the angle between them, which may be more than half a turn, 7 the region.
+template <class R>
+using HorizonRow = std::array<R, 8>;
+
+/// Rows in blocks that never move. Many short lists share one store, so that an empty one costs nothing.
+template <class Row>
+class RowStore {
+  public:
+    static constexpr std::size_t kBlock = 16;  ///< a multiple of any number of lanes
+
+    /// Takes all blocks back.
+    void clear() { used_ = 0; }
+    /// A block that nobody else has, of any content.
+    Row* block() {
+        const std::size_t slab = used_ / kSlab;
+        if (slab == slabs_.size()) {
+            slabs_.emplace_back(new Row[kSlab * kBlock]);
+        }
+        return slabs_[slab].get() + used_++ % kSlab * kBlock;
+    }
+
+  private:
+    static constexpr std::size_t kSlab = 32;
+
+    std::vector<std::unique_ptr<Row[]>> slabs_;
+    std::size_t used_ = 0;
 };
 
-/// An arc of the horizon, run through counter-clockwise about z from one azimuth to another.
-template <class R>
-struct HorizonRow {
-    R from_cosine, from_sine, to_cosine, to_sine;  ///< of the azimuths
-    R angle;                                       ///< between them, which may be more than half a turn
-    std::array<R, 3> unused;
-
-    const R* data() const { return &from_cosine; }
-};
-
-/// A list that grows without writing what is overwritten anyway.
 template <class Row>
 class RowList {
   public:
-    std::size_t size() const { return size_; }
-    void clear() { size_ = 0; }
-    const Row& operator[](std::size_t i) const { return rows_[i]; }
-    Row& operator[](std::size_t i) { return rows_[i]; }
-    /// Room for so many more.
-    void reserve(std::size_t more) {
-        if (rows_.size() < size_ + more) {
-            rows_.resize(2 * (size_ + more));
-        }
+    void clear() {
+        blocks_.clear();
+        next_ = end_ = nullptr;
     }
-    /// Precondition: there is room.
-    Row& add() { return rows_[size_++]; }
+    std::size_t size() const { return blocks_.size() * RowStore<Row>::kBlock - static_cast<std::size_t>(end_ - next_); }
+    const Row& operator[](std::size_t i) const { return blocks_[i / RowStore<Row>::kBlock][i % RowStore<Row>::kBlock]; }
+    std::size_t region(std::size_t i) const { return static_cast<std::size_t>((*this)[i][7]); }
+    Row& add(RowStore<Row>& store) {
+        if (next_ == end_) {
+            blocks_.push_back(store.block());
+            next_ = blocks_.back();
+            end_ = next_ + RowStore<Row>::kBlock;
+        }
+        return *next_++;
+    }
 
   private:
-    std::vector<Row> rows_;
-    std::size_t size_ = 0;
+    Row* next_ = nullptr;
+    Row* end_ = nullptr;
+    std::vector<Row*> blocks_;
 };
 
-/// Arcs with the region that each belongs to and the number of Gauss points that it takes.
+/// Arcs of many regions, sorted by the number of Gauss points that they take, and arcs of the horizon.
 template <class R>
-struct ArcList {
-    RowList<ArcRow<R>> arcs;
-    RowList<std::uint32_t> region_of_arc;
-    RowList<std::uint8_t> points;  ///< 1 … kMaxGaussPoints
-    RowList<HorizonRow<R>> horizon;
-    RowList<std::uint32_t> region_of_horizon;
+class ArcLists {
+  public:
+    const RowList<ArcRow<R>>& arcs(std::size_t points) const { return arcs_[points]; }
+    const RowList<HorizonRow<R>>& horizon() const { return horizon_; }
+    ArcRow<R>& add_arc(std::size_t points) { return arcs_[points].add(arc_store_); }
+    HorizonRow<R>& add_horizon() { return horizon_.add(horizon_store_); }
 
     void clear() {
-        arcs.clear();
-        region_of_arc.clear();
-        points.clear();
-        horizon.clear();
-        region_of_horizon.clear();
-    }
-};
-
-/// Indices of a list's arcs by number of points, those of equal number in their order.
-class ArcOrder {
-  public:
-    explicit ArcOrder(const RowList<std::uint8_t>& points);
-    /// The arcs of so many points.
-    const std::uint32_t* begin(int points) const { return index_.data() + start_[static_cast<std::size_t>(points)]; }
-    std::size_t count(int points) const {
-        return start_[static_cast<std::size_t>(points) + 1] - start_[static_cast<std::size_t>(points)];
+        for (auto& rows : arcs_) {
+            rows.clear();
+        }
+        horizon_.clear();
+        arc_store_.clear();
+        horizon_store_.clear();
     }
 
   private:
-    std::vector<std::uint32_t> index_;
-    std::array<std::uint32_t, kMaxGaussPoints + 2> start_{};
+    std::array<RowList<ArcRow<R>>, kMaxGaussPoints + 1> arcs_;
+    RowList<HorizonRow<R>> horizon_;
+    RowStore<ArcRow<R>> arc_store_;
+    RowStore<HorizonRow<R>> horizon_store_;
 };
 
 /// Gauss points to integrate waves of κ radians to either side of the middle: by Bernstein's inequality k points err by

@@ -40,20 +40,26 @@ template <class R>
 struct EdgeLanes {
     using Values = LaneValues<R>;
 
-    Values x, y, z;                    ///< the vertex, as a multiple of the polygon's largest coordinate
+    Values x, y, z;                    ///< the vertex
     Values cross_x, cross_y, cross_z;  ///< vertex × next, towards the interior
     Values cut_x, cut_y;               ///< where the edge meets the horizon
     Values share;                      ///< of the edge that is kept
     Values crossing;                   ///< 1: enters, -1: leaves the upper half, from vertex to next
     // The arc that is kept, as ArcRow; half is 0 if nothing is.
     Values axis_x, axis_y, axis_z, middle_x, middle_y, middle_z, cosine, sine, half;
-    Values azimuth_cosine, azimuth_sine, azimuth;  ///< of the crossing
+};
+
+/// One arc of each outline that lies in the horizon, as HorizonRow; where a polygon has none, `angle` is 0.
+template <class R>
+struct HorizonLanes {
+    LaneValues<R> from_cosine, from_sine, to_cosine, to_sine, angle;
 };
 
 /// A vector of polygons.
 template <class R>
 struct PolygonLanes {
     std::vector<EdgeLanes<R>> edges;
+    std::vector<HorizonLanes<R>> horizon;
     LaneValues<R> side;  ///< 1 or -1 by the winding, 0 if edge-on or without area
 };
 
@@ -85,59 +91,48 @@ HWY_INLINE void put_rounded(LaneValues<R>& values, std::size_t offset, V<Doubles
     }
 }
 
-/// Fills the first part of EdgeLanes in double, whatever R is: crosses, cuts and orientation are differences of the
-/// vertices. index: which polygon each lane has.
-template <class R>
-class EdgePreparation {
+/// The vertices of a vector of polygons.
+class VertexLanes {
     using D = Doubles;
 
   public:
-    EdgePreparation(const PolygonArray& polygons, bool clip) : polygons_(polygons), clip_(clip) {
-        vertices_.resize(polygons.vertex_count * kWidth * 3);
-    }
+    static constexpr std::size_t kWidth = kLaneCount<D>;
 
-    void prepare(const std::uint32_t* index, PolygonLanes<R>& lanes) {
-        for (std::size_t offset = 0; offset < kLaneCount<Lanes<R>>; offset += kWidth) {
-            load(index + offset);
-            const V<D> side = seen_from();
-            put_rounded<R>(lanes.side, offset, side);
-            for (std::size_t e = 0; e < polygons_.vertex_count; ++e) {
-                fill(lanes.edges[e], offset, e, e + 1 < polygons_.vertex_count ? e + 1 : 0, side);
+    explicit VertexLanes(const PolygonArray& polygons)
+        : polygons_(polygons), vertices_(3 * polygons.vertex_count * kWidth) {}
+
+    std::size_t count() const { return polygons_.vertex_count; }
+
+    /// index: which polygon each lane takes. Scales those far from the range of float.
+    HWY_INLINE void load(const std::uint32_t* index) {
+        const D d;
+        const std::size_t numbers = 3 * polygons_.vertex_count;
+        RowPointers<const double> rows;
+        for (std::size_t lane = 0; lane < kWidth; ++lane) {
+            rows[lane] = polygons_.vertices + numbers * index[lane];
+        }
+        auto largest = hn::Zero(d);
+        for (std::size_t i = 0; i < numbers; i += kSquare<D>) {
+            const std::size_t column = std::min(i, numbers - kSquare<D>);
+            const auto columns = load_columns(d, rows.data(), column);
+            for (std::size_t j = 0; j < kSquare<D>; ++j) {
+                largest = hn::Max(largest, hn::Abs(columns[j]));
+                hn::StoreU(columns[j], d, vertices_.data() + (column + j) * kWidth);
             }
         }
+        const auto usual = hn::And(hn::Gt(largest, all(d, 1e-6)), hn::Lt(largest, all(d, 1e6)));
+        if (!hn::AllTrue(d, usual)) {
+            rescale(largest);
+        }
     }
-
-  private:
-    static constexpr std::size_t kWidth = kLaneCount<D>;
 
     HWY_INLINE Vectors3<double> vertex(std::size_t i) const {
         const double* at = vertices_.data() + 3 * i * kWidth;
         return {hn::LoadU(D(), at), hn::LoadU(D(), at + kWidth), hn::LoadU(D(), at + 2 * kWidth)};
     }
 
-    HWY_INLINE void load(const std::uint32_t* index) {
-        const D d;
-        const hn::RebindToSigned<D> di;
-        alignas(64) std::array<std::int64_t, kWidth> start;
-        for (std::size_t lane = 0; lane < kWidth; ++lane) {
-            start[lane] = static_cast<std::int64_t>(3 * polygons_.vertex_count * index[lane]);
-        }
-        const auto first = hn::Load(di, start.data());
-        auto largest = hn::Zero(d);
-        for (std::size_t i = 0; i < 3 * polygons_.vertex_count; ++i) {
-            const auto v = hn::GatherIndex(d, polygons_.vertices + i, first);
-            largest = hn::Max(largest, hn::Abs(v));
-            hn::StoreU(v, d, vertices_.data() + i * kWidth);
-        }
-        const auto scale = hn::IfThenElseZero(hn::Gt(largest, hn::Zero(d)), hn::Div(all(d, 1), largest));
-        for (std::size_t i = 0; i < 3 * polygons_.vertex_count; ++i) {
-            double* v = vertices_.data() + i * kWidth;
-            hn::StoreU(hn::Mul(hn::LoadU(d, v), scale), d, v);
-        }
-    }
-
     /// The side of the polygon's plane that the origin is on; neither if the polygon is seen edge-on or has no area.
-    HWY_INLINE V<D> seen_from() const {
+    HWY_INLINE V<D> side() const {
         const D d;
         const Vectors3<double> v0 = vertex(0);
         Vectors3<double> normal = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
@@ -160,10 +155,49 @@ class EdgePreparation {
         return hn::IfThenElseZero(seen, hn::CopySign(all(d, 1), distance));
     }
 
+  private:
+    /// By powers of two, which change no digit: squares of tiny and huge coordinates stay in the range of float.
+    HWY_NOINLINE void rescale(V<D> largest) {
+        const D d;
+        const hn::RebindToUnsigned<D> du;
+        // The exponent's bits of 1 ÷ largest.
+        const auto power = hn::And(hn::BitCast(du, hn::Div(all(d, 1), largest)), hn::Set(du, 0x7FF0000000000000));
+        const auto scale = hn::IfThenElse(hn::Gt(largest, all(d, 1e-300)), hn::BitCast(d, power), all(d, 1));
+        for (std::size_t i = 0; i < 3 * polygons_.vertex_count; ++i) {
+            double* v = vertices_.data() + i * kWidth;
+            hn::StoreU(hn::Mul(hn::LoadU(d, v), scale), d, v);
+        }
+    }
+
+    PolygonArray polygons_;
+    std::vector<double> vertices_;
+};
+
+/// Fills the first part of EdgeLanes in double, whatever R is: crosses, cuts and orientation are differences of the
+/// vertices. index: which polygon each lane has.
+template <class R>
+class EdgePreparation {
+    using D = Doubles;
+
+  public:
+    EdgePreparation(const PolygonArray& polygons, bool clip) : vertices_(polygons), clip_(clip) {}
+
+    void prepare(const std::uint32_t* index, PolygonLanes<R>& lanes) {
+        for (std::size_t offset = 0; offset < kLaneCount<Lanes<R>>; offset += kLaneCount<D>) {
+            vertices_.load(index + offset);
+            const V<D> side = vertices_.side();
+            put_rounded<R>(lanes.side, offset, side);
+            for (std::size_t e = 0; e < vertices_.count(); ++e) {
+                fill(lanes.edges[e], offset, e, e + 1 < vertices_.count() ? e + 1 : 0, side);
+            }
+        }
+    }
+
+  private:
     HWY_INLINE void fill(EdgeLanes<R>& edge, std::size_t offset, std::size_t from, std::size_t to, V<D> side) const {
         const D d;
-        const Vectors3<double> a = vertex(from);
-        const Vectors3<double> b = vertex(to);
+        const Vectors3<double> a = vertices_.vertex(from);
+        const Vectors3<double> b = vertices_.vertex(to);
         const Vectors3<double> c = cross<double>(a, b - a);
         put_rounded<R>(edge.x, offset, a.x);
         put_rounded<R>(edge.y, offset, a.y);
@@ -189,9 +223,8 @@ class EdgePreparation {
         put_rounded<R>(edge.crossing, offset, crossing);
     }
 
-    PolygonArray polygons_;
+    VertexLanes vertices_;
     bool clip_;
-    std::vector<double> vertices_;
 };
 
 /// A vector's warps.
@@ -250,7 +283,7 @@ class Outline {
         const auto zero = hn::Zero(d);
         RegionLanes<R> region = {zero, zero, {zero, zero, zero}};
         const End first = end(lanes_.edges.front());
-        reference_ = kClipped ? some_crossing() : first.u;
+        reference_ = kClipped ? crossing(-1, zero) : first.u;
         re_ = all(d, 1);
         im_ = zero;
         End from = first;
@@ -303,14 +336,19 @@ class Outline {
         return {select(which, yes.u, no.u), hn::IfThenElse(which, yes.inverse, no.inverse)};
     }
 
-    /// The horizon's arcs then add nothing to the fan of triangles.
-    HWY_INLINE Vectors3<R> some_crossing() const {
+    /// Where an outline leaves (way = -1) or enters (1) the upper half for the time that `number` tells.
+    HWY_INLINE Vectors3<R> crossing(int way, V<D> number) const {
         const D d;
-        Vectors3<R> found = {all(d, 1), hn::Zero(d), hn::Zero(d)};
+        Vectors3<R> found = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+        auto passed = hn::Zero(d);
         for (const EdgeLanes<R>& edge : lanes_.edges) {
-            found = select(hn::Ne(get<R>(edge.crossing), hn::Zero(d)), cut(edge).u, found);
+            const auto crosses = hn::Eq(get<R>(edge.crossing), all(d, way));
+            const auto is_it = hn::And(crosses, hn::Eq(passed, number));
+            found.x = hn::IfThenElse(is_it, get<R>(edge.cut_x), found.x);
+            found.y = hn::IfThenElse(is_it, get<R>(edge.cut_y), found.y);
+            passed = hn::Add(passed, hn::IfThenElseZero(crosses, all(d, 1)));
         }
-        return found;
+        return direction(found).u;
     }
 
     /// With M the middle, N the pole and h half the length, the triangle from a reference R to both ends has the solid
@@ -406,51 +444,62 @@ class Outline {
         region.first_moment = region.first_moment + scaled<R>(arc.axis, along) - scaled<R>(image_middle, radial);
     }
 
-    /// The arcs of the horizon between the crossings. Those of a planar polygon lie on one line, so they are less than
-    /// half a turn from each other.
+    /// The arcs of the horizon between the crossings, any that leaves with any that enters: only the sum over all
+    /// counts. The crossings of a planar polygon lie on one line, so they are less than half a turn from each other.
+    /// One as the fan's reference lets these arcs add nothing to it.
     HWY_INLINE void add_horizon(RegionLanes<R>& region) {
         const D d;
-        const auto zero = hn::Zero(d);
         const auto side = get<R>(lanes_.side);
-        auto length = zero;
-        auto fall_x = zero;
-        auto fall_y = zero;
-        for (EdgeLanes<R>& edge : lanes_.edges) {
-            const Vectors3<R> at = cut(edge).u;
-            const auto sine = hn::MulSub(reference_.x, at.y, hn::Mul(reference_.y, at.x));
-            const auto cosine = hn::MulAdd(reference_.x, at.x, hn::Mul(reference_.y, at.y));
-            const auto sign = hn::Mul(side, get<R>(edge.crossing));
-            auto azimuth = zero;
-            auto azimuth_cosine = at.x;
-            auto azimuth_sine = at.y;
-            if constexpr (kWarped) {
-                azimuth = warped_azimuth(sine, cosine);
-                const auto over = hn::Div(all(d, 1), hn::MulAdd(aberration(), at.x, all(d, 1)));
-                azimuth_cosine = hn::Mul(hn::Add(at.x, aberration()), over);
-                azimuth_sine = hn::Mul(hn::Mul(contraction(), at.y), over);
-                fall_x = hn::MulAdd(sign, azimuth_sine, fall_x);
-                fall_y = hn::MulAdd(sign, azimuth_cosine, fall_y);
-            } else {
-                azimuth = arctangent(d, sine, cosine);
-            }
-            put<R>(edge.azimuth, azimuth);
-            put<R>(edge.azimuth_cosine, azimuth_cosine);
-            put<R>(edge.azimuth_sine, azimuth_sine);
-            length = hn::Add(length, hn::IfThenElseZero(hn::Ne(sign, zero), hn::Mul(sign, azimuth)));
+        auto most = hn::Zero(d);
+        for (const EdgeLanes<R>& edge : lanes_.edges) {
+            most = hn::Add(most, hn::Max(hn::Zero(d), get<R>(edge.crossing)));
         }
+        lanes_.horizon.clear();
+        for (auto number = hn::Zero(d); !hn::AllFalse(d, hn::Lt(number, most)); number = hn::Add(number, all(d, 1))) {
+            const auto exists = hn::Lt(number, most);
+            const Vectors3<R> leaving = crossing(-1, number);
+            const Vectors3<R> entering = crossing(1, number);
+            const auto backwards = hn::Lt(side, hn::Zero(d));
+            add_horizon_arc(exists, select(backwards, entering, leaving), select(backwards, leaving, entering), region);
+        }
+    }
+
+    HWY_INLINE void add_horizon_arc(M<D> exists, const Vectors3<R>& from, const Vectors3<R>& to,
+                                    RegionLanes<R>& region) {
+        const D d;
+        lanes_.horizon.emplace_back();
+        HorizonLanes<R>& out = lanes_.horizon.back();
+        const auto sine = hn::MulSub(from.x, to.y, hn::Mul(from.y, to.x));
+        const auto cosine = hn::MulAdd(from.x, to.x, hn::Mul(from.y, to.y));
         const auto half = all(d, 0.5);
         if constexpr (kWarped) {
-            region.solid_angle = hn::NegMulAdd(warp_->height, length, region.solid_angle);
-            region.outline = hn::MulAdd(warp_->sine, length, region.outline);
-            const auto slant = hn::Mul(half, hn::Mul(warp_->height, warp_->sine));
-            region.first_moment.x = hn::NegMulAdd(slant, fall_x, region.first_moment.x);
-            region.first_moment.y = hn::MulAdd(slant, fall_y, region.first_moment.y);
+            const auto angle = hn::IfThenElseZero(exists, warped_angle(from, sine, cosine));
+            const Vectors3<R> warped_from = warped(from);
+            const Vectors3<R> warped_to = warped(to);
+            put_horizon(out, warped_from, warped_to, angle);
+            region.solid_angle = hn::NegMulAdd(warp_->height, angle, region.solid_angle);
+            region.outline = hn::MulAdd(warp_->sine, angle, region.outline);
+            const auto slant = hn::IfThenElseZero(exists, hn::Mul(half, hn::Mul(warp_->height, warp_->sine)));
+            const Vectors3<R> step = warped_to - warped_from;
+            region.first_moment.x = hn::NegMulAdd(slant, step.y, region.first_moment.x);
+            region.first_moment.y = hn::MulAdd(slant, step.x, region.first_moment.y);
             region.first_moment.z =
-                hn::MulAdd(hn::Mul(half, hn::Mul(warp_->sine, warp_->sine)), length, region.first_moment.z);
+                hn::MulAdd(hn::Mul(half, hn::Mul(warp_->sine, warp_->sine)), angle, region.first_moment.z);
         } else {
-            region.outline = hn::Add(region.outline, length);
-            region.first_moment.z = hn::MulAdd(half, length, region.first_moment.z);
+            const auto angle = hn::IfThenElseZero(exists, arctangent(d, sine, cosine));
+            put_horizon(out, from, to, angle);
+            region.outline = hn::Add(region.outline, angle);
+            region.first_moment.z = hn::MulAdd(half, angle, region.first_moment.z);
         }
+    }
+
+    static HWY_INLINE void put_horizon(HorizonLanes<R>& out, const Vectors3<R>& from, const Vectors3<R>& to,
+                                       V<D> angle) {
+        put<R>(out.from_cosine, from.x);
+        put<R>(out.from_sine, from.y);
+        put<R>(out.to_cosine, to.x);
+        put<R>(out.to_sine, to.y);
+        put<R>(out.angle, angle);
     }
 
     /// Along the horizon a warp is an aberration itself: tan(φ'/2) = √((1-β)/(1+β)) tan(φ/2), β = speed · sin tilt.
@@ -468,17 +517,22 @@ class Outline {
         const auto wide = hn::Lt(cosine, hn::Zero(d));
         return {hn::CopySign(hn::IfThenElse(wide, larger, smaller), sine), hn::IfThenElse(wide, smaller, larger)};
     }
-    /// Of a crossing at the given angle from the reference, without a jump in between.
-    HWY_INLINE V<D> warped_azimuth(V<D> sine, V<D> cosine) const {
+    HWY_INLINE Vectors3<R> warped(const Vectors3<R>& u) const {
         const D d;
-        const auto one = all(d, 1);
-        const SineCosine<R> from = halved(reference_.y, reference_.x);
+        const auto over = hn::Div(all(d, 1), hn::MulAdd(aberration(), u.x, all(d, 1)));
+        return {hn::Mul(hn::Add(u.x, aberration()), over), hn::Mul(hn::Mul(contraction(), u.y), over), hn::Zero(d)};
+    }
+    /// Of the image of the arc that begins at `from` and has an angle, less than half a turn, of this sine and cosine.
+    HWY_INLINE V<D> warped_angle(const Vectors3<R>& from, V<D> sine, V<D> cosine) const {
+        const D d;
+        const SineCosine<R> start = halved(from.y, from.x);
         const SineCosine<R> turn = halved(sine, cosine);
-        const auto half_cosine = hn::MulSub(from.cosine, turn.cosine, hn::Mul(from.sine, turn.sine));
-        const auto half_sine = hn::MulAdd(from.sine, turn.cosine, hn::Mul(from.cosine, turn.sine));
-        const auto narrowing = hn::Div(contraction(), hn::Add(one, aberration()));
-        const auto half = arctangent(d, hn::Mul(narrowing, half_sine), half_cosine);
-        return hn::Add(half, half);
+        const auto end_cosine = hn::MulSub(start.cosine, turn.cosine, hn::Mul(start.sine, turn.sine));
+        const auto end_sine = hn::MulAdd(start.sine, turn.cosine, hn::Mul(start.cosine, turn.sine));
+        const auto narrowing = hn::Div(contraction(), hn::Add(all(d, 1), aberration()));
+        const auto before = arctangent(d, hn::Mul(narrowing, start.sine), start.cosine);
+        const auto after = arctangent(d, hn::Mul(narrowing, end_sine), end_cosine);
+        return hn::Mul(all(d, 2), hn::Sub(after, before));
     }
 
     PolygonLanes<R>& lanes_;

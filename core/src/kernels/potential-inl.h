@@ -48,8 +48,8 @@ class PotentialSeries {
         if constexpr (kShared) {
             for (std::size_t i = 0; i < rise_.size(); ++i) {
                 const float* f = rows[0] + constants.term[i];
-                down_[i] = static_cast<R>(constants.down[i] * static_cast<double>(f[-1]));
-                same_[i] = static_cast<R>(constants.same[i] * static_cast<double>(f[0]));
+                down_[i] = static_cast<R>(constants.down[i]) * static_cast<R>(f[-1]);
+                same_[i] = static_cast<R>(constants.same[i]) * static_cast<R>(f[0]);
             }
         } else {
             const D d;

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+//
+// What is to be known of many polygons before they are integrated.
+#pragma once
+
+#include <span>
+
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// Whether all polygons are finite and planar as check_polygon<float> has it; if not, that function tells which is not
+/// and why. Says no too for coordinates whose squares overflow: then each is worth a look.
+bool polygons_are_sound(std::span<const Vec3d> vertices, int vertex_count);
+
+/// One for each polygon.
+struct PolygonExtents {
+    std::span<double> x, y, z;     ///< a unit vector in the middle of the vertices that the horizon leaves
+    std::span<double> half_angle;  ///< the longest chord from there to one of them; negative if nothing is seen
+};
+
+/// The polygons as directions above the horizon. Nothing is seen of one that lies below it, is seen edge-on or has no
+/// area.
+void polygon_extents(std::span<const Vec3d> vertices, int vertex_count, const PolygonExtents& extents);
+
+}  // namespace shlight
