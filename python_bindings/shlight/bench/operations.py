@@ -26,9 +26,25 @@ def whole_sphere(n: int) -> int:
     return 7 * n * (n - 1) // 2 + 24 * (n - 1) + 7 * n + 150
 
 
+def warped_sphere(n: int) -> int:
+    """A quarter of the lights crosses the horizon, which at any height takes 18 downwards, 11 upwards and 5 for the two
+    sums of Eq. 5; of the others each degree of each band takes 7. The lobe's terms are interpolated by 7 each."""
+    crossed, whole = 17 * n * (n - 1) + 35 * (n - 1) + 26 * n, 7 * n * (n - 1) // 2 + 24 * (n - 1) + 7 * n
+    return (crossed + 3 * whole) // 4 + 7 * n * (n + 1) // 2 + 400
+
+
+def quad(n: int) -> int:
+    """At each Gauss point 7 a term of Clenshaw's recurrence and 13 a degree; 3.5 arcs of about 2.5 + 3n/8 points, and
+    half an arc of the horizon of 13 a degree."""
+    points = 3.5 * (2.5 + 0.375 * n)
+    return round(points * (7 * (n - 1) * (n - 2) / 2 + 13 * (n - 1)) + 6.5 * n + 600)
+
+
 OPERATIONS: Mapping[str, Callable[[int], int]] = {
     "basis": basis,
     "clipped sphere": clipped_sphere,
     "clipped sphere, fused": clipped_sphere,
     "whole sphere": whole_sphere,
+    "warped lobe": warped_sphere,
+    "quad, fused": quad,
 }
