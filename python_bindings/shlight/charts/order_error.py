@@ -95,8 +95,9 @@ def _picture(run: Run, orders: list[int], found: Found, costs: dict[str, Floats]
     last.legend(loc="upper left")
     for panel in panels:
         panel.set_yscale("log")
-    last.set_yticks([0.1, 0.2, 0.5, 1, 2, 5, 10, 20], ["0.1", "0.2", "0.5", "1", "2", "5", "10", "20"])
-    last.set_ylim(0.1, 1.3 * most)
+    ticks = ("0.02", "0.05", "0.1", "0.2", "0.5", "1", "2", "5", "10", "20")
+    last.set_yticks([float(tick) for tick in ticks], ticks)
+    last.set_ylim(0.02, 1.3 * most)
     last.minorticks_off()
     for panel in panels:
         order_axis(panel, [1, 2, 4, 8, 16, 32, 64])
@@ -140,7 +141,7 @@ def _priced(orders: Sequence[int], errors: Floats | None, cost: Floats) -> str:
     if errors is None:
         return "–"
     order = order_for(orders, errors, WANTED)
-    return f"> {orders[-1]}" if order is None else f"{order} ({cost[list(orders).index(order)]:.1f} µs)"
+    return f"> {orders[-1]}" if order is None else f"{order} ({cost[list(orders).index(order)]:.2g} µs)"
 
 
 def _table(orders: list[int], found: Found, costs: dict[str, Floats]) -> Table:
@@ -164,6 +165,6 @@ def _explanation(orders: list[int], found: Found, costs: dict[str, Floats]) -> s
         f"{prices['hemisphere']} fitted over the hemisphere and {prices['warped']} fitted in its warp. "
         f"Lambert is exact from order {exact} on, while its projection still errs by "
         f"{found['Lambert', VIEWS[0]].projection[at]:.0e} at order 8, and an order that a lobe does not need is paid "
-        f"for all the same: {costs['warped_harmonics'][at]:.1f} µs at order 8, "
-        f"{costs['warped_harmonics'][-1]:.1f} µs at order 64."
+        f"for all the same: {costs['warped_harmonics'][at]:.2f} µs at order 8, "
+        f"{costs['warped_harmonics'][-1]:.2f} µs at order 64."
     )
