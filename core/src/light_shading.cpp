@@ -14,6 +14,7 @@
 #include "light_checks.h"
 #include "lobe_batch.h"
 #include "material_views.h"
+#include "polygon_batch.h"
 
 namespace shlight {
 namespace {
@@ -90,20 +91,21 @@ class LightShaderWork {
             }
         }
         circles_of_spheres(std::span(centers, radiance.size()), radii, circles_.output());
-        shade(circles_.arrays(), radiance, effort);
+        const CircleArrays circles = circles_.arrays();
+        shade(circles, radiance, effort);
     }
 
     template <class T>
     void shade_polygons(const Vec3<T>* vertices, std::size_t vertex_count, std::span<Rgb> radiance,
                         std::span<std::int32_t> effort) {
-        vertices_.assign(vertices, vertices + radiance.size() * vertex_count);
-        kept_.clear();
-        for (std::size_t i = 0; i < radiance.size(); ++i) {
-            const auto polygon = std::span<const Vec3d>(vertices_).subspan(i * vertex_count, vertex_count);
-            check_polygon<float>(polygon);
-            kept_.emplace_back(polygon, true);
+        polygons_.clear(vertex_count);
+        polygons_.append(vertices, radiance.size());
+        if (!polygons_are_sound(polygons_.vertices(), polygons_.vertex_count())) {
+            for (std::size_t i = 0; i < radiance.size(); ++i) {
+                check_polygon<float>(polygons_.polygon(i));
+            }
         }
-        shade(PolygonLights{vertices_, static_cast<int>(vertex_count), kept_}, radiance, effort);
+        shade(polygons_, radiance, effort);
     }
 
   private:
@@ -129,7 +131,7 @@ class LightShaderWork {
     }
 
     template <class Lights>
-    void shade(const Lights& lights, std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+    void shade(Lights& lights, std::span<Rgb> radiance, std::span<std::int32_t> effort) {
         if (views_.lobe_count() == 0) {
             std::fill(radiance.begin(), radiance.end(), Rgb(0));
             std::fill(effort.begin(), effort.end(), 0);
@@ -171,8 +173,7 @@ class LightShaderWork {
     std::vector<double> cosines_;
     std::vector<std::uint32_t> view_of_;
     CircleBatch circles_;
-    std::vector<Vec3d> vertices_;
-    std::vector<SphericalPolygon<double>> kept_;
+    PolygonBatch polygons_;
 };
 
 LightShader::LightShader(const Bsdf& bsdf, const ShadeSettings& settings)

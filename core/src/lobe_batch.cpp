@@ -5,10 +5,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "kernels/cap_cubature_kernel.h"
+#include "kernels/cubature_kernel.h"
 #include "kernels/polygon_shading_kernel.h"
 #include "light_cubature.h"
 #include "lobe_outline.h"
+#include "spherical_polygon.h"
 
 namespace shlight {
 namespace {
@@ -16,27 +17,6 @@ namespace {
 /// Rules up to these are cheaper than harmonics of the orders that glossy lobes take.
 constexpr int kCheapCapRule = 3;
 constexpr int kCheapPolygonRule = 2;
-
-/// Of a polygon of one radian, as a relative size: the projection of the sphere onto a plane varies as a lobe does.
-constexpr double kFlatness = 1.2;
-
-/// The middle of a polygon and the greatest distance of a vertex from it, as directions.
-struct Extent {
-    Vec3d middle;
-    double half_angle;
-};
-
-Extent extent_of(const SphericalPolygon<double>& polygon) {
-    Extent e{Vec3d(0), 0};
-    for (const Vec3d& v : polygon.directions()) {
-        e.middle += v;
-    }
-    e.middle = glm::normalize(e.middle);
-    for (const Vec3d& v : polygon.directions()) {
-        e.half_angle = std::max(e.half_angle, glm::length(v - e.middle));
-    }
-    return e;
-}
 
 Vec3d axis_of(const CircleArrays& circles, std::size_t i) {
     return {circles.x[i], circles.y[i], circles.z[i]};
@@ -50,7 +30,7 @@ Vec3d mirrored(const Vec3d& view) {
 int cheap_rule(const CircleArrays&) {
     return kCheapCapRule;
 }
-int cheap_rule(const PolygonLights&) {
+int cheap_rule(const PolygonBatch&) {
     return kCheapPolygonRule;
 }
 
@@ -60,12 +40,12 @@ void LobeBatch::shade(LobeViews& lobe, const CircleArrays& circles, std::span<co
     shade_any(lobe, circles, view_of);
 }
 
-void LobeBatch::shade(LobeViews& lobe, const PolygonLights& polygons, std::span<const std::uint32_t> view_of) {
+void LobeBatch::shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of) {
     shade_any(lobe, polygons, view_of);
 }
 
 template <class Lights>
-void LobeBatch::shade_any(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of) {
+void LobeBatch::shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of) {
     values_.resize(view_of.size());
     efforts_.resize(view_of.size());
     alike_ = !lobe.chooses() && !is_mirror(lobe.shape()) && !lobe.any_black();
@@ -80,7 +60,7 @@ void LobeBatch::shade_any(LobeViews& lobe, const Lights& lights, std::span<const
 }
 
 template <class Lights>
-void LobeBatch::shade_alike(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of) {
+void LobeBatch::shade_alike(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of) {
     const std::size_t count = view_of.size();
     if (const std::size_t known = all_.size(); known < count) {
         all_.resize(count);
@@ -93,12 +73,12 @@ void LobeBatch::shade_alike(LobeViews& lobe, const Lights& lights, std::span<con
     by_harmonics(lobe, lights, order);
     for (std::size_t i = 0; i < count; ++i) {
         values_[i] = std::max(0.0F, values_[i]);
-        efforts_[i] = is_hidden(lights, i) ? 0 : order;
+        efforts_[i] = lies_below(lights, i) ? 0 : order;
     }
 }
 
 template <class Lights>
-void LobeBatch::shade_sorted(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of) {
+void LobeBatch::shade_sorted(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of) {
     std::fill(values_.begin(), values_.end(), 0.0F);
     std::fill(efforts_.begin(), efforts_.end(), 0);
     find_keys(lobe, lights, view_of);
@@ -147,21 +127,22 @@ bool LobeBatch::met(const LobeViews& lobe, std::size_t light, std::size_t view) 
     return true;
 }
 
-bool LobeBatch::is_hidden(const CircleArrays& circles, std::size_t light) {
+bool LobeBatch::lies_below(const CircleArrays& circles, std::size_t light) {
     return circles.z[light] <= -circles.sine[light];
 }
 
-bool LobeBatch::is_hidden(const PolygonLights& polygons, std::size_t light) {
-    return polygons.kept[light].empty();
+bool LobeBatch::lies_below(const PolygonBatch& polygons, std::size_t light) {
+    return polygons.lies_below(light);
 }
 
 bool LobeBatch::shows_mirrored(const CircleArrays& circles, std::size_t light, const Vec3d& direction) {
     return glm::dot(direction, axis_of(circles, light)) >= circles.cosine[light];
 }
 
-bool LobeBatch::shows_mirrored(const PolygonLights& polygons, std::size_t light, const Vec3d& direction) {
+bool LobeBatch::shows_mirrored(const PolygonBatch& polygons, std::size_t light, const Vec3d& direction) {
     // The winding of the outline about the direction, as angles between neighbouring vertices.
-    const std::vector<Vec3d>& v = polygons.kept[light].directions();
+    const SphericalPolygon<double> polygon(polygons.polygon(light), true);
+    const std::vector<Vec3d>& v = polygon.directions();
     double winding = 0;
     for (std::size_t i = 0; i < v.size(); ++i) {
         const Vec3d a = glm::cross(direction, v[i]);
@@ -176,28 +157,18 @@ void LobeBatch::choose_rules(const LobeViews& lobe, const CircleArrays& circles,
     choose_cap_rules(lobe.ggx(), circles, lobe.positions().directions(), lobe.tolerances(), view_of, rules_);
 }
 
-void LobeBatch::choose_rules(const LobeViews& lobe, const PolygonLights& polygons,
-                             std::span<const std::uint32_t> view_of) {
-    for (std::size_t i = 0; i < rules_.size(); ++i) {
-        if (is_hidden(polygons, i)) {
-            rules_[i] = kCapHidden;
-            continue;
-        }
-        const Extent extent = extent_of(polygons.kept[i]);
-        const double size = std::max(
-            relative_size(lobe.ggx(), lobe.positions().direction(view_of[i]), extent.middle, extent.half_angle),
-            kFlatness * extent.half_angle);
-        rules_[i] = static_cast<std::uint8_t>(polygon_rule_number(size, lobe.tolerances()[view_of[i]]));
-    }
+void LobeBatch::choose_rules(const LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of) {
+    choose_polygon_rules(lobe.ggx(), polygons.views(), lobe.positions().directions(), lobe.tolerances(), view_of,
+                         rules_);
 }
 
 template <class Lights>
-void LobeBatch::find_keys(const LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of) {
+void LobeBatch::find_keys(const LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of) {
     keys_.resize(view_of.size());
     if (!lobe.chooses()) {
         const auto key = is_mirror(lobe.shape()) ? kMirror : static_cast<Key>(kHarmonics + lobe.order(0));
         for (std::size_t i = 0; i < view_of.size(); ++i) {
-            keys_[i] = is_hidden(lights, i) || lobe.is_black(view_of[i]) ? kNothing : key;
+            keys_[i] = lies_below(lights, i) || lobe.is_black(view_of[i]) ? kNothing : key;
         }
         return;
     }
@@ -208,9 +179,9 @@ void LobeBatch::find_keys(const LobeViews& lobe, const Lights& lights, std::span
         const std::uint32_t view = view_of[i];
         const int order = lobe.order(view);
         const Key otherwise = order > 0 ? static_cast<Key>(kHarmonics + order) : kOutline;
-        const bool by_rule = rules_[i] != kNoCapRule && (rules_[i] <= cheap || order == 0);
+        const bool by_rule = rules_[i] != kNoRule && (rules_[i] <= cheap || order == 0);
         const Key key = by_rule ? rules_[i] : otherwise;
-        keys_[i] = rules_[i] == kCapHidden || lobe.is_black(view) ? kNothing : key;
+        keys_[i] = rules_[i] == kHidden || lobe.is_black(view) ? kNothing : key;
     }
 }
 
@@ -228,7 +199,7 @@ void LobeBatch::sort() {
 }
 
 template <class Lights>
-void LobeBatch::integrate(LobeViews& lobe, const Lights& lights, Key key) {
+void LobeBatch::integrate(LobeViews& lobe, Lights& lights, Key key) {
     if (key == kMirror) {
         mirror(lobe, lights);
     } else if (key == kOutline) {
@@ -245,7 +216,7 @@ void LobeBatch::integrate(LobeViews& lobe, const Lights& lights, Key key) {
 }
 
 template <class Lights>
-void LobeBatch::mirror(const LobeViews& lobe, const Lights& lights) {
+void LobeBatch::mirror(const LobeViews& lobe, Lights& lights) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
         const Vec3d direction = mirrored(lobe.positions().direction(item_views_[k]));
         item_values_[k] = shows_mirrored(lights, items_[k], direction)
@@ -258,8 +229,8 @@ void LobeBatch::by_harmonics(LobeViews& lobe, const CircleArrays& circles, int o
     shade_caps(circles, items_, lobe.arrays(order, item_views_), item_views_, item_values_);
 }
 
-void LobeBatch::by_harmonics(LobeViews& lobe, const PolygonLights& polygons, int order) {
-    shade_polygons(polygons.vertices, polygons.vertex_count, items_, lobe.arrays(order, item_views_), item_views_,
+void LobeBatch::by_harmonics(LobeViews& lobe, const PolygonBatch& polygons, int order) {
+    shade_polygons(polygons.vertices(), polygons.vertex_count(), items_, lobe.arrays(order, item_views_), item_views_,
                    item_values_);
 }
 
@@ -271,10 +242,10 @@ void LobeBatch::by_rule(const LobeViews& lobe, const CircleArrays& circles, int 
     }
 }
 
-void LobeBatch::by_rule(const LobeViews& lobe, const PolygonLights& polygons, int rule) {
+void LobeBatch::by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
-        const CubatureSum sum =
-            polygon_cubature(lobe.ggx(), lobe.positions().direction(item_views_[k]), polygons.kept[items_[k]], rule);
+        const CubatureSum sum = polygon_cubature(lobe.ggx(), lobe.positions().direction(item_views_[k]),
+                                                 SphericalPolygon<double>(polygons.polygon(items_[k]), true), rule);
         item_values_[k] = static_cast<float>(sum.value);
         efforts_[items_[k]] = sum.points;
     }
@@ -287,9 +258,9 @@ void LobeBatch::by_outline(const LobeViews& lobe, const CircleArrays& circles) {
     }
 }
 
-void LobeBatch::by_outline(const LobeViews& lobe, const PolygonLights& polygons) {
+void LobeBatch::by_outline(const LobeViews& lobe, const PolygonBatch& polygons) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
-        integrate_outline(lobe, k, polygon_outline(polygons.kept[items_[k]]));
+        integrate_outline(lobe, k, polygon_outline(SphericalPolygon<double>(polygons.polygon(items_[k]), true)));
     }
 }
 

@@ -13,17 +13,10 @@
 #include "kernels/cap_shading.h"
 #include "light_outline.h"
 #include "material_views.h"
+#include "polygon_batch.h"
 #include "shlight/types.h"
-#include "spherical_polygon.h"
 
 namespace shlight {
-
-/// Polygons of the same number of vertices in the shading frame, and what of them the horizon leaves.
-struct PolygonLights {
-    std::span<const Vec3d> vertices;
-    int vertex_count;
-    std::span<const SphericalPolygon<double>> kept;
-};
 
 /// How a light's radiance was found; nothing: the light is hidden, or the lobe black.
 enum class Way { nothing, mirror, harmonics, cubature };
@@ -33,7 +26,7 @@ class LobeBatch {
   public:
     /// Circle i, clipped by the horizon, is seen by view view_of[i].
     void shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of);
-    void shade(LobeViews& lobe, const PolygonLights& polygons, std::span<const std::uint32_t> view_of);
+    void shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of);
 
     // Of the last call:
     /// The reflected radiance of each light of unit radiance, without the lobe's scale, ≥ 0.
@@ -52,35 +45,35 @@ class LobeBatch {
     static constexpr std::size_t kKeys = kHarmonics + kMaxOrder + 1;
 
     template <class Lights>
-    void shade_any(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of);
+    void shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of);
     /// All by harmonics of the only order.
     template <class Lights>
-    void shade_alike(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of);
+    void shade_alike(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of);
     template <class Lights>
-    void shade_sorted(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of);
+    void shade_sorted(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of);
 
-    static bool is_hidden(const CircleArrays& circles, std::size_t light);
-    static bool is_hidden(const PolygonLights& polygons, std::size_t light);
+    static bool lies_below(const CircleArrays& circles, std::size_t light);
+    static bool lies_below(const PolygonBatch& polygons, std::size_t light);
     static bool shows_mirrored(const CircleArrays& circles, std::size_t light, const Vec3d& direction);
-    static bool shows_mirrored(const PolygonLights& polygons, std::size_t light, const Vec3d& direction);
+    static bool shows_mirrored(const PolygonBatch& polygons, std::size_t light, const Vec3d& direction);
     /// The rule of cubature of each light, as choose_cap_rules.
     void choose_rules(const LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of);
-    void choose_rules(const LobeViews& lobe, const PolygonLights& polygons, std::span<const std::uint32_t> view_of);
+    void choose_rules(const LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of);
 
     template <class Lights>
-    void find_keys(const LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of);
+    void find_keys(const LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of);
     void sort();
     template <class Lights>
-    void integrate(LobeViews& lobe, const Lights& lights, Key key);
+    void integrate(LobeViews& lobe, Lights& lights, Key key);
 
     template <class Lights>
-    void mirror(const LobeViews& lobe, const Lights& lights);
+    void mirror(const LobeViews& lobe, Lights& lights);
     void by_harmonics(LobeViews& lobe, const CircleArrays& circles, int order);
-    void by_harmonics(LobeViews& lobe, const PolygonLights& polygons, int order);
+    void by_harmonics(LobeViews& lobe, const PolygonBatch& polygons, int order);
     void by_rule(const LobeViews& lobe, const CircleArrays& circles, int rule);
-    void by_rule(const LobeViews& lobe, const PolygonLights& polygons, int rule);
+    void by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule);
     void by_outline(const LobeViews& lobe, const CircleArrays& circles);
-    void by_outline(const LobeViews& lobe, const PolygonLights& polygons);
+    void by_outline(const LobeViews& lobe, const PolygonBatch& polygons);
     /// Of an item.
     void integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const OutlineArc> arcs);
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "aligned_floats.h"
-#include "kernels/cap_cubature_kernel.h"
+#include "kernels/cubature_kernel.h"
 #include "kernels/lobe_arrays.h"
 #include "kernels/view_kernel.h"
 #include "material_lobes.h"

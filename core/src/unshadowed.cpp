@@ -72,15 +72,13 @@ void Unshadowed::see(const SphereLight& light, const ShadingPoints& points, std:
 }
 
 void Unshadowed::see(const PolygonLight& light, const ShadingPoints& points, std::span<const std::uint32_t> some) {
-    vertices_.clear();
-    kept_.clear();
+    polygons_.clear(light.vertices.size());
     for (std::size_t i = 0; i < some.size(); ++i) {
         const ShadingFrame& frame = points.frame[some[i]];
         if (is_seen(light, frame, points.error[some[i]])) {
             for (const Vec3d& v : light.vertices) {
-                vertices_.push_back(frame.point_to_local(v));
+                polygons_.push_back(frame.point_to_local(v));
             }
-            kept_.emplace_back(std::span<const Vec3d>(vertices_).last(light.vertices.size()), true);
             seen_by_.push_back(static_cast<std::uint32_t>(i));
         }
     }
@@ -94,9 +92,8 @@ void Unshadowed::integrate(const ShadingPoints& points, std::span<const std::uin
         return;
     }
     for (std::size_t lobe = 0; lobe < views_.lobe_count(); ++lobe) {
-        if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
-            batch_.shade(views_.lobe(lobe), PolygonLights{vertices_, static_cast<int>(polygon->vertices.size()), kept_},
-                         seen_by_);
+        if (std::holds_alternative<PolygonLight>(light)) {
+            batch_.shade(views_.lobe(lobe), polygons_, seen_by_);
         } else {
             batch_.shade(views_.lobe(lobe), circles_.arrays(), seen_by_);
         }

@@ -11,6 +11,7 @@
 #include "lobe_batch.h"
 #include "material_lobes.h"
 #include "material_views.h"
+#include "polygon_batch.h"
 #include "shading_points.h"
 #include "shlight/light.h"
 #include "shlight/render.h"
@@ -50,8 +51,7 @@ class Unshadowed {
     LobeBatch batch_;
     std::vector<std::uint32_t> seen_by_;  // indices of these points
     CircleBatch circles_;
-    std::vector<Vec3d> vertices_;
-    std::vector<SphericalPolygon<double>> kept_;
+    PolygonBatch polygons_;
 };
 
 }  // namespace shlight

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "kernels/cap_cubature_kernel.h"
+#include "kernels/cubature_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/cap_cubature_kernel.cpp"
+#define HWY_TARGET_INCLUDE "kernels/cubature_kernel.cpp"
 #include <hwy/foreach_target.h>
 // Highway's vocabulary, and what is compiled once per instruction set, come after it.
 #include <hwy/highway.h>
@@ -47,9 +47,17 @@ inline std::span<const Ring> rings_of(int rule) {
     }
 }
 
-/// The relative error of rule k for a light of relative size x is about (x / reach)^2k: measured over random lobes,
-/// views and lights (95th percentile).
-inline constexpr std::array<double, 4> kReach = {0.7, 1, 1, 1};
+/// A rule's relative error for a light of relative size x is about (x / reach)^(2 half_power): measured over random
+/// lobes, views and lights (95th percentile).
+struct RuleError {
+    double reach;
+    int half_power;
+};
+inline constexpr std::array<RuleError, 4> kCapErrors = {RuleError{0.7, 1}, {1.0, 2}, {1.0, 3}, {1.0, 4}};
+inline constexpr std::array<RuleError, 4> kPolygonErrors = {RuleError{1.5, 2}, {1.65, 3}, {1.6, 4}, {1.6, 5}};
+
+/// Of a polygon of one radian, as a relative size: the projection of the sphere onto a plane varies as a lobe does.
+inline constexpr double kFlatness = 1.2;
 
 }  // namespace shlight
 #endif
@@ -82,48 +90,67 @@ HWY_INLINE SeenCircle seen(const CircleArrays& circles, const ViewArrays& views,
     return s;
 }
 
-/// The square of how large a light looks to a lobe: its half angle over the least distance on which f·cos changes near
-/// its middle. On the sphere where the bell is round, (h_x/α, h_y/α, h_z) normalised, a step of the direction is at
-/// most 1/α long before normalising.
-HWY_INLINE V<Floats> squared_size(float alpha2, const SeenCircle& s) {
+/// One over the square of the least distance on which f·cos changes near a light's middle, given the sum of that and
+/// the view. On the sphere where the bell is round, (h_x/α, h_y/α, h_z) normalised, a step of the direction is at most
+/// 1/α long before normalising.
+HWY_INLINE V<Floats> squared_change(float alpha2, const HalfSum& half) {
     const Floats d;
-    const auto angle = arctangent(d, s.sine, s.cosine);
-    const auto across = hn::MulAdd(s.half.x, s.half.x, hn::Mul(s.half.y, s.half.y));
-    const auto scale = hn::MulAdd(hn::Mul(hn::Set(d, alpha2), s.half.z), s.half.z, across);
-    return hn::Div(hn::Mul(angle, angle), scale);
+    const auto across = hn::MulAdd(half.x, half.x, hn::Mul(half.y, half.y));
+    return hn::Div(all(d, 1), hn::MulAdd(hn::Mul(hn::Set(d, alpha2), half.z), half.z, across));
 }
 
-template <class Circles, class Views>
-HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(float alpha2, const CircleArrays& circles, const ViewArrays& views,
-                                                   const float* tolerances, const Circles& circle, const Views& view) {
+/// The first rule whose error is at most the tolerance. square: of the light's size beside the lobe.
+HWY_INLINE V<hn::RebindToUnsigned<Floats>> smallest_rule(const std::array<RuleError, 4>& rules, V<Floats> square,
+                                                         V<Floats> tolerance) {
     const Floats d;
     const hn::RebindToUnsigned<Floats> du;
-    const SeenCircle s = seen(circles, views, circle, view);
-    const auto tolerance = view.load(tolerances);
-    const auto square = squared_size(alpha2, s);
-    auto power = square;
-    std::array<V<Floats>, kReach.size()> errors;
-    for (std::size_t i = 0; i < kReach.size(); ++i) {
-        errors[i] = hn::Mul(power, all(d, 1 / std::pow(kReach[i], 2 * (static_cast<double>(i) + 1))));
-        power = hn::Mul(power, square);
-    }
     auto rule = hn::Zero(du);
-    for (std::size_t i = kReach.size(); i-- > 0;) {
-        rule = hn::IfThenElse(hn::RebindMask(du, hn::Le(errors[i], tolerance)),
+    for (std::size_t i = rules.size(); i-- > 0;) {
+        const auto step = hn::Mul(square, all(d, 1 / (rules[i].reach * rules[i].reach)));
+        auto error = step;
+        for (int k = 1; k < rules[i].half_power; ++k) {
+            error = hn::Mul(error, step);
+        }
+        rule = hn::IfThenElse(hn::RebindMask(du, hn::Le(error, tolerance)),
                               hn::Set(du, static_cast<std::uint32_t>(i + 1)), rule);
     }
-    rule = hn::IfThenElseZero(hn::RebindMask(du, hn::Ge(s.z, s.sine)), rule);
-    return hn::IfThenElse(hn::RebindMask(du, hn::Le(s.z, hn::Neg(s.sine))), hn::Set(du, kCapHidden), rule);
+    return rule;
 }
 
-template <class Views>
-void choose_rules(float alpha2, const CircleArrays& circles, const ViewArrays& views, const float* tolerances,
+template <class Lights, class Views>
+HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(float alpha2, const CircleArrays& circles, const ViewArrays& views,
+                                                   const Lights& light, const Views& view, V<Floats> tolerance) {
+    const Floats d;
+    const hn::RebindToUnsigned<Floats> du;
+    const SeenCircle s = seen(circles, views, light, view);
+    const auto angle = arctangent(d, s.sine, s.cosine);
+    auto rule = smallest_rule(kCapErrors, hn::Mul(hn::Mul(angle, angle), squared_change(alpha2, s.half)), tolerance);
+    rule = hn::IfThenElseZero(hn::RebindMask(du, hn::Ge(s.z, s.sine)), rule);
+    return hn::IfThenElse(hn::RebindMask(du, hn::Le(s.z, hn::Neg(s.sine))), hn::Set(du, kHidden), rule);
+}
+
+template <class Lights, class Views>
+HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(float alpha2, const PolygonArrays& polygons, const ViewArrays& views,
+                                                   const Lights& light, const Views& view, V<Floats> tolerance) {
+    const Floats d;
+    const hn::RebindToUnsigned<Floats> du;
+    const HalfSum half = {rounded_sum(light.pair(polygons.x), view.pair(views.x)), light.load(polygons.y),
+                          rounded_sum(light.pair(polygons.z), view.pair(views.z))};
+    const auto angle = light.load(polygons.half_angle);
+    const auto change = hn::Max(squared_change(alpha2, half), all(d, kFlatness * kFlatness));
+    const auto rule = smallest_rule(kPolygonErrors, hn::Mul(hn::Mul(angle, angle), change), tolerance);
+    return hn::IfThenElse(hn::RebindMask(du, hn::Lt(angle, hn::Zero(d))), hn::Set(du, kHidden), rule);
+}
+
+template <class Views, class Arrays>
+void choose_rules(float alpha2, const Arrays& lights, const ViewArrays& views, const float* tolerances,
                   std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
     const hn::Rebind<std::uint8_t, Floats> d8;
     constexpr std::size_t kLanes = kLaneCount<Floats>;
     std::size_t i = 0;
     for (; i + kLanes <= rules.size(); i += kLanes) {
-        const auto rule = rule_of(alpha2, circles, views, tolerances, Neighbours(i), Views(view_of.data() + i, kLanes));
+        const Views view(view_of.data() + i, kLanes);
+        const auto rule = rule_of(alpha2, lights, views, Neighbours(i), view, view.load(tolerances));
         hn::StoreU(hn::U8FromU32(rule), d8, rules.data() + i);
     }
     if (const std::size_t rest = rules.size() - i; rest > 0) {
@@ -131,21 +158,33 @@ void choose_rules(float alpha2, const CircleArrays& circles, const ViewArrays& v
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             last[lane] = static_cast<std::uint32_t>(i + std::min(lane, rest - 1));
         }
-        const auto rule = rule_of(alpha2, circles, views, tolerances, Scattered(last.data(), kLanes),
-                                  Views(view_of.data() + i, rest));
+        const Views view(view_of.data() + i, rest);
+        const auto rule = rule_of(alpha2, lights, views, Scattered(last.data(), kLanes), view, view.load(tolerances));
         store_some(d8, hn::U8FromU32(rule), rest, rules.data() + i);
+    }
+}
+
+template <class Arrays>
+void choose_any_rules(const GgxShape& shape, const Arrays& lights, const ViewArrays& views, const float* tolerances,
+                      std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
+    const auto alpha2 = static_cast<float>(shape.alpha * shape.alpha);
+    if (views.shared) {
+        choose_rules<Same>(alpha2, lights, views, tolerances, view_of, rules);
+    } else {
+        choose_rules<Scattered>(alpha2, lights, views, tolerances, view_of, rules);
     }
 }
 
 void choose_cap_rules_in_lanes(const GgxShape& shape, const CircleArrays& circles, const ViewArrays& views,
                                const float* tolerances, std::span<const std::uint32_t> view_of,
                                std::span<std::uint8_t> rules) {
-    const auto alpha2 = static_cast<float>(shape.alpha * shape.alpha);
-    if (views.shared) {
-        choose_rules<Same>(alpha2, circles, views, tolerances, view_of, rules);
-    } else {
-        choose_rules<Scattered>(alpha2, circles, views, tolerances, view_of, rules);
-    }
+    choose_any_rules(shape, circles, views, tolerances, view_of, rules);
+}
+
+void choose_polygon_rules_in_lanes(const GgxShape& shape, const PolygonArrays& polygons, const ViewArrays& views,
+                                   const float* tolerances, std::span<const std::uint32_t> view_of,
+                                   std::span<std::uint8_t> rules) {
+    choose_any_rules(shape, polygons, views, tolerances, view_of, rules);
 }
 
 /// Two vectors at right angles to a unit axis, as perpendicular() chooses them.
@@ -273,11 +312,18 @@ HWY_AFTER_NAMESPACE();
 namespace shlight {
 
 HWY_EXPORT(choose_cap_rules_in_lanes);
+HWY_EXPORT(choose_polygon_rules_in_lanes);
 HWY_EXPORT(integrate_caps_in_lanes);
 
 void choose_cap_rules(const GgxShape& shape, const CircleArrays& circles, const ViewArrays& views,
                       const float* tolerances, std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
     HWY_DYNAMIC_DISPATCH(choose_cap_rules_in_lanes)(shape, circles, views, tolerances, view_of, rules);
+}
+
+void choose_polygon_rules(const GgxShape& shape, const PolygonArrays& polygons, const ViewArrays& views,
+                          const float* tolerances, std::span<const std::uint32_t> view_of,
+                          std::span<std::uint8_t> rules) {
+    HWY_DYNAMIC_DISPATCH(choose_polygon_rules_in_lanes)(shape, polygons, views, tolerances, view_of, rules);
 }
 
 void integrate_caps(const GgxShape& shape, const CircleArrays& circles, std::span<const std::uint32_t> circle_of,
