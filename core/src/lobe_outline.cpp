@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gauss_legendre.h"
+#include "kernels/outline_kernel.h"
 
 namespace shlight {
 namespace {
@@ -32,75 +33,13 @@ constexpr std::array<double, 4> kGauss = {0.417959183673469387755102040816327, 0
 /// Pieces of the outline that may be waiting or done; past that the estimate stands as it is.
 constexpr int kMostPieces = 96;
 
+/// From this tolerance on, of a radiance of 0 … 1, floats will do.
+constexpr double kLeastSingle = 1e-5;
+
 /// Points along a radius: the factors beside the bell vary slowly.
 int points_for(double tolerance) {
     return tolerance > 4e-3 ? 4 : tolerance > 2e-4 ? 6 : tolerance > 1e-5 ? 12 : 24;
 }
-
-/// The lobe in the plane of half vectors.
-class Bell {
-  public:
-    Bell(const GgxShape& shape, double cos_theta_o, double tolerance)
-        : shape_(shape),
-          cos_o_(cos_theta_o),
-          sin_o_(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o))),
-          alpha2_(shape.alpha * shape.alpha),
-          masking_o_(std::sqrt(alpha2_ + (1 - alpha2_) * cos_theta_o * cos_theta_o)),
-          rule_(gauss_rule(points_for(tolerance))) {}
-
-    int radial_points() const { return static_cast<int>(rule_.nodes.size()); }
-
-    /// What the outline adds where its half vector is `half` (of any length) and changes by `step`: the angle about the
-    /// bell's middle times ∫ f·cos over a radius from there to the outline.
-    double outline_density(const Vec3d& half, const Vec3d& step) const {
-        const double across = std::hypot(half.x, half.y);
-        if (!(across > 0 && half.z > 0)) {
-            return 0;
-        }
-        return radial_integral(half.x / across, across / (shape_.alpha * half.z)) *
-               (half.x * step.y - half.y * step.x) / (across * across);
-    }
-
-  private:
-    /// ∫ over tan θ' = 0 … radius at one azimuth about the bell. In t = tan ½θ' the bell is rational and the range
-    /// short.
-    double radial_integral(double cos_azimuth, double radius) const {
-        const double end = radius / (1 + std::sqrt(1 + radius * radius));
-        double sum = 0;
-        // Crowded towards the outline, because a lobe that is cut by the horizon ends steeply there; the shortest rule
-        // is better off without.
-        const double crowding = rule_.nodes.size() > 4 ? 1 : 0;
-        for (std::size_t i = 0; i < rule_.nodes.size(); ++i) {
-            const double x = rule_.nodes[i];
-            const double t = end * x * (1 + crowding * (1 - x));
-            const double weight = rule_.weights[i] * (1 + crowding * (1 - 2 * x));
-            const double scale = 1 / (1 + t * t);
-            const double sine = 2 * t * scale;
-            const double cosine = (1 - t) * (1 + t) * scale;
-            sum += weight * scale * sine * factors(cos_azimuth, sine, cosine);
-        }
-        return 2 * end * sum / std::numbers::pi;
-    }
-
-    /// f·cos dω over the bell's own density cosθ' dω' / π and its cosine: F G₂ (ω_o·h) / cosθ_o with the length of h
-    /// divided out.
-    double factors(double cos_azimuth, double sine, double cosine) const {
-        const double x = shape_.alpha * sine;
-        const double square = x * x + cosine * cosine;
-        const double towards = cos_o_ * cosine + sin_o_ * x * cos_azimuth;  // (ω_o·h) √square
-        const double cos_i = 2 * towards * cosine / square - cos_o_;
-        if (!(cos_i > 0)) {
-            return 0;
-        }
-        const double masking_i = std::sqrt(alpha2_ + (1 - alpha2_) * cos_i * cos_i);
-        const double visibility = 2 * cos_i / (cos_o_ * masking_i + cos_i * masking_o_);  // G₂ / cosθ_o
-        return visibility * towards * fresnel_factor(shape_, towards / std::sqrt(square));
-    }
-
-    GgxShape shape_;
-    double cos_o_, sin_o_, alpha2_, masking_o_;
-    const GaussRule& rule_;
-};
 
 /// The half vectors along a circle, up to their length: middle + cosine cos τ + sine sin τ. Any parameter that is a
 /// Möbius map of the angle has this form; one of them makes the three columns orthogonal on the sphere where the bell
@@ -114,6 +53,8 @@ class Path {
         const Vec3d u = arc.from - center;
         const Vec3d v = glm::cross(arc.circle.axis, u);
         even_out(center + view, u, v, alpha);
+        const Vec3d scale(1 / alpha, 1 / alpha, 1);
+        path_ = {columns_[0] * scale, columns_[1] * scale, columns_[2] * scale, flatness_};
         start_ = arc.closed ? 0 : parameter(1, 0);
         length_ = 2 * std::numbers::pi;
         if (!arc.closed) {
@@ -127,17 +68,8 @@ class Path {
     double start() const { return start_; }
     double length() const { return length_; }
 
-    /// A half vector, of any length, and how it changes.
-    struct Point {
-        Vec3d half, step;
-    };
-    Point at(double parameter) const {
-        const double c = std::cos(parameter);
-        const double s = std::sin(parameter);
-        const double r = std::hypot(flatness_ * c, s);
-        return {r * columns_[0] + flatness_ * c * columns_[1] + s * columns_[2],
-                (1 - flatness_ * flatness_) * s * c / r * columns_[0] - flatness_ * s * columns_[1] + c * columns_[2]};
-    }
+    /// As the kernel reads it.
+    const OutlinePath& columns() const { return path_; }
 
   private:
     using Triple = std::array<double, 3>;
@@ -155,11 +87,9 @@ class Path {
         for (int sweep = 0; sweep < 4; ++sweep) {
             for (int axis = 1; axis <= 2; ++axis) {
                 const double ratio = -2 * form(0, axis) / (form(0, 0) + form(axis, axis));
-                const double rapidity = std::atanh(std::clamp(ratio, -1 + 1e-14, 1 - 1e-14)) / 2;
-                boost(axis, std::cosh(rapidity), std::sinh(rapidity));
+                boost_by_half(axis, std::clamp(ratio, -1 + 1e-14, 1 - 1e-14));
             }
-            const double angle = std::atan2(2 * form(1, 2), form(1, 1) - form(2, 2)) / 2;
-            turn(std::cos(angle), std::sin(angle));
+            turn_by_half(form(1, 1) - form(2, 2), 2 * form(1, 2));
         }
         if (form(2, 2) > form(1, 1)) {
             turn(0, 1);
@@ -167,7 +97,23 @@ class Path {
         flatness_ = std::min(1.0, std::sqrt((form(0, 0) + form(2, 2)) / form(1, 1)));
     }
 
-    void boost(int axis, double c, double s) { mix(0, axis, c, s, s, c); }
+    /// By half the rapidity atanh(speed).
+    void boost_by_half(int axis, double speed) {
+        const double whole = 1 / std::sqrt((1 - speed) * (1 + speed));  // cosh of the rapidity
+        const double c = std::sqrt((whole + 1) / 2);
+        const double s = speed * whole / (2 * c);
+        mix(0, axis, c, s, s, c);
+    }
+    /// By half the angle of the point (x, y).
+    void turn_by_half(double x, double y) {
+        const double length = std::hypot(x, y);
+        const double c = std::sqrt((length + std::abs(x)) / 2);
+        if (c > 0) {
+            const double other = y / (2 * c);
+            const double unit = 1 / std::sqrt(length);
+            x >= 0 ? turn(c * unit, other * unit) : turn(std::abs(other) * unit, std::copysign(c, y) * unit);
+        }
+    }
     void turn(double c, double s) { mix(1, 2, c, s, -s, c); }
     /// New columns i and j: (ii, ij) and (ji, jj) times the old ones.
     void mix(int i, int j, double ii, double ij, double ji, double jj) {
@@ -194,12 +140,16 @@ class Path {
     std::array<Triple, 3> frame_ = {Triple{1, 0, 0}, Triple{0, 1, 0}, Triple{0, 0, 1}};
     double flatness_ = 1;
     double start_, length_;
+    OutlinePath path_{};
 };
 
 /// The outline of one region, piece by piece.
 class Outline {
   public:
-    Outline(const Bell& bell, double tolerance) : bell_(bell), tolerance_(tolerance) {}
+    Outline(const GgxShape& shape, double cos_theta_o, double tolerance)
+        : bell_{shape, cos_theta_o, &gauss_rule(points_for(tolerance))},
+          tolerance_(tolerance),
+          single_(tolerance >= kLeastSingle) {}
 
     /// share: part of the tolerance.
     void add(const OutlineArc& arc, const Vec3d& view, double alpha, double share) {
@@ -237,10 +187,9 @@ class Outline {
         double value, error;
     };
 
-    double density(const Path& path, double parameter) {
-        sum_.points += bell_.radial_points();
-        const auto [half, step] = path.at(parameter);
-        return bell_.outline_density(half, step);
+    void densities(const Path& path, std::span<const double> parameters, std::span<double> values) {
+        sum_.points += static_cast<int>(bell_.rule->nodes.size() * parameters.size());
+        outline_densities(bell_, path.columns(), single_, parameters, values);
     }
 
     /// The difference of two rules is the error of the coarser one; that of the finer one is about its power 3/2
@@ -252,19 +201,31 @@ class Outline {
     /// A whole circle by the trapezoidal rule, which converges exponentially. False, with nothing added, if it does
     /// not.
     bool add_circle(const Path& path, double tolerance) {
-        constexpr int kFirst = 8;
-        constexpr int kLast = 64;
+        constexpr std::size_t kLast = 64;
         double total = 0;
         double before = 0;
-        for (int count = kFirst; count <= kLast; count *= 2) {
-            const double step = 2 * std::numbers::pi / count;
-            const int stride = count == kFirst ? 1 : 2;  // the points between those of the rule before
-            for (int i = stride - 1; i < count; i += stride) {
-                total += density(path, i * step);
+        // First the points of two rules at once, then those between the points of the rule before.
+        for (std::size_t count = kOutlinePoints; count <= kLast; count *= 2) {
+            const double step = 2 * std::numbers::pi / static_cast<double>(count);
+            const bool first = count == kOutlinePoints;
+            double even = 0;
+            double sum = 0;
+            std::array<double, kOutlinePoints> parameters, values;
+            for (std::size_t i = 0; i < (first ? count : count / 2); i += kOutlinePoints) {
+                for (std::size_t k = 0; k < kOutlinePoints; ++k) {
+                    parameters[k] = step * static_cast<double>(first ? k : 2 * (i + k) + 1);
+                }
+                densities(path, parameters, values);
+                for (std::size_t k = 0; k < kOutlinePoints; ++k) {
+                    sum += values[k];
+                    even += k % 2 == 0 ? values[k] : 0.0;
+                }
             }
+            before = first ? 2 * step * even : before;
+            total += sum;
             const double value = total * step;
             const double error = error_estimate(std::abs(value - before));
-            if (count > kFirst && error <= tolerance) {
+            if (error <= tolerance) {
                 sum_.value += value;
                 sum_.error += error;
                 return true;
@@ -278,11 +239,16 @@ class Outline {
         Piece piece{path, (from + to) / 2, (to - from) / 2, 0, 0};
         double kronrod = 0;
         double gauss = 0;
+        std::array<double, 2 * kNodes.size() - 1> parameters, values;
         for (std::size_t i = 0; i < kNodes.size(); ++i) {
-            const double offset = kNodes[i] * piece.half;
-            double pair = density(paths_[path], piece.middle + offset);
+            parameters[kNodes.size() - 1 + i] = piece.middle + kNodes[i] * piece.half;
+            parameters[kNodes.size() - 1 - i] = piece.middle - kNodes[i] * piece.half;
+        }
+        densities(paths_[path], parameters, values);
+        for (std::size_t i = 0; i < kNodes.size(); ++i) {
+            double pair = values[kNodes.size() - 1 + i];
             if (i > 0) {
-                pair += density(paths_[path], piece.middle - offset);
+                pair += values[kNodes.size() - 1 - i];
             }
             kronrod += kKronrod[i] * pair;
             gauss += i % 2 == 0 ? kGauss[i / 2] * pair : 0.0;
@@ -294,8 +260,9 @@ class Outline {
         pieces_.push_back(piece);
     }
 
-    const Bell& bell_;
+    OutlineBell bell_;
     double tolerance_;
+    bool single_;  // whether floats will do
     std::vector<Path> paths_;
     std::vector<Piece> pieces_;
     OutlineIntegral sum_{0, 0, 0};
@@ -305,9 +272,8 @@ class Outline {
 
 OutlineIntegral outline_integral(const GgxShape& shape, double cos_theta_o, std::span<const OutlineArc> arcs,
                                  double tolerance) {
-    const Bell bell(shape, cos_theta_o, tolerance);
     const Vec3d view(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o);
-    Outline outline(bell, tolerance);
+    Outline outline(shape, cos_theta_o, tolerance);
     for (const OutlineArc& arc : arcs) {
         outline.add(arc, view, shape.alpha, 1.0 / static_cast<double>(arcs.size()));
     }

@@ -20,9 +20,8 @@ namespace shlight {
 namespace HWY_NAMESPACE {
 
 /// F at ω_i·h = cosine: fresnel_factor() in lanes.
-template <Fresnel kFresnel>
-HWY_INLINE V<Floats> fresnel_in_lanes(float ior, V<Floats> cosine) {
-    const Floats d;
+template <Fresnel kFresnel, class D>
+HWY_INLINE V<D> fresnel_in_lanes(D d, double ior, V<D> cosine) {
     const auto one = all(d, 1);
     if constexpr (kFresnel == Fresnel::one) {
         return one;
@@ -34,13 +33,12 @@ HWY_INLINE V<Floats> fresnel_in_lanes(float ior, V<Floats> cosine) {
     }
     // The exact curve less its value head-on, (a² (1 + b²) - 2 a_0²) / 2 with b = 1 + f, a = a_0 + e and f and e as
     // multiples of `edge`: no difference of nearly equal numbers is left.
-    const double n = ior;
-    const double head_on = (n - 1) / (n + 1);
+    const double head_on = (ior - 1) / (ior + 1);
     const auto c = hn::Sub(one, edge);
     const auto bent = hn::Mul(edge, hn::Sub(all(d, 2), edge));  // 1 - c²
-    const auto g = hn::Sqrt(hn::Sub(all(d, n * n), bent));
-    const auto lag = hn::Div(bent, hn::Add(g, all(d, n)));  // n - g
-    const auto e = hn::Div(hn::Mul(all(d, 2 / (n + 1)), hn::MulSub(all(d, n), edge, lag)), hn::Add(g, c));
+    const auto g = hn::Sqrt(hn::Sub(all(d, ior * ior), bent));
+    const auto lag = hn::Div(bent, hn::Add(g, all(d, ior)));  // ior - g
+    const auto e = hn::Div(hn::Mul(all(d, 2 / (ior + 1)), hn::MulSub(all(d, ior), edge, lag)), hn::Add(g, c));
     const auto f = hn::Div(hn::Mul(all(d, -2), bent), hn::MulAdd(c, hn::Sub(g, c), one));
     const auto a = hn::Add(all(d, head_on), e);
     const auto parallel = hn::Mul(hn::Mul(a, a), hn::MulAdd(hn::Mul(f, f), all(d, 0.5), f));
@@ -59,7 +57,7 @@ template <Fresnel kFresnel>
 class GgxLanes {
   public:
     explicit GgxLanes(const GgxShape& shape)
-        : alpha2_(static_cast<float>(shape.alpha * shape.alpha)), ior_(static_cast<float>(shape.ior)) {}
+        : alpha2_(static_cast<float>(shape.alpha * shape.alpha)), ior_(shape.ior) {}
 
     /// √(α² + (1-α²) cos²θ).
     V<Floats> masking(V<Floats> cosine) const {
@@ -81,13 +79,14 @@ class GgxLanes {
                               visibility);
         if constexpr (kFresnel != Fresnel::one) {
             // |ω_i + ω_o| is twice the cosine of half the angle between them.
-            result = hn::Mul(result, fresnel_in_lanes<kFresnel>(ior_, hn::Mul(hn::Sqrt(square), all(d, 0.5))));
+            result = hn::Mul(result, fresnel_in_lanes<kFresnel>(d, ior_, hn::Mul(hn::Sqrt(square), all(d, 0.5))));
         }
         return hn::IfThenElseZero(hn::Gt(hn::Min(cos_i, cos_o), hn::Zero(d)), result);
     }
 
   private:
-    float alpha2_, ior_;
+    float alpha2_;
+    double ior_;
 };
 
 }  // namespace HWY_NAMESPACE
