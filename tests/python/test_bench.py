@@ -263,7 +263,7 @@ def test_planted_times_give_their_ratios(monkeypatch: pytest.MonkeyPatch) -> Non
 
     monkeypatch.setattr(Run, "alternate", planted)
     run = Run("x", 12, 9)
-    assert [row.value for row in against_peer.measure_basis(run)] == [0.5] * 3
+    assert [row.value for row in against_peer.measure_basis(run)[:3]] == [0.5] * 3
     of_spheres = {row.name: row for row in against_peer.measure_spheres(run)}
     assert of_spheres["clipped sphere, n = 32"].value == 0.25
     assert of_spheres["clipped sphere, n = 32"].detail == "1 ns ÷ 4 ns"

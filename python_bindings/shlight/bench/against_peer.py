@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 import shlight
 
 from . import inputs, peer
-from .rounds import Work
+from .rounds import Work, alternate
 from .row import Row
 from .run import Run
 
@@ -30,7 +30,20 @@ def measure_basis(run: Run) -> list[Row]:
     def works(order: int) -> dict[str, Work]:
         return {"basis": Work(lambda: shlight.sh_basis(directions, order, threads=1), run.lights)}
 
-    return _rows(run, works, {"basis": BASIS})
+    return _rows(run, works, {"basis": BASIS}) + _of_fewer(run)
+
+
+def _of_fewer(run: Run) -> list[Row]:
+    """What sphericart takes where its result is no larger than what the allocator keeps: beyond that it asks the system
+    for memory in each call."""
+    directions = inputs.directions(run.lights)
+    few = directions[: run.lights // 10]
+    rows = []
+    for order in BASIS:
+        name = f"{PEER}, n = {order}"
+        works = {name: peer.basis(directions, order), "few": peer.basis(few, order)}
+        rows.append(run.ratio(alternate(works, run.rounds), name, "few", unit=f"× for {len(few)}"))
+    return rows
 
 
 def measure_spheres(run: Run) -> list[Row]:
