@@ -37,7 +37,7 @@ def measure(run: Run) -> list[Row]:
         whole = np.array(seconds.pop(WHOLE))
         for stage, of_stage in seconds.items():
             spent_in_all = np.array(of_stage)
-            detail = f"{duration(spent_in_all)} of {duration(whole)}"
-            shares = Spread.of(100 * spent_in_all / whole)
-            rows.append(Row.of(run.section, f"{name}, {stage}", shares, "% of the render", detail=detail))
+            share = Spread.of(100 * spent_in_all / whole).median
+            detail = f"{share:.1f} % of {duration(whole)}"
+            rows.append(Row.of(run.section, f"{name}, {stage}", Spread.of(1000 * spent_in_all), "ms", detail=detail))
     return rows

@@ -27,7 +27,7 @@ class Row:
     high: float
     unit: str
     bound: float | None = None
-    bound_is: Literal["most", "least"] = "most"
+    bound_is: Literal["most", "least"] = "most"  # also says which way is better where there is none
     detail: str = ""  # what the number is made of
 
     @classmethod
