@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import importlib.util
+import itertools
 import json
 import subprocess
 import sys
@@ -32,6 +33,7 @@ from shlight.bench import (
     targets,
     threads,
 )
+from shlight.bench.operations import OPERATIONS
 from shlight.bench.rounds import Spread, Work, alternate
 from shlight.bench.row import Bench, Row, read
 from shlight.bench.run import Run, Section
@@ -272,6 +274,16 @@ def test_planted_times_give_their_ratios(monkeypatch: pytest.MonkeyPatch) -> Non
         assert row.value == pytest.approx(1.5)
     assert [row.value for row in threads.measure(run)] == [1.0] * 14
     assert {row.unit for row in against_methods.measure(run)} == {"× zhou_wei", "× wang_ramamoorthi"}
+
+
+def test_operations_are_counted_for_kinds_that_there_are() -> None:
+    assert set(OPERATIONS) <= set(kinds.works(1, 1))
+    # Order 4: 6 steps of the recurrence, 6 pairs of products, 3 powers of the azimuth.
+    assert OPERATIONS["basis"](4) == 4 * 6 + 2 * 6 + 6 * 3 + 15
+    for count in OPERATIONS.values():
+        counts = [count(order) for order in (1, 2, 4, 8, 16, 32, 64)]
+        assert all(0 < low < high for low, high in itertools.pairwise(counts))
+        assert 3 < counts[-1] / counts[-2] < 8.1
 
 
 def test_memory_is_what_a_call_adds() -> None:
