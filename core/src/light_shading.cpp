@@ -138,7 +138,7 @@ class LightShaderWork {
         }
         for (std::size_t i = 0; i < views_.lobe_count(); ++i) {
             LobeViews& lobe = views_.lobe(i);
-            batch_.shade(lobe, lights, view_of_);
+            batch_.shade(lobe, lights, view_of_, !effort.empty());
             add(lobe, i == 0, radiance);
             const auto efforts = batch_.efforts();
             for (std::size_t k = 0; k < effort.size(); ++k) {

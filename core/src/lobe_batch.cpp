@@ -36,16 +36,17 @@ int cheap_rule(const PolygonBatch&) {
 
 }  // namespace
 
-void LobeBatch::shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of) {
-    shade_any(lobe, circles, view_of);
+void LobeBatch::shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of,
+                      bool counted) {
+    shade_any(lobe, circles, view_of, counted);
 }
 
-void LobeBatch::shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of) {
-    shade_any(lobe, polygons, view_of);
+void LobeBatch::shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of, bool counted) {
+    shade_any(lobe, polygons, view_of, counted);
 }
 
 template <class Lights>
-void LobeBatch::shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of) {
+void LobeBatch::shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool counted) {
     values_.resize(view_of.size());
     efforts_.resize(view_of.size());
     alike_ = !lobe.chooses() && !is_mirror(lobe.shape()) && !lobe.any_black();
@@ -53,14 +54,14 @@ void LobeBatch::shade_any(LobeViews& lobe, Lights& lights, std::span<const std::
         return;
     }
     if (alike_) {
-        shade_alike(lobe, lights, view_of);
+        shade_alike(lobe, lights, view_of, counted);
     } else {
         shade_sorted(lobe, lights, view_of);
     }
 }
 
 template <class Lights>
-void LobeBatch::shade_alike(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of) {
+void LobeBatch::shade_alike(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool counted) {
     const std::size_t count = view_of.size();
     if (const std::size_t known = all_.size(); known < count) {
         all_.resize(count);
@@ -71,8 +72,8 @@ void LobeBatch::shade_alike(LobeViews& lobe, Lights& lights, std::span<const std
     item_values_ = values_;
     const int order = lobe.order(0);
     by_harmonics(lobe, lights, order);
-    for (std::size_t i = 0; i < count; ++i) {
-        values_[i] = std::max(0.0F, values_[i]);
+    std::transform(values_.begin(), values_.end(), values_.begin(), [](float value) { return std::max(0.0F, value); });
+    for (std::size_t i = 0; counted && i < count; ++i) {
         efforts_[i] = lies_below(lights, i) ? 0 : order;
     }
 }

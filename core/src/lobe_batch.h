@@ -24,9 +24,10 @@ enum class Way { nothing, mirror, harmonics, cubature };
 /// Keeps its memory from call to call; one per thread.
 class LobeBatch {
   public:
-    /// Circle i, clipped by the horizon, is seen by view view_of[i].
-    void shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of);
-    void shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of);
+    /// Circle i, clipped by the horizon, is seen by view view_of[i]. counted: whether anything but values() will be
+    /// asked for.
+    void shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of, bool counted);
+    void shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of, bool counted);
 
     // Of the last call:
     /// The reflected radiance of each light of unit radiance, without the lobe's scale, ≥ 0.
@@ -45,10 +46,10 @@ class LobeBatch {
     static constexpr std::size_t kKeys = kHarmonics + kMaxOrder + 1;
 
     template <class Lights>
-    void shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of);
+    void shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool counted);
     /// All by harmonics of the only order.
     template <class Lights>
-    void shade_alike(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of);
+    void shade_alike(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool counted);
     template <class Lights>
     void shade_sorted(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of);
 

@@ -93,9 +93,9 @@ void Unshadowed::integrate(const ShadingPoints& points, std::span<const std::uin
     }
     for (std::size_t lobe = 0; lobe < views_.lobe_count(); ++lobe) {
         if (std::holds_alternative<PolygonLight>(light)) {
-            batch_.shade(views_.lobe(lobe), polygons_, seen_by_);
+            batch_.shade(views_.lobe(lobe), polygons_, seen_by_, true);
         } else {
-            batch_.shade(views_.lobe(lobe), circles_.arrays(), seen_by_);
+            batch_.shade(views_.lobe(lobe), circles_.arrays(), seen_by_, true);
         }
         float* values = &values_[(light_index * lobe_stride_ + lobe) * point_count_];
         for (std::size_t k = 0; k < seen_by_.size(); ++k) {

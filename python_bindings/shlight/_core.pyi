@@ -40,6 +40,7 @@ def shade_spheres(
     order: int,
     tolerance: float,
     threads: int,
+    with_effort: bool,
 ) -> tuple[NDArray[np.float32], NDArray[np.int32]]: ...
 def shade_polygons(
     vertices: _Floats,
@@ -48,6 +49,7 @@ def shade_polygons(
     order: int,
     tolerance: float,
     threads: int,
+    with_effort: bool,
 ) -> tuple[NDArray[np.float32], NDArray[np.int32]]: ...
 
 class MethodOptions:

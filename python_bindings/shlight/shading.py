@@ -97,7 +97,9 @@ def shade_spheres(
     shape = broadcast(centers=c.shape[:-1], radii=r.shape, cos_theta_o=cosines.shape)
     if method == "auto":
         settings = _settings(order, tolerance, threads, samples, seed, sampling)
-        flat = _core.shade_spheres(rows(c, shape, 3), rows(r, shape), bsdf, _views(cosines, shape), *settings)
+        flat = _core.shade_spheres(
+            rows(c, shape, 3), rows(r, shape), bsdf, _views(cosines, shape), *settings, return_effort
+        )
     else:
         lights = (rows(c, shape, 3), rows(r, shape), bsdf, rows(cosines.astype(np.float64), shape))
         options = shading_options(
@@ -165,7 +167,7 @@ def shade_polygons(
     polygons = rows(v, shape, *v.shape[-2:])
     if method == "auto":
         settings = _settings(order, tolerance, threads, samples, seed, sampling)
-        flat = _core.shade_polygons(polygons, bsdf, _views(cosines, shape), *settings)
+        flat = _core.shade_polygons(polygons, bsdf, _views(cosines, shape), *settings, return_effort)
     else:
         lights = (polygons, bsdf, rows(cosines.astype(np.float64), shape))
         options = shading_options(

@@ -11,18 +11,24 @@
 
 namespace shlight::python {
 
-/// Radiance (count, 3) and effort (count), as they are returned and as they are filled.
+/// Radiance (count, 3) and, if wanted, effort (count), as they are returned and as they are filled.
 struct Shaded {
     Array<float> radiance;
     Array<std::int32_t> effort;
     std::span<Rgb> colors;
     std::span<std::int32_t> efforts;
 
-    explicit Shaded(std::size_t count)
-        : radiance({static_cast<py::ssize_t>(count), py::ssize_t{3}}), effort(static_cast<py::ssize_t>(count)) {
+    explicit Shaded(std::size_t count, bool with_effort = true)
+        : radiance({static_cast<py::ssize_t>(count), py::ssize_t{3}}),
+          effort(static_cast<py::ssize_t>(with_effort ? count : 0)) {
         static_assert(sizeof(Rgb) == 3 * sizeof(float));
         colors = {reinterpret_cast<Rgb*>(radiance.mutable_data()), count};
-        efforts = {effort.mutable_data(), count};
+        efforts = {effort.mutable_data(), with_effort ? count : 0};
+    }
+
+    /// Of a part of the lights; empty without effort.
+    std::span<std::int32_t> effort_of(std::size_t first, std::size_t count) const {
+        return efforts.empty() ? efforts : efforts.subspan(first, count);
     }
 
     py::tuple result() const { return py::make_tuple(radiance, effort); }

@@ -36,30 +36,30 @@ std::span<const U> part_of(std::span<const U> views, std::size_t first, std::siz
 /// cos_theta_o: one for each light, or one for all.
 template <class T, class U>
 py::tuple spheres(const Array<T>& centers, const Array<T>& radii, const Bsdf& bsdf, const Array<U>& cos_theta_o,
-                  int order, double tolerance, int threads) {
+                  int order, double tolerance, int threads, bool with_effort) {
     const auto c = vectors("centers", centers);
     const auto r = values(radii);
     const auto views = values(cos_theta_o);
-    const Shaded out(c.size());
+    const Shaded out(c.size(), with_effort);
     shade_parts(c.size(), bsdf, {order, tolerance}, threads,
                 [&](LightShader& shader, std::size_t first, std::size_t count) {
                     shader.spheres(c.subspan(first, count), r.subspan(first, count), part_of(views, first, count),
-                                   out.colors.subspan(first, count), out.efforts.subspan(first, count));
+                                   out.colors.subspan(first, count), out.effort_of(first, count));
                 });
     return out.result();
 }
 
 template <class T, class U>
 py::tuple polygons(const Array<T>& vertices, const Bsdf& bsdf, const Array<U>& cos_theta_o, int order, double tolerance,
-                   int threads) {
+                   int threads, bool with_effort) {
     const auto v = vectors("vertices", vertices);
     const auto k = static_cast<std::size_t>(vertices.shape(1));
     const auto views = values(cos_theta_o);
-    const Shaded out(v.size() / k);
+    const Shaded out(v.size() / k, with_effort);
     shade_parts(v.size() / k, bsdf, {order, tolerance}, threads,
                 [&](LightShader& shader, std::size_t first, std::size_t count) {
                     shader.polygons(v.subspan(first * k, count * k), static_cast<int>(k), part_of(views, first, count),
-                                    out.colors.subspan(first, count), out.efforts.subspan(first, count));
+                                    out.colors.subspan(first, count), out.effort_of(first, count));
                 });
     return out.result();
 }
@@ -68,9 +68,10 @@ template <class T, class U>
 void bind(py::module_& m) {
     m.def("shade_spheres", &spheres<T, U>, py::arg("centers").noconvert(), py::arg("radii").noconvert(),
           py::arg("bsdf"), py::arg("cos_theta_o").noconvert(), py::arg("order"), py::arg("tolerance"),
-          py::arg("threads"));
+          py::arg("threads"), py::arg("with_effort"));
     m.def("shade_polygons", &polygons<T, U>, py::arg("vertices").noconvert(), py::arg("bsdf"),
-          py::arg("cos_theta_o").noconvert(), py::arg("order"), py::arg("tolerance"), py::arg("threads"));
+          py::arg("cos_theta_o").noconvert(), py::arg("order"), py::arg("tolerance"), py::arg("threads"),
+          py::arg("with_effort"));
 }
 
 }  // namespace

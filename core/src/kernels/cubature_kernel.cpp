@@ -63,8 +63,7 @@ inline constexpr double kFlatness = 1.2;
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 namespace {
 
 /// A circle and a view, rounded to float where that loses nothing.
@@ -304,8 +303,7 @@ void integrate_caps_in_lanes(const GgxShape& shape, const CircleArrays& circles,
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

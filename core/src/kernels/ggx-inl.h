@@ -16,8 +16,7 @@
 #include "shlight/lobe_shape.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 
 /// F at ω_i·h = cosine: fresnel_factor() in lanes.
 template <Fresnel kFresnel, class D>
@@ -89,8 +88,7 @@ class GgxLanes {
     double ior_;
 };
 
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

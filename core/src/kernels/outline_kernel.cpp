@@ -17,8 +17,7 @@
 #include "kernels/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 namespace {
 
 template <class D, Fresnel kFresnel>
@@ -150,8 +149,7 @@ void outline_densities_in_lanes(const OutlineBell& bell, const OutlinePath& path
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -17,8 +17,7 @@
 #include "warped_row.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 namespace {
 
 constexpr std::size_t kLanes = kLaneCount<Floats>;
@@ -138,9 +137,12 @@ void warp_views_in_lanes(double alpha, const ViewOutput& views, std::size_t coun
     }
 }
 
-void interpolate_in_lanes(const float* table, std::size_t width, const std::uint32_t* rows, const float* weights,
-                          std::span<const std::uint32_t> views, float* out, std::size_t stride) {
+/// kWidth: of the table, so that the loop over it unrolls; or 0.
+template <std::size_t kWidth>
+void interpolate(const float* table, std::size_t any_width, const std::uint32_t* rows, const float* weights,
+                 std::span<const std::uint32_t> views, float* out, std::size_t stride) {
     const Floats d;
+    const std::size_t width = kWidth == 0 ? any_width : kWidth;
     for (const std::uint32_t view : views) {
         const float* from = table + rows[view] * width;
         const float* w = weights + std::size_t{4} * view;
@@ -149,7 +151,7 @@ void interpolate_in_lanes(const float* table, std::size_t width, const std::uint
         const auto w1 = hn::Set(d, w[1]);
         const auto w2 = hn::Set(d, w[2]);
         const auto w3 = hn::Set(d, w[3]);
-        for (std::size_t i = 0; i < width; i += kLaneCount<Floats>) {
+        for (std::size_t i = 0; i < width; i += kLanes) {
             auto sum = hn::Mul(w0, hn::Load(d, from + i));
             sum = hn::MulAdd(w1, hn::Load(d, from + width + i), sum);
             sum = hn::MulAdd(w2, hn::Load(d, from + 2 * width + i), sum);
@@ -159,9 +161,25 @@ void interpolate_in_lanes(const float* table, std::size_t width, const std::uint
     }
 }
 
+void interpolate_in_lanes(const float* table, std::size_t width, const std::uint32_t* rows, const float* weights,
+                          std::span<const std::uint32_t> views, float* out, std::size_t stride) {
+    // Orders up to 4, 6, 8 and 16, and heads.
+    switch (width) {
+        case 16:
+            return interpolate<16>(table, width, rows, weights, views, out, stride);
+        case 32:
+            return interpolate<32>(table, width, rows, weights, views, out, stride);
+        case 48:
+            return interpolate<48>(table, width, rows, weights, views, out, stride);
+        case 144:
+            return interpolate<144>(table, width, rows, weights, views, out, stride);
+        default:
+            return interpolate<0>(table, width, rows, weights, views, out, stride);
+    }
+}
+
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -18,8 +18,7 @@
 #include "kernels/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 
 /// As many floats as there are lanes for double.
 using HalfFloats = hn::Rebind<float, Doubles>;
@@ -104,8 +103,7 @@ class Same {
     V<Floats> load(const float* values) const { return hn::Set(Floats(), *values); }
 };
 
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif
