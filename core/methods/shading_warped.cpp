@@ -22,9 +22,7 @@ class WarpedHarmonics : public HarmonicLobe {
         if (polygon.empty()) {
             return {0, 0};
         }
-        return {lobe().warped ? shade_region(PolygonRegion<double>(polygon, warp_), lobe().terms, lobe().order)
-                              : shade_polygon(polygon, Warp(), lobe().terms, lobe().order),
-                0};
+        return {shade_polygon(polygon, lobe().warped ? warp_ : Warp(), lobe().terms, lobe().order), 0};
     }
 
   private:

@@ -9,6 +9,8 @@
 #include <type_traits>
 
 #include "checks.h"
+#include "kernels/polygon_rows.h"
+#include "kernels/polygon_views.h"
 #include "light_checks.h"
 #include "polygon_boundary.h"
 #include "polygon_cubature.h"
@@ -21,11 +23,6 @@
 namespace shlight {
 namespace {
 
-/// Below this solid angle Ω the recurrences' contributions, each of order one, cancel to too few digits: their sum is
-/// wrong by about 5e-16 / Ω of L_00.
-template <class T>
-constexpr double kSmallestForBoundary = std::is_same_v<T, float> ? 1e-6 : 1e-3;
-
 /// Closed forms lose as much, in the wider type.
 constexpr double kSmallestForClosedForm = 1e-8;
 
@@ -34,33 +31,15 @@ constexpr double kSmallestForClosedForm = 1e-8;
 template <class T>
 constexpr double kNarrowestForEdges = std::is_same_v<T, float> ? 1e-9 : 2e-3;
 
-/// Up to this order Gauss points on the edges are faster than the edges' recurrences, however many it takes.
-constexpr int kEdgePointsUpTo = 8;
-/// Up to this many points on an edge they are faster at any order; more where they feed one number.
-constexpr int kPointsForCoefficients = 15;
-constexpr int kPointsForShading = 22;
-/// Times as many where they go through the recurrences in float.
-constexpr double kFloatGain = 1.8;
-
-template <class T>
-bool edge_points_are_better(const PolygonRegion<Wider<T>>& region, int order, int points) {
-    if (order <= 2) {
-        return false;  // closed form, without either
-    }
-    if (order <= kEdgePointsUpTo || region.solid_angle() < kSmallestForBoundary<T>) {
-        return true;
-    }
-    const double limit = edge_points_in_float<T>(region) ? kFloatGain * points : points;
-    return edge_points<T>(region, order) <= limit * static_cast<double>(region.arcs().size());
-}
-
 template <class T>
 bool is_narrow(const SphericalPolygon<Wider<T>>& polygon, const PolygonRegion<Wider<T>>& region) {
     return polygon.solid_angle() < kNarrowestForEdges<T> * region.outline();
 }
 
-template <class T>
-void integrate(const SphericalPolygon<Wider<T>>& polygon, int order, T* coefficients, PolygonMethod method) {
+/// points(region, coefficients) is what takes Gauss points.
+template <class T, class Points>
+void integrate(const SphericalPolygon<Wider<T>>& polygon, int order, T* coefficients, PolygonMethod method,
+               const Points& points) {
     if (polygon.empty()) {
         std::fill_n(coefficients, coefficient_count(order), T(0));
         return;
@@ -77,44 +56,86 @@ void integrate(const SphericalPolygon<Wider<T>>& polygon, int order, T* coeffici
     if (method == PolygonMethod::boundary) {
         boundary_coefficients(region, order, coefficients);
     } else if (method == PolygonMethod::edge_points) {
-        edge_point_coefficients(region, order, coefficients);
+        points(region, coefficients);
     } else if (order > 2 && is_narrow<T>(polygon, region)) {  // up to order 2 there is a closed form
         polygon_by_cubature(polygon, order, coefficients);
     } else if (order <= kLowOrder && polygon.solid_angle() > kSmallestForClosedForm) {
         low_band_coefficients(region, order, coefficients);
     } else {
-        region_coefficients(region, order, coefficients);
+        points(region, coefficients);
     }
 }
 
 template <class T>
-SphericalPolygon<Wider<T>> clipped(std::span<const Vec3<T>> vertices) {
+void integrate(const SphericalPolygon<Wider<T>>& polygon, int order, T* coefficients, PolygonMethod method) {
+    integrate(polygon, order, coefficients, method,
+              [order](const PolygonRegion<Wider<T>>& region, T* to) { edge_point_coefficients(region, order, to); });
+}
+
+template <class T>
+SphericalPolygon<Wider<T>> spherical(std::span<const Vec3<T>> vertices, bool clip) {
     const std::vector<Vec3<Wider<T>>> exact(vertices.begin(), vertices.end());
-    return {exact, true};
+    return {exact, clip};
+}
+
+template <class T>
+void check_each(std::span<const Vec3<T>> vertices, std::size_t vertex_count) {
+    std::vector<Vec3<Wider<T>>> exact(vertex_count);
+    for (std::size_t first = 0; first < vertices.size(); first += vertex_count) {
+        std::copy_n(vertices.begin() + static_cast<std::ptrdiff_t>(first), vertex_count, exact.begin());
+        check_polygon<T>(exact);
+    }
+}
+
+/// In lanes, and one by one what is too narrow for them. checked: the vertices have been checked before.
+void automatic_coefficients(std::span<const Vec3f> vertices, std::size_t vertex_count, int order, bool clip,
+                            float* coefficients, bool checked) {
+    const std::vector<Vec3d> exact(vertices.begin(), vertices.end());
+    const auto k = static_cast<int>(vertex_count);
+    if (!checked && !polygons_are_sound(exact, k)) {
+        check_each(vertices, vertex_count);
+    }
+    const auto row = static_cast<std::size_t>(coefficient_count(order));
+    for (const std::uint32_t i : polygon_rows(exact, k, order, clip, coefficients)) {
+        integrate(spherical(vertices.subspan(i * vertex_count, vertex_count), clip), order, coefficients + i * row,
+                  PolygonMethod::automatic);
+    }
+}
+
+/// One polygon after the other is taken apart in extended precision, and many give their arcs to the lanes.
+void automatic_coefficients(std::span<const Vec3d> vertices, std::size_t vertex_count, int order, bool clip,
+                            double* coefficients, bool checked) {
+    if (!checked) {
+        check_each(vertices, vertex_count);
+    }
+    constexpr std::size_t kChunk = 128;
+    const auto row = static_cast<std::size_t>(coefficient_count(order));
+    const std::size_t count = vertices.size() / vertex_count;
+    ArcLists<double> arcs;
+    for (std::size_t first = 0; first < count; first += kChunk) {
+        double* const rows = coefficients + first * row;
+        arcs.clear();
+        for (std::size_t i = 0; i < std::min(kChunk, count - first); ++i) {
+            const auto polygon = vertices.subspan((first + i) * vertex_count, vertex_count);
+            integrate(spherical(polygon, clip), order, rows + i * row, PolygonMethod::automatic,
+                      [&](const PolygonRegion<long double>& region, double* to) {
+                          start_edge_points(region, order, i, arcs, to);
+                      });
+        }
+        add_arc_coefficients(arcs, true, order, rows);
+    }
 }
 
 }  // namespace
 
 template <class T>
-void region_coefficients(const PolygonRegion<Wider<T>>& region, int order, T* coefficients) {
-    if (edge_points_are_better<T>(region, order, kPointsForCoefficients)) {
-        edge_point_coefficients(region, order, coefficients);
-    } else {
-        boundary_coefficients(region, order, coefficients);
-    }
-}
-
-template <class T>
-T shade_region(const PolygonRegion<Wider<T>>& region, const T* lobe_terms, int order) {
-    return edge_points_are_better<T>(region, order, kPointsForShading) ? shade_by_edge_points(region, lobe_terms, order)
-                                                                       : shade_by_boundary(region, lobe_terms, order);
-}
-
-template <class T>
 void polygon_coefficients(std::span<const Vec3<T>> vertices, int order, bool clip, T* coefficients,
                           PolygonMethod method) {
-    const std::vector<Vec3<Wider<T>>> exact(vertices.begin(), vertices.end());
-    integrate(SphericalPolygon<Wider<T>>(exact, clip), order, coefficients, method);
+    if (method == PolygonMethod::automatic) {
+        automatic_coefficients(vertices, vertices.size(), order, clip, coefficients, true);
+    } else {
+        integrate(spherical(vertices, clip), order, coefficients, method);
+    }
 }
 
 template <class T>
@@ -127,23 +148,22 @@ void polygon_coefficients(std::span<const Vec3<T>> vertices, int vertex_count, i
     const std::size_t count = vertices.size() / k;
     check_size("vertices", vertices.size(), count * k);
     check_size("coefficients", coefficients.size(), count * row);
-    std::vector<Vec3<Wider<T>>> exact(k);
+    if (method == PolygonMethod::automatic) {
+        automatic_coefficients(vertices, k, order, clip, coefficients.data(), false);
+        return;
+    }
+    check_each(vertices, k);
     for (std::size_t i = 0; i < count; ++i) {
-        const auto polygon = vertices.subspan(i * k, k);
-        std::transform(polygon.begin(), polygon.end(), exact.begin(),
-                       [](const Vec3<T>& v) { return Vec3<Wider<T>>(v); });
-        check_polygon<T>(exact);
-        integrate(SphericalPolygon<Wider<T>>(exact, clip), order, coefficients.data() + i * row, method);
+        integrate(spherical(vertices.subspan(i * k, k), clip), order, coefficients.data() + i * row, method);
     }
 }
 
 template <class T>
 void warped_polygon_coefficients(std::span<const Vec3<T>> vertices, const Warp& warp, int order, T* coefficients) {
-    const SphericalPolygon<Wider<T>> polygon = clipped<T>(vertices);
     if (warp.is_identity()) {
-        integrate(polygon, order, coefficients, PolygonMethod::automatic);
+        polygon_coefficients(vertices, order, true, coefficients, PolygonMethod::automatic);
     } else {
-        region_coefficients(PolygonRegion<Wider<T>>(polygon, warp), order, coefficients);
+        edge_point_coefficients(PolygonRegion<Wider<T>>(spherical(vertices, true), warp), order, coefficients);
     }
 }
 
@@ -151,7 +171,7 @@ template <class T>
 T shade_polygon(const SphericalPolygon<Wider<T>>& polygon, const Warp& warp, const T* lobe_terms, int order) {
     const PolygonRegion<Wider<T>> region(polygon, warp);
     if (!warp.is_identity() || order <= 2 || !is_narrow<T>(polygon, region)) {
-        return shade_region(region, lobe_terms, order);
+        return shade_by_edge_points(region, lobe_terms, order);
     }
     std::array<T, coefficient_count(kMaxOrder)> coefficients;
     polygon_by_cubature(polygon, order, coefficients.data());
@@ -160,13 +180,9 @@ T shade_polygon(const SphericalPolygon<Wider<T>>& polygon, const Warp& warp, con
 
 template <class T>
 T shade_polygon(std::span<const Vec3<T>> vertices, const Warp& warp, const T* lobe_terms, int order) {
-    return shade_polygon(clipped<T>(vertices), warp, lobe_terms, order);
+    return shade_polygon(spherical(vertices, true), warp, lobe_terms, order);
 }
 
-template void region_coefficients(const PolygonRegion<double>&, int, float*);
-template void region_coefficients(const PolygonRegion<long double>&, int, double*);
-template float shade_region(const PolygonRegion<double>&, const float*, int);
-template double shade_region(const PolygonRegion<long double>&, const double*, int);
 template void polygon_coefficients(std::span<const Vec3f>, int, bool, float*, PolygonMethod);
 template void polygon_coefficients(std::span<const Vec3d>, int, bool, double*, PolygonMethod);
 template void polygon_coefficients(std::span<const Vec3f>, int, int, bool, std::span<float>, PolygonMethod);

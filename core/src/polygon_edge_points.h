@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
 // Regions bounded by circular arcs, by Stokes' theorem and Gauss points on the arcs (docs/algorithms.md, "Polygons").
-// T is float or double; nearly everything runs in double for either.
+// T is float or double; nearly everything runs in double for either. One region at a time: kernels/polygon_rows.h and
+// polygon_shading_kernel.h take many.
 #pragma once
 
+#include "kernels/arc_rows.h"
 #include "polygon_region.h"
 
 namespace shlight {
+
+/// Of a region bounded by great circles: bands 0 and 1 now, zeros for the others, and its arcs under its number into
+/// lists, for add_arc_coefficients.
+void start_edge_points(const PolygonRegion<long double>& region, int order, std::size_t number, ArcLists<double>& arcs,
+                       double* coefficients);
 
 /// order² coefficients.
 template <class T>

@@ -171,6 +171,32 @@ class ArcLanes {
     V<D> half_, cosine_, sine_;
 };
 
+/// The columns of HorizonRow.
+template <class R>
+HWY_INLINE std::array<V<Lanes<R>>, 8> horizon_columns(const RowPointers<const R>& rows) {
+    const Lanes<R> d;
+    std::array<V<Lanes<R>>, 8> v;
+    for (std::size_t c = 0; c < v.size(); c += kSquare<Lanes<R>>) {
+        const auto columns = load_columns(d, rows.data(), c);
+        for (std::size_t j = 0; j < columns.size(); ++j) {
+            v[c + j] = columns[j];
+        }
+    }
+    return v;
+}
+
+/// Stores a vector's 128-bit blocks at column `column` of every kSquare-th row.
+template <class D, class T>
+HWY_INLINE void store_blocks(D d, V<D> v, T* const* rows, std::size_t column) {
+    if constexpr (hn::MaxLanes(d) > kSquare<D>) {
+        const hn::Half<D> half;
+        store_blocks(half, hn::LowerHalf(half, v), rows, column);
+        store_blocks(half, hn::UpperHalf(half, v), rows + hn::MaxLanes(half), column);
+    } else {
+        hn::StoreU(v, d, *rows + column);
+    }
+}
+
 /// Pointers to a list's rows from `first` on, one a lane; the last is repeated.
 template <class R, class Row>
 HWY_INLINE RowPointers<const R> row_pointers(const RowList<Row>& rows, std::size_t first) {

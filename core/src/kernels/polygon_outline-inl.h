@@ -67,6 +67,7 @@ struct PolygonLanes {
 template <class R>
 struct RegionLanes {
     V<Lanes<R>> solid_angle, outline;
+    V<Lanes<R>> clearness;     ///< square of what the solid angle's angles are measured by: its rounding ÷ this counts
     Vectors3<R> first_moment;  ///< ∫ u du
 };
 
@@ -281,7 +282,7 @@ class Outline {
     HWY_INLINE RegionLanes<R> region() {
         const D d;
         const auto zero = hn::Zero(d);
-        RegionLanes<R> region = {zero, zero, {zero, zero, zero}};
+        RegionLanes<R> region = {zero, zero, all(d, 1), {zero, zero, zero}};
         const End first = end(lanes_.edges.front());
         reference_ = kClipped ? crossing(-1, zero) : first.u;
         re_ = all(d, 1);
@@ -388,6 +389,7 @@ class Outline {
         middle = scaled<R>(middle, over);
         const auto fan_re = hn::IfThenElse(kept, hn::Add(cosine, dot<R>(reference_, middle)), one);
         const auto fan_im = hn::IfThenElseZero(kept, hn::Mul(sine, dot<R>(reference_, pole)));
+        region.clearness = hn::Min(region.clearness, hn::MulAdd(fan_re, fan_re, hn::Mul(fan_im, fan_im)));
         const auto next = hn::MulSub(re_, fan_re, hn::Mul(im_, fan_im));
         im_ = hn::MulAdd(re_, fan_im, hn::Mul(im_, fan_re));
         re_ = next;

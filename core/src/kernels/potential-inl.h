@@ -223,13 +223,7 @@ template <class R>
 HWY_INLINE V<Lanes<R>> horizon_integral(const R* slopes, std::size_t order, const RowPointers<const R>& rows) {
     const Lanes<R> d;
     constexpr std::size_t kWidth = kLaneCount<Lanes<R>>;
-    std::array<V<Lanes<R>>, 8> v;
-    for (std::size_t c = 0; c < 8; c += kSquare<Lanes<R>>) {
-        const auto columns = load_columns(d, rows.data(), c);
-        for (std::size_t j = 0; j < kSquare<Lanes<R>>; ++j) {
-            v[c + j] = columns[j];
-        }
-    }
+    const auto v = horizon_columns<R>(rows);
     auto from_re = v[0];
     auto from_im = v[1];
     auto to_re = v[2];
