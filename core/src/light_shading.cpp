@@ -224,15 +224,21 @@ void shade_polygons(std::span<const Vec3d> vertices, int vertex_count, const Bsd
     LightShader(bsdf, settings).polygons(vertices, vertex_count, cos_theta_o, radiance, effort);
 }
 
-#define SHLIGHT_INSTANTIATE(T, U)                                                                          \
-    template void LightShader::spheres(std::span<const Vec3<T>>, std::span<const T>, std::span<const U>,   \
-                                       std::span<Rgb>, std::span<std::int32_t>);                           \
-    template void LightShader::polygons(std::span<const Vec3<T>>, int, std::span<const U>, std::span<Rgb>, \
-                                        std::span<std::int32_t>);
-SHLIGHT_INSTANTIATE(float, float)
-SHLIGHT_INSTANTIATE(float, double)
-SHLIGHT_INSTANTIATE(double, float)
-SHLIGHT_INSTANTIATE(double, double)
-#undef SHLIGHT_INSTANTIATE
+template void LightShader::spheres(std::span<const Vec3<float>>, std::span<const float>, std::span<const float>,
+                                   std::span<Rgb>, std::span<std::int32_t>);
+template void LightShader::polygons(std::span<const Vec3<float>>, int, std::span<const float>, std::span<Rgb>,
+                                    std::span<std::int32_t>);
+template void LightShader::spheres(std::span<const Vec3<float>>, std::span<const float>, std::span<const double>,
+                                   std::span<Rgb>, std::span<std::int32_t>);
+template void LightShader::polygons(std::span<const Vec3<float>>, int, std::span<const double>, std::span<Rgb>,
+                                    std::span<std::int32_t>);
+template void LightShader::spheres(std::span<const Vec3<double>>, std::span<const double>, std::span<const float>,
+                                   std::span<Rgb>, std::span<std::int32_t>);
+template void LightShader::polygons(std::span<const Vec3<double>>, int, std::span<const float>, std::span<Rgb>,
+                                    std::span<std::int32_t>);
+template void LightShader::spheres(std::span<const Vec3<double>>, std::span<const double>, std::span<const double>,
+                                   std::span<Rgb>, std::span<std::int32_t>);
+template void LightShader::polygons(std::span<const Vec3<double>>, int, std::span<const double>, std::span<Rgb>,
+                                    std::span<std::int32_t>);
 
 }  // namespace shlight

@@ -32,6 +32,8 @@ class LightShader {
     ~LightShader();
     LightShader(LightShader&&) noexcept;
     LightShader& operator=(LightShader&&) noexcept;
+    LightShader(const LightShader&) = delete;
+    LightShader& operator=(const LightShader&) = delete;
 
     /// Sphere lights, from centre and radius in the shading frame. Throws std::invalid_argument naming the argument:
     /// sizes that do not fit, cos_theta_o outside [0, 1], and as sphere_coefficients does.
