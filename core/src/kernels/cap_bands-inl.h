@@ -37,8 +37,8 @@ class DegreeRow {
     alignas(64) T values_[static_cast<std::size_t>(kMaxOrder + 1) * kLaneCount<D>];
 };
 
-/// row[m] = base^m for m < count; what would be denormal is zero.
-template <class T>
+/// row[m] = base^m for m < count; kScaled: what would be denormal is zero.
+template <class T, bool kScaled>
 HWY_INLINE void powers_in_lanes(V<Lanes<T>> base, std::size_t count, DegreeRow<T>& row) {
     const Lanes<T> d;
     const auto least = hn::Set(d, std::numeric_limits<T>::min() / std::numeric_limits<T>::epsilon());
@@ -46,7 +46,7 @@ HWY_INLINE void powers_in_lanes(V<Lanes<T>> base, std::size_t count, DegreeRow<T
     for (std::size_t m = 0; m < count; ++m) {
         row.put(m, power);
         power = hn::Mul(power, base);
-        power = hn::IfThenElseZero(hn::Gt(power, least), power);
+        power = kScaled ? hn::IfThenElseZero(hn::Gt(power, least), power) : power;
     }
 }
 
@@ -99,24 +99,22 @@ struct ArcLanes {
         const auto cosine = cap.cos_arc;
         const auto sine = cap.sin_arc;
         const auto square = hn::Mul(sine, sine);
+        const CapDegree<T>* degrees = CapConstants<T>::get().degrees.data();
         weight.put(0, hn::Add(cap.arc, cap.arc));
         moment.put(0, hn::Zero(d));
-        moment.put(1, first_moment(cap));
         auto re = cosine;
         auto im = sine;
         auto difference = hn::Zero(d);
         for (std::size_t m = 1; m < order; ++m) {
-            weight.put(m, hn::Mul(all(d, 4 / static_cast<double>(m)), im));
-            const auto over = static_cast<double>(m * m) - 1;
-            if (m > 1) {
-                moment.put(m, hn::Mul(all(d, 2 / over), difference));
-            }
-            const auto added = hn::Mul(hn::Mul(all(d, static_cast<double>(m + 1)), square), im);
+            weight.put(m, hn::Mul(hn::Set(d, degrees[m].weight), im));
+            moment.put(m, hn::Mul(hn::Set(d, degrees[m].moment), difference));
+            const auto added = hn::Mul(hn::Mul(hn::Set(d, degrees[m].next), square), im);
             difference = hn::MulAdd(cosine, difference, added);
             const auto next = hn::MulSub(re, cosine, hn::Mul(im, sine));
             im = hn::MulAdd(re, sine, hn::Mul(im, cosine));
             re = next;
         }
+        moment.put(1, first_moment(cap));
     }
 
   private:
@@ -143,9 +141,11 @@ struct ArcLanes {
 /// Circles that do not cross: the light's own zonal integrals, the horizon's, or, where both cover the sphere between
 /// them, the sum of both less the whole sphere, which has no bands above 0. The cap's arc and edge, 0 or π, tell.
 ///
-/// visit.term(m, N_m) for m = l … 0 and visit.close(l, share, extra): the integral of degree m is share · N_m, and
-/// `extra` more for m = 0.
-template <class T, bool kScaled>
+/// band = visit.open(l), visit.term(band, m, N_m) for m = l … 0 and visit.close(band, l, share, extra): the integral of
+/// degree m is share · N_m, and `extra` more for m = 0.
+///
+/// kHorizon: whether caps may contain the horizon; else `extra` is 0 and costs nothing.
+template <class T, bool kScaled, bool kHorizon>
 class UncrossedBands {
     using D = Lanes<T>;
 
@@ -156,7 +156,7 @@ class UncrossedBands {
           horizon_(cap.height, cap.horizon_sine),
           turn_(kScaled ? cap.cos_tilt : hn::Div(cap.cos_tilt, cap.sin_tilt)),
           square_(hn::Mul(cap.sin_tilt, cap.sin_tilt)) {
-        powers_in_lanes<T>(cap.sin_tilt, order, sine_powers_);
+        powers_in_lanes<T, kScaled>(cap.sin_tilt, order, sine_powers_);
     }
 
     template <class Visit>
@@ -165,21 +165,26 @@ class UncrossedBands {
         const CapConstants<T>& constants = CapConstants<T>::get();
         const CapBand<T>& band = constants.bands[l];
         const CapStep<T>* step = &constants.steps[at(static_cast<int>(l), 0)];
+        const auto turn = turn_;
+        auto sums = visit.open(l);
         auto above = hn::Zero(d);
         auto n = hn::Set(d, band.diagonal);
         n = kScaled ? n : hn::Mul(n, sine_powers_[l]);
         for (std::size_t m = l; m > 0; --m) {
-            visit.term(m, kScaled ? hn::Mul(n, sine_powers_[m]) : n);
+            visit.term(sums, m, kScaled ? hn::Mul(n, sine_powers_[m]) : n);
             auto fall = hn::Mul(hn::Set(d, step[m].down_fall), above);
             fall = kScaled ? hn::Mul(fall, square_) : fall;
             above = n;
-            n = hn::MulSub(hn::Mul(hn::Set(d, step[m].down_climb), turn_), n, fall);
+            n = hn::MulSub(hn::Mul(hn::Set(d, step[m].down_climb), turn), n, fall);
         }
-        visit.term(0, n);
+        visit.term(sums, 0, n);
         const auto scale = hn::Set(d, 2 * band.inverse_laplace);
         const auto share = hn::Mul(hn::Mul(scale, cap_.edge), light_.next(l));
-        const auto extra = hn::Mul(hn::Mul(scale, cap_.arc), horizon_.next(l));
-        visit.close(l, share, hn::Mul(extra, hn::Set(d, band.at_pole)));
+        auto extra = hn::Zero(d);
+        if constexpr (kHorizon) {
+            extra = hn::Mul(hn::Mul(hn::Mul(scale, cap_.arc), horizon_.next(l)), hn::Set(d, band.at_pole));
+        }
+        visit.close(sums, l, share, extra);
     }
 
   private:
@@ -209,16 +214,16 @@ class CrossedBands {
           arc_(cap, order),
           turn_(kScaled ? cap.cos_tilt : hn::Div(cap.cos_tilt, cap.sin_tilt)),
           square_(hn::Mul(cap.sin_tilt, cap.sin_tilt)) {
-        powers_in_lanes<T>(cap.sin_tilt, order, sine_powers_);
+        powers_in_lanes<T, kScaled>(cap.sin_tilt, order, sine_powers_);
         if constexpr (!kPlane) {
             horizon_turn_ = kScaled ? cap.height : hn::Div(cap.height, cap.horizon_sine);
             horizon_square_ = hn::Mul(cap.horizon_sine, cap.horizon_sine);
-            powers_in_lanes<T>(cap.horizon_sine, order, horizon_powers_);
+            powers_in_lanes<T, kScaled>(cap.horizon_sine, order, horizon_powers_);
         }
     }
 
-    /// visit.term(m, N_m, x_m) for m = 0 … l, then visit.close(l, g, share, *this): the integral of degree m is
-    /// g x_m + share N_m. l ≥ 1.
+    /// band = visit.open(l), visit.term(band, m, N_m, x_m) for m = 0 … l, visit.close(band, l, g, share, *this): the
+    /// integral of degree m is g x_m + share N_m. l ≥ 1.
     template <class Visit>
     HWY_INLINE void solve(std::size_t l, Visit& visit) {
         const D d;
@@ -232,12 +237,13 @@ class CrossedBands {
         auto green = hn::Div(hn::Set(d, band.casoratian), hn::MulAdd(n0, n0, n1n1));
         green = kScaled ? hn::Mul(green, cap_.sin_tilt) : green;
         green = kPlane ? green : hn::Mul(green, cap_.horizon_sine);
-        const auto dot = hn::Mul(go_up(l, steps, visit), green);
+        auto sums = visit.open(l);
+        const auto dot = hn::Mul(go_up(l, steps, visit, sums), green);
         // ∫ P_l(ω·L): Stokes on the Laplacian. Along the light's edge ω·L is constant, along the horizon it is expanded
         // by the addition theorem.
         const auto zonal = hn::MulAdd(hn::Add(cap_.edge, cap_.edge), light_.next(l), along_horizon);
         const auto missing = hn::Mul(hn::Set(d, band.four_pi_over), dot);
-        visit.close(l, green, hn::MulSub(zonal, hn::Set(d, band.inverse_laplace), missing), *this);
+        visit.close(sums, l, green, hn::MulSub(zonal, hn::Set(d, band.inverse_laplace), missing), *this);
     }
 
     /// N_m of the present band.
@@ -247,6 +253,7 @@ class CrossedBands {
     struct Down {
         V<D> n, n_above, h, h_above;  // N_m, N_{m+1}; the same on the horizon
         V<D> u, along;
+        V<D> turn;  // here, to stay in a register
     };
 
     HWY_INLINE V<D> lowered(V<D> here, V<D> above, const CapStep<T>& step, V<D> turn, V<D> square) {
@@ -292,7 +299,7 @@ class CrossedBands {
             s.h = h;
         }
         s.u = kScaled ? hn::Mul(s.u, cap_.sin_tilt) : s.u;
-        const auto n = lowered(s.n, s.n_above, step, turn_, square_);
+        const auto n = lowered(s.n, s.n_above, step, s.turn, square_);
         s.n_above = s.n;
         s.n = n;
     }
@@ -302,7 +309,7 @@ class CrossedBands {
         const D d;
         const auto zero = hn::Zero(d);
         const auto diagonal = hn::Set(d, band.diagonal);
-        Down s{kScaled ? diagonal : hn::Mul(diagonal, sine_powers_[l]), zero, zero, zero, zero, zero};
+        Down s{kScaled ? diagonal : hn::Mul(diagonal, sine_powers_[l]), zero, zero, zero, zero, zero, turn_};
         if constexpr (!kPlane) {
             s.h = kScaled ? diagonal : hn::Mul(diagonal, horizon_powers_[l]);
         }
@@ -332,11 +339,12 @@ class CrossedBands {
         V<D> q, q_below;
         V<D> p, u;
         V<D> dot;
+        V<D> turn;  // here, to stay in a register
     };
 
     /// Adds degree m > 0 and steps to m + 1.
     template <bool kValue, class Visit>
-    HWY_INLINE void up_site(std::size_t m, const CapStep<T>& step, Up& s, Visit& visit) {
+    HWY_INLINE void up_site(std::size_t m, const CapStep<T>& step, Up& s, Visit& visit, typename Visit::Band& sums) {
         const D d;
         s.p = kScaled ? hn::Mul(s.p, cap_.sin_tilt) : s.p;
         if constexpr (kValue) {
@@ -349,34 +357,34 @@ class CrossedBands {
         const auto n = null_[m];
         const auto x = hn::MulAdd(n, s.p, hn::Mul(s.q, s.u));
         s.dot = hn::MulAdd(full(n, m), x, s.dot);
-        visit.term(m, full(n, m), x);
+        visit.term(sums, m, full(n, m), x);
         auto fall = hn::Mul(hn::Set(d, step.up_fall), s.q_below);
         fall = kScaled ? hn::Mul(fall, square_) : fall;
-        const auto q = hn::MulSub(hn::Mul(hn::Set(d, step.up_climb), turn_), s.q, fall);
+        const auto q = hn::MulSub(hn::Mul(hn::Set(d, step.up_climb), s.turn), s.q, fall);
         s.q_below = s.q;
         s.q = q;
     }
 
     /// Visits every degree. Returns N · x with the weights 1, 2, 2, … of unnormalised cosine terms.
     template <class Visit>
-    HWY_INLINE V<D> go_up(std::size_t l, const CapStep<T>* steps, Visit& visit) {
+    HWY_INLINE V<D> go_up(std::size_t l, const CapStep<T>* steps, Visit& visit, typename Visit::Band& sums) {
         const D d;
         const auto n0 = null_[0];
         const auto u0 = above_[0];
         const auto q0 = hn::Neg(null_[1]);
         const auto x0 = hn::Mul(q0, u0);
-        visit.term(0, n0, x0);
-        Up s{n0, q0, hn::Zero(d), u0, hn::Zero(d)};
+        visit.term(sums, 0, n0, x0);
+        Up s{n0, q0, hn::Zero(d), u0, hn::Zero(d), turn_};
         std::size_t m = 1;
         if (l % 2 == 0) {
-            up_site<!kPlane>(1, steps[1], s, visit);
+            up_site<!kPlane>(1, steps[1], s, visit, sums);
             m = 2;
         }
         for (; m < l; m += 2) {
-            up_site<true>(m, steps[m], s, visit);
-            up_site<!kPlane>(m + 1, steps[m + 1], s, visit);
+            up_site<true>(m, steps[m], s, visit, sums);
+            up_site<!kPlane>(m + 1, steps[m + 1], s, visit, sums);
         }
-        up_site<true>(l, steps[l], s, visit);
+        up_site<true>(l, steps[l], s, visit, sums);
         return hn::MulAdd(n0, x0, hn::Add(s.dot, s.dot));
     }
 

@@ -33,23 +33,38 @@ HWY_INLINE bool are_in_a_row(const Indices& chosen) {
     return chosen[last] - chosen[0] == last && chosen[last] != chosen[last - 1];
 }
 
+/// A bit for each lane, the first lane's lowest.
+template <class D>
+HWY_INLINE std::uint32_t bits_of(D d, M<D> mask) {
+    std::array<std::uint8_t, 8> bytes{};
+    hn::StoreMaskBits(d, mask, bytes.data());
+    return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8;
+}
+
 /// Lights of a chunk that have the same needs.
 class LightList {
   public:
     static constexpr std::size_t kMost = 512;
 
-    /// Adds i, or leaves it: without a branch.
-    HWY_INLINE void add_if(bool wanted, std::size_t i) {
-        indices_[count_] = static_cast<std::uint32_t>(i);
-        count_ += wanted ? 1 : 0;
+    /// Adds those of the lights first … first + count - 1, at most 16, whose bits are set.
+    HWY_INLINE void add_block(std::size_t first, std::size_t count, std::uint32_t bits) {
+        if (bits == (1U << count) - 1) {
+            for (std::size_t j = 0; j < count; ++j) {
+                indices_[count_ + j] = static_cast<std::uint32_t>(first + j);
+            }
+            count_ += count;
+        } else if (bits != 0) {
+            for (std::size_t j = 0; j < count; ++j) {
+                add_if((bits >> j & 1U) != 0, static_cast<std::uint32_t>(first + j));
+            }
+        }
     }
     /// Adds the marked lanes; the last lights of a vector may be the same one.
-    template <class D, class T = Scalar<D>>
-    HWY_INLINE void add_marked(D d, M<D> marked, const Chosen<T>& chosen) {
-        alignas(64) std::array<T, kLaneCount<D>> marks;
-        hn::Store(hn::IfThenElseZero(marked, all(d, 1)), d, marks.data());
-        for (std::size_t lane = 0; lane < marks.size(); ++lane) {
-            add_if(marks[lane] != 0 && (lane == 0 || chosen[lane] != chosen[lane - 1]), chosen[lane]);
+    template <class D>
+    HWY_INLINE void add_marked(D d, M<D> marked, const Chosen<Scalar<D>>& chosen) {
+        const std::uint32_t bits = bits_of(d, marked);
+        for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
+            add_if((bits >> lane & 1U) != 0 && (lane == 0 || chosen[lane] != chosen[lane - 1]), chosen[lane]);
         }
     }
     void clear() { count_ = 0; }
@@ -67,6 +82,12 @@ class LightList {
     }
 
   private:
+    /// Without a branch.
+    HWY_INLINE void add_if(bool wanted, std::uint32_t light) {
+        indices_[count_] = light;
+        count_ += wanted ? 1 : 0;
+    }
+
     std::array<std::uint32_t, kMost + 1> indices_;
     std::size_t count_ = 0;
 };

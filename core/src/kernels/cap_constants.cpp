@@ -23,6 +23,12 @@ CapBand<T> band(int l) {
             r(l > 0 ? static_cast<double>(2 * l - 1) / l : 0)};
 }
 
+template <class T>
+CapDegree<T> degree(int m) {
+    const auto r = [](double x) { return static_cast<T>(x); };
+    return {r(m > 0 ? 4.0 / m : 0), r(m > 1 ? 2.0 / (m * m - 1) : 0), r(m + 1)};
+}
+
 /// P̄_l^m(0) for one band from the band two before; zero where l - m is odd, and for m = l + 1.
 using PlaneRow = std::array<double, kMaxOrder + 1>;
 
@@ -64,6 +70,7 @@ std::unique_ptr<const CapConstants<T>> make_constants() {
         row = next;
         fill_steps(l, row, &constants->steps[at(l, 0)]);
         constants->bands[static_cast<std::size_t>(l)] = band<T>(l);
+        constants->degrees[static_cast<std::size_t>(l)] = degree<T>(l);
     }
     return constants;
 }

@@ -29,10 +29,19 @@ struct CapBand {
     T keep_rise, lessen;  ///< (l-1)/l and (2l-1)/l, of P_l - P_{l-1} near 1
 };
 
+/// What is needed at degree m whatever the band.
+template <class T>
+struct CapDegree {
+    T weight;  ///< 4 / m
+    T moment;  ///< 2 / (m² - 1)
+    T next;    ///< m + 1
+};
+
 template <class T>
 struct CapConstants {
     std::array<CapStep<T>, kCosineMax> steps;
     std::array<CapBand<T>, kMaxOrder> bands;
+    std::array<CapDegree<T>, kMaxOrder> degrees;
 
     static const CapConstants& get();
 };

@@ -24,9 +24,16 @@ namespace shlight {
 namespace HWY_NAMESPACE {
 namespace {
 
+/// Of neighbouring lights, a bit for each.
+struct Sides {
+    std::uint32_t crossing, hidden;
+};
+
 /// Spheres and their rows.
 template <class T>
 struct SphereSource {
+    static constexpr bool kMayContainHorizon = false;
+
     const Vec3<T>* centers;
     const T* radii;
 
@@ -53,14 +60,32 @@ struct SphereSource {
         return circle_of_sphere_in_lanes(d, x, y, z, r);
     }
 
-    /// Its position relative to the plane z = 0.
-    bool crosses(std::size_t i) const { return std::abs(centers[i].z) < radii[i]; }
-    bool is_hidden(std::size_t i) const { return centers[i].z <= -radii[i]; }
+    /// Whether spheres cross the plane z = 0, or else are below it, as bits.
+    HWY_INLINE Sides sides(std::size_t first, std::size_t count) const {
+        const Lanes<T> d;
+        V<Lanes<T>> x, y, z, r;
+        if (count == kLaneCount<Lanes<T>>) {
+            hn::LoadInterleaved3(d, &centers[first].x, x, y, z);
+            r = hn::LoadU(d, radii + first);
+        } else {
+            std::array<T, kLaneCount<Lanes<T>>> heights{}, own_radii{};
+            for (std::size_t lane = 0; lane < count; ++lane) {
+                heights[lane] = centers[first + lane].z;
+                own_radii[lane] = radii[first + lane];
+            }
+            z = hn::LoadU(d, heights.data());
+            r = hn::LoadU(d, own_radii.data());
+        }
+        const std::uint32_t all_lanes = (1U << count) - 1;
+        return {bits_of(d, hn::Lt(hn::Abs(z), r)) & all_lanes, bits_of(d, hn::Le(z, hn::Neg(r))) & all_lanes};
+    }
 };
 
 /// Circles, and their rows.
 template <class T>
 struct CircleSource {
+    static constexpr bool kMayContainHorizon = true;
+
     const Circle* circles;
 
     HWY_INLINE CircleLanes<Lanes<T>> load(const Chosen<T>& chosen) const {
@@ -91,12 +116,18 @@ struct CircleSource {
         return narrowed_circle<T>(halves.front(), halves.back());
     }
 
-    bool crosses(std::size_t i) const {
-        const Circle& c = circles[i];
-        const double sin_tilt = std::sqrt(c.axis.x * c.axis.x + c.axis.y * c.axis.y);
-        return c.sine < std::abs(c.cosine) ? c.sine > std::abs(c.axis.z) : sin_tilt > std::abs(c.cosine);
+    Sides sides(std::size_t first, std::size_t count) const {
+        Sides bits{0, 0};
+        for (std::size_t j = 0; j < count; ++j) {
+            const Circle& c = circles[first + j];
+            const bool by_sine = c.sine < std::abs(c.cosine);
+            const bool crossing =
+                by_sine ? c.sine > std::abs(c.axis.z) : c.axis.x * c.axis.x + c.axis.y * c.axis.y > c.cosine * c.cosine;
+            bits.crossing |= (crossing ? 1U : 0U) << j;
+            bits.hidden |= (!crossing && c.axis.z < 0 && c.cosine >= 0 ? 1U : 0U) << j;
+        }
+        return bits;
     }
-    bool is_hidden(std::size_t i) const { return !crosses(i) && circles[i].axis.z < 0 && circles[i].cosine >= 0; }
 };
 
 template <class T, bool kScaled>
@@ -112,12 +143,12 @@ HWY_NOINLINE void write_crossed(const CapLanes<Lanes<T>>& cap, std::size_t order
     visit.finish();
 }
 
-template <class T, bool kScaled>
+template <class T, bool kScaled, bool kHorizon>
 HWY_NOINLINE void write_uncrossed(const CapLanes<Lanes<T>>& cap, std::size_t order, const RowPointers<T>& rows,
                                   Output output) {
     CoefficientVisitor<T> visit(cap, order, rows, output);
     if (order > 1) {
-        UncrossedBands<T, kScaled> bands(cap, order);
+        UncrossedBands<T, kScaled, kHorizon> bands(cap, order);
         for (std::size_t l = 1; l < order; ++l) {
             bands.solve(l, visit);
         }
@@ -140,14 +171,17 @@ class RowBatch {
     HWY_INLINE void run(std::size_t first, std::size_t last) {
         crossing_.clear();
         uncrossed_.clear();
-        for (std::size_t i = first; i < last; ++i) {
-            const bool hidden = clip_ && source_.is_hidden(i);
-            const bool crossing = clip_ && source_.crosses(i);
-            if (hidden) {
-                std::fill_n(rows_ + i * order_ * order_, order_ * order_, T(0));
+        constexpr std::size_t kLanes = kLaneCount<D>;
+        for (std::size_t i = first; i < last; i += kLanes) {
+            const std::size_t count = std::min(kLanes, last - i);
+            const Sides sides = clip_ ? source_.sides(i, count) : Sides{0, 0};
+            crossing_.add_block(i, count, sides.crossing);
+            uncrossed_.add_block(i, count, ((1U << count) - 1) & ~(sides.crossing | sides.hidden));
+            for (std::size_t j = 0; sides.hidden >> j != 0; ++j) {
+                if ((sides.hidden >> j & 1U) != 0) {
+                    std::fill_n(rows_ + (i + j) * order_ * order_, order_ * order_, T(0));
+                }
             }
-            crossing_.add_if(crossing, i);
-            uncrossed_.add_if(!crossing && !hidden, i);
         }
         run_group<true>(crossing_);
         run_group<false>(uncrossed_);
@@ -192,7 +226,7 @@ class RowBatch {
         if constexpr (kCrossing) {
             write_crossed<T, kScaled>(cap, order_, rows, output);
         } else {
-            write_uncrossed<T, kScaled>(cap, order_, rows, output);
+            write_uncrossed<T, kScaled, Source::kMayContainHorizon>(cap, order_, rows, output);
         }
     }
 
@@ -333,9 +367,9 @@ void with_bands(const Cap<T>& cap, const CapLanes<Lanes<T>>& lanes, std::size_t 
     } else if (cap.crossing) {
         run(CrossedBands<T, kPlane, false>(lanes, order));
     } else if (scaled) {
-        run(UncrossedBands<T, true>(lanes, order));
+        run(UncrossedBands<T, true, true>(lanes, order));
     } else {
-        run(UncrossedBands<T, false>(lanes, order));
+        run(UncrossedBands<T, false, true>(lanes, order));
     }
 }
 
@@ -347,16 +381,18 @@ class TermVisitor {
   public:
     explicit TermVisitor(T* terms) : terms_(terms) {}
 
-    void term(std::size_t m, V<D> null) { values_.put(m, null); }
-    void term(std::size_t m, V<D> /*null*/, V<D> particular) { values_.put(m, particular); }
-    void close(std::size_t l, V<D> share, V<D> extra) {
+    struct Band {};
+    Band open(std::size_t /*l*/) { return {}; }
+    void term(Band& /*band*/, std::size_t m, V<D> null) { values_.put(m, null); }
+    void term(Band& /*band*/, std::size_t m, V<D> /*null*/, V<D> particular) { values_.put(m, particular); }
+    void close(const Band& /*band*/, std::size_t l, V<D> share, V<D> extra) {
         for (std::size_t m = 0; m <= l; ++m) {
             const auto value = hn::Mul(share, values_[m]);
             put(l, m, m == 0 ? hn::Add(value, extra) : value);
         }
     }
     template <class Bands>
-    void close(std::size_t l, V<D> green, V<D> share, const Bands& bands) {
+    void close(const Band& /*band*/, std::size_t l, V<D> green, V<D> share, const Bands& bands) {
         for (std::size_t m = 0; m <= l; ++m) {
             put(l, m, hn::MulAdd(share, bands.null(m), hn::Mul(green, values_[m])));
         }
@@ -395,7 +431,6 @@ T shaded(const Cap<T>& cap, const T* lobe_terms, std::size_t order) {
     ShadingVisitor<T> visit(lanes, order, terms.data());
     with_bands<false>(cap, lanes, order, [&](auto&& bands) HWY_ATTR {
         for (std::size_t l = 1; l < order; ++l) {
-            visit.open(l);
             bands.solve(l, visit);
         }
     });

@@ -142,13 +142,17 @@ struct ContactLanes {
 /// lights and of the plane z_0 = 0; the second that of nearly equal or nearly opposite circles, where it is
 /// arc ± edge = (cosσ ± z_0)(1 ∓ cosθ) that must be right.
 template <class D>
-HWY_INLINE void complete(D d, V<D> sin_tilt, ContactLanes<D>& contact) {
+HWY_INLINE void complete(D d, ContactLanes<D>& contact) {
     const auto c = contact.light.cosine;
     const auto z = contact.height;
     const auto own = hn::Mul(c, hn::Mul(contact.sine, contact.sine));
     const auto other = hn::Mul(z, hn::Mul(contact.light.sine, contact.light.sine));
-    const auto sum = hn::Mul(hn::Add(c, z), one_minus(d, contact.light.z, sin_tilt));
-    const auto difference = hn::Mul(hn::Sub(c, z), one_minus(d, hn::Neg(contact.light.z), sin_tilt));
+    // 1 ∓ cosθ, one of which would cancel.
+    const auto more = hn::Add(all(d, 1), hn::Abs(contact.light.z));
+    const auto less = hn::Div(contact.light.tilt_squared, more);
+    const auto up = hn::Gt(contact.light.z, hn::Zero(d));
+    const auto sum = hn::Mul(hn::Add(c, z), hn::IfThenElse(up, less, more));
+    const auto difference = hn::Mul(hn::Sub(c, z), hn::IfThenElse(up, more, less));
     const auto size =
         hn::MulAdd(hn::Add(hn::Abs(c), hn::Abs(z)), hn::Abs(contact.corner), hn::Add(hn::Abs(own), hn::Abs(other)));
     const auto direct = hn::Le(size, hn::Add(hn::Abs(sum), hn::Abs(difference)));
@@ -179,8 +183,8 @@ HWY_INLINE V<D> lens_area(D d, const ContactLanes<D>& contact, V<D> arc, V<D> ed
     const auto light_cosine = hn::IfThenElse(below, hn::Neg(contact.edge), contact.edge);
     arc = hn::IfThenElse(wide, hn::Sub(pi, arc), arc);
     edge = hn::IfThenElse(below, hn::Sub(pi, edge), edge);
-    const auto lack = one_minus(d, cosine, contact.light.sine);
-    const auto short_of_pole = one_minus(d, height, contact.sine);
+    const auto lack = hn::Div(hn::Mul(contact.light.sine, contact.light.sine), hn::Add(one, cosine));
+    const auto short_of_pole = hn::Div(hn::Mul(contact.sine, contact.sine), hn::Add(one, height));
 
     const auto high = hn::Gt(height, all(d, 0.5));
     const auto y = hn::Mul(contact.chord, hn::IfThenElse(high, one, hn::Mul(hn::Add(height, tilt), lack)));
@@ -193,7 +197,8 @@ HWY_INLINE V<D> lens_area(D d, const ContactLanes<D>& contact, V<D> arc, V<D> ed
     auto area = hn::Add(half_area, half_area);
     const auto two_pi = all(d, 2 * std::numbers::pi);
     area = hn::IfThenElse(below, hn::MulSub(two_pi, lack, area), area);
-    return hn::IfThenElse(wide, hn::MulSub(two_pi, one_minus(d, contact.height, contact.sine), area), area);
+    const auto above = hn::IfThenElse(below, hn::Add(one, height), short_of_pole);
+    return hn::IfThenElse(wide, hn::MulSub(two_pi, above, area), area);
 }
 
 /// What is kept where circles do not cross: they are nested, or apart, or together they cover the sphere. `corner`
@@ -224,20 +229,23 @@ HWY_INLINE CapLanes<D> cap_in_contact(D d, const ContactLanes<D>& contact) {
     set_axis(d, contact.light, cap);
     cap.height = contact.height;
     cap.horizon_sine = contact.sine;
-    keep_uncrossed(d, contact, cap);
     const auto crossing = hn::Gt(contact.chord, hn::Zero(d));
     if (hn::AllFalse(d, crossing)) {
+        keep_uncrossed(d, contact, cap);
         return cap;
     }
-    CapLanes<D> crossed = cap;
-    set_arc(d, contact.chord, contact.arc, crossed);
-    const auto edge = arctangent(d, contact.chord, contact.edge);
-    const auto area = hn::Max(hn::Zero(d), lens_area(d, contact, crossed.arc, edge));
-    cap.arc = hn::IfThenElse(crossing, crossed.arc, cap.arc);
-    cap.cos_arc = hn::IfThenElse(crossing, crossed.cos_arc, cap.cos_arc);
-    cap.sin_arc = hn::IfThenElse(crossing, crossed.sin_arc, cap.sin_arc);
-    cap.edge = hn::IfThenElse(crossing, edge, cap.edge);
-    cap.solid_angle = hn::IfThenElse(crossing, area, cap.solid_angle);
+    set_arc(d, contact.chord, contact.arc, cap);
+    cap.edge = arctangent(d, contact.chord, contact.edge);
+    cap.solid_angle = hn::Max(hn::Zero(d), lens_area(d, contact, cap.arc, cap.edge));
+    if (!hn::AllTrue(d, crossing)) {
+        CapLanes<D> other;
+        keep_uncrossed(d, contact, other);
+        cap.arc = hn::IfThenElse(crossing, cap.arc, other.arc);
+        cap.cos_arc = hn::IfThenElse(crossing, cap.cos_arc, other.cos_arc);
+        cap.sin_arc = hn::IfThenElse(crossing, cap.sin_arc, other.sin_arc);
+        cap.edge = hn::IfThenElse(crossing, cap.edge, other.edge);
+        cap.solid_angle = hn::IfThenElse(crossing, cap.solid_angle, other.solid_angle);
+    }
     return cap;
 }
 
@@ -259,8 +267,7 @@ template <class D>
 HWY_INLINE void set_squares(D /*d*/, CircleLanes<D>& circle) {
     circle.tilt_squared = hn::MulAdd(circle.x, circle.x, hn::Mul(circle.y, circle.y));
     const auto by_sine = hn::Mul(hn::Sub(circle.sine, circle.z), hn::Add(circle.sine, circle.z));
-    const auto sin_tilt = hn::Sqrt(circle.tilt_squared);
-    const auto by_cosine = hn::Mul(hn::Sub(sin_tilt, circle.cosine), hn::Add(sin_tilt, circle.cosine));
+    const auto by_cosine = hn::NegMulAdd(circle.cosine, circle.cosine, circle.tilt_squared);
     circle.crossing_squared = hn::IfThenElse(hn::Lt(circle.sine, hn::Abs(circle.cosine)), by_sine, by_cosine);
 }
 
@@ -305,7 +312,7 @@ HWY_INLINE CapLanes<D> cap_of_image(D d, const CircleLanes<D>& light, const Circ
     ContactLanes<D> contact{image, height, horizon_sine, zero, zero, zero, zero};
     contact.chord = hn::Mul(root(d, light.crossing_squared), scale);
     contact.corner = hn::Mul(light.z, scale);
-    complete(d, hn::Sqrt(image.tilt_squared), contact);
+    complete(d, contact);
     return cap_in_contact(d, contact);
 }
 

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "kernels/cap_batch-inl.h"
 #include "kernels/cap_spheres-inl.h"
@@ -86,12 +87,6 @@ HWY_INLINE CapLanes<Floats> narrowed_cap(const CapLanes<Doubles>& a, const CapLa
             narrowed<T>(a.horizon_sine, b.horizon_sine)};
 }
 
-/// Whether a circle crosses the plane z = 0; the same test as crossing_squared > 0.
-HWY_INLINE bool crosses_plane(double x, double y, double z, double cosine, double sine) {
-    const bool by_sine = sine < std::abs(cosine);
-    return by_sine ? sine > std::abs(z) : x * x + y * y > cosine * cosine;
-}
-
 struct Job {
     const CircleArrays& circles;
     const std::uint32_t* circle_of;
@@ -115,14 +110,16 @@ class ShadingBatch {
     void run(std::size_t first, std::size_t last) {
         crossing_.clear();
         uncrossed_.clear();
-        const CircleArrays& c = job_.circles;
-        for (std::size_t i = first; i < last; ++i) {
-            const std::size_t k = job_.circle_of[i];
-            const bool crossing = crosses_plane(c.x[k], c.y[k], c.z[k], c.cosine[k], c.sine[k]);
-            const bool hidden = !crossing && c.z[k] < 0 && c.cosine[k] >= 0;
-            job_.values[i] = 0;
-            crossing_.add_if(crossing, i);
-            uncrossed_.add_if(!crossing && !hidden, i);
+        scaled_[0].clear();
+        scaled_[1].clear();
+        std::fill(job_.values + first, job_.values + last, 0.0F);
+        for (std::size_t i = first; i < last; i += kLanes) {
+            const std::size_t count = std::min(kLanes, last - i);
+            if (job_.lobe.warped) {
+                sort<false>(i, count);
+            } else {
+                sort<true>(i, count);
+            }
         }
         if (job_.lobe.warped) {
             run_group<true, false>(crossing_);
@@ -136,43 +133,82 @@ class ShadingBatch {
   private:
     using Lights = Chosen<float>;
 
+    /// The circles of a vector's lights.
+    struct Circles {
+        CircleLanes<Doubles> low, high;
+    };
+
+    /// Lights that lie side by side and need the same are shaded at once, others are put on lists.
+    template <bool kPlane>
+    HWY_INLINE void sort(std::size_t first, std::size_t count) {
+        const Doubles d;
+        Lights chosen;
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            chosen[lane] = static_cast<std::uint32_t>(first + std::min(lane, count - 1));
+        }
+        const auto circles = load_circles(chosen);
+        const auto sides = [&](const CircleLanes<Doubles>& circle) HWY_ATTR {
+            const auto zero = hn::Zero(d);
+            const auto crossing = hn::Gt(circle.crossing_squared, zero);
+            const auto hidden = hn::AndNot(crossing, hn::And(hn::Lt(circle.z, zero), hn::Ge(circle.cosine, zero)));
+            return bits_of(d, crossing) | bits_of(d, hidden) << 16;
+        };
+        const std::uint32_t bits = sides(circles.low) | sides(circles.high) << (kLanes - kHalf);
+        const std::uint32_t all_lanes = (1U << count) - 1;
+        const std::uint32_t crossing = bits & all_lanes;
+        if (crossing == (1U << kLanes) - 1) {
+            shade_unscaled<true, kPlane>(circles, chosen);
+            return;
+        }
+        crossing_.add_block(first, count, crossing);
+        uncrossed_.add_block(first, count, ~(bits | bits >> 16) & all_lanes);
+    }
+
     std::size_t term_count() const { return order_ * (order_ + 1) / 2; }
 
     template <bool kCrossing, bool kPlane>
     HWY_INLINE void run_group(const LightList& lights) {
-        scaled_.clear();
-        lights.for_each_vector<float>([&](const Lights& chosen) HWY_ATTR {
-            const Floats d;
-            const auto cap = load<kCrossing, kPlane>(chosen);
-            const auto scaled = needs_scaling(d, cap, least_sine_);
-            shade<kCrossing, kPlane, false>(cap, chosen);
-            if (!hn::AllFalse(d, scaled)) {
-                scaled_.add_marked(d, scaled, chosen);
-            }
-        });
-        scaled_.for_each_vector<float>([&](const Lights& chosen) HWY_ATTR {
-            shade<kCrossing, kPlane, true>(load<kCrossing, kPlane>(chosen), chosen);
+        lights.for_each_vector<float>(
+            [&](const Lights& chosen) HWY_ATTR { shade_unscaled<kCrossing, kPlane>(load_circles(chosen), chosen); });
+        scaled_[kCrossing].for_each_vector<float>([&](const Lights& chosen) HWY_ATTR {
+            const auto circles = load_circles(chosen);
+            shade<kCrossing, kPlane, true>(prepare<kCrossing, kPlane>(circles, chosen), chosen);
         });
     }
 
+    /// Lanes that need scaling are put on a list, to be shaded again.
     template <bool kCrossing, bool kPlane>
-    HWY_NOINLINE CapLanes<Floats> load(const Lights& chosen) const {
+    HWY_INLINE void shade_unscaled(const Circles& circles, const Lights& chosen) {
+        const Floats d;
+        const auto cap = prepare<kCrossing, kPlane>(circles, chosen);
+        const auto scaled = needs_scaling(d, cap, least_sine_);
+        shade<kCrossing, kPlane, false>(cap, chosen);
+        if (!hn::AllFalse(d, scaled)) {
+            scaled_[kCrossing].add_marked(d, scaled, chosen);
+        }
+    }
+
+    HWY_INLINE Circles load_circles(const Lights& chosen) const {
         Lights circle_of;
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             circle_of[lane] = job_.circle_of[chosen[lane]];
         }
-        const std::uint32_t* high = circle_of.data() + kLanes - kHalf;
-        const auto a = load_circle(job_.circles, circle_of.data());
-        const auto b = load_circle(job_.circles, high);
+        return {load_circle(job_.circles, circle_of.data()),
+                load_circle(job_.circles, circle_of.data() + kLanes - kHalf)};
+    }
+
+    template <bool kCrossing, bool kPlane>
+    HWY_INLINE CapLanes<Floats> prepare(const Circles& circles, const Lights& chosen) const {
         if constexpr (kPlane) {
-            const auto circle = narrowed_circle<float>(a, b);
+            const auto circle = narrowed_circle<float>(circles.low, circles.high);
             return kCrossing ? cap_across_plane(Floats(), circle) : cap_off_plane(Floats(), circle);
         } else {
             Lights view_of;
             for (std::size_t lane = 0; lane < kLanes; ++lane) {
                 view_of[lane] = job_.view_of[chosen[lane]];
             }
-            return narrowed_cap(warped_cap(a, view_of.data()), warped_cap(b, view_of.data() + kLanes - kHalf));
+            return narrowed_cap(warped_cap(circles.low, view_of.data()),
+                                warped_cap(circles.high, view_of.data() + kLanes - kHalf));
         }
     }
 
@@ -191,7 +227,7 @@ class ShadingBatch {
         if constexpr (kCrossing) {
             add_bands(CrossedBands<float, kPlane, kScaled>(cap, order_), visit);
         } else {
-            add_bands(UncrossedBands<float, kScaled>(cap, order_), visit);
+            add_bands(UncrossedBands<float, kScaled, true>(cap, order_), visit);
         }
         alignas(64) std::array<float, kLanes> sums;
         hn::Store(visit.sum(), Floats(), sums.data());
@@ -202,8 +238,14 @@ class ShadingBatch {
 
     template <class Bands>
     HWY_INLINE void add_bands(Bands&& bands, ShadingVisitor<float>& visit) const {
+        if (order_ == 8) {
+            [&]<std::size_t... kBand>(std::index_sequence<kBand...>) HWY_ATTR {
+                (bands.solve(kBand + 1, visit), ...);
+            }
+            (std::make_index_sequence<7>());
+            return;
+        }
         for (std::size_t l = 1; l < order_; ++l) {
-            visit.open(l);
             bands.solve(l, visit);
         }
     }
@@ -226,7 +268,8 @@ class ShadingBatch {
     Job job_;
     std::size_t order_;
     double least_sine_;
-    LightList crossing_, uncrossed_, scaled_;
+    LightList crossing_, uncrossed_;
+    std::array<LightList, 2> scaled_;  // of circles that do not cross the horizon, and that do
     alignas(64) std::array<float, (kCosineMax + kBlock) * kLanes> terms_;
 };
 
@@ -238,43 +281,71 @@ void shade_caps_in_lanes(const CircleArrays& circles, const std::uint32_t* circl
     }
 }
 
-/// Centres and radii of kHalf spheres, the last of them repeated beyond the end.
 template <class T>
-HWY_INLINE std::array<std::array<double, kHalf>, 4> load_spheres(const Vec3<T>* centers, const T* radii,
-                                                                 std::size_t count) {
-    std::array<std::array<double, kHalf>, 4> fields;
-    for (std::size_t lane = 0; lane < kHalf; ++lane) {
-        const std::size_t i = std::min(lane, count - 1);
-        fields[0][lane] = static_cast<double>(centers[i].x);
-        fields[1][lane] = static_cast<double>(centers[i].y);
-        fields[2][lane] = static_cast<double>(centers[i].z);
-        fields[3][lane] = static_cast<double>(radii[i]);
+struct SphereLanes {
+    V<Doubles> x, y, z, r;
+};
+
+/// kHalf spheres.
+template <class T>
+HWY_INLINE SphereLanes<T> load_spheres(const Vec3<T>* centers, const T* radii) {
+    const Doubles d;
+    const hn::Rebind<T, Doubles> own;
+    V<decltype(own)> x, y, z;
+    hn::LoadInterleaved3(own, &centers->x, x, y, z);
+    const auto r = hn::LoadU(own, radii);
+    if constexpr (sizeof(T) == 4) {
+        return {hn::PromoteTo(d, x), hn::PromoteTo(d, y), hn::PromoteTo(d, z), hn::PromoteTo(d, r)};
+    } else {
+        return {x, y, z, r};
     }
-    return fields;
+}
+
+template <class T>
+HWY_INLINE CircleLanes<Doubles> circle_of(const SphereLanes<T>& sphere) {
+    const Doubles d;
+    if constexpr (sizeof(T) == 4) {
+        const HalfSpheres half(sphere.x, sphere.y, sphere.z, sphere.r);
+        return {hn::Mul(sphere.x, half.inverse),
+                hn::Mul(sphere.y, half.inverse),
+                half.z,
+                root(d, half.tangent_squared),
+                hn::Min(all(d, 1), hn::Mul(sphere.r, half.inverse)),
+                half.tilt_squared,
+                half.crossing_squared};
+    } else {
+        return circle_of_sphere_in_lanes(d, sphere.x, sphere.y, sphere.z, sphere.r);
+    }
 }
 
 template <class T>
 void circles_in_lanes(const Vec3<T>* centers, const T* radii, std::size_t count, const CircleOutput& out) {
     const Doubles d;
-    for (std::size_t first = 0; first < count; first += kHalf) {
-        const std::size_t lanes = std::min(kHalf, count - first);
-        const auto fields = load_spheres(centers + first, radii + first, lanes);
-        const auto circle = circle_of_sphere_in_lanes(d, hn::LoadU(d, fields[0].data()), hn::LoadU(d, fields[1].data()),
-                                                      hn::LoadU(d, fields[2].data()), hn::LoadU(d, fields[3].data()));
-        const auto put = [&](V<Doubles> value, double* values) HWY_ATTR {
-            if (lanes == kHalf) {
-                hn::StoreU(value, d, values + first);
-            } else {
-                std::array<double, kHalf> own;
-                hn::StoreU(value, d, own.data());
-                std::copy_n(own.begin(), lanes, values + first);
-            }
-        };
-        put(circle.x, out.x);
-        put(circle.y, out.y);
-        put(circle.z, out.z);
-        put(circle.cosine, out.cosine);
-        put(circle.sine, out.sine);
+    const auto write = [&](const CircleLanes<Doubles>& circle, const CircleOutput& o) HWY_ATTR {
+        hn::StoreU(circle.x, d, o.x);
+        hn::StoreU(circle.y, d, o.y);
+        hn::StoreU(circle.z, d, o.z);
+        hn::StoreU(circle.cosine, d, o.cosine);
+        hn::StoreU(circle.sine, d, o.sine);
+    };
+    std::size_t first = 0;
+    for (; first + kHalf <= count; first += kHalf) {
+        write(circle_of<T>(load_spheres(centers + first, radii + first)),
+              {out.x + first, out.y + first, out.z + first, out.cosine + first, out.sine + first});
+    }
+    if (first == count) {
+        return;
+    }
+    std::array<Vec3<T>, kHalf> last_centers;
+    std::array<T, kHalf> last_radii;
+    std::fill(std::copy(centers + first, centers + count, last_centers.begin()), last_centers.end(), centers[first]);
+    std::fill(std::copy(radii + first, radii + count, last_radii.begin()), last_radii.end(), radii[first]);
+    std::array<std::array<double, kHalf>, 5> fields;
+    write(circle_of<T>(load_spheres(last_centers.data(), last_radii.data())),
+          {fields[0].data(), fields[1].data(), fields[2].data(), fields[3].data(), fields[4].data()});
+    const std::array<double*, 5> arrays = {out.x, out.y, out.z, out.cosine, out.sine};
+    for (std::size_t k = 0; k < arrays.size(); ++k) {
+        std::copy_n(fields[k].begin(), count - first, arrays[k] + first);
     }
 }
 

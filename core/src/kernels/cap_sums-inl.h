@@ -64,19 +64,21 @@ class CoefficientVisitor {
         writer_.add(1);
     }
 
-    HWY_INLINE void term(std::size_t m, V<D> null) { values_.put(m, null); }
-    HWY_INLINE void term(std::size_t m, V<D> /*null*/, V<D> particular) { values_.put(m, particular); }
+    struct Band {};
+    HWY_INLINE Band open(std::size_t /*l*/) { return {}; }
+    HWY_INLINE void term(Band& /*band*/, std::size_t m, V<D> null) { values_.put(m, null); }
+    HWY_INLINE void term(Band& /*band*/, std::size_t m, V<D> /*null*/, V<D> particular) { values_.put(m, particular); }
 
     /// Of circles that do not cross.
-    HWY_INLINE void close(std::size_t l, V<D> share, V<D> extra) {
-        write(l, [&](std::size_t m) {
+    HWY_INLINE void close(const Band& /*band*/, std::size_t l, V<D> share, V<D> extra) {
+        write(l, [&](std::size_t m) HWY_ATTR {
             const auto value = hn::Mul(share, values_[m]);
             return m == 0 ? hn::Add(value, extra) : value;
         });
     }
     template <class Bands>
-    HWY_INLINE void close(std::size_t l, V<D> green, V<D> share, const Bands& bands) {
-        write(l, [&](std::size_t m) { return hn::MulAdd(share, bands.null(m), hn::Mul(green, values_[m])); });
+    HWY_INLINE void close(const Band& /*band*/, std::size_t l, V<D> green, V<D> share, const Bands& bands) {
+        write(l, [&](std::size_t m) HWY_ATTR { return hn::MulAdd(share, bands.null(m), hn::Mul(green, values_[m])); });
     }
 
     void finish() { writer_.finish(); }
@@ -111,44 +113,58 @@ class ShadingVisitor {
 
   public:
     HWY_INLINE ShadingVisitor(const CapLanes<D>& cap, std::size_t order, const T* terms)
-        : azimuth_(cap, order), terms_(terms) {
+        : terms_(terms), sum_(hn::Mul(band_zero(D(), cap), hn::Load(D(), terms))) {
         const D d;
-        sum_ = hn::Mul(band_zero(d, cap), hn::Load(d, terms));
-        start();
+        const auto x = cap.cos_azimuth;
+        const auto y = cap.sin_azimuth;
+        auto re = hn::Mul(x, all(d, std::numbers::sqrt2));
+        auto im = hn::Mul(y, all(d, std::numbers::sqrt2));
+        cosine_.put(0, all(d, 1));
+        for (std::size_t m = 1; m < order; ++m) {
+            cosine_.put(m, re);
+            const auto next = hn::MulSub(re, x, hn::Mul(im, y));
+            im = hn::MulAdd(re, y, hn::Mul(im, x));
+            re = next;
+        }
     }
 
-    HWY_INLINE void term(std::size_t m, V<D> null) { with_null_ = hn::MulAdd(turned(m), null, with_null_); }
-    HWY_INLINE void term(std::size_t m, V<D> null, V<D> particular) {
-        const auto t = turned(m);
-        with_null_ = hn::MulAdd(t, null, with_null_);
-        with_particular_ = hn::MulAdd(t, particular, with_particular_);
+    /// The sums of one band. Of its own, to stay in registers.
+    struct Band {
+        const T* terms;
+        V<D> with_null, with_particular;
+    };
+    HWY_INLINE Band open(std::size_t l) const {
+        const auto zero = hn::Zero(D());
+        return {terms_ + at(static_cast<int>(l), 0) * kLaneCount<D>, zero, zero};
+    }
+    HWY_INLINE void term(Band& band, std::size_t m, V<D> null) const {
+        band.with_null = hn::MulAdd(turned(band, m), null, band.with_null);
+    }
+    HWY_INLINE void term(Band& band, std::size_t m, V<D> null, V<D> particular) const {
+        const auto t = turned(band, m);
+        band.with_null = hn::MulAdd(t, null, band.with_null);
+        band.with_particular = hn::MulAdd(t, particular, band.with_particular);
     }
 
-    HWY_INLINE void close(std::size_t /*l*/, V<D> share, V<D> extra) {
-        sum_ = hn::MulAdd(extra, hn::Load(D(), band_), hn::MulAdd(share, with_null_, sum_));
-        start();
+    HWY_INLINE void close(const Band& band, std::size_t /*l*/, V<D> share, V<D> extra) {
+        sum_ = hn::MulAdd(extra, hn::Load(D(), band.terms), hn::MulAdd(share, band.with_null, sum_));
     }
     template <class Bands>
-    HWY_INLINE void close(std::size_t /*l*/, V<D> green, V<D> share, const Bands& /*bands*/) {
-        sum_ = hn::MulAdd(green, with_particular_, hn::MulAdd(share, with_null_, sum_));
-        start();
+    HWY_INLINE void close(const Band& band, std::size_t /*l*/, V<D> green, V<D> share, const Bands& /*bands*/) {
+        sum_ = hn::MulAdd(green, band.with_particular, hn::MulAdd(share, band.with_null, sum_));
     }
 
-    /// Which band comes next.
-    HWY_INLINE void open(std::size_t l) { band_ = terms_ + at(static_cast<int>(l), 0) * kLaneCount<D>; }
     HWY_INLINE V<D> sum() const { return sum_; }
 
   private:
-    HWY_INLINE void start() { with_null_ = with_particular_ = hn::Zero(D()); }
-    HWY_INLINE V<D> turned(std::size_t m) const {
+    HWY_INLINE V<D> turned(const Band& band, std::size_t m) const {
         const D d;
-        return hn::Mul(hn::Load(d, band_ + m * kLaneCount<D>), hn::Load(d, azimuth_.cosine + m * kLaneCount<D>));
+        return hn::Mul(hn::Load(d, band.terms + m * kLaneCount<D>), cosine_[m]);
     }
 
-    AzimuthLanes<T> azimuth_;
+    DegreeRow<T> cosine_;  // √2 cos mφ, 1 for m = 0
     const T* terms_;
-    const T* band_ = nullptr;
-    V<D> sum_, with_null_, with_particular_;
+    V<D> sum_;
 };
 
 }  // namespace HWY_NAMESPACE

@@ -104,16 +104,14 @@ class RowWriter {
     /// So many columns were put there.
     void add(std::size_t columns) {
         waiting_ += columns;
-        std::size_t done = 0;
-        for (; done + kLine <= waiting_; done += kLine) {
-            write_line(done);
+        if (waiting_ + 2 * kMaxOrder > kColumns) {
+            write_lines();
         }
-        std::copy(buffer_.data() + done * kLaneCount<D>, next(), buffer_.data());
-        waiting_ -= done;
     }
 
     /// Writes what waits.
     void finish() {
+        write_lines();
         for (std::size_t c = 0; c < waiting_; ++c) {
             for (std::size_t lane = 0; lane < kLaneCount<D>; ++lane) {
                 rows_[lane][column_ + c] = buffer_[c * kLaneCount<D> + lane];
@@ -125,7 +123,17 @@ class RowWriter {
   private:
     using D = Lanes<T>;
     static constexpr std::size_t kLine = 64 / sizeof(T);
-    static constexpr std::size_t kColumns = 2 * kMaxOrder + kLine;
+    static constexpr std::size_t kColumns = 4 * kMaxOrder;  // rows of order 16, or 16 KiB
+
+    /// Writes whole lines, and moves the rest to the front.
+    void write_lines() {
+        std::size_t done = 0;
+        for (; done + kLine <= waiting_; done += kLine) {
+            write_line(done);
+        }
+        std::copy(buffer_.data() + done * kLaneCount<D>, next(), buffer_.data());
+        waiting_ -= done;
+    }
 
     HWY_INLINE void write_line(std::size_t first) {
         const D d;
