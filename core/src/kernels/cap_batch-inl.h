@@ -15,6 +15,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "kernels/lanes-inl.h"
 
@@ -36,9 +37,11 @@ HWY_INLINE bool are_in_a_row(const Indices& chosen) {
 /// A bit for each lane, the first lane's lowest.
 template <class D>
 HWY_INLINE std::uint32_t bits_of(D d, M<D> mask) {
-    std::array<std::uint8_t, 8> bytes{};
+    std::uint64_t bits = 0;
+    std::array<std::uint8_t, sizeof bits> bytes{};
     hn::StoreMaskBits(d, mask, bytes.data());
-    return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8;
+    std::memcpy(&bits, bytes.data(), sizeof bits);
+    return static_cast<std::uint32_t>(bits);
 }
 
 /// Lights of a chunk that have the same needs.

@@ -24,11 +24,6 @@ namespace shlight {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Of neighbouring lights, a bit for each.
-struct Sides {
-    std::uint32_t crossing, hidden;
-};
-
 /// Spheres and their rows.
 template <class T>
 struct SphereSource {
@@ -60,24 +55,27 @@ struct SphereSource {
         return circle_of_sphere_in_lanes(d, x, y, z, r);
     }
 
-    /// Whether spheres cross the plane z = 0, or else are below it, as bits.
-    HWY_INLINE Sides sides(std::size_t first, std::size_t count) const {
+    /// Whether neighbouring spheres cross the plane z = 0, a bit for each; 16 bits higher, whether they are below it.
+    HWY_INLINE std::uint32_t sides(std::size_t first, std::size_t count) const {
         const Lanes<T> d;
         V<Lanes<T>> x, y, z, r;
         if (count == kLaneCount<Lanes<T>>) {
             hn::LoadInterleaved3(d, &centers[first].x, x, y, z);
             r = hn::LoadU(d, radii + first);
         } else {
-            std::array<T, kLaneCount<Lanes<T>>> heights{}, own_radii{};
-            for (std::size_t lane = 0; lane < count; ++lane) {
-                heights[lane] = centers[first + lane].z;
-                own_radii[lane] = radii[first + lane];
+            std::array<T, kLaneCount<Lanes<T>>> heights, own_radii;
+            for (std::size_t lane = 0; lane < heights.size(); ++lane) {
+                const std::size_t i = first + std::min(lane, count - 1);
+                heights[lane] = centers[i].z;
+                own_radii[lane] = radii[i];
             }
             z = hn::LoadU(d, heights.data());
             r = hn::LoadU(d, own_radii.data());
         }
+        const std::uint32_t crossing = bits_of(d, hn::Lt(hn::Abs(z), r));
+        const std::uint32_t hidden = bits_of(d, hn::Le(z, hn::Neg(r)));
         const std::uint32_t all_lanes = (1U << count) - 1;
-        return {bits_of(d, hn::Lt(hn::Abs(z), r)) & all_lanes, bits_of(d, hn::Le(z, hn::Neg(r))) & all_lanes};
+        return (crossing & all_lanes) | (hidden & all_lanes) << 16;
     }
 };
 
@@ -116,15 +114,15 @@ struct CircleSource {
         return narrowed_circle<T>(halves.front(), halves.back());
     }
 
-    Sides sides(std::size_t first, std::size_t count) const {
-        Sides bits{0, 0};
+    std::uint32_t sides(std::size_t first, std::size_t count) const {
+        std::uint32_t bits = 0;
         for (std::size_t j = 0; j < count; ++j) {
             const Circle& c = circles[first + j];
             const bool by_sine = c.sine < std::abs(c.cosine);
             const bool crossing =
                 by_sine ? c.sine > std::abs(c.axis.z) : c.axis.x * c.axis.x + c.axis.y * c.axis.y > c.cosine * c.cosine;
-            bits.crossing |= (crossing ? 1U : 0U) << j;
-            bits.hidden |= (!crossing && c.axis.z < 0 && c.cosine >= 0 ? 1U : 0U) << j;
+            bits |= (crossing ? 1U : 0U) << j;
+            bits |= (!crossing && c.axis.z < 0 && c.cosine >= 0 ? 1U : 0U) << (j + 16);
         }
         return bits;
     }
@@ -174,11 +172,13 @@ class RowBatch {
         constexpr std::size_t kLanes = kLaneCount<D>;
         for (std::size_t i = first; i < last; i += kLanes) {
             const std::size_t count = std::min(kLanes, last - i);
-            const Sides sides = clip_ ? source_.sides(i, count) : Sides{0, 0};
-            crossing_.add_block(i, count, sides.crossing);
-            uncrossed_.add_block(i, count, ((1U << count) - 1) & ~(sides.crossing | sides.hidden));
-            for (std::size_t j = 0; sides.hidden >> j != 0; ++j) {
-                if ((sides.hidden >> j & 1U) != 0) {
+            const std::uint32_t all_lanes = (1U << count) - 1;
+            const std::uint32_t sides = clip_ ? source_.sides(i, count) : 0;
+            const std::uint32_t hidden = sides >> 16;
+            crossing_.add_block(i, count, sides & all_lanes);
+            uncrossed_.add_block(i, count, all_lanes & ~(sides | hidden));
+            for (std::size_t j = 0; hidden >> j != 0; ++j) {
+                if ((hidden >> j & 1U) != 0) {
                     std::fill_n(rows_ + (i + j) * order_ * order_, order_ * order_, T(0));
                 }
             }
@@ -346,15 +346,16 @@ void inside_circle(const Circle& circle, const double* crossing, const Circle& i
     if (crossing != nullptr) {
         light.crossing_squared = hn::Set(d, *crossing);
     }
-    const auto cap = cap_of_image(d, light, in_all_lanes(image), hn::Set(d, height), hn::Set(d, sine));
-    out = first_lane(cap, hn::GetLane(light.crossing_squared) > 0);
+    const auto shrink = hn::Set(d, circle.sine > 0 ? image.sine / circle.sine : 1);
+    const auto contact = contact_of_image(d, light, in_all_lanes(image), shrink, hn::Set(d, height), hn::Set(d, sine));
+    out = first_lane(cap_in_contact(d, contact), hn::GetLane(light.crossing_squared) > 0);
 }
 
 void in_contact(const Contact& c, Cap<double>& out) {
     const Doubles d;
-    const ContactLanes<Doubles> contact{in_all_lanes(c.light), hn::Set(d, c.height), hn::Set(d, c.sine),
-                                        hn::Set(d, c.chord),   hn::Set(d, c.corner), hn::Set(d, c.arc),
-                                        hn::Set(d, c.edge)};
+    const ContactLanes<Doubles> contact{
+        in_all_lanes(c.light), hn::Set(d, c.height), hn::Set(d, c.sine), hn::Set(d, c.chord * c.chord),
+        hn::Set(d, c.corner),  hn::Set(d, c.arc),    hn::Set(d, c.edge)};
     out = first_lane(cap_in_contact(d, contact), c.chord > 0);
 }
 

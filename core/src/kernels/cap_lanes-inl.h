@@ -131,11 +131,11 @@ HWY_INLINE CapLanes<D> cap_across_plane(D d, const CircleLanes<D>& circle) {
 template <class D>
 struct ContactLanes {
     CircleLanes<D> light;
-    V<D> height, sine;  // the horizon
-    V<D> chord;         // 0 where the circles do not cross
-    V<D> corner;        // cosθ - cosσ z_0: at the crossing
-    V<D> arc;           // cosσ - z_0 cosθ: at the horizon's pole
-    V<D> edge;          // z_0 - cosσ cosθ: at the light's pole
+    V<D> height, sine;   // the horizon
+    V<D> chord_squared;  // not positive where the circles do not cross
+    V<D> corner;         // cosθ - cosσ z_0: at the crossing
+    V<D> arc;            // cosσ - z_0 cosθ: at the horizon's pole
+    V<D> edge;           // z_0 - cosσ cosθ: at the light's pole
 };
 
 /// `arc` and `edge` from `corner`, as the form whose terms are smaller gives them. The first keeps every digit of small
@@ -169,7 +169,7 @@ HWY_INLINE void complete(D d, ContactLanes<D>& contact) {
 /// The first form is for high horizons, where E is small; the second for low ones, where β - ψ_0 is one arctangent of
 /// numbers as small as the light.
 template <class D>
-HWY_INLINE V<D> lens_area(D d, const ContactLanes<D>& contact, V<D> arc, V<D> edge) {
+HWY_INLINE V<D> lens_area(D d, const ContactLanes<D>& contact, V<D> chord, V<D> arc, V<D> edge) {
     const auto zero = hn::Zero(d);
     const auto one = all(d, 1);
     const auto pi = all(d, std::numbers::pi);
@@ -187,9 +187,9 @@ HWY_INLINE V<D> lens_area(D d, const ContactLanes<D>& contact, V<D> arc, V<D> ed
     const auto short_of_pole = hn::Div(hn::Mul(contact.sine, contact.sine), hn::Add(one, height));
 
     const auto high = hn::Gt(height, all(d, 0.5));
-    const auto y = hn::Mul(contact.chord, hn::IfThenElse(high, one, hn::Mul(hn::Add(height, tilt), lack)));
+    const auto y = hn::Mul(chord, hn::IfThenElse(high, one, hn::Mul(hn::Add(height, tilt), lack)));
     const auto x = hn::IfThenElse(high, hn::Add(hn::Add(one, tilt), hn::Add(cosine, height)),
-                                  hn::NegMulAdd(light_cosine, corner, hn::Mul(contact.chord, contact.chord)));
+                                  hn::NegMulAdd(light_cosine, corner, contact.chord_squared));
     const auto angle = arctangent(d, y, x);
     const auto rest =
         hn::IfThenElse(high, hn::MulSub(arc, short_of_pole, hn::Add(angle, angle)), hn::NegMulAdd(arc, height, angle));
@@ -229,14 +229,15 @@ HWY_INLINE CapLanes<D> cap_in_contact(D d, const ContactLanes<D>& contact) {
     set_axis(d, contact.light, cap);
     cap.height = contact.height;
     cap.horizon_sine = contact.sine;
-    const auto crossing = hn::Gt(contact.chord, hn::Zero(d));
+    const auto crossing = hn::Gt(contact.chord_squared, hn::Zero(d));
     if (hn::AllFalse(d, crossing)) {
         keep_uncrossed(d, contact, cap);
         return cap;
     }
-    set_arc(d, contact.chord, contact.arc, cap);
-    cap.edge = arctangent(d, contact.chord, contact.edge);
-    cap.solid_angle = hn::Max(hn::Zero(d), lens_area(d, contact, cap.arc, cap.edge));
+    const auto chord = root(d, contact.chord_squared);
+    set_arc(d, chord, contact.arc, cap);
+    cap.edge = arctangent(d, chord, contact.edge);
+    cap.solid_angle = hn::Max(hn::Zero(d), lens_area(d, contact, chord, cap.arc, cap.edge));
     if (!hn::AllTrue(d, crossing)) {
         CapLanes<D> other;
         keep_uncrossed(d, contact, other);
@@ -271,9 +272,24 @@ HWY_INLINE void set_squares(D /*d*/, CircleLanes<D>& circle) {
     circle.crossing_squared = hn::IfThenElse(hn::Lt(circle.sine, hn::Abs(circle.cosine)), by_sine, by_cosine);
 }
 
-/// The image of a circle under a warp (Warp::warped); its crossing_squared is not set.
+/// A light against the image of the plane z = 0. The warp is a Lorentz transform of the circles' 4-vectors (cosine;
+/// axis): their product is invariant, so where a light crosses the horizon is known from before the warp, with all
+/// digits. shrink: sine of the image ÷ sine of the light.
 template <class D>
-HWY_INLINE CircleLanes<D> warped_circle(D d, const CircleLanes<D>& circle, const WarpLanes<D>& warp) {
+HWY_INLINE ContactLanes<D> contact_of_image(D d, const CircleLanes<D>& light, const CircleLanes<D>& image, V<D> shrink,
+                                            V<D> height, V<D> horizon_sine) {
+    const auto zero = hn::Zero(d);
+    const auto scale = hn::Mul(shrink, horizon_sine);
+    ContactLanes<D> contact{image, height, horizon_sine, zero, zero, zero, zero};
+    contact.chord_squared = hn::Mul(light.crossing_squared, hn::Mul(scale, scale));
+    contact.corner = hn::Mul(light.z, scale);
+    complete(d, contact);
+    return contact;
+}
+
+/// The same with the image that Warp::warped gives.
+template <class D>
+HWY_INLINE ContactLanes<D> warped_contact(D d, const CircleLanes<D>& circle, const WarpLanes<D>& warp) {
     const auto one = all(d, 1);
     // The differences from 1 that a strong boost would cancel: |L| - L·axis and |L| - c, with |L| = 1.
     const auto lack = one_minus(d, circle.cosine, circle.sine);
@@ -291,29 +307,14 @@ HWY_INLINE CircleLanes<D> warped_circle(D d, const CircleLanes<D>& circle, const
     const auto scale = hn::Div(one, hn::Sqrt(square));
     const auto ux = hn::Mul(x, scale);
     const auto uy = hn::Mul(circle.y, scale);
-    return {ux,
-            uy,
-            hn::Mul(z, scale),
-            hn::Mul(cosine, scale),
-            hn::Mul(circle.sine, scale),
-            hn::MulAdd(ux, ux, hn::Mul(uy, uy)),
-            hn::Zero(d)};
-}
-
-/// A light against the image of the plane z = 0. The warp is a Lorentz transform of the circles' 4-vectors (cosine;
-/// axis): their product is invariant, so where a light crosses the horizon is known from before the warp, with all
-/// digits.
-template <class D>
-HWY_INLINE CapLanes<D> cap_of_image(D d, const CircleLanes<D>& light, const CircleLanes<D>& image, V<D> height,
-                                    V<D> horizon_sine) {
-    const auto zero = hn::Zero(d);
-    const auto shrink = hn::IfThenElse(hn::Gt(light.sine, zero), hn::Div(image.sine, light.sine), all(d, 1));
-    const auto scale = hn::Mul(shrink, horizon_sine);
-    ContactLanes<D> contact{image, height, horizon_sine, zero, zero, zero, zero};
-    contact.chord = hn::Mul(root(d, light.crossing_squared), scale);
-    contact.corner = hn::Mul(light.z, scale);
-    complete(d, contact);
-    return cap_in_contact(d, contact);
+    const CircleLanes<D> image{ux,
+                               uy,
+                               hn::Mul(z, scale),
+                               hn::Mul(cosine, scale),
+                               hn::Mul(circle.sine, scale),
+                               hn::MulAdd(ux, ux, hn::Mul(uy, uy)),
+                               hn::Zero(d)};
+    return contact_of_image(d, circle, image, scale, warp.horizon_height, warp.horizon_sine);
 }
 
 /// Two vectors of doubles as one of floats, rounded; the first of them as it is where T is double.
@@ -337,6 +338,16 @@ HWY_INLINE CircleLanes<Lanes<T>> narrowed_circle(const CircleLanes<Doubles>& low
             narrowed<T>(low.sine, high.sine),
             narrowed<T>(low.tilt_squared, high.tilt_squared),
             narrowed<T>(low.crossing_squared, high.crossing_squared)};
+}
+
+/// What is sensitive was worked out: angles and areas lose no more in T than the bands do.
+template <class T>
+HWY_INLINE ContactLanes<Lanes<T>> narrowed_contact(const ContactLanes<Doubles>& low,
+                                                   const ContactLanes<Doubles>& high) {
+    return {narrowed_circle<T>(low.light, high.light), narrowed<T>(low.height, high.height),
+            narrowed<T>(low.sine, high.sine),          narrowed<T>(low.chord_squared, high.chord_squared),
+            narrowed<T>(low.corner, high.corner),      narrowed<T>(low.arc, high.arc),
+            narrowed<T>(low.edge, high.edge)};
 }
 
 }  // namespace HWY_NAMESPACE

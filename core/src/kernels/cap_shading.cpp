@@ -70,23 +70,6 @@ HWY_INLINE WarpLanes<Doubles> load_warp(const WarpArrays& warps, const std::uint
             get(warps.horizon_z),       get(warps.horizon_height), get(warps.horizon_sine)};
 }
 
-HWY_INLINE CapLanes<Floats> narrowed_cap(const CapLanes<Doubles>& a, const CapLanes<Doubles>& b) {
-    using T = float;
-    return {narrowed<T>(a.cos_tilt, b.cos_tilt),
-            narrowed<T>(a.sin_tilt, b.sin_tilt),
-            narrowed<T>(a.cos_azimuth, b.cos_azimuth),
-            narrowed<T>(a.sin_azimuth, b.sin_azimuth),
-            narrowed<T>(a.cos_half, b.cos_half),
-            narrowed<T>(a.sin_half, b.sin_half),
-            narrowed<T>(a.arc, b.arc),
-            narrowed<T>(a.cos_arc, b.cos_arc),
-            narrowed<T>(a.sin_arc, b.sin_arc),
-            narrowed<T>(a.edge, b.edge),
-            narrowed<T>(a.solid_angle, b.solid_angle),
-            narrowed<T>(a.height, b.height),
-            narrowed<T>(a.horizon_sine, b.horizon_sine)};
-}
-
 struct Job {
     const CircleArrays& circles;
     const std::uint32_t* circle_of;
@@ -207,15 +190,14 @@ class ShadingBatch {
             for (std::size_t lane = 0; lane < kLanes; ++lane) {
                 view_of[lane] = job_.view_of[chosen[lane]];
             }
-            return narrowed_cap(warped_cap(circles.low, view_of.data()),
-                                warped_cap(circles.high, view_of.data() + kLanes - kHalf));
+            const auto low = contact(circles.low, view_of.data());
+            const auto high = contact(circles.high, view_of.data() + kLanes - kHalf);
+            return cap_in_contact(Floats(), narrowed_contact<float>(low, high));
         }
     }
 
-    HWY_INLINE CapLanes<Doubles> warped_cap(const CircleLanes<Doubles>& circle, const std::uint32_t* views) const {
-        const Doubles d;
-        const auto warp = load_warp(job_.lobe.warps, views);
-        return cap_of_image(d, circle, warped_circle(d, circle, warp), warp.horizon_height, warp.horizon_sine);
+    HWY_INLINE ContactLanes<Doubles> contact(const CircleLanes<Doubles>& circle, const std::uint32_t* views) const {
+        return warped_contact(Doubles(), circle, load_warp(job_.lobe.warps, views));
     }
 
     template <bool kCrossing, bool kPlane, bool kScaled>
