@@ -6,11 +6,13 @@
 #include <limits>
 #include <numeric>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "checks.h"
 #include "circle_batch.h"
+#include "kernels/cap_kernel.h"
 #include "light_checks.h"
 #include "lobe_batch.h"
 #include "material_views.h"
@@ -48,22 +50,6 @@ void check_views(std::span<const T> cos_theta_o, std::size_t count) {
     }
 }
 
-/// Whether check_sphere lets all of these pass, without its care for contact, tiny and huge numbers: where that matters
-/// the answer is no.
-template <class T>
-bool plainly_valid(const Vec3<T>* centers, const T* radii, std::size_t count) {
-    constexpr double kMargin = 1 + 1e-12;
-    int valid = 1;
-    for (std::size_t i = 0; i < count; ++i) {
-        const Vec3d center(centers[i]);
-        const auto radius = static_cast<double>(radii[i]);
-        const double square = glm::dot(center, center);
-        valid &= static_cast<int>(radius > 0) & static_cast<int>(square > kMargin * radius * radius) &
-                 static_cast<int>(square <= std::numeric_limits<double>::max());
-    }
-    return valid != 0;
-}
-
 }  // namespace
 
 class LightShaderWork {
@@ -84,15 +70,26 @@ class LightShaderWork {
     template <class T>
     void shade_spheres(const Vec3<T>* centers, const T* radii, std::span<Rgb> radiance,
                        std::span<std::int32_t> effort) {
-        circles_.resize(radiance.size());
-        if (!plainly_valid(centers, radii, radiance.size())) {
+        if (!spheres_are_sound(centers, radii, radiance.size())) {
             for (std::size_t i = 0; i < radiance.size(); ++i) {
                 check_sphere(Vec3d(centers[i]), radii[i], std::numeric_limits<float>::epsilon());
             }
         }
-        circles_of_spheres(std::span(centers, radiance.size()), radii, circles_.output());
-        const CircleArrays circles = circles_.arrays();
-        shade(circles, radiance, effort);
+        bool has_circles = false;
+        shade_lobes(radiance, effort, [&](LobeViews& lobe) {
+            if constexpr (std::is_same_v<T, float>) {
+                if (LobeBatch::takes_spheres(lobe)) {
+                    batch_.shade(lobe, std::span(centers, radiance.size()), radii, !effort.empty());
+                    return;
+                }
+            }
+            if (!has_circles) {
+                circles_.resize(radiance.size());
+                circles_of_spheres(std::span(centers, radiance.size()), radii, circles_.output());
+                has_circles = true;
+            }
+            batch_.shade(lobe, circles_.arrays(), view_of_, !effort.empty());
+        });
     }
 
     template <class T>
@@ -105,7 +102,8 @@ class LightShaderWork {
                 check_polygon<float>(polygons_.polygon(i));
             }
         }
-        shade(polygons_, radiance, effort);
+        shade_lobes(radiance, effort,
+                    [&](LobeViews& lobe) { batch_.shade(lobe, polygons_, view_of_, !effort.empty()); });
     }
 
   private:
@@ -130,15 +128,16 @@ class LightShaderWork {
         views_.assign(material_, cosines_, false);
     }
 
-    template <class Lights>
-    void shade(Lights& lights, std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+    /// shade(lobe) puts what one lobe does into batch_.
+    template <class Shade>
+    void shade_lobes(std::span<Rgb> radiance, std::span<std::int32_t> effort, const Shade& shade) {
         if (views_.lobe_count() == 0) {
             std::fill(radiance.begin(), radiance.end(), Rgb(0));
             std::fill(effort.begin(), effort.end(), 0);
         }
         for (std::size_t i = 0; i < views_.lobe_count(); ++i) {
             LobeViews& lobe = views_.lobe(i);
-            batch_.shade(lobe, lights, view_of_, !effort.empty());
+            shade(lobe);
             add(lobe, i == 0, radiance);
             const auto efforts = batch_.efforts();
             for (std::size_t k = 0; k < effort.size(); ++k) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "kernels/cap_kernel.h"
 #include "kernels/cubature_kernel.h"
 #include "kernels/polygon_shading_kernel.h"
 #include "light_cubature.h"
@@ -34,6 +35,16 @@ int cheap_rule(const PolygonBatch&) {
     return kCheapPolygonRule;
 }
 
+/// What rings below zero is no light.
+void without_ringing(std::span<float> values) {
+    std::transform(values.begin(), values.end(), values.begin(), [](float value) { return std::max(0.0F, value); });
+}
+
+/// By harmonics of one order, all of them.
+bool shades_alike(const LobeViews& lobe) {
+    return !lobe.chooses() && !is_mirror(lobe.shape()) && !lobe.any_black();
+}
+
 }  // namespace
 
 void LobeBatch::shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of,
@@ -45,11 +56,29 @@ void LobeBatch::shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const s
     shade_any(lobe, polygons, view_of, counted);
 }
 
+bool LobeBatch::takes_spheres(LobeViews& lobe) {
+    return shades_alike(lobe) && std::holds_alternative<LambertShape>(lobe.shape());
+}
+
+void LobeBatch::shade(LobeViews& lobe, std::span<const Vec3f> centers, const float* radii, bool counted) {
+    constexpr std::array<std::uint32_t, 1> kFirstView = {0};
+    const int order = lobe.order(0);
+    values_.resize(centers.size());
+    efforts_.resize(centers.size());
+    alike_ = true;
+    shade_spheres_on_plane(centers.data(), radii, centers.size(), lobe.arrays(order, kFirstView).terms, order,
+                           values_.data());
+    without_ringing(values_);
+    for (std::size_t i = 0; counted && i < centers.size(); ++i) {
+        efforts_[i] = centers[i].z <= -radii[i] ? 0 : order;
+    }
+}
+
 template <class Lights>
 void LobeBatch::shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool counted) {
     values_.resize(view_of.size());
     efforts_.resize(view_of.size());
-    alike_ = !lobe.chooses() && !is_mirror(lobe.shape()) && !lobe.any_black();
+    alike_ = shades_alike(lobe);
     if (view_of.empty()) {
         return;
     }
@@ -72,7 +101,7 @@ void LobeBatch::shade_alike(LobeViews& lobe, Lights& lights, std::span<const std
     item_values_ = values_;
     const int order = lobe.order(0);
     by_harmonics(lobe, lights, order);
-    std::transform(values_.begin(), values_.end(), values_.begin(), [](float value) { return std::max(0.0F, value); });
+    without_ringing(values_);
     for (std::size_t i = 0; counted && i < count; ++i) {
         efforts_[i] = lies_below(lights, i) ? 0 : order;
     }

@@ -13,8 +13,10 @@
 
 namespace shlight::python {
 
-/// Lights a task takes at once: enough to hide the cost of handing it out, few enough to share evenly.
-inline constexpr std::size_t kChunk = 512;
+/// Lights a task takes at once: enough to hide the cost of handing it out and to sort them, few enough to share evenly.
+inline std::size_t chunk_of(std::size_t total) {
+    return std::clamp<std::size_t>(total / 32, 256, 2048);
+}
 
 /// How a result of so many bytes is best written: what exceeds a core's own cache goes around it.
 inline Output output_of(std::size_t bytes) {
@@ -25,10 +27,11 @@ inline Output output_of(std::size_t bytes) {
 template <class Work>
 void in_chunks(std::size_t total, int threads, const Work& work) {
     const pybind11::gil_scoped_release release;
-    const std::size_t chunks = (total + kChunk - 1) / kChunk;
+    const std::size_t size = chunk_of(total);
+    const std::size_t chunks = (total + size - 1) / size;
     parallel_for(chunks, threads, [&](std::size_t chunk) {
-        const std::size_t first = chunk * kChunk;
-        work(first, std::min(kChunk, total - first));
+        const std::size_t first = chunk * size;
+        work(first, std::min(size, total - first));
     });
 }
 

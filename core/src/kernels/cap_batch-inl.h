@@ -47,7 +47,7 @@ HWY_INLINE std::uint32_t bits_of(D d, M<D> mask) {
 /// Lights of a chunk that have the same needs.
 class LightList {
   public:
-    static constexpr std::size_t kMost = 512;
+    static constexpr std::size_t kMost = 2048;
 
     /// Adds those of the lights first … first + count - 1, at most 16, whose bits are set.
     HWY_INLINE void add_block(std::size_t first, std::size_t count, std::uint32_t bits) {

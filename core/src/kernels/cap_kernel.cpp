@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "kernels/cap_batch-inl.h"
 #include "kernels/cap_spheres-inl.h"
@@ -128,43 +129,74 @@ struct CircleSource {
     }
 };
 
-template <class T, bool kScaled>
-HWY_NOINLINE void write_crossed(const CapLanes<Lanes<T>>& cap, std::size_t order, const RowPointers<T>& rows,
-                                Output output) {
-    CoefficientVisitor<T> visit(cap, order, rows, output);
-    if (order > 1) {
-        CrossedBands<T, true, kScaled> bands(cap, order);
-        for (std::size_t l = 1; l < order; ++l) {
-            bands.solve(l, visit);
-        }
-    }
-    visit.finish();
-}
+/// Writes coefficients to rows, order² values for each light.
+template <class T>
+class RowSink {
+    using D = Lanes<T>;
 
-template <class T, bool kScaled, bool kHorizon>
-HWY_NOINLINE void write_uncrossed(const CapLanes<Lanes<T>>& cap, std::size_t order, const RowPointers<T>& rows,
-                                  Output output) {
-    CoefficientVisitor<T> visit(cap, order, rows, output);
-    if (order > 1) {
-        UncrossedBands<T, kScaled, kHorizon> bands(cap, order);
-        for (std::size_t l = 1; l < order; ++l) {
-            bands.solve(l, visit);
-        }
-    }
-    visit.finish();
-}
-
-/// Coefficients of a whole batch, sorted by need.
-template <class T, class Source>
-class RowBatch {
   public:
-    RowBatch(const Source& source, std::size_t order, bool clip, T* rows, Output output)
-        : source_(source),
-          order_(order),
-          clip_(clip),
-          rows_(rows),
-          output_(output),
-          least_sine_(least_unscaled_sine<T>(order)) {}
+    RowSink(std::size_t order, T* rows, Output output) : order_(order), rows_(rows), output_(output) {}
+
+    std::size_t order() const { return order_; }
+    void hide(std::size_t i) const { std::fill_n(rows_ + i * order_ * order_, order_ * order_, T(0)); }
+
+    /// again: a few lanes of this vector were written before, and need other recurrences.
+    template <class Bands>
+    HWY_NOINLINE void take(const CapLanes<D>& cap, const Chosen<T>& chosen, bool again) const {
+        RowPointers<T> rows;
+        for (std::size_t lane = 0; lane < rows.size(); ++lane) {
+            rows[lane] = rows_ + chosen[lane] * order_ * order_;
+        }
+        CoefficientVisitor<T> visit(cap, order_, rows, again ? Output::cached : output_);
+        if (order_ > 1) {
+            solve_bands(Bands(cap, order_), order_, visit);
+        }
+        visit.finish();
+    }
+
+  private:
+    std::size_t order_;
+    T* rows_;
+    Output output_;
+};
+
+/// Multiplies with the terms of one lobe that all lights share.
+class LobeSink {
+    using D = Floats;
+
+  public:
+    LobeSink(std::size_t order, const float* terms, float* values) : order_(order), values_(values) {
+        for (std::size_t k = 0; k < order * (order + 1) / 2; ++k) {
+            hn::Store(hn::Set(D(), terms[k]), D(), terms_.data() + k * kLaneCount<D>);
+        }
+    }
+
+    std::size_t order() const { return order_; }
+    void hide(std::size_t i) const { values_[i] = 0; }
+
+    template <class Bands>
+    HWY_NOINLINE void take(const CapLanes<D>& cap, const Chosen<float>& chosen, bool /*again*/) const {
+        ShadingVisitor<float> visit(cap, order_, terms_.data());
+        solve_bands(Bands(cap, order_), order_, visit);
+        alignas(64) std::array<float, kLaneCount<D>> sums;
+        hn::Store(visit.sum(), D(), sums.data());
+        for (std::size_t lane = 0; lane < sums.size(); ++lane) {
+            values_[chosen[lane]] = sums[lane];
+        }
+    }
+
+  private:
+    std::size_t order_;
+    float* values_;
+    alignas(64) std::array<float, kCosineMax * kLaneCount<D>> terms_;
+};
+
+/// A whole batch against the plane z = 0, sorted by need.
+template <class T, class Source, class Sink>
+class PlaneBatch {
+  public:
+    PlaneBatch(const Source& source, const Sink& sink, bool clip)
+        : source_(source), sink_(sink), clip_(clip), least_sine_(least_unscaled_sine<T>(sink.order())) {}
 
     HWY_INLINE void run(std::size_t first, std::size_t last) {
         crossing_.clear();
@@ -179,7 +211,7 @@ class RowBatch {
             uncrossed_.add_block(i, count, all_lanes & ~(sides | hidden));
             for (std::size_t j = 0; hidden >> j != 0; ++j) {
                 if ((hidden >> j & 1U) != 0) {
-                    std::fill_n(rows_ + (i + j) * order_ * order_, order_ * order_, T(0));
+                    sink_.hide(i + j);
                 }
             }
         }
@@ -190,19 +222,23 @@ class RowBatch {
   private:
     using D = Lanes<T>;
 
+    template <bool kCrossing, bool kScaled>
+    using Bands = std::conditional_t<kCrossing, CrossedBands<T, true, kScaled>,
+                                     UncrossedBands<T, kScaled, Source::kMayContainHorizon>>;
+
     template <bool kCrossing>
     HWY_INLINE void run_group(const LightList& lights) {
         scaled_.clear();
         lights.for_each_vector<T>([&](const Chosen<T>& chosen) HWY_ATTR {
             const auto cap = load<kCrossing>(chosen);
-            write<kCrossing, false>(cap, chosen, output_);
+            sink_.template take<Bands<kCrossing, false>>(cap, chosen, false);
             const auto scaled = needs_scaling(D(), cap, least_sine_);
             if (!hn::AllFalse(D(), scaled)) {
                 scaled_.add_marked(D(), scaled, chosen);
             }
         });
         scaled_.for_each_vector<T>([&](const Chosen<T>& chosen) HWY_ATTR {
-            write<kCrossing, true>(load<kCrossing>(chosen), chosen, Output::cached);
+            sink_.template take<Bands<kCrossing, true>>(load<kCrossing>(chosen), chosen, true);
         });
     }
 
@@ -217,37 +253,32 @@ class RowBatch {
         }
     }
 
-    template <bool kCrossing, bool kScaled>
-    HWY_INLINE void write(const CapLanes<D>& cap, const Chosen<T>& chosen, Output output) const {
-        RowPointers<T> rows;
-        for (std::size_t lane = 0; lane < rows.size(); ++lane) {
-            rows[lane] = rows_ + chosen[lane] * order_ * order_;
-        }
-        if constexpr (kCrossing) {
-            write_crossed<T, kScaled>(cap, order_, rows, output);
-        } else {
-            write_uncrossed<T, kScaled, Source::kMayContainHorizon>(cap, order_, rows, output);
-        }
-    }
-
     Source source_;
-    std::size_t order_;
+    const Sink& sink_;
     bool clip_;
-    T* rows_;
-    Output output_;
     double least_sine_;
     LightList crossing_, uncrossed_, scaled_;
 };
 
-template <class T, class Source>
-void rows_of(const Source& source, std::size_t count, std::size_t order, bool clip, T* rows, Output output) {
-    RowBatch<T, Source> batch(source, order, clip, rows, output);
+template <class T, class Source, class Sink>
+void run_batch(const Source& source, std::size_t count, bool clip, const Sink& sink) {
+    PlaneBatch<T, Source, Sink> batch(source, sink, clip);
     for (std::size_t first = 0; first < count; first += LightList::kMost) {
         batch.run(first, std::min(count, first + LightList::kMost));
     }
+}
+
+template <class T, class Source>
+void rows_of(const Source& source, std::size_t count, std::size_t order, bool clip, T* rows, Output output) {
+    run_batch<T>(source, count, clip, RowSink<T>(order, rows, output));
     if (output == Output::streamed) {
         hwy::FlushStream();
     }
+}
+
+void shade_spheres_float(const Vec3<float>* centers, const float* radii, std::size_t count, std::size_t order,
+                         const float* terms, float* values) {
+    run_batch<float>(SphereSource<float>{centers, radii}, count, true, LobeSink(order, terms, values));
 }
 
 template <class T>
@@ -483,6 +514,7 @@ HWY_EXPORT(sound_float);
 HWY_EXPORT(sound_double);
 HWY_EXPORT(sphere_rows_float);
 HWY_EXPORT(sphere_rows_double);
+HWY_EXPORT(shade_spheres_float);
 HWY_EXPORT(circle_rows_float);
 HWY_EXPORT(circle_rows_double);
 HWY_EXPORT(inside_circle);
@@ -509,6 +541,12 @@ void sphere_rows(const Vec3<double>* centers, const double* radii, std::size_t c
                  double* rows, Output output) {
     HWY_DYNAMIC_DISPATCH(sphere_rows_double)
     (centers, radii, count, static_cast<std::size_t>(order), clip, rows, output);
+}
+
+void shade_spheres_on_plane(const Vec3<float>* centers, const float* radii, std::size_t count, const float* lobe_terms,
+                            int order, float* values) {
+    HWY_DYNAMIC_DISPATCH(shade_spheres_float)
+    (centers, radii, count, static_cast<std::size_t>(order), lobe_terms, values);
 }
 
 void circle_rows(const Circle* circles, std::size_t count, int order, bool clip, float* rows, Output output) {

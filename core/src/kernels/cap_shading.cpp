@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 #include "kernels/cap_batch-inl.h"
 #include "kernels/cap_spheres-inl.h"
@@ -207,28 +206,14 @@ class ShadingBatch {
         }
         ShadingVisitor<float> visit(cap, order_, terms_.data());
         if constexpr (kCrossing) {
-            add_bands(CrossedBands<float, kPlane, kScaled>(cap, order_), visit);
+            solve_bands(CrossedBands<float, kPlane, kScaled>(cap, order_), order_, visit);
         } else {
-            add_bands(UncrossedBands<float, kScaled, true>(cap, order_), visit);
+            solve_bands(UncrossedBands<float, kScaled, true>(cap, order_), order_, visit);
         }
         alignas(64) std::array<float, kLanes> sums;
         hn::Store(visit.sum(), Floats(), sums.data());
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             job_.values[chosen[lane]] = sums[lane];
-        }
-    }
-
-    template <class Bands>
-    HWY_INLINE void add_bands(Bands&& bands, ShadingVisitor<float>& visit) const {
-        if (order_ == 8) {
-            [&]<std::size_t... kBand>(std::index_sequence<kBand...>) HWY_ATTR {
-                (bands.solve(kBand + 1, visit), ...);
-            }
-            (std::make_index_sequence<7>());
-            return;
-        }
-        for (std::size_t l = 1; l < order_; ++l) {
-            bands.solve(l, visit);
         }
     }
 

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 
 #include "kernels/cap_bands-inl.h"
 #include "kernels/cap_lanes-inl.h"
@@ -166,6 +167,21 @@ class ShadingVisitor {
     const T* terms_;
     V<D> sum_;
 };
+
+/// All bands from 1 on. Order 8, where loops are shortest, has them laid out.
+template <class Bands, class Visit>
+HWY_INLINE void solve_bands(Bands&& bands, std::size_t order, Visit& visit) {
+    if (order == 8) {
+        [&]<std::size_t... kBand>(std::index_sequence<kBand...>) HWY_ATTR {
+            (bands.solve(kBand + 1, visit), ...);
+        }
+        (std::make_index_sequence<7>());
+        return;
+    }
+    for (std::size_t l = 1; l < order; ++l) {
+        bands.solve(l, visit);
+    }
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace shlight
