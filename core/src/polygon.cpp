@@ -55,11 +55,12 @@ void integrate(const SphericalPolygon<Wider<T>>& polygon, int order, T* coeffici
     const PolygonRegion<Wider<T>> region(polygon, Warp());
     if (method == PolygonMethod::boundary) {
         boundary_coefficients(region, order, coefficients);
-    } else if (method == PolygonMethod::edge_points) {
-        points(region, coefficients);
-    } else if (order > 2 && is_narrow<T>(polygon, region)) {  // up to order 2 there is a closed form
+        return;
+    }
+    const bool automatic = method == PolygonMethod::automatic;
+    if (automatic && order > 2 && is_narrow<T>(polygon, region)) {  // up to order 2 there is a closed form
         polygon_by_cubature(polygon, order, coefficients);
-    } else if (order <= kLowOrder && polygon.solid_angle() > kSmallestForClosedForm) {
+    } else if (automatic && order <= kLowOrder && polygon.solid_angle() > kSmallestForClosedForm) {
         low_band_coefficients(region, order, coefficients);
     } else {
         points(region, coefficients);

@@ -21,8 +21,7 @@
 #include "kernels/rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 
 template <class R>
 struct Vectors3 {
@@ -207,8 +206,7 @@ HWY_INLINE RowPointers<const R> row_pointers(const RowList<Row>& rows, std::size
     return pointers;
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

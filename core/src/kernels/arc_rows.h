@@ -36,15 +36,16 @@ class RowStore {
     Row* block() {
         const std::size_t slab = used_ / kSlab;
         if (slab == slabs_.size()) {
-            slabs_.emplace_back(new Row[kSlab * kBlock]);
+            slabs_.push_back(std::make_unique_for_overwrite<Slab>());
         }
-        return slabs_[slab].get() + used_++ % kSlab * kBlock;
+        return slabs_[slab]->data() + used_++ % kSlab * kBlock;
     }
 
   private:
     static constexpr std::size_t kSlab = 32;
+    using Slab = std::array<Row, kSlab * kBlock>;
 
-    std::vector<std::unique_ptr<Row[]>> slabs_;
+    std::vector<std::unique_ptr<Slab>> slabs_;
     std::size_t used_ = 0;
 };
 

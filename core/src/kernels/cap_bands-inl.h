@@ -11,6 +11,7 @@
 
 #include <hwy/highway.h>
 
+#include <array>
 #include <cstddef>
 #include <limits>
 
@@ -19,8 +20,7 @@
 #include "kernels/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 
 /// One vector for each degree m.
 template <class T>
@@ -28,13 +28,13 @@ class DegreeRow {
     using D = Lanes<T>;
 
   public:
-    HWY_INLINE V<D> operator[](std::size_t m) const { return hn::Load(D(), values_ + m * kLaneCount<D>); }
-    HWY_INLINE void put(std::size_t m, V<D> value) { hn::Store(value, D(), values_ + m * kLaneCount<D>); }
+    HWY_INLINE V<D> operator[](std::size_t m) const { return hn::Load(D(), values_.data() + m * kLaneCount<D>); }
+    HWY_INLINE void put(std::size_t m, V<D> value) { hn::Store(value, D(), values_.data() + m * kLaneCount<D>); }
 
   private:
     // One more than there are degrees, or rows would lie a multiple of 4 KiB apart and compete for the same cache
     // lines.
-    alignas(64) T values_[static_cast<std::size_t>(kMaxOrder + 1) * kLaneCount<D>];
+    alignas(64) std::array<T, static_cast<std::size_t>(kMaxOrder + 1) * kLaneCount<D>> values_;
 };
 
 /// row[m] = base^m for m < count; kScaled: what would be denormal is zero.
@@ -396,8 +396,7 @@ class CrossedBands {
     DegreeRow<T> null_, above_, right_;
 };
 
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -20,8 +20,7 @@
 #include "kernels/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 
 /// The lights in the lanes of a vector.
 template <class T>
@@ -95,8 +94,7 @@ class LightList {
     std::size_t count_ = 0;
 };
 
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

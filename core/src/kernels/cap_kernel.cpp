@@ -21,8 +21,7 @@
 #include "kernels/cap_sums-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 namespace {
 
 /// Spheres and their rows.
@@ -503,8 +502,7 @@ void row_double(const Cap<double>& cap, std::size_t order, double* row) {
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

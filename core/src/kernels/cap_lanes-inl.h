@@ -19,8 +19,7 @@
 #include "kernels/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 
 /// As Cap (cap.h).
 template <class D>
@@ -350,8 +349,7 @@ HWY_INLINE ContactLanes<Lanes<T>> narrowed_contact(const ContactLanes<Doubles>& 
             narrowed<T>(low.edge, high.edge)};
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

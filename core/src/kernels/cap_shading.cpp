@@ -18,8 +18,7 @@
 #include "kernels/cap_sums-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 namespace {
 
 constexpr std::size_t kLanes = kLaneCount<Floats>;
@@ -324,8 +323,7 @@ void circles_of_double(const Vec3<double>* centers, const double* radii, std::si
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

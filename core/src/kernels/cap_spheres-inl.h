@@ -15,8 +15,7 @@
 #include "kernels/cap_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 
 /// What the rounded product lacks of a².
 template <class D>
@@ -129,8 +128,7 @@ HWY_INLINE CircleLanes<Floats> circle_of_sphere_in_lanes(Floats d, V<Floats> x, 
             narrowed<float>(a.crossing_squared, b.crossing_squared)};
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

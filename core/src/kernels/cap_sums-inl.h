@@ -11,6 +11,7 @@
 
 #include <hwy/highway.h>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -22,8 +23,7 @@
 #include "kernels/rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 
 /// Below this sine of a cap's tilt or of a horizon, unscaled recurrences would leave the range of T.
 template <class T>
@@ -45,11 +45,12 @@ HWY_INLINE V<D> band_zero(D d, const CapLanes<D>& cap) {
 /// √2 cos mφ and √2 sin mφ of the cap's azimuth, 1 and 0 for m = 0.
 template <class T>
 struct AzimuthLanes {
-    alignas(64) T cosine[static_cast<std::size_t>(kMaxOrder + 1) * kLaneCount<Lanes<T>>];
-    alignas(64) T sine[static_cast<std::size_t>(kMaxOrder + 1) * kLaneCount<Lanes<T>>];
+    alignas(64) std::array<T, static_cast<std::size_t>(kMaxOrder + 1) * kLaneCount<Lanes<T>>> cosine;
+    alignas(64) std::array<T, static_cast<std::size_t>(kMaxOrder + 1) * kLaneCount<Lanes<T>>> sine;
 
     HWY_INLINE AzimuthLanes(const CapLanes<Lanes<T>>& cap, std::size_t order) {
-        complex_powers_in_lanes(Lanes<T>(), cap.cos_azimuth, cap.sin_azimuth, std::numbers::sqrt2, order, cosine, sine);
+        complex_powers_in_lanes(Lanes<T>(), cap.cos_azimuth, cap.sin_azimuth, std::numbers::sqrt2, order, cosine.data(),
+                                sine.data());
     }
 };
 
@@ -96,8 +97,8 @@ class CoefficientVisitor {
             const auto value = value_of(m);
             right += kLanes;
             left -= kLanes;
-            hn::Store(hn::Mul(value, hn::Load(d, azimuth_.cosine + m * kLanes)), d, right);
-            hn::Store(hn::Mul(value, hn::Load(d, azimuth_.sine + m * kLanes)), d, left);
+            hn::Store(hn::Mul(value, hn::Load(d, azimuth_.cosine.data() + m * kLanes)), d, right);
+            hn::Store(hn::Mul(value, hn::Load(d, azimuth_.sine.data() + m * kLanes)), d, left);
         }
         writer_.add(2 * l + 1);
     }
@@ -183,8 +184,7 @@ HWY_INLINE void solve_bands(Bands&& bands, std::size_t order, Visit& visit) {
     }
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

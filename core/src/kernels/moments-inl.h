@@ -23,8 +23,7 @@
 #include "shlight/types.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 
 /// Sums of P̃_l^m (x+iy)^{m-1} over the points of arcs in lanes, and what they are for the coefficients of each arc.
 /// Along a great circle ν is constant, and two sums do instead of four.
@@ -75,7 +74,7 @@ class ArcMoments {
 
     /// Adds each lane's coefficients to its row, for `count` lanes one after the other: several may have the same.
     HWY_INLINE void add_to(const std::array<R*, kLaneCount<D>>& rows, std::size_t count) const {
-        const std::size_t numbers = static_cast<std::size_t>(coefficient_count(order_));
+        const auto numbers = static_cast<std::size_t>(coefficient_count(order_));
         alignas(64) std::array<R, kLine * kWidth> buffer;
         std::array<R*, kWidth> lines;
         for (std::size_t lane = 0; lane < kWidth; ++lane) {
@@ -272,8 +271,7 @@ void add_moments(const ArcLists<R>& lists, int order, const RowOf& row_of) {
     }
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

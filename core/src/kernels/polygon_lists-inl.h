@@ -21,8 +21,7 @@
 #include "kernels/polygon_outline-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 
 /// What edges cancel to is about solid angle ÷ outline of what each has. A region with more than this goes through
 /// float and loses little that float could hold: less at low orders, where fewer terms bring their rounding.
@@ -355,8 +354,7 @@ class PolygonLists {
     std::vector<std::uint32_t> whole_, cut_, narrow_whole_, narrow_cut_;
 };
 
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -28,8 +28,7 @@
 #include "kernels/rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 
 /// One number for each lane.
 template <class R>
@@ -543,8 +542,7 @@ class Outline {
     V<D> re_, im_;
 };
 
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

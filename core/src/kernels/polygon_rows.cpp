@@ -14,8 +14,7 @@
 #include "kernels/polygon_lists-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 namespace {
 
 /// Work of one call of polygon_rows.
@@ -127,8 +126,7 @@ void add_double_arcs(const ArcLists<double>& arcs, bool great, int order, double
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -20,8 +20,7 @@
 #include "polygon_shading.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 namespace {
 
 /// The bound on what Gauss points err by is far from reached, and one number sums up what many coefficients err by.
@@ -198,8 +197,7 @@ void shade_polygons_in_lanes(const PolygonArray& polygons, const std::uint32_t* 
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -16,8 +16,7 @@
 #include "kernels/polygon_outline-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 namespace {
 
 using Vectors = Vectors3<double>;
@@ -143,8 +142,7 @@ void extents_in_lanes(const PolygonArray& polygons, const PolygonExtents& extent
 }
 
 }  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

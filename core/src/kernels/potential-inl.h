@@ -24,8 +24,7 @@
 #include "shlight/types.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace shlight {
-namespace HWY_NAMESPACE {
+namespace shlight::HWY_NAMESPACE {
 
 /// The two series of each degree for a vector of lobes. kShared: one lobe in all lanes, and one number a coefficient.
 template <class R, bool kShared>
@@ -116,7 +115,7 @@ class PotentialSeries {
     }
 
     void load_terms(const RowPointers<const float>& rows) {
-        const std::size_t count = static_cast<std::size_t>(cosine_count(static_cast<int>(order_)));
+        const auto count = static_cast<std::size_t>(cosine_count(static_cast<int>(order_)));
         terms_.resize((count + 3) / 4 * 4 * kWidth);
         const hn::Rebind<float, D> of_float;
         if constexpr (hn::MaxLanes(of_float) < kSquare<decltype(of_float)>) {
@@ -243,8 +242,7 @@ HWY_INLINE V<Lanes<R>> horizon_integral(const R* slopes, std::size_t order, cons
     return sum;
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace shlight
+}  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif
