@@ -37,6 +37,9 @@ struct LegendreConstants {
 extern template struct LegendreConstants<float>;
 extern template struct LegendreConstants<double>;
 
+/// Below this sin²θ the pole is near: the recurrence in z would amplify the rounding of z, and of each step, by l².
+inline constexpr double kNearPole = 0.0156;
+
 /// P̂_l^0 … P̂_l^l for l = 0, 1, 2, … at one z = cosθ.
 ///
 /// Near the poles P̂_l^m leaves its value there by about l²/2 · (1 - |z|): a rounded z, and the rounding of each step of
@@ -45,7 +48,7 @@ extern template struct LegendreConstants<double>;
 template <class T>
 class LegendreRows {
   public:
-    LegendreRows(T z, T sine_squared) : z_(z), near_pole_(sine_squared < T(0.0156)) {
+    LegendreRows(T z, T sine_squared) : z_(z), near_pole_(sine_squared < static_cast<T>(kNearPole)) {
         row_[0] = constants_.diagonal[0];
         other_[0] = 0;
         if (near_pole_) {

@@ -5,26 +5,22 @@
 
 #include "arrays.h"
 #include "bindings.h"
+#include "chunks.h"
 #include "shaded.h"
 #include "shlight/light_shading.h"
-#include "shlight/parallel.h"
 
 namespace shlight::python {
 namespace {
 
-/// Lights a task takes at once, in chunks of the shader's own: a shared view is looked up once for each task.
-constexpr std::size_t kTask = 4096;
-
 /// work(shader, first, count) over parts of 0 … total-1, without the GIL; each thread has a shader of its own.
 template <class Work>
 void shade_parts(std::size_t total, const Bsdf& bsdf, const ShadeSettings& settings, int threads, const Work& work) {
-    const py::gil_scoped_release release;
     tbb::enumerable_thread_specific<LightShader> shaders([&] { return LightShader(bsdf, settings); });
-    shaders.local();  // a setting that is wrong is wrong for no lights, too
-    parallel_for((total + kTask - 1) / kTask, threads, [&](std::size_t part) {
-        const std::size_t first = part * kTask;
-        work(shaders.local(), first, std::min(kTask, total - first));
-    });
+    {
+        const py::gil_scoped_release release;
+        shaders.local();  // a setting that is wrong is wrong for no lights, too
+    }
+    in_chunks(total, threads, [&](std::size_t first, std::size_t count) { work(shaders.local(), first, count); });
 }
 
 /// The views of a part of the lights: those of each, or the one of all.

@@ -20,9 +20,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
-/// Below this sin²θ the pole is near: the recurrence in z would amplify the rounding of z, and of each step, by l².
-inline constexpr double kNearPole = 0.0156;
-
 /// P̂_l^0 … P̂_l^l for l = 0, 1, 2, … in lanes.
 ///
 /// kAtPole: on the differences of R_l = P̂_l / P̂_l(1), for lanes near a pole,
