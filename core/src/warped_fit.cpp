@@ -73,6 +73,9 @@ WarpedRow make_row(const GgxShape& shape, int order) {
     return shape.fresnel == Fresnel::dielectric ? fit_warped_row(shape, kWarpedOrders) : GgxTable::get().row(shape);
 }
 
+/// Of the clipped cosine only the horizon is beyond bands 0 and 1, and the light is clipped there.
+constexpr int kLambertOrder = 2;
+
 }  // namespace
 
 Warp lobe_warp(const LobeShape& shape, double cos_theta_o) {
@@ -87,7 +90,8 @@ Warp lobe_warp(const LobeShape& shape, double cos_theta_o) {
     return {std::acos(cosine), width / std::pow(1 + width * std::sqrt(width), 2.0 / 3)};
 }
 
-WarpedFit::WarpedFit(const LobeShape& shape, int order) : shape_(shape), order_(order) {
+WarpedFit::WarpedFit(const LobeShape& shape, int order)
+    : shape_(shape), order_(order == 0 ? kLambertOrder : std::min(order, kLambertOrder)) {
     if (order != 0) {
         check_order(order);
     }
@@ -100,7 +104,7 @@ std::vector<int> WarpedFit::orders() const {
     if (table_) {
         return {table_->orders().begin(), table_->orders().end()};
     }
-    return {order_ == 0 ? 2 : order_};
+    return {order_};
 }
 
 double WarpedFit::albedo(double cos_theta_o) const {

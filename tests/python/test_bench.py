@@ -206,12 +206,11 @@ def test_each_kind_of_work_is_the_call_that_it_names() -> None:
     assert {work.count for work in works.values()} == {8}
 
 
-def test_fused_work_takes_the_order_it_names() -> None:
-    lights = inputs.spheres("clipped", 8)
-    _, effort = shlight.shade_spheres(
-        lights.centers, lights.radii, shlight.Bsdf.lambert(1.0), inputs.LAMBERT_COSINE, order=16, return_effort=True
-    )
-    assert (effort == 16).all()
+def test_fused_work_takes_every_band() -> None:
+    lights, terms = inputs.spheres("clipped", 8), inputs.lobe_terms(16)
+    coefficients = shlight.sphere_coefficients(lights.centers, lights.radii, 16, dtype=np.float64)
+    columns = [band * band + band + m for band in range(16) for m in range(band + 1)]
+    np.testing.assert_allclose(lights.fused(16).call(), coefficients[:, columns] @ terms, atol=1e-4)
 
 
 # --- sections ----------------------------------------------------------------------------------------------------

@@ -45,6 +45,27 @@ def test_coefficients_agree_with_the_reference(kind: str, dtype: type, tolerance
 
 
 @pytest.mark.usefixtures("target")
+@pytest.mark.parametrize("order", [1, 2, 8, 9, 20])
+@pytest.mark.parametrize("kind", ["clipped", "whole", "quads"])
+def test_contraction_is_that_of_the_coefficients(kind: str, order: int) -> None:
+    terms = inputs.lobe_terms(order)
+    if kind == "quads":
+        vertices = inputs.quads(100).vertices
+        sums = _core.contract_polygons(vertices, terms, order, 1)
+        coefficients = shlight.polygon_coefficients(vertices, order, dtype=np.float64)
+        whole = shlight.polygon_coefficients(vertices, 1, dtype=np.float64, clip=False)
+    else:
+        lights = inputs.spheres(kind, 100)
+        sums = _core.contract_spheres(lights.centers, lights.radii, terms, order, 1)
+        coefficients = shlight.sphere_coefficients(lights.centers, lights.radii, order, dtype=np.float64)
+        whole = shlight.sphere_coefficients(lights.centers, lights.radii, 1, dtype=np.float64, clip=False)
+    columns = [band * band + band + m for band in range(order) for m in range(band + 1)]
+    # A float rounds each of the order² products of about whole · |term| a few times.
+    error = abs(sums - coefficients[:, columns] @ terms.astype(np.float64)) / whole[:, 0]
+    assert error.max() <= 1e-5 * np.linalg.norm(terms)
+
+
+@pytest.mark.usefixtures("target")
 def test_basis_is_orthonormal() -> None:
     nodes, weights = np.polynomial.legendre.leggauss(ORDER)
     azimuth = 2 * np.pi * np.arange(2 * ORDER) / (2 * ORDER)

@@ -27,7 +27,8 @@ Warp lobe_warp(const LobeShape& shape, double cos_theta_o);
 /// One shape at all view angles. Views below kLeastFittedCosine get the lobe there; order_for says that none meets.
 class WarpedFit {
   public:
-    /// order: the only one, 1 … 64, or 0 for all that a hit may choose from. Precondition: not a mirror.
+    /// order: the only one, 1 … 64, or 0 for all that a hit may choose from. Lambert has no terms beyond order 2, which
+    /// stands for all higher ones. Precondition: not a mirror.
     explicit WarpedFit(const LobeShape& shape, int order = 0);
 
     const LobeShape& shape() const { return shape_; }
@@ -49,7 +50,7 @@ class WarpedFit {
   private:
     LobeShape shape_;
     std::shared_ptr<const ViewTable> table_;
-    int order_;
+    int order_;  // of Lambert
 };
 
 /// The fit of a shape, shared by everyone who asks for the same one; the last ones asked for are kept. Thread-safe.

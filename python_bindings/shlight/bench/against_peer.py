@@ -53,10 +53,17 @@ def measure_spheres(run: Run) -> list[Row]:
         return {
             "clipped sphere": clipped.coefficients(order),
             "clipped sphere, fused": clipped.fused(order),
+            "clipped sphere, Lambert": clipped.lambert(order),
             "whole sphere": whole.coefficients(order),
         }
 
-    return _rows(run, works, {"clipped sphere": CLIPPED, "clipped sphere, fused": FUSED, "whole sphere": WHOLE})
+    bounds = {
+        "clipped sphere": CLIPPED,
+        "clipped sphere, fused": FUSED,
+        "clipped sphere, Lambert": FUSED,
+        "whole sphere": WHOLE,
+    }
+    return _rows(run, works, bounds)
 
 
 def measure_warped(run: Run) -> list[Row]:
@@ -76,9 +83,13 @@ def measure_quads(run: Run) -> list[Row]:
     quads = inputs.quads(run.lights)
 
     def works(order: int) -> dict[str, Work]:
-        return {"quad, fused": quads.fused(order), "quad": quads.coefficients(order)}
+        return {
+            "quad, fused": quads.fused(order),
+            "quad, Lambert": quads.lambert(order),
+            "quad": quads.coefficients(order),
+        }
 
-    return _rows(run, works, {"quad, fused": QUADS, "quad": dict.fromkeys(QUADS)})
+    return _rows(run, works, {"quad, fused": QUADS, "quad, Lambert": QUADS, "quad": dict.fromkeys(QUADS)})
 
 
 def _rows(

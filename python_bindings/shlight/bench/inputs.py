@@ -39,7 +39,12 @@ class Spheres:
         return Work(lambda: call(self.centers, self.radii, bsdf, views, order=order, threads=threads), len(self.radii))
 
     def fused(self, order: int, *, threads: int = 1) -> Work:
-        """Eq. 5 with the horizon's plane at z = 0: under a lobe without a warp."""
+        """Eq. 5 with every band, under a lobe without a warp."""
+        call, terms = _core.contract_spheres, lobe_terms(order)
+        return Work(lambda: call(self.centers, self.radii, terms, order, threads), len(self.radii))
+
+    def lambert(self, order: int, *, threads: int = 1) -> Work:
+        """Eq. 5 as far as the material has bands."""
         return self.shaded(shlight.Bsdf.lambert(1.0), LAMBERT_COSINE, order, threads=threads)
 
     def warped(self, order: int, *, shared_view: bool = False, threads: int = 1) -> Work:
@@ -60,6 +65,10 @@ class Quads:
         return Work(lambda: call(self.vertices, order, method=method, threads=threads), len(self.vertices))
 
     def fused(self, order: int, *, threads: int = 1) -> Work:
+        call, terms = _core.contract_polygons, lobe_terms(order)
+        return Work(lambda: call(self.vertices, terms, order, threads), len(self.vertices))
+
+    def lambert(self, order: int, *, threads: int = 1) -> Work:
         bsdf, call = shlight.Bsdf.lambert(1.0), shlight.shade_polygons
         return Work(lambda: call(self.vertices, bsdf, LAMBERT_COSINE, order=order, threads=threads), len(self.vertices))
 
@@ -79,6 +88,11 @@ def spheres(kind: str, count: int) -> Spheres:
         )
     lights = {light_class.name: light_class for light_class in CLASSES}[f"sphere_{kind}"].lights(SEED, count)
     return Spheres(*lights.in_type(np.float32).arrays)
+
+
+def lobe_terms(order: int) -> Array:
+    """Cosine terms of a lobe that has all of them."""
+    return np.random.default_rng(SEED).normal(size=order * (order + 1) // 2).astype(np.float32)
 
 
 def quads(count: int) -> Quads:
