@@ -49,11 +49,11 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
     def _render(self, depsgraph: Any, frame: Any) -> None:
         import shlight
 
-        from .export import export_scene, over_background, render_settings
+        from .export import export_scene, render_settings
 
         self.update_stats("", "Exporting the scene")
         start = time.perf_counter()
-        scene, report, background = export_scene(depsgraph, frame=frame, camera=self.camera_override)
+        scene, report = export_scene(depsgraph, frame=frame, camera=self.camera_override)
         settings = render_settings(depsgraph.scene).arguments()
         record.last.export_seconds = time.perf_counter() - start
         record.last.messages = report.to_data()
@@ -69,8 +69,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         except shlight.RenderCancelled:
             self._deliver(depsgraph, frame, None)
             return
-        film_transparent = depsgraph.scene.render.film_transparent
-        self._deliver(depsgraph, frame, over_background(image, background, film_transparent))
+        self._deliver(depsgraph, frame, image)
 
     def _progress(self, fraction: float) -> bool:
         self.update_progress(fraction)

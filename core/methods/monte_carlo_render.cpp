@@ -95,7 +95,9 @@ class Worker {
     void trace_camera_rays(std::size_t first, std::size_t samples);
     void shade(std::size_t hit);
     void shade(const Light& light, std::size_t hit, const RandomDirection& reflected, const Rgb& reflected_value);
+    void shade_environment(std::size_t hit, const RandomDirection& reflected, const Rgb& reflected_value);
     void push(const RayStart& start, const Vec3d& direction, const Rgb& radiance, std::size_t hit);
+    void push(const Ray& ray, const Rgb& radiance, std::size_t hit);
 
     const Picture* picture_;
     std::vector<RandomNumbers> random_;  // of each pixel
@@ -174,6 +176,9 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
             hits_.add(surface, -glm::normalize(Vec3d(rays_[i].direction)),
                       p.scene.materials()[surface.material].emission, 0);
             pixel_of_hit_.push_back(i / samples);
+        } else if (const Environment* background = p.scene.background()) {
+            radiance_[i / samples] += Vec3d(background->radiance(glm::normalize(Vec3d(rays_[i].direction))));
+            ++covered_[i / samples];
         }
     }
 }
@@ -189,6 +194,24 @@ void Worker::shade(std::size_t hit) {
             shade(light, hit, reflected, value);
         }
     }
+    if (!picture_->scene.environment().is_black()) {
+        shade_environment(hit, reflected, value);
+    }
+}
+
+/// By rays that the material draws: no other set knows a better way to a light that is everywhere.
+void Worker::shade_environment(std::size_t hit, const RandomDirection& reflected, const Rgb& reflected_value) {
+    const ShadingFrame& frame = hits_.frame[hit];
+    const RayStart start(frame, hits_.shadow_origin[hit], Vec3d(0));
+    const Environment& environment = picture_->scene.environment();
+    if (reflected.density > 0) {
+        push(start.along(reflected.direction),
+             environment.radiance(frame.to_world(reflected.direction)) * reflected_value *
+                 static_cast<float>(1 / reflected.density),
+             hit);
+    }
+    const Vec3d mirror(-reflection_.view().x, 0, reflection_.view().z);
+    push(start.along(mirror), environment.radiance(frame.to_world(mirror)) * reflection_.mirrored(), hit);
 }
 
 void Worker::shade(const Light& light, std::size_t hit, const RandomDirection& reflected, const Rgb& reflected_value) {
@@ -213,11 +236,14 @@ void Worker::shade(const Light& light, std::size_t hit, const RandomDirection& r
 }
 
 void Worker::push(const RayStart& start, const Vec3d& direction, const Rgb& radiance, std::size_t hit) {
-    if (radiance == Rgb(0)) {
-        return;
-    }
     if (const std::optional<double> distance = light_.distance(direction)) {
-        shadow_rays_.push_back(start.towards(*distance * direction));
+        push(start.towards(*distance * direction), radiance, hit);
+    }
+}
+
+void Worker::push(const Ray& ray, const Rgb& radiance, std::size_t hit) {
+    if (radiance != Rgb(0)) {
+        shadow_rays_.push_back(ray);
         shadowed_.push_back(radiance);
         pixel_of_ray_.push_back(pixel_of_hit_[hit]);
     }

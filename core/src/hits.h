@@ -3,6 +3,7 @@
 // What the camera rays of a group of pixels have met: one array per property.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -50,6 +51,11 @@ struct Hits {
     std::vector<std::size_t> pixel_begin = {0};  ///< pixel p has the hits pixel_begin[p] … pixel_begin[p + 1] - 1
 
     std::size_t size() const { return frame.size(); }
+    /// ω_o of a hit, in its shading frame.
+    Vec3d view(std::size_t hit) const {
+        const double cosine = cos_theta_o[hit];
+        return {std::sqrt(1.0 - cosine * cosine), 0, cosine};
+    }
     std::size_t pixel_count() const { return pixel_begin.size() - 1; }
     void clear();
     void add(const SurfacePoint& surface, const Vec3d& towards_viewer, const Rgb& emission, std::uint32_t sample_index);

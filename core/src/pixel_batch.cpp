@@ -12,6 +12,8 @@ namespace {
 
 /// Lights whose unshadowed values are held at a time.
 constexpr std::size_t kLightBlock = 8;
+/// In the place of a light's number.
+constexpr std::uint32_t kEnvironmentSeed = 0xFFFFFFFFU;
 
 /// Times stages that follow each other.
 class StageClock {
@@ -40,6 +42,14 @@ Vec3d PixelSums::variance() const {
     return glm::max(squares / count - mean * mean - linear, Vec3d(0));
 }
 
+void PixelSums::add(const Vec3d& ray_radiance, const Vec3d& noise, const glm::dvec2& from_center) {
+    ++opaque;
+    radiance += ray_radiance;
+    squares += ray_radiance * ray_radiance - noise;
+    along_x += from_center.x * ray_radiance;
+    along_y += from_center.y * ray_radiance;
+}
+
 Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const RenderSettings& r,
                  std::vector<glm::dvec2> points)
     : scene(&s), camera(&c), settings(r), width(w), height(h), window(c.window(w, h)), pixel_points(std::move(points)) {
@@ -47,13 +57,18 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
         materials.emplace_back(material.bsdf.lobes(), r.order, r.tolerance);
         lobe_stride = std::max(lobe_stride, materials.back().lobes().size());
     }
+    if (!s.environment().is_black()) {
+        environment.emplace(s.environment(), materials, lobe_stride);
+    }
 }
 
 PixelBatch::PixelBatch(const Picture& picture)
     : picture_(&picture),
       unshadowed_(picture.lobe_stride),
       shadowed_(picture.scene->rays(), static_cast<std::uint32_t>(picture.settings.shadow_rays), picture.materials,
-                picture.lobe_stride) {}
+                picture.lobe_stride),
+      shadowed_environment_(picture.scene->rays(), picture.scene->environment(),
+                            static_cast<std::uint32_t>(picture.settings.shadow_rays), picture.materials) {}
 
 void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums) {
     StageClock clock(report_);
@@ -62,6 +77,9 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
     points_.assign(hits_, picture_->materials, picture_->scene->lights(), picture_->settings.tolerance);
     clock.end(RenderStage::views);
     add_lights(pixels, samples);
+    if (picture_->environment) {
+        add_environment(pixels, samples);
+    }
     StageClock last(report_);
     add_up(samples, sums);
     last.end(RenderStage::pixels);
@@ -69,7 +87,7 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
 
 RenderReport PixelBatch::report() const {
     RenderReport report = report_;
-    report.shadow_rays = shadowed_.rays_traced();
+    report.shadow_rays = shadowed_.rays_traced() + shadowed_environment_.rays_traced();
     return report;
 }
 
@@ -87,14 +105,19 @@ void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRa
     ray_hits_.resize(rays_.size());
     p.scene->rays().intersect(rays_, ray_hits_);
     hits_.clear();
+    misses_.clear();
+    const Environment* background = p.scene->background();
     for (std::size_t first = 0; first < rays_.size(); first += samples.count) {
         for (std::uint32_t i = 0; i < samples.count; ++i) {
             const RayHit& hit = ray_hits_[first + i];
+            const Vec3f& direction = rays_[first + i].direction;
             if (!hit.missed()) {
-                const Vec3f& direction = rays_[first + i].direction;
                 const SurfacePoint surface = p.scene->surface(hit, direction);
                 hits_.add(surface, -glm::normalize(Vec3d(direction)), p.scene->materials()[surface.material].emission,
                           samples.first + i);
+            } else if (background != nullptr) {
+                misses_.push_back({static_cast<std::uint32_t>(first / samples.count), samples.first + i,
+                                   background->radiance(glm::normalize(Vec3d(direction)))});
             }
         }
         hits_.end_pixel();
@@ -110,31 +133,42 @@ void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& sa
         unshadowed_.compute(points_, picture_->materials, block, report_);
         clock.end(RenderStage::light);
         for (std::size_t i = 0; i < block.size(); ++i) {
-            pixel_seeds_.clear();
-            for (const Pixel& pixel : pixels) {
-                const std::uint32_t seed =
-                    hash(static_cast<std::uint32_t>(pixel.column), static_cast<std::uint32_t>(pixel.row));
-                pixel_seeds_.push_back(hash(seed, static_cast<std::uint32_t>(first + i)));
-            }
+            seed_pixels(pixels, static_cast<std::uint32_t>(first + i));
             shadowed_.add(block[i], samples, unshadowed_.light(i), points_.of_hit, pixel_seeds_, hits_);
         }
         clock.end(RenderStage::shadows);
     }
 }
 
+void PixelBatch::add_environment(std::span<const Pixel> pixels, const SampleRange& samples) {
+    StageClock clock(report_);
+    picture_->environment->shade(points_, environment_, report_);
+    clock.end(RenderStage::light);
+    seed_pixels(pixels, kEnvironmentSeed);
+    shadowed_environment_.add(samples, environment_, points_.size(), points_.of_hit, pixel_seeds_, hits_);
+    clock.end(RenderStage::shadows);
+}
+
+void PixelBatch::seed_pixels(std::span<const Pixel> pixels, std::uint32_t light) {
+    pixel_seeds_.clear();
+    for (const Pixel& pixel : pixels) {
+        const std::uint32_t seed =
+            hash(static_cast<std::uint32_t>(pixel.column), static_cast<std::uint32_t>(pixel.row));
+        pixel_seeds_.push_back(hash(seed, light));
+    }
+}
+
 void PixelBatch::add_up(const SampleRange& samples, std::span<PixelSums> sums) const {
+    const auto from_center = [&](std::uint32_t sample) { return picture_->pixel_points[sample] - 0.5; };
     for (std::size_t pixel = 0; pixel < hits_.pixel_count(); ++pixel) {
         PixelSums& sum = sums[pixel];
         sum.rays += samples.count;
-        sum.hits += static_cast<std::uint32_t>(hits_.pixel_begin[pixel + 1] - hits_.pixel_begin[pixel]);
         for (std::size_t hit = hits_.pixel_begin[pixel]; hit < hits_.pixel_begin[pixel + 1]; ++hit) {
-            const Vec3d radiance(hits_.radiance[hit]);
-            const glm::dvec2 place = picture_->pixel_points[hits_.sample[hit]] - 0.5;
-            sum.radiance += radiance;
-            sum.squares += radiance * radiance - Vec3d(hits_.noise[hit]);
-            sum.along_x += place.x * radiance;
-            sum.along_y += place.y * radiance;
+            sum.add(Vec3d(hits_.radiance[hit]), Vec3d(hits_.noise[hit]), from_center(hits_.sample[hit]));
         }
+    }
+    for (const Miss& miss : misses_) {
+        sums[miss.pixel].add(Vec3d(miss.radiance), Vec3d(0), from_center(miss.sample));
     }
 }
 

@@ -4,12 +4,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "environment_shading.h"
 #include "hits.h"
 #include "material_lobes.h"
 #include "shading_points.h"
+#include "shadowed_environment.h"
 #include "shlight/camera.h"
 #include "shlight/render.h"
 #include "shlight/scene.h"
@@ -22,9 +25,11 @@ struct Pixel {
     int column, row;
 };
 
-/// Sums over the camera rays of one pixel. A ray that met nothing is black.
+/// Sums over the camera rays of one pixel. A ray that met nothing is black and transparent, unless there is a
+/// background.
 struct PixelSums {
-    std::uint32_t rays = 0, hits = 0;
+    std::uint32_t rays = 0;
+    std::uint32_t opaque = 0;  ///< rays that met a surface or the background
     Vec3d radiance{0};
     Vec3d squares{0};              ///< of radiance, without the part that is noise of shadow rays
     Vec3d along_x{0}, along_y{0};  ///< of radiance times the ray's distance from the pixel's centre
@@ -32,6 +37,8 @@ struct PixelSums {
     /// Variance over the pixel of what is not linear in the place: rays in even number, spread evenly, average that
     /// out.
     Vec3d variance() const;
+    /// The part of one ray; from_center: its distance from the pixel's centre.
+    void add(const Vec3d& ray_radiance, const Vec3d& noise, const glm::dvec2& from_center);
 };
 
 /// Everything that the batches of one picture share and only read.
@@ -47,6 +54,7 @@ struct Picture {
     std::vector<glm::dvec2> pixel_points;  ///< where each camera ray of a pixel goes through its unit square
     std::vector<MaterialLobes> materials;
     std::size_t lobe_stride = 1;
+    std::optional<EnvironmentShading> environment;  ///< none: black
 };
 
 /// Renders one batch after another; one per thread.
@@ -61,16 +69,28 @@ class PixelBatch {
   private:
     void trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples);
     void add_lights(std::span<const Pixel> pixels, const SampleRange& samples);
+    void add_environment(std::span<const Pixel> pixels, const SampleRange& samples);
+    /// One for each pixel and light.
+    void seed_pixels(std::span<const Pixel> pixels, std::uint32_t light);
     void add_up(const SampleRange& samples, std::span<PixelSums> sums) const;
+
+    /// A camera ray that met nothing but the background.
+    struct Miss {
+        std::uint32_t pixel, sample;
+        Rgb radiance;
+    };
 
     const Picture* picture_;
     RenderReport report_;
     std::vector<Ray> rays_;
     std::vector<RayHit> ray_hits_;
     Hits hits_;
+    std::vector<Miss> misses_;  // in the order of pixels
     ShadingPoints points_;
     Unshadowed unshadowed_;
     ShadowedLight shadowed_;
+    std::vector<Rgb> environment_;  // unshadowed values
+    ShadowedEnvironment shadowed_environment_;
     std::vector<std::uint32_t> pixel_seeds_;
 };
 

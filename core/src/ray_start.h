@@ -3,6 +3,8 @@
 // Shadow rays from a hit, in float, so that neither the hit's own surface nor the light's blocks them.
 #pragma once
 
+#include <limits>
+
 #include "hits.h"
 #include "shlight/light.h"
 #include "shlight/ray_tracer.h"
@@ -29,6 +31,12 @@ class RayStart {
     Ray towards(const Vec3d& local_target) const {
         const Vec3f way(local_target + offset_);
         return {origin_, 0.0F, way.x * x_ + way.y * y_ + way.z * z_, 1.0F - 0x1p-22F};
+    }
+
+    /// Without an end.
+    Ray along(const Vec3d& local_direction) const {
+        const Vec3f way(local_direction);
+        return {origin_, 0.0F, way.x * x_ + way.y * y_ + way.z * z_, std::numeric_limits<float>::infinity()};
     }
 
   private:

@@ -73,7 +73,8 @@ Vec3d normalized_or(const Vec3d& v, const Vec3d& fallback) {
 
 class CompiledScene::Impl {
   public:
-    explicit Impl(std::vector<Light> lamps) : lights(std::move(lamps)) {}
+    Impl(std::vector<Light> lamps, Environment all_around, bool environment_visible)
+        : lights(std::move(lamps)), environment(std::move(all_around)), has_background(environment_visible) {}
 
     void add(const std::shared_ptr<const Mesh>& mesh) {
         const auto index = static_cast<std::uint32_t>(meshes.size());
@@ -107,6 +108,8 @@ class CompiledScene::Impl {
     std::vector<Placement> placements;
     std::vector<Material> materials;
     std::vector<Light> lights;
+    Environment environment;
+    bool has_background;
     std::unique_ptr<const RayTracer> rays;
 
   private:
@@ -191,6 +194,12 @@ std::span<const Material> CompiledScene::materials() const {
 std::span<const Light> CompiledScene::lights() const {
     return impl_->lights;
 }
+const Environment& CompiledScene::environment() const {
+    return impl_->environment;
+}
+const Environment* CompiledScene::background() const {
+    return impl_->has_background ? &impl_->environment : nullptr;
+}
 const RayTracer& CompiledScene::rays() const {
     return *impl_->rays;
 }
@@ -212,8 +221,13 @@ void Scene::add_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance) 
     lamps_.emplace_back(make_polygon_light(std::move(vertices), radiance, false));
 }
 
+void Scene::set_environment(Environment environment, bool visible) {
+    environment_ = std::move(environment);
+    environment_visible_ = visible;
+}
+
 std::shared_ptr<const CompiledScene> Scene::compile(int threads) const {
-    auto impl = std::make_unique<CompiledScene::Impl>(lamps_);
+    auto impl = std::make_unique<CompiledScene::Impl>(lamps_, environment_, environment_visible_);
     for (const auto& mesh : meshes_) {
         if (!mesh->triangles.empty() && !mesh->transforms.empty()) {
             impl->add(mesh);

@@ -18,11 +18,6 @@ constexpr std::uint32_t kLightOnly = std::numeric_limits<std::uint32_t>::max();
 /// A lobe takes rays of its own only where more than this share of them could meet the light.
 constexpr double kLeastShare = 0.1;
 
-Vec3d view_of(const Hits& hits, std::size_t hit) {
-    const double cosine = hits.cos_theta_o[hit];
-    return {std::sqrt(1.0 - cosine * cosine), 0, cosine};
-}
-
 }  // namespace
 
 /// What the rays of one hit have in common.
@@ -30,7 +25,7 @@ class ShadowRays::Drawing {
   public:
     Drawing(const Light& light, const Hits& hits, std::size_t hit, const RayPhase& phase, std::uint32_t seed)
         : hit_material(hits.material[hit]),
-          view(view_of(hits, hit)),
+          view(hits.view(hit)),
           start(hits.frame[hit], hits.shadow_origin[hit], clearance(light, hits.frame[hit])),
           rays(phase.rays_per_hit),
           mirror_rays(phase.first ? 1 : 0),
@@ -161,7 +156,7 @@ RaySums ShadowRays::sum(const Hits& hits, const LitHits& lit, std::size_t lit_in
     const LobeShape& shape = lobes_[hits.material[hit]].lobes()[lobe].shape;
     const Material& material = materials_[hits.material[hit]];
     const std::uint32_t set = material.set_of_lobe[lobe];
-    const Vec3d view = view_of(hits, hit);
+    const Vec3d view = hits.view(hit);
     const bool mirror = is_mirror(shape);
     const double solid_angle = set == kLightOnly ? 0.0 : solid_angles_[lit_index * set_stride_ + 1 + set];
     const LobeSampler sampler(set == kLightOnly ? 1.0 : material.alphas[set], view);

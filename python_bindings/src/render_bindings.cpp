@@ -38,7 +38,8 @@ progress: is called with the finished share, 0 ... 1, about every 50 ms; returni
     the render and is raised here.
 return_report: return (image, RenderReport).
 
-Returns (height, width, 4) float32, linear, row 0 on top, RGB premultiplied; alpha is the coverage.
+Returns (height, width, 4) float32, linear, row 0 on top, RGB premultiplied; alpha is the share of
+what is not empty: a surface, or an environment that the camera sees.
 Raises ValueError naming the argument, RenderCancelled.)";
 
 /// A report with what only Python's side knows.

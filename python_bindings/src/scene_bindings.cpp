@@ -48,6 +48,14 @@ radiance: RGB [W m^-2 sr^-1]; negative takes light away.
 
 Raises ValueError naming the argument.)";
 
+constexpr const char* kEnvironmentDoc =
+    R"(Set the light that comes from infinitely far all around; it takes the place of the one before.
+
+radiance: [W m^-2 sr^-1], RGB, not negative.
+visible: the camera sees it behind the scene, where the picture is then opaque.
+
+Raises ValueError naming the argument.)";
+
 constexpr const char* kCameraDoc = R"(Set a perspective camera with square pixels.
 
 to_world: (4, 4), camera to world, for column vectors; the camera looks along -z, y is up.
@@ -81,6 +89,11 @@ void add_polygon_light(SceneObject& self, const py::object& vertices, const py::
     self.changed();
 }
 
+void set_environment(SceneObject& self, const py::object& radiance, bool visible) {
+    self.scene.set_environment(Environment(rgb_from("radiance", radiance)), visible);
+    self.changed();
+}
+
 void set_camera(SceneObject& self, const py::object& to_world, double fov_x) {
     self.camera.emplace(matrix_from("to_world", to_world), fov_x);
 }
@@ -103,6 +116,7 @@ void bind_scene(py::module_& m) {
         .def("add_sphere_light", &add_sphere_light, kSphereDoc, "center"_a, "radius"_a, "radiance"_a, py::kw_only(),
              "facing_disk"_a = false)
         .def("add_polygon_light", &add_polygon_light, kPolygonDoc, "vertices"_a, "radiance"_a)
+        .def("set_environment", &set_environment, kEnvironmentDoc, "radiance"_a, py::kw_only(), "visible"_a = true)
         .def("set_camera", &set_camera, kCameraDoc, "to_world"_a, "fov_x"_a)
         .def("set_camera_window", &set_camera_window, kWindowDoc, "to_world"_a, "left"_a, "right"_a, "bottom"_a,
              "top"_a, py::kw_only(), "orthographic"_a = false, "clip_start"_a = 0.0,

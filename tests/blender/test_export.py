@@ -252,6 +252,7 @@ def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any
     scene.world = bpy.data.worlds.new("Sky")
     scene.world.use_nodes = False
     scene.world.color = (0.1, 0.1, 0.1)
+    scene.world.cycles_visibility.diffuse = False
     studio.box(name="Hidden").visible_camera = False
     studio.box(name="Catcher").is_shadow_catcher = True
     studio.link("Smoke", bpy.data.volumes.new("Smoke"))
@@ -265,7 +266,7 @@ def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any
         "motion blur is not supported",
         "Camera 'Camera': depth of field",
         "only the Combined pass is written; not normal",
-        "World 'Sky': light from the world",
+        "World 'Sky': hiding it from diffuse rays",
         "Object 'Hidden': objects hidden from the camera",
         "Object 'Catcher': shadow catchers",
         "Object 'Smoke': volumes are not supported; left out",

@@ -4,7 +4,7 @@
 from ..report import ExportError, ExportReport
 from .camera import Frame, frame_of, whole_frame
 from .scene import ExportedScene, export_scene
-from .settings import RenderSettings, over_background, render_settings
+from .settings import RenderSettings, render_settings
 
 __all__ = [
     "ExportError",
@@ -14,7 +14,6 @@ __all__ = [
     "RenderSettings",
     "export_scene",
     "frame_of",
-    "over_background",
     "render_settings",
     "whole_frame",
 ]

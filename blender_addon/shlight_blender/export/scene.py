@@ -13,8 +13,8 @@ from ..report import ExportError, ExportReport
 from .camera import Frame, frame_of, set_camera
 from .lights import add_lamp
 from .meshes import MeshCollector
-from .nodes import RGB
-from .settings import background_color, report_unsupported_settings
+from .settings import report_unsupported_settings
+from .world import add_world
 
 # Types of objects that have a surface or volume which is not exported. Curves, texts, surfaces and metaballs are not
 # among them: the depsgraph gives their meshes as instances of their own.
@@ -42,7 +42,6 @@ class ExportedScene(NamedTuple):
 
     scene: shlight.Scene
     report: ExportReport  # what of the Blender scene is not supported
-    background: RGB  # radiance that the camera sees behind the scene
 
 
 def export_scene(depsgraph: Any, *, frame: Frame | None = None, camera: Any = None) -> ExportedScene:
@@ -65,10 +64,10 @@ def export_scene(depsgraph: Any, *, frame: Frame | None = None, camera: Any = No
     scene = shlight.Scene()
     set_camera(scene, camera.evaluated_get(depsgraph), depsgraph, frame, blender_scene.render, report)
     report_unsupported_settings(blender_scene, depsgraph.view_layer_eval, report)
-    background = background_color(blender_scene, report)
-    if not _add_objects(scene, depsgraph, report):
+    lit = add_world(scene, blender_scene, report)
+    if not (_add_objects(scene, depsgraph, report) or lit):
         raise ExportError(_no_light(blender_scene, report))
-    return ExportedScene(scene, report, background)
+    return ExportedScene(scene, report)
 
 
 def _no_light(blender_scene: Any, report: ExportReport) -> str:

@@ -6,12 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ..compat import uses_nodes
 from ..report import ExportReport
-from .nodes import RGB, ConstantReader, origin
 
 PASSES_WRITTEN = {"use_pass_combined"}
 # Says how precise another pass is, and is no pass itself.
@@ -44,47 +39,6 @@ def render_settings(scene: Any) -> RenderSettings:
         shadow_rays=int(settings.shadow_rays) if settings.use_shadows else 0,
         threads=int(render.threads) if render.threads_mode == "FIXED" else 0,
     )
-
-
-def background_color(scene: Any, report: ExportReport) -> RGB:
-    """Colour (RGB radiance) that the camera sees behind the scene; what of the world is not supported is reported."""
-    world = scene.world
-    if world is None:
-        return np.zeros(3)
-    place = f"World '{world.name}'"
-    color = _world_color(world, place, report)
-    if color.any():
-        report.add(place, "light from the world is not supported; its colour is seen behind the scene only")
-    return color
-
-
-def _world_color(world: Any, place: str, report: ExportReport) -> RGB:
-    if not uses_nodes(world):
-        return np.array(world.color, dtype=np.float64)
-    output = world.node_tree.get_output_node("CYCLES")
-    if output is None:
-        return np.zeros(3)
-    if origin(output.inputs["Volume"]).node is not None:
-        report.add(place, "volume is not supported; left out")
-    source = origin(output.inputs["Surface"])
-    if source.node is None:
-        return np.zeros(3)
-    reader = ConstantReader(place, report)
-    if source.node.type != "BACKGROUND":
-        report.add(reader.at(source.node), f"{source.node.bl_label} is not supported; black is used")
-        return np.zeros(3)
-    strength = reader.number(source.node, "Strength", source.groups)
-    return max(strength, 0.0) * reader.color(source.node, "Color", source.groups)
-
-
-def over_background(image: NDArray[np.float32], background: RGB, film_transparent: bool) -> NDArray[np.float32]:
-    """A picture of `shlight.render` (premultiplied RGBA) as on Blender's film: opaque unless that is transparent."""
-    if film_transparent:
-        return image
-    opaque = image.copy()
-    opaque[..., :3] += (1.0 - image[..., 3:]) * background.astype(np.float32)
-    opaque[..., 3] = 1.0
-    return opaque
 
 
 def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportReport) -> None:

@@ -52,9 +52,9 @@ struct RenderReport {
 void check_render(const RenderSettings& settings, int width, int height);
 
 /// image: height × width × RGBA, row 0 on top, linear, premultiplied, the mean of all camera rays of each pixel; alpha
-/// is the share of them that met a surface. The picture depends on nothing but scene, camera, size and settings; not on
-/// the number of threads. Throws as check_render does, also for an image of another size; RenderCancelled when progress
-/// returns false; what progress throws.
+/// is the share of them that met a surface or, where the camera sees it, the environment. The picture depends on
+/// nothing but scene, camera, size and settings; not on the number of threads. Throws as check_render does, also for an
+/// image of another size; RenderCancelled when progress returns false; what progress throws.
 RenderReport render(const CompiledScene& scene, const Camera& camera, int width, int height,
                     const RenderSettings& settings, std::span<float> image, const Progress& progress = {});
 

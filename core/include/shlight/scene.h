@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "shlight/environment.h"
 #include "shlight/light.h"
 #include "shlight/mesh.h"
 #include "shlight/ray_tracer.h"
@@ -41,6 +42,9 @@ class CompiledScene {
     std::span<const Material> materials() const;
     /// Lamps first, in the order in which they were added, then emissive faces.
     std::span<const Light> lights() const;
+    const Environment& environment() const;
+    /// What camera rays that meet no surface see; null: nothing, which is transparent.
+    const Environment* background() const;
     const RayTracer& rays() const;
     /// Precondition: not hit.missed(); direction is the ray's.
     SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
@@ -62,6 +66,10 @@ class Scene {
     void add_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk = false);
     void add_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance);
 
+    /// Takes the place of the environment before, at first a black one that the camera does not see.
+    /// visible: the camera sees it behind the scene.
+    void set_environment(Environment environment, bool visible = true);
+
     /// Builds with at most `threads` threads, 0: all cores.
     /// Throws std::invalid_argument for threads < 0, std::bad_alloc or std::runtime_error when Embree fails.
     std::shared_ptr<const CompiledScene> compile(int threads = 0) const;
@@ -69,6 +77,8 @@ class Scene {
   private:
     std::vector<std::shared_ptr<const Mesh>> meshes_;
     std::vector<Light> lamps_;
+    Environment environment_;
+    bool environment_visible_ = false;
 };
 
 }  // namespace shlight

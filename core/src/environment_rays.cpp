@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "environment_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lobe_sampling.h"
+#include "ray_start.h"
+#include "shlight/sampling.h"
+
+namespace shlight {
+namespace {
+
+/// As Lambert reflects: density cosθ/π.
+Vec3d diffuse_direction(const glm::dvec2& point) {
+    const double sine = std::sqrt(point.x);
+    const double azimuth = 2 * std::numbers::pi * point.y;
+    return {sine * std::cos(azimuth), sine * std::sin(azimuth), std::sqrt(1 - point.x)};
+}
+
+}  // namespace
+
+/// Directions from one hit, and how densely all sets together draw them.
+class EnvironmentRays::Directions {
+  public:
+    Directions(const Sets& sets, const Vec3d& view) : diffuse_(sets.diffuse) {
+        for (const double alpha : sets.alphas) {
+            lobes_.emplace_back(alpha, view);
+        }
+    }
+
+    std::size_t set_count() const { return lobes_.size() + (diffuse_ ? 1 : 0); }
+    /// May lie below the horizon.
+    Vec3d sample(std::size_t set, const glm::dvec2& point) const {
+        return set < lobes_.size() ? lobes_[set].sample(point) : diffuse_direction(point);
+    }
+    double density(const Vec3d& direction) const {
+        double sum = diffuse_ ? direction.z / std::numbers::pi : 0.0;
+        for (const LobeSampler& lobe : lobes_) {
+            sum += lobe.density(direction);
+        }
+        return sum;
+    }
+
+  private:
+    bool diffuse_;
+    std::vector<LobeSampler> lobes_;
+};
+
+EnvironmentRays::EnvironmentRays(const RayTracer& tracer, const Environment& environment,
+                                 std::span<const MaterialLobes> materials)
+    : tracer_(&tracer), environment_(&environment), lobes_(materials) {
+    for (const MaterialLobes& material : materials) {
+        Sets& sets = materials_.emplace_back();
+        for (const Lobe& lobe : material.lobes()) {
+            const auto* ggx = std::get_if<GgxShape>(&lobe.shape);
+            if (ggx == nullptr) {
+                sets.diffuse = true;
+            } else if (is_mirror(lobe.shape)) {
+                sets.mirror = true;
+            } else if (std::find(sets.alphas.begin(), sets.alphas.end(), ggx->alpha) == sets.alphas.end()) {
+                sets.alphas.push_back(ggx->alpha);
+            }
+        }
+    }
+}
+
+void EnvironmentRays::trace(const Hits& hits, std::span<const std::size_t> lit, const RayPhase& phase,
+                            std::uint32_t seed) {
+    if (phase.first) {
+        directions_.clear();
+        weights_.clear();
+        blocked_.clear();
+        runs_.clear();
+    }
+    rays_.clear();
+    const std::size_t before = blocked_.size();
+    for (const std::size_t hit : lit) {
+        runs_.push_back(draw(hits, hit, phase, seed));
+    }
+    blocked_.resize(directions_.size());
+    tracer_->occluded(rays_, std::span(blocked_).subspan(before));
+    rays_traced_ += rays_.size();
+}
+
+EnvironmentRays::Run EnvironmentRays::draw(const Hits& hits, std::size_t hit, const RayPhase& phase,
+                                           std::uint32_t seed) {
+    const Sets& sets = materials_[hits.material[hit]];
+    const Vec3d view = hits.view(hit);
+    const Directions directions(sets, view);
+    const RayStart start(hits.frame[hit], hits.shadow_origin[hit], Vec3d(0));
+    const auto push = [&](const Vec3d& direction, double density) {
+        directions_.emplace_back(direction);
+        weights_.push_back(environment_->radiance(hits.frame[hit].to_world(direction)) / static_cast<float>(density));
+        rays_.push_back(start.along(direction));
+    };
+    Run run = {directions_.size(), 0, {}};
+    const std::uint32_t first = phase.first_point + (hits.sample[hit] - phase.first_sample) * phase.rays_per_hit;
+    for (std::size_t set = 0; set < directions.set_count(); ++set) {
+        const std::uint32_t own_seed = hash(seed, static_cast<std::uint32_t>(set));
+        for (std::uint32_t ray = 0; ray < phase.rays_per_hit; ++ray) {
+            const Vec3d direction = directions.sample(set, sobol(shuffled(first + ray, own_seed), own_seed));
+            if (direction.z > 0) {
+                push(direction, directions.density(direction));
+            }
+        }
+    }
+    run.end = directions_.size();
+    if (sets.mirror && phase.first) {
+        run.mirror = directions_.size();
+        push({-view.x, 0, view.z}, 1);
+    }
+    return run;
+}
+
+bool EnvironmentRays::all_free() const {
+    return std::find(blocked_.begin(), blocked_.end(), 1) == blocked_.end();
+}
+
+EnvironmentSums EnvironmentRays::sum(const Hits& hits, std::span<const std::size_t> lit, std::size_t lit_index,
+                                     std::size_t lobe) const {
+    const std::size_t hit = lit[lit_index];
+    const LobeShape& shape = lobes_[hits.material[hit]].lobes()[lobe].shape;
+    const bool mirror = is_mirror(shape);
+    const Vec3d view = hits.view(hit);
+    EnvironmentSums sums;
+    const auto add = [&](std::size_t ray, double value) {
+        const Vec3d weighted = value * Vec3d(weights_[ray]);
+        sums.all += weighted;
+        sums.squares += weighted * weighted;
+        sums.seen += blocked_[ray] == 0 ? weighted : Vec3d(0);
+    };
+    for (std::size_t i = lit_index; i < runs_.size(); i += lit.size()) {
+        if (mirror && runs_[i].mirror) {
+            add(*runs_[i].mirror, 1);
+        }
+        for (std::size_t ray = runs_[i].begin; ray < runs_[i].end && !mirror; ++ray) {
+            add(ray, lobe_value(shape, Vec3d(directions_[ray]), view));
+        }
+    }
+    return sums;
+}
+
+}  // namespace shlight

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "shadowed_environment.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace shlight {
+namespace {
+
+/// Points of the first phase that a pixel gets at least: fewer would miss too much that stands in the way.
+constexpr std::uint32_t kLeastFirstPoints = 16;
+
+/// a / b, 0 where b is not positive.
+Vec3d quotient(const Vec3d& a, const Vec3d& b) {
+    return {b.x > 0 ? a.x / b.x : 0, b.y > 0 ? a.y / b.y : 0, b.z > 0 ? a.z / b.z : 0};
+}
+
+}  // namespace
+
+ShadowedEnvironment::ShadowedEnvironment(const RayTracer& tracer, const Environment& environment,
+                                         std::uint32_t most_rays, std::span<const MaterialLobes> materials)
+    : materials_(materials), most_rays_(most_rays), rays_(tracer, environment, materials) {}
+
+void ShadowedEnvironment::add(const SampleRange& samples, std::span<const Rgb> unshadowed, std::size_t point_count,
+                              std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds,
+                              Hits& hits) {
+    samples_ = samples;
+    unshadowed_ = unshadowed;
+    point_count_ = point_count;
+    point_of_hit_ = point_of_hit;
+    for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
+        add_pixel(pixel_seeds[pixel], hits.pixel_begin[pixel], hits.pixel_begin[pixel + 1], hits);
+    }
+}
+
+Rgb ShadowedEnvironment::unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const {
+    return materials_[hits.material[hit]].lobes()[lobe].scale(hits.cos_theta_o[hit]) *
+           unshadowed_[lobe * point_count_ + point_of_hit_[hit]];
+}
+
+void ShadowedEnvironment::add_pixel(std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits) {
+    lit_.clear();
+    std::size_t lobe_count = 0;
+    for (std::size_t hit = begin; hit < end; ++hit) {
+        const std::size_t lobes = materials_[hits.material[hit]].lobes().size();
+        if (lobes > 0) {
+            lit_.push_back(hit);
+            lobe_count = std::max(lobe_count, lobes);
+        }
+    }
+    if (lit_.empty()) {
+        return;
+    }
+    if (samples_.shadow_rays > 0 && find_obstacles(seed, hits)) {
+        deviation_.assign(lit_.size(), Rgb(0));
+        for (std::size_t lobe = 0; lobe < lobe_count; ++lobe) {
+            shade_lobe(lobe, hits);
+        }
+        for (std::size_t i = 0; i < lit_.size(); ++i) {
+            hits.noise[lit_[i]] += deviation_[i] * deviation_[i];
+        }
+        return;
+    }
+    for (const std::size_t hit : lit_) {
+        for (std::size_t lobe = 0; lobe < materials_[hits.material[hit]].lobes().size(); ++lobe) {
+            hits.radiance[hit] += unblocked(hits, hit, lobe);
+        }
+    }
+}
+
+/// Traces the pixel's rays; false: nothing is in their way.
+bool ShadowedEnvironment::find_obstacles(std::uint32_t seed, const Hits& hits) {
+    const std::uint32_t least = (kLeastFirstPoints + samples_.count - 1) / samples_.count;
+    const std::uint32_t first_rays = std::min(samples_.shadow_rays, std::max((samples_.shadow_rays + 3) / 4, least));
+    // No two ranges of samples share a point.
+    const std::uint32_t first_point = samples_.first * most_rays_;
+    rays_.trace(hits, lit_, {true, first_point, samples_.first, first_rays}, seed);
+    if (rays_.all_free()) {
+        return false;
+    }
+    // Where all were blocked too: a window may be smaller than any light is.
+    rays_.trace(hits, lit_,
+                {false, first_point + samples_.count * first_rays, samples_.first, samples_.shadow_rays - first_rays},
+                seed);
+    return true;
+}
+
+void ShadowedEnvironment::shade_lobe(std::size_t lobe, Hits& hits) {
+    const auto has_lobe = [&](std::size_t i) { return lobe < materials_[hits.material[lit_[i]]].lobes().size(); };
+    const auto [first, last] = std::minmax_element(
+        lit_.begin(), lit_.end(), [&](std::size_t a, std::size_t b) { return point_of_hit_[a] < point_of_hit_[b]; });
+    const std::uint32_t first_point = point_of_hit_[*first];
+    hit_sums_.assign(lit_.size(), {});
+    point_sums_.assign(point_of_hit_[*last] - first_point + 1, {});
+    for (std::size_t i = 0; i < lit_.size(); ++i) {
+        if (!has_lobe(i)) continue;
+        hit_sums_[i] = rays_.sum(hits, lit_, i, lobe);
+        PointSums& of_point = point_sums_[point_of_hit_[lit_[i]] - first_point];
+        of_point.all += hit_sums_[i].all;
+        ++of_point.hits;
+    }
+    for (std::size_t i = 0; i < lit_.size(); ++i) {
+        if (!has_lobe(i)) continue;
+        const EnvironmentSums& sums = hit_sums_[i];
+        const PointSums& of_point = point_sums_[point_of_hit_[lit_[i]] - first_point];
+        const Rgb whole = unblocked(hits, lit_[i], lobe);
+        hits.radiance[lit_[i]] += whole * Rgb(static_cast<double>(of_point.hits) * quotient(sums.seen, of_point.all));
+        // As of so many rays of equal weight; the lobes of a hit share its rays.
+        const Vec3d share = quotient(sums.seen, sums.all);
+        const Vec3d one_over_rays = quotient(sums.squares, sums.all * sums.all);
+        deviation_[i] += whole * Rgb(glm::sqrt(glm::max(share * (1.0 - share), Vec3d(0)) * one_over_rays));
+    }
+}
+
+}  // namespace shlight

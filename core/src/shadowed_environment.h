@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+//
+// Shadows under the environment: the unshadowed radiance of each lobe times the ratio of shadowed to unshadowed
+// sampling, as for lights in visibility.h, in each colour channel.
+//
+// A quarter of the rays goes first; where none of a pixel's meets anything, the rest is spared.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "environment_rays.h"
+#include "hits.h"
+#include "material_lobes.h"
+#include "shlight/environment.h"
+#include "shlight/ray_tracer.h"
+
+namespace shlight {
+
+/// Keeps its memory from pixel to pixel; one per thread.
+class ShadowedEnvironment {
+  public:
+    /// most_rays: per camera ray, of any call of add().
+    ShadowedEnvironment(const RayTracer& tracer, const Environment& environment, std::uint32_t most_rays,
+                        std::span<const MaterialLobes> materials);
+
+    /// Adds the environment to the hits' radiance and noise. samples: what the hits are of; unshadowed: see
+    /// EnvironmentShading; point_of_hit: the shading point of each hit, none shared by pixels; pixel_seeds: one per
+    /// pixel. A hit's radiance counts as part of the sum over the hits of its shading point.
+    void add(const SampleRange& samples, std::span<const Rgb> unshadowed, std::size_t point_count,
+             std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds, Hits& hits);
+    std::uint64_t rays_traced() const { return rays_.rays_traced(); }
+
+  private:
+    void add_pixel(std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits);
+    bool find_obstacles(std::uint32_t seed, const Hits& hits);
+    /// The value of one lobe at a hit.
+    Rgb unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const;
+    void shade_lobe(std::size_t lobe, Hits& hits);
+
+    /// Rays of all hits of a shading point.
+    struct PointSums {
+        Vec3d all{0};
+        std::uint32_t hits = 0;
+    };
+
+    std::span<const MaterialLobes> materials_;
+    std::uint32_t most_rays_;
+    EnvironmentRays rays_;
+
+    SampleRange samples_{};  // of the call of add()
+    std::span<const Rgb> unshadowed_;
+    std::size_t point_count_ = 0;
+    std::span<const std::uint32_t> point_of_hit_;
+    std::vector<std::size_t> lit_;           // hits of the pixel
+    std::vector<EnvironmentSums> hit_sums_;  // of one lobe, by lit hit
+    std::vector<PointSums> point_sums_;      // likewise, by shading point
+    std::vector<Rgb> deviation_;             // by lit hit, from its few rays
+};
+
+}  // namespace shlight

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+//
+// Light from all around, of one radiance.
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "error_message.h"
+#include "quadrature.h"
+#include "render_scenes.h"
+#include "shlight/environment.h"
+
+namespace shlight::testing {
+namespace {
+
+const Rgb kSky(0.5F, 1.0F, 2.0F);
+
+Scene floor_under_sky(const Bsdf& bsdf, const Environment& environment = Environment(kSky)) {
+    Scene scene;
+    scene.add_mesh(floor_mesh(4, 0, bsdf));
+    scene.set_environment(environment);
+    return scene;
+}
+
+/// ∫ f·cos over the hemisphere by the midpoint rule.
+double albedo_by_quadrature(const LobeShape& shape, double cos_theta_o) {
+    constexpr int kSteps = 600;
+    const Vec3d wo(std::sqrt(1 - cos_theta_o * cos_theta_o), 0, cos_theta_o);
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double z = (i + 0.5) / kSteps;
+        for (int j = 0; j < kSteps; ++j) {
+            const double azimuth = std::numbers::pi * (j + 0.5) / kSteps;
+            const double sine = std::sqrt(1 - z * z);
+            sum += lobe_value(shape, {sine * std::cos(azimuth), sine * std::sin(azimuth), z}, wo);
+        }
+    }
+    return sum * 2 * std::numbers::pi / kSteps / kSteps;
+}
+
+/// A view of the floor's origin from this height over it, one pixel.
+Camera camera_at(double cos_theta_o) {
+    const double sine = std::sqrt(1 - cos_theta_o * cos_theta_o);
+    return {look_at({10 * sine, 0, 10 * cos_theta_o}, {0, 0, 0}), 1e-3};
+}
+
+TEST(Environment, RejectsWhatIsNoRadiance) {
+    EXPECT_EQ(error_message([] { Environment(Rgb(1, -1, 1)); }), "radiance must not be negative");
+    EXPECT_EQ(error_message([] { Environment(Rgb(1, NAN, 1)); }), "radiance contains a number that is not finite");
+}
+
+TEST(Environment, LambertReflectsAlbedoTimesRadiance) {
+    const Rgb albedo(0.2F, 0.5F, 0.9F);
+    const Image image = render_image(floor_under_sky(Bsdf::lambert(albedo)), camera_at(0.7), 1, 1, {});
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(image.color(0, 0)[c], albedo[c] * kSky[c], 1e-6);
+    }
+    EXPECT_EQ(image.alpha(0, 0), 1);
+}
+
+TEST(Environment, GlossyReflectsItsAlbedo) {
+    for (const float roughness : {0.2F, 0.5F, 1.0F}) {
+        for (const double cosine : {0.2, 0.6, 0.95}) {
+            const double alpha = double{roughness} * roughness;
+            const double expected = albedo_by_quadrature(GgxShape{alpha}, cosine);
+            const Image image =
+                render_image(floor_under_sky(Bsdf::ggx(roughness, Rgb(1))), camera_at(cosine), 1, 1, {});
+            EXPECT_NEAR(image.red(0, 0), expected * kSky.x, 2e-3 * kSky.x) << roughness << " " << cosine;
+        }
+    }
+}
+
+TEST(Environment, MirrorShowsIt) {
+    const Image image = render_image(floor_under_sky(Bsdf::ggx(0, Rgb(0.25F, 0.5F, 1))), camera_at(0.6), 1, 1, {});
+    const float edge = std::pow(1 - 0.6F, 5.0F);
+    EXPECT_NEAR(image.red(0, 0), (0.25F + 0.75F * edge) * kSky.x, 1e-6);
+    EXPECT_NEAR(image.color(0, 0).z, kSky.z, 1e-6);
+}
+
+TEST(Environment, CameraSeesItBehindTheScene) {
+    Scene scene = floor_under_sky(Bsdf::lambert(Rgb(0.5F)));
+    Image image = render_image(scene, camera_above(8), 4, 4, {});
+    EXPECT_EQ(image.color(0, 0), kSky);
+    EXPECT_EQ(image.alpha(0, 0), 1);
+    scene.set_environment(Environment(kSky), false);
+    image = render_image(scene, camera_above(8), 4, 4, {});
+    EXPECT_EQ(image.color(0, 0), Rgb(0));
+    EXPECT_EQ(image.alpha(0, 0), 0);
+    EXPECT_NEAR(image.red(2, 2), 0.5F * kSky.x, 1e-6);
+}
+
+TEST(Environment, ABlackOneIsOnlyOpaque) {
+    const Image image =
+        render_image(floor_under_sky(Bsdf::lambert(Rgb(0.5F)), Environment(Rgb(0))), camera_above(8), 4, 4, {});
+    EXPECT_EQ(image.color(0, 0), Rgb(0));
+    EXPECT_EQ(image.color(2, 2), Rgb(0));
+    EXPECT_EQ(image.alpha(0, 0), 1);
+    EXPECT_EQ(image.report.shadow_rays, 0);
+}
+
+/// Half of a diffuse floor's sky, by projected area, is hidden at the foot of a high wall.
+TEST(Environment, WallsHideIt) {
+    Scene scene = floor_under_sky(Bsdf::lambert(Rgb(1)));
+    Mesh wall;
+    wall.vertices = {{0, -1e4F, -1}, {0, 1e4F, -1}, {0, 1e4F, 1e4F}, {0, -1e4F, 1e4F}};
+    wall.triangles = {{0, 1, 2}, {0, 2, 3}};
+    wall.bsdfs = {Bsdf::lambert(Rgb(0))};
+    scene.add_mesh(wall);
+    RenderSettings settings;
+    settings.shadow_rays = 64;
+    // Pixels on both sides of the wall, none on it.
+    const Image image = render_image(scene, camera_above(1), 4, 4, settings);
+    EXPECT_NEAR(image.red(0, 1), 0.5F * kSky.x, 2e-3);
+    EXPECT_NEAR(image.red(3, 2), 0.5F * kSky.x, 2e-3);
+    EXPECT_NEAR(image.red(2, 2), 0.5F * kSky.x, 2e-3);
+}
+
+TEST(Environment, AClosedBoxIsBlackInside) {
+    Scene scene = floor_under_sky(Bsdf::lambert(Rgb(1)));
+    Mesh shell = sphere_mesh({0, 0, 0}, 2, 16, false);
+    scene.add_mesh(shell);
+    const Camera inside(look_at({0, -1, 1}, {0, 0, 0}), 0.2);
+    EXPECT_EQ(render_image(scene, inside, 2, 2, {}).color(0, 0), Rgb(0));
+}
+
+/// What a narrow lobe reflects is hidden by what is in its direction, and only by that.
+TEST(Environment, GlossyLobesSeeOnlyTheirOwnObstacles) {
+    const Camera camera(look_at({0, -10, 10}, {0, 0, 0}), 1e-3);
+    const auto shaded = [&](double y) {
+        Scene scene = floor_under_sky(Bsdf::ggx(0.2F, Rgb(1)));
+        scene.add_mesh(sphere_mesh({0, y, 10}, 4, 16, false));
+        RenderSettings settings;
+        settings.shadow_rays = 256;
+        return render_image(scene, camera, 1, 1, settings).red(0, 0);
+    };
+    const float open = render_image(floor_under_sky(Bsdf::ggx(0.2F, Rgb(1))), camera, 1, 1, {}).red(0, 0);
+    EXPECT_LT(shaded(10), 0.1F * open);
+    EXPECT_GT(shaded(-30), 0.98F * open);
+}
+
+TEST(Environment, NoNoiseWhereNothingIsInTheWay) {
+    const Scene scene = floor_under_sky(Bsdf::lambert(Rgb(0.5F)) + Bsdf::ggx(0.3F, Rgb(0.2F)));
+    RenderSettings settings;
+    settings.shadow_rays = 1;
+    const Image few = render_image(scene, camera_above(2), 4, 4, settings);
+    settings.shadow_rays = 0;
+    const Image none = render_image(scene, camera_above(2), 4, 4, settings);
+    EXPECT_EQ(few.values, none.values);
+}
+
+}  // namespace
+}  // namespace shlight::testing
