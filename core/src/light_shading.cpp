@@ -97,7 +97,7 @@ class LightShaderWork {
                         std::span<std::int32_t> effort) {
         polygons_.clear(vertex_count);
         polygons_.append(vertices, radiance.size());
-        if (!polygons_are_sound(polygons_.vertices(), polygons_.vertex_count())) {
+        if (!polygons_.are_sound(vertices)) {
             for (std::size_t i = 0; i < radiance.size(); ++i) {
                 check_polygon<float>(polygons_.polygon(i));
             }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "kernels/cubature_kernel.h"
@@ -25,7 +26,21 @@ class PolygonBatch {
     void push_back(const Vec3d& vertex) { vertices_.push_back(vertex); }
     template <class T>
     void append(const Vec3<T>* vertices, std::size_t polygons) {
-        vertices_.insert(vertices_.end(), vertices, vertices + polygons * vertex_count_);
+        const std::size_t first = vertices_.size();
+        const std::size_t count = polygons * vertex_count_;
+        if (count > 0) {
+            vertices_.resize(first + count);
+            std::copy_n(&vertices->x, 3 * count, &vertices_[first].x);
+        }
+    }
+    /// polygons_are_sound; given: all that append() was given.
+    template <class T>
+    bool are_sound(const Vec3<T>* given) const {
+        if constexpr (std::is_same_v<T, float>) {
+            return polygons_are_sound(std::span(given, vertices_.size()), vertices_, vertex_count());
+        } else {
+            return polygons_are_sound(vertices_, vertex_count());
+        }
     }
 
     int vertex_count() const { return static_cast<int>(vertex_count_); }

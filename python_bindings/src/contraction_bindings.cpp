@@ -14,7 +14,6 @@
 #include "chunks.h"
 #include "kernels/cap_kernel.h"
 #include "kernels/polygon_shading_kernel.h"
-#include "kernels/polygon_views.h"
 #include "light_checks.h"
 #include "polygon_batch.h"
 
@@ -61,7 +60,7 @@ Array<float> contract_polygons(const Array<float>& vertices, const Array<float>&
         PolygonBatch polygons;
         polygons.clear(k);
         polygons.append(&v[first * k], count);
-        const bool sound = polygons_are_sound(polygons.vertices(), polygons.vertex_count());
+        const bool sound = polygons.are_sound(&v[first * k]);
         for (std::size_t i = 0; !sound && i < count; ++i) {
             check_polygon<float>(polygons.polygon(i));
         }

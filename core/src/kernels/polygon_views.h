@@ -13,6 +13,10 @@ namespace shlight {
 /// and why. Says no too for coordinates whose squares overflow: then each is worth a look.
 bool polygons_are_sound(std::span<const Vec3d> vertices, int vertex_count);
 
+/// The same of polygons that were given in float, in which most are told to be sound; vertices: their numbers in
+/// double.
+bool polygons_are_sound(std::span<const Vec3f> given, std::span<const Vec3d> vertices, int vertex_count);
+
 /// One for each polygon.
 struct PolygonExtents {
     std::span<double> x, y, z;     ///< a unit vector in the middle of the vertices that the horizon leaves
