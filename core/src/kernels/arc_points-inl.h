@@ -99,6 +99,27 @@ HWY_INLINE SineCosine<R> of_half_turn(V<Lanes<R>> angle) {
     return {hn::Mul(twice, half.cosine), hn::NegMulAdd(twice, half.sine, all(d, 1))};
 }
 
+/// Columns `column` … `column + kSquare - 1` of rows that follow each other, one a lane.
+template <class D, class Row>
+HWY_INLINE V<D> load_row_blocks(D d, const Row* rows, std::size_t column) {
+    if constexpr (hn::MaxLanes(d) > kSquare<D>) {
+        const hn::Half<D> half;
+        return hn::Combine(d, load_row_blocks(half, rows + hn::MaxLanes(half), column),
+                           load_row_blocks(half, rows, column));
+    } else {
+        return hn::LoadU(d, rows->data() + column);
+    }
+}
+template <class D, class Row>
+HWY_INLINE std::array<V<D>, kSquare<D>> load_row_columns(D d, const Row* rows, std::size_t column) {
+    std::array<V<D>, kSquare<D>> v;
+    for (std::size_t j = 0; j < kSquare<D>; ++j) {
+        v[j] = load_row_blocks(d, rows + j, column);
+    }
+    transpose_squares(d, v);
+    return v;
+}
+
 /// Points u of arcs, with ν ds ÷ (weight · 2 half), ν the inward normal.
 template <class R>
 struct ArcPoints {
@@ -112,12 +133,12 @@ class ArcLanes {
 
   public:
     /// rows: one arc a lane.
-    explicit HWY_INLINE ArcLanes(const RowPointers<const R>& rows) {
+    explicit HWY_INLINE ArcLanes(const ArcRow<R>* rows) {
         const D d;
         std::array<V<D>, 12> v;
         constexpr std::size_t kColumns = kGreat ? 8 : 12;
         for (std::size_t c = 0; c < kColumns; c += kSquare<D>) {
-            const auto columns = load_columns(d, rows.data(), c);
+            const auto columns = load_row_columns(d, rows, c);
             for (std::size_t j = 0; j < kSquare<D>; ++j) {
                 v[c + j] = columns[j];
             }
@@ -172,11 +193,11 @@ class ArcLanes {
 
 /// The columns of HorizonRow.
 template <class R>
-HWY_INLINE std::array<V<Lanes<R>>, 8> horizon_columns(const RowPointers<const R>& rows) {
+HWY_INLINE std::array<V<Lanes<R>>, 8> horizon_columns(const HorizonRow<R>* rows) {
     const Lanes<R> d;
     std::array<V<Lanes<R>>, 8> v;
     for (std::size_t c = 0; c < v.size(); c += kSquare<Lanes<R>>) {
-        const auto columns = load_columns(d, rows.data(), c);
+        const auto columns = load_row_columns(d, rows, c);
         for (std::size_t j = 0; j < columns.size(); ++j) {
             v[c + j] = columns[j];
         }
@@ -194,16 +215,6 @@ HWY_INLINE void store_blocks(D d, V<D> v, T* const* rows, std::size_t column) {
     } else {
         hn::StoreU(v, d, *rows + column);
     }
-}
-
-/// Pointers to a list's rows from `first` on, one a lane; the last is repeated.
-template <class R, class Row>
-HWY_INLINE RowPointers<const R> row_pointers(const RowList<Row>& rows, std::size_t first) {
-    RowPointers<const R> pointers;
-    for (std::size_t lane = 0; lane < pointers.size(); ++lane) {
-        pointers[lane] = rows[std::min(first + lane, rows.size() - 1)].data();
-    }
-    return pointers;
 }
 
 }  // namespace shlight::HWY_NAMESPACE

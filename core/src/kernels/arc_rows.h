@@ -58,6 +58,8 @@ class RowList {
     }
     std::size_t size() const { return blocks_.size() * RowStore<Row>::kBlock - static_cast<std::size_t>(end_ - next_); }
     const Row& operator[](std::size_t i) const { return blocks_[i / RowStore<Row>::kBlock][i % RowStore<Row>::kBlock]; }
+    /// Row `first` and those that follow, at least up to the next multiple of kBlock: beyond size() of any content.
+    const Row* from(std::size_t first) const { return &(*this)[first]; }
     std::size_t region(std::size_t i) const { return static_cast<std::size_t>((*this)[i][7]); }
     Row& add(RowStore<Row>& store) {
         if (next_ == end_) {
@@ -102,8 +104,9 @@ class ArcLists {
 /// Gauss points to integrate waves of κ radians to either side of the middle: by Bernstein's inequality k points err by
 ///   E_k = 2^{2k+1} k!⁴ κ^{2k} / ((2k+1) (2k)!³),     E_{k+1} = E_k κ² growth[k],
 /// times the largest value and half the length.
-inline constexpr auto kGaussErrorGrowth = [] {
-    std::array<double, kMaxGaussPoints> growth{};
+using GaussErrorGrowth = std::array<double, kMaxGaussPoints>;
+inline constexpr GaussErrorGrowth kGaussErrorGrowth = [] {
+    GaussErrorGrowth growth{};
     for (int k = 0; k < kMaxGaussPoints; ++k) {
         growth[static_cast<std::size_t>(k)] = (k + 1) / (2.0 * (2 * k + 1) * (2 * k + 1) * (2 * k + 3));
     }

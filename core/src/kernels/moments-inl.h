@@ -44,7 +44,7 @@ class ArcMoments {
     }
 
     /// The same of arcs of the horizon z = 0, as HorizonRow.
-    HWY_INLINE void integrate_horizon(const RowPointers<const R>& rows) {
+    HWY_INLINE void integrate_horizon(const HorizonRow<R>* rows) {
         const D d;
         const auto v = horizon_columns<R>(rows);
         auto from_re = all(d, 1);
@@ -260,13 +260,14 @@ void add_moments(const ArcLists<R>& lists, int order, const RowOf& row_of) {
     };
     for (std::size_t points = 1; points <= kMaxGaussPoints; ++points) {
         const auto& list = lists.arcs(points);
+        const GaussRule& rule = gauss_rule(static_cast<int>(points));
         for (std::size_t first = 0; first < list.size(); first += kWidth) {
-            moments.integrate(ArcLanes<R, kGreat>(row_pointers<R>(list, first)), gauss_rule(static_cast<int>(points)));
+            moments.integrate(ArcLanes<R, kGreat>(list.from(first)), rule);
             add(list, first);
         }
     }
     for (std::size_t first = 0; first < lists.horizon().size(); first += kWidth) {
-        moments.integrate_horizon(row_pointers<R>(lists.horizon(), first));
+        moments.integrate_horizon(lists.horizon().from(first));
         add(lists.horizon(), first);
     }
 }

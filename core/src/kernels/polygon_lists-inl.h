@@ -46,13 +46,14 @@ HWY_INLINE V<Lanes<R>> degree_on(std::size_t order, V<Lanes<R>> sine) {
     }
 }
 
-/// Gauss points for waves of κ radians; more than kMaxGaussPoints if one rule does not do.
+/// Gauss points for waves of κ radians; more than kMaxGaussPoints if one rule does not do. growth: as
+/// kGaussErrorGrowth.
 template <class R>
-HWY_INLINE V<Lanes<R>> points_for(V<Lanes<R>> kappa, V<Lanes<R>> tolerance) {
+HWY_INLINE V<Lanes<R>> points_for(V<Lanes<R>> kappa, V<Lanes<R>> tolerance, const GaussErrorGrowth& growth) {
     const Lanes<R> d;
     const auto one = all(d, 1);
     const auto square = hn::Mul(kappa, kappa);
-    auto error = hn::Mul(square, all(d, 2 * kGaussErrorGrowth[0]));
+    auto error = hn::Mul(square, all(d, 2 * growth[0]));
     auto points = one;
     for (std::size_t k = 1; k + 1 < kMaxGaussPoints; ++k) {
         const auto more = hn::Gt(error, tolerance);
@@ -60,7 +61,7 @@ HWY_INLINE V<Lanes<R>> points_for(V<Lanes<R>> kappa, V<Lanes<R>> tolerance) {
             return points;
         }
         points = hn::Add(points, hn::IfThenElseZero(more, one));
-        error = hn::IfThenElse(more, hn::Mul(error, hn::Mul(square, all(d, kGaussErrorGrowth[k]))), error);
+        error = hn::IfThenElse(more, hn::Mul(error, hn::Mul(square, all(d, growth[k]))), error);
     }
     return hn::IfThenElse(hn::Le(error, tolerance), points, all(d, kMaxGaussPoints + 1));
 }
@@ -107,18 +108,22 @@ template <class Kind, bool kWarped>
 class PolygonLists {
   protected:
     /// looseness: of the Gauss points' tolerance, 1 for that of coefficients.
-    PolygonLists(const PolygonArray& polygons, int order, double looseness)
-        : polygons_(polygons), order_(order), least_width_(least_width_for_float(order)), looseness_(looseness) {}
+    /// growth: of the error, where less is known than that harmonics are below the order.
+    PolygonLists(const PolygonArray& polygons, int order, double looseness,
+                 const GaussErrorGrowth& growth = kGaussErrorGrowth)
+        : polygons_(polygons),
+          order_(order),
+          least_width_(least_width_for_float(order)),
+          looseness_(looseness),
+          growth_(growth) {}
 
     void take(std::size_t count, bool clip) {
-        for (auto* list : {&whole_, &cut_, &narrow_whole_, &narrow_cut_, &narrowest_}) {
+        for (auto* list : {&narrow_whole_, &narrow_cut_, &narrowest_}) {
             list->clear();
         }
         float_arcs_.clear();
         double_arcs_.clear();
-        for (std::uint32_t i = 0; i < count; ++i) {
-            sort_by_horizon(i, clip);
-        }
+        sort_by_horizon(count, clip);
         if constexpr (kWarped) {
             take_apart<double, false>(whole_);
             take_apart<double, true>(cut_);
@@ -139,18 +144,26 @@ class PolygonLists {
   private:
     Kind& self() { return static_cast<Kind&>(*this); }
 
-    /// Those below have no light.
-    void sort_by_horizon(std::uint32_t i, bool clip) {
-        const double* z = self().vertex(i) + 2;
-        std::size_t above = 0;
-        for (std::size_t k = 0; k < polygons_.vertex_count; ++k) {
-            above += z[3 * k] >= 0 ? 1 : 0;
+    /// Those below have no light. Without branches, which would be foretold badly.
+    void sort_by_horizon(std::size_t count, bool clip) {
+        whole_.resize(count);
+        cut_.resize(count);
+        std::size_t whole = 0;
+        std::size_t cut = 0;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const double* z = self().vertex(i) + 2;
+            std::size_t above = 0;
+            for (std::size_t k = 0; k < polygons_.vertex_count; ++k) {
+                above += z[3 * k] >= 0 ? 1 : 0;
+            }
+            const bool is_whole = !clip | (above == polygons_.vertex_count);
+            whole_[whole] = i;
+            cut_[cut] = i;
+            whole += is_whole ? 1 : 0;
+            cut += !is_whole & (above > 0) ? 1 : 0;
         }
-        if (!clip || above == polygons_.vertex_count) {
-            whole_.push_back(i);
-        } else if (above > 0) {
-            cut_.push_back(i);
-        }
+        whole_.resize(whole);
+        cut_.resize(cut);
     }
 
     /// What decides about a vector of polygons.
@@ -218,7 +231,7 @@ class PolygonLists {
             const auto length = hn::Mul(sine, half);
             const auto relative = hn::Max(hn::Div(tolerance, length), all(d, kFinest));
             const auto degree = degree_on<kWarped, R>(static_cast<std::size_t>(order_), sine);
-            const auto points = points_for<R>(hn::Mul(degree, half), relative);
+            const auto points = points_for<R>(hn::Mul(degree, half), relative, growth_);
             put<R>(out.points[e], hn::IfThenElseZero(hn::Gt(half, zero), points));
         }
     }
@@ -351,6 +364,7 @@ class PolygonLists {
     static constexpr double kFinest = 1e-20;
 
     double least_width_, looseness_;
+    GaussErrorGrowth growth_;
     std::vector<std::uint32_t> whole_, cut_, narrow_whole_, narrow_cut_;
 };
 

@@ -23,8 +23,10 @@ HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 namespace {
 
-/// The bound on what Gauss points err by is far from reached, and one number sums up what many coefficients err by.
+/// What Gauss points may err by, in units of what coefficients may: one number sums up what many of them err by. The
+/// bound for harmonics of any size is far from reached, that for a lobe's is closer.
 constexpr double kLooseness = 8;
+constexpr double kLoosenessOfLobe = 2;
 
 /// Work of one call of shade_polygons.
 template <bool kWarped>
@@ -35,7 +37,8 @@ class PolygonShading : public PolygonLists<PolygonShading<kWarped>, kWarped> {
   public:
     PolygonShading(const PolygonArray& polygons, const std::uint32_t* polygon_of, const LobeArrays& lobe,
                    const std::uint32_t* view_of, float* values)
-        : Base(polygons, lobe.order, kLooseness),
+        : Base(polygons, lobe.order, takes_lobe_bound(lobe) ? kLoosenessOfLobe : kLooseness,
+               takes_lobe_bound(lobe) ? lobe_error_growth(lobe.terms, lobe.order) : kGaussErrorGrowth),
           polygon_of_(polygon_of),
           lobe_(lobe),
           view_of_(view_of),
@@ -45,12 +48,17 @@ class PolygonShading : public PolygonLists<PolygonShading<kWarped>, kWarped> {
         first_ = first;
         sums_.assign(count, 0.0);
         this->take(count, true);
-        if (lobe_.stride == 0) {
-            integrate<float, true>(this->float_arcs_);
-            integrate<double, true>(this->double_arcs_);
+        if (lobe_.stride != 0) {
+            integrate_apart(this->float_arcs_);
+            integrate_apart(this->double_arcs_);
         } else {
-            integrate<float, false>(this->float_arcs_);
-            integrate<double, false>(this->double_arcs_);
+            if (!kWarped && this->order_ <= kMaxChebyshevOrder) {
+                const ChebyshevSeries<float> series(this->order_, lobe_.terms);
+                integrate<true>(this->float_arcs_, series);
+            } else {
+                integrate_shared(this->float_arcs_);
+            }
+            integrate_shared(this->double_arcs_);
         }
         for (std::size_t i = 0; i < count; ++i) {
             values_[first + i] = static_cast<float>(sums_[i]);
@@ -59,6 +67,10 @@ class PolygonShading : public PolygonLists<PolygonShading<kWarped>, kWarped> {
     }
 
   private:
+    /// Waves along images under a warp are counted in another way, and there it depends on the neighbours whether
+    /// lights share a lobe.
+    static bool takes_lobe_bound(const LobeArrays& lobe) { return !kWarped && lobe.stride == 0 && lobe.order > 2; }
+
     std::size_t polygon(std::size_t i) const { return polygon_of_[first_ + i]; }
     const double* vertex(std::size_t i) const {
         return this->polygons_.vertices + 3 * this->polygons_.vertex_count * polygon(i);
@@ -72,47 +84,69 @@ class PolygonShading : public PolygonLists<PolygonShading<kWarped>, kWarped> {
     HWY_INLINE void low_bands(V<Lanes<R>> solid_angle, const Vectors3<R>& moment, const std::uint32_t* list,
                               std::size_t count) {
         const Lanes<R> d;
-        std::array<LaneValues<R>, 3> f;
+        std::array<V<Lanes<R>>, 3> f;
         const std::size_t terms_count = this->order_ > 1 ? 3 : 1;
-        for (std::size_t lane = 0; lane < f[0].size(); ++lane) {
-            const float* from = terms(list[std::min(lane, count - 1)]);
-            for (std::size_t j = 0; j < 3; ++j) {
-                f[j][lane] = j < terms_count ? static_cast<R>(from[j]) : R(0);
-            }
+        for (std::size_t j = 0; j < 3; ++j) {
+            f[j] = j < terms_count ? low_term<R>(j, list, count) : hn::Zero(d);
         }
-        const auto first = hn::MulAdd(moment.z, get<R>(f[1]), hn::Mul(moment.x, get<R>(f[2])));
+        const auto first = hn::MulAdd(moment.z, f[1], hn::Mul(moment.x, f[2]));
         LaneValues<R> values;
-        put<R>(values, hn::MulAdd(all(d, kBand0), hn::Mul(solid_angle, get<R>(f[0])), hn::Mul(all(d, kBand1), first)));
+        put<R>(values, hn::MulAdd(all(d, kBand0), hn::Mul(solid_angle, f[0]), hn::Mul(all(d, kBand1), first)));
         for (std::size_t lane = 0; lane < count; ++lane) {
             sums_[list[lane]] = static_cast<double>(values[lane]);
         }
     }
 
-    template <class R, bool kShared>
-    void integrate(const ArcLists<R>& lists) {
+    /// Term j of the lobes of a vector's polygons.
+    template <class R>
+    HWY_INLINE V<Lanes<R>> low_term(std::size_t j, const std::uint32_t* list, std::size_t count) const {
+        if (lobe_.stride == 0) {
+            return hn::Set(Lanes<R>(), static_cast<R>(lobe_.terms[j]));
+        }
+        LaneValues<R> values;
+        for (std::size_t lane = 0; lane < values.size(); ++lane) {
+            values[lane] = static_cast<R>(terms(list[std::min(lane, count - 1)])[j]);
+        }
+        return get<R>(values);
+    }
+
+    /// One lobe for all.
+    template <class R>
+    void integrate_shared(const ArcLists<R>& lists) {
+        PotentialSeries<R, true> series(this->order_);
+        RowPointers<const float> rows;
+        rows.fill(lobe_.terms);
+        series.set(rows);
+        integrate<true>(lists, series);
+    }
+
+    /// To each its own.
+    template <class R>
+    void integrate_apart(const ArcLists<R>& lists) {
+        PotentialSeries<R, false> series(this->order_);
+        integrate<false>(lists, series);
+    }
+
+    template <bool kShared, class R, class Series>
+    void integrate(const ArcLists<R>& lists, Series& series) {
         if (this->order_ <= 2) {
             return;
         }
-        PotentialSeries<R, kShared> series(this->order_);
-        if constexpr (kShared) {
-            RowPointers<const float> rows;
-            rows.fill(lobe_.terms);
-            series.set(rows);
-        }
         for (int points = 1; points <= kMaxGaussPoints; ++points) {
             const auto& arcs = lists.arcs(static_cast<std::size_t>(points));
+            const GaussRule& rule = gauss_rule(points);
             for (std::size_t first = 0; first < arcs.size(); first += kLaneCount<Lanes<R>>) {
-                look(series, arcs, first);
-                const ArcLanes<R, !kWarped> lanes(row_pointers<R>(arcs, first));
-                add(arcs, first, arc_integral<R, !kWarped, kShared>(series, lanes, gauss_rule(points)));
+                look<kShared, R>(series, arcs, first);
+                const ArcLanes<R, !kWarped> lanes(arcs.from(first));
+                add(arcs, first, arc_integral<R, !kWarped>(series, lanes, rule));
             }
         }
-        integrate_horizon(lists.horizon(), series);
+        integrate_horizon<kShared>(lists.horizon(), series);
     }
 
     /// The lobes of the regions that a vector's lanes belong to.
-    template <class R, bool kShared, class Rows>
-    void look(PotentialSeries<R, kShared>& series, const Rows& regions, std::size_t first) const {
+    template <bool kShared, class R, class Series, class Rows>
+    void look(Series& series, const Rows& regions, std::size_t first) const {
         if constexpr (!kShared) {
             RowPointers<const float> rows;
             for (std::size_t lane = 0; lane < kLaneCount<Lanes<R>>; ++lane) {
@@ -133,8 +167,8 @@ class PolygonShading : public PolygonLists<PolygonShading<kWarped>, kWarped> {
         }
     }
 
-    template <class R, bool kShared>
-    void integrate_horizon(const RowList<HorizonRow<R>>& arcs, PotentialSeries<R, kShared>& series) {
+    template <bool kShared, class R, class Series>
+    void integrate_horizon(const RowList<std::array<R, 8>>& arcs, Series& series) {
         constexpr std::size_t kWidth = kLaneCount<Lanes<R>>;
         std::vector<R> slopes(series.order() * kWidth);
         for (std::size_t first = 0; first < arcs.size(); first += kWidth) {
@@ -146,10 +180,10 @@ class PolygonShading : public PolygonLists<PolygonShading<kWarped>, kWarped> {
                     height[lane] = kWarped ? static_cast<R>(lobe_.warps.horizon_height[v]) : R(0);
                     sine[lane] = kWarped ? static_cast<R>(lobe_.warps.horizon_sine[v]) : R(1);
                 }
-                look(series, arcs, first);
-                horizon_slopes(series, get<R>(height), get<R>(sine), slopes.data());
+                look<kShared, R>(series, arcs, first);
+                horizon_slopes<R>(series, get<R>(height), get<R>(sine), slopes.data());
             }
-            add(arcs, first, horizon_integral<R>(slopes.data(), series.order(), row_pointers<R>(arcs, first)));
+            add(arcs, first, horizon_integral<R>(slopes.data(), series.order(), arcs.from(first)));
         }
     }
 

@@ -141,51 +141,142 @@ class PotentialSeries {
     std::vector<R> rise_, down_, same_, terms_;
 };
 
+/// One lobe in all lanes, and series in Chebyshev polynomials U_k, whose recurrence U_{k+1} = 2 z U_k - U_{k-1} is the
+/// same for all degrees and needs no product of its own. For orders up to kMaxChebyshevOrder.
+template <class R>
+class ChebyshevSeries {
+    using D = Lanes<R>;
+
+  public:
+    ChebyshevSeries(int order, const float* terms) : order_(static_cast<std::size_t>(order)) {
+        const PotentialConstants& constants = PotentialConstants::of(order);
+        down_.resize(constants.rise.size());
+        same_.resize(constants.rise.size());
+        const double* row = constants.chebyshev.data();
+        std::size_t first = 0;
+        for (std::size_t count = 1; count < order_; first += count++) {
+            for (std::size_t k = first; k < first + count; ++k) {
+                double down = 0;
+                double same = 0;
+                for (std::size_t i = first; i < first + count; ++i, ++row) {
+                    const float* f = terms + constants.term[i];
+                    down += *row * constants.down[i] * static_cast<double>(f[-1]);
+                    same += *row * constants.same[i] * static_cast<double>(f[0]);
+                }
+                down_[k] = static_cast<R>(down);
+                same_[k] = static_cast<R>(same);
+            }
+        }
+    }
+
+    std::size_t order() const { return order_; }
+
+    struct Pair {
+        V<D> down, same;
+    };
+    /// As PotentialSeries has them.
+    template <std::size_t kPoints>
+    HWY_INLINE std::array<Pair, kPoints> sums(std::size_t first, std::size_t count,
+                                              const std::array<V<D>, kPoints>& z) const {
+        const D d;
+        std::array<Pair, kPoints> b;
+        std::array<Pair, kPoints> other;
+        for (std::size_t k = 0; k < kPoints; ++k) {
+            b[k] = {hn::Set(d, down_[first]), hn::Set(d, same_[first])};
+            other[k] = {hn::Zero(d), hn::Zero(d)};
+        }
+        std::size_t i = first + 1;
+        const std::size_t end = first + count;
+        for (; i + 1 < end; i += 2) {
+            step(i, z, b, other);
+            step(i + 1, z, other, b);
+        }
+        if (i < end) {
+            step(i, z, b, other);
+            return other;
+        }
+        return b;
+    }
+
+  private:
+    template <std::size_t kPoints>
+    HWY_INLINE void step(std::size_t i, const std::array<V<D>, kPoints>& z, const std::array<Pair, kPoints>& b,
+                         std::array<Pair, kPoints>& before) const {
+        const auto down = hn::Set(D(), down_[i]);
+        const auto same = hn::Set(D(), same_[i]);
+        for (std::size_t k = 0; k < kPoints; ++k) {
+            const auto slope = hn::Add(z[k], z[k]);
+            before[k].down = hn::MulAdd(slope, b[k].down, hn::Sub(down, before[k].down));
+            before[k].same = hn::MulAdd(slope, b[k].same, hn::Sub(same, before[k].same));
+        }
+    }
+
+    std::size_t order_;
+    std::vector<R> down_, same_;
+};
+
 /// ν·∇F ds at points, ÷ weight · 2 half.
-template <class R, bool kShared, std::size_t kPoints>
-HWY_INLINE std::array<V<Lanes<R>>, kPoints> normal_derivatives(const PotentialSeries<R, kShared>& series,
+///
+/// With ζ = x+iy both Re ζ^k and Re (ν_x + iν_y) ζ^k follow g_{k+1} = 2x g_k - |ζ|² g_{k-1}, so the sums over m are
+/// Clenshaw's, too: four multiply-adds for each m, where Horner's rule for complex numbers takes seven.
+template <class R, std::size_t kPoints, class Series>
+HWY_INLINE std::array<V<Lanes<R>>, kPoints> normal_derivatives(const Series& series,
                                                                const std::array<ArcPoints<R>, kPoints>& points) {
     using D = Lanes<R>;
+    struct Clenshaw {
+        V<D> twice_x, square;
+        V<D> down, same, down_before, same_before;
+    };
     std::array<V<D>, kPoints> z;
-    std::array<V<D>, kPoints> re;
-    std::array<V<D>, kPoints> im;
+    std::array<Clenshaw, kPoints> b;
     for (std::size_t k = 0; k < kPoints; ++k) {
-        z[k] = points[k].u.z;
-        re[k] = im[k] = hn::Zero(D());
+        const auto& u = points[k].u;
+        const auto zero = hn::Zero(D());
+        z[k] = u.z;
+        b[k] = {hn::Add(u.x, u.x), hn::MulAdd(u.x, u.x, hn::Mul(u.y, u.y)), zero, zero, zero, zero};
     }
     std::size_t first = 0;
     for (std::size_t count = 1; count < series.order(); first += count++) {
         const auto sums = series.sums(first, count, z);
         for (std::size_t k = 0; k < kPoints; ++k) {
-            const auto& [u, normal] = points[k];
-            const auto real = hn::MulAdd(normal.x, sums[k].same, hn::Mul(normal.z, sums[k].down));
-            const auto next = hn::MulAdd(re[k], u.x, hn::NegMulAdd(im[k], u.y, real));
-            im[k] = hn::MulAdd(re[k], u.y, hn::MulAdd(im[k], u.x, hn::Mul(normal.y, sums[k].same)));
-            re[k] = next;
+            auto& [twice_x, square, down, same, down_before, same_before] = b[k];
+            const auto next_down = hn::MulAdd(twice_x, down, hn::NegMulAdd(square, down_before, sums[k].down));
+            const auto next_same = hn::MulAdd(twice_x, same, hn::NegMulAdd(square, same_before, sums[k].same));
+            down_before = down;
+            same_before = same;
+            down = next_down;
+            same = next_same;
         }
     }
-    return re;
+    std::array<V<D>, kPoints> values;
+    for (std::size_t k = 0; k < kPoints; ++k) {
+        const auto& [u, normal] = points[k];
+        const auto across = hn::MulAdd(normal.x, u.x, hn::Mul(normal.y, u.y));
+        const auto of_down = hn::NegMulAdd(u.x, b[k].down_before, b[k].down);
+        const auto of_same = hn::NegMulAdd(across, b[k].same_before, hn::Mul(normal.x, b[k].same));
+        values[k] = hn::MulAdd(normal.z, of_down, of_same);
+    }
+    return values;
 }
 
 /// ∫ ν·∇F ds along arcs in lanes, with so many Gauss points on each.
-template <class R, bool kGreat, bool kShared>
-HWY_INLINE V<Lanes<R>> arc_integral(const PotentialSeries<R, kShared>& series, const ArcLanes<R, kGreat>& arcs,
-                                    const GaussRule& rule) {
+template <class R, bool kGreat, class Series>
+HWY_INLINE V<Lanes<R>> arc_integral(const Series& series, const ArcLanes<R, kGreat>& arcs, const GaussRule& rule) {
     const Lanes<R> d;
     const std::size_t points = rule.nodes.size();
     const auto fraction = [&](std::size_t i) { return 1 - 2 * rule.nodes[i]; };
     auto sum = hn::Zero(d);
     const std::size_t pairs = points % 2 == 0 ? points / 2 : points > 1 ? points / 2 - 1 : 0;
     for (std::size_t i = 0; i < pairs; ++i) {
-        const auto values = normal_derivatives<R, kShared, 2>(series, arcs.pair(fraction(i)));
+        const auto values = normal_derivatives<R, 2>(series, arcs.pair(fraction(i)));
         sum = hn::MulAdd(hn::Add(values[0], values[1]), all(d, rule.weights[i]), sum);
     }
     if (points == 1) {
-        const auto value = normal_derivatives<R, kShared, 1>(series, {arcs.middle()});
+        const auto value = normal_derivatives<R, 1>(series, {arcs.middle()});
         sum = value[0];
     } else if (points % 2 == 1) {
         const auto [before, after] = arcs.pair(fraction(pairs));
-        const auto values = normal_derivatives<R, kShared, 3>(series, {before, after, arcs.middle()});
+        const auto values = normal_derivatives<R, 3>(series, {before, after, arcs.middle()});
         sum = hn::MulAdd(hn::Add(values[0], values[1]), all(d, rule.weights[pairs]), sum);
         sum = hn::MulAdd(values[2], all(d, rule.weights[pairs + 1]), sum);
     }
@@ -194,9 +285,8 @@ HWY_INLINE V<Lanes<R>> arc_integral(const PotentialSeries<R, kShared>& series, c
 
 /// Along the horizon z = z_0, s = √(1-z_0²): ν·∇F ds = Σ_m slopes[m] cos mφ dφ,
 ///   slopes[m] = s^{m+2} D_{m+1}(z_0) - z_0 s^m S_m(z_0).
-template <class R, bool kShared>
-HWY_INLINE void horizon_slopes(const PotentialSeries<R, kShared>& series, V<Lanes<R>> height, V<Lanes<R>> sine,
-                               R* slopes) {
+template <class R, class Series>
+HWY_INLINE void horizon_slopes(const Series& series, V<Lanes<R>> height, V<Lanes<R>> sine, R* slopes) {
     const Lanes<R> d;
     constexpr std::size_t kWidth = kLaneCount<Lanes<R>>;
     const std::size_t order = series.order();
@@ -219,7 +309,7 @@ HWY_INLINE void horizon_slopes(const PotentialSeries<R, kShared>& series, V<Lane
 
 /// Σ_m slopes[m] ∫ cos mφ dφ over arcs of the horizon.
 template <class R>
-HWY_INLINE V<Lanes<R>> horizon_integral(const R* slopes, std::size_t order, const RowPointers<const R>& rows) {
+HWY_INLINE V<Lanes<R>> horizon_integral(const R* slopes, std::size_t order, const HorizonRow<R>* rows) {
     const Lanes<R> d;
     constexpr std::size_t kWidth = kLaneCount<Lanes<R>>;
     const auto v = horizon_columns<R>(rows);
