@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -16,6 +16,7 @@
 #include "light_checks.h"
 #include "lobe_batch.h"
 #include "material_views.h"
+#include "plain_spheres.h"
 #include "polygon_batch.h"
 
 namespace shlight {
@@ -43,9 +44,12 @@ void check_views(std::span<const T> cos_theta_o, std::size_t count) {
     if (cos_theta_o.size() != 1) {
         check_size("cos_theta_o", cos_theta_o.size(), count);
     }
-    const bool valid = std::accumulate(cos_theta_o.begin(), cos_theta_o.end(), true,
-                                       [](bool all, T c) { return all & (c >= 0) & (c <= 1); });
-    if (!valid) {
+    // A number instead of a bool lets the loop run in lanes.
+    int invalid = 0;
+    for (const T c : cos_theta_o) {
+        invalid |= c >= 0 && c <= 1 ? 0 : 1;
+    }
+    if (invalid != 0) {
         reject("cos_theta_o must lie in [0, 1]");
     }
 }
@@ -55,7 +59,14 @@ void check_views(std::span<const T> cos_theta_o, std::size_t count) {
 class LightShaderWork {
   public:
     LightShaderWork(const Bsdf& bsdf, const ShadeSettings& settings)
-        : material_(bsdf.lobes(), settings.order, settings.tolerance) {}
+        : material_(bsdf.lobes(), settings.order, settings.tolerance) {
+        if (PlainSpheres::takes(material_)) {
+            plain_.emplace(material_);
+        }
+    }
+    // The parts refer to each other.
+    LightShaderWork(const LightShaderWork&) = delete;
+    LightShaderWork& operator=(const LightShaderWork&) = delete;
 
     /// shade_chunk(first, count) for each chunk, after its views were found.
     template <class U, class Shade>
@@ -67,29 +78,31 @@ class LightShaderWork {
         }
     }
 
-    template <class T>
-    void shade_spheres(const Vec3<T>* centers, const T* radii, std::span<Rgb> radiance,
-                       std::span<std::int32_t> effort) {
-        if (!spheres_are_sound(centers, radii, radiance.size())) {
-            for (std::size_t i = 0; i < radiance.size(); ++i) {
-                check_sphere(Vec3d(centers[i]), radii[i], std::numeric_limits<float>::epsilon());
-            }
-        }
-        bool has_circles = false;
-        shade_lobes(radiance, effort, [&](LobeViews& lobe) {
+    template <class T, class U>
+    void shade_spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, std::span<const U> cos_theta_o,
+                       std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+        for (std::size_t first = 0; first < centers.size(); first += kChunk) {
+            const std::size_t size = std::min(kChunk, centers.size() - first);
+            const auto own_centers = centers.subspan(first, size);
+            const auto own_radii = radii.subspan(first, size);
+            const auto own_radiance = radiance.subspan(first, size);
+            const auto own_effort = effort.empty() ? effort : effort.subspan(first, size);
+            check_spheres(own_centers, own_radii);
             if constexpr (std::is_same_v<T, float>) {
-                if (LobeBatch::takes_spheres(lobe)) {
-                    batch_.shade(lobe, std::span(centers, radiance.size()), radii, !effort.empty());
-                    return;
+                if (plain_) {
+                    const auto views = cos_theta_o.size() == 1 ? cos_theta_o : cos_theta_o.subspan(first, size);
+                    const bool shared = std::equal(views.begin() + 1, views.end(), views.begin());
+                    cosines_.assign(views.begin(), shared ? views.begin() + 1 : views.end());
+                    plain_->shade(own_centers, own_radii.data(), cosines_, own_radiance, own_effort);
+                    continue;
                 }
             }
-            if (!has_circles) {
-                circles_.resize(radiance.size());
-                circles_of_spheres(std::span(centers, radiance.size()), radii, circles_.output());
-                has_circles = true;
-            }
-            batch_.shade(lobe, circles_.arrays(), view_of_, !effort.empty());
-        });
+            find_views(cos_theta_o, first, size);
+            circles_.resize(size);
+            circles_of_spheres(own_centers, own_radii.data(), circles_.output());
+            shade_lobes(own_radiance, own_effort,
+                        [&](LobeViews& lobe) { batch_.shade(lobe, circles_.arrays(), view_of_, !effort.empty()); });
+        }
     }
 
     template <class T>
@@ -107,6 +120,15 @@ class LightShaderWork {
     }
 
   private:
+    template <class T>
+    static void check_spheres(std::span<const Vec3<T>> centers, std::span<const T> radii) {
+        if (!spheres_are_sound(centers.data(), radii.data(), centers.size())) {
+            for (std::size_t i = 0; i < centers.size(); ++i) {
+                check_sphere(Vec3d(centers[i]), radii[i], std::numeric_limits<float>::epsilon());
+            }
+        }
+    }
+
     /// Each change from light to light is a new view.
     template <class U>
     void find_views(std::span<const U> cos_theta_o, std::size_t first, std::size_t count) {
@@ -169,6 +191,7 @@ class LightShaderWork {
     MaterialLobes material_;
     MaterialViews views_;
     LobeBatch batch_;
+    std::optional<PlainSpheres> plain_;  // where the material is of that kind
     std::vector<double> cosines_;
     std::vector<std::uint32_t> view_of_;
     CircleBatch circles_;
@@ -189,10 +212,7 @@ void LightShader::spheres(std::span<const Vec3<T>> centers, std::span<const T> r
     check_views(cos_theta_o, count);
     check_size("radiance", radiance.size(), count);
     check_size("effort", effort.size(), effort.empty() ? 0 : count);
-    work_->in_chunks(cos_theta_o, count, [&](std::size_t first, std::size_t size) {
-        work_->shade_spheres(&centers[first], &radii[first], radiance.subspan(first, size),
-                             effort.empty() ? effort : effort.subspan(first, size));
-    });
+    work_->shade_spheres(centers, radii, cos_theta_o, radiance, effort);
 }
 
 template <class T, class U>

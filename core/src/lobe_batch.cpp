@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "kernels/cap_kernel.h"
 #include "kernels/cubature_kernel.h"
 #include "kernels/polygon_shading_kernel.h"
 #include "light_cubature.h"
@@ -54,24 +53,6 @@ void LobeBatch::shade(LobeViews& lobe, const CircleArrays& circles, std::span<co
 
 void LobeBatch::shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of, bool counted) {
     shade_any(lobe, polygons, view_of, counted);
-}
-
-bool LobeBatch::takes_spheres(LobeViews& lobe) {
-    return shades_alike(lobe) && std::holds_alternative<LambertShape>(lobe.shape());
-}
-
-void LobeBatch::shade(LobeViews& lobe, std::span<const Vec3f> centers, const float* radii, bool counted) {
-    constexpr std::array<std::uint32_t, 1> kFirstView = {0};
-    const int order = lobe.order(0);
-    values_.resize(centers.size());
-    efforts_.resize(centers.size());
-    alike_ = true;
-    shade_spheres_on_plane(centers.data(), radii, centers.size(), lobe.arrays(order, kFirstView).terms, order,
-                           values_.data());
-    without_ringing(values_);
-    for (std::size_t i = 0; counted && i < centers.size(); ++i) {
-        efforts_[i] = centers[i].z <= -radii[i] ? 0 : order;
-    }
 }
 
 template <class Lights>

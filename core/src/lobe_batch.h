@@ -28,10 +28,6 @@ class LobeBatch {
     /// asked for.
     void shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of, bool counted);
     void shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of, bool counted);
-    /// The same for spheres under a lobe for which takes_spheres(lobe): they need not be turned into circles first.
-    void shade(LobeViews& lobe, std::span<const Vec3f> centers, const float* radii, bool counted);
-    /// Whether the lobe shades all lights alike and has no warp.
-    static bool takes_spheres(LobeViews& lobe);
 
     // Of the last call:
     /// The reflected radiance of each light of unit radiance, without the lobe's scale, ≥ 0.

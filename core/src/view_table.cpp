@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "kernels/tabulated_lobe.h"
 #include "kernels/view_kernel.h"
 #include "shlight/types.h"
 
@@ -42,6 +43,7 @@ ViewTable::ViewTable(const WarpedRow& row) : orders_(row.layout().orders().begin
         }
     }
     terms_.resize(orders_.size());
+    columns_.resize(orders_.size());
     for (std::size_t i = 0; i < orders_.size(); ++i) {
         terms_[i].grow((kWarpedViews + 1) * width(i));
         float* out = terms_[i].data();
@@ -52,6 +54,12 @@ ViewTable::ViewTable(const WarpedRow& row) : orders_(row.layout().orders().begin
                     const int at = cosine_index(l, m);
                     out[at] = node == kBeyond && m % 2 == 1 ? -from[at] : from[at];
                 }
+            }
+        }
+        columns_[i].grow(width(i) * kViewColumn);
+        for (std::size_t term = 0; term < width(i); ++term) {
+            for (std::size_t view = 0; view <= kWarpedViews; ++view) {
+                columns_[i].data()[term * kViewColumn + view] = terms_[i].data()[view * width(i) + term];
             }
         }
     }

@@ -30,6 +30,8 @@ class ViewTable {
 
     const float* terms(std::size_t which) const { return terms_[which].data(); }
     std::size_t width(std::size_t which) const;
+    /// The same terms, column after column (TabulatedLobe).
+    const float* columns(std::size_t which) const { return columns_[which].data(); }
 
     /// Of one view.
     Head head(double cos_theta_o) const;
@@ -38,7 +40,7 @@ class ViewTable {
   private:
     std::vector<int> orders_;
     AlignedFloats heads_;
-    std::vector<AlignedFloats> terms_;  // of each order
+    std::vector<AlignedFloats> terms_, columns_;  // of each order
 };
 
 }  // namespace shlight

@@ -226,6 +226,74 @@ TEST(LightShading, RoughnessHasNoSeams) {
     }
 }
 
+/// Spheres on all sides of the horizon, whose numbers are floats.
+struct FloatSpheres {
+    std::vector<Vec3f> centers;
+    std::vector<float> radii;
+    std::vector<double> views;
+
+    explicit FloatSpheres(std::size_t count) {
+        RandomInput random(24);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double distance = random.log_uniform(0.1, 10);
+            centers.emplace_back(distance * random.direction());
+            radii.push_back(static_cast<float>(distance * random.log_uniform(1e-3, 0.98)));
+            // Some vectors of lights have views close to each other, others from one end of the table to the other.
+            views.push_back(i / 40 % 2 == 0 ? random.uniform(0, 1) : random.uniform(0.4, 0.9));
+        }
+        views[3] = 0;
+        views[4] = 1;
+    }
+};
+
+std::vector<Bsdf> materials_of_one_order() {
+    return {Bsdf::lambert(Rgb(0.2F, 0.5F, 1)), Bsdf::ggx(0.1F, Rgb(1)), Bsdf::ggx(0.5F, Rgb(1, 0.5F, 0.2F)),
+            Bsdf::layer(Bsdf::ggx(0.3F, Rgb(0), 1.5F), Bsdf::lambert(Rgb(0.8F, 0.4F, 0.1F)))};
+}
+
+TEST(LightShading, SpheresAsTheyComeAreThoseThatAreSorted) {
+    const FloatSpheres lights(3000);
+    const std::vector<Vec3d> centers(lights.centers.begin(), lights.centers.end());
+    const std::vector<double> radii(lights.radii.begin(), lights.radii.end());
+    for (const Bsdf& bsdf : materials_of_one_order()) {
+        for (const int order : {1, 3, 8, 16}) {
+            std::vector<Rgb> plain(radii.size());
+            std::vector<Rgb> sorted(radii.size());
+            std::vector<std::int32_t> effort(radii.size());
+            std::vector<std::int32_t> sorted_effort(radii.size());
+            LightShader shader(bsdf, {order, 1e-3});
+            shader.spheres(std::span<const Vec3f>(lights.centers), std::span<const float>(lights.radii),
+                           std::span<const double>(lights.views), plain, effort);
+            shade_spheres(centers, radii, bsdf, lights.views, {order, 1e-3}, sorted, sorted_effort);
+            EXPECT_EQ(effort, sorted_effort);
+            float largest = 0;
+            for (std::size_t i = 0; i < radii.size(); ++i) {
+                for (int channel = 0; channel < 3; ++channel) {
+                    const float error = std::abs(plain[i][channel] - sorted[i][channel]);
+                    largest = std::isnan(error) ? 1e30F : std::max(largest, error);
+                }
+            }
+            EXPECT_LE(largest, 1e-6F * static_cast<float>(order));
+        }
+    }
+}
+
+TEST(LightShading, SpheresDependOnNoNeighbour) {
+    const FloatSpheres lights(300);
+    for (const Bsdf& bsdf : materials_of_one_order()) {
+        std::vector<Rgb> together(lights.radii.size());
+        LightShader shader(bsdf, {8, 1e-3});
+        shader.spheres(std::span<const Vec3f>(lights.centers), std::span<const float>(lights.radii),
+                       std::span<const double>(lights.views), together);
+        for (std::size_t i = 0; i < together.size(); ++i) {
+            Rgb alone(-1);
+            shader.spheres(std::span(&lights.centers[i], 1), std::span(&lights.radii[i], 1),
+                           std::span(&lights.views[i], 1), {&alone, 1});
+            EXPECT_EQ(alone, together[i]) << i;
+        }
+    }
+}
+
 TEST(LightShading, RejectsBadInput) {
     const Bsdf bsdf = Bsdf::ggx(0.5F, Rgb(1));
     const std::vector<Vec3d> center = {{0, 0, 2}};

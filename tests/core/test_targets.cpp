@@ -254,6 +254,16 @@ TEST(TargetsAgreeOnLight, OfSpheres) {
                           });
 }
 
+TEST(TargetsAgreeOnLight, OfSpheresAsTheyCome) {
+    const Spheres<float> lights(1000);
+    expect_equal_radiance("lit_by_float_spheres", lights.radii.size(),
+                          [&](const Bsdf& bsdf, std::span<const double> views, int order, std::span<Rgb> radiance) {
+                              LightShader(bsdf, {order, 1e-3})
+                                  .spheres(std::span<const Vec3<float>>(lights.centers),
+                                           std::span<const float>(lights.radii), views, radiance);
+                          });
+}
+
 TEST(TargetsAgreeOnLight, OfPolygons) {
     RandomInput random(5);
     constexpr std::size_t kCount = 500;

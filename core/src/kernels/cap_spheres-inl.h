@@ -110,6 +110,19 @@ struct HalfSpheres {
     }
 };
 
+/// All of it in doubles.
+HWY_INLINE CircleLanes<Doubles> circle_of_floats(V<Doubles> x, V<Doubles> y, V<Doubles> z, V<Doubles> r) {
+    const Doubles d;
+    const HalfSpheres half(x, y, z, r);
+    return {hn::Mul(x, half.inverse),
+            hn::Mul(y, half.inverse),
+            half.z,
+            root(d, half.tangent_squared),
+            hn::Min(all(d, 1), hn::Mul(r, half.inverse)),
+            half.tilt_squared,
+            half.crossing_squared};
+}
+
 /// Only what errors would be multiplied by the order needs the doubles.
 HWY_INLINE CircleLanes<Floats> circle_of_sphere_in_lanes(Floats d, V<Floats> x, V<Floats> y, V<Floats> z, V<Floats> r) {
     const Doubles dd;
