@@ -4,11 +4,13 @@
 // library.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <vector>
 
+#include "quad_ellipse.h"
 #include "quad_truth.h"
 #include "random_input.h"
 
@@ -18,6 +20,7 @@ namespace {
 using testing::RandomInput;
 using truth::CapInput;
 using truth::Coefficients;
+using truth::EllipseInput;
 
 /// The larger of two errors, NaN counting as larger.
 double worst(double a, double b) {
@@ -162,6 +165,44 @@ TEST(Reference, PolygonsAgreeWithProductCubature) {
     }
     print("polygons, two methods", largest);
     EXPECT_LE(largest, 1e-17);
+}
+
+EllipseInput random_ellipse(RandomInput& random, double size) {
+    const Vec3d center = random.direction();
+    return {center, size * random.direction(), size * random.direction()};
+}
+
+TEST(Reference, EllipsesHaveConverged) {
+    RandomInput random(9);
+    double largest = 0;
+    for (const int order : {1, 8, 16, 33, 64}) {
+        for (int i = 0; i < std::max(1, 40 / order); ++i) {
+            const EllipseInput input = random_ellipse(random, random.log_uniform(0.1, 10));
+            for (const bool clip : {true, false}) {
+                const Coefficients reference = truth::ellipse(input, order, clip);
+                if (reference.high[0] > 0) {
+                    largest = worst(largest, difference(reference, truth::ellipse(input, order, clip, 8)));
+                }
+            }
+        }
+    }
+    print("ellipses, two resolutions", largest);
+    EXPECT_LE(largest, 1e-20);
+}
+
+TEST(Reference, FacingDisksAgreeWithCaps) {
+    RandomInput random(10);
+    double largest = 0;
+    for (int i = 0; i < 20; ++i) {
+        // At right angles as doubles have them: along an axis.
+        const double size = random.log_uniform(1e-3, 10);
+        const Vec3d center(0, 1, 0);
+        const bool clip = i % 2 == 0;
+        const Coefficients cap = truth::cap({center, CapInput::Kind::facing_disk, size}, 12, clip);
+        largest = worst(largest, difference(cap, truth::ellipse({center, {size, 0, 0}, {0, 0, size}}, 12, clip)));
+    }
+    print("facing disks and caps", largest);
+    EXPECT_LE(largest, 1e-25);
 }
 
 }  // namespace

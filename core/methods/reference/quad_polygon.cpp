@@ -4,9 +4,42 @@
 #include <algorithm>
 
 #include "quad_math.h"
+#include "quad_slices.h"
 #include "quad_warp.h"
 
 namespace shlight::truth {
+
+void add_arc_point(const OrderTables& tables, const Vec3q& p, quad dz, quad area, std::vector<quad>& legendre,
+                   std::vector<quad>& sums) {
+    reduced_legendre(tables, p.z, legendre);
+    for (int l = 1; l < tables.order; ++l) {
+        sums[coefficient_index(l, 0)] += area * legendre[cosine_index(l, 1)] / tables.derivative[l];
+    }
+    quad cos_part = p.x * dz;
+    quad sin_part = p.y * dz;
+    for (int m = 1; m < tables.order; ++m) {
+        const quad cosine_factor = sin_part / m;
+        const quad sine_factor = -cos_part / m;
+        for (int l = m; l < tables.order; ++l) {
+            sums[coefficient_index(l, m)] += cosine_factor * legendre[cosine_index(l, m)];
+            sums[coefficient_index(l, -m)] += sine_factor * legendre[cosine_index(l, m)];
+        }
+        const quad turned = cos_part * p.x - sin_part * p.y;
+        sin_part = cos_part * p.y + sin_part * p.x;
+        cos_part = turned;
+    }
+}
+
+Coefficients finished(std::vector<quad> sums, int order) {
+    const quad sign = sums[0] < 0 ? -1 : 1;
+    for (int l = 0; l < order; ++l) {
+        for (int m = -l; m <= l; ++m) {
+            sums[coefficient_index(l, m)] *= m == 0 ? sign : sign * sqrtf128(2);
+        }
+    }
+    sums.resize(coefficient_count(order));
+    return rounded(sums);
+}
 
 namespace {
 
@@ -34,29 +67,6 @@ Vec3q area_vector(const std::vector<Vec3q>& vertices) {
         sum = sum + cross(vertices[i] - vertices[0], vertices[i + 1] - vertices[0]);
     }
     return sum;
-}
-
-/// Adds the slice integrands of all order² coefficients at one point of a great arc; dz and area = x dy - y dx carry
-/// the weight.
-void add_arc_point(const OrderTables& tables, const Vec3q& p, quad dz, quad area, std::vector<quad>& legendre,
-                   std::vector<quad>& sums) {
-    reduced_legendre(tables, p.z, legendre);
-    for (int l = 1; l < tables.order; ++l) {
-        sums[coefficient_index(l, 0)] += area * legendre[cosine_index(l, 1)] / tables.derivative[l];
-    }
-    quad cos_part = p.x * dz;
-    quad sin_part = p.y * dz;
-    for (int m = 1; m < tables.order; ++m) {
-        const quad cosine_factor = sin_part / m;
-        const quad sine_factor = -cos_part / m;
-        for (int l = m; l < tables.order; ++l) {
-            sums[coefficient_index(l, m)] += cosine_factor * legendre[cosine_index(l, m)];
-            sums[coefficient_index(l, -m)] += sine_factor * legendre[cosine_index(l, m)];
-        }
-        const quad turned = cos_part * p.x - sin_part * p.y;
-        sin_part = cos_part * p.y + sin_part * p.x;
-        cos_part = turned;
-    }
 }
 
 /// A great-circle edge, parametrised so that nodes crowd where the warp enlarges: tan(s/2) = tan(t/2) / crowding, s the
@@ -153,18 +163,6 @@ void product_cubature(const std::vector<Vec3q>& vertices, int nodes, Add add) {
             add((1 / distance) * point, weight * dot(normal, point) / (distance * distance * distance));
         }
     }
-}
-
-/// Chooses the sign that makes the area positive and adds the basis' √2.
-Coefficients finished(std::vector<quad> sums, int order) {
-    const quad sign = sums[0] < 0 ? -1 : 1;
-    for (int l = 0; l < order; ++l) {
-        for (int m = -l; m <= l; ++m) {
-            sums[coefficient_index(l, m)] *= m == 0 ? sign : sign * sqrtf128(2);
-        }
-    }
-    sums.resize(coefficient_count(order));
-    return rounded(sums);
 }
 
 Coefficients by_edges(std::span<const Vec3d> vertices, const PointwiseWarp& warp, int order, bool clip,
