@@ -5,6 +5,7 @@
 
 #include <span>
 
+#include "shlight/disk.h"
 #include "shlight/types.h"
 #include "spherical_polygon.h"
 
@@ -23,5 +24,9 @@ void check_vertex_count(int vertex_count);
 /// Finite and planar to the precision of T, in which the vertices were given.
 template <class T>
 void check_polygon(std::span<const Vec3<Wider<T>>> vertices);
+
+/// Finite, with half axes that are independent to the precision of T, and a shading point that is not on the disk.
+template <class T>
+void check_disk(const Ellipse<Wider<T>>& disk);
 
 }  // namespace shlight

@@ -43,6 +43,31 @@ class ArcMoments {
         }
     }
 
+    /// The same of any curves with `count` points, up to kMaxGaussPoints. place(i): a point of each lane's curve and
+    /// its weight.
+    template <class Place>
+    HWY_INLINE void integrate_points(std::size_t count, const Place& place) {
+        static_assert(!kGreat);
+        count_ = count;
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto [point, weight] = place(i);
+            set(i, point, weight);
+        }
+        for (int m = 1; m < order_; ++m) {
+            add_degree(m);
+        }
+    }
+
+    /// Bands 0 and 1, if they are not worked out elsewhere.
+    HWY_INLINE void put_low_bands(V<D> band_0, const Vectors3<R>& band_1) {
+        put(0, 0, band_0);
+        if (order_ > 1) {
+            put(1, -1, band_1.y);
+            put(1, 0, band_1.z);
+            put(1, 1, band_1.x);
+        }
+    }
+
     /// The same of arcs of the horizon z = 0, as HorizonRow.
     HWY_INLINE void integrate_horizon(const HorizonRow<R>* rows) {
         const D d;

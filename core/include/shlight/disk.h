@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// Disks and ellipses seen from the shading point, clipped by the horizon z ≥ 0.
+//
+// Seen from a point an ellipse is a cone of the second degree. In the parameter that makes its outline an elliptic
+// function, Stokes' integral along it converges exponentially however the ellipse lies; what is so small or thin that
+// the outline would cancel is swept by lines. docs/algorithms.md, "Disks and ellipses", derives both.
+#pragma once
+
+#include <span>
+
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// The points centre + a u + b v with a² + b² ≤ 1, in the shading frame. u and v are any two conjugate half axes:
+/// linearly independent, at right angles or not, in either order: the region counts, as with polygons, not its
+/// orientation.
+template <class T>
+struct Ellipse {
+    Vec3<T> center, half_axis_u, half_axis_v;
+};
+
+/// How a disk is integrated; `automatic` is right except where the two are compared.
+enum class DiskMethod { automatic, outline, sweep };
+
+/// Coefficients of one disk, order² values. A disk seen edge-on has zero coefficients.
+/// clip: keep only what lies above the horizon.
+/// Precondition, not checked: as the batch function checks.
+template <class T>
+void disk_coefficients(const Ellipse<T>& disk, int order, bool clip, T* coefficients,
+                       DiskMethod method = DiskMethod::automatic);
+
+/// Many disks. coefficients: count × order², row by row.
+/// Throws std::invalid_argument naming the argument: order outside 1 … 64, sizes that do not fit, a non-finite number,
+/// half axes that are dependent, a shading point inside a disk.
+template <class T>
+void disk_coefficients(std::span<const Vec3<T>> centers, std::span<const Vec3<T>> half_axes_u,
+                       std::span<const Vec3<T>> half_axes_v, int order, bool clip, std::span<T> coefficients,
+                       DiskMethod method = DiskMethod::automatic);
+
+}  // namespace shlight

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+//
+// Jacobi's elliptic functions of real arguments by arithmetic–geometric means (Gauss; Abramowitz & Stegun 16.4, 17.6).
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace shlight {
+
+/// Of the complementary modulus k' in (0, 1]; m = 1 - k'².
+template <class Real>
+class EllipticFunctions {
+  public:
+    explicit EllipticFunctions(Real complement) : complement_(complement) {
+        Real a = 1;
+        Real b = complement;
+        // Each mean doubles the digits; from k' = 1e-300 on it takes eleven of them to begin with.
+        while (std::abs(a - b) > std::numeric_limits<Real>::epsilon() * a && steps_ < kMostSteps) {
+            levels_[steps_++] = {a, b, (a - b) / (a + b)};
+            const Real mean = (a + b) / 2;
+            b = std::sqrt(a * b);
+            a = mean;
+        }
+        mean_ = (a + b) / 2;
+        scale_ = std::ldexp(mean_, steps_);
+    }
+
+    Real complement() const { return complement_; }
+    /// K: sn, cn and dn have the periods 4K, 4K and 2K.
+    Real quarter_period() const { return std::numbers::pi_v<Real> / (2 * mean_); }
+
+    struct Values {
+        Real sn, cn, dn;
+    };
+    /// dn from a sum of squares: where it is small, 1 - m sn² would cancel.
+    Values at(Real u) const {
+        Real phi = scale_ * u;
+        for (int i = steps_; i-- > 0;) {
+            phi = (phi + std::asin(levels_[static_cast<std::size_t>(i)].ratio * std::sin(phi))) / 2;
+        }
+        const Real cn = std::cos(phi);
+        return {std::sin(phi), cn,
+                std::sqrt(complement_ * complement_ + (1 - complement_) * (1 + complement_) * cn * cn)};
+    }
+
+    /// u with sn u : cn u = k'⁻¹ sin τ : cos τ, growing with τ: 4K more for a whole turn.
+    Real argument(Real tau) const {
+        const Real turns = std::round(tau / (2 * std::numbers::pi_v<Real>));
+        const Real rest = tau - 2 * std::numbers::pi_v<Real> * turns;
+        // tan(φ_{n+1} - φ_n) = b/a tan φ_n, and the first of these differences is τ itself.
+        Real phi = std::atan2(std::sin(rest), complement_ * std::cos(rest));
+        for (int i = 0; i < steps_; ++i) {
+            const Level& level = levels_[static_cast<std::size_t>(i)];
+            const Real near = std::atan2(level.b * std::sin(phi), level.a * std::cos(phi));
+            const Real whole = std::round((phi - near) / (2 * std::numbers::pi_v<Real>));
+            phi += near + 2 * std::numbers::pi_v<Real> * whole;
+        }
+        return phi / scale_ + 4 * quarter_period() * turns;
+    }
+
+  private:
+    static constexpr int kMostSteps = 24;
+    struct Level {
+        Real a, b;
+        Real ratio;  ///< (a-b)/(a+b), the modulus of the next level
+    };
+
+    Real complement_, mean_, scale_;
+    int steps_ = 0;
+    std::array<Level, kMostSteps> levels_;
+};
+
+}  // namespace shlight
