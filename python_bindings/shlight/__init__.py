@@ -14,6 +14,7 @@ from shlight import images, methods  # noqa: E402
 from shlight._core import Bsdf, RenderCancelled, RenderReport, Scene, render  # noqa: E402
 from shlight.coefficients import (  # noqa: E402
     cap_coefficients,
+    disk_coefficients,
     evaluate,
     polygon_coefficients,
     sh_basis,
@@ -30,6 +31,7 @@ __all__ = [
     "RenderReport",
     "Scene",
     "cap_coefficients",
+    "disk_coefficients",
     "evaluate",
     "images",
     "methods",

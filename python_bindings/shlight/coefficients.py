@@ -161,6 +161,38 @@ def polygon_coefficients(
     return flat.reshape(*v.shape[:-2], n * n)
 
 
+def disk_coefficients(
+    centers: ArrayLike,
+    half_axes_u: ArrayLike,
+    half_axes_v: ArrayLike,
+    order: int,
+    *,
+    clip: bool = True,
+    dtype: DTypeLike = np.float32,
+    threads: int = 0,
+) -> Floats:
+    """Coefficients of planar disks and ellipses of unit radiance, seen from the origin.
+
+    centers, half_axes_u, half_axes_v: (..., 3), in the shading frame, any unit of length; their leading axes broadcast.
+    An ellipse holds the points center + a u + b v with a² + b² ≤ 1: any two half axes that are linearly independent, at
+    right angles or not, in either order: the region counts, and both sides of it shine. Seen edge-on it gives zeros.
+    clip: keep only what lies above the horizon z ≥ 0. Returns (..., order²), right to 1e-10 of L_00 in float64 and 1e-5
+    in float32, at contact, too. ValueError for dependent half axes and for a shading point in the ellipse.
+    Stokes' theorem along the outline as elliptic functions: docs/algorithms.md, "Disks and ellipses".
+    """
+    c = checked_array("centers", centers, dtype, core_axes=1)
+    u = checked_array("half_axes_u", half_axes_u, dtype, core_axes=1)
+    v = checked_array("half_axes_v", half_axes_v, dtype, core_axes=1)
+    check_last("centers", c, 3)
+    check_last("half_axes_u", u, 3)
+    check_last("half_axes_v", v, 3)
+    shape = broadcast(centers=c.shape[:-1], half_axes_u=u.shape[:-1], half_axes_v=v.shape[:-1])
+    n = checked_order(order)
+    lights = (rows(c, shape, 3), rows(u, shape, 3), rows(v, shape, 3))
+    flat = _core.disk_coefficients(*lights, n, bool(clip), checked_threads(threads))
+    return flat.reshape(*shape, n * n)
+
+
 def shade(light_coefficients: ArrayLike, bsdf_coefficients: ArrayLike, *, threads: int = 0) -> Floats:
     """Outgoing radiance, Σ light · material (Zhou & Wei 2020, Eq. 5).
 

@@ -7,6 +7,7 @@
 #include "result_memory.h"
 #include "shlight/basis.h"
 #include "shlight/cap.h"
+#include "shlight/disk.h"
 #include "shlight/polygon.h"
 #include "shlight/shading.h"
 
@@ -94,6 +95,21 @@ Array<T> polygons(const Array<T>& vertices, int order, bool clip, int threads) {
 }
 
 template <class T>
+Array<T> disks(const Array<T>& centers, const Array<T>& half_axes_u, const Array<T>& half_axes_v, int order, bool clip,
+               int threads) {
+    const auto c = vectors("centers", centers);
+    const auto u = vectors("half_axes_u", half_axes_u);
+    const auto v = vectors("half_axes_v", half_axes_v);
+    Array<T> out = rows<T>(c.size(), order);
+    T* data = out.mutable_data();
+    in_chunks(c.size(), threads, [&](std::size_t first, std::size_t count) {
+        disk_coefficients(c.subspan(first, count), u.subspan(first, count), v.subspan(first, count), order, clip,
+                          slice(data, order, first, count));
+    });
+    return out;
+}
+
+template <class T>
 Array<T> shaded(const Array<T>& light, const Array<T>& bsdf, int order, int threads) {
     const auto total = static_cast<std::size_t>(light.shape(0));
     Array<T> out(static_cast<py::ssize_t>(total));
@@ -116,6 +132,8 @@ void bind_for(py::module_& m) {
           py::arg("order"), py::arg("clip"), py::arg("threads"));
     m.def("polygon_coefficients", &polygons<T>, py::arg("vertices").noconvert(), py::arg("order"), py::arg("clip"),
           py::arg("threads"));
+    m.def("disk_coefficients", &disks<T>, py::arg("centers").noconvert(), py::arg("half_axes_u").noconvert(),
+          py::arg("half_axes_v").noconvert(), py::arg("order"), py::arg("clip"), py::arg("threads"));
     m.def("shade", &shaded<T>, py::arg("light").noconvert(), py::arg("bsdf").noconvert(), py::arg("order"),
           py::arg("threads"));
 }
