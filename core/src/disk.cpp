@@ -31,34 +31,67 @@ bool takes_sweep(const SphericalEllipse<Wider<T>>& ellipse, DiskMethod method) {
            (ellipse.cut() && ellipse.least_solid_angle() < kSmallestCut<T>);
 }
 
+/// Outlines that wait for the lanes, with sums in R, and where their results go.
+template <class R, class T>
+class WaitingOutlines {
+  public:
+    WaitingOutlines(std::size_t most, int order)
+        : order_(order), row_(static_cast<std::size_t>(coefficient_count(order))), sums_(most * row_) {}
+
+    void add(const SphericalEllipse<Wider<T>>& ellipse, T* result) {
+        R* const sums = sums_.data() + results_.size() * row_;
+        std::fill_n(sums, row_, R(0));
+        start_disk_outline<T>(ellipse, order_, results_.size(), outlines_, sums);
+        results_.push_back(result);
+    }
+
+    void finish() {
+        if (results_.empty()) {
+            return;
+        }
+        add_disk_outlines(outlines_, order_, sums_.data());
+        const R* from = sums_.data();
+        for (T* const result : results_) {
+            std::transform(from, from + row_, result, [](R c) { return static_cast<T>(c); });
+            from += row_;
+        }
+        outlines_.clear();
+        results_.clear();
+    }
+
+  private:
+    int order_;
+    std::size_t row_;
+    std::vector<R> sums_;
+    DiskOutlines<R> outlines_;
+    std::vector<T*> results_;
+};
+
 /// disk(i): number i of `count`, in the wider type.
 template <class T, class Disk>
 void integrate(std::size_t count, int order, bool clip, T* coefficients, DiskMethod method, const Disk& disk) {
     constexpr std::size_t kChunk = 128;
     const auto row = static_cast<std::size_t>(coefficient_count(order));
-    std::vector<double> sums(std::min(count, kChunk) * row);
-    DiskOutlines outlines;
-    std::vector<std::size_t> outlined;
+    WaitingOutlines<double, T> outlines(std::min(count, kChunk), order);
+    WaitingOutlines<float, T> in_float(std::is_same_v<T, float> ? std::min(count, kChunk) : 0, order);
     for (std::size_t first = 0; first < count; first += kChunk) {
-        outlines.clear();
-        outlined.clear();
-        std::fill(sums.begin(), sums.end(), 0.0);
         for (std::size_t i = first; i < std::min(first + kChunk, count); ++i) {
+            T* const result = coefficients + i * row;
             const SphericalEllipse<Wider<T>> ellipse(disk(i), clip);
-            if (!ellipse.empty() && takes_sweep<T>(ellipse, method)) {
-                disk_by_sweep(ellipse, order, coefficients + i * row);
-                continue;
-            }
-            outlined.push_back(i);
-            if (!ellipse.empty()) {
-                start_disk_outline<T>(ellipse, order, i - first, outlines, sums.data() + (i - first) * row);
+            if (ellipse.empty()) {
+                std::fill_n(result, row, T(0));
+            } else if (takes_sweep<T>(ellipse, method)) {
+                disk_by_sweep(ellipse, order, result);
+            } else if (disk_outline_in_float<T>(ellipse, order)) {
+                if constexpr (std::is_same_v<T, float>) {
+                    in_float.add(ellipse, result);
+                }
+            } else {
+                outlines.add(ellipse, result);
             }
         }
-        add_disk_outlines(outlines, order, sums.data());
-        for (const std::size_t i : outlined) {
-            const double* from = sums.data() + (i - first) * row;
-            std::transform(from, from + row, coefficients + i * row, [](double c) { return static_cast<T>(c); });
-        }
+        outlines.finish();
+        in_float.finish();
     }
 }
 

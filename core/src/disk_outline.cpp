@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <type_traits>
 
-#include "kernels/polygon_rows.h"
 #include "outline_points.h"
 
 namespace shlight {
@@ -40,9 +40,9 @@ Pieces cut_up(const SphericalEllipse<Wider<T>>& ellipse, int order) {
     return {Spacing::gauss, division, from + half / division.pieces, half / division.pieces};
 }
 
-template <class Real>
-ConeRow<double> row_of(const SphericalEllipse<Real>& ellipse, std::size_t number) {
-    const auto to = [](Real x) { return static_cast<double>(x); };
+template <class R, class Real>
+ConeRow<R> row_of(const SphericalEllipse<Real>& ellipse, std::size_t number) {
+    const auto to = [](Real x) { return static_cast<R>(x); };
     const Cone<Real>& cone = ellipse.cone();
     return {to(cone.long_axis.x),
             to(cone.long_axis.y),
@@ -51,7 +51,7 @@ ConeRow<double> row_of(const SphericalEllipse<Real>& ellipse, std::size_t number
             to(cone.short_axis.x),
             to(cone.short_axis.y),
             to(cone.short_axis.z),
-            static_cast<double>(number),
+            static_cast<R>(number),
             to(cone.axis.x),
             to(cone.axis.y),
             to(cone.axis.z),
@@ -77,19 +77,13 @@ Real horizon_fan(const HorizonCut<Real>& cut, const Vec3<Real>& axis) {
     return 2 * std::atan2(s * axis.z, c + glm::dot(axis, middle));
 }
 
-template <class Real>
-void add_horizon(const SphericalEllipse<Real>& ellipse, int order, std::size_t number, ArcLists<double>& arcs,
-                 double* coefficients) {
+template <class R, class Real>
+void add_horizon(const SphericalEllipse<Real>& ellipse, int order, std::size_t number, ArcLists<R>& arcs,
+                 R* coefficients) {
     const HorizonCut<Real>& cut = *ellipse.cut();
-    const auto to = [](Real x) { return static_cast<double>(x); };
-    arcs.add_horizon() = {to(cut.last.x),
-                          to(cut.last.y),
-                          to(cut.first.x),
-                          to(cut.first.y),
-                          to(cut.angle),
-                          0,
-                          0,
-                          static_cast<double>(number)};
+    const auto to = [](Real x) { return static_cast<R>(x); };
+    arcs.add_horizon() = {to(cut.last.x),        to(cut.last.y), to(cut.first.x), to(cut.first.y), to(cut.angle), 0, 0,
+                          static_cast<R>(number)};
     constexpr Real kPi = std::numbers::pi_v<Real>;
     coefficients[0] += to(horizon_fan(cut, ellipse.cone().axis) * std::sqrt(1 / (4 * kPi)));
     if (order > 1) {
@@ -107,15 +101,24 @@ double digits_for(const SphericalEllipse<Wider<T>>& ellipse, int order) {
 }
 
 template <class T>
+bool disk_outline_in_float(const SphericalEllipse<Wider<T>>& ellipse, int order) {
+    constexpr double kWideForFloat = 0.05;
+    // Long periods would enlarge the rounding of a point's place.
+    constexpr double kRoundest = 0.1;
+    return std::is_same_v<T, float> && order > 2 && ellipse.cone().complement > kRoundest &&
+           ellipse.least_solid_angle() > kWideForFloat * ellipse.outline();
+}
+
+template <class T, class R>
 void start_disk_outline(const SphericalEllipse<Wider<T>>& ellipse, int order, std::size_t number,
-                        DiskOutlines& outlines, double* coefficients) {
+                        DiskOutlines<R>& outlines, R* coefficients) {
     const Pieces pieces = cut_up<T>(ellipse, order);
-    ConeRow<double> row = row_of(ellipse, number);
+    ConeRow<R> row = row_of<R>(ellipse, number);
     const auto turn = std::numbers::pi / (2 * static_cast<double>(ellipse.functions().quarter_period()));
     for (int i = 0; i < pieces.division.pieces; ++i) {
-        row[11] = turn * (pieces.middle + 2 * i * pieces.half);
-        row[12] = turn * pieces.half;
-        row[13] = pieces.half;
+        row[11] = static_cast<R>(turn * (pieces.middle + 2 * i * pieces.half));
+        row[12] = static_cast<R>(turn * pieces.half);
+        row[13] = static_cast<R>(pieces.half);
         outlines.cones.add(pieces.spacing, static_cast<std::size_t>(pieces.division.points)) = row;
     }
     if (ellipse.cut()) {
@@ -123,13 +126,13 @@ void start_disk_outline(const SphericalEllipse<Wider<T>>& ellipse, int order, st
     }
 }
 
-void add_disk_outlines(const DiskOutlines& outlines, int order, double* coefficients) {
-    add_cone_coefficients(outlines.cones, order, coefficients);
-    add_arc_coefficients(outlines.horizon, true, order, coefficients);
-}
-
-template void start_disk_outline<float>(const SphericalEllipse<double>&, int, std::size_t, DiskOutlines&, double*);
-template void start_disk_outline<double>(const SphericalEllipse<long double>&, int, std::size_t, DiskOutlines&,
+template bool disk_outline_in_float<float>(const SphericalEllipse<double>&, int);
+template bool disk_outline_in_float<double>(const SphericalEllipse<long double>&, int);
+template void start_disk_outline<float>(const SphericalEllipse<double>&, int, std::size_t, DiskOutlines<float>&,
+                                        float*);
+template void start_disk_outline<float>(const SphericalEllipse<double>&, int, std::size_t, DiskOutlines<double>&,
+                                        double*);
+template void start_disk_outline<double>(const SphericalEllipse<long double>&, int, std::size_t, DiskOutlines<double>&,
                                          double*);
 template double digits_for<float>(const SphericalEllipse<double>&, int);
 template double digits_for<double>(const SphericalEllipse<long double>&, int);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "elliptic.h"
 
@@ -15,17 +16,44 @@ namespace {
 constexpr double kHighest = 7;
 constexpr int kMostPieces = 64;
 
+constexpr std::size_t kHeights = 6;
+struct StripHeight {
+    double s, tangent;  ///< sc(s | k'²)
+};
+using Strip = std::array<StripHeight, kHeights>;
+
+Strip strip_of(double complement) {
+    const EllipticFunctions<double> across(std::max(std::sqrt((1 - complement) * (1 + complement)), 1e-5));
+    const double top = std::min(across.quarter_period(), kHighest);
+    constexpr std::array<double, kHeights> kShares = {0.25, 0.45, 0.6, 0.75, 0.87, 0.95};
+    Strip strip;
+    for (std::size_t i = 0; i < kHeights; ++i) {
+        const auto f = across.at(kShares[i] * top);
+        strip[i] = {kShares[i] * top, f.sn / f.cn};
+    }
+    return strip;
+}
+
+/// Of the next smaller k' in a table: its strip is lower, and at the same height sc is larger, so the bound holds.
+const Strip& strip_below(double complement) {
+    constexpr int kRows = 256;
+    static const std::vector<Strip> strips = [] {
+        std::vector<Strip> made;
+        for (int i = 0; i <= kRows; ++i) {
+            const double lack = 1 - static_cast<double>(i) / kRows;
+            made.push_back(strip_of(std::max(1 - lack * lack, 1e-9)));
+        }
+        return made;
+    }();
+    return strips[static_cast<std::size_t>(kRows * (1 - std::sqrt(1 - complement)))];
+}
+
 }  // namespace
 
 OutlinePoints::OutlinePoints(double sin_long, double complement) {
-    const double k = std::sqrt((1 - complement) * (1 + complement));
-    const EllipticFunctions<double> across(std::max(k, 1e-5));
-    const double top = std::min(across.quarter_period(), kHighest);
-    constexpr std::array kShares = {0.15, 0.3, 0.45, 0.6, 0.72, 0.83, 0.92, 0.97};
+    const Strip& strip = strip_below(std::min(complement, 1.0));
     for (std::size_t i = 0; i < heights_.size(); ++i) {
-        const double s = kShares[i] * top;
-        const auto f = across.at(s);
-        heights_[i] = {s, std::asinh(sin_long * f.sn / f.cn)};
+        heights_[i] = {strip[i].s, std::asinh(sin_long * strip[i].tangent)};
     }
 }
 
@@ -56,7 +84,8 @@ Division OutlinePoints::open(double half, double degree, double digits, double p
         const int points = least < kMaxGaussPoints ? static_cast<int>(least) + 1 : kMaxGaussPoints + 1;
         if (points <= kMaxGaussPoints && pieces * points < best.pieces * best.points) {
             best = {pieces, points};
-        } else if (best.pieces < pieces && best.points < kMaxGaussPoints / 2) {
+        }
+        if (best.points < kMaxGaussPoints / 2) {  // more pieces would take more points
             break;
         }
     }

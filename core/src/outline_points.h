@@ -31,7 +31,7 @@ class OutlinePoints {
     struct Height {
         double s, growth;
     };
-    std::array<Height, 8> heights_;
+    std::array<Height, 6> heights_;
 };
 
 /// Gauss points across a line on the sphere that reaches from -half to half [rad], half < π/2.

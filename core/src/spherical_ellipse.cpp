@@ -20,7 +20,10 @@ class ColumnRotations {
     explicit ColumnRotations(const Ellipse<Real>& ellipse)
         : c_(ellipse.center), u_(ellipse.half_axis_u), v_(ellipse.half_axis_v) {
         constexpr int kMostSweeps = 30;
-        for (int sweep = 0; sweep < kMostSweeps && !orthogonal(); ++sweep) {
+        // They converge quadratically: one more sweep makes roots of roundings roundings.
+        bool last = false;
+        for (int sweep = 0; sweep < kMostSweeps && !last; ++sweep) {
+            last = nearly_orthogonal();
             turn(u_, v_);
             boost(c_, u_);
             boost(c_, v_);
@@ -31,14 +34,23 @@ class ColumnRotations {
 
   private:
     static bool small(const Vec3<Real>& a, const Vec3<Real>& b) {
-        return std::abs(glm::dot(a, b)) <= std::numeric_limits<Real>::epsilon() * glm::length(a) * glm::length(b);
+        constexpr Real kSquare = std::numeric_limits<Real>::epsilon() / 64;
+        const Real product = glm::dot(a, b);
+        return product * product <= kSquare * glm::dot(a, a) * glm::dot(b, b);
     }
-    bool orthogonal() const { return small(u_, v_) && small(c_, u_) && small(c_, v_); }
+    bool nearly_orthogonal() const { return small(u_, v_) && small(c_, u_) && small(c_, v_); }
 
+    /// tan 2φ = 2 a·b / (a² - b²), the smaller of both φ.
     static void turn(Vec3<Real>& a, Vec3<Real>& b) {
-        const Real angle = std::atan2(2 * glm::dot(a, b), glm::dot(a, a) - glm::dot(b, b)) / 2;
-        const Real c = std::cos(angle);
-        const Real s = std::sin(angle);
+        const Real twice = 2 * glm::dot(a, b);
+        if (twice == 0) {
+            return;
+        }
+        const Real difference = glm::dot(a, a) - glm::dot(b, b);
+        const Real root = std::sqrt(difference * difference + twice * twice);
+        const Real tangent = twice / (difference < 0 ? difference - root : difference + root);
+        const Real c = 1 / std::sqrt(1 + tangent * tangent);
+        const Real s = tangent * c;
         const Vec3<Real> turned = c * a + s * b;
         b = c * b - s * a;
         a = turned;
@@ -54,7 +66,7 @@ class ColumnRotations {
         const Vec3<Real> sum = product < 0 ? a + b : a - b;  // the shorter one
         const Vec3<Real> difference = product < 0 ? a - b : a + b;
         const Real squares = glm::dot(a, a) + glm::dot(b, b);
-        const Real s = glm::length(sum) * glm::length(difference) / squares;  // √(1 - tanh² 2η)
+        const Real s = std::sqrt(glm::dot(sum, sum) * glm::dot(difference, difference)) / squares;  // √(1 - tanh² 2η)
         const Real cosh = std::sqrt((1 + s) / (2 * s));
         const Real t = std::min(Real(1), 2 * std::abs(product) / (squares * (1 + s)));
         const Real lack = 2 * s / ((1 + s) * (1 + t));  // 1 - |tanh η|
@@ -165,7 +177,13 @@ void SphericalEllipse<Real>::cut_by_horizon(const Ellipse<Real>& given, const El
     cut.angle = std::atan2(std::max(Real(0), cross), to.x * from.x + to.y * from.y);
     cut.from = functions_->argument(highest - reach);
     cut.to = functions_->argument(highest + reach);
-    cut.highest = glm::normalize(c + cos_highest * v + sin_highest * u);
+    const Vec3<Real> up = cos_highest * v + sin_highest * u;
+    const Vec3<Real> along = cos_highest * u - sin_highest * v;
+    const Real cos_half = std::cos(reach / 2);
+    const Real sin_half = std::sin(reach / 2);
+    cut.rising = glm::normalize(c + cos_half * up - sin_half * along);
+    cut.highest = glm::normalize(c + up);
+    cut.falling = glm::normalize(c + cos_half * up + sin_half * along);
     cut_ = cut;
 }
 
@@ -187,12 +205,10 @@ void SphericalEllipse<Real>::measure() {
         outline_ = 2 * kPi * std::sqrt((along * along + across * across) / 2);
         return;
     }
-    const Real middle = (cut_->from + cut_->to) / 2;
-    const std::array<Vec3<Real>, 5> points = {cut_->first, direction((cut_->from + middle) / 2), cut_->highest,
-                                              direction((middle + cut_->to) / 2), cut_->last};
+    const std::array<Vec3<Real>, 5> points = {cut_->first, cut_->rising, cut_->highest, cut_->falling, cut_->last};
     outline_ = cut_->angle;
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-        outline_ += 2 * std::asin(std::min(Real(1), glm::length(points[i + 1] - points[i]) / 2));
+        outline_ += glm::length(points[i + 1] - points[i]);
         if (i > 0) {
             least_solid_angle_ += std::abs(triangle_solid_angle(points[0], points[i], points[i + 1]));
         }

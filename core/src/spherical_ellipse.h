@@ -30,8 +30,9 @@ struct HorizonCut {
     Real from, to;
     Vec3<Real> first, last;
     Real angle;
-    Vec3<Real>
-        highest;  ///< the direction to the point of the ellipse that is highest above the horizon's plane, or near it
+    /// Directions of the outline: to the point of the ellipse that is highest above the horizon's plane, and half way
+    /// from there.
+    Vec3<Real> rising, highest, falling;
 };
 
 template <class Real>

@@ -52,8 +52,8 @@ void integrate(const ConeLanes<R>& pieces, Spacing spacing, std::size_t points, 
     moments.put_low_bands(hn::Mul(fan, all(d, band_0)), scaled<R>(sum, all(d, band_1)));
 }
 
-void add_cones(const ConeLists<double>& lists, int order, double* coefficients) {
-    using R = double;
+template <class R>
+void add_cones(const ConeLists<R>& lists, int order, R* coefficients) {
     constexpr std::size_t kWidth = kLaneCount<Lanes<R>>;
     const auto numbers = static_cast<std::size_t>(coefficient_count(order));
     ArcMoments<R, false> moments(order);
@@ -73,6 +73,14 @@ void add_cones(const ConeLists<double>& lists, int order, double* coefficients) 
     }
 }
 
+void add_float_cones(const ConeLists<float>& lists, int order, float* coefficients) {
+    add_cones(lists, order, coefficients);
+}
+
+void add_double_cones(const ConeLists<double>& lists, int order, double* coefficients) {
+    add_cones(lists, order, coefficients);
+}
+
 }  // namespace
 }  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -80,10 +88,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace shlight {
 
-HWY_EXPORT(add_cones);
+HWY_EXPORT(add_float_cones);
+HWY_EXPORT(add_double_cones);
+
+void add_cone_coefficients(const ConeLists<float>& lists, int order, float* coefficients) {
+    HWY_DYNAMIC_DISPATCH(add_float_cones)(lists, order, coefficients);
+}
 
 void add_cone_coefficients(const ConeLists<double>& lists, int order, double* coefficients) {
-    HWY_DYNAMIC_DISPATCH(add_cones)(lists, order, coefficients);
+    HWY_DYNAMIC_DISPATCH(add_double_cones)(lists, order, coefficients);
 }
 
 }  // namespace shlight

@@ -47,6 +47,7 @@ class ConeLists {
 
 /// Adds what pieces of outlines have of all bands to order² numbers for each region, row by row. Of band 0 it is the
 /// solid angle between the piece and the cone's axis.
+void add_cone_coefficients(const ConeLists<float>& lists, int order, float* coefficients);
 void add_cone_coefficients(const ConeLists<double>& lists, int order, double* coefficients);
 
 }  // namespace shlight
