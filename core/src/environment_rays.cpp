@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "environment_map.h"
 #include "lobe_sampling.h"
 #include "ray_start.h"
 #include "shlight/sampling.h"
@@ -24,19 +25,27 @@ Vec3d diffuse_direction(const glm::dvec2& point) {
 /// Directions from one hit, and how densely all sets together draw them.
 class EnvironmentRays::Directions {
   public:
-    Directions(const Sets& sets, const Vec3d& view) : diffuse_(sets.diffuse) {
+    Directions(const Sets& sets, const Vec3d& view, const EnvironmentMap* map, const ShadingFrame& frame)
+        : diffuse_(sets.diffuse), map_(sets.diffuse || !sets.alphas.empty() ? map : nullptr) {
         for (const double alpha : sets.alphas) {
             lobes_.emplace_back(alpha, view);
         }
+        if (map_ != nullptr) {
+            to_map_ = glm::dmat3(map->to_map(frame.x), map->to_map(frame.y), map->to_map(frame.z));
+        }
     }
 
-    std::size_t set_count() const { return lobes_.size() + (diffuse_ ? 1 : 0); }
+    std::size_t set_count() const { return lobes_.size() + (diffuse_ ? 1 : 0) + (map_ != nullptr ? 1 : 0); }
     /// May lie below the horizon.
     Vec3d sample(std::size_t set, const glm::dvec2& point) const {
-        return set < lobes_.size() ? lobes_[set].sample(point) : diffuse_direction(point);
+        if (set < lobes_.size()) {
+            return lobes_[set].sample(point);
+        }
+        return diffuse_ && set == lobes_.size() ? diffuse_direction(point) : map_->sampler.sample(point) * to_map_;
     }
     double density(const Vec3d& direction) const {
         double sum = diffuse_ ? direction.z / std::numbers::pi : 0.0;
+        sum += map_ != nullptr ? map_->sampler.density(to_map_ * direction) : 0.0;
         for (const LobeSampler& lobe : lobes_) {
             sum += lobe.density(direction);
         }
@@ -45,6 +54,8 @@ class EnvironmentRays::Directions {
 
   private:
     bool diffuse_;
+    const EnvironmentMap* map_;
+    glm::dmat3 to_map_{1};  // from the shading frame
     std::vector<LobeSampler> lobes_;
 };
 
@@ -88,7 +99,7 @@ EnvironmentRays::Run EnvironmentRays::draw(const Hits& hits, std::size_t hit, co
                                            std::uint32_t seed) {
     const Sets& sets = materials_[hits.material[hit]];
     const Vec3d view = hits.view(hit);
-    const Directions directions(sets, view);
+    const Directions directions(sets, view, environment_->map(), hits.frame[hit]);
     const RayStart start(hits.frame[hit], hits.shadow_origin[hit], Vec3d(0));
     const auto push = [&](const Vec3d& direction, double density) {
         directions_.emplace_back(direction);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Shadow rays from the hits of a pixel to the environment: spread as a diffuse surface reflects, and as each glossy
-// lobe does.
+// Shadow rays from the hits of a pixel to the environment: spread as a diffuse surface reflects, as each glossy lobe
+// does, and, where the environment is a picture, as its luminance.
 //
 // All sets serve all lobes, weighted by the balance heuristic (Veach & Guibas 1995): a ray of direction ω that any of
 // the sets could have drawn counts f·cos L / Σ p_set, with p_set the density of a set; all have equally many rays. A

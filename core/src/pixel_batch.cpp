@@ -58,7 +58,7 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
         lobe_stride = std::max(lobe_stride, materials.back().lobes().size());
     }
     if (!s.environment().is_black()) {
-        environment.emplace(s.environment(), materials, lobe_stride);
+        environment.emplace(s.environment(), materials, lobe_stride, r.order, r.tolerance);
     }
 }
 

@@ -3,8 +3,11 @@
 
 #include <cstring>
 #include <initializer_list>
+#include <limits>
 #include <stdexcept>
 #include <string>
+
+#include <glm/gtc/type_ptr.hpp>
 
 #include "arrays.h"
 
@@ -172,6 +175,29 @@ std::vector<Vec3d> points_from(const char* name, const py::handle& value) {
 
 glm::dmat4 matrix_from(const char* name, const py::handle& value) {
     return matrix_at(numbers<double>(name, value, {4, 4}).data());
+}
+
+glm::dmat3 rotation_from(const char* name, const py::handle& value) {
+    const AnyArray<double> rows = numbers<double>(name, value, {3, 3});
+    return glm::transpose(glm::make_mat3(rows.data()));
+}
+
+Environment environment_from(const char* name, const py::handle& value, const glm::dmat3& to_world) {
+    const AnyArray<float> array = numbers<float>(name, value);
+    if (fits(array, {3})) {
+        return Environment(vectors(name, array)[0]);
+    }
+    if (!fits(array, {kAny, kAny, 3})) {
+        throw std::invalid_argument(std::string(name) + " must have shape (3,) or (height, width, 3)");
+    }
+    if (array.shape(0) > std::numeric_limits<int>::max() || array.shape(1) > std::numeric_limits<int>::max()) {
+        throw std::invalid_argument(std::string(name) + " is too large");
+    }
+    const auto pixels = vectors(name, array);
+    const LatLong picture = {
+        {pixels.begin(), pixels.end()}, static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)), to_world};
+    const py::gil_scoped_release release;
+    return Environment(picture);
 }
 
 Mesh mesh_from(const MeshArguments& arguments) {

@@ -8,6 +8,7 @@
 
 #include <vector>
 
+#include "shlight/environment.h"
 #include "shlight/mesh.h"
 #include "shlight/types.h"
 
@@ -21,6 +22,11 @@ Rgb rgb_from(const char* name, const pybind11::handle& value);
 std::vector<Vec3d> points_from(const char* name, const pybind11::handle& value);
 /// Shape (4, 4), to be multiplied with column vectors.
 glm::dmat4 matrix_from(const char* name, const pybind11::handle& value);
+
+/// Shape (3, 3), to be multiplied with column vectors.
+glm::dmat3 rotation_from(const char* name, const pybind11::handle& value);
+/// A radiance, shape (3,), or a lat-long picture, shape (height, width, 3), which `to_world` turns.
+Environment environment_from(const char* name, const pybind11::handle& value, const glm::dmat3& to_world);
 
 /// The arguments of Scene.add_mesh; None where Python leaves one out.
 struct MeshArguments {

@@ -51,7 +51,10 @@ Raises ValueError naming the argument.)";
 constexpr const char* kEnvironmentDoc =
     R"(Set the light that comes from infinitely far all around; it takes the place of the one before.
 
-radiance: [W m^-2 sr^-1], RGB, not negative.
+radiance: [W m^-2 sr^-1], not negative: RGB, the same from everywhere, or (height, width, 3), a picture of all directions
+    in equal steps of latitude and longitude, bilinear between the centres of its texels. Row 0 lies around +z; columns
+    go from -x over +y, +x (the middle) and -y back to -x, as in Blender.
+to_world: (3, 3), a rotation of the picture, for column vectors; None: none.
 visible: the camera sees it behind the scene, where the picture is then opaque.
 
 Raises ValueError naming the argument.)";
@@ -89,8 +92,9 @@ void add_polygon_light(SceneObject& self, const py::object& vertices, const py::
     self.changed();
 }
 
-void set_environment(SceneObject& self, const py::object& radiance, bool visible) {
-    self.scene.set_environment(Environment(rgb_from("radiance", radiance)), visible);
+void set_environment(SceneObject& self, const py::object& radiance, const py::object& to_world, bool visible) {
+    const glm::dmat3 rotation = to_world.is_none() ? glm::dmat3(1) : rotation_from("to_world", to_world);
+    self.scene.set_environment(environment_from("radiance", radiance, rotation), visible);
     self.changed();
 }
 
@@ -116,7 +120,8 @@ void bind_scene(py::module_& m) {
         .def("add_sphere_light", &add_sphere_light, kSphereDoc, "center"_a, "radius"_a, "radiance"_a, py::kw_only(),
              "facing_disk"_a = false)
         .def("add_polygon_light", &add_polygon_light, kPolygonDoc, "vertices"_a, "radiance"_a)
-        .def("set_environment", &set_environment, kEnvironmentDoc, "radiance"_a, py::kw_only(), "visible"_a = true)
+        .def("set_environment", &set_environment, kEnvironmentDoc, "radiance"_a, py::kw_only(),
+             "to_world"_a = py::none(), "visible"_a = true)
         .def("set_camera", &set_camera, kCameraDoc, "to_world"_a, "fov_x"_a)
         .def("set_camera_window", &set_camera_window, kWindowDoc, "to_world"_a, "left"_a, "right"_a, "bottom"_a,
              "top"_a, py::kw_only(), "orthographic"_a = false, "clip_start"_a = 0.0,

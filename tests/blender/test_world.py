@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import bpy
@@ -60,3 +61,116 @@ def test_world_and_lamp(studio: Any) -> None:
     studio.camera()
     set_world(studio, (0.3, 0.3, 0.4))
     studio.compare(error=2e-3)
+
+
+# --- pictures
+
+WORLDS = Path(bpy.utils.system_resource("DATAFILES")) / "studiolights" / "world"
+NAMES = ["city", "courtyard", "forest", "interior", "night", "studio", "sunrise", "sunset"]
+slow = pytest.mark.slow
+
+
+def set_picture(studio: Any, image: Any, rotation: tuple[float, float, float] | None = None) -> Any:
+    """A world with an Environment Texture of `image`; returns its node."""
+    background = set_world(studio, (0, 0, 0))
+    tree = studio.scene.world.node_tree
+    texture = tree.nodes.new("ShaderNodeTexEnvironment")
+    texture.image = image
+    tree.links.new(texture.outputs["Color"], background.inputs["Color"])
+    if rotation is not None:
+        mapping = tree.nodes.new("ShaderNodeMapping")
+        mapping.inputs["Rotation"].default_value = rotation
+        coordinates = tree.nodes.new("ShaderNodeTexCoord")
+        tree.links.new(coordinates.outputs["Generated"], mapping.inputs["Vector"])
+        tree.links.new(mapping.outputs["Vector"], texture.inputs["Vector"])
+    return texture
+
+
+def gradient(width: int = 32, height: int = 16) -> Any:
+    """A small picture in which no two directions are alike."""
+    image = bpy.data.images.new("Gradient", width, height, float_buffer=True)
+    u, v = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
+    red = 0.2 + (np.cos(2 * np.pi * u) + 1) * np.sin(np.pi * v)
+    green = 0.1 + (np.sin(2 * np.pi * u) + 1) * np.sin(np.pi * v)
+    image.pixels.foreach_set(np.stack([red, green, v, np.ones_like(u)], -1).astype(np.float32).ravel())
+    return image
+
+
+def far_camera(studio: Any) -> None:
+    """Sees the ball and much of the world around it."""
+    studio.camera((0.5, -4, 0.6), (0, 0, 0), angle=1.6)
+
+
+@pytest.mark.parametrize("rotation", [None, (0, 0, 1.0), (0.4, -0.7, 2.0)])
+def test_orientation_of_a_picture(studio: Any, rotation: tuple[float, float, float] | None) -> None:
+    studio.ball(material=studio.material(Color=(0.8, 0.8, 0.8)), rings=32)
+    mirror = studio.material("ShaderNodeBsdfAnisotropic", Color=(0.9, 0.9, 0.9), Roughness=0.0)
+    studio.ball(radius=0.6, material=mirror, rings=32, location=(-1.8, 0, 0))
+    far_camera(studio)
+    set_picture(studio, gradient(), rotation)
+    studio.compare(mean=2e-3, error=1e-3)
+    assert messages() == []
+
+
+@pytest.mark.parametrize("kind", ["TEXTURE", "VECTOR", "NORMAL"])
+def test_kinds_of_mapping(studio: Any, kind: str) -> None:
+    studio.ball(material=studio.material(Color=(0.8, 0.8, 0.8)), rings=32)
+    far_camera(studio)
+    texture = set_picture(studio, gradient(), (0.4, -0.7, 2.0))
+    texture.inputs["Vector"].links[0].from_node.vector_type = kind
+    studio.compare(mean=2e-3, error=1e-3)
+
+
+def test_pictures_of_bytes_and_strength(studio: Any) -> None:
+    studio.ball(material=studio.material(Color=(0.8, 0.8, 0.8)), rings=32)
+    far_camera(studio)
+    # In steps so small that it does not matter that Cycles interpolates before it undoes the colour space.
+    image = bpy.data.images.new("Bytes", 128, 64)
+    u, v = np.meshgrid((np.arange(128) + 0.5) / 128, (np.arange(64) + 0.5) / 64)
+    wave = 0.5 + 0.4 * np.cos(2 * np.pi * u)
+    image.pixels.foreach_set(np.stack([wave, 1 - wave, v, 0.6 + 0.4 * v], -1).astype(np.float32).ravel())
+    texture = set_picture(studio, image)
+    texture.outputs["Color"].links[0].to_node.inputs["Strength"].default_value = 3.0
+    studio.compare(mean=3e-3, error=1e-3)
+
+
+@pytest.mark.parametrize("floor", [False, True])
+@pytest.mark.parametrize("name", [n if n in {"courtyard", "sunrise"} else pytest.param(n, marks=slow) for n in NAMES])
+def test_real_pictures(studio: Any, name: str, floor: bool) -> None:
+    image = bpy.data.images.load(str(WORLDS / f"{name}.exr"))
+    studio.scene.cycles.samples = 1024
+    studio.scene.render.film_transparent = True  # what is seen behind is not the question
+    if floor:
+        balls(studio)
+        studio.scene.shlight.shadow_rays = 64
+    else:
+        studio.ball(material=studio.material(Color=(0.8, 0.5, 0.3)), rings=48, location=(-1.1, 0, 0))
+        glossy = studio.material("ShaderNodeBsdfAnisotropic", Color=(0.9, 0.8, 0.6), Roughness=0.5, distribution="GGX")
+        studio.ball(material=glossy, rings=48, location=(1.1, 0, 0))
+        studio.camera((0, -6, 1), (0, 0, 0))
+    set_picture(studio, image)
+    studio.compare(error=1e-3)
+
+
+def test_what_of_a_world_is_not_supported_is_named(studio: Any) -> None:
+    studio.plane()
+    studio.area()
+    studio.camera()
+    texture = set_picture(studio, gradient(), (0, 0, 1))
+    tree = studio.scene.world.node_tree
+    mapping = texture.inputs["Vector"].links[0].from_node
+    mapping.inputs["Location"].default_value = (1, 0, 0)
+    mapping.inputs["Scale"].default_value = (1, 2, 1)
+    texture.interpolation = "Closest"
+    text = "\n".join(messages())
+    for part in ("'Location' is not supported", "'Scale' is not supported", "interpolation Closest"):
+        assert part in text, text
+    tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], texture.inputs["Vector"])
+    assert "Noise Texture as a Vector" in "\n".join(messages())
+    texture.image = None
+    assert "has no image" in "\n".join(messages())
+    texture.image, texture.projection = gradient(), "MIRROR_BALL"
+    assert "projection MIRROR_BALL" in "\n".join(messages())
+    background = texture.outputs["Color"].links[0].to_node
+    tree.links.new(tree.nodes.new("ShaderNodeTexSky").outputs["Color"], background.inputs["Color"])
+    assert "node 'Sky Texture': varying values are not supported" in "\n".join(messages())

@@ -3,18 +3,30 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from mathutils import Euler
+from numpy.typing import NDArray
 
 import shlight
 
 from ..compat import uses_nodes
 from ..report import ExportReport
-from .nodes import RGB, ConstantReader, origin, rgb
+from .nodes import ConstantReader, Origin, origin
+from .pictures import linear_pixels
 
 # Kinds of rays that Cycles can hide the world from.
 RAY_KINDS = ("camera", "diffuse", "glossy")
+
+
+@dataclass
+class World:
+    """Arguments of `Scene.set_environment`."""
+
+    radiance: NDArray[Any]  # RGB, or a lat-long picture (height, width, 3)
+    to_world: NDArray[np.float64] | None = None  # a rotation of the picture
 
 
 def add_world(scene: shlight.Scene, blender_scene: Any, report: ExportReport) -> bool:
@@ -23,29 +35,85 @@ def add_world(scene: shlight.Scene, blender_scene: Any, report: ExportReport) ->
     Blender's film is opaque: without a world the camera sees black behind the scene, unless the film is transparent.
     """
     world = blender_scene.world
-    color = np.zeros(3) if world is None else _world_color(world, f"World '{world.name}'", report)
-    scene.set_environment(rgb(color), visible=not blender_scene.render.film_transparent)
-    return bool(color.any())
+    read = _black() if world is None else _read_world(world, f"World '{world.name}'", report)
+    visible = not blender_scene.render.film_transparent
+    scene.set_environment(read.radiance, to_world=read.to_world, visible=visible)
+    return bool(read.radiance.any())
 
 
-def _world_color(world: Any, place: str, report: ExportReport) -> RGB:
+def _black() -> World:
+    return World(np.zeros(3))
+
+
+def _read_world(world: Any, place: str, report: ExportReport) -> World:
     _report_visibility(world, place, report)
     if not uses_nodes(world):
-        return np.array(world.color, dtype=np.float64)
+        return World(np.array(world.color, dtype=np.float64))
     output = world.node_tree.get_output_node("CYCLES")
     if output is None:
-        return np.zeros(3)
+        return _black()
     if origin(output.inputs["Volume"]).node is not None:
         report.add(place, "volume is not supported; left out")
     source = origin(output.inputs["Surface"])
     if source.node is None:
-        return np.zeros(3)
+        return _black()
     reader = ConstantReader(place, report)
     if source.node.type != "BACKGROUND":
         report.add(reader.at(source.node), f"{source.node.bl_label} is not supported; black is used")
-        return np.zeros(3)
-    strength = reader.number(source.node, "Strength", source.groups)
-    return max(strength, 0.0) * reader.color(source.node, "Color", source.groups)
+        return _black()
+    strength = max(reader.number(source.node, "Strength", source.groups), 0.0)
+    color = origin(source.node.inputs["Color"], source.groups)
+    if color.node is None or color.node.type != "TEX_ENVIRONMENT":
+        return World(strength * reader.color(source.node, "Color", source.groups))
+    read = _read_picture(reader, color)
+    return World((strength * read.radiance).astype(read.radiance.dtype), read.to_world)
+
+
+def _read_picture(reader: ConstantReader, source: Origin) -> World:
+    """An Environment Texture."""
+    node = source.node
+    place = reader.at(node)
+    if node.projection != "EQUIRECTANGULAR":
+        reader.report.add(place, f"projection {node.projection} is not supported; black is used")
+        return _black()
+    if node.interpolation != "Linear":
+        reader.report.add(place, f"interpolation {node.interpolation} is not supported; Linear is used")
+    if node.image is not None and node.image.source not in {"FILE", "GENERATED"}:
+        reader.report.add(place, f"images of the kind {node.image.source} are not supported; one picture is used")
+    pixels = None if node.image is None else linear_pixels(node.image)
+    if pixels is None:
+        reader.report.add(place, "it has no image, or its file is missing; black is used")
+        return _black()
+    return World(pixels, _rotation(reader, origin(node.inputs["Vector"], source.groups)))
+
+
+def _rotation(reader: ConstantReader, source: Origin) -> NDArray[np.float64]:
+    """Rotation of the picture whose directions come from `source`: a Mapping node, or the world's own directions."""
+    node = source.node
+    if node is None or (node.type == "TEX_COORD" and source.output.name == "Generated"):
+        return np.eye(3)
+    if node.type != "MAPPING":
+        reader.report.add(
+            reader.at(node), f"{node.bl_label} as a Vector is not supported; left out"
+        )
+        return np.eye(3)
+    before = _rotation(reader, origin(node.inputs["Vector"], source.groups))
+    angles = _constant_vector(reader, node, "Rotation", source)
+    scale = _constant_vector(reader, node, "Scale", source)
+    if np.ptp(scale) > 1e-6 * np.abs(scale).max() or scale[0] <= 0.0:
+        reader.report.add(reader.at(node), "'Scale' is not supported; the picture is only turned")
+    if node.vector_type in {"POINT", "TEXTURE"} and _constant_vector(reader, node, "Location", source).any():
+        reader.report.add(reader.at(node), "'Location' is not supported; the picture is only turned")
+    turn = np.array(Euler(angles, "XYZ").to_matrix(), dtype=np.float64)
+    # The node turns the directions that look the picture up, so that the picture turns the other way.
+    return before @ (turn if node.vector_type == "TEXTURE" else turn.T)
+
+
+def _constant_vector(reader: ConstantReader, node: Any, name: str, source: Origin) -> NDArray[np.float64]:
+    socket = node.inputs[name]
+    if origin(socket, source.groups).node is not None:
+        reader.report.add(reader.at(node), f"a linked '{name}' is not supported; its constant is used")
+    return np.array(socket.default_value, dtype=np.float64)
 
 
 def _report_visibility(world: Any, place: str, report: ExportReport) -> None:

@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: MIT
+//
+// Light from all around as a picture has it: its harmonics, their turns, lobes clamped at the horizon, directions drawn
+// from it, and what surfaces reflect of it.
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "band_rotation.h"
+#include "clamped_lobe.h"
+#include "environment_map.h"
+#include "error_message.h"
+#include "lobe_moments.h"
+#include "render_scenes.h"
+#include "shlight/basis.h"
+#include "shlight/environment.h"
+
+namespace shlight::testing {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+glm::dmat3 rotation_about(const Vec3d& axis, double angle) {
+    const Vec3d a = glm::normalize(axis);
+    const double c = std::cos(angle);
+    const double s = std::sin(angle);
+    const glm::dmat3 cross(0, a.z, -a.y, -a.z, 0, a.x, a.y, -a.x, 0);
+    return c * glm::dmat3(1) + (1 - c) * glm::outerProduct(a, a) + s * cross;
+}
+
+LatLong random_picture(int width, int height, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> uniform(0, 2);
+    LatLong picture{{}, width, height};
+    for (int i = 0; i < width * height; ++i) {
+        picture.pixels.emplace_back(uniform(random), uniform(random), uniform(random));
+    }
+    return picture;
+}
+
+/// ∫ g dω over the sphere by the midpoint rule in latitude and longitude.
+double sphere_integral(int steps, const std::function<double(const Vec3d&)>& g) {
+    double sum = 0;
+    for (int i = 0; i < steps; ++i) {
+        const double z = 1 - 2 * (i + 0.5) / steps;
+        for (int j = 0; j < 2 * steps; ++j) {
+            const double azimuth = kPi * (j + 0.5) / steps;
+            sum += g({std::sqrt(1 - z * z) * std::cos(azimuth), std::sqrt(1 - z * z) * std::sin(azimuth), z});
+        }
+    }
+    return sum * 2 * kPi / steps / steps;
+}
+
+std::vector<double> basis_at(const Vec3d& direction, int order) {
+    std::vector<double> basis(static_cast<std::size_t>(order * order));
+    sh_basis(direction, order, basis.data());
+    return basis;
+}
+
+// --- pictures
+
+TEST(EnvironmentMap, RejectsWhatIsNoPicture) {
+    LatLong picture = random_picture(4, 2, 1);
+    picture.pixels.pop_back();
+    EXPECT_EQ(error_message([&] { Environment{picture}; }), "radiance has 7 values, expected 8");
+    picture = {{}, 0, 3};
+    EXPECT_EQ(error_message([&] { Environment{picture}; }), "radiance must have 1 … 2^28 pixels");
+    picture = random_picture(4, 2, 1);
+    picture.pixels[3].y = -1e-6F;
+    EXPECT_EQ(error_message([&] { Environment{picture}; }), "radiance must not be negative");
+    picture.pixels[3].y = INFINITY;
+    EXPECT_EQ(error_message([&] { Environment{picture}; }), "radiance contains a number that is not finite");
+    picture.pixels[3].y = 2e15F;
+    EXPECT_EQ(error_message([&] { Environment{picture}; }), "radiance must not exceed 1e15");
+    for (const glm::dmat3& m : {glm::dmat3(-1), glm::dmat3(2), glm::dmat3(1, 1, 0, 0, 1, 0, 0, 0, 1)}) {
+        picture = random_picture(4, 2, 1);
+        picture.to_world = m;
+        EXPECT_EQ(error_message([&] { Environment{picture}; }), "to_world must be a rotation");
+    }
+    picture.to_world = glm::dmat3(NAN);
+    EXPECT_EQ(error_message([&] { Environment{picture}; }), "to_world contains a number that is not finite");
+}
+
+TEST(EnvironmentMap, RowsAndColumnsLieAsSaid) {
+    // Columns: -x -y corner, and so on: four texels of 90° each.
+    LatLong picture{{}, 4, 2};
+    for (int i = 0; i < 8; ++i) {
+        picture.pixels.emplace_back(static_cast<float>(i));
+    }
+    const Environment environment(picture);
+    const double up = std::sqrt(0.5);
+    EXPECT_NEAR(environment.radiance(glm::normalize(Vec3d(-1, 1, std::sqrt(2.0)))).x, 0, 1e-6);
+    EXPECT_NEAR(environment.radiance(Vec3d(0.5, 0.5, up)).x, 1, 1e-6);
+    EXPECT_NEAR(environment.radiance(Vec3d(0.5, -0.5, up)).x, 2, 1e-6);
+    EXPECT_NEAR(environment.radiance(Vec3d(-0.5, -0.5, up)).x, 3, 1e-6);
+    EXPECT_NEAR(environment.radiance(Vec3d(-0.5, -0.5, -up)).x, 7, 1e-6);
+    EXPECT_NEAR(environment.radiance(Vec3d(up, 0, up)).x, 1.5, 1e-6);
+    EXPECT_NEAR(environment.radiance(Vec3d(-up, 0, up)).x, 1.5, 1e-6) << "across the seam";
+    EXPECT_NEAR(environment.radiance(Vec3d(std::sqrt(0.5), std::sqrt(0.5), 0)).x, 3, 1e-6);
+    picture.to_world = rotation_about({0, 0, 1}, kPi / 2);
+    EXPECT_NEAR(Environment(picture).radiance(Vec3d(-0.5, 0.5, up)).x, 1, 1e-6) << "+x +y has come to -x +y";
+}
+
+TEST(EnvironmentMap, OneColourIsConstant) {
+    const Environment environment(LatLong{std::vector<Rgb>(8, Rgb(2, 1, 3)), 4, 2});
+    EXPECT_EQ(environment.map(), nullptr);
+    EXPECT_EQ(environment.radiance({0, 0, 1}), Rgb(2, 1, 3));
+}
+
+// --- harmonics
+
+TEST(EnvironmentMap, CoefficientsAreIntegralsOfTheBilinearPicture) {
+    constexpr int kOrder = 8;
+    constexpr int kSteps = 400;
+    for (const auto& [width, height] : {std::pair{7, 3}, {8, 4}, {1, 2}, {3, 1}, {40, 20}}) {
+        const LatLong picture = random_picture(width, height, 5);
+        const RadiancePyramid lookup(picture.pixels, width, height);
+        std::vector<double> expected(kOrder * kOrder);
+        sphere_integral(kSteps, [&](const Vec3d& direction) {
+            const double radiance = lookup.radiance(direction).y;
+            const auto basis = basis_at(direction, kOrder);
+            for (std::size_t k = 0; k < expected.size(); ++k) {
+                expected[k] += basis[k] * radiance * 2 * kPi / kSteps / kSteps;
+            }
+            return 0.0;
+        });
+        const RadianceCoefficients coefficients = radiance_coefficients(picture.pixels, width, height);
+        for (std::size_t k = 0; k < expected.size(); ++k) {
+            EXPECT_NEAR(coefficients.channels[1][k], expected[k], 1e-3) << width << " × " << height << ", " << k;
+        }
+    }
+}
+
+TEST(EnvironmentMap, CoefficientsOfAHarmonic) {
+    constexpr int kHeight = 256;
+    constexpr int kWidth = 2 * kHeight;
+    for (const int k : {2, 7, 100, 1000}) {
+        LatLong picture{{}, kWidth, kHeight};
+        std::vector<Vec3f> directions(kWidth);
+        std::vector<float> basis(kWidth * 4096);
+        for (int row = 0; row < kHeight; ++row) {
+            for (int column = 0; column < kWidth; ++column) {
+                directions[static_cast<std::size_t>(column)] =
+                    Vec3f(direction_of({column + 0.5, row + 0.5}, kWidth, kHeight));
+            }
+            sh_basis<float>(directions, 64, basis);
+            for (int column = 0; column < kWidth; ++column) {
+                picture.pixels.emplace_back(basis[static_cast<std::size_t>(column * 4096 + k)]);
+            }
+        }
+        const RadianceCoefficients coefficients = radiance_coefficients(picture.pixels, kWidth, kHeight);
+        // Linear interpolation flattens waves by l² step² / 12 in each coordinate.
+        const int band = static_cast<int>(std::sqrt(k));
+        const double flattened = 2 * std::pow(band * kPi / kHeight, 2) / 12;
+        for (int i = 0; i < 4096; ++i) {
+            ASSERT_NEAR(coefficients.channels[2][static_cast<std::size_t>(i)], i == k ? 1 : 0, flattened + 1e-5)
+                << k << ", " << i;
+        }
+        for (const Rgb& texel : remainder_of(picture.pixels, kWidth, kHeight, coefficients)) {
+            ASSERT_LE(std::abs(texel.x), 8 * flattened + 1e-4) << k;
+        }
+    }
+}
+
+TEST(EnvironmentMap, SpotsAndTheRestAreTheWhole) {
+    LatLong picture = random_picture(64, 32, 3);
+    picture.pixels[700] = Rgb(4000, 2000, 1000);
+    const SplitPicture split = without_spots(picture.pixels, 64, 32);
+    ASSERT_EQ(split.spots.size(), 1U);
+    EXPECT_LE(split.pixels[700].y, 100);
+    EXPECT_NEAR(split.pixels[700].x / split.pixels[700].z, 4, 1e-4);
+    const Vec3d expected = direction_of({700 % 64 + 0.5, 700 / 64 + 0.5}, 64, 32);
+    EXPECT_LE(glm::length(split.spots[0].direction - expected), 1e-12);
+    const double tilt = (700 / 64 + 0.5) * kPi / 32;
+    const double solid_angle = 2 * kPi / 64 * (std::cos(tilt - kPi / 64) - std::cos(tilt + kPi / 64));
+    EXPECT_NEAR(split.spots[0].irradiance.x, (4000 - split.pixels[700].x) * solid_angle, 1e-3);
+}
+
+// --- turns
+
+TEST(BandRotation, MovesAFunctionAsItsArgument) {
+    std::mt19937 random(9);
+    std::normal_distribution<float> normal;
+    std::vector<float> coefficients(4096);
+    for (float& c : coefficients) {
+        c = normal(random) / 64;
+    }
+    const std::vector<glm::dmat3> rotations = {glm::dmat3(1),
+                                               rotation_about({1, 2, 3}, 1.1),
+                                               rotation_about({-2, 1, 0.3}, 2.9),
+                                               rotation_about({0, 0, 1}, 0.7),
+                                               rotation_about({1, 1, 0}, kPi),
+                                               rotation_about({1, 0, 0}, 1e-7),
+                                               rotation_about({0, 1, 0}, kPi - 1e-7)};
+    for (const glm::dmat3& rotation : rotations) {
+        std::vector<float> turned = coefficients;
+        BandRotation(rotation).apply(64, turned.data());
+        for (int i = 0; i < 20; ++i) {
+            const Vec3d direction = glm::normalize(Vec3d(normal(random), normal(random), normal(random)));
+            const auto before = basis_at(direction, 64);
+            const auto after = basis_at(rotation * direction, 64);
+            double expected = 0, actual = 0;
+            for (std::size_t k = 0; k < 4096; ++k) {
+                expected += coefficients[k] * before[k];
+                actual += turned[k] * after[k];
+            }
+            EXPECT_NEAR(actual, expected, 2e-4);
+        }
+    }
+}
+
+// --- lobes
+
+TEST(ClampedLobe, IsTheLobesMoments) {
+    for (const LobeShape& shape : {LobeShape(LambertShape{}), LobeShape(GgxShape{0.25}), LobeShape(GgxShape{0.02})}) {
+        const auto lobe = clamped_lobe(shape);
+        for (const double tilt : {0.1234, 0.9, 1.4}) {
+            const LobeMoments expected = lobe_moments(shape, tilt);
+            std::vector<float> terms(2080);
+            lobe->coefficients(static_cast<float>(std::cos(tilt)), 64, terms.data());
+            for (std::size_t i = 0; i < terms.size(); ++i) {
+                ASSERT_NEAR(terms[i], expected.moments[i], 1e-4 * std::max(1.0, std::sqrt(expected.norm_squared)))
+                    << tilt << ", " << i;
+            }
+        }
+        const LobeMoments head_on = lobe_moments(shape, 0);
+        double all = lobe->tail(0);
+        for (int l = 0; l < 64; ++l) {
+            all += lobe->powers(0)[l];
+        }
+        EXPECT_NEAR(all / head_on.norm_squared, 1, 1e-5);
+    }
+}
+
+// --- directions
+
+TEST(RadianceSampler, DrawsAsItsDensitySays) {
+    LatLong picture = random_picture(12, 6, 8);
+    picture.pixels[30] = Rgb(100);
+    const RadianceSampler sampler(picture.pixels, 12, 6);
+    EXPECT_NEAR(sphere_integral(600, [&](const Vec3d& d) { return sampler.density(d); }), 1, 1e-3);
+    const auto g = [](const Vec3d& d) { return std::exp(d.x + 0.5 * d.y * d.z); };
+    constexpr int kSteps = 400;
+    double sum = 0;
+    for (int i = 0; i < kSteps * kSteps; ++i) {
+        const Vec3d d = sampler.sample({(i % kSteps + 0.5) / kSteps, (i / kSteps + 0.5) / kSteps});
+        EXPECT_NEAR(glm::length(d), 1, 1e-12);
+        sum += g(d) / sampler.density(d) / kSteps / kSteps;
+    }
+    EXPECT_NEAR(sum, sphere_integral(400, g), 0.05);
+}
+
+TEST(RadianceSampler, BlackPartsGetNothing) {
+    LatLong picture{std::vector<Rgb>(128, Rgb(0)), 16, 8};
+    picture.pixels[37] = Rgb(0, 0, 5);
+    const RadianceSampler sampler(picture.pixels, 16, 8);
+    const RadiancePyramid lookup(picture.pixels, 16, 8);
+    for (int i = 0; i < 1000; ++i) {
+        EXPECT_GT(lookup.radiance(sampler.sample({(i % 37 + 0.5) / 37, (i + 0.5) / 1000})).z, 0);
+    }
+}
+
+// --- reflection
+
+/// What a floor at the origin with normal (0.48, 0.6, 0.64) shows at this angle, and what it should by quadrature.
+class Floor {
+  public:
+    explicit Floor(double cos_theta_o) : normal_(0.48, 0.6, 0.64), x_(glm::normalize(glm::cross(normal_, {0, 0, 1}))) {
+        y_ = glm::cross(normal_, x_);
+        view_ = std::sqrt(1 - cos_theta_o * cos_theta_o) * x_ + cos_theta_o * normal_;
+    }
+
+    Rgb rendered(const LatLong& picture, const Bsdf& bsdf) const {
+        Scene scene;
+        Mesh mesh = floor_mesh(1, 0, bsdf);
+        mesh.transforms = {frame_matrix(x_, y_, normal_, {0, 0, 0})};
+        scene.add_mesh(mesh);
+        scene.set_environment(Environment(picture));
+        return render_image(scene, {look_at(5.0 * view_, {0, 0, 0}), 1e-4}, 1, 1, analytic_settings()).color(0, 0);
+    }
+    double expected(const LatLong& picture, const Bsdf& bsdf) const {
+        const RadiancePyramid lookup(picture.pixels, picture.width, picture.height);
+        const glm::dmat3 frame(x_, y_, normal_);
+        return sphere_integral(500, [&](const Vec3d& direction) {
+            return direction.z > 0
+                       ? double{bsdf.evaluate(direction, view_ * frame).x * lookup.radiance(frame * direction).x}
+                       : 0.0;
+        });
+    }
+
+  private:
+    Vec3d normal_, x_, y_, view_;
+};
+
+TEST(EnvironmentMap, SurfacesReflectTheirIntegral) {
+    LatLong picture = random_picture(32, 16, 4);
+    picture.pixels[170] = Rgb(60);  // some of it a spot
+    for (const double cosine : {0.95, 0.5, 0.2}) {
+        const Floor floor(cosine);
+        const double matte = floor.expected(picture, Bsdf::lambert(Rgb(0.7F)));
+        EXPECT_NEAR(floor.rendered(picture, Bsdf::lambert(Rgb(0.7F))).x / matte, 1, 2e-3) << cosine;
+        // Texels of 11 degrees at random: hardly anything of them is left in 256 directions for narrow lobes.
+        for (const auto& [roughness, tolerance] : {std::pair{0.7F, 5e-3}, {0.5F, 2e-2}, {0.25F, 6e-2}}) {
+            const Bsdf bsdf = Bsdf::ggx(roughness, Rgb(0.3F), 1.5F);
+            const double expected = floor.expected(picture, bsdf);
+            const double ratio = floor.rendered(picture, bsdf).x / expected;
+            EXPECT_NEAR(ratio, 1, tolerance) << cosine << " " << roughness;
+        }
+    }
+}
+
+TEST(EnvironmentMap, AMirrorShowsThePicture) {
+    const LatLong picture = random_picture(32, 16, 4);
+    const Image image = [&] {
+        Scene scene;
+        scene.add_mesh(floor_mesh(1, 0, Bsdf::ggx(0, Rgb(1))));
+        scene.set_environment(Environment(picture));
+        return render_image(scene, {look_at({1, 2, 3}, {0, 0, 0}), 1e-5}, 1, 1, {});
+    }();
+    const Vec3d reflected = glm::normalize(Vec3d(-1, -2, 3));
+    EXPECT_NEAR(image.red(0, 0), Environment(picture).radiance(reflected).x, 1e-4);
+}
+
+/// Scene, camera and picture turned together give the same image.
+TEST(EnvironmentMap, TurningEverythingChangesNothing) {
+    const auto rendered = [](const glm::dmat3& turn) {
+        LatLong picture = random_picture(32, 16, 4);
+        picture.to_world = turn;
+        const glm::dmat4 whole(turn);
+        Scene scene;
+        Mesh ball = sphere_mesh({0, 0, 0.5}, 0.5, 32, true);
+        ball.bsdfs = {Bsdf::lambert(Rgb(0.4F)) + Bsdf::ggx(0.5F, Rgb(0.4F))};
+        Mesh ground = floor_mesh(2);
+        ball.transforms = ground.transforms = {whole};
+        scene.add_mesh(ball);
+        scene.add_mesh(ground);
+        scene.set_environment(Environment(picture));
+        RenderSettings settings;
+        settings.shadow_rays = 64;
+        return render_image(scene, {whole * look_at({1, -3, 2}, {0, 0, 0.4}), 0.7}, 12, 12, settings);
+    };
+    const Image plain = rendered(glm::dmat3(1));
+    const Image turned = rendered(rotation_about({1, -2, 0.5}, 2.2));
+    double difference = 0, all = 0;
+    for (std::size_t i = 0; i < plain.values.size(); ++i) {
+        difference += std::abs(plain.values[i] - turned.values[i]);
+        all += plain.values[i];
+    }
+    EXPECT_LE(difference / all, 5e-3);
+}
+
+}  // namespace
+}  // namespace shlight::testing
