@@ -93,9 +93,7 @@ def _rotation(reader: ConstantReader, source: Origin) -> NDArray[np.float64]:
     if node is None or (node.type == "TEX_COORD" and source.output.name == "Generated"):
         return np.eye(3)
     if node.type != "MAPPING":
-        reader.report.add(
-            reader.at(node), f"{node.bl_label} as a Vector is not supported; left out"
-        )
+        reader.report.add(reader.at(node), f"{node.bl_label} as a Vector is not supported; left out")
         return np.eye(3)
     before = _rotation(reader, origin(node.inputs["Vector"], source.groups))
     angles = _constant_vector(reader, node, "Rotation", source)
