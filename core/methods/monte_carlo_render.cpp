@@ -29,12 +29,11 @@ constexpr std::size_t kBatch = 4096;
 /// A light as a hit sees it.
 class LightInView {
   public:
-    /// Precondition: the light is seen.
+    /// Precondition: the light is seen, and has an extent.
     void reset(const Light& light, const ShadingFrame& frame) {
-        if (const auto* sphere = std::get_if<SphereLight>(&light)) {
-            const CapView cap = *view(*sphere, frame);
-            cone_.emplace(circle_of(cap));
-            cap_.emplace(cap);
+        if (const std::optional<CapView> cap = cap_view(light, frame)) {
+            cone_.emplace(circle_of(*cap));
+            cap_.emplace(*cap);
             return;
         }
         cone_.reset();
@@ -69,10 +68,6 @@ class LightInView {
     double height_ = 0;
 };
 
-const Rgb& radiance_of(const Light& light) {
-    return std::visit([](const auto& l) -> const Rgb& { return l.radiance; }, light);
-}
-
 struct Picture {
     const CompiledScene& scene;
     const Camera& camera;
@@ -94,9 +89,15 @@ class Worker {
   private:
     void trace_camera_rays(std::size_t first, std::size_t samples);
     void shade(std::size_t hit);
-    void shade(const Light& light, std::size_t hit, const RandomDirection& reflected, const Rgb& reflected_value);
-    void shade_environment(std::size_t hit, const RandomDirection& reflected, const Rgb& reflected_value);
-    void push(const RayStart& start, const Vec3d& direction, const Rgb& radiance, std::size_t hit);
+    void shade(const Light& light, std::size_t hit, const RandomDirection& reflected);
+    void shade_by_delta(const Light& light, std::size_t hit);
+    /// The light's radiance in this direction, times f·cos.
+    Rgb reflected_radiance(const Light& light, const Vec3d& direction) const {
+        const LightTraits& traits = traits_of(light);
+        return strength_of(light) * reflection_.value(direction, traits.lights_diffuse, traits.lights_glossy);
+    }
+    void shade_environment(std::size_t hit, const RandomDirection& reflected);
+    void push(const Light& light, std::size_t hit, const Vec3d& direction, double distance, const Rgb& radiance);
     void push(const Ray& ray, const Rgb& radiance, std::size_t hit);
 
     const Picture* picture_;
@@ -188,25 +189,29 @@ void Worker::shade(std::size_t hit) {
     RandomNumbers& random = random_[pixel_of_hit_[hit]];
     const double choice = random.next();
     const RandomDirection reflected = reflection_.sample(choice, random.point());
-    const Rgb value = reflected.density > 0 ? reflection_.value(reflected.direction) : Rgb(0);
     for (const Light& light : picture_->scene.lights()) {
-        if (is_seen(light, hits_.frame[hit], hits_.error[hit])) {
-            shade(light, hit, reflected, value);
+        if (!is_seen(light, hits_.frame[hit], hits_.error[hit])) {
+            continue;
+        }
+        if (is_delta(light)) {
+            shade_by_delta(light, hit);
+        } else {
+            shade(light, hit, reflected);
         }
     }
     if (!picture_->scene.environment().is_black()) {
-        shade_environment(hit, reflected, value);
+        shade_environment(hit, reflected);
     }
 }
 
 /// By rays that the material draws: no other set knows a better way to a light that is everywhere.
-void Worker::shade_environment(std::size_t hit, const RandomDirection& reflected, const Rgb& reflected_value) {
+void Worker::shade_environment(std::size_t hit, const RandomDirection& reflected) {
     const ShadingFrame& frame = hits_.frame[hit];
     const RayStart start(frame, hits_.shadow_origin[hit], Vec3d(0));
     const Environment& environment = picture_->scene.environment();
     if (reflected.density > 0) {
         push(start.along(reflected.direction),
-             environment.radiance(frame.to_world(reflected.direction)) * reflected_value *
+             environment.radiance(frame.to_world(reflected.direction)) * reflection_.value(reflected.direction) *
                  static_cast<float>(1 / reflected.density),
              hit);
     }
@@ -214,31 +219,44 @@ void Worker::shade_environment(std::size_t hit, const RandomDirection& reflected
     push(start.along(mirror), environment.radiance(frame.to_world(mirror)) * reflection_.mirrored(), hit);
 }
 
-void Worker::shade(const Light& light, std::size_t hit, const RandomDirection& reflected, const Rgb& reflected_value) {
+void Worker::shade_by_delta(const Light& light, std::size_t hit) {
+    const DeltaView seen = *delta_view(light, hits_.frame[hit], hits_.error[hit]);
+    push(light, hit, seen.direction, seen.distance,
+         reflected_radiance(light, seen.direction) * static_cast<float>(seen.irradiance));
+}
+
+void Worker::shade(const Light& light, std::size_t hit, const RandomDirection& reflected) {
     const ShadingFrame& frame = hits_.frame[hit];
     light_.reset(light, frame);
-    const RayStart start(frame, hits_.shadow_origin[hit], clearance(light, frame));
-    const Rgb& radiance = radiance_of(light);
+    const ProfileView profile(light, frame);
+    const auto add = [&](const Vec3d& direction, const Rgb& radiance) {
+        if (const std::optional<double> distance = light_.distance(direction)) {
+            push(light, hit, direction, *distance, radiance * static_cast<float>(profile.factor(direction)));
+        }
+    };
     const RandomDirection to_light = light_.sample(random_[pixel_of_hit_[hit]].point());
     if (to_light.density > 0) {
         const double density = to_light.density + reflection_.density(to_light.direction);
-        push(start, to_light.direction,
-             radiance * reflection_.value(to_light.direction) * static_cast<float>(1 / density), hit);
+        add(to_light.direction, reflected_radiance(light, to_light.direction) * static_cast<float>(1 / density));
     }
     if (const double other = reflected.density > 0 ? light_.density(reflected.direction) : 0; other > 0) {
-        push(start, reflected.direction,
-             radiance * reflected_value * static_cast<float>(1 / (other + reflected.density)), hit);
+        const double density = other + reflected.density;
+        add(reflected.direction, reflected_radiance(light, reflected.direction) * static_cast<float>(1 / density));
     }
     const Vec3d mirror(-reflection_.view().x, 0, reflection_.view().z);
-    if (reflection_.mirrored() != Rgb(0) && light_.density(mirror) > 0) {
-        push(start, mirror, radiance * reflection_.mirrored(), hit);
+    if (traits_of(light).lights_glossy && reflection_.mirrored() != Rgb(0) && light_.density(mirror) > 0) {
+        add(mirror, strength_of(light) * reflection_.mirrored());
     }
 }
 
-void Worker::push(const RayStart& start, const Vec3d& direction, const Rgb& radiance, std::size_t hit) {
-    if (const std::optional<double> distance = light_.distance(direction)) {
-        push(start.towards(*distance * direction), radiance, hit);
+void Worker::push(const Light& light, std::size_t hit, const Vec3d& direction, double distance, const Rgb& radiance) {
+    if (!traits_of(light).casts_shadows) {
+        radiance_[pixel_of_hit_[hit]] += Vec3d(radiance);
+        return;
     }
+    const ShadingFrame& frame = hits_.frame[hit];
+    const RayStart start(frame, hits_.shadow_origin[hit], clearance(light, frame));
+    push(start.towards(direction, distance), radiance, hit);
 }
 
 void Worker::push(const Ray& ray, const Rgb& radiance, std::size_t hit) {

@@ -54,13 +54,13 @@ void SurfaceReflection::add(const GgxShape& shape, const Rgb& scale, double albe
     factors_.push_back({i, shape, scale});
 }
 
-Rgb SurfaceReflection::value(const Vec3d& direction) const {
+Rgb SurfaceReflection::value(const Vec3d& direction, bool diffuse, bool glossy) const {
     if (!(direction.z > 0)) {
         return Rgb(0);
     }
-    Rgb sum = diffuse_ * static_cast<float>(direction.z / std::numbers::pi);
+    Rgb sum = diffuse ? diffuse_ * static_cast<float>(direction.z / std::numbers::pi) : Rgb(0);
     const double between = std::sqrt(std::max(0.0, (1 + glm::dot(direction, view_)) / 2));  // ω_i·h
-    for (std::size_t i = 0; i < glossy_.size(); ++i) {
+    for (std::size_t i = 0; glossy && i < glossy_.size(); ++i) {
         Rgb color(0);
         for (const Factor& factor : factors_) {
             if (factor.glossy == i) {

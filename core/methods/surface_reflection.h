@@ -20,8 +20,8 @@ class SurfaceReflection {
     void reset(const Bsdf& bsdf, float cos_theta_o);
 
     const Vec3d& view() const { return view_; }
-    /// f·cos of all lobes but mirrors, in the shading frame.
-    Rgb value(const Vec3d& direction) const;
+    /// f·cos of all lobes but mirrors, in the shading frame, or of diffuse or glossy ones alone.
+    Rgb value(const Vec3d& direction, bool diffuse = true, bool glossy = true) const;
     /// A lobe that is no mirror by chance, in proportion to what it reflects of a white sky, and a direction as it
     /// reflects. Density 0 for a direction below the horizon, and where there are mirrors only. choice: in (0, 1).
     RandomDirection sample(double choice, const glm::dvec2& point) const;

@@ -3,17 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
+#include <string>
 
 #include "checks.h"
 #include "ray_rounding.h"
+#include "unit_direction.h"
 
 namespace shlight {
 namespace {
 
-constexpr double kPlanar = 1e-4;        // of the extent: far above the rounding of float vertices, far below a picture
-constexpr double kRepeated = 1e-9;      // of the extent: two vertices are one
-constexpr double kSmallestArea = 1e-9;  // of the extent squared
+constexpr double kPlanar = 1e-4;         // of the extent: far above the rounding of float vertices, far below a picture
+constexpr double kNarrowestSun = 1e-6;   // [rad]
+constexpr double kWidestTangentSun = 3;  // [rad]
+constexpr double kRepeated = 1e-9;       // of the extent: two vertices are one
+constexpr double kRightAngle = 1e-6;     // largest cosine: above the rounding of float vertices
+constexpr double kSmallestArea = 1e-9;   // of the extent squared
 
 double extent_of(const std::vector<Vec3d>& vertices) {
     double extent = 0;
@@ -114,18 +120,56 @@ class EarClipper {
     std::vector<std::uint32_t> left_;
 };
 
+struct Strength {
+    const Rgb& operator()(const PointSource& light) const { return light.intensity; }
+    const Rgb& operator()(const ParallelSource& light) const { return light.irradiance; }
+    template <class AreaLight>
+    const Rgb& operator()(const AreaLight& light) const {
+        return light.radiance;
+    }
+};
+
+/// Corner by corner at right angles, within rounding.
+bool is_rectangle(const std::vector<Vec3d>& vertices) {
+    if (vertices.size() != 4) {
+        return false;
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vec3d a = vertices[(i + 1) % 4] - vertices[i];
+        const Vec3d b = vertices[(i + 2) % 4] - vertices[(i + 1) % 4];
+        if (!(std::abs(glm::dot(a, b)) <= kRightAngle * glm::length(a) * glm::length(b))) {
+            return false;
+        }
+    }
+    return true;
+}
+
 }  // namespace
 
-SphereLight make_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk) {
+const LightTraits& traits_of(const Light& light) {
+    return std::visit([](const auto& shape) -> const LightTraits& { return shape.traits; }, light);
+}
+
+const Rgb& strength_of(const Light& light) {
+    return std::visit(Strength{}, light);
+}
+
+bool is_delta(const Light& light) {
+    return std::holds_alternative<PointSource>(light) || std::holds_alternative<ParallelSource>(light);
+}
+
+SphereLight make_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk,
+                              const LightTraits& traits) {
     check_finite("center", center);
     if (!(std::isfinite(radius) && radius > 0)) {
         reject("radius must be positive and finite");
     }
     check_finite("radiance", radiance);
-    return {center, radius, radiance, facing_disk};
+    return {center, radius, radiance, facing_disk, traits};
 }
 
-PolygonLight make_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance, bool two_sided) {
+PolygonLight make_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance, bool two_sided,
+                                const LightTraits& traits) {
     if (vertices.size() < 3) {
         reject("vertices: a polygon needs at least three");
     }
@@ -158,7 +202,59 @@ PolygonLight make_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance
         radius = std::max(radius, glm::length(v - center));
     }
     const double error = kRayRounding * (largest + extent);
-    return {std::move(vertices), std::move(triangles), normal, radiance, two_sided, center, radius, error};
+    const bool rectangle = is_rectangle(vertices);
+    return {std::move(vertices),
+            std::move(triangles),
+            normal,
+            radiance,
+            two_sided,
+            center,
+            radius,
+            error,
+            rectangle,
+            traits};
+}
+
+PointSource make_point_source(const Vec3d& position, const Rgb& intensity, const LightTraits& traits) {
+    check_finite("position", position);
+    check_finite("intensity", intensity);
+    return {position, intensity, traits};
+}
+
+Light make_spot_light(const Vec3d& position, const SpotProfile& profile, const Rgb& intensity, double radius,
+                      bool facing_disk, LightTraits traits) {
+    if (!(std::isfinite(radius) && radius >= 0)) {
+        reject("radius must be finite and not negative");
+    }
+    traits.profile = profile;
+    PointSource source = make_point_source(position, intensity, traits);
+    if (radius == 0) {
+        return source;
+    }
+    const Rgb radiance = intensity / static_cast<float>(std::numbers::pi * radius * radius);
+    check_finite("intensity", radiance);
+    return SphereLight{position, radius, radiance, facing_disk, std::move(source.traits)};
+}
+
+Light make_sun_light(const Vec3d& direction, double angle, const Rgb& irradiance, bool tangent,
+                     const LightTraits& traits) {
+    const Vec3d away = unit_direction(direction);
+    if (!(angle >= 0 && angle <= (tangent ? kWidestTangentSun : std::numbers::pi * (1 + 1e-6)))) {
+        reject(std::string("angle must be 0 … ") + (tangent ? "3 for a tangent sun" : "pi"));
+    }
+    check_finite("irradiance", irradiance);
+    if (angle < kNarrowestSun) {
+        return ParallelSource{-away, irradiance, traits};
+    }
+    const double half = std::min(angle / 2, std::numbers::pi / 2);
+    const double ratio = tangent ? std::tan(half) : std::sin(half);
+    const Rgb radiance = irradiance * static_cast<float>(1 / (std::numbers::pi * ratio * ratio));
+    check_finite("irradiance", radiance);
+    SunLight sun = {-away, half, radiance, traits};
+    if (tangent) {
+        sun.traits.profile = TangentProfile{away};
+    }
+    return sun;
 }
 
 }  // namespace shlight

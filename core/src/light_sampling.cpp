@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "shlight/cap.h"
@@ -74,7 +75,7 @@ CapSampler::CapSampler(const CapView& cap)
         up_ = Vec3d(-axis_.x * axis_.z, -axis_.y * axis_.z, tilt_ * tilt_) / tilt_;
         across_ = glm::cross(axis_, up_);
     }
-    const bool sphere = cap.kind == CapView::Kind::sphere;
+    const bool sphere = cap.kind != CapView::Kind::facing_disk;
     const double sine = cap.radius / (sphere ? distance_ : std::hypot(distance_, cap.radius));
     const double cosine = sphere ? std::sqrt(std::max(0.0, (1 - sine) * (1 + sine))) : sine * distance_ / cap.radius;
     one_minus_cos_ = sine * sine / (1 + cosine);
@@ -117,6 +118,9 @@ std::optional<double> CapSampler::meets(const Vec3d& direction) const {
 }
 
 double CapSampler::distance(const Vec3d& direction, double cosine) const {
+    if (cap_.kind == CapView::Kind::infinite) {
+        return std::numeric_limits<double>::infinity();
+    }
     if (cap_.kind == CapView::Kind::facing_disk) {
         return distance_ / cosine;
     }
@@ -131,6 +135,14 @@ void PolygonSampler::reset(const PolygonLight& light, const ShadingFrame& frame)
     total_ = 0;
     normal_ = frame.to_local(light.normal);
     height_ = glm::dot(light.normal, light.vertices[0] - frame.origin);
+    if (const auto part = lit_rectangle(light, frame.origin)) {
+        std::array<Vec3d, 4> corners{};
+        std::transform(part->begin(), part->end(), corners.begin(),
+                       [&](const Vec3d& corner) { return frame.point_to_local(corner); });
+        add_clipped(corners[0], corners[1], corners[2]);
+        add_clipped(corners[0], corners[2], corners[3]);
+        return;
+    }
     for (const Triangle& t : light.triangles) {
         add_clipped(frame.point_to_local(light.vertices[t.x]), frame.point_to_local(light.vertices[t.y]),
                     frame.point_to_local(light.vertices[t.z]));
@@ -191,25 +203,33 @@ LightSample PolygonSampler::sample(glm::dvec2 point) const {
         left -= piece->solid_angle;
         ++piece;
     }
-    point.x = std::min(left / piece->solid_angle, 1.0);
-    if (piece->spherical) {
-        const Vec3d direction = piece->spherical->sample(point);
-        return {direction, height_ / glm::dot(normal_, direction), total_};
+    LightSample drawn = sample(*piece, {std::min(left / piece->solid_angle, 1.0), point.y});
+    drawn.weight *= total_ / piece->solid_angle;
+    return drawn;
+}
+
+LightSample PolygonSampler::sample_patch(std::size_t patch, const glm::dvec2& point) const {
+    return sample(pieces_[patch], point);
+}
+
+LightSample PolygonSampler::sample(const Piece& piece, const glm::dvec2& point) const {
+    if (piece.spherical) {
+        const Vec3d direction = piece.spherical->sample(point);
+        return {direction, height_ / glm::dot(normal_, direction), piece.solid_angle};
     }
     const double root = std::sqrt(point.x);
-    const Vec3d target = (1 - root) * piece->a + root * ((1 - point.y) * piece->b + point.y * piece->c);
+    const Vec3d target = (1 - root) * piece.a + root * ((1 - point.y) * piece.b + point.y * piece.c);
     const double distance = glm::length(target);
     // dω = |cos at the light| dA / distance²
-    const double density = piece->area * std::abs(height_) / (distance * distance * distance);
-    return {target / distance, distance, total_ / piece->solid_angle * density};
+    return {target / distance, distance, piece.area * std::abs(height_) / (distance * distance * distance)};
 }
 
 void LightSampler::reset(const Light& light, const ShadingFrame& frame) {
-    if (const auto* sphere = std::get_if<SphereLight>(&light)) {
-        cap_.emplace(*view(*sphere, frame));
+    cap_.reset();
+    if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
+        polygon_.reset(*polygon, frame);
     } else {
-        cap_.reset();
-        polygon_.reset(std::get<PolygonLight>(light), frame);
+        cap_.emplace(*cap_view(light, frame));
     }
 }
 

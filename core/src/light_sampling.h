@@ -67,6 +67,9 @@ class PolygonSampler {
     void reset(const PolygonLight& light, const ShadingFrame& frame);
     /// Where nothing lies above the horizon, a sample of no weight and no distance.
     LightSample sample(glm::dvec2 point) const;
+    /// Parts that are smooth images of the unit square, and a point of one of them; weights as if it were the light.
+    std::size_t patch_count() const { return pieces_.size(); }
+    LightSample sample_patch(std::size_t patch, const glm::dvec2& point) const;
     /// Above the horizon.
     double solid_angle() const { return total_; }
     /// As CapSampler::meets.
@@ -80,6 +83,7 @@ class PolygonSampler {
         double area;                                 // where it is sampled by area
         std::optional<SphericalTriangle> spherical;  // where it is not
     };
+    LightSample sample(const Piece& piece, const glm::dvec2& point) const;
     void add_clipped(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
     std::vector<Piece> pieces_;
@@ -88,11 +92,17 @@ class PolygonSampler {
     double height_ = 0;  // of the plane over the hit, along the normal
 };
 
-/// Either of them. Precondition: the light is seen.
+/// Either of them. Precondition: the light is seen, and not a source without extent.
 class LightSampler {
   public:
+    /// Of a rectangle, the part that shines on the hit: see lit_rectangle.
     void reset(const Light& light, const ShadingFrame& frame);
     LightSample sample(const glm::dvec2& point) const { return cap_ ? cap_->sample(point) : polygon_.sample(point); }
+    /// As PolygonSampler's.
+    std::size_t patch_count() const { return cap_ ? 1 : polygon_.patch_count(); }
+    LightSample sample_patch(std::size_t patch, const glm::dvec2& point) const {
+        return cap_ ? cap_->sample(point) : polygon_.sample_patch(patch, point);
+    }
     double solid_angle() const { return cap_ ? cap_->solid_angle() : polygon_.solid_angle(); }
     std::optional<double> meets(const Vec3d& direction) const {
         return cap_ ? cap_->meets(direction) : polygon_.meets(direction);

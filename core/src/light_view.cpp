@@ -3,8 +3,84 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 namespace shlight {
+namespace {
+
+/// Of an edge: less of a light than this is not worth its rounding.
+constexpr double kThinnestPart = 1e-9;
+
+/// What a light looks like from a point: a cap of directions that holds it, in the world.
+struct Bounds {
+    Vec3d towards;  ///< unit
+    double half_angle;
+};
+
+/// All directions: what is known from within the light.
+constexpr Bounds kEverywhere = {{0, 0, 1}, std::numbers::pi};
+
+Bounds sphere_bounds(const Vec3d& center, double radius, const Vec3d& position) {
+    const Vec3d way = center - position;
+    const double distance = glm::length(way);
+    return distance > radius ? Bounds{way / distance, std::asin(radius / distance)} : kEverywhere;
+}
+
+struct BoundsFrom {
+    const Vec3d& position;
+
+    Bounds operator()(const SphereLight& light) const {
+        if (!light.facing_disk) {
+            return sphere_bounds(light.center, light.radius, position);
+        }
+        const Vec3d way = light.center - position;
+        const double distance = glm::length(way);
+        return distance > 0 ? Bounds{way / distance, std::atan(light.radius / distance)} : kEverywhere;
+    }
+    Bounds operator()(const PolygonLight& light) const { return sphere_bounds(light.center, light.radius, position); }
+    Bounds operator()(const SunLight& light) const { return {light.direction, light.half_angle}; }
+    Bounds operator()(const PointSource& light) const { return sphere_bounds(light.position, 0, position); }
+    Bounds operator()(const ParallelSource& light) const { return {light.direction, 0}; }
+};
+
+Bounds bounds_from(const Light& light, const Vec3d& position) {
+    return std::visit(BoundsFrom{position}, light);
+}
+
+bool surrounds(const Light& light, const Vec3d& position) {
+    const auto* sphere = std::get_if<SphereLight>(&light);
+    return sphere != nullptr && glm::length(sphere->center - position) <= (sphere->facing_disk ? 0.0 : sphere->radius);
+}
+
+/// Of a rectangle with a spread: the part of its two edges from the first vertex, each 0 … 1, beyond which nothing
+/// shines on a point.
+struct LitEdges {
+    std::array<double, 2> from, to;
+    bool empty() const { return !(to[0] - from[0] > kThinnestPart && to[1] - from[1] > kThinnestPart); }
+    bool whole() const { return from[0] == 0 && from[1] == 0 && to[0] == 1 && to[1] == 1; }
+};
+
+std::optional<LitEdges> lit_edges(const PolygonLight& light, const Vec3d& position) {
+    const auto* spread = std::get_if<SpreadProfile>(&light.traits.profile);
+    if (spread == nullptr || !light.rectangle) {
+        return std::nullopt;
+    }
+    const Vec3d way = position - light.vertices[0];
+    const double reach = std::max(0.0, glm::dot(way, light.normal)) * spread->tangent;
+    LitEdges edges{};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Vec3d edge = light.vertices[i == 0 ? 1 : 3] - light.vertices[0];
+        const double square = glm::dot(edge, edge);
+        const double middle = glm::dot(way, edge) / square;
+        const double share = reach / std::sqrt(square);
+        edges.from[i] = std::clamp(middle - share, 0.0, 1.0);
+        edges.to[i] = std::clamp(middle + share, 0.0, 1.0);
+    }
+    return edges;
+}
+
+}  // namespace
 
 std::optional<CapView> view(const SphereLight& light, const ShadingFrame& frame) {
     const Vec3d center = frame.point_to_local(light.center);
@@ -26,6 +102,65 @@ std::optional<CapView> view(const SphereLight& light, const ShadingFrame& frame)
     return CapView{CapView::Kind::sphere, center, light.radius};
 }
 
+std::optional<CapView> view(const SunLight& light, const ShadingFrame& frame) {
+    const Vec3d direction = frame.to_local(light.direction);
+    const double sine = std::sin(light.half_angle);
+    if (!(direction.z + sine > 0)) {
+        return std::nullopt;
+    }
+    return CapView{CapView::Kind::infinite, direction, sine};
+}
+
+std::optional<CapView> cap_view(const Light& light, const ShadingFrame& frame) {
+    if (const auto* sphere = std::get_if<SphereLight>(&light)) {
+        return view(*sphere, frame);
+    }
+    const auto* sun = std::get_if<SunLight>(&light);
+    return sun != nullptr ? view(*sun, frame) : std::nullopt;
+}
+
+std::optional<DeltaView> delta_view(const Light& light, const ShadingFrame& frame, double error) {
+    DeltaView seen{};
+    if (const auto* parallel = std::get_if<ParallelSource>(&light)) {
+        seen = {frame.to_local(parallel->direction), std::numeric_limits<double>::infinity(), 1.0};
+    } else {
+        const Vec3d way = std::get<PointSource>(light).position - frame.origin;
+        seen.distance = glm::length(way);
+        if (!(seen.distance > 2 * error)) {
+            return std::nullopt;
+        }
+        seen.direction = frame.to_local(way / seen.distance);
+        seen.irradiance = 1 / (seen.distance * seen.distance);
+    }
+    seen.irradiance *= profile_factor(traits_of(light).profile, -frame.to_world(seen.direction));
+    return seen.direction.z > 0 && seen.irradiance > 0 ? std::optional(seen) : std::nullopt;
+}
+
+ProfileView::ProfileView(const Light& light, const ShadingFrame& frame) {
+    const EmissionProfile& profile = traits_of(light).profile;
+    // Within a sphere its surface shines inwards, in all directions.
+    if (std::holds_alternative<EvenProfile>(profile) || surrounds(light, frame.origin)) {
+        return;
+    }
+    profile_ = &profile;
+    to_world_ = glm::dmat3(frame.x, frame.y, frame.z);
+    const Bounds bounds = bounds_from(light, frame.origin);
+    range_ = profile_range(profile, -bounds.towards, bounds.half_angle);
+}
+
+std::optional<std::array<Vec3d, 4>> lit_rectangle(const PolygonLight& light, const Vec3d& position) {
+    const std::optional<LitEdges> edges = lit_edges(light, position);
+    if (!edges || edges->whole()) {
+        return std::nullopt;
+    }
+    const Vec3d& corner = light.vertices[0];
+    const Vec3d along = light.vertices[1] - corner;
+    const Vec3d across = light.vertices[3] - corner;
+    const auto at = [&](double a, double b) { return corner + a * along + b * across; };
+    return std::array{at(edges->from[0], edges->from[1]), at(edges->to[0], edges->from[1]),
+                      at(edges->to[0], edges->to[1]), at(edges->from[0], edges->to[1])};
+}
+
 bool is_seen(const PolygonLight& light, const ShadingFrame& frame, double error) {
     const double height = glm::dot(light.normal, frame.origin - light.vertices[0]);
     if (!((light.two_sided ? std::abs(height) : height) > 2 * (error + light.error))) {
@@ -36,19 +171,42 @@ bool is_seen(const PolygonLight& light, const ShadingFrame& frame, double error)
 }
 
 bool is_seen(const Light& light, const ShadingFrame& frame, double error) {
-    if (const auto* sphere = std::get_if<SphereLight>(&light)) {
-        return view(*sphere, frame).has_value();
+    if (is_delta(light)) {
+        return delta_view(light, frame, error).has_value();
     }
-    return is_seen(std::get<PolygonLight>(light), frame, error);
+    if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
+        const std::optional<LitEdges> edges = lit_edges(*polygon, frame.origin);
+        if ((edges && edges->empty()) || !is_seen(*polygon, frame, error)) {
+            return false;
+        }
+    } else if (!cap_view(light, frame)) {
+        return false;
+    }
+    return ProfileView(light, frame).range().high > 0;
 }
 
 double least_distance(const Light& light, const Vec3d& position) {
     if (const auto* sphere = std::get_if<SphereLight>(&light)) {
         return std::max(0.0, glm::length(sphere->center - position) - sphere->radius);
     }
-    const auto& polygon = std::get<PolygonLight>(light);
-    return std::max(std::abs(glm::dot(polygon.normal, position - polygon.center)),
-                    glm::length(polygon.center - position) - polygon.radius);
+    if (const auto* point = std::get_if<PointSource>(&light)) {
+        return glm::length(point->position - position);
+    }
+    const auto* polygon = std::get_if<PolygonLight>(&light);
+    if (polygon == nullptr) {
+        return std::numeric_limits<double>::infinity();
+    }
+    return std::max(std::abs(glm::dot(polygon->normal, position - polygon->center)),
+                    glm::length(polygon->center - position) - polygon->radius);
+}
+
+double changing_distance(const Light& light, const Vec3d& position) {
+    const EmissionProfile& profile = traits_of(light).profile;
+    const double distance = least_distance(light, position);
+    if (std::holds_alternative<EvenProfile>(profile) || !std::isfinite(distance)) {
+        return distance;
+    }
+    return distance * profile_scale(profile, -bounds_from(light, position).towards);
 }
 
 Circle circle_of(const CapView& cap) {
@@ -57,6 +215,8 @@ Circle circle_of(const CapView& cap) {
             return circle_of_sphere(cap.center, cap.radius);
         case CapView::Kind::facing_disk:
             return circle_of_facing_disk(cap.center, cap.radius);
+        case CapView::Kind::infinite:
+            return {cap.center, std::sqrt(std::max(0.0, (1 - cap.radius) * (1 + cap.radius))), cap.radius};
         case CapView::Kind::inside:
             break;
     }

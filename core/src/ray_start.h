@@ -3,6 +3,7 @@
 // Shadow rays from a hit, in float, so that neither the hit's own surface nor the light's blocks them.
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include "hits.h"
@@ -27,9 +28,13 @@ class RayStart {
           z_(frame.z),
           offset_(frame.to_local(frame.origin - Vec3d(origin_) + target_offset)) {}
 
-    /// To a point in the shading frame, all but the last few roundings.
-    Ray towards(const Vec3d& local_target) const {
-        const Vec3f way(local_target + offset_);
+    /// To a point in the shading frame, given by a unit direction and a distance, all but the last few roundings.
+    /// Infinitely far: without an end.
+    Ray towards(const Vec3d& local_direction, double distance) const {
+        if (std::isinf(distance)) {
+            return along(local_direction);
+        }
+        const Vec3f way(distance * local_direction + offset_);
         return {origin_, 0.0F, way.x * x_ + way.y * y_ + way.z * z_, 1.0F - 0x1p-22F};
     }
 

@@ -213,12 +213,30 @@ void Scene::add_mesh(Mesh mesh) {
     meshes_.push_back(std::make_shared<const Mesh>(std::move(mesh)));
 }
 
-void Scene::add_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk) {
-    lamps_.emplace_back(make_sphere_light(center, radius, radiance, facing_disk));
+void Scene::add_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk,
+                             const LightTraits& traits) {
+    lamps_.emplace_back(make_sphere_light(center, radius, radiance, facing_disk, traits));
 }
 
-void Scene::add_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance) {
-    lamps_.emplace_back(make_polygon_light(std::move(vertices), radiance, false));
+void Scene::add_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance, double spread,
+                              const LightTraits& traits) {
+    PolygonLight light = make_polygon_light(std::move(vertices), radiance, false, traits);
+    light.traits.profile = make_spread_profile(light.normal, spread);
+    lamps_.emplace_back(std::move(light));
+}
+
+void Scene::add_point_light(const Vec3d& position, const Rgb& intensity, const LightTraits& traits) {
+    lamps_.emplace_back(make_point_source(position, intensity, traits));
+}
+
+void Scene::add_spot_light(const Vec3d& position, const SpotProfile& profile, const Rgb& intensity, double radius,
+                           bool facing_disk, const LightTraits& traits) {
+    lamps_.push_back(make_spot_light(position, profile, intensity, radius, facing_disk, traits));
+}
+
+void Scene::add_sun_light(const Vec3d& direction, double angle, const Rgb& irradiance, bool tangent,
+                          const LightTraits& traits) {
+    lamps_.push_back(make_sun_light(direction, angle, irradiance, tangent, traits));
 }
 
 void Scene::set_environment(Environment environment, bool visible) {

@@ -21,7 +21,7 @@ Vec3d towards_viewer(const Hits& hits, std::size_t hit) {
 double nearest(std::span<const Light> lights, const Vec3d& position) {
     double distance = std::numeric_limits<double>::infinity();
     for (const Light& light : lights) {
-        distance = std::min(distance, least_distance(light, position));
+        distance = std::min(distance, changing_distance(light, position));
     }
     return distance;
 }

@@ -26,6 +26,7 @@ class ShadowRays::Drawing {
     Drawing(const Light& light, const Hits& hits, std::size_t hit, const RayPhase& phase, std::uint32_t seed)
         : hit_material(hits.material[hit]),
           view(hits.view(hit)),
+          profile(light, hits.frame[hit]),
           start(hits.frame[hit], hits.shadow_origin[hit], clearance(light, hits.frame[hit])),
           rays(phase.rays_per_hit),
           mirror_rays(phase.first ? 1 : 0),
@@ -40,6 +41,7 @@ class ShadowRays::Drawing {
 
     std::uint32_t hit_material;
     Vec3d view;
+    ProfileView profile;
     RayStart start;
     std::uint32_t rays;         // of each set, but …
     std::uint32_t mirror_rays;  // … for mirrors
@@ -77,11 +79,18 @@ void ShadowRays::trace(const Light& light, const Hits& hits, const LitHits& lit,
         runs_.clear();
         solid_angles_.assign(lit.hit.size() * set_stride_, 0.0);
     }
+    delta_ = is_delta(light);
     rays_.clear();
     const std::size_t before = blocked_.size();
     for (std::size_t i = 0; i < lit.hit.size(); ++i) {
-        light_sampler_.reset(light, hits.frame[lit.hit[i]]);
-        draw(Drawing(light, hits, lit.hit[i], phase, seed), lit, i);
+        const std::size_t hit = lit.hit[i];
+        const Drawing drawing(light, hits, hit, phase, seed);
+        if (delta_) {
+            draw_delta(drawing, *delta_view(light, hits.frame[hit], hits.error[hit]));
+        } else {
+            light_sampler_.reset(light, hits.frame[hit]);
+            draw(drawing, lit, i);
+        }
     }
     blocked_.resize(directions_.size());
     tracer_->occluded(rays_, std::span(blocked_).subspan(before));
@@ -123,6 +132,17 @@ void ShadowRays::draw(const Drawing& drawing, const LitHits& lit, std::size_t li
     }
 }
 
+void ShadowRays::draw_delta(const Drawing& drawing, const DeltaView& source) {
+    const std::size_t begin = directions_.size();
+    for (std::uint32_t ray = 0; ray < drawing.mirror_rays; ++ray) {
+        directions_.emplace_back(source.direction);
+        weights_.push_back(1);
+        rays_.push_back(drawing.start.towards(source.direction, source.distance));
+    }
+    runs_.push_back({begin, directions_.size()});
+    runs_.resize(runs_.size() + set_stride_ - 1, {directions_.size(), directions_.size()});
+}
+
 void ShadowRays::draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set) {
     const double alpha = materials_[drawing.hit_material].alphas[set];
     const LobeSampler sampler(alpha, drawing.view);
@@ -142,9 +162,12 @@ void ShadowRays::draw_lobes(const Drawing& drawing, std::size_t lit_index, std::
 }
 
 void ShadowRays::push(const Drawing& drawing, const Vec3d& direction, double distance, double weight) {
-    directions_.emplace_back(direction);
-    weights_.push_back(static_cast<float>(weight));
-    rays_.push_back(drawing.start.towards(distance * direction));
+    const double factor = drawing.profile.factor(direction);
+    if (factor > 0) {
+        directions_.emplace_back(direction);
+        weights_.push_back(static_cast<float>(weight * factor));
+        rays_.push_back(drawing.start.towards(direction, distance));
+    }
 }
 
 std::size_t ShadowRays::blocked_count() const {
@@ -164,7 +187,7 @@ RaySums ShadowRays::sum(const Hits& hits, const LitHits& lit, std::size_t lit_in
     const auto add = [&](const Run& run) {
         for (std::size_t i = run.begin; i < run.end; ++i) {
             const Vec3d direction(directions_[i]);
-            double value = mirror ? 1.0 : weights_[i] * lobe_value(shape, direction, view);
+            double value = mirror || delta_ ? 1.0 : weights_[i] * lobe_value(shape, direction, view);
             if (!mirror && solid_angle > 0) {
                 // The weights are those of points even in solid angle; so p_light is one over that.
                 value /= 1 + solid_angle * sampler.density(direction);

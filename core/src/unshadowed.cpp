@@ -2,7 +2,9 @@
 #include "unshadowed.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "light_view.h"
 
@@ -11,6 +13,9 @@ namespace {
 
 /// Points that are shaded at a time, as many as fit the cache with what is known of their views.
 constexpr std::size_t kChunk = 1024;
+
+/// Error of a profile's mean ÷ the tolerance of a light's radiance, at most.
+constexpr double kProfileTolerance = 10;
 
 void count(Way way, int order, std::uint32_t hits, RenderReport& report) {
     switch (way) {
@@ -26,6 +31,10 @@ void count(Way way, int order, std::uint32_t hits, RenderReport& report) {
             report.cubature_count += hits;
             break;
     }
+}
+
+bool reflects(const LightTraits& traits, const LobeShape& shape) {
+    return std::holds_alternative<GgxShape>(shape) ? traits.lights_glossy : traits.lights_diffuse;
 }
 
 }  // namespace
@@ -61,48 +70,95 @@ void Unshadowed::shade(const ShadingPoints& points, std::span<const std::uint32_
     }
 }
 
-void Unshadowed::see(const SphereLight& light, const ShadingPoints& points, std::span<const std::uint32_t> some) {
-    circles_.resize(some.size());
-    for (std::size_t i = 0; i < some.size(); ++i) {
-        if (const std::optional<CapView> cap = view(light, points.frame[some[i]])) {
-            circles_.set(seen_by_.size(), circle_of(*cap));
-            seen_by_.push_back(static_cast<std::uint32_t>(i));
-        }
+void Unshadowed::see(const Light& light, const ShadingPoints& points, std::span<const std::uint32_t> some) {
+    const auto* polygon = std::get_if<PolygonLight>(&light);
+    if (polygon != nullptr) {
+        polygons_.clear(polygon->vertices.size());
+    } else {
+        circles_.resize(some.size());
     }
-}
-
-void Unshadowed::see(const PolygonLight& light, const ShadingPoints& points, std::span<const std::uint32_t> some) {
-    polygons_.clear(light.vertices.size());
     for (std::size_t i = 0; i < some.size(); ++i) {
         const ShadingFrame& frame = points.frame[some[i]];
-        if (is_seen(light, frame, points.error[some[i]])) {
-            for (const Vec3d& v : light.vertices) {
+        if (polygon != nullptr) {
+            if (!is_seen(light, frame, points.error[some[i]])) {
+                continue;
+            }
+            const auto part = lit_rectangle(*polygon, frame.origin);
+            for (const Vec3d& v : part ? std::span<const Vec3d>(*part) : std::span<const Vec3d>(polygon->vertices)) {
                 polygons_.push_back(frame.point_to_local(v));
             }
-            seen_by_.push_back(static_cast<std::uint32_t>(i));
+        } else {
+            const std::optional<CapView> cap = cap_view(light, frame);
+            if (!cap || !(ProfileView(light, frame).range().high > 0)) {
+                continue;
+            }
+            circles_.set(seen_by_.size(), circle_of(*cap));
         }
+        seen_by_.push_back(static_cast<std::uint32_t>(i));
     }
 }
 
 void Unshadowed::integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
                            std::size_t light_index, RenderReport& report) {
+    if (is_delta(light)) {
+        reflect(points, some, light, light_index, report);
+        return;
+    }
     seen_by_.clear();
-    std::visit([&](const auto& shape) { see(shape, points, some); }, light);
+    see(light, points, some);
     if (seen_by_.empty()) {
         return;
     }
+    const LightTraits& traits = traits_of(light);
     for (std::size_t lobe = 0; lobe < views_.lobe_count(); ++lobe) {
+        if (!reflects(traits, views_.lobe(lobe).shape())) {
+            continue;
+        }
         if (std::holds_alternative<PolygonLight>(light)) {
             batch_.shade(views_.lobe(lobe), polygons_, seen_by_, true);
         } else {
             batch_.shade(views_.lobe(lobe), circles_.arrays(), seen_by_, true);
         }
-        float* values = &values_[(light_index * lobe_stride_ + lobe) * point_count_];
+        float* values = values_of(light_index, lobe);
         for (std::size_t k = 0; k < seen_by_.size(); ++k) {
             const std::uint32_t point = some[seen_by_[k]];
             values[point] = batch_.values()[k];
             count(batch_.way(k), batch_.efforts()[k], points.hit_count(point), report);
             report.over_tolerance += batch_.met(views_.lobe(lobe), k, seen_by_[k]) ? 0 : points.hit_count(point);
+            if (!std::holds_alternative<EvenProfile>(traits.profile) && values[point] > 0) {
+                apply_profile(lobe, k, points, point, light, values[point]);
+            }
+        }
+    }
+}
+
+void Unshadowed::apply_profile(std::size_t lobe, std::size_t k, const ShadingPoints& points, std::uint32_t point,
+                               const Light& light, float& value) {
+    const LobeViews& views = views_.lobe(lobe);
+    profile_.reset(light, points.frame[point]);
+    const std::size_t view = seen_by_[k];
+    // A small light's radiance keeps within the tolerance whatever its profile, but a spot's rim should look right.
+    const double tolerance =
+        std::min(views.absolute_tolerance(view) / double{value}, kProfileTolerance * double{views.tolerances()[view]});
+    const double mean = profile_.mean(views.shape(), points.cos_theta_o[point], tolerance * profile_.range().high);
+    value = static_cast<float>(value * mean);
+}
+
+void Unshadowed::reflect(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
+                         std::size_t light_index, RenderReport& report) {
+    for (const std::uint32_t point : some) {
+        const std::optional<DeltaView> seen = delta_view(light, points.frame[point], points.error[point]);
+        for (std::size_t lobe = 0; seen && lobe < views_.lobe_count(); ++lobe) {
+            const LobeShape& shape = views_.lobe(lobe).shape();
+            // A mirror shows a source without extent nowhere, or in no pixel's share.
+            if (is_mirror(shape) || !reflects(traits_of(light), shape)) {
+                continue;
+            }
+            const double cosine = points.cos_theta_o[point];
+            const Vec3d view(std::sqrt(1 - cosine * cosine), 0, cosine);
+            values_of(light_index, lobe)[point] =
+                static_cast<float>(seen->irradiance * lobe_value(shape, seen->direction, view));
+            count(Way::cubature, 1, points.hit_count(point), report);
         }
     }
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Eq. 5 for many shading points and lights: outgoing radiance per lobe for lights of unit radiance that nothing blocks.
+// Eq. 5 for many shading points and lights: outgoing radiance per lobe for lights of unit strength that nothing blocks.
+//
+// Lights whose emission profile changes over them as a point sees them are multiplied with its mean; sources without
+// extent are f·cos times their irradiance.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +15,7 @@
 #include "material_lobes.h"
 #include "material_views.h"
 #include "polygon_batch.h"
+#include "profile_mean.h"
 #include "shading_points.h"
 #include "shlight/light.h"
 #include "shlight/render.h"
@@ -36,10 +40,18 @@ class Unshadowed {
     void shade(const ShadingPoints& points, std::span<const std::uint32_t> some, const MaterialLobes& material,
                std::span<const Light> lights, RenderReport& report);
     /// Finds which of the points a light shines on, and how they see it.
-    void see(const SphereLight& light, const ShadingPoints& points, std::span<const std::uint32_t> some);
-    void see(const PolygonLight& light, const ShadingPoints& points, std::span<const std::uint32_t> some);
+    void see(const Light& light, const ShadingPoints& points, std::span<const std::uint32_t> some);
     void integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
                    std::size_t light_index, RenderReport& report);
+    /// The same of a source without extent.
+    void reflect(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
+                 std::size_t light_index, RenderReport& report);
+    /// Multiplies the value of a lobe, of seen_by_[k], with the mean of the light's profile.
+    void apply_profile(std::size_t lobe, std::size_t k, const ShadingPoints& points, std::uint32_t point,
+                       const Light& light, float& value);
+    float* values_of(std::size_t light_index, std::size_t lobe) {
+        return &values_[(light_index * lobe_stride_ + lobe) * point_count_];
+    }
 
     std::size_t lobe_stride_;
     std::size_t point_count_ = 0;
@@ -52,6 +64,7 @@ class Unshadowed {
     std::vector<std::uint32_t> seen_by_;  // indices of these points
     CircleBatch circles_;
     PolygonBatch polygons_;
+    ProfileMean profile_;
 };
 
 }  // namespace shlight

@@ -10,10 +10,6 @@ namespace {
 /// Points of the first phase that a pixel gets at least: fewer would miss too much of a penumbra's rim.
 constexpr std::uint32_t kLeastFirstPoints = 16;
 
-const Rgb& radiance_of(const Light& light) {
-    return std::visit([](const auto& l) -> const Rgb& { return l.radiance; }, light);
-}
-
 }  // namespace
 
 ShadowedLight::ShadowedLight(const RayTracer& tracer, std::uint32_t most_rays, std::span<const MaterialLobes> materials,
@@ -62,13 +58,13 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
     if (lit_.hit.empty()) {
         return;
     }
-    if (samples_.shadow_rays > 0) {
+    if (samples_.shadow_rays > 0 && traits_of(light).casts_shadows) {
         // No two ranges of samples share a point.
         const std::uint32_t first_point = samples_.first * most_rays_;
         rays_.trace(light, hits, lit_, {true, first_point, samples_.first, first_ray_count_}, seed);
         const std::size_t blocked = rays_.blocked_count();
         // Few rays may miss the part of a light that is seen, and a glossy lobe may have its peak there.
-        if (blocked > 0 && blocked == rays_.count() && !is_glossy(hits.material[lit_.hit[0]])) {
+        if (blocked > 0 && blocked == rays_.count() && (is_delta(light) || !is_glossy(hits.material[lit_.hit[0]]))) {
             return;
         }
         if (blocked > 0) {
@@ -84,7 +80,7 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
 }
 
 Rgb ShadowedLight::scaled_radiance(const Light& light, const Hits& hits, std::size_t hit, std::size_t lobe) const {
-    return materials_[hits.material[hit]].lobes()[lobe].scale(hits.cos_theta_o[hit]) * radiance_of(light) *
+    return materials_[hits.material[hit]].lobes()[lobe].scale(hits.cos_theta_o[hit]) * strength_of(light) *
            unshadowed(hit, lobe);
 }
 

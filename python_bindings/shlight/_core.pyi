@@ -167,9 +167,61 @@ class Scene:
         transforms: ArrayLike | None = None,
     ) -> None: ...
     def add_sphere_light(
-        self, center: ArrayLike, radius: float, radiance: ArrayLike, *, facing_disk: bool = False
+        self,
+        center: ArrayLike,
+        radius: float,
+        radiance: ArrayLike,
+        *,
+        facing_disk: bool = False,
+        shadows: bool = True,
+        diffuse: bool = True,
+        glossy: bool = True,
     ) -> None: ...
-    def add_polygon_light(self, vertices: ArrayLike, radiance: ArrayLike) -> None: ...
+    def add_polygon_light(
+        self,
+        vertices: ArrayLike,
+        radiance: ArrayLike,
+        *,
+        spread: float = ...,
+        shadows: bool = True,
+        diffuse: bool = True,
+        glossy: bool = True,
+    ) -> None: ...
+    def add_point_light(
+        self,
+        position: ArrayLike,
+        intensity: ArrayLike,
+        *,
+        shadows: bool = True,
+        diffuse: bool = True,
+        glossy: bool = True,
+    ) -> None: ...
+    def add_spot_light(
+        self,
+        position: ArrayLike,
+        direction: ArrayLike,
+        spot_angle: float,
+        blend: float,
+        intensity: ArrayLike,
+        *,
+        radius: float = 0.0,
+        facing_disk: bool = False,
+        times_cosine: bool = False,
+        shadows: bool = True,
+        diffuse: bool = True,
+        glossy: bool = True,
+    ) -> None: ...
+    def add_sun_light(
+        self,
+        direction: ArrayLike,
+        angle: float,
+        irradiance: ArrayLike,
+        *,
+        tangent: bool = False,
+        shadows: bool = True,
+        diffuse: bool = True,
+        glossy: bool = True,
+    ) -> None: ...
     def set_environment(
         self, radiance: ArrayLike, *, to_world: ArrayLike | None = None, visible: bool = True
     ) -> None: ...

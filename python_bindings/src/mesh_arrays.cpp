@@ -8,8 +8,10 @@
 #include <string>
 
 #include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
 
 #include "arrays.h"
+#include "shlight/emission_profile.h"
 
 namespace shlight::python {
 namespace {
@@ -171,6 +173,17 @@ Rgb rgb_from(const char* name, const py::handle& value) {
 
 std::vector<Vec3d> points_from(const char* name, const py::handle& value) {
     return copy_vectors(name, numbers<double>(name, value, {kAny, 3}));
+}
+
+glm::dmat3 axes_from(const char* name, const py::handle& value) {
+    const AnyArray<double> array = numbers<double>(name, value);
+    if (fits(array, {3})) {
+        return lamp_axes({array.data()[0], array.data()[1], array.data()[2]});
+    }
+    if (!fits(array, {3, 3})) {
+        throw std::invalid_argument(std::string(name) + " must have shape (3,) or (3, 3)");
+    }
+    return glm::transpose(glm::make_mat3(array.data()));
 }
 
 glm::dmat4 matrix_from(const char* name, const py::handle& value) {

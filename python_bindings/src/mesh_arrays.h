@@ -20,6 +20,8 @@ Vec3d vector_from(const char* name, const pybind11::handle& value);
 Rgb rgb_from(const char* name, const pybind11::handle& value);
 /// Shape (n, 3).
 std::vector<Vec3d> points_from(const char* name, const pybind11::handle& value);
+/// A lamp's frame, see make_spot_profile: its axes as columns, shape (3, 3), or the way it shines, (3,).
+glm::dmat3 axes_from(const char* name, const pybind11::handle& value);
 /// Shape (4, 4), to be multiplied with column vectors.
 glm::dmat4 matrix_from(const char* name, const pybind11::handle& value);
 

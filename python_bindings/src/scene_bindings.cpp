@@ -12,7 +12,7 @@ using namespace pybind11::literals;
 namespace shlight::python {
 namespace {
 
-constexpr const char* kSceneDoc = R"(Meshes, area lights and a camera in one world frame, in metres.
+constexpr const char* kSceneDoc = R"(Meshes, lights and a camera in one world frame, in metres.
 
 Scene() is empty. Add meshes and lights, set a camera, then call shlight.render().
 What render() builds for ray tracing is kept until something is added.)";
@@ -30,23 +30,6 @@ material_indices: (k,) integers, the material of each triangle; None: 0 for all.
 transforms: (i, 4, 4), one object-to-world matrix per instance, for column vectors; None: one at the identity.
 
 Raises ValueError naming the argument; the scene is then as it was.)";
-
-constexpr const char* kSphereDoc = R"(Add a sphere light. The camera does not see it and it does not block light.
-
-center: (3,). radius: > 0. radiance: RGB [W m^-2 sr^-1]; negative takes light away.
-facing_disk: a disk that always faces the shading point, of half angle atan(radius / distance), instead of the sphere of
-    half angle asin(radius / distance).
-A point inside the sphere is lit from its whole hemisphere.
-
-Raises ValueError naming the argument.)";
-
-constexpr const char* kPolygonDoc =
-    R"(Add a one-sided polygon light. The camera does not see it and it does not block light.
-
-vertices: (k, 3), k >= 3, planar and simple, convex or not. It shines to the side that sees them counter-clockwise.
-radiance: RGB [W m^-2 sr^-1]; negative takes light away.
-
-Raises ValueError naming the argument.)";
 
 constexpr const char* kEnvironmentDoc =
     R"(Set the light that comes from infinitely far all around; it takes the place of the one before.
@@ -81,17 +64,6 @@ void add_mesh(SceneObject& self, const py::object& vertices, const py::object& t
     self.changed();
 }
 
-void add_sphere_light(SceneObject& self, const py::object& center, double radius, const py::object& radiance,
-                      bool facing_disk) {
-    self.scene.add_sphere_light(vector_from("center", center), radius, rgb_from("radiance", radiance), facing_disk);
-    self.changed();
-}
-
-void add_polygon_light(SceneObject& self, const py::object& vertices, const py::object& radiance) {
-    self.scene.add_polygon_light(points_from("vertices", vertices), rgb_from("radiance", radiance));
-    self.changed();
-}
-
 void set_environment(SceneObject& self, const py::object& radiance, const py::object& to_world, bool visible) {
     const glm::dmat3 rotation = to_world.is_none() ? glm::dmat3(1) : rotation_from("to_world", to_world);
     self.scene.set_environment(environment_from("radiance", radiance, rotation), visible);
@@ -112,20 +84,18 @@ void set_camera_window(SceneObject& self, const py::object& to_world, double lef
 }  // namespace
 
 void bind_scene(py::module_& m) {
-    py::class_<SceneObject>(m, "Scene", kSceneDoc)
-        .def(py::init<>())
+    py::class_<SceneObject> scene(m, "Scene", kSceneDoc);
+    scene.def(py::init<>())
         .def("add_mesh", &add_mesh, kAddMeshDoc, "vertices"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
              "uvs"_a = py::none(), "bsdf"_a = py::none(), "emission"_a = py::none(), "material_indices"_a = py::none(),
              "transforms"_a = py::none())
-        .def("add_sphere_light", &add_sphere_light, kSphereDoc, "center"_a, "radius"_a, "radiance"_a, py::kw_only(),
-             "facing_disk"_a = false)
-        .def("add_polygon_light", &add_polygon_light, kPolygonDoc, "vertices"_a, "radiance"_a)
         .def("set_environment", &set_environment, kEnvironmentDoc, "radiance"_a, py::kw_only(),
              "to_world"_a = py::none(), "visible"_a = true)
         .def("set_camera", &set_camera, kCameraDoc, "to_world"_a, "fov_x"_a)
         .def("set_camera_window", &set_camera_window, kWindowDoc, "to_world"_a, "left"_a, "right"_a, "bottom"_a,
              "top"_a, py::kw_only(), "orthographic"_a = false, "clip_start"_a = 0.0,
              "clip_end"_a = std::numeric_limits<double>::infinity());
+    bind_lights(scene);
 }
 
 }  // namespace shlight::python

@@ -3,6 +3,8 @@
 // shlight.Scene as Python holds it.
 #pragma once
 
+#include <pybind11/pybind11.h>
+
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -24,5 +26,8 @@ struct SceneObject {
         ++revision;
     }
 };
+
+/// Scene.add_sphere_light and its like.
+void bind_lights(pybind11::class_<SceneObject>& scene);
 
 }  // namespace shlight::python

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -61,10 +62,18 @@ class Scene {
     /// Throws as check_mesh does. Emissive faces become two-sided polygon lights; as every face, the camera sees them
     /// and they block light.
     void add_mesh(Mesh mesh);
-    /// These two throw as make_sphere_light and make_polygon_light do. Such lights are not seen by the camera and do
-    /// not block light.
-    void add_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk = false);
-    void add_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance);
+    /// Lamps throw as make_sphere_light, make_polygon_light … do. They are not seen by the camera and do not block
+    /// light.
+    void add_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk = false,
+                          const LightTraits& traits = {});
+    /// spread: see make_spread_profile, which replaces traits.profile.
+    void add_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance, double spread = std::numbers::pi,
+                           const LightTraits& traits = {});
+    void add_point_light(const Vec3d& position, const Rgb& intensity, const LightTraits& traits = {});
+    void add_spot_light(const Vec3d& position, const SpotProfile& profile, const Rgb& intensity, double radius = 0,
+                        bool facing_disk = false, const LightTraits& traits = {});
+    void add_sun_light(const Vec3d& direction, double angle, const Rgb& irradiance, bool tangent = false,
+                       const LightTraits& traits = {});
 
     /// Takes the place of the environment before, at first a black one that the camera does not see.
     /// visible: the camera sees it behind the scene.

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include <numbers>
+#include <string>
+
+#include "arrays.h"
+#include "mesh_arrays.h"
+#include "scene_bindings.h"
+
+using namespace pybind11::literals;
+
+namespace shlight::python {
+namespace {
+
+/// What every light's description ends with.
+constexpr const char* kTraitsDoc =
+    R"(shadows: False: it lights what it cannot see too. diffuse, glossy: False: diffuse or glossy reflection leaves it out.
+
+Raises ValueError naming the argument.)";
+
+std::string with_traits(const char* doc) {
+    return std::string(doc) + kTraitsDoc;
+}
+
+constexpr const char* kSphereDoc = R"(Add a sphere light. The camera does not see it and it does not block light.
+
+center: (3,). radius: > 0. radiance: RGB [W m^-2 sr^-1]; negative takes light away.
+facing_disk: a disk that always faces the shading point, of half angle atan(radius / distance), instead of the sphere of
+    half angle asin(radius / distance).
+A point inside the sphere is lit from its whole hemisphere.
+)";
+
+constexpr const char* kPolygonDoc =
+    R"(Add a one-sided polygon light. The camera does not see it and it does not block light.
+
+vertices: (k, 3), k >= 3, planar and simple, convex or not. It shines to the side that sees them counter-clockwise.
+radiance: RGB [W m^-2 sr^-1]; negative takes light away.
+spread: angle [rad] within which it shines, as through a honeycomb grid, 0 < spread <= pi. In a direction at an angle
+    alpha to its normal, radiance is multiplied by max(tan h - tan alpha, 0) / (tan h - h), h = spread / 2; pi is even.
+)";
+
+constexpr const char* kPointDoc = R"(Add a light of no size, with sharp shadows. Mirrors do not show it.
+
+position: (3,). intensity: RGB [W sr^-1]; a sphere of radius r and radiance L has pi r^2 L from afar.
+)";
+
+constexpr const char* kSpotDoc = R"(Add a sphere light, or a light of no size, that shines into a cone with a soft rim.
+
+position: (3,), its centre. direction: (3,), of the cone's axis; or (3, 3), the axes x, y, z of its frame as columns:
+    it shines along -z, and angles are those of that frame, so that scaled axes make an elliptical cone.
+spot_angle: of the whole cone [rad], 0 < spot_angle <= pi. blend: 0 ... 1, the share of it that fades: with z the cosine
+    of the angle to the axis and c that of the cone's rim, radiance is multiplied by smoothstep((z - c) / ((1 - c) blend)).
+intensity: RGB [W sr^-1] along the axis; with a radius r, the radiance there is intensity / (pi r^2).
+radius: >= 0; 0 is a light of no size. facing_disk: see add_sphere_light.
+times_cosine: multiply once more by z, as Blender did before version 4.
+)";
+
+constexpr const char* kSunDoc = R"(Add a sun: a disk infinitely far away.
+
+direction: (3,), the way its light travels, of any length. angle: its diameter [rad], 0 ... pi; 0 has sharp shadows and
+    mirrors do not show it. irradiance: RGB [W m^-2] on a surface at right angles to the direction.
+tangent: False: its radiance is irradiance / (pi sin^2(angle / 2)) everywhere; True: irradiance / (pi tan^2(angle / 2)
+    cos^3 alpha) at an angle alpha to its middle, as Blender had it before version 4; angle is then at most 3.
+)";
+
+LightTraits traits_from(bool shadows, bool diffuse, bool glossy) {
+    LightTraits traits;
+    traits.casts_shadows = shadows;
+    traits.lights_diffuse = diffuse;
+    traits.lights_glossy = glossy;
+    return traits;
+}
+
+void add_sphere_light(SceneObject& self, const py::object& center, double radius, const py::object& radiance,
+                      bool facing_disk, bool shadows, bool diffuse, bool glossy) {
+    self.scene.add_sphere_light(vector_from("center", center), radius, rgb_from("radiance", radiance), facing_disk,
+                                traits_from(shadows, diffuse, glossy));
+    self.changed();
+}
+
+void add_polygon_light(SceneObject& self, const py::object& vertices, const py::object& radiance, double spread,
+                       bool shadows, bool diffuse, bool glossy) {
+    self.scene.add_polygon_light(points_from("vertices", vertices), rgb_from("radiance", radiance), spread,
+                                 traits_from(shadows, diffuse, glossy));
+    self.changed();
+}
+
+void add_point_light(SceneObject& self, const py::object& position, const py::object& intensity, bool shadows,
+                     bool diffuse, bool glossy) {
+    self.scene.add_point_light(vector_from("position", position), rgb_from("intensity", intensity),
+                               traits_from(shadows, diffuse, glossy));
+    self.changed();
+}
+
+void add_spot_light(SceneObject& self, const py::object& position, const py::object& direction, double spot_angle,
+                    double blend, const py::object& intensity, double radius, bool facing_disk, bool times_cosine,
+                    bool shadows, bool diffuse, bool glossy) {
+    self.scene.add_spot_light(vector_from("position", position),
+                              make_spot_profile(axes_from("direction", direction), spot_angle, blend, times_cosine),
+                              rgb_from("intensity", intensity), radius, facing_disk,
+                              traits_from(shadows, diffuse, glossy));
+    self.changed();
+}
+
+void add_sun_light(SceneObject& self, const py::object& direction, double angle, const py::object& irradiance,
+                   bool tangent, bool shadows, bool diffuse, bool glossy) {
+    self.scene.add_sun_light(vector_from("direction", direction), angle, rgb_from("irradiance", irradiance), tangent,
+                             traits_from(shadows, diffuse, glossy));
+    self.changed();
+}
+
+}  // namespace
+
+void bind_lights(py::class_<SceneObject>& scene) {
+    scene
+        .def("add_sphere_light", &add_sphere_light, with_traits(kSphereDoc).c_str(), "center"_a, "radius"_a,
+             "radiance"_a, py::kw_only(), "facing_disk"_a = false, "shadows"_a = true, "diffuse"_a = true,
+             "glossy"_a = true)
+        .def("add_polygon_light", &add_polygon_light, with_traits(kPolygonDoc).c_str(), "vertices"_a, "radiance"_a,
+             py::kw_only(), "spread"_a = std::numbers::pi, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true)
+        .def("add_point_light", &add_point_light, with_traits(kPointDoc).c_str(), "position"_a, "intensity"_a,
+             py::kw_only(), "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true)
+        .def("add_spot_light", &add_spot_light, with_traits(kSpotDoc).c_str(), "position"_a, "direction"_a,
+             "spot_angle"_a, "blend"_a, "intensity"_a, py::kw_only(), "radius"_a = 0.0, "facing_disk"_a = false,
+             "times_cosine"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true)
+        .def("add_sun_light", &add_sun_light, with_traits(kSunDoc).c_str(), "direction"_a, "angle"_a, "irradiance"_a,
+             py::kw_only(), "tangent"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true);
+}
+
+}  // namespace shlight::python
