@@ -25,9 +25,11 @@ class LampConvention:
 
     area: float  # rectangle of area A: radiance = area * S / A
     point_is_always_disk: bool  # a point lamp is the disk that faces the shading point, whatever its settings
+    spot_times_cosine: bool  # a spot lamp's light falls with the cosine of the angle to its axis too
+    sun_is_tangent: bool  # a sun is even on the plane tangent to the sphere of directions, not on that sphere
 
 
-LAMPS = LampConvention(1.0 / math.pi, False) if IS_BLENDER_4 else LampConvention(0.25, True)
+LAMPS = LampConvention(1.0 / math.pi, False, False, False) if IS_BLENDER_4 else LampConvention(0.25, True, True, True)
 
 
 @dataclass(frozen=True)

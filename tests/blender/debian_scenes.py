@@ -102,6 +102,47 @@ def area():
     lamp("AREA", 60, (1, -0.5, 1.5), (0.3, 0.2, 0.5), (1.5, 0.6, 2.0), shape="SQUARE", size=0.7)
 
 
+def lit_by(kind, energy, rotation=(0, 0, 0), scale=(1, 1, 1), **values):
+    plane()
+    ball(shader(Color=(0.8, 0.6, 0.2, 1)), location=(-0.8, 0.2, 0.5), scale=(0.5, 0.5, 0.5))
+    lamp(kind, energy, (0.3, -0.4, 1.7), rotation, scale, **values)
+    render = bpy.context.scene.render
+    render.resolution_x, render.resolution_y = 48, 48
+
+
+def spot():
+    lit_by("SPOT", 200, shadow_soft_size=0.3, spot_size=1.0, spot_blend=0.5)
+
+
+def small_spot():
+    lit_by(
+        "SPOT",
+        200,
+        (0.2, 0.3, 0.5),
+        (1.6, 0.7, -1.2),
+        shadow_soft_size=0.0,
+        spot_size=0.9,
+        spot_blend=0.3,
+        color=(1, 0.5, 0.2),
+    )
+
+
+def small_point():
+    lit_by("POINT", 60, shadow_soft_size=0.0)
+
+
+def sun():
+    lit_by("SUN", 3, (0.4, 0.5, 0), angle=0.9)
+
+
+def small_sun():
+    lit_by("SUN", 3, (0.4, 0.5, 0), angle=0.0)
+
+
+def spread():
+    lit_by("AREA", 60, (0.2, 0.1, 0.3), shape="RECTANGLE", size=1.4, size_y=0.5, spread=math.radians(60))
+
+
 def smooth():
     plane()
     made = ball(shader(Color=(0.8, 0.6, 0.2, 1)), location=(-1.2, 0, 0.8), scale=(0.7, 0.7, 0.8))
@@ -169,7 +210,24 @@ def picture(name, engine):
 def main():
     shlight_blender.register()
     results = {}
-    for build in (lamps, area, smooth, glossy, metal, principled, blackbody, curves, border, dark):
+    for build in (
+        lamps,
+        area,
+        spot,
+        small_spot,
+        small_point,
+        sun,
+        small_sun,
+        spread,
+        smooth,
+        glossy,
+        metal,
+        principled,
+        blackbody,
+        curves,
+        border,
+        dark,
+    ):
         prepare()
         build()
         name = build.__name__

@@ -69,7 +69,10 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     return results
 
 
-@pytest.mark.parametrize("scene", ["lamps", "area", "smooth", "glossy", "metal", "blackbody", "curves", "border"])
+LAMPS = ["lamps", "area", "spot", "small_spot", "small_point", "sun", "small_sun", "spread"]
+
+
+@pytest.mark.parametrize("scene", [*LAMPS, "smooth", "glossy", "metal", "blackbody", "curves", "border"])
 def test_pictures_against_cycles(pictures: dict[str, Any], scene: str) -> None:
     result = pictures[scene]
     assert result["messages"] == []

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,20 +18,40 @@ from .nodes import RGB, rgb
 from .shaders import SHADERS
 from .surface import SurfaceReader
 
-# A point lamp of radius 0 is drawn as a sphere of this radius [m]; its light differs by less than (radius/distance)².
-SMALLEST_RADIUS = 1e-3
+# The widest sun of Blender 3.4 [rad]: beyond, the plane that it is even on is nearly parallel to its light.
+WIDEST_TANGENT_SUN = 3.0
+# The narrowest spread of an area lamp [rad] that is drawn as it is.
+SMALLEST_SPREAD = math.radians(0.1)
 # Sides of the polygon of equal area that stands for a round area lamp.
 ROUND_SIDES = 24
+
+
+class Traits(TypedDict):
+    """What `shlight.Scene.add_…_light` takes for every lamp."""
+
+    shadows: bool
+    diffuse: bool
+    glossy: bool
+
+
+class Lamp(NamedTuple):
+    """A lamp that gives light."""
+
+    data: Any  # bpy.types.Light
+    power: RGB  # [W], of a sun [W m^-2]
+    to_world: NDArray[np.float64]  # (4, 4)
+    place: str  # how the report names it
+    traits: Traits
+
+    def place_in_world(self) -> tuple[float, float, float]:
+        x, y, z = (float(c) for c in self.to_world[:3, 3])
+        return x, y, z
 
 
 def add_lamp(scene: shlight.Scene, lamp_object: Any, to_world: NDArray[np.float64], report: ExportReport) -> bool:
     """Adds a lamp to `scene`; False if it gives no light (switched off, or not supported and reported)."""
     lamp = lamp_object.data
     place = f"Light '{lamp_object.name}'"
-    add = LAMP_TYPES.get(lamp.type)
-    if add is None:
-        report.add(place, f"{lamp.type.lower()} lamps are not supported; left out")
-        return False
     if lamp.type == "AREA" and getattr(getattr(lamp, "cycles", None), "is_portal", False):
         return False  # guides Cycles' sampling of the world, emits nothing
     power = float(lamp.energy) * lamp_tint(lamp) * _emission_of_nodes(lamp, place, report)
@@ -43,8 +63,14 @@ def add_lamp(scene: shlight.Scene, lamp_object: Any, to_world: NDArray[np.float6
         return False
     if not power.any():
         return False
-    _report_visibility(lamp_object, place, report)
-    return add(scene, lamp, power, to_world, place, report)
+    if lamp_object.visible_camera:
+        report.add(place, "lamps seen by the camera are not supported; it lights, but is not drawn")
+    traits: Traits = {
+        "shadows": lamp_casts_shadows(lamp),
+        "diffuse": bool(lamp_object.visible_diffuse),
+        "glossy": bool(lamp_object.visible_glossy),
+    }
+    return LAMP_TYPES[lamp.type](scene, Lamp(lamp, power, to_world, place, traits), report)
 
 
 def _emission_of_nodes(lamp: Any, place: str, report: ExportReport) -> RGB:
@@ -57,29 +83,64 @@ def _emission_of_nodes(lamp: Any, place: str, report: ExportReport) -> RGB:
     return SurfaceReader(place, report, SHADERS).surface(output.inputs["Surface"]).emission
 
 
-def _report_visibility(lamp_object: Any, place: str, report: ExportReport) -> None:
-    if not lamp_casts_shadows(lamp_object.data):
-        report.add(place, "lamps without shadows are not supported; its light is shadowed")
-    if lamp_object.visible_camera:
-        report.add(place, "lamps seen by the camera are not supported; it lights, but is not drawn")
-    if not (lamp_object.visible_diffuse and lamp_object.visible_glossy):
-        report.add(place, "lamps for only diffuse or only glossy reflection are not supported; it lights both")
-
-
-def _add_point(
-    scene: shlight.Scene, lamp: Any, power: RGB, to_world: NDArray[np.float64], place: str, report: ExportReport
-) -> bool:
-    radius = float(lamp.shadow_soft_size)
+def _add_point(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
+    radius = float(lamp.data.shadow_soft_size)
     if radius <= 0.0:
-        report.add(place, f"radius 0 is not supported; drawn as a sphere of {SMALLEST_RADIUS * 1000:g} mm")
-    # A lamp that is not normalized shines as if the disk of its radius had area 1; from a point that is intensity.
-    shown_radius = max(radius, SMALLEST_RADIUS)
-    normalized = lamp_is_normalized(lamp) or radius <= 0.0
-    area = math.pi * shown_radius * shown_radius if normalized else 1.0
-    radiance = power / (4.0 * math.pi * area) if normalized else power / math.pi
-    scene.add_sphere_light(
-        tuple(float(c) for c in to_world[:3, 3]), shown_radius, rgb(radiance), facing_disk=point_is_disk(lamp)
+        scene.add_point_light(lamp.place_in_world(), rgb(_intensity(lamp)), **lamp.traits)
+        return True
+    radiance = _intensity(lamp) / (math.pi * radius * radius)
+    disk = point_is_disk(lamp.data)
+    scene.add_sphere_light(lamp.place_in_world(), radius, rgb(radiance), facing_disk=disk, **lamp.traits)
+    return True
+
+
+def _intensity(lamp: Lamp) -> RGB:
+    """Of a point or spot lamp, along its axis, from afar.
+
+    Not normalized, its power is that of a disk of area 1 with its radiance; one of no size shines as that disk.
+    """
+    radius = float(lamp.data.shadow_soft_size)
+    if lamp_is_normalized(lamp.data):
+        return lamp.power / (4.0 * math.pi)
+    return lamp.power * (radius * radius if radius > 0.0 else 1.0 / math.pi)
+
+
+def _add_spot(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
+    # The length of an axis counts: a scaled lamp has an elliptical cone. Cycles measures along the axes of a sheared
+    # lamp, and does not invert its transform.
+    axes = lamp.to_world[:3, :3]
+    squares = (axes * axes).sum(axis=0)
+    along = axes / np.where(squares > 0.0, squares, 1.0)
+    if not abs(np.linalg.det(along)) > 1e-12 * np.prod(np.linalg.norm(along, axis=0)):
+        report.add(lamp.place, "its scale is 0; left out")
+        return False
+    scene.add_spot_light(
+        lamp.place_in_world(),
+        np.linalg.inv(along.T),
+        float(lamp.data.spot_size),
+        float(lamp.data.spot_blend),
+        rgb(_intensity(lamp)),
+        radius=float(lamp.data.shadow_soft_size),
+        facing_disk=point_is_disk(lamp.data),
+        times_cosine=LAMPS.spot_times_cosine,
+        **lamp.traits,
     )
+    return True
+
+
+def _add_sun(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
+    direction = -lamp.to_world[:3, 2]
+    if not np.linalg.norm(direction) > 0.0:
+        report.add(lamp.place, "its scale is 0; left out")
+        return False
+    angle = float(lamp.data.angle)
+    if LAMPS.sun_is_tangent and angle > WIDEST_TANGENT_SUN:
+        report.add(lamp.place, f"a sun wider than {math.degrees(WIDEST_TANGENT_SUN):.0f}° is drawn as wide as that")
+        angle = WIDEST_TANGENT_SUN
+    irradiance = lamp.power
+    if not lamp_is_normalized(lamp.data) and angle > 0.0:
+        irradiance = irradiance * (math.pi * math.sin(0.5 * angle) ** 2)
+    scene.add_sun_light(direction, angle, rgb(irradiance), tangent=LAMPS.sun_is_tangent, **lamp.traits)
     return True
 
 
@@ -102,27 +163,28 @@ def area_corners(lamp: Any, to_world: NDArray[np.float64]) -> NDArray[np.float64
     return np.ascontiguousarray(corners[::-1] if towards_z else corners)
 
 
-def _add_area(
-    scene: shlight.Scene, lamp: Any, power: RGB, to_world: NDArray[np.float64], place: str, report: ExportReport
-) -> bool:
-    axis_x, axis_y, axis_z = to_world[:3, :3].T
-    area = float(np.linalg.norm(axis_x) * np.linalg.norm(axis_y) * lamp.size)
-    area *= float(lamp.size if lamp.shape in {"SQUARE", "DISK"} else lamp.size_y)
+def _add_area(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
+    data = lamp.data
+    axis_x, axis_y, axis_z = lamp.to_world[:3, :3].T
+    area = float(np.linalg.norm(axis_x) * np.linalg.norm(axis_y) * data.size)
+    area *= float(data.size if data.shape in {"SQUARE", "DISK"} else data.size_y)
     if area <= 0.0 or not np.linalg.norm(axis_z) > 0.0:
-        report.add(place, "its area is 0; left out")
+        report.add(lamp.place, "its area is 0; left out")
         return False
-    if lamp.shape in {"DISK", "ELLIPSE"}:
+    if data.shape in {"DISK", "ELLIPSE"}:
         area *= 0.25 * math.pi
-        report.add(place, f"round area lamps are not supported; drawn as a polygon of {ROUND_SIDES} sides")
-    if lamp.spread < math.pi * (1.0 - 1e-6):
-        report.add(place, "a spread below 180° is not supported; its light is spread over 180°")
+        report.add(lamp.place, f"round area lamps are not supported; drawn as a polygon of {ROUND_SIDES} sides")
+    spread = float(data.spread)
+    if spread < SMALLEST_SPREAD:
+        report.add(lamp.place, f"a spread below {math.degrees(SMALLEST_SPREAD):g}° is drawn as that")
+        spread = SMALLEST_SPREAD
     sheared = abs(float(axis_x @ axis_y)) > 1e-3 * float(np.linalg.norm(axis_x) * np.linalg.norm(axis_y))
     if sheared:
-        report.add(place, "sheared area lamps are drawn as parallelograms; Cycles takes them for rectangles")
-    radiance = power * (LAMPS.area / area if lamp_is_normalized(lamp) else 1.0 / math.pi)
-    scene.add_polygon_light(area_corners(lamp, to_world), rgb(radiance))
+        report.add(lamp.place, "sheared area lamps are drawn as parallelograms; Cycles takes them for rectangles")
+    radiance = lamp.power * (LAMPS.area / area if lamp_is_normalized(data) else 1.0 / math.pi)
+    scene.add_polygon_light(area_corners(data, lamp.to_world), rgb(radiance), spread=spread, **lamp.traits)
     return True
 
 
-AddLamp = Callable[[shlight.Scene, Any, RGB, NDArray[np.float64], str, ExportReport], bool]
-LAMP_TYPES: dict[str, AddLamp] = {"POINT": _add_point, "AREA": _add_area}
+AddLamp = Callable[[shlight.Scene, Lamp, ExportReport], bool]
+LAMP_TYPES: dict[str, AddLamp] = {"POINT": _add_point, "SPOT": _add_spot, "SUN": _add_sun, "AREA": _add_area}
