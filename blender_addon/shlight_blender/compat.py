@@ -25,11 +25,28 @@ class LampConvention:
 
     area: float  # rectangle of area A: radiance = area * S / A
     point_is_always_disk: bool  # a point lamp is the disk that faces the shading point, whatever its settings
+    spot_is_scaled: bool  # a scaled spot lamp has an elliptical cone
     spot_times_cosine: bool  # a spot lamp's light falls with the cosine of the angle to its axis too
     sun_is_tangent: bool  # a sun is even on the plane tangent to the sphere of directions, not on that sphere
 
 
-LAMPS = LampConvention(1.0 / math.pi, False, False, False) if IS_BLENDER_4 else LampConvention(0.25, True, True, True)
+LAMPS = (
+    LampConvention(
+        area=1.0 / math.pi,
+        point_is_always_disk=False,
+        spot_is_scaled=True,
+        spot_times_cosine=False,
+        sun_is_tangent=False,
+    )
+    if IS_BLENDER_4
+    else LampConvention(
+        area=0.25,
+        point_is_always_disk=True,
+        spot_is_scaled=False,
+        spot_times_cosine=True,
+        sun_is_tangent=True,
+    )
+)
 
 
 @dataclass(frozen=True)

@@ -119,7 +119,7 @@ def small_spot():
         "SPOT",
         200,
         (0.2, 0.3, 0.5),
-        (1.6, 0.7, -1.2),
+        (1.6, 0.7, 1.2),
         shadow_soft_size=0.0,
         spot_size=0.9,
         spot_blend=0.3,

@@ -190,16 +190,19 @@ TEST(RenderSources, ALightInItsOwnSurfaceIsNoBrightPixel) {
     // The middle pixel's ray meets the floor where the lights are.
     const Vec3d middle = floor_point(4, 4, kSize, kHalf);
     SpotProfile spot = make_spot_profile(lamp_axes({0, 0, -1}), 1, 0.2);
+    RenderSettings settings;
+    settings.pixel_samples = 1;
     const Image image = floor_under(
         [&](Scene& scene) {
             scene.add_point_light(middle, Rgb(7));
+            scene.add_point_light(middle + Vec3d(0, 0, 1e-9), Rgb(7));  // within rounding
             scene.add_spot_light(middle, spot, Rgb(3));
             scene.add_spot_light(middle, spot, Rgb(3), 1e-3);
             scene.add_spot_light(middle, spot, Rgb(3), 1e-3, true);
             scene.add_sphere_light(middle, 1e-3, Rgb(2));
             scene.add_sphere_light(middle, 1e-3, Rgb(2), true);
         },
-        RenderSettings{});
+        settings);
     for (const float value : image.values) {
         EXPECT_TRUE(std::isfinite(value));
     }

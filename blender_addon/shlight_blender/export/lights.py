@@ -105,18 +105,29 @@ def _intensity(lamp: Lamp) -> RGB:
     return lamp.power * (radius * radius if radius > 0.0 else 1.0 / math.pi)
 
 
-def _add_spot(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
-    # The length of an axis counts: a scaled lamp has an elliptical cone. Cycles measures along the axes of a sheared
-    # lamp, and does not invert its transform.
-    axes = lamp.to_world[:3, :3]
+def spot_direction(to_world: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """What `shlight.Scene.add_spot_light` takes as a direction: (3,) or (3, 3); None for a lamp of scale 0."""
+    axes = to_world[:3, :3]
     squares = (axes * axes).sum(axis=0)
-    along = axes / np.where(squares > 0.0, squares, 1.0)
-    if not abs(np.linalg.det(along)) > 1e-12 * np.prod(np.linalg.norm(along, axis=0)):
+    if not (squares > 0.0).all():
+        return None
+    if not LAMPS.spot_is_scaled:
+        return -axes[:, 2]
+    # Cycles measures along the axes of a sheared lamp, and does not invert its transform.
+    along = axes / squares
+    if not abs(np.linalg.det(along)) > 1e-9 * np.prod(np.linalg.norm(along, axis=0)):
+        return None
+    return np.linalg.inv(along.T)
+
+
+def _add_spot(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
+    direction = spot_direction(lamp.to_world)
+    if direction is None:
         report.add(lamp.place, "its scale is 0; left out")
         return False
     scene.add_spot_light(
         lamp.place_in_world(),
-        np.linalg.inv(along.T),
+        direction,
         float(lamp.data.spot_size),
         float(lamp.data.spot_blend),
         rgb(_intensity(lamp)),
