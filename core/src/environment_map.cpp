@@ -190,6 +190,7 @@ EnvironmentMap::EnvironmentMap(const LatLong& source, SplitPicture split)
       picture(source.pixels, source.width, source.height, RadiancePyramid::Levels::first),
       sampler(source.pixels, source.width, source.height),
       spots(std::move(split.spots)),
+      smooth(split.pixels, source.width, source.height, RadiancePyramid::Levels::first),
       coefficients(radiance_coefficients(split.pixels, source.width, source.height)),
       remainder(remainder_of(split.pixels, source.width, source.height, coefficients), source.width, source.height),
       whole_remainder(remainder_of(source.pixels, source.width, source.height, coefficients), source.width,

@@ -107,7 +107,8 @@ struct EnvironmentMap {
     RadiancePyramid picture;  // one level
     RadianceSampler sampler;
     std::vector<BrightSpot> spots;
-    RadianceCoefficients coefficients;  // without the spots
+    RadiancePyramid smooth;             // the picture without the spots, one level
+    RadianceCoefficients coefficients;  // likewise
     RadiancePyramid remainder;          // what the coefficients leave, without the spots
     RadiancePyramid whole_remainder;    // and with them
 

@@ -22,6 +22,14 @@ Vec3d diffuse_direction(const glm::dvec2& point) {
 
 }  // namespace
 
+RadianceSums& RadianceSums::operator+=(const RadianceSums& other) {
+    all += other.all;
+    seen += other.seen;
+    squares += other.squares;
+    seen_squares += other.seen_squares;
+    return *this;
+}
+
 /// Directions from one hit, and how densely all sets together draw them.
 class EnvironmentRays::Directions {
   public:
@@ -82,6 +90,7 @@ void EnvironmentRays::trace(const Hits& hits, std::span<const std::size_t> lit, 
     if (phase.first) {
         directions_.clear();
         weights_.clear();
+        spot_weights_.clear();
         blocked_.clear();
         runs_.clear();
     }
@@ -103,7 +112,10 @@ EnvironmentRays::Run EnvironmentRays::draw(const Hits& hits, std::size_t hit, co
     const RayStart start(hits.frame[hit], hits.shadow_origin[hit], Vec3d(0));
     const auto push = [&](const Vec3d& direction, double density) {
         directions_.emplace_back(direction);
-        weights_.push_back(environment_->radiance(hits.frame[hit].to_world(direction)) / static_cast<float>(density));
+        const Vec3d world = hits.frame[hit].to_world(direction);
+        const Rgb smooth = environment_->smooth_radiance(world);
+        weights_.push_back(smooth / static_cast<float>(density));
+        spot_weights_.push_back((environment_->radiance(world) - smooth) / static_cast<float>(density));
         rays_.push_back(start.along(direction));
     };
     Run run = {directions_.size(), 0, {}};
@@ -129,18 +141,28 @@ bool EnvironmentRays::all_free() const {
     return std::find(blocked_.begin(), blocked_.end(), 1) == blocked_.end();
 }
 
-EnvironmentSums EnvironmentRays::sum(const Hits& hits, std::span<const std::size_t> lit, std::size_t lit_index,
-                                     std::size_t lobe) const {
+EnvironmentRays::Sums EnvironmentRays::sum(const Hits& hits, std::span<const std::size_t> lit, std::size_t lit_index,
+                                           std::size_t lobe, bool split) const {
     const std::size_t hit = lit[lit_index];
     const LobeShape& shape = lobes_[hits.material[hit]].lobes()[lobe].shape;
     const bool mirror = is_mirror(shape);
     const Vec3d view = hits.view(hit);
-    EnvironmentSums sums;
-    const auto add = [&](std::size_t ray, double value) {
-        const Vec3d weighted = value * Vec3d(weights_[ray]);
+    Sums result;
+    const auto add_to = [&](RadianceSums& sums, std::size_t ray, const Vec3d& weighted) {
         sums.all += weighted;
         sums.squares += weighted * weighted;
-        sums.seen += blocked_[ray] == 0 ? weighted : Vec3d(0);
+        if (blocked_[ray] == 0) {
+            sums.seen += weighted;
+            sums.seen_squares += weighted * weighted;
+        }
+    };
+    const auto add = [&](std::size_t ray, double value) {
+        if (split) {
+            add_to(result.smooth, ray, value * Vec3d(weights_[ray]));
+            add_to(result.spots, ray, value * Vec3d(spot_weights_[ray]));
+        } else {
+            add_to(result.smooth, ray, value * Vec3d(weights_[ray] + spot_weights_[ray]));
+        }
     };
     for (std::size_t i = lit_index; i < runs_.size(); i += lit.size()) {
         if (mirror && runs_[i].mirror) {
@@ -150,7 +172,7 @@ EnvironmentSums EnvironmentRays::sum(const Hits& hits, std::span<const std::size
             add(ray, lobe_value(shape, Vec3d(directions_[ray]), view));
         }
     }
-    return sums;
+    return result;
 }
 
 }  // namespace shlight

@@ -22,13 +22,20 @@
 namespace shlight {
 
 /// Sums over the rays of a hit: of their weights times a lobe's f·cos, and of its squares.
-struct EnvironmentSums {
-    Vec3d all{0}, seen{0}, squares{0};
+struct RadianceSums {
+    Vec3d all{0}, seen{0}, squares{0}, seen_squares{0};
+
+    RadianceSums& operator+=(const RadianceSums& other);
 };
 
 /// Keeps its memory from pixel to pixel; one per thread.
 class EnvironmentRays {
   public:
+    /// Of the environment without a picture's bright spots, and of these.
+    struct Sums {
+        RadianceSums smooth, spots;
+    };
+
     EnvironmentRays(const RayTracer& tracer, const Environment& environment, std::span<const MaterialLobes> materials);
 
     /// lit: the hits; phase.rays_per_hit: of each set; seed: of the pixel, whose phases differ in nothing else.
@@ -36,9 +43,9 @@ class EnvironmentRays {
 
     /// Whether nothing was met since the last first phase.
     bool all_free() const;
-    /// Of all phases; lit_index: of the hit.
-    EnvironmentSums sum(const Hits& hits, std::span<const std::size_t> lit, std::size_t lit_index,
-                        std::size_t lobe) const;
+    /// Of all phases; lit_index: of the hit; split: or else all is in Sums::smooth.
+    Sums sum(const Hits& hits, std::span<const std::size_t> lit, std::size_t lit_index, std::size_t lobe,
+             bool split) const;
     std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
@@ -64,7 +71,7 @@ class EnvironmentRays {
 
     std::vector<Ray> rays_;  // of the phase
     std::vector<Vec3f> directions_;
-    std::vector<Rgb> weights_;  // radiance ÷ density
+    std::vector<Rgb> weights_, spot_weights_;  // radiance ÷ density: without spots, of spots
     std::vector<std::uint8_t> blocked_;
     std::vector<Run> runs_;  // phases × lit hits
 };

@@ -190,8 +190,9 @@ class EnvironmentShading::Point {
     std::array<float, coefficient_count(kMaxOrder)> coefficients_;
 };
 
-void EnvironmentShading::shade(const ShadingPoints& points, std::vector<Rgb>& values, RenderReport& report) const {
-    values.assign(lobe_stride_ * points.size(), Rgb(0));
+void EnvironmentShading::shade(const ShadingPoints& points, std::vector<UnshadowedParts>& values,
+                               RenderReport& report) const {
+    values.assign(lobe_stride_ * points.size(), {});
     if (environment_->map() == nullptr) {
         shade_constant(points, values, report);
     } else {
@@ -199,20 +200,21 @@ void EnvironmentShading::shade(const ShadingPoints& points, std::vector<Rgb>& va
     }
 }
 
-void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<Rgb> values,
+void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<UnshadowedParts> values,
                                         RenderReport& report) const {
     for (std::size_t point = 0; point < points.size(); ++point) {
         const auto lobes = materials_[points.material[point]].lobes();
         for (std::size_t i = 0; i < lobes.size(); ++i) {
             // A constant is one harmonic, and a lobe's own first coefficient its albedo.
             const auto albedo = static_cast<float>(lobes[i].albedo(points.cos_theta_o[point]));
-            values[i * points.size() + point] = albedo * environment_->radiance(points.frame[point].z);
+            values[i * points.size() + point].smooth = albedo * environment_->radiance(points.frame[point].z);
             (is_mirror(lobes[i].shape) ? report.mirror_count : report.order_counts[1]) += points.hit_count(point);
         }
     }
 }
 
-void EnvironmentShading::shade_map(const ShadingPoints& points, std::span<Rgb> values, RenderReport& report) const {
+void EnvironmentShading::shade_map(const ShadingPoints& points, std::span<UnshadowedParts> values,
+                                   RenderReport& report) const {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const std::uint32_t material = points.material[i];
         const double cosine = points.cos_theta_o[i];
@@ -221,22 +223,22 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, std::span<Rgb> v
         for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
             const LobeShape& shape = lobes[lobe].shape;
             const Plan& plan = plans_[material][lobe];
-            Rgb& value = values[lobe * points.size() + i];
+            UnshadowedParts& value = values[lobe * points.size() + i];
             if (is_mirror(shape)) {
-                value = static_cast<float>(lobes[lobe].albedo(cosine)) * point.mirrored();
+                value.smooth = static_cast<float>(lobes[lobe].albedo(cosine)) * point.mirrored();
                 report.mirror_count += points.hit_count(i);
                 continue;
             }
             const Choice choice = choose(plan, cosine);
-            value = point.by_harmonics(*plan.lobe, choice.order);
+            value.smooth = point.by_harmonics(*plan.lobe, choice.order);
             if (!plan.sees_texels) {
-                value += point.spots(shape);
+                value.spots = point.spots(shape);
             }
             if (choice.directions) {
-                value += static_cast<float>(lobes[lobe].albedo(cosine)) *
-                         point.by_directions(std::get<GgxShape>(shape), plan.sees_texels);
+                value.smooth += static_cast<float>(lobes[lobe].albedo(cosine)) *
+                                point.by_directions(std::get<GgxShape>(shape), plan.sees_texels);
             }
-            value = glm::max(value, Rgb(0));
+            value.smooth = glm::max(value.smooth, Rgb(0));
             (choice.directions ? report.cubature_count : report.order_counts[static_cast<std::size_t>(choice.order)]) +=
                 points.hit_count(i);
             report.over_tolerance += choice.met ? 0 : points.hit_count(i);

@@ -24,6 +24,11 @@ namespace shlight {
 
 class BandRotation;
 
+/// What a lobe reflects, in parts that have shadows of their own: a sun is hidden or not, whatever the sky is.
+struct UnshadowedParts {
+    Rgb smooth{0}, spots{0};
+};
+
 /// Immutable; any number of threads may read it.
 class EnvironmentShading {
   public:
@@ -32,7 +37,11 @@ class EnvironmentShading {
                        std::size_t lobe_stride, int order, double tolerance);
 
     /// values: lobe_stride × points; adds to the report what the points' hits take.
-    void shade(const ShadingPoints& points, std::vector<Rgb>& values, RenderReport& report) const;
+    void shade(const ShadingPoints& points, std::vector<UnshadowedParts>& values, RenderReport& report) const;
+    /// Whether spots are a part of their own for a lobe.
+    bool splits(std::size_t material, std::size_t lobe) const {
+        return !plans_.empty() && plans_[material][lobe].lobe != nullptr && !plans_[material][lobe].sees_texels;
+    }
 
   private:
     struct Choice {
@@ -49,8 +58,8 @@ class EnvironmentShading {
     class Point;
 
     Plan plan(const LobeShape& shape, int order, double tolerance) const;
-    void shade_constant(const ShadingPoints& points, std::span<Rgb> values, RenderReport& report) const;
-    void shade_map(const ShadingPoints& points, std::span<Rgb> values, RenderReport& report) const;
+    void shade_constant(const ShadingPoints& points, std::span<UnshadowedParts> values, RenderReport& report) const;
+    void shade_map(const ShadingPoints& points, std::span<UnshadowedParts> values, RenderReport& report) const;
     static Choice choose(const Plan& plan, double cos_theta_o);
 
     const Environment* environment_;

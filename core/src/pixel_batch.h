@@ -89,7 +89,7 @@ class PixelBatch {
     ShadingPoints points_;
     Unshadowed unshadowed_;
     ShadowedLight shadowed_;
-    std::vector<Rgb> environment_;  // unshadowed values
+    std::vector<UnshadowedParts> environment_;
     ShadowedEnvironment shadowed_environment_;
     std::vector<std::uint32_t> pixel_seeds_;
 };

@@ -15,15 +15,31 @@ Vec3d quotient(const Vec3d& a, const Vec3d& b) {
     return {b.x > 0 ? a.x / b.x : 0, b.y > 0 ? a.y / b.y : 0, b.z > 0 ? a.z / b.z : 0};
 }
 
+/// How much of what is known of the light without obstacles is put in the place of what the rays make of it: the
+/// regression of what they see on it. Never so much that a sum could be negative.
+Vec3d kept_share(const RadianceSums& sums, const Vec3d& otherwise) {
+    const Vec3d share = glm::min(quotient(sums.seen_squares, sums.squares), quotient(sums.seen, sums.all));
+    return glm::mix(otherwise, share, Vec3d(glm::greaterThan(sums.all, Vec3d(0))));
+}
+
+/// As of so many rays of equal weight; the lobes of a hit share its rays.
+Rgb deviation(const Rgb& unblocked, const RadianceSums& sums) {
+    const Vec3d share = quotient(sums.seen, sums.all);
+    const Vec3d one_over_rays = quotient(sums.squares, sums.all * sums.all);
+    return unblocked * Rgb(glm::sqrt(glm::max(share * (1.0 - share), Vec3d(0)) * one_over_rays));
+}
+
 }  // namespace
 
 ShadowedEnvironment::ShadowedEnvironment(const RayTracer& tracer, const Environment& environment,
                                          std::uint32_t most_rays, std::span<const MaterialLobes> materials)
     : materials_(materials), most_rays_(most_rays), rays_(tracer, environment, materials) {}
 
-void ShadowedEnvironment::add(const SampleRange& samples, std::span<const Rgb> unshadowed, std::size_t point_count,
+void ShadowedEnvironment::add(const EnvironmentShading& shading, const SampleRange& samples,
+                              std::span<const UnshadowedParts> unshadowed, std::size_t point_count,
                               std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds,
                               Hits& hits) {
+    shading_ = &shading;
     samples_ = samples;
     unshadowed_ = unshadowed;
     point_count_ = point_count;
@@ -33,9 +49,10 @@ void ShadowedEnvironment::add(const SampleRange& samples, std::span<const Rgb> u
     }
 }
 
-Rgb ShadowedEnvironment::unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const {
-    return materials_[hits.material[hit]].lobes()[lobe].scale(hits.cos_theta_o[hit]) *
-           unshadowed_[lobe * point_count_ + point_of_hit_[hit]];
+UnshadowedParts ShadowedEnvironment::unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const {
+    const Rgb scale = materials_[hits.material[hit]].lobes()[lobe].scale(hits.cos_theta_o[hit]);
+    const UnshadowedParts& parts = unshadowed_[lobe * point_count_ + point_of_hit_[hit]];
+    return {scale * parts.smooth, scale * parts.spots};
 }
 
 void ShadowedEnvironment::add_pixel(std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits) {
@@ -63,7 +80,8 @@ void ShadowedEnvironment::add_pixel(std::uint32_t seed, std::size_t begin, std::
     }
     for (const std::size_t hit : lit_) {
         for (std::size_t lobe = 0; lobe < materials_[hits.material[hit]].lobes().size(); ++lobe) {
-            hits.radiance[hit] += unblocked(hits, hit, lobe);
+            const UnshadowedParts whole = unblocked(hits, hit, lobe);
+            hits.radiance[hit] += whole.smooth + whole.spots;
         }
     }
 }
@@ -94,22 +112,42 @@ void ShadowedEnvironment::shade_lobe(std::size_t lobe, Hits& hits) {
     point_sums_.assign(point_of_hit_[*last] - first_point + 1, {});
     for (std::size_t i = 0; i < lit_.size(); ++i) {
         if (!has_lobe(i)) continue;
-        hit_sums_[i] = rays_.sum(hits, lit_, i, lobe);
+        hit_sums_[i] = rays_.sum(hits, lit_, i, lobe, shading_->splits(hits.material[lit_[i]], lobe));
         PointSums& of_point = point_sums_[point_of_hit_[lit_[i]] - first_point];
-        of_point.all += hit_sums_[i].all;
+        of_point.sums.smooth += hit_sums_[i].smooth;
+        of_point.sums.spots += hit_sums_[i].spots;
         ++of_point.hits;
     }
     for (std::size_t i = 0; i < lit_.size(); ++i) {
-        if (!has_lobe(i)) continue;
-        const EnvironmentSums& sums = hit_sums_[i];
-        const PointSums& of_point = point_sums_[point_of_hit_[lit_[i]] - first_point];
-        const Rgb whole = unblocked(hits, lit_[i], lobe);
-        hits.radiance[lit_[i]] += whole * Rgb(static_cast<double>(of_point.hits) * quotient(sums.seen, of_point.all));
-        // As of so many rays of equal weight; the lobes of a hit share its rays.
-        const Vec3d share = quotient(sums.seen, sums.all);
-        const Vec3d one_over_rays = quotient(sums.squares, sums.all * sums.all);
-        deviation_[i] += whole * Rgb(glm::sqrt(glm::max(share * (1.0 - share), Vec3d(0)) * one_over_rays));
+        if (has_lobe(i)) {
+            shade_hit(i, lobe, point_sums_[point_of_hit_[lit_[i]] - first_point], hits);
+        }
     }
+}
+
+void ShadowedEnvironment::shade_hit(std::size_t lit_index, std::size_t lobe, const PointSums& of_point, Hits& hits) {
+    const std::size_t hit = lit_[lit_index];
+    const Lobe& material_lobe = materials_[hits.material[hit]].lobes()[lobe];
+    const Rgb scale = material_lobe.scale(hits.cos_theta_o[hit]);
+    const UnshadowedParts& whole = unshadowed_[lobe * point_count_ + point_of_hit_[hit]];
+    const EnvironmentRays::Sums& of_hit = hit_sums_[lit_index];
+    if (is_mirror(material_lobe.shape)) {
+        // One ray, that is all of its light.
+        hits.radiance[hit] += scale * whole.smooth * Rgb(quotient(of_hit.smooth.seen, of_hit.smooth.all));
+        return;
+    }
+    const Vec3d kept = kept_share(of_point.sums.smooth, Vec3d(1));
+    hits.radiance[hit] += scale * seen_part(whole.smooth, of_hit.smooth, of_point.sums.smooth, of_point.hits, kept);
+    // Spots that no ray has met are taken to be as hidden as the rest.
+    hits.radiance[hit] += scale * seen_part(whole.spots, of_hit.spots, of_point.sums.spots, of_point.hits,
+                                            kept_share(of_point.sums.spots, kept));
+    deviation_[lit_index] += scale * (deviation(whole.smooth, of_hit.smooth) + deviation(whole.spots, of_hit.spots));
+}
+
+Rgb ShadowedEnvironment::seen_part(const Rgb& unblocked, const RadianceSums& of_hit, const RadianceSums& of_point,
+                                   std::uint32_t hit_count, const Vec3d& kept) const {
+    const double rays = samples_.shadow_rays;
+    return Rgb(of_hit.seen / rays + kept * (Vec3d(unblocked) - of_point.all / (rays * hit_count)));
 }
 
 }  // namespace shlight

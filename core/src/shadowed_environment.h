@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Shadows under the environment: the unshadowed radiance of each lobe times the ratio of shadowed to unshadowed
-// sampling, as for lights in visibility.h, in each colour channel.
+// Shadows under the environment: the unshadowed radiance of each lobe, known without noise, corrected by what rays see
+// of it, in each colour channel, and for a picture's bright spots apart from the rest. docs/algorithms.md says how.
 //
 // A quarter of the rays goes first; where none of a pixel's meets anything, the rest is spared.
 #pragma once
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "environment_rays.h"
+#include "environment_shading.h"
 #include "hits.h"
 #include "material_lobes.h"
 #include "shlight/environment.h"
@@ -28,35 +29,40 @@ class ShadowedEnvironment {
     /// Adds the environment to the hits' radiance and noise. samples: what the hits are of; unshadowed: see
     /// EnvironmentShading; point_of_hit: the shading point of each hit, none shared by pixels; pixel_seeds: one per
     /// pixel. A hit's radiance counts as part of the sum over the hits of its shading point.
-    void add(const SampleRange& samples, std::span<const Rgb> unshadowed, std::size_t point_count,
-             std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds, Hits& hits);
+    void add(const EnvironmentShading& shading, const SampleRange& samples, std::span<const UnshadowedParts> unshadowed,
+             std::size_t point_count, std::span<const std::uint32_t> point_of_hit,
+             std::span<const std::uint32_t> pixel_seeds, Hits& hits);
     std::uint64_t rays_traced() const { return rays_.rays_traced(); }
 
   private:
-    void add_pixel(std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits);
-    bool find_obstacles(std::uint32_t seed, const Hits& hits);
-    /// The value of one lobe at a hit.
-    Rgb unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const;
-    void shade_lobe(std::size_t lobe, Hits& hits);
-
     /// Rays of all hits of a shading point.
     struct PointSums {
-        Vec3d all{0};
+        EnvironmentRays::Sums sums;
         std::uint32_t hits = 0;
     };
+
+    void add_pixel(std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits);
+    bool find_obstacles(std::uint32_t seed, const Hits& hits);
+    /// The values of one lobe at a hit.
+    UnshadowedParts unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const;
+    void shade_lobe(std::size_t lobe, Hits& hits);
+    void shade_hit(std::size_t lit_index, std::size_t lobe, const PointSums& of_point, Hits& hits);
+    Rgb seen_part(const Rgb& unblocked, const RadianceSums& of_hit, const RadianceSums& of_point,
+                  std::uint32_t hit_count, const Vec3d& kept) const;
 
     std::span<const MaterialLobes> materials_;
     std::uint32_t most_rays_;
     EnvironmentRays rays_;
 
     SampleRange samples_{};  // of the call of add()
-    std::span<const Rgb> unshadowed_;
+    const EnvironmentShading* shading_ = nullptr;
+    std::span<const UnshadowedParts> unshadowed_;
     std::size_t point_count_ = 0;
     std::span<const std::uint32_t> point_of_hit_;
-    std::vector<std::size_t> lit_;           // hits of the pixel
-    std::vector<EnvironmentSums> hit_sums_;  // of one lobe, by lit hit
-    std::vector<PointSums> point_sums_;      // likewise, by shading point
-    std::vector<Rgb> deviation_;             // by lit hit, from its few rays
+    std::vector<std::size_t> lit_;                 // hits of the pixel
+    std::vector<EnvironmentRays::Sums> hit_sums_;  // of one lobe, by lit hit
+    std::vector<PointSums> point_sums_;            // likewise, by shading point
+    std::vector<Rgb> deviation_;                   // by lit hit, from its few rays
 };
 
 }  // namespace shlight

@@ -140,17 +140,16 @@ def test_real_pictures(studio: Any, name: str, floor: bool) -> None:
     image = bpy.data.images.load(str(WORLDS / f"{name}.exr"))
     studio.scene.cycles.samples = 1024
     studio.scene.render.film_transparent = True  # what is seen behind is not the question
+    studio.scene.shlight.shadow_rays = 64
     if floor:
         balls(studio)
-        studio.scene.shlight.shadow_rays = 64
     else:
         studio.ball(material=studio.material(Color=(0.8, 0.5, 0.3)), rings=48, location=(-1.1, 0, 0))
         glossy = studio.material("ShaderNodeBsdfAnisotropic", Color=(0.9, 0.8, 0.6), Roughness=0.5, distribution="GGX")
         studio.ball(material=glossy, rings=48, location=(1.1, 0, 0))
         studio.camera((0, -6, 1), (0, 0, 0))
     set_picture(studio, image)
-    # Lamps in the night: a third of that is noise of Cycles.
-    studio.compare(error=4e-3 if name == "night" else 1e-3)
+    studio.compare(error=1e-3)
 
 
 def test_what_of_a_world_is_not_supported_is_named(studio: Any) -> None:
