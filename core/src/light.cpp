@@ -233,7 +233,7 @@ Light make_spot_light(const Vec3d& position, const SpotProfile& profile, const R
     }
     const Rgb radiance = intensity / static_cast<float>(std::numbers::pi * radius * radius);
     check_finite("intensity", radiance);
-    return SphereLight{position, radius, radiance, facing_disk, std::move(source.traits)};
+    return SphereLight{position, radius, radiance, facing_disk, traits};
 }
 
 Light make_sun_light(const Vec3d& direction, double angle, const Rgb& irradiance, bool tangent,
