@@ -97,7 +97,7 @@ std::shared_ptr<const ClampedLobe> clamped_lobe(const LobeShape& shape) {
     const std::scoped_lock lock(mutex);
     const auto known =
         std::find_if(recent.begin(), recent.end(), [&](const auto& entry) { return entry.first == shape; });
-    const auto lobe = known != recent.end() ? known->second : std::make_shared<const ClampedLobe>(shape);
+    auto lobe = known != recent.end() ? known->second : std::make_shared<const ClampedLobe>(shape);
     if (known != recent.end()) {
         recent.erase(known);
     }

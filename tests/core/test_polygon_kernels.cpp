@@ -75,8 +75,8 @@ double worst_error(const std::vector<Vec3d>& vertices, const std::vector<double>
     double worst = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const std::span<const Vec3d> polygon(vertices.data() + 4 * i, 4);
-        const double size = shade_polygon<double>(polygon, Warp(), &one, 1);
-        const double truth = shade_polygon<double>(polygon, Warp(), terms.data(), order);
+        const auto size = shade_polygon<double>(polygon, Warp(), &one, 1);
+        const auto truth = shade_polygon<double>(polygon, Warp(), terms.data(), order);
         const double error = std::abs(static_cast<double>(values[i]) - truth);
         worst = error <= worst * size * largest ? worst : size > 0 ? error / (size * largest) : error;
     }
