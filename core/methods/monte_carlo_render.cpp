@@ -281,6 +281,11 @@ void check_monte_carlo(const MonteCarloSettings& settings, int width, int height
 void render_monte_carlo(const CompiledScene& scene, const Camera& camera, int width, int height,
                         const MonteCarloSettings& settings, std::span<float> image, const Progress& progress) {
     check_monte_carlo(settings, width, height);
+    for (const Light& light : scene.lights()) {
+        if (std::holds_alternative<MeshLight>(light)) {
+            reject("scene: render_monte_carlo knows emissive meshes of a few faces only");
+        }
+    }
     const Picture picture = {scene, camera, width, height, settings, camera.window(width, height)};
     check_size("image", image.size(), 4 * picture.pixels());
     tbb::enumerable_thread_specific<Worker> workers([&picture] { return Worker(picture); });

@@ -149,6 +149,15 @@ void PolygonSampler::reset(const PolygonLight& light, const ShadingFrame& frame)
     }
 }
 
+void PolygonSampler::reset(const std::array<Vec3d, 4>& corners) {
+    pieces_.clear();
+    total_ = 0;
+    normal_ = glm::cross(corners[1] - corners[0], corners[3] - corners[0]);
+    height_ = glm::dot(normal_, corners[0]);
+    add_clipped(corners[0], corners[1], corners[2]);
+    add_clipped(corners[0], corners[2], corners[3]);
+}
+
 void PolygonSampler::add_clipped(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     std::array<Vec3d, 4> kept{};
     std::size_t count = 0;
@@ -226,7 +235,11 @@ LightSample PolygonSampler::sample(const Piece& piece, const glm::dvec2& point) 
 
 void LightSampler::reset(const Light& light, const ShadingFrame& frame) {
     cap_.reset();
-    if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
+    const auto* mesh = std::get_if<MeshLight>(&light);
+    mesh_in_use_ = mesh != nullptr;
+    if (mesh_in_use_) {
+        mesh_.reset(*mesh, frame);
+    } else if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
         polygon_.reset(*polygon, frame);
     } else {
         cap_.emplace(*cap_view(light, frame));

@@ -7,12 +7,14 @@
 // with a ray in a given direction.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
 #include <glm/vec2.hpp>
 
 #include "light_view.h"
+#include "mesh_view.h"
 #include "shlight/types.h"
 
 namespace shlight {
@@ -65,6 +67,8 @@ class PolygonSampler {
   public:
     /// Sets the light and the hit; keeps its memory from one to the next.
     void reset(const PolygonLight& light, const ShadingFrame& frame);
+    /// A planar quadrilateral in the shading frame.
+    void reset(const std::array<Vec3d, 4>& corners);
     /// Where nothing lies above the horizon, a sample of no weight and no distance.
     LightSample sample(glm::dvec2 point) const;
     /// Parts that are smooth images of the unit square, and a point of one of them; weights as if it were the light.
@@ -92,25 +96,58 @@ class PolygonSampler {
     double height_ = 0;  // of the plane over the hit, along the normal
 };
 
-/// Either of them. Precondition: the light is seen, and not a source without extent.
+/// Directions to a mesh: of those to a rectangle about its outline, the ones that lie inside; others have no weight.
+/// How far its surface is in a direction is not known: rays tell.
+class MeshSampler {
+  public:
+    void reset(const MeshLight& light, const ShadingFrame& frame);
+    LightSample sample(const glm::dvec2& point) const;
+    /// Of what directions are drawn from.
+    double solid_angle() const { return around_ ? around_->solid_angle() : rectangle_.solid_angle(); }
+    /// An infinite distance.
+    std::optional<double> meets(const Vec3d& direction) const;
+    /// How many layers of the mesh lie in a direction, of those that its outline counts.
+    int layers(const Vec3d& direction) const;
+
+  private:
+    void enclose(double shrink);
+
+    MeshView view_;
+    MeshView::Kind kind_ = MeshView::Kind::hidden;
+    bool convex_ = false;  // whose coarse outlines may fold, but not its own
+    std::optional<CapSampler> around_;  // where there is no outline
+    PolygonSampler rectangle_;
+    Vec3d axis_{0}, along_{0}, across_{0};  // of the outline's plane at distance 1
+    std::vector<glm::dvec2> outline_;       // in that plane
+};
+
+/// Any of them. Precondition: the light is seen, and not a source without extent.
 class LightSampler {
   public:
     /// Of a rectangle, the part that shines on the hit: see lit_rectangle.
     void reset(const Light& light, const ShadingFrame& frame);
-    LightSample sample(const glm::dvec2& point) const { return cap_ ? cap_->sample(point) : polygon_.sample(point); }
-    /// As PolygonSampler's.
+    LightSample sample(const glm::dvec2& point) const {
+        return mesh_in_use_ ? mesh_.sample(point) : cap_ ? cap_->sample(point) : polygon_.sample(point);
+    }
+    /// As PolygonSampler's; not of a mesh.
     std::size_t patch_count() const { return cap_ ? 1 : polygon_.patch_count(); }
     LightSample sample_patch(std::size_t patch, const glm::dvec2& point) const {
         return cap_ ? cap_->sample(point) : polygon_.sample_patch(patch, point);
     }
-    double solid_angle() const { return cap_ ? cap_->solid_angle() : polygon_.solid_angle(); }
-    std::optional<double> meets(const Vec3d& direction) const {
-        return cap_ ? cap_->meets(direction) : polygon_.meets(direction);
+    double solid_angle() const {
+        return mesh_in_use_ ? mesh_.solid_angle() : cap_ ? cap_->solid_angle() : polygon_.solid_angle();
     }
+    std::optional<double> meets(const Vec3d& direction) const {
+        return mesh_in_use_ ? mesh_.meets(direction) : cap_ ? cap_->meets(direction) : polygon_.meets(direction);
+    }
+
+    int layers(const Vec3d& direction) const { return mesh_in_use_ ? mesh_.layers(direction) : 1; }
 
   private:
     std::optional<CapSampler> cap_;
     PolygonSampler polygon_;
+    MeshSampler mesh_;
+    bool mesh_in_use_ = false;
 };
 
 }  // namespace shlight

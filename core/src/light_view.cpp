@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "emitter_levels.h"
+
 namespace shlight {
 namespace {
 
@@ -39,6 +41,9 @@ struct BoundsFrom {
         return distance > 0 ? Bounds{way / distance, std::atan(light.radius / distance)} : kEverywhere;
     }
     Bounds operator()(const PolygonLight& light) const { return sphere_bounds(light.center, light.radius, position); }
+    Bounds operator()(const MeshLight& light) const {
+        return sphere_bounds(light.shape->center, light.shape->radius, position);
+    }
     Bounds operator()(const SunLight& light) const { return {light.direction, light.half_angle}; }
     Bounds operator()(const PointSource& light) const { return sphere_bounds(light.position, 0, position); }
     Bounds operator()(const ParallelSource& light) const { return {light.direction, 0}; }
@@ -179,6 +184,8 @@ bool is_seen(const Light& light, const ShadingFrame& frame, double error) {
         if ((edges && edges->empty()) || !is_seen(*polygon, frame, error)) {
             return false;
         }
+    } else if (const auto* mesh = std::get_if<MeshLight>(&light)) {
+        return glm::dot(frame.z, mesh->shape->center - frame.origin) > -mesh->shape->radius;
     } else if (!cap_view(light, frame)) {
         return false;
     }
@@ -191,6 +198,9 @@ double least_distance(const Light& light, const Vec3d& position) {
     }
     if (const auto* point = std::get_if<PointSource>(&light)) {
         return glm::length(point->position - position);
+    }
+    if (const auto* mesh = std::get_if<MeshLight>(&light)) {
+        return std::max(0.0, glm::length(mesh->shape->center - position) - mesh->shape->radius);
     }
     const auto* polygon = std::get_if<PolygonLight>(&light);
     if (polygon == nullptr) {

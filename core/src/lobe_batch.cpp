@@ -17,6 +17,8 @@ namespace {
 /// Rules up to these are cheaper than harmonics of the orders that glossy lobes take.
 constexpr int kCheapCapRule = 3;
 constexpr int kCheapPolygonRule = 2;
+/// Of polygons with more vertices a rule, which has its points in each of the triangles between them, costs more.
+constexpr int kMostCheapVertices = 8;
 
 Vec3d axis_of(const CircleArrays& circles, std::size_t i) {
     return {circles.x[i], circles.y[i], circles.z[i]};
@@ -30,8 +32,8 @@ Vec3d mirrored(const Vec3d& view) {
 int cheap_rule(const CircleArrays&) {
     return kCheapCapRule;
 }
-int cheap_rule(const PolygonBatch&) {
-    return kCheapPolygonRule;
+int cheap_rule(const PolygonBatch& polygons) {
+    return polygons.vertex_count() <= kMostCheapVertices ? kCheapPolygonRule : kNoRule;
 }
 
 /// What rings below zero is no light.

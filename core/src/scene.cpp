@@ -8,6 +8,7 @@
 
 #include <tbb/task_arena.h>
 
+#include "emitter_levels.h"
 #include "ray_rounding.h"
 #include "shlight/mesh_light.h"
 #include "shlight/parallel.h"
@@ -15,6 +16,11 @@
 
 namespace shlight {
 namespace {
+
+/// Emissive triangles of a mesh that are lights one by one, or in pairs; more of them are one light.
+constexpr std::size_t kMostSingleFaces = 16;
+/// Of the coarsest level of detail: below, outlines lose their shape.
+constexpr std::size_t kLeastLevelFaces = 64;
 
 /// A mesh as it is traced. A mesh placed once has its vertices moved to the world; others are instanced.
 struct TracedMesh {
@@ -84,10 +90,11 @@ class CompiledScene::Impl {
         for (std::size_t i = 0; i < mesh->material_count(); ++i) {
             materials.push_back({mesh->bsdf(i), mesh->emitted(i)});
         }
+        const auto first_placement = static_cast<std::uint32_t>(placements.size());
         for (const glm::dmat4& to_world : mesh->transforms) {
             placements.push_back(place(index, to_world, baked));
         }
-        add_emissive_faces(*mesh);
+        add_emissive_faces(mesh, first_placement);
     }
 
     void build() {
@@ -113,30 +120,43 @@ class CompiledScene::Impl {
     std::unique_ptr<const RayTracer> rays;
 
   private:
-    void add_emissive_faces(const Mesh& mesh);
+    void add_emissive_faces(const std::shared_ptr<const Mesh>& mesh, std::uint32_t first_placement);
+    void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<const Triangle> triangles);
 };
 
-void CompiledScene::Impl::add_emissive_faces(const Mesh& mesh) {
+void CompiledScene::Impl::add_emissive_faces(const std::shared_ptr<const Mesh>& mesh, std::uint32_t first_placement) {
     const TracedMesh& traced = meshes.back();
-    for (std::size_t material = 0; material < mesh.material_count(); ++material) {
-        const Rgb emission = mesh.emitted(material);
+    for (std::size_t material = 0; material < mesh->material_count(); ++material) {
+        const Rgb emission = mesh->emitted(material);
         std::vector<Triangle> emissive;
-        for (std::size_t i = 0; emission != Rgb(0) && i < mesh.triangles.size(); ++i) {
-            if (mesh.material_index(i) == material) {
-                emissive.push_back(mesh.triangles[i]);
+        for (std::size_t i = 0; emission != Rgb(0) && i < mesh->triangles.size(); ++i) {
+            if (mesh->material_index(i) == material) {
+                emissive.push_back(mesh->triangles[i]);
             }
         }
-        for (const glm::dmat4& to_world : mesh.transforms) {
-            if (emissive.empty()) break;
+        for (std::uint32_t k = 0; k < mesh->transforms.size() && !emissive.empty(); ++k) {
             const bool baked = !traced.world_vertices.empty();
             std::vector<Vec3d> vertices;
             for (const Vec3f& v : traced.vertices()) {
-                vertices.push_back(baked ? Vec3d(v) : transform_point(to_world, Vec3d(v)));
+                vertices.push_back(baked ? Vec3d(v) : transform_point(mesh->transforms[k], Vec3d(v)));
+            }
+            if (emissive.size() > kMostSingleFaces) {
+                add_mesh_light({nullptr, emission, first_placement + k, mesh, material}, vertices, emissive);
+                continue;
             }
             for (FaceOutline& outline : merge_faces(vertices, emissive)) {
                 lights.emplace_back(make_polygon_light(std::move(outline), emission, true));
             }
         }
+    }
+}
+
+void CompiledScene::Impl::add_mesh_light(MeshLight light, std::span<const Vec3d> vertices,
+                                         std::span<const Triangle> triangles) {
+    EmitterLevels levels = make_emitter_levels(vertices, triangles, kLeastLevelFaces);
+    if (!levels.levels.empty()) {
+        light.shape = std::make_shared<const EmitterLevels>(std::move(levels));
+        lights.emplace_back(std::move(light));
     }
 }
 

@@ -75,6 +75,7 @@ void ShadowRays::trace(const Light& light, const Hits& hits, const LitHits& lit,
     if (phase.first) {
         directions_.clear();
         weights_.clear();
+        hidden_layers_.clear();
         blocked_.clear();
         runs_.clear();
         solid_angles_.assign(lit.hit.size() * set_stride_, 0.0);
@@ -93,8 +94,23 @@ void ShadowRays::trace(const Light& light, const Hits& hits, const LitHits& lit,
         }
     }
     blocked_.resize(directions_.size());
-    tracer_->occluded(rays_, std::span(blocked_).subspan(before));
+    if (const auto* mesh = std::get_if<MeshLight>(&light)) {
+        follow(*mesh, before);
+    } else {
+        tracer_->occluded(rays_, std::span(blocked_).subspan(before));
+    }
     rays_traced_ += rays_.size();
+}
+
+/// What a ray meets first is the light, or in its way; what lies behind that is hidden. A ray that passes by a mesh
+/// whose outline is known no better was not stopped.
+void ShadowRays::follow(const MeshLight& light, std::size_t before) {
+    met_.resize(rays_.size());
+    tracer_->intersect(rays_, met_);
+    for (std::size_t i = 0; i < met_.size(); ++i) {
+        const bool seen = hidden_layers_[before + i] == 0 && (met_[i].missed() || light.holds(met_[i]));
+        blocked_[before + i] = seen ? 0 : 1;
+    }
 }
 
 bool ShadowRays::shines(const LitHits& lit, std::size_t lit_index, const Material& material, std::uint32_t set) const {
@@ -120,7 +136,7 @@ void ShadowRays::draw(const Drawing& drawing, const LitHits& lit, std::size_t li
     if (!mirrors_only) {
         for (std::uint32_t ray = 0; ray < drawing.rays; ++ray) {
             const LightSample sample = light_sampler_.sample(drawing.point(0, ray));
-            push(drawing, sample.direction, sample.distance, sample.weight);
+            push(drawing, sample.direction, sample.distance, sample.weight, light_sampler_.layers(sample.direction));
         }
     }
     end_run();
@@ -137,6 +153,7 @@ void ShadowRays::draw_delta(const Drawing& drawing, const DeltaView& source) {
     for (std::uint32_t ray = 0; ray < drawing.mirror_rays; ++ray) {
         directions_.emplace_back(source.direction);
         weights_.push_back(1);
+        hidden_layers_.push_back(0);
         rays_.push_back(drawing.start.towards(source.direction, source.distance));
     }
     runs_.push_back({begin, directions_.size()});
@@ -156,16 +173,17 @@ void ShadowRays::draw_lobes(const Drawing& drawing, std::size_t lit_index, std::
         const Vec3d direction = sampler.sample(drawing.point(1 + set, ray));
         const std::optional<double> distance = direction.z > 0 ? light_sampler_.meets(direction) : std::nullopt;
         if (distance) {
-            push(drawing, direction, *distance, solid_angle);
+            push(drawing, direction, *distance, solid_angle, alpha > 0 ? light_sampler_.layers(direction) : 1);
         }
     }
 }
 
-void ShadowRays::push(const Drawing& drawing, const Vec3d& direction, double distance, double weight) {
+void ShadowRays::push(const Drawing& drawing, const Vec3d& direction, double distance, double weight, int layers) {
     const double factor = drawing.profile.factor(direction);
-    if (factor > 0) {
+    for (int layer = 0; weight * factor > 0 && layer < layers; ++layer) {
         directions_.emplace_back(direction);
         weights_.push_back(static_cast<float>(weight * factor));
+        hidden_layers_.push_back(layer > 0 ? 1 : 0);
         rays_.push_back(drawing.start.towards(direction, distance));
     }
 }

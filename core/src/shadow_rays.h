@@ -68,8 +68,10 @@ class ShadowRays {
 
     void draw(const Drawing& drawing, const LitHits& lit, std::size_t lit_index);
     void draw_delta(const Drawing& drawing, const DeltaView& source);
+    void follow(const MeshLight& light, std::size_t before);
     void draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set);
-    void push(const Drawing& drawing, const Vec3d& direction, double distance, double weight);
+    /// layers: of the light, one behind the other, each of which the unshadowed radiance counts.
+    void push(const Drawing& drawing, const Vec3d& direction, double distance, double weight, int layers);
     bool shines(const LitHits& lit, std::size_t lit_index, const Material& material, std::uint32_t set) const;
 
     const RayTracer* tracer_;
@@ -81,7 +83,9 @@ class ShadowRays {
     bool delta_ = false;  // the light has no extent
     std::uint64_t rays_traced_ = 0;
 
-    std::vector<Ray> rays_;  // of the phase
+    std::vector<RayHit> met_;
+    std::vector<std::uint8_t> hidden_layers_;  // 1: behind another layer of the light
+    std::vector<Ray> rays_;                    // of the phase
     std::vector<Vec3f> directions_;
     std::vector<float> weights_;
     std::vector<std::uint8_t> blocked_;

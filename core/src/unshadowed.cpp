@@ -65,6 +65,10 @@ void Unshadowed::shade(const ShadingPoints& points, std::span<const std::uint32_
     std::transform(some.begin(), some.end(), cosines_.begin(),
                    [&](std::uint32_t point) { return double{points.cos_theta_o[point]}; });
     views_.assign(material, cosines_, true);
+    tolerance_ = material.tolerance();
+    if (views_.lobe_count() == 0) {
+        return;
+    }
     for (std::size_t i = 0; i < lights.size(); ++i) {
         integrate(points, some, lights[i], i, report);
     }
@@ -104,8 +108,38 @@ void Unshadowed::integrate(const ShadingPoints& points, std::span<const std::uin
         reflect(points, some, light, light_index, report);
         return;
     }
+    if (const auto* mesh = std::get_if<MeshLight>(&light)) {
+        integrate_mesh(points, some, *mesh, light_index, report);
+        return;
+    }
     seen_by_.clear();
     see(light, points, some);
+    if (std::holds_alternative<PolygonLight>(light)) {
+        shade_seen(points, some, light, light_index, polygons_, report);
+    } else {
+        shade_seen(points, some, light, light_index, circles_.arrays(), report);
+    }
+}
+
+void Unshadowed::integrate_mesh(const ShadingPoints& points, std::span<const std::uint32_t> some,
+                                const MeshLight& light, std::size_t light_index, RenderReport& report) {
+    outlines_.clear();
+    for (std::size_t i = 0; i < some.size(); ++i) {
+        outlines_.look(*light.shape, points.frame[some[i]], tolerance_, static_cast<std::uint32_t>(i));
+    }
+    outlines_.for_each_size(polygons_, seen_by_,
+                            [&] { shade_seen(points, some, light, light_index, polygons_, report); });
+    seen_by_.assign(outlines_.inside().begin(), outlines_.inside().end());
+    circles_.resize(seen_by_.size());
+    for (std::size_t k = 0; k < seen_by_.size(); ++k) {
+        circles_.set(k, circle_of(CapView{CapView::Kind::inside, Vec3d(0, 0, 1), 1}));
+    }
+    shade_seen(points, some, light, light_index, circles_.arrays(), report);
+}
+
+template <class Lights>
+void Unshadowed::shade_seen(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
+                            std::size_t light_index, Lights&& lights, RenderReport& report) {
     if (seen_by_.empty()) {
         return;
     }
@@ -114,15 +148,14 @@ void Unshadowed::integrate(const ShadingPoints& points, std::span<const std::uin
         if (!reflects(traits, views_.lobe(lobe).shape())) {
             continue;
         }
-        if (std::holds_alternative<PolygonLight>(light)) {
-            batch_.shade(views_.lobe(lobe), polygons_, seen_by_, true);
-        } else {
-            batch_.shade(views_.lobe(lobe), circles_.arrays(), seen_by_, true);
-        }
+        batch_.shade(views_.lobe(lobe), lights, seen_by_, true);
         float* values = values_of(light_index, lobe);
         for (std::size_t k = 0; k < seen_by_.size(); ++k) {
             const std::uint32_t point = some[seen_by_[k]];
-            values[point] = batch_.values()[k];
+            values[point] += batch_.values()[k];
+            if (k > 0 && seen_by_[k] == seen_by_[k - 1]) {
+                continue;  // another face of the same mesh
+            }
             count(batch_.way(k), batch_.efforts()[k], points.hit_count(point), report);
             report.over_tolerance += batch_.met(views_.lobe(lobe), k, seen_by_[k]) ? 0 : points.hit_count(point);
             if (!std::holds_alternative<EvenProfile>(traits.profile) && values[point] > 0) {

@@ -14,6 +14,7 @@
 #include "lobe_batch.h"
 #include "material_lobes.h"
 #include "material_views.h"
+#include "mesh_outlines.h"
 #include "polygon_batch.h"
 #include "profile_mean.h"
 #include "shading_points.h"
@@ -43,6 +44,13 @@ class Unshadowed {
     void see(const Light& light, const ShadingPoints& points, std::span<const std::uint32_t> some);
     void integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
                    std::size_t light_index, RenderReport& report);
+    /// The same of a mesh.
+    void integrate_mesh(const ShadingPoints& points, std::span<const std::uint32_t> some, const MeshLight& light,
+                        std::size_t light_index, RenderReport& report);
+    /// Adds what the points seen_by_ get of lights, one each.
+    template <class Lights>
+    void shade_seen(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
+                    std::size_t light_index, Lights&& lights, RenderReport& report);
     /// The same of a source without extent.
     void reflect(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
                  std::size_t light_index, RenderReport& report);
@@ -64,6 +72,8 @@ class Unshadowed {
     std::vector<std::uint32_t> seen_by_;  // indices of these points
     CircleBatch circles_;
     PolygonBatch polygons_;
+    MeshOutlines outlines_;
+    double tolerance_ = 0;
     ProfileMean profile_;
 };
 

@@ -3,10 +3,13 @@
 // Lights, in the world frame.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <variant>
 #include <vector>
 
 #include "shlight/emission_profile.h"
+#include "shlight/mesh.h"
 #include "shlight/ray_tracer.h"
 #include "shlight/types.h"
 
@@ -65,7 +68,24 @@ struct ParallelSource {
     LightTraits traits = {};
 };
 
-using Light = std::variant<SphereLight, PolygonLight, SunLight, PointSource, ParallelSource>;
+struct EmitterLevels;
+
+/// The emissive faces of a mesh, where they are many: to both sides.
+struct MeshLight {
+    std::shared_ptr<const EmitterLevels> shape;
+    Rgb radiance;
+    // Which of the faces that rays meet are the light's.
+    std::uint32_t instance;  ///< RayHit::instance
+    std::shared_ptr<const Mesh> mesh;
+    std::size_t material;  ///< of the mesh's
+    LightTraits traits = {};
+
+    bool holds(const RayHit& hit) const {
+        return hit.instance == instance && mesh->material_index(hit.triangle) == material;
+    }
+};
+
+using Light = std::variant<SphereLight, PolygonLight, MeshLight, SunLight, PointSource, ParallelSource>;
 
 const LightTraits& traits_of(const Light& light);
 /// Radiance, or of sources without extent: intensity or irradiance.

@@ -59,7 +59,8 @@ class CompiledScene {
 
 class Scene {
   public:
-    /// Throws as check_mesh does. Emissive faces become two-sided polygon lights; as every face, the camera sees them
+    /// Throws as check_mesh does. Emissive faces become two-sided polygon lights,
+    /// many of them one mesh light; as every face, the camera sees them
     /// and they block light.
     void add_mesh(Mesh mesh);
     /// Lamps throw as make_sphere_light, make_polygon_light … do. They are not seen by the camera and do not block

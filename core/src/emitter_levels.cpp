@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: MIT
+#include "emitter_levels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include <meshoptimizer.h>
+
+namespace shlight {
+namespace {
+
+/// How much of the strip between two outlines lies on one side more than on the other: of levels of one area, a seventh
+/// was the most for spheres.
+constexpr double kOneSided = 0.15;
+/// Sine of an edge's bend that is none.
+constexpr double kFlat = 1e-7;
+/// A level has this share of the faces of the one before: errors grow as fast as faces become fewer, so that their sum
+/// is hardly more than the last one.
+constexpr std::size_t kReduction = 4;
+/// Faces of the finest level: with more, edges are so short that their outlines zigzag, and of a sphere this many show
+/// 0.05 % of the solid angle too much or too little.
+constexpr std::size_t kMostFaces = 5120;
+/// Of the extent: beyond, a coarse mesh is nothing like the fine one.
+constexpr float kLargestError = 0.05F;
+
+/// A mesh whose vertices are all different and all used.
+struct IndexedMesh {
+    std::vector<Vec3d> vertices;
+    std::vector<Triangle> faces;
+};
+
+Vec3d scaled_normal(const IndexedMesh& mesh, const Triangle& t) {
+    const Vec3d& a = mesh.vertices[t.x];
+    return glm::cross(mesh.vertices[t.y] - a, mesh.vertices[t.z] - a);
+}
+
+double area(const IndexedMesh& mesh) {
+    double sum = 0;
+    for (const Triangle& t : mesh.faces) {
+        sum += glm::length(scaled_normal(mesh, t)) / 2;
+    }
+    return sum;
+}
+
+/// Vertices in order of their coordinates, each once, without those that no face uses. What is closer than a millionth
+/// of the extent is the same: poles and seams that were computed twice.
+IndexedMesh welded(std::span<const Vec3d> vertices, std::span<const Triangle> triangles) {
+    std::vector<std::uint32_t> order;
+    double extent = 0;
+    for (const Triangle& t : triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+            const Vec3d v = glm::abs(vertices[t[corner]] - vertices[triangles.front().x]);
+            extent = std::max({extent, v.x, v.y, v.z});
+        }
+    }
+    std::vector<Vec3d> rounded(vertices.size());
+    for (std::size_t i = 0; i < vertices.size() && extent > 0; ++i) {
+        rounded[i] = glm::round((vertices[i] - vertices[triangles.front().x]) / (1e-6 * extent));
+    }
+    for (const Triangle& t : triangles) {
+        order.insert(order.end(), {t.x, t.y, t.z});
+    }
+    const auto key = [&](std::uint32_t i) { return std::tie(rounded[i].x, rounded[i].y, rounded[i].z); };
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    IndexedMesh mesh;
+    std::vector<std::uint32_t> position(vertices.size());
+    const Vec3d* before = nullptr;
+    for (const std::uint32_t i : order) {
+        if (before == nullptr || *before != rounded[i]) {
+            mesh.vertices.push_back(vertices[i]);
+            before = &rounded[i];
+        }
+        position[i] = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+    }
+    for (const Triangle& t : triangles) {
+        const Triangle face(position[t.x], position[t.y], position[t.z]);
+        if (face.x != face.y && face.y != face.z && face.z != face.x && scaled_normal(mesh, face) != Vec3d(0)) {
+            mesh.faces.push_back(face);
+        }
+    }
+    return mesh;
+}
+
+/// Each face's half edges, paired with those that run the other way.
+std::vector<EmitterEdge> edges_of(const IndexedMesh& mesh) {
+    struct Half {
+        std::uint32_t low, high, face;
+        bool forward;
+    };
+    std::vector<Half> halves;
+    for (std::uint32_t face = 0; face < mesh.faces.size(); ++face) {
+        for (int corner = 0; corner < 3; ++corner) {
+            const std::uint32_t from = mesh.faces[face][corner];
+            const std::uint32_t to = mesh.faces[face][(corner + 1) % 3];
+            halves.push_back({std::min(from, to), std::max(from, to), face, from < to});
+        }
+    }
+    std::sort(halves.begin(), halves.end(), [](const Half& a, const Half& b) {
+        return std::tie(a.low, a.high, a.face) < std::tie(b.low, b.high, b.face);
+    });
+    std::vector<EmitterEdge> edges;
+    for (std::size_t first = 0; first < halves.size();) {
+        std::size_t last = first;
+        std::array<std::vector<std::uint32_t>, 2> sides;
+        while (last < halves.size() && halves[last].low == halves[first].low &&
+               halves[last].high == halves[first].high) {
+            sides[halves[last].forward ? 0 : 1].push_back(halves[last].face);
+            ++last;
+        }
+        for (std::size_t i = 0; i < std::max(sides[0].size(), sides[1].size()); ++i) {
+            const auto side = [&](std::size_t k) { return i < sides[k].size() ? sides[k][i] : EmitterEdge::kNone; };
+            edges.push_back({halves[first].low, halves[first].high, side(0), side(1)});
+        }
+        first = last;
+    }
+    return edges;
+}
+
+bool has_border(std::span<const EmitterEdge> edges) {
+    return std::any_of(edges.begin(), edges.end(), [](const EmitterEdge& edge) {
+        return edge.left == EmitterEdge::kNone || edge.right == EmitterEdge::kNone;
+    });
+}
+
+/// Six times the volume that the faces enclose.
+double volume(const IndexedMesh& mesh) {
+    double sum = 0;
+    const Vec3d& origin = mesh.vertices.front();
+    for (const Triangle& t : mesh.faces) {
+        sum += glm::dot(scaled_normal(mesh, t), mesh.vertices[t.x] - origin);
+    }
+    return sum;
+}
+
+/// The corner of a face that is not on an edge.
+const Vec3d& opposite(const IndexedMesh& mesh, std::uint32_t face, const EmitterEdge& edge) {
+    const Triangle& t = mesh.faces[face];
+    return mesh.vertices[t.x ^ t.y ^ t.z ^ edge.from ^ edge.to];
+}
+
+/// Of a closed surface: no edge is bent inwards, and it is in one piece.
+bool is_convex(const IndexedMesh& mesh) {
+    std::vector<std::uint32_t> piece(mesh.faces.size());
+    std::iota(piece.begin(), piece.end(), 0U);
+    const auto root_of = [&](std::uint32_t face) {
+        while (piece[face] != face) {
+            face = piece[face] = piece[piece[face]];
+        }
+        return face;
+    };
+    std::size_t pieces = mesh.faces.size();
+    for (const EmitterEdge& edge : edges_of(mesh)) {
+        const Vec3d normal = scaled_normal(mesh, mesh.faces[edge.left]);
+        const Vec3d across = opposite(mesh, edge.right, edge) - mesh.vertices[edge.from];
+        if (glm::dot(normal, across) > kFlat * glm::length(normal) * glm::length(across)) {
+            return false;
+        }
+        const std::uint32_t a = root_of(edge.left);
+        const std::uint32_t b = root_of(edge.right);
+        pieces -= a != b ? 1 : 0;
+        piece[a] = b;
+    }
+    return pieces == 1;
+}
+
+/// Takes away faces until about so many are left, and adds to the error; false, and the mesh is as it was, if that
+/// cannot be done without tearing it or making it something else.
+bool simplify(IndexedMesh& mesh, std::size_t faces, bool closed, double& error) {
+    std::vector<float> positions;
+    for (const Vec3d& v : mesh.vertices) {
+        // About the first vertex: far from the world's origin floats have few digits for the shape.
+        const Vec3d local = v - mesh.vertices.front();
+        for (int k = 0; k < 3; ++k) {
+            positions.push_back(static_cast<float>(local[k]));
+        }
+    }
+    std::vector<unsigned int> indices;
+    for (const Triangle& t : mesh.faces) {
+        indices.insert(indices.end(), {t.x, t.y, t.z});
+    }
+    std::vector<unsigned int> kept(indices.size());
+    float relative = 0;
+    constexpr std::size_t kStride = 3 * sizeof(float);
+    kept.resize(meshopt_simplify(kept.data(), indices.data(), indices.size(), positions.data(), mesh.vertices.size(),
+                                 kStride, 3 * faces, kLargestError, 0, &relative));
+    std::vector<Triangle> triangles;
+    for (std::size_t i = 0; i + 2 < kept.size(); i += 3) {
+        triangles.emplace_back(kept[i], kept[i + 1], kept[i + 2]);
+    }
+    IndexedMesh simple = welded(mesh.vertices, triangles);
+    if (2 * simple.faces.size() > mesh.faces.size() || simple.faces.empty() || has_border(edges_of(simple)) == closed) {
+        return false;
+    }
+    error += static_cast<double>(relative) *
+             static_cast<double>(meshopt_simplifyScale(positions.data(), mesh.vertices.size(), kStride));
+    mesh = std::move(simple);
+    return true;
+}
+
+void scale(IndexedMesh& mesh, const Vec3d& center, double factor) {
+    for (Vec3d& v : mesh.vertices) {
+        v = center + factor * (v - center);
+    }
+}
+
+EmitterLevel level_of(IndexedMesh mesh, double error) {
+    EmitterLevel level;
+    level.edges = edges_of(mesh);
+    for (const Triangle& t : mesh.faces) {
+        const Vec3d normal = scaled_normal(mesh, t);
+        level.planes.push_back({normal, glm::dot(normal, mesh.vertices[t.x])});
+    }
+    level.vertices = std::move(mesh.vertices);
+    level.faces = std::move(mesh.faces);
+    level.error = error;
+    return level;
+}
+
+void find_extent(const IndexedMesh& mesh, EmitterLevels& emitter) {
+    Vec3d low = mesh.vertices.front();
+    Vec3d high = low;
+    for (const Vec3d& v : mesh.vertices) {
+        low = glm::min(low, v);
+        high = glm::max(high, v);
+    }
+    emitter.center = 0.5 * (low + high);
+    emitter.radius = 0;
+    for (const Vec3d& v : mesh.vertices) {
+        emitter.radius = std::max(emitter.radius, glm::length(v - emitter.center));
+    }
+}
+
+}  // namespace
+
+const EmitterLevel& level_for(const EmitterLevels& emitter, double distance, double tolerance) {
+    // A surface shows a quarter of its area on average (Cauchy), which is a share of the hemisphere.
+    const double shown = emitter.area / 4;
+    const double share = std::min(1.0, shown / (std::numbers::pi * distance * distance));
+    for (std::size_t i = emitter.levels.size() - 1; i > 0; --i) {
+        const double strip = 2 * std::numbers::pi * emitter.radius * emitter.levels[i].error;
+        if (kOneSided * strip / shown * share <= tolerance) {
+            return emitter.levels[i];
+        }
+    }
+    return emitter.levels.front();
+}
+
+EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
+                                  std::size_t least_faces) {
+    EmitterLevels emitter{{}, false, false, Vec3d(0), 0, 0};
+    IndexedMesh mesh = welded(vertices, triangles);
+    if (mesh.faces.empty()) {
+        return emitter;
+    }
+    find_extent(mesh, emitter);
+    emitter.closed = !has_border(edges_of(mesh));
+    if (emitter.closed && volume(mesh) < 0) {
+        for (Triangle& t : mesh.faces) {
+            std::swap(t.y, t.z);
+        }
+    }
+    emitter.area = area(mesh);
+    emitter.convex = emitter.closed && is_convex(mesh);
+    double error = 0;
+    if (mesh.faces.size() > kMostFaces) {
+        simplify(mesh, kMostFaces, emitter.closed, error);
+    }
+    do {
+        IndexedMesh level = mesh;
+        scale(level, emitter.center, std::sqrt(emitter.area / area(level)));
+        emitter.levels.push_back(level_of(std::move(level), error));
+    } while (mesh.faces.size() / kReduction >= least_faces &&
+             simplify(mesh, mesh.faces.size() / kReduction, emitter.closed, error));
+    return emitter;
+}
+
+}  // namespace shlight

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+//
+// Emissive meshes at several levels of detail. Seen from outside, a surface of uniform radiance is known by its outline
+// alone, and a coarse mesh has the outline of a fine one within its error.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "shlight/ray_tracer.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// An edge with the faces along it: `left` runs through it from `from` to `to`, `right` the other way; kNone at a
+/// border. Where more than two faces meet, an edge stands for each pair.
+struct EmitterEdge {
+    static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+    std::uint32_t from, to;
+    std::uint32_t left, right;
+};
+
+/// A face's plane: a point lies before it where dot(normal, point) > height.
+struct EmitterPlane {
+    Vec3d normal;
+    double height;
+};
+
+struct EmitterLevel {
+    std::vector<Vec3d> vertices;
+    std::vector<EmitterEdge> edges;
+    std::vector<EmitterPlane> planes;  ///< one for each face; of any length of the normal
+    std::vector<Triangle> faces;
+    double error;  ///< distance between this surface and the finest, about [m]
+};
+
+/// A surface that emits to both sides, in the world frame.
+struct EmitterLevels {
+    std::vector<EmitterLevel> levels;  ///< from fine to coarse, at least one
+    bool closed;                       ///< encloses a volume, and is wound so that its normals point out of it
+    bool convex;                       ///< and every point before some face lies outside
+    Vec3d center;                      ///< of the bounding box
+    double radius;                     ///< largest distance of a vertex from it
+    double area;
+};
+
+/// The coarsest level whose outline, as radiance of a white surface at this distance from the centre, errs by no more
+/// than the tolerance, about; the finest if none does.
+const EmitterLevel& level_for(const EmitterLevels& emitter, double distance, double tolerance);
+
+/// Equal vertices are joined, and triangles without area left out. The finest level has at most some 5000 faces, each
+/// one after it about a quarter of those of the one before, down to `least_faces`; all are scaled to the area of the
+/// given mesh: a closed surface shows a quarter of its area on average (Cauchy), so that no level is brighter.
+/// No levels if no triangle has an area.
+EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
+                                  std::size_t least_faces);
+
+}  // namespace shlight

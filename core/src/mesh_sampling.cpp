@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "emitter_levels.h"
+#include "light_sampling.h"
+
+namespace shlight {
+namespace {
+
+/// Of the radiance of a white surface: rays see the light itself, the outline only guides them.
+constexpr double kTolerance = 2e-3;
+
+/// Angle by which a plane figure is longest, of points about the origin.
+double longest_direction(std::span<const glm::dvec2> points, const glm::dvec2& middle) {
+    double xx = 0;
+    double xy = 0;
+    double yy = 0;
+    for (const glm::dvec2& p : points) {
+        const glm::dvec2 v = p - middle;
+        xx += v.x * v.x;
+        xy += v.x * v.y;
+        yy += v.y * v.y;
+    }
+    return 0.5 * std::atan2(2 * xy, xx - yy);
+}
+
+glm::dvec2 middle_of(std::span<const glm::dvec2> points) {
+    glm::dvec2 sum(0);
+    for (const glm::dvec2& p : points) {
+        sum += p;
+    }
+    return sum / static_cast<double>(points.size());
+}
+
+}  // namespace
+
+void MeshSampler::reset(const MeshLight& light, const ShadingFrame& frame) {
+    around_.reset();
+    convex_ = light.shape->convex;
+    kind_ = view_.look(*light.shape, frame, kTolerance);
+    if (kind_ == MeshView::Kind::outline) {
+        // The mesh may lie inside its coarse outline, where rays would pass by.
+        enclose(0.5 * view_.error() / light.shape->radius);
+    } else {
+        around_.emplace(CapView{CapView::Kind::inside, Vec3d(0, 0, 1), 1});
+    }
+}
+
+/// Draws the outline's plane, and about the outline the rectangle that is as long as it.
+void MeshSampler::enclose(double shrink) {
+    const std::span<const Vec3d> outline = view_.outline();
+    // All vertices have the same height along the normal of their plane.
+    axis_ = Vec3d(0);
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+        axis_ += glm::cross(outline[i], outline[(i + 1) % outline.size()]);
+    }
+    axis_ = glm::normalize(axis_);
+    axis_ *= glm::dot(axis_, outline.front()) < 0 ? -1.0 : 1.0;
+    const double height = glm::dot(axis_, outline.front());
+    along_ =
+        glm::normalize(std::abs(axis_.z) < 0.9 ? glm::cross(axis_, Vec3d(0, 0, 1)) : glm::cross(axis_, Vec3d(1, 0, 0)));
+    across_ = glm::cross(axis_, along_);
+    outline_.clear();
+    for (const Vec3d& v : outline) {
+        outline_.emplace_back(glm::dot(v, along_) / height, glm::dot(v, across_) / height);
+    }
+    const glm::dvec2 middle = middle_of(outline_);
+    for (glm::dvec2& p : outline_) {
+        p = middle + (1 - std::min(shrink, 0.1)) * (p - middle);
+    }
+    const double angle = longest_direction(outline_, middle);
+    const glm::dvec2 u(std::cos(angle), std::sin(angle));
+    const glm::dvec2 v(-u.y, u.x);
+    glm::dvec2 low(std::numeric_limits<double>::infinity());
+    glm::dvec2 high = -low;
+    for (const glm::dvec2& p : outline_) {
+        const glm::dvec2 q(glm::dot(p, u), glm::dot(p, v));
+        low = glm::min(low, q);
+        high = glm::max(high, q);
+    }
+    const auto corner = [&](double a, double b) {
+        const glm::dvec2 p = a * u + b * v;
+        return axis_ + p.x * along_ + p.y * across_;
+    };
+    rectangle_.reset({corner(low.x, low.y), corner(high.x, low.y), corner(high.x, high.y), corner(low.x, high.y)});
+}
+
+LightSample MeshSampler::sample(const glm::dvec2& point) const {
+    LightSample drawn = around_ ? around_->sample(point) : rectangle_.sample(point);
+    drawn.distance = std::numeric_limits<double>::infinity();
+    if (layers(drawn.direction) == 0) {
+        drawn.weight = 0;
+    }
+    return drawn;
+}
+
+std::optional<double> MeshSampler::meets(const Vec3d& direction) const {
+    return layers(direction) > 0 ? std::optional(std::numeric_limits<double>::infinity()) : std::nullopt;
+}
+
+int MeshSampler::layers(const Vec3d& direction) const {
+    if (kind_ == MeshView::Kind::faces) {
+        const std::span<const Vec3d> corners = view_.faces();
+        int count = 0;
+        for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+            const double ab = glm::dot(direction, glm::cross(corners[i], corners[i + 1]));
+            const double bc = glm::dot(direction, glm::cross(corners[i + 1], corners[i + 2]));
+            const double ca = glm::dot(direction, glm::cross(corners[i + 2], corners[i]));
+            const bool through = (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
+            if (through && glm::dot(direction, corners[i] + corners[i + 1] + corners[i + 2]) > 0) {
+                ++count;
+            }
+        }
+        return count;
+    }
+    if (kind_ != MeshView::Kind::outline) {
+        return kind_ == MeshView::Kind::inside ? 1 : 0;
+    }
+    const double height = glm::dot(direction, axis_);
+    if (!(height > 0)) {
+        return 0;
+    }
+    // How often the outline winds about the direction: edges that cross the ray from it to the right.
+    const glm::dvec2 p(glm::dot(direction, along_) / height, glm::dot(direction, across_) / height);
+    int winding = 0;
+    for (std::size_t i = 0; i < outline_.size(); ++i) {
+        const glm::dvec2& a = outline_[i];
+        const glm::dvec2& b = outline_[(i + 1) % outline_.size()];
+        const double left = (b.x - a.x) * (p.y - a.y) - (p.x - a.x) * (b.y - a.y);
+        winding += a.y <= p.y && b.y > p.y && left > 0 ? 1 : 0;
+        winding -= a.y > p.y && b.y <= p.y && left < 0 ? 1 : 0;
+    }
+    return convex_ ? std::min(1, std::abs(winding)) : std::abs(winding);
+}
+
+}  // namespace shlight

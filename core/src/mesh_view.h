@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+//
+// An emissive mesh as a hit sees it, in its shading frame.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "emitter_levels.h"
+#include "hits.h"
+#include "shlight/types.h"
+#include "silhouette.h"
+
+namespace shlight {
+
+/// Looks at one mesh after the other; keeps its memory.
+class MeshView {
+  public:
+    enum class Kind {
+        hidden,
+        outline,  ///< the region inside outline()
+        faces,    ///< that of each of faces(): the outline is wider than half of space
+        inside    ///< all directions: the hit lies within a closed surface
+    };
+
+    /// tolerance: of the radiance of a white surface.
+    Kind look(const EmitterLevels& emitter, const ShadingFrame& frame, double tolerance);
+
+    /// Planar and counter-clockwise as seen from the hit.
+    std::span<const Vec3d> outline() const { return outline_; }
+    /// Three corners each, either way round.
+    std::span<const Vec3d> faces() const { return faces_; }
+    /// Between the level that was looked at and the mesh [m].
+    double error() const { return error_; }
+
+  private:
+    Kind look_at_faces(const EmitterLevel& level, const Vec3d& point, const ShadingFrame& frame, bool front_only);
+
+    Silhouette silhouette_;
+    std::vector<Vec3d> local_, outline_, faces_;
+    double error_ = 0;
+};
+
+}  // namespace shlight

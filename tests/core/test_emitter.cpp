@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+//
+// Outlines of emissive meshes against the sum over their faces, and levels of detail against the sphere.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "emitter_levels.h"
+#include "random_input.h"
+#include "shlight/cap.h"
+#include "shlight/polygon.h"
+#include "silhouette.h"
+#include "solids.h"
+
+namespace shlight {
+namespace {
+
+using testing::icosphere;
+using testing::RandomInput;
+using testing::Solid;
+
+constexpr int kOrder = 6;
+using Row = std::array<double, kOrder * kOrder>;
+
+double largest_difference(const Row& a, const Row& b) {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        largest = std::max(largest, std::abs(a[i] - b[i]));
+    }
+    return largest;
+}
+
+/// Of all faces that are seen from `point`, from their outer side or from either.
+Row sum_of_faces(const EmitterLevel& level, bool outer_only, const Vec3d& point, bool clip) {
+    Row sum{};
+    for (std::size_t i = 0; i < level.faces.size(); ++i) {
+        if (outer_only && !(glm::dot(level.planes[i].normal, point) > level.planes[i].height)) {
+            continue;
+        }
+        std::vector<Vec3d> corners;
+        for (int k = 0; k < 3; ++k) {
+            corners.push_back(level.vertices[level.faces[i][k]] - point);
+        }
+        Row row{};
+        polygon_coefficients<double>(corners, kOrder, clip, row.data());
+        for (std::size_t j = 0; j < row.size(); ++j) {
+            sum[j] += row[j];
+        }
+    }
+    return sum;
+}
+
+Row of_outline(const EmitterLevels& emitter, const EmitterLevel& level, const Vec3d& point, bool clip) {
+    Row row{};
+    Silhouette silhouette;
+    std::vector<Vec3d> planar;
+    EXPECT_TRUE(silhouette.find(level, emitter.closed, point));
+    EXPECT_TRUE(flatten(silhouette.outline(), planar));
+    polygon_coefficients<double>(planar, kOrder, clip, row.data());
+    return row;
+}
+
+void expect_outline_is_sum_of_faces(const EmitterLevels& emitter, const Vec3d& point, bool clip) {
+    const EmitterLevel& level = emitter.levels.front();
+    const Row faces = sum_of_faces(level, emitter.closed, point, clip);
+    // Faces and outline each lose a few digits of the solid angle's.
+    EXPECT_LE(largest_difference(of_outline(emitter, level, point, clip), faces), 1e-11 * (1 + faces[0]));
+}
+
+TEST(Silhouette, OfAClosedSurfaceHoldsTheFacesThatAreSeen) {
+    RandomInput random(1);
+    for (const int subdivisions : {0, 1, 2}) {
+        const Solid solid = icosphere(subdivisions);
+        const EmitterLevels emitter = make_emitter_levels(solid.vertices, solid.triangles, 1000);
+        ASSERT_TRUE(emitter.closed);
+        for (int i = 0; i < 20; ++i) {
+            const Vec3d point = random.uniform(1.05, 5) * random.direction();
+            expect_outline_is_sum_of_faces(emitter, point, i % 2 == 0);
+        }
+    }
+}
+
+TEST(Silhouette, OfAConcaveSurfaceCountsLayers) {
+    const Solid solid = testing::torus(1, 0.3, 24, 12);
+    const EmitterLevels emitter = make_emitter_levels(solid.vertices, solid.triangles, 1000);
+    ASSERT_TRUE(emitter.closed);
+    for (const Vec3d& point : {Vec3d(0.1, 0.2, 3), Vec3d(3, 0.2, 0.1), Vec3d(2.5, -0.3, 1.1)}) {
+        expect_outline_is_sum_of_faces(emitter, point, false);
+    }
+}
+
+TEST(Silhouette, OfAnOpenSurfaceHoldsBothSides) {
+    Solid solid = icosphere(2);
+    std::erase_if(solid.triangles, [&](const Triangle& t) { return solid.vertices[t.x].z > 0.3; });
+    const EmitterLevels emitter = make_emitter_levels(solid.vertices, solid.triangles, 1000);
+    ASSERT_FALSE(emitter.closed);
+    for (const Vec3d& point : {Vec3d(0.1, 0.2, 3), Vec3d(2, 0.2, 0.9), Vec3d(2.5, -0.3, -1.1)}) {
+        expect_outline_is_sum_of_faces(emitter, point, false);
+    }
+}
+
+TEST(Silhouette, InsideAClosedSurfaceThereIsNone) {
+    const Solid solid = icosphere(1);
+    const EmitterLevels emitter = make_emitter_levels(solid.vertices, solid.triangles, 1000);
+    Silhouette silhouette;
+    EXPECT_FALSE(silhouette.find(emitter.levels.front(), true, Vec3d(0.1, 0.2, -0.3)));
+    EXPECT_FALSE(silhouette.any_front());
+    EXPECT_TRUE(silhouette.find(emitter.levels.front(), true, Vec3d(0, 0, 2)));
+}
+
+TEST(EmitterLevels, AreWoundOutwardsWhateverTheMeshWas) {
+    Solid solid = icosphere(1);
+    for (Triangle& t : solid.triangles) {
+        std::swap(t.x, t.y);
+    }
+    const EmitterLevels emitter = make_emitter_levels(solid.vertices, solid.triangles, 1000);
+    for (const EmitterPlane& plane : emitter.levels.front().planes) {
+        EXPECT_GT(plane.height, 0);
+    }
+}
+
+TEST(EmitterLevels, JoinEqualVerticesAndDropFacesWithoutArea) {
+    const Solid solid = icosphere(1);
+    std::vector<Vec3d> apart;
+    std::vector<Triangle> triangles;
+    for (const Triangle& t : solid.triangles) {
+        const auto first = static_cast<std::uint32_t>(apart.size());
+        triangles.emplace_back(first, first + 1, first + 2);
+        triangles.emplace_back(first, first + 1, first + 1);
+        for (int k = 0; k < 3; ++k) {
+            apart.push_back(solid.vertices[t[k]]);
+        }
+    }
+    const EmitterLevels emitter = make_emitter_levels(apart, triangles, 1000);
+    EXPECT_TRUE(emitter.closed);
+    EXPECT_EQ(emitter.levels.front().vertices.size(), solid.vertices.size());
+    EXPECT_EQ(emitter.levels.front().faces.size(), solid.triangles.size());
+    EXPECT_TRUE(make_emitter_levels(apart, std::vector<Triangle>{{0, 0, 1}}, 10).levels.empty());
+}
+
+TEST(EmitterLevels, OfASphereShowTheSphere) {
+    const Solid solid = icosphere(6);
+    const EmitterLevels emitter = make_emitter_levels(solid.vertices, solid.triangles, 64);
+    ASSERT_TRUE(emitter.closed);
+    ASSERT_EQ(emitter.levels.size(), 4U);
+    RandomInput random(2);
+    for (const EmitterLevel& level : emitter.levels) {
+        // The sagitta of an even mesh is about 3.6 ÷ faces, that of an uneven one some times as large.
+        EXPECT_LE(level.error, 15.0 / static_cast<double>(level.faces.size()));
+        for (int i = 0; i < 10; ++i) {
+            const Vec3d point = 2.0 * random.direction();
+            Row cap{};
+            const std::array centers = {-point};
+            const std::array radii = {1.0};
+            sphere_coefficients<double>(centers, radii, kOrder, false, std::span<double>(cap));
+            // Twice the error if it all lay on one side; the scale takes out its mean.
+            EXPECT_LE(largest_difference(of_outline(emitter, level, point, false), cap), 0.7 * level.error * cap[0])
+                << level.faces.size();
+        }
+    }
+}
+
+}  // namespace
+}  // namespace shlight
