@@ -83,21 +83,23 @@ constexpr auto kClasses = std::to_array<Class>({
     {"lune", testing::lune},
 });
 
-/// One in four is not clipped.
+/// One in four is not clipped. At high orders, where the reference takes long, float64 gets the disks of float32.
 void compare_class(const Class& kind, std::size_t count, const std::vector<int>& orders, std::uint64_t seed) {
     RandomInput random(seed);
+    const auto clipped = [seed](std::size_t i) { return (i + seed) % 4 != 0; };
+    const bool shared = orders.back() > 16;
     std::vector<EllipseInput> disks64(count);
     std::vector<EllipseInput> disks32(count);
     for (std::size_t i = 0; i < count; ++i) {
-        disks64[i] = kind.draw(random);
         disks32[i] = rounded_to_float(kind.draw(random));
+        disks64[i] = shared ? disks32[i] : kind.draw(random);
     }
     std::vector<ErrorRecord> errors64(orders.size(), ErrorRecord(count));
     std::vector<ErrorRecord> errors32(orders.size(), ErrorRecord(count));
     testing::on_two_threads(count, [&](std::size_t i) {
-        const bool clip = i % 4 != 0;
-        const truth::Coefficients reference64 = truth::ellipse(disks64[i], orders.back(), clip);
+        const bool clip = clipped(i);
         const truth::Coefficients reference32 = truth::ellipse(disks32[i], orders.back(), clip);
+        const truth::Coefficients reference64 = shared ? reference32 : truth::ellipse(disks64[i], orders.back(), clip);
         for (std::size_t k = 0; k < orders.size(); ++k) {
             errors64[k][i] = relative_error<double>(disks64[i], orders[k], clip, reference64);
             errors32[k][i] = relative_error<float>(disks32[i], orders[k], clip, reference32);
@@ -109,8 +111,8 @@ void compare_class(const Class& kind, std::size_t count, const std::vector<int>&
         errors32[k].publish(name + ", float32");
         const std::size_t worst64 = errors64[k].worst();
         const std::size_t worst32 = errors32[k].worst();
-        EXPECT_LE(errors64[k].largest(), 1e-10) << name << ": " << describe(disks64[worst64], worst64 % 4 != 0);
-        EXPECT_LE(errors32[k].largest(), 1e-5) << name << ": " << describe(disks32[worst32], worst32 % 4 != 0);
+        EXPECT_LE(errors64[k].largest(), 1e-10) << name << ": " << describe(disks64[worst64], clipped(worst64));
+        EXPECT_LE(errors32[k].largest(), 1e-5) << name << ": " << describe(disks32[worst32], clipped(worst32));
     }
 }
 
@@ -123,13 +125,10 @@ void compare(std::size_t count, const std::vector<int>& orders, std::uint64_t se
 const std::size_t kMore = testing::all_tests() ? 40 : 1;
 
 TEST(Disk, AgreesWithReferenceUpToOrder16) {
-    compare(16 * kMore, {1, 2, 3, 8, 16}, 1400);
+    compare(8 * kMore, {1, 2, 3, 8, 16}, 1400);
 }
-TEST(Disk, AgreesWithReferenceAtOrder33) {
-    compare(2 * kMore, {33}, 1500);
-}
-TEST(Disk, AgreesWithReferenceAtOrder64) {
-    compare(1 * kMore, {64}, 1600);
+TEST(Disk, AgreesWithReferenceAtOrders33And64) {
+    compare(1 * kMore, {33, 64}, 1600);
 }
 
 /// Both roads at what either can do.
