@@ -2,6 +2,7 @@
 #include "environment_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -75,7 +76,7 @@ Rgb RadiancePyramid::level_radiance(std::size_t level, const Vec3d& direction) c
     const int above = std::min(static_cast<int>(y), std::max(l.height - 2, 0));
     const int below = std::min(above + 1, l.height - 1);
     const auto first = static_cast<int>(left);
-    const int columns[] = {(first + l.width) % l.width, (first + 1) % l.width};
+    const std::array columns = {(first + l.width) % l.width, (first + 1) % l.width};
     const auto s = static_cast<float>(place.x - left);
     const auto t = static_cast<float>(y - above);
     const auto row = [&](int r) {

@@ -138,7 +138,8 @@ class EnvironmentShading::Point {
         Vec3d sum(0);
         double weights = 0;
         for (int i = 0; i < kDirections * kDirections; ++i) {
-            const glm::dvec2 point = glm::dvec2(i % kDirections + 0.5, i / kDirections + 0.5) / double{kDirections};
+            const int row = i / kDirections;
+            const glm::dvec2 point = glm::dvec2(i % kDirections + 0.5, row + 0.5) / double{kDirections};
             const Vec3d direction = sampler.sample(point);
             if (direction.z > 0) {
                 const double density = sampler.density(direction);
