@@ -64,6 +64,7 @@ class LightShaderWork {
             plain_.emplace(material_);
         }
     }
+    ~LightShaderWork() = default;
     // The parts refer to each other.
     LightShaderWork(const LightShaderWork&) = delete;
     LightShaderWork& operator=(const LightShaderWork&) = delete;
