@@ -176,6 +176,12 @@ bool is_seen(const PolygonLight& light, const ShadingFrame& frame, double error)
 }
 
 bool is_seen(const Light& light, const ShadingFrame& frame, double error) {
+    const auto* point = std::get_if<PointSource>(&light);
+    if (point != nullptr && std::holds_alternative<EvenProfile>(point->traits.profile)) {
+        // As delta_view, without what only its caller needs: scenes may have thousands of these.
+        const Vec3d way = point->position - frame.origin;
+        return glm::dot(frame.z, way) > 0 && glm::dot(way, way) > 4 * error * error;
+    }
     if (is_delta(light)) {
         return delta_view(light, frame, error).has_value();
     }

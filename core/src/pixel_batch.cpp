@@ -128,6 +128,7 @@ void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRa
 void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& samples) {
     const auto lights = picture_->scene->lights();
     StageClock clock(report_);
+    shadowed_.start(hits_);
     for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
         const auto block = lights.subspan(first, std::min(kLightBlock, lights.size() - first));
         unshadowed_.compute(points_, picture_->materials, block, report_);

@@ -9,6 +9,9 @@ namespace {
 
 /// Points of the first phase that a pixel gets at least: fewer would miss too much of a penumbra's rim.
 constexpr std::uint32_t kLeastFirstPoints = 16;
+/// A light that adds less than this to a pixel is asked for at fewer of its hits: what its visibility is then off by is
+/// no more than that of a light of this share, and of many such lights the errors go both ways.
+constexpr float kMinorShare = 0.02F;
 
 }  // namespace
 
@@ -25,6 +28,7 @@ void ShadowedLight::add(const Light& light, const SampleRange& samples, std::spa
     unshadowed_ = unshadowed;
     point_of_hit_ = point_of_hit;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
+        pixel_brightness_ = &brightness_[pixel];
         add_pixel(light, pixel_seeds[pixel], hits.pixel_begin[pixel], hits.pixel_begin[pixel + 1], hits);
     }
 }
@@ -59,6 +63,10 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
         return;
     }
     if (samples_.shadow_rays > 0 && traits_of(light).casts_shadows) {
+        if (const std::size_t stride = stride_of(light, hits); stride > 1) {
+            add_minor(light, stride, seed, hits);
+            return;
+        }
         // No two ranges of samples share a point.
         const std::uint32_t first_point = samples_.first * most_rays_;
         rays_.trace(light, hits, lit_, {true, first_point, samples_.first, first_ray_count_}, seed);
@@ -77,6 +85,59 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
         }
     }
     shade_unblocked(light, hits);
+}
+
+std::size_t ShadowedLight::stride_of(const Light& light, const Hits& hits) {
+    const Rgb& strength = strength_of(light);
+    const std::uint32_t material = hits.material[lit_.hit[0]];
+    const std::span<const Lobe> lobes = materials_[material].lobes();
+    float own = 0;
+    bool alike = true;
+    for (std::size_t i = 0; i < lit_.hit.size() && alike; ++i) {
+        const std::size_t hit = lit_.hit[i];
+        alike = hits.material[hit] == material;
+        for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
+            const Rgb radiance = lobes[lobe].scale(hits.cos_theta_o[hit]) * strength * unshadowed(hit, lobe);
+            own += std::abs(radiance.x) + std::abs(radiance.y) + std::abs(radiance.z);
+        }
+    }
+    *pixel_brightness_ += own;
+    if (!alike || !(own < kMinorShare * *pixel_brightness_)) {
+        return 1;
+    }
+    const float stride = kMinorShare * *pixel_brightness_ / own;
+    return stride < static_cast<float>(lit_.hit.size()) ? static_cast<std::size_t>(stride) : lit_.hit.size();
+}
+
+void ShadowedLight::add_minor(const Light& light, std::size_t stride, std::uint32_t seed, Hits& hits) {
+    std::swap(lit_, all_lit_);
+    lit_.hit.clear();
+    lit_.shines.clear();
+    for (std::size_t i = seed % stride; i < all_lit_.hit.size(); i += stride) {
+        lit_.hit.push_back(all_lit_.hit[i]);
+        const auto* shines = &all_lit_.shines[i * lobe_stride_];
+        lit_.shines.insert(lit_.shines.end(), shines, shines + lobe_stride_);
+    }
+    rays_.trace(light, hits, lit_, {true, samples_.first * most_rays_, samples_.first, first_ray_count_}, seed);
+    for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+        double seen = 0;
+        double all = 0;
+        for (std::size_t i = 0; i < lit_.hit.size(); ++i) {
+            if (shines(i, lobe)) {
+                const RaySums sums = rays_.sum(hits, lit_, i, lobe);
+                seen += sums.seen;
+                all += sums.all;
+            }
+        }
+        const double share = all > 0 ? seen / all : 1.0;
+        for (std::size_t i = 0; i < all_lit_.hit.size(); ++i) {
+            if (all_lit_.shines[i * lobe_stride_ + lobe] != 0) {
+                hits.radiance[all_lit_.hit[i]] +=
+                    scaled_radiance(light, hits, all_lit_.hit[i], lobe) * static_cast<float>(share);
+            }
+        }
+    }
+    std::swap(lit_, all_lit_);
 }
 
 Rgb ShadowedLight::scaled_radiance(const Light& light, const Hits& hits, std::size_t hit, std::size_t lobe) const {

@@ -31,6 +31,8 @@ class ShadowedLight {
     /// pixel, other for each light. A hit's radiance counts as part of the sum over the hits of its shading point.
     void add(const Light& light, const SampleRange& samples, std::span<const float> unshadowed,
              std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds, Hits& hits);
+    /// To be called before the first light of other hits.
+    void start(const Hits& hits) { brightness_.assign(hits.pixel_count(), 0.0F); }
     std::uint64_t rays_traced() const { return rays_.rays_traced(); }
 
   private:
@@ -44,6 +46,10 @@ class ShadowedLight {
     bool shines(std::size_t lit_index, std::size_t lobe) const {
         return lit_.shines[lit_index * lobe_stride_ + lobe] != 0;
     }
+    /// Of how many hits one is enough to tell how much of a light a pixel sees; 1 where each must be asked.
+    std::size_t stride_of(const Light& light, const Hits& hits);
+    /// Asks every so many of the lit hits, and shades all of them with what these see.
+    void add_minor(const Light& light, std::size_t stride, std::uint32_t seed, Hits& hits);
     void shade_unblocked(const Light& light, Hits& hits) const;
     void shade(const Light& light, Hits& hits);
     void shade_lobe(const Light& light, std::size_t lobe, Hits& hits);
@@ -64,7 +70,10 @@ class ShadowedLight {
     std::uint32_t first_ray_count_ = 0;            // likewise, rays per hit of the first phase
     std::span<const float> unshadowed_;            // of the light being added
     std::span<const std::uint32_t> point_of_hit_;  // likewise
-    LitHits lit_;                                  // of the pixel
+    std::vector<float> brightness_;                // of each pixel by the lights so far, if nothing blocks
+    float* pixel_brightness_ = nullptr;            // of the pixel
+    LitHits lit_;                                  // likewise
+    LitHits all_lit_;                              // likewise, while some of them are asked
     std::vector<RaySums> hit_sums_;                // of one lobe, by lit hit
     std::vector<PointSums> point_sums_;            // likewise, by shading point
     std::vector<Rgb> deviation_;                   // of the light by lit hit, from its few rays
