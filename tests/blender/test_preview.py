@@ -62,8 +62,10 @@ def add_camera(scene: bpy.types.Scene) -> None:
     scene.collection.objects.link(scene.camera)
 
 
-def add_sun(scene: bpy.types.Scene) -> None:
-    scene.collection.objects.link(bpy.data.objects.new("sky sun", bpy.data.lights.new("sky sun", "SUN")))
+def add_negative_lamp(scene: bpy.types.Scene) -> None:
+    lamp = bpy.data.lights.new("dark lamp", "POINT")
+    lamp.energy = -1.0
+    scene.collection.objects.link(bpy.data.objects.new("dark lamp", lamp))
 
 
 def saved(path: Path) -> Path:
@@ -130,19 +132,19 @@ def test_the_picture_of_shlight_is_near_the_reference(example: tuple[Path, tuple
 
 def test_what_is_not_supported_is_named(tmp_path: Path, empty_scene: bpy.types.Scene) -> None:
     scene = open_scene(options.parse([]).scene_file)
-    add_sun(scene)
+    add_negative_lamp(scene)
     material = bpy.data.materials["matt grey"]
     noise = material.node_tree.nodes.new("ShaderNodeTexNoise")
     principled = material.node_tree.nodes["Principled BSDF"]
     material.node_tree.links.new(noise.outputs["Color"], principled.inputs["Base Color"])
-    path = saved(tmp_path / "with sun.blend")
+    path = saved(tmp_path / "with dark lamp.blend")
     code, out, err = preview(path, *QUICK, "--out", tmp_path / "new" / "folder", folder=tmp_path)
     assert (code, err) == (0, "")
-    assert "Light 'sky sun'" in out
+    assert "Light 'dark lamp'" in out
     assert "'matt grey'" in out
     assert "Noise Texture" in out
     figures = json.loads((tmp_path / "new" / "folder" / "figures.json").read_text())
-    assert any("Light 'sky sun'" in message["places"] for message in figures["shlight"]["unsupported"])
+    assert any("Light 'dark lamp'" in message["places"] for message in figures["shlight"]["unsupported"])
     assert figures["scene"]["file"] == str(path)
 
 
@@ -268,10 +270,10 @@ def test_a_scene_without_light(tmp_path: Path, empty_scene: bpy.types.Scene) -> 
 
 def test_a_scene_with_unsupported_light_only(tmp_path: Path, empty_scene: bpy.types.Scene) -> None:
     add_camera(empty_scene)
-    add_sun(empty_scene)
+    add_negative_lamp(empty_scene)
     line = refused(saved(tmp_path / "a.blend"), tmp_path)
     assert "no light" in line
-    assert "'sky sun'" in line
+    assert "'dark lamp'" in line
 
 
 def test_a_file_in_place_of_the_folder_of_results(tmp_path: Path, empty_scene: bpy.types.Scene) -> None:
