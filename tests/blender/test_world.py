@@ -67,7 +67,7 @@ def test_world_and_lamp(studio: Any) -> None:
 
 WORLDS = Path(bpy.utils.system_resource("DATAFILES")) / "studiolights" / "world"
 NAMES = ["city", "courtyard", "forest", "interior", "night", "studio", "sunrise", "sunset"]
-slow = pytest.mark.slow
+QUICK = {("courtyard", False), ("sunrise", True)}
 
 
 def set_picture(studio: Any, image: Any, rotation: tuple[float, float, float] | None = None) -> Any:
@@ -134,10 +134,17 @@ def test_pictures_of_bytes_and_strength(studio: Any) -> None:
     studio.compare(mean=1.5e-2, error=1e-3)  # Cycles multiplies by alpha in bytes
 
 
-@pytest.mark.parametrize("floor", [False, True])
-@pytest.mark.parametrize("name", [n if n in {"courtyard", "sunrise"} else pytest.param(n, marks=slow) for n in NAMES])
+@pytest.mark.parametrize(
+    ("name", "floor"),
+    [
+        pytest.param(name, floor, marks=[] if (name, floor) in QUICK else [pytest.mark.slow])
+        for name in NAMES
+        for floor in (False, True)
+    ],
+)
 def test_real_pictures(studio: Any, name: str, floor: bool) -> None:
     image = bpy.data.images.load(str(WORLDS / f"{name}.exr"))
+    studio.scene.render.resolution_x, studio.scene.render.resolution_y = 64, 48
     studio.scene.cycles.samples = 1024
     studio.scene.render.film_transparent = True  # what is seen behind is not the question
     studio.scene.shlight.shadow_rays = 64
