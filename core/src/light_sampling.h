@@ -114,7 +114,7 @@ class MeshSampler {
 
     MeshView view_;
     MeshView::Kind kind_ = MeshView::Kind::hidden;
-    bool convex_ = false;  // whose coarse outlines may fold, but not its own
+    bool convex_ = false;               // whose coarse outlines may fold, but not its own
     std::optional<CapSampler> around_;  // where there is no outline
     PolygonSampler rectangle_;
     Vec3d axis_{0}, along_{0}, across_{0};  // of the outline's plane at distance 1
