@@ -144,7 +144,8 @@ def test_pictures_of_bytes_and_strength(studio: Any) -> None:
 )
 def test_real_pictures(studio: Any, name: str, floor: bool) -> None:
     image = bpy.data.images.load(str(WORLDS / f"{name}.exr"))
-    studio.scene.render.resolution_x, studio.scene.render.resolution_y = 64, 48
+    if (name, floor) in QUICK:
+        studio.scene.render.resolution_x, studio.scene.render.resolution_y = 64, 48
     studio.scene.cycles.samples = 1024
     studio.scene.render.film_transparent = True  # what is seen behind is not the question
     studio.scene.shlight.shadow_rays = 64
