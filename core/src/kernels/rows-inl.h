@@ -102,24 +102,22 @@ class RowWriter {
     T* next() { return buffer_.data() + waiting_ * kLaneCount<D>; }
 
     /// So many columns were put there.
-    HWY_INLINE void add(std::size_t columns) {
+    void add(std::size_t columns) {
         waiting_ += columns;
-        for (; written_ + kLine <= waiting_; written_ += kLine) {
-            write_line(written_);
-        }
         if (waiting_ + 2 * kMaxOrder > kColumns) {
-            move_rest();
+            write_lines();
         }
     }
 
     /// Writes what waits.
     void finish() {
-        for (std::size_t c = written_; c < waiting_; ++c) {
+        write_lines();
+        for (std::size_t c = 0; c < waiting_; ++c) {
             for (std::size_t lane = 0; lane < kLaneCount<D>; ++lane) {
-                rows_[lane][column_ + c - written_] = buffer_[c * kLaneCount<D> + lane];
+                rows_[lane][column_ + c] = buffer_[c * kLaneCount<D> + lane];
             }
         }
-        waiting_ = written_ = 0;
+        waiting_ = 0;
     }
 
   private:
@@ -127,11 +125,14 @@ class RowWriter {
     static constexpr std::size_t kLine = 64 / sizeof(T);
     static constexpr std::size_t kColumns = 4 * kMaxOrder;  // rows of order 16, or 16 KiB
 
-    /// Less than a line, to the front.
-    void move_rest() {
-        std::copy(buffer_.data() + written_ * kLaneCount<D>, next(), buffer_.data());
-        waiting_ -= written_;
-        written_ = 0;
+    /// Writes whole lines, and moves the rest to the front.
+    void write_lines() {
+        std::size_t done = 0;
+        for (; done + kLine <= waiting_; done += kLine) {
+            write_line(done);
+        }
+        std::copy(buffer_.data() + done * kLaneCount<D>, next(), buffer_.data());
+        waiting_ -= done;
     }
 
     HWY_INLINE void write_line(std::size_t first) {
@@ -161,7 +162,7 @@ class RowWriter {
 
     RowPointers<T> rows_;
     bool streamed_;
-    std::size_t waiting_ = 0, written_ = 0;
+    std::size_t waiting_ = 0;
     std::size_t column_ = 0;
     alignas(64) std::array<T, kColumns * kLaneCount<D>> buffer_;
 };
