@@ -137,8 +137,15 @@ std::optional<DeltaView> delta_view(const Light& light, const ShadingFrame& fram
         seen.direction = frame.to_local(way / seen.distance);
         seen.irradiance = 1 / (seen.distance * seen.distance);
     }
-    seen.irradiance *= profile_factor(traits_of(light).profile, -frame.to_world(seen.direction));
-    return seen.direction.z > 0 && seen.irradiance > 0 ? std::optional(seen) : std::nullopt;
+    if (!(seen.direction.z > 0)) {
+        return std::nullopt;
+    }
+    // Scenes may have thousands of even ones, whose direction in the world is of no use.
+    const EmissionProfile& profile = traits_of(light).profile;
+    if (!std::holds_alternative<EvenProfile>(profile)) {
+        seen.irradiance *= profile_factor(profile, -frame.to_world(seen.direction));
+    }
+    return seen.irradiance > 0 ? std::optional(seen) : std::nullopt;
 }
 
 ProfileView::ProfileView(const Light& light, const ShadingFrame& frame) {
@@ -176,12 +183,6 @@ bool is_seen(const PolygonLight& light, const ShadingFrame& frame, double error)
 }
 
 bool is_seen(const Light& light, const ShadingFrame& frame, double error) {
-    const auto* point = std::get_if<PointSource>(&light);
-    if (point != nullptr && std::holds_alternative<EvenProfile>(point->traits.profile)) {
-        // As delta_view, without what only its caller needs: scenes may have thousands of these.
-        const Vec3d way = point->position - frame.origin;
-        return glm::dot(frame.z, way) > 0 && glm::dot(way, way) > 4 * error * error;
-    }
     if (is_delta(light)) {
         return delta_view(light, frame, error).has_value();
     }
