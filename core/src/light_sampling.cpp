@@ -139,8 +139,7 @@ void PolygonSampler::reset(const PolygonLight& light, const ShadingFrame& frame)
         std::array<Vec3d, 4> corners{};
         std::transform(part->begin(), part->end(), corners.begin(),
                        [&](const Vec3d& corner) { return frame.point_to_local(corner); });
-        add_clipped(corners[0], corners[1], corners[2]);
-        add_clipped(corners[0], corners[2], corners[3]);
+        add_rectangle(corners);
         return;
     }
     for (const Triangle& t : light.triangles) {
@@ -152,8 +151,12 @@ void PolygonSampler::reset(const PolygonLight& light, const ShadingFrame& frame)
 void PolygonSampler::reset(const std::array<Vec3d, 4>& corners) {
     pieces_.clear();
     total_ = 0;
-    normal_ = glm::cross(corners[1] - corners[0], corners[3] - corners[0]);
+    normal_ = glm::normalize(glm::cross(corners[1] - corners[0], corners[3] - corners[0]));
     height_ = glm::dot(normal_, corners[0]);
+    add_rectangle(corners);
+}
+
+void PolygonSampler::add_rectangle(const std::array<Vec3d, 4>& corners) {
     add_clipped(corners[0], corners[1], corners[2]);
     add_clipped(corners[0], corners[2], corners[3]);
 }

@@ -88,6 +88,7 @@ class PolygonSampler {
         std::optional<SphericalTriangle> spherical;  // where it is not
     };
     LightSample sample(const Piece& piece, const glm::dvec2& point) const;
+    void add_rectangle(const std::array<Vec3d, 4>& corners);
     void add_clipped(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
     std::vector<Piece> pieces_;

@@ -5,10 +5,13 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
+#include <numbers>
 #include <span>
 #include <vector>
 
 #include "emitter_levels.h"
+#include "light_sampling.h"
 #include "random_input.h"
 #include "shlight/cap.h"
 #include "shlight/polygon.h"
@@ -160,6 +163,27 @@ TEST(EmitterLevels, OfASphereShowTheSphere) {
             EXPECT_LE(largest_difference(of_outline(emitter, level, point, false), cap), 0.7 * level.error * cap[0])
                 << level.faces.size();
         }
+    }
+}
+
+/// Near and far: a wide rectangle about the outline is drawn by solid angle, a small one by area.
+TEST(MeshSampler, WeightsAddUpToTheSolidAngle) {
+    const Solid solid = icosphere(3);
+    const MeshLight light{
+        std::make_shared<const EmitterLevels>(make_emitter_levels(solid.vertices, solid.triangles, 64)), Rgb(1), 0,
+        nullptr, 0};
+    MeshSampler sampler;
+    for (const double distance : {1.5, 4.0, 60.0}) {
+        const ShadingFrame frame{{0, 0, -distance}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        sampler.reset(light, frame);
+        constexpr int kPoints = 200;
+        double sum = 0;
+        for (int i = 0; i < kPoints * kPoints; ++i) {
+            sum += sampler.sample({(i / kPoints + 0.5) / kPoints, (i % kPoints + 0.5) / kPoints}).weight;
+        }
+        const double cap = 2 * std::numbers::pi * (1 - std::sqrt(1 - 1 / (distance * distance)));
+        // The outline that rays are drawn in is up to a tenth smaller, and 320 faces show 2 % less than the sphere.
+        EXPECT_NEAR(sum / (kPoints * kPoints) / cap, 0.9, 0.1) << distance;
     }
 }
 
