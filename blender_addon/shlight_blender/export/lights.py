@@ -48,8 +48,17 @@ class Lamp(NamedTuple):
         return x, y, z
 
 
-def add_lamp(scene: shlight.Scene, lamp_object: Any, to_world: NDArray[np.float64], report: ExportReport) -> bool:
-    """Adds a lamp to `scene`; False if it gives no light (switched off, or not supported and reported)."""
+def add_lamp(
+    scene: shlight.Scene,
+    lamp_object: Any,
+    to_world: NDArray[np.float64],
+    report: ExportReport,
+    instancer: Any = None,
+) -> bool:
+    """Adds a lamp to `scene`; False if it gives no light (switched off, or not supported and reported).
+
+    instancer: the object that shows it, if it is an instance.
+    """
     lamp = lamp_object.data
     place = f"Light '{lamp_object.name}'"
     if lamp.type == "AREA" and getattr(getattr(lamp, "cycles", None), "is_portal", False):
@@ -63,12 +72,13 @@ def add_lamp(scene: shlight.Scene, lamp_object: Any, to_world: NDArray[np.float6
         return False
     if not power.any():
         return False
-    if lamp_object.visible_camera:
+    shown_by = [lamp_object] if instancer is None or not LAMPS.instancer_hides else [lamp_object, instancer]
+    if all(shown.visible_camera for shown in shown_by):
         report.add(place, "lamps seen by the camera are not supported; it lights, but is not drawn")
     traits: Traits = {
         "shadows": lamp_casts_shadows(lamp),
-        "diffuse": bool(lamp_object.visible_diffuse),
-        "glossy": bool(lamp_object.visible_glossy),
+        "diffuse": all(shown.visible_diffuse for shown in shown_by),
+        "glossy": all(shown.visible_glossy for shown in shown_by),
     }
     return LAMP_TYPES[lamp.type](scene, Lamp(lamp, power, to_world, place, traits), report)
 
@@ -108,16 +118,11 @@ def _intensity(lamp: Lamp) -> RGB:
 def spot_direction(to_world: NDArray[np.float64]) -> NDArray[np.float64] | None:
     """What `shlight.Scene.add_spot_light` takes as a direction: (3,) or (3, 3); None for a lamp of scale 0."""
     axes = to_world[:3, :3]
-    squares = (axes * axes).sum(axis=0)
-    if not (squares > 0.0).all():
+    lengths = np.linalg.norm(axes, axis=0)
+    # Without volume its directions have no place in the lamp's frame.
+    if not lengths.all() or not abs(np.linalg.det(axes / lengths)) > 1e-9:
         return None
-    if not LAMPS.spot_is_scaled:
-        return -axes[:, 2]
-    # Cycles measures along the axes of a sheared lamp, and does not invert its transform.
-    along = axes / squares
-    if not abs(np.linalg.det(along)) > 1e-9 * np.prod(np.linalg.norm(along, axis=0)):
-        return None
-    return np.linalg.inv(along.T)
+    return axes if LAMPS.spot_is_scaled else -axes[:, 2]
 
 
 def _add_spot(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:

@@ -83,30 +83,35 @@ def _add_objects(scene: shlight.Scene, depsgraph: Any, report: ExportReport) -> 
         seen = instance.object
         if not instance.show_self or (seen.hide_render and not instance.is_instance):
             continue
-        place = f"Object '{seen.name}'"
+        to_world = np.array(instance.matrix_world, dtype=np.float64)
+        instancer = instance.parent if instance.is_instance else None
         if seen.type == "LIGHT":
-            _report_light_linking(seen, f"Light '{seen.name}'", report)
-            lit |= add_lamp(scene, seen, np.array(instance.matrix_world, dtype=np.float64), report)
+            _report_light_linking((seen, instancer), f"Light '{seen.name}'", report)
+            lit |= add_lamp(scene, seen, to_world, report, instancer)
         elif seen.type == "MESH":
-            _report_object(seen, place, report)
-            meshes.add(seen, np.array(instance.matrix_world, dtype=np.float64))
+            _report_object(seen, instancer, report)
+            meshes.add(seen, to_world)
         elif seen.type in UNSUPPORTED_TYPES:
-            report.add(place, f"{UNSUPPORTED_TYPES[seen.type]} are not supported; left out")
+            report.add(f"Object '{seen.name}'", f"{UNSUPPORTED_TYPES[seen.type]} are not supported; left out")
     return meshes.hand_over(scene) or lit
 
 
-def _report_object(seen: Any, place: str, report: ExportReport) -> None:
+def _report_object(seen: Any, instancer: Any, report: ExportReport) -> None:
+    place = f"Object '{seen.name}'"
     for name, (neutral, text) in VISIBILITY.items():
-        if bool(getattr(seen, name, neutral)) != neutral:
+        if any(bool(getattr(shown, name, neutral)) != neutral for shown in (seen, instancer)):
             report.add(place, text)
     for system in seen.particle_systems:
         settings = system.settings
         if settings.type == "HAIR" and settings.render_type == "PATH":
             report.add(f"{place}, particle system '{system.name}'", "hair is not supported; left out")
-    _report_light_linking(seen, place, report)
+    _report_light_linking((seen, instancer), place, report)
 
 
-def _report_light_linking(seen: Any, place: str, report: ExportReport) -> None:
-    linking = getattr(seen, "light_linking", None)
-    if linking is not None and (linking.receiver_collection or linking.blocker_collection):
-        report.add(place, "light linking is not supported; it lights and shadows everything")
+def _report_light_linking(shown_by: tuple[Any, Any], place: str, report: ExportReport) -> None:
+    for shown in shown_by:
+        linking = getattr(shown, "light_linking", None)
+        if linking is not None and linking.receiver_collection:
+            report.add(place, "light linking is not supported; it lights everything")
+        if linking is not None and linking.blocker_collection:
+            report.add(place, "shadow linking is not supported; everything shadows it")

@@ -1,0 +1,242 @@
+# SPDX-License-Identifier: MIT
+"""Lamps and emissive meshes that are instanced or parented: place, orientation and power as in Cycles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="tests/blender needs bpy: ./dev setup installs it")
+
+KINDS: dict[str, dict[str, Any]] = {
+    "AREA": {"energy": 60, "shape": "RECTANGLE", "size": 0.9, "size_y": 0.4},
+    "POINT": {"energy": 40, "shadow_soft_size": 0.3, "use_soft_falloff": False},
+    "SPOT": {"energy": 150, "shadow_soft_size": 0.1, "spot_size": 0.9, "spot_blend": 0.6},
+    "SUN": {"energy": 2, "angle": 0.3},
+}
+SLOW = pytest.mark.slow
+QUICK_KINDS = [kind if kind == "SPOT" else pytest.param(kind, marks=SLOW) for kind in KINDS]
+QUARTER = math.pi / 2
+# Location, rotation and scale of what carries the lamp.
+PLACES: dict[str, tuple[Any, Any, Any]] = {
+    "turned": ((-0.4, 0.3, 1.6), (0.5, -0.4, 0.7), (1, 1, 1)),
+    "scaled": ((0.3, -0.2, 1.7), (-0.4, 0.3, 0.2), (1.5, 0.6, 0.8)),
+    "mirrored": ((0.1, 0.4, 1.6), (0.3, 0.5, 1.2), (-1.2, 0.8, 1)),
+    "upside_down": ((0.2, 0.2, 1.6), (math.pi - 0.3, 0.2, 0.4), (1, 1, -1)),
+}
+
+KINDS_IN_PLACES = [
+    pytest.param(kind, place, marks=() if (kind, place) in {("AREA", "mirrored"), ("SPOT", "scaled")} else SLOW)
+    for kind in KINDS
+    for place in PLACES
+]
+
+
+def stage(studio: Any) -> None:
+    """A floor, a ball and a camera."""
+    material = studio.material(Color=(0.8, 0.6, 0.4))
+    studio.plane(6.0, material)
+    studio.ball(0.45, material, location=(-0.6, 0.2, 0.45))
+    studio.camera(location=(2.0, -4.0, 3.0))
+    studio.scene.render.resolution_x = studio.scene.render.resolution_y = 64
+
+
+def lamp(studio: Any, kind: str, **properties: Any) -> Any:
+    values = {**KINDS[kind], **properties}
+    return studio.lamp(kind, values.pop("energy"), (0, 0, 0), **values)
+
+
+def collection_of(studio: Any, *objects: Any, name: str = "Lights") -> Any:
+    """The objects in a collection that is not part of the scene."""
+    collection = bpy.data.collections.new(name)
+    for thing in objects:
+        studio.scene.collection.objects.unlink(thing)
+        collection.objects.link(thing)
+    return collection
+
+
+def place_instance(studio: Any, collection: Any, place: str) -> Any:
+    """An empty that shows the collection."""
+    location, rotation, scale = PLACES[place]
+    empty = studio.link("Instance", None, location, rotation_euler=rotation, scale=scale, instance_type="COLLECTION")
+    empty.instance_collection = collection
+    return empty
+
+
+def messages() -> list[str]:
+    from shlight_blender.export import export_scene
+
+    return export_scene(bpy.context.evaluated_depsgraph_get()).report.lines()
+
+
+@pytest.mark.parametrize(("kind", "place"), KINDS_IN_PLACES)
+def test_lamp_in_a_collection_instance(studio: Any, kind: str, place: str) -> None:
+    stage(studio)
+    inside = lamp(studio, kind)
+    # Area lamps are turned so that the scale of the instance does not shear them.
+    inside.location, inside.rotation_euler = (0.2, 0.1, 0.1), (0, 0, QUARTER) if kind == "AREA" else (0.2, -0.1, 0.3)
+    place_instance(studio, collection_of(studio, inside), place)
+    studio.scene.cycles.use_light_tree = False  # it bounds the cone of a sheared spot lamp too tightly
+    studio.compare(mean=3e-3, error=3e-3)
+    assert messages() == []
+
+
+@pytest.mark.parametrize(("kind", "place"), KINDS_IN_PLACES)
+def test_parented_lamp(studio: Any, kind: str, place: str) -> None:
+    """Turned by quarters inside its scaled parent, which shears nothing."""
+    stage(studio)
+    location, rotation, scale = PLACES[place]
+    parent = studio.link("Parent", None, location, rotation_euler=rotation, scale=scale)
+    child = lamp(studio, kind)
+    child.parent, child.rotation_euler = parent, (0, 0, QUARTER)
+    studio.compare(mean=3e-3, error=3e-3)
+    assert messages() == []
+
+
+@pytest.mark.parametrize("kind", [pytest.param("POINT", marks=SLOW), "SPOT", pytest.param("SUN", marks=SLOW)])
+def test_lamp_sheared_by_its_parent(studio: Any, kind: str) -> None:
+    stage(studio)
+    parent = studio.link("Parent", None, (0.2, 0.1, 1.7), rotation_euler=(0.2, 0.1, 0.3), scale=(1.6, 0.7, 1))
+    child = lamp(studio, kind)
+    child.parent, child.rotation_euler = parent, (0.4, 0.2, 0.5)
+    studio.scene.cycles.use_light_tree = False  # it bounds the cone of a sheared spot lamp too tightly
+    studio.compare(mean=3e-3, error=3e-3)
+    assert messages() == []
+
+
+def test_a_sheared_area_lamp_is_named(studio: Any) -> None:
+    stage(studio)
+    inside = lamp(studio, "AREA")
+    inside.rotation_euler = (0.2, -0.1, 0.5)
+    place_instance(studio, collection_of(studio, inside), "scaled")
+    (line,) = messages()
+    assert line.startswith("Light 'Area': sheared area lamps")
+
+
+def test_nested_instances(studio: Any) -> None:
+    stage(studio)
+    inner = collection_of(studio, lamp(studio, "AREA"), lamp(studio, "SPOT"))
+    middle = place_instance(studio, inner, "mirrored")
+    middle.location, middle.rotation_euler = (0.2, 0, 0), (0, 0, QUARTER)
+    outer = collection_of(studio, middle, name="Outer")
+    place_instance(studio, outer, "scaled")
+    studio.compare(mean=3e-3, error=3e-3)
+
+
+def nodes_on_points(studio: Any, instance: Callable[[Any], Any]) -> None:
+    """A mesh of three points with what `instance` makes of the node tree on each, turned and scaled."""
+    host = studio.mesh("Host", [(-1, 0, 1.6), (0.8, -0.2, 1.5), (0.3, 1, 1.8)], [])
+    tree = bpy.data.node_groups.new("Nodes", "GeometryNodeTree")
+    for direction in ("INPUT", "OUTPUT"):
+        if hasattr(tree, "interface"):
+            tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
+        else:
+            getattr(tree, f"{direction.lower()}s").new("NodeSocketGeometry", "Geometry")
+    new, link = tree.nodes.new, tree.links.new
+    start, end, spread = new("NodeGroupInput"), new("NodeGroupOutput"), new("GeometryNodeInstanceOnPoints")
+    link(start.outputs[0], spread.inputs["Points"])
+    link(instance(tree), spread.inputs["Instance"])
+    spread.inputs["Scale"].default_value = (1.0, 0.7, -1.3)
+    spread.inputs["Rotation"].default_value = (math.pi - 0.3, 0.2, 0.5)
+    link(spread.outputs[0], end.inputs[0])
+    host.modifiers.new("Nodes", "NODES").node_group = tree
+
+
+def from_collection(collection: Any) -> Callable[[Any], Any]:
+    def instance(tree: Any) -> Any:
+        node = tree.nodes.new("GeometryNodeCollectionInfo")
+        node.inputs["Collection"].default_value = collection
+        return node.outputs["Instances"]
+
+    return instance
+
+
+@pytest.mark.parametrize("kind", QUICK_KINDS)
+def test_lamps_of_geometry_nodes(studio: Any, kind: str) -> None:
+    stage(studio)
+    nodes_on_points(studio, from_collection(collection_of(studio, lamp(studio, kind))))
+    studio.compare(mean=3e-3, error=3e-3)
+    assert messages() == []
+
+
+@pytest.mark.parametrize("instance_type", ["VERTS", "FACES"])
+def test_lamps_of_a_parent_with_instances(studio: Any, instance_type: str) -> None:
+    stage(studio)
+    corners = [(-1, 0, 1.6), (0.8, -0.2, 1.5), (0.3, 1, 1.8)]
+    host = studio.mesh("Host", corners, [(0, 1, 2)], instance_type=instance_type, show_instancer_for_render=False)
+    lamp(studio, "AREA").parent = host
+    studio.compare(mean=3e-3, error=3e-3)
+
+
+def glowing(studio: Any, name: str = "Glow") -> Any:
+    emission = studio.material("ShaderNodeEmission", Color=(1.0, 0.6, 0.3), Strength=12.0)
+    return studio.box((0.3, 0.6, 0.1), emission, name=name)
+
+
+@pytest.mark.parametrize("place", ["scaled", pytest.param("mirrored", marks=SLOW)])
+def test_emissive_mesh_in_a_collection_instance(studio: Any, place: str) -> None:
+    stage(studio)
+    place_instance(studio, collection_of(studio, glowing(studio)), place)
+    studio.scene.shlight.pixel_samples = 64
+    studio.compare(mean=3e-3, error=3e-3)
+    assert messages() == []
+
+
+def test_emissive_meshes_of_geometry_nodes(studio: Any) -> None:
+    stage(studio)
+    nodes_on_points(studio, from_collection(collection_of(studio, glowing(studio))))
+    studio.scene.shlight.pixel_samples = 64
+    studio.compare(mean=3e-3, error=3e-3)
+    assert messages() == []
+
+
+@pytest.mark.parametrize("carrier", ["instancer", "lamp"])
+@pytest.mark.parametrize("flag", ["visible_diffuse", "visible_glossy", "visible_shadow", "visible_camera"])
+def test_ray_visibility(studio: Any, flag: str, carrier: str) -> None:
+    """What shows a lamp hides it too, from Blender 4.5 on."""
+    stage(studio)
+    inside = lamp(studio, "AREA")
+    inside.visible_camera = flag == "visible_camera"
+    empty = place_instance(studio, collection_of(studio, inside), "turned")
+    setattr(empty if carrier == "instancer" else inside, flag, False)
+    image, reference = (studio.render(engine)[..., :3] for engine in ("SHLIGHT", "CYCLES"))
+    if flag == "visible_diffuse" and (carrier == "lamp" or bpy.app.version >= (4, 5, 0)):
+        assert not image.any()
+        assert not reference.any()
+        return
+    assert image.mean() == pytest.approx(reference.mean(), rel=3e-3)
+    assert messages() == []
+
+
+def test_flags_of_what_shows_a_mesh_are_named(studio: Any) -> None:
+    stage(studio)
+    place_instance(studio, collection_of(studio, glowing(studio)), "turned").visible_diffuse = False
+    assert messages() == ["Object 'Glow': objects hidden from diffuse rays are not supported; drawn as usual"]
+
+
+def test_light_and_shadow_linking_are_named(studio: Any) -> None:
+    stage(studio)
+    linked = lamp(studio, "AREA")
+    linked.location, linked.name = (0, 0, 2), "Key"
+    if not hasattr(linked, "light_linking"):
+        pytest.skip("this version of Blender has no light linking")
+    assert messages() == []
+    linked.light_linking.receiver_collection = bpy.data.collections.new("Receivers")
+    assert messages() == ["Light 'Key': light linking is not supported; it lights everything"]
+    linked.light_linking.receiver_collection = None
+    linked.light_linking.blocker_collection = bpy.data.collections.new("Blockers")
+    assert messages() == ["Light 'Key': shadow linking is not supported; everything shadows it"]
+
+
+def test_portals_give_no_light(studio: Any) -> None:
+    stage(studio)
+    portal = lamp(studio, "AREA")
+    portal.location, portal.data.cycles.is_portal = (0.5, 0, 1.0), True
+    lamp(studio, "POINT").location = (0, 0, 1.8)
+    image, _ = studio.compare(mean=3e-3, error=3e-3)
+    assert messages() == []
+    np.testing.assert_array_equal(image[..., :3].max() > 0, True)
