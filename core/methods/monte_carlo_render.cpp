@@ -174,10 +174,15 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
         if (!ray_hits_[i].missed()) {
             const SurfacePoint surface = p.scene.surface(ray_hits_[i], rays_[i].direction);
-            hits_.add(surface, -glm::normalize(Vec3d(rays_[i].direction)),
-                      p.scene.materials()[surface.material].emission, 0);
+            const Vec3d direction = glm::normalize(Vec3d(rays_[i].direction));
+            const double distance = glm::dot(surface.position - Vec3d(rays_[i].origin), direction);
+            hits_.add(surface, -direction,
+                      p.scene.materials()[surface.material].emission + p.scene.lamps_along(rays_[i], distance), 0);
             pixel_of_hit_.push_back(i / samples);
-        } else if (const Environment* background = p.scene.background()) {
+            continue;
+        }
+        radiance_[i / samples] += Vec3d(p.scene.lamps_along(rays_[i], std::nullopt));
+        if (const Environment* background = p.scene.background()) {
             radiance_[i / samples] += Vec3d(background->radiance(glm::normalize(Vec3d(rays_[i].direction))));
             ++covered_[i / samples];
         }

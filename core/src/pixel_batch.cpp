@@ -42,8 +42,8 @@ Vec3d PixelSums::variance() const {
     return glm::max(squares / count - mean * mean - linear, Vec3d(0));
 }
 
-void PixelSums::add(const Vec3d& ray_radiance, const Vec3d& noise, const glm::dvec2& from_center) {
-    ++opaque;
+void PixelSums::add(const Vec3d& ray_radiance, const Vec3d& noise, const glm::dvec2& from_center, bool is_opaque) {
+    opaque += is_opaque ? 1 : 0;
     radiance += ray_radiance;
     squares += ray_radiance * ray_radiance - noise;
     along_x += from_center.x * ray_radiance;
@@ -106,23 +106,37 @@ void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRa
     p.scene->rays().intersect(rays_, ray_hits_);
     hits_.clear();
     misses_.clear();
-    const Environment* background = p.scene->background();
     for (std::size_t first = 0; first < rays_.size(); first += samples.count) {
         for (std::uint32_t i = 0; i < samples.count; ++i) {
-            const RayHit& hit = ray_hits_[first + i];
-            const Vec3f& direction = rays_[first + i].direction;
-            if (!hit.missed()) {
-                const SurfacePoint surface = p.scene->surface(hit, direction);
-                hits_.add(surface, -glm::normalize(Vec3d(direction)), p.scene->materials()[surface.material].emission,
-                          samples.first + i);
-            } else if (background != nullptr) {
-                misses_.push_back({static_cast<std::uint32_t>(first / samples.count), samples.first + i,
-                                   background->radiance(glm::normalize(Vec3d(direction)))});
+            if (ray_hits_[first + i].missed()) {
+                add_miss(rays_[first + i], static_cast<std::uint32_t>(first / samples.count), samples.first + i);
+            } else {
+                add_hit(rays_[first + i], ray_hits_[first + i], samples.first + i);
             }
         }
         hits_.end_pixel();
     }
     report_.hits += hits_.size();
+}
+
+void PixelBatch::add_hit(const Ray& ray, const RayHit& hit, std::uint32_t sample) {
+    const CompiledScene& scene = *picture_->scene;
+    const SurfacePoint surface = scene.surface(hit, ray.direction);
+    const Vec3d direction = glm::normalize(Vec3d(ray.direction));
+    const double distance = glm::dot(surface.position - Vec3d(ray.origin), direction);
+    hits_.add(surface, -direction, scene.materials()[surface.material].emission + scene.lamps_along(ray, distance),
+              sample);
+}
+
+void PixelBatch::add_miss(const Ray& ray, std::uint32_t pixel, std::uint32_t sample) {
+    const Environment* background = picture_->scene->background();
+    Rgb radiance = picture_->scene->lamps_along(ray, std::nullopt);
+    if (background != nullptr) {
+        radiance += background->radiance(glm::normalize(Vec3d(ray.direction)));
+    }
+    if (background != nullptr || radiance != Rgb(0)) {
+        misses_.push_back({pixel, sample, radiance});
+    }
 }
 
 void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& samples) {
@@ -170,7 +184,8 @@ void PixelBatch::add_up(const SampleRange& samples, std::span<PixelSums> sums) c
         }
     }
     for (const Miss& miss : misses_) {
-        sums[miss.pixel].add(Vec3d(miss.radiance), Vec3d(0), from_center(miss.sample));
+        sums[miss.pixel].add(Vec3d(miss.radiance), Vec3d(0), from_center(miss.sample),
+                             picture_->scene->background() != nullptr);
     }
 }
 

@@ -25,8 +25,8 @@ struct Pixel {
     int column, row;
 };
 
-/// Sums over the camera rays of one pixel. A ray that met nothing is black and transparent, unless there is a
-/// background.
+/// Sums over the camera rays of one pixel. A ray that met no surface is transparent, unless there is a
+/// background, and black but for lamps.
 struct PixelSums {
     std::uint32_t rays = 0;
     std::uint32_t opaque = 0;  ///< rays that met a surface or the background
@@ -38,7 +38,7 @@ struct PixelSums {
     /// out.
     Vec3d variance() const;
     /// The part of one ray; from_center: its distance from the pixel's centre.
-    void add(const Vec3d& ray_radiance, const Vec3d& noise, const glm::dvec2& from_center);
+    void add(const Vec3d& ray_radiance, const Vec3d& noise, const glm::dvec2& from_center, bool is_opaque = true);
 };
 
 /// Everything that the batches of one picture share and only read.
@@ -68,13 +68,15 @@ class PixelBatch {
 
   private:
     void trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples);
+    void add_hit(const Ray& ray, const RayHit& hit, std::uint32_t sample);
+    void add_miss(const Ray& ray, std::uint32_t pixel, std::uint32_t sample);
     void add_lights(std::span<const Pixel> pixels, const SampleRange& samples);
     void add_environment(std::span<const Pixel> pixels, const SampleRange& samples);
     /// One for each pixel and light.
     void seed_pixels(std::span<const Pixel> pixels, std::uint32_t light);
     void add_up(const SampleRange& samples, std::span<PixelSums> sums) const;
 
-    /// A camera ray that met nothing but the background.
+    /// A camera ray that met no surface, but the background or a lamp.
     struct Miss {
         std::uint32_t pixel, sample;
         Rgb radiance;

@@ -10,6 +10,7 @@
 
 #include "emitter_levels.h"
 #include "ray_rounding.h"
+#include "seen_lamps.h"
 #include "shlight/mesh_light.h"
 #include "shlight/parallel.h"
 #include "transforms.h"
@@ -107,6 +108,7 @@ class CompiledScene::Impl {
             instances.push_back({placement.mesh, placement.baked, placement.to_world});
         }
         rays = std::make_unique<const RayTracer>(geometries, instances);
+        seen_lamps = SeenLamps(lights);
     }
 
     SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
@@ -118,6 +120,7 @@ class CompiledScene::Impl {
     Environment environment;
     bool has_background;
     std::unique_ptr<const RayTracer> rays;
+    SeenLamps seen_lamps;
 
   private:
     void add_emissive_faces(const std::shared_ptr<const Mesh>& mesh, std::uint32_t first_placement);
@@ -219,6 +222,9 @@ const Environment& CompiledScene::environment() const {
 }
 const Environment* CompiledScene::background() const {
     return impl_->has_background ? &impl_->environment : nullptr;
+}
+Rgb CompiledScene::lamps_along(const Ray& ray, const std::optional<double>& surface) const {
+    return impl_->seen_lamps.empty() ? Rgb(0) : impl_->seen_lamps.radiance(ray, surface);
 }
 const RayTracer& CompiledScene::rays() const {
     return *impl_->rays;

@@ -176,6 +176,7 @@ class Scene:
         shadows: bool = True,
         diffuse: bool = True,
         glossy: bool = True,
+        camera: bool = False,
     ) -> None: ...
     def add_polygon_light(
         self,
@@ -186,6 +187,7 @@ class Scene:
         shadows: bool = True,
         diffuse: bool = True,
         glossy: bool = True,
+        camera: bool = False,
     ) -> None: ...
     def add_point_light(
         self,
@@ -195,6 +197,7 @@ class Scene:
         shadows: bool = True,
         diffuse: bool = True,
         glossy: bool = True,
+        camera: bool = False,
     ) -> None: ...
     def add_spot_light(
         self,
@@ -210,6 +213,7 @@ class Scene:
         shadows: bool = True,
         diffuse: bool = True,
         glossy: bool = True,
+        camera: bool = False,
     ) -> None: ...
     def add_sun_light(
         self,
@@ -221,6 +225,7 @@ class Scene:
         shadows: bool = True,
         diffuse: bool = True,
         glossy: bool = True,
+        camera: bool = False,
     ) -> None: ...
     def set_environment(
         self, radiance: ArrayLike, *, to_world: ArrayLike | None = None, visible: bool = True

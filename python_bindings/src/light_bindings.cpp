@@ -14,6 +14,7 @@ namespace {
 /// What every light's description ends with.
 constexpr const char* kTraitsDoc =
     R"(shadows: False: it lights what it cannot see too. diffuse, glossy: False: diffuse or glossy reflection leaves it out.
+camera: True: the camera sees its radiance, added to that of what is behind it; not of a light of no size.
 
 Raises ValueError naming the argument.)";
 
@@ -21,7 +22,7 @@ std::string with_traits(const char* doc) {
     return std::string(doc) + kTraitsDoc;
 }
 
-constexpr const char* kSphereDoc = R"(Add a sphere light. The camera does not see it and it does not block light.
+constexpr const char* kSphereDoc = R"(Add a sphere light. It blocks no light.
 
 center: (3,). radius: > 0. radiance: RGB [W m^-2 sr^-1]; negative takes light away.
 facing_disk: a disk that always faces the shading point, of half angle atan(radius / distance), instead of the sphere of
@@ -30,7 +31,7 @@ A point inside the sphere is lit from its whole hemisphere.
 )";
 
 constexpr const char* kPolygonDoc =
-    R"(Add a one-sided polygon light. The camera does not see it and it does not block light.
+    R"(Add a one-sided polygon light. It blocks no light.
 
 vertices: (k, 3), k >= 3, planar and simple, convex or not. It shines to the side that sees them counter-clockwise.
 radiance: RGB [W m^-2 sr^-1]; negative takes light away.
@@ -62,49 +63,50 @@ tangent: False: its radiance is irradiance / (pi sin^2(angle / 2)) everywhere; T
     cos^3 alpha) at an angle alpha to its middle, as Blender had it before version 4; angle is then at most 3.
 )";
 
-LightTraits traits_from(bool shadows, bool diffuse, bool glossy) {
+LightTraits traits_from(bool shadows, bool diffuse, bool glossy, bool camera) {
     LightTraits traits;
     traits.casts_shadows = shadows;
     traits.lights_diffuse = diffuse;
     traits.lights_glossy = glossy;
+    traits.seen_by_camera = camera;
     return traits;
 }
 
 void add_sphere_light(SceneObject& self, const py::object& center, double radius, const py::object& radiance,
-                      bool facing_disk, bool shadows, bool diffuse, bool glossy) {
+                      bool facing_disk, bool shadows, bool diffuse, bool glossy, bool camera) {
     self.scene.add_sphere_light(vector_from("center", center), radius, rgb_from("radiance", radiance), facing_disk,
-                                traits_from(shadows, diffuse, glossy));
+                                traits_from(shadows, diffuse, glossy, camera));
     self.changed();
 }
 
 void add_polygon_light(SceneObject& self, const py::object& vertices, const py::object& radiance, double spread,
-                       bool shadows, bool diffuse, bool glossy) {
+                       bool shadows, bool diffuse, bool glossy, bool camera) {
     self.scene.add_polygon_light(points_from("vertices", vertices), rgb_from("radiance", radiance), spread,
-                                 traits_from(shadows, diffuse, glossy));
+                                 traits_from(shadows, diffuse, glossy, camera));
     self.changed();
 }
 
 void add_point_light(SceneObject& self, const py::object& position, const py::object& intensity, bool shadows,
-                     bool diffuse, bool glossy) {
+                     bool diffuse, bool glossy, bool camera) {
     self.scene.add_point_light(vector_from("position", position), rgb_from("intensity", intensity),
-                               traits_from(shadows, diffuse, glossy));
+                               traits_from(shadows, diffuse, glossy, camera));
     self.changed();
 }
 
 void add_spot_light(SceneObject& self, const py::object& position, const py::object& direction, double spot_angle,
                     double blend, const py::object& intensity, double radius, bool facing_disk, bool times_cosine,
-                    bool shadows, bool diffuse, bool glossy) {
+                    bool shadows, bool diffuse, bool glossy, bool camera) {
     self.scene.add_spot_light(vector_from("position", position),
                               make_spot_profile(axes_from("direction", direction), spot_angle, blend, times_cosine),
                               rgb_from("intensity", intensity), radius, facing_disk,
-                              traits_from(shadows, diffuse, glossy));
+                              traits_from(shadows, diffuse, glossy, camera));
     self.changed();
 }
 
 void add_sun_light(SceneObject& self, const py::object& direction, double angle, const py::object& irradiance,
-                   bool tangent, bool shadows, bool diffuse, bool glossy) {
+                   bool tangent, bool shadows, bool diffuse, bool glossy, bool camera) {
     self.scene.add_sun_light(vector_from("direction", direction), angle, rgb_from("irradiance", irradiance), tangent,
-                             traits_from(shadows, diffuse, glossy));
+                             traits_from(shadows, diffuse, glossy, camera));
     self.changed();
 }
 
@@ -114,16 +116,18 @@ void bind_lights(py::class_<SceneObject>& scene) {
     scene
         .def("add_sphere_light", &add_sphere_light, with_traits(kSphereDoc).c_str(), "center"_a, "radius"_a,
              "radiance"_a, py::kw_only(), "facing_disk"_a = false, "shadows"_a = true, "diffuse"_a = true,
-             "glossy"_a = true)
+             "glossy"_a = true, "camera"_a = false)
         .def("add_polygon_light", &add_polygon_light, with_traits(kPolygonDoc).c_str(), "vertices"_a, "radiance"_a,
-             py::kw_only(), "spread"_a = std::numbers::pi, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true)
+             py::kw_only(), "spread"_a = std::numbers::pi, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true,
+             "camera"_a = false)
         .def("add_point_light", &add_point_light, with_traits(kPointDoc).c_str(), "position"_a, "intensity"_a,
-             py::kw_only(), "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true)
+             py::kw_only(), "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true, "camera"_a = false)
         .def("add_spot_light", &add_spot_light, with_traits(kSpotDoc).c_str(), "position"_a, "direction"_a,
              "spot_angle"_a, "blend"_a, "intensity"_a, py::kw_only(), "radius"_a = 0.0, "facing_disk"_a = false,
-             "times_cosine"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true)
+             "times_cosine"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true, "camera"_a = false)
         .def("add_sun_light", &add_sun_light, with_traits(kSunDoc).c_str(), "direction"_a, "angle"_a, "irradiance"_a,
-             py::kw_only(), "tangent"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true);
+             py::kw_only(), "tangent"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true,
+             "camera"_a = false);
 }
 
 }  // namespace shlight::python

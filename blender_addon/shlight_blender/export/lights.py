@@ -32,6 +32,7 @@ class Traits(TypedDict):
     shadows: bool
     diffuse: bool
     glossy: bool
+    camera: bool
 
 
 class Lamp(NamedTuple):
@@ -73,11 +74,10 @@ def add_lamp(
     if not power.any():
         return False
     shown_by = [lamp_object] if instancer is None or not LAMPS.instancer_hides else [lamp_object, instancer]
-    if all(shown.visible_camera for shown in shown_by):
-        report.add(place, "lamps seen by the camera are not supported; it lights, but is not drawn")
     traits: Traits = {
         "shadows": lamp_casts_shadows(lamp),
         "diffuse": all(shown.visible_diffuse for shown in shown_by),
+        "camera": all(shown.visible_camera for shown in shown_by),
         "glossy": all(shown.visible_glossy for shown in shown_by),
     }
     return LAMP_TYPES[lamp.type](scene, Lamp(lamp, power, to_world, place, traits), report)

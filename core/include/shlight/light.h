@@ -18,9 +18,10 @@ namespace shlight {
 /// What all lights have beside their shape and radiance.
 struct LightTraits {
     EmissionProfile profile = EvenProfile{};
-    bool casts_shadows = true;   ///< false: it lights what it cannot see too
-    bool lights_diffuse = true;  ///< false: diffuse lobes do not reflect it
-    bool lights_glossy = true;   ///< likewise, glossy ones
+    bool casts_shadows = true;    ///< false: it lights what it cannot see too
+    bool lights_diffuse = true;   ///< false: diffuse lobes do not reflect it
+    bool lights_glossy = true;    ///< likewise, glossy ones
+    bool seen_by_camera = false;  ///< it adds its radiance to what camera rays that meet it bring, and hides nothing
 };
 
 /// A sphere, or a disk that always faces the shading point: caps of half angle asin(R/d) and atan(R/d).

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,8 @@ class CompiledScene {
     const Environment& environment() const;
     /// What camera rays that meet no surface see; null: nothing, which is transparent.
     const Environment* background() const;
+    /// What lamps that the camera sees add to a camera ray, up to a surface at this distance along it, if there is one.
+    Rgb lamps_along(const Ray& ray, const std::optional<double>& surface) const;
     const RayTracer& rays() const;
     /// Precondition: not hit.missed(); direction is the ray's.
     SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
@@ -63,8 +66,8 @@ class Scene {
     /// many of them one mesh light; as every face, the camera sees them
     /// and they block light.
     void add_mesh(Mesh mesh);
-    /// Lamps throw as make_sphere_light, make_polygon_light … do. They are not seen by the camera and do not block
-    /// light.
+    /// Lamps throw as make_sphere_light, make_polygon_light … do. The camera sees those that are
+    /// LightTraits::seen_by_camera and have an extent; they block no light.
     void add_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk = false,
                           const LightTraits& traits = {});
     /// spread: see make_spread_profile, which replaces traits.profile.
