@@ -9,6 +9,9 @@ namespace {
 
 constexpr double kSmallestViewCosine = 1e-4;
 
+/// Points on a light that the first shadow rays of a pixel get together, at least.
+constexpr std::uint32_t kLeastFirstPoints = 16;
+
 /// Any unit vector at right angles to a unit vector (Duff et al. 2017).
 Vec3d perpendicular(const Vec3d& n) {
     const double sign = std::copysign(1.0, n.z);
@@ -28,6 +31,11 @@ ShadingFrame shading_frame(const Vec3d& position, const Vec3d& normal, const Vec
 
 float view_cosine(const ShadingFrame& frame, const Vec3d& towards_viewer) {
     return static_cast<float>(std::clamp(glm::dot(frame.z, towards_viewer), kSmallestViewCosine, 1.0));
+}
+
+std::uint32_t SampleRange::first_shadow_rays() const {
+    const std::uint32_t least = (kLeastFirstPoints + count - 1) / count;
+    return std::min(shadow_rays, std::max((shadow_rays + 3) / 4, least));
 }
 
 void Hits::clear() {

@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kLightBlock = 8;
 /// In the place of a light's number.
 constexpr std::uint32_t kEnvironmentSeed = 0xFFFFFFFFU;
+constexpr std::uint32_t kDeltaSeed = 0xFFFFFFFEU;
 
 /// Times stages that follow each other.
 class StageClock {
@@ -52,7 +53,15 @@ void PixelSums::add(const Vec3d& ray_radiance, const Vec3d& noise, const glm::dv
 
 Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const RenderSettings& r,
                  std::vector<glm::dvec2> points)
-    : scene(&s), camera(&c), settings(r), width(w), height(h), window(c.window(w, h)), pixel_points(std::move(points)) {
+    : scene(&s),
+      camera(&c),
+      settings(r),
+      width(w),
+      height(h),
+      window(c.window(w, h)),
+      pixel_points(std::move(points)),
+      lights(s.lights().first(s.extended_light_count())),
+      deltas(s.lights().subspan(s.extended_light_count())) {
     for (const Material& material : s.materials()) {
         materials.emplace_back(material.bsdf.lobes(), r.order, r.tolerance);
         lobe_stride = std::max(lobe_stride, materials.back().lobes().size());
@@ -64,6 +73,7 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
 
 PixelBatch::PixelBatch(const Picture& picture)
     : picture_(&picture),
+      shadowed_deltas_(picture.scene->rays(), picture.materials, picture.lobe_stride, picture.deltas),
       unshadowed_(picture.lobe_stride),
       shadowed_(picture.scene->rays(), static_cast<std::uint32_t>(picture.settings.shadow_rays), picture.materials,
                 picture.lobe_stride),
@@ -74,8 +84,9 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
     StageClock clock(report_);
     trace_camera_rays(pixels, samples);
     clock.end(RenderStage::camera_rays);
-    points_.assign(hits_, picture_->materials, picture_->scene->lights(), picture_->settings.tolerance);
+    points_.assign(hits_, picture_->materials, picture_->lights, picture_->deltas, picture_->settings.tolerance);
     clock.end(RenderStage::views);
+    add_deltas(pixels, samples);
     add_lights(pixels, samples);
     if (picture_->environment) {
         add_environment(pixels, samples);
@@ -87,7 +98,7 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
 
 RenderReport PixelBatch::report() const {
     RenderReport report = report_;
-    report.shadow_rays = shadowed_.rays_traced() + shadowed_environment_.rays_traced();
+    report.shadow_rays = shadowed_deltas_.rays_traced() + shadowed_.rays_traced() + shadowed_environment_.rays_traced();
     return report;
 }
 
@@ -139,10 +150,20 @@ void PixelBatch::add_miss(const Ray& ray, std::uint32_t pixel, std::uint32_t sam
     }
 }
 
-void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& samples) {
-    const auto lights = picture_->scene->lights();
+void PixelBatch::add_deltas(std::span<const Pixel> pixels, const SampleRange& samples) {
     StageClock clock(report_);
-    shadowed_.start(hits_);
+    brightness_.assign(hits_.pixel_count(), 0.0F);
+    if (picture_->deltas.padded_size() > 0) {
+        seed_pixels(pixels, hash(kDeltaSeed, samples.first));
+        shadowed_deltas_.add(points_, samples.shadow_rays > 0, pixel_seeds_, hits_, brightness_, report_);
+    }
+    clock.end(RenderStage::shadows);
+}
+
+void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& samples) {
+    const auto lights = picture_->lights;
+    StageClock clock(report_);
+    shadowed_.start(brightness_);
     for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
         const auto block = lights.subspan(first, std::min(kLightBlock, lights.size() - first));
         unshadowed_.compute(points_, picture_->materials, block, report_);

@@ -8,10 +8,12 @@
 #include <span>
 #include <vector>
 
+#include "delta_lights.h"
 #include "environment_shading.h"
 #include "hits.h"
 #include "material_lobes.h"
 #include "shading_points.h"
+#include "shadowed_deltas.h"
 #include "shadowed_environment.h"
 #include "shlight/camera.h"
 #include "shlight/render.h"
@@ -54,6 +56,8 @@ struct Picture {
     std::vector<glm::dvec2> pixel_points;  ///< where each camera ray of a pixel goes through its unit square
     std::vector<MaterialLobes> materials;
     std::size_t lobe_stride = 1;
+    std::span<const Light> lights;  ///< with extent
+    DeltaLights deltas;
     std::optional<EnvironmentShading> environment;  ///< none: black
 };
 
@@ -70,6 +74,7 @@ class PixelBatch {
     void trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples);
     void add_hit(const Ray& ray, const RayHit& hit, std::uint32_t sample);
     void add_miss(const Ray& ray, std::uint32_t pixel, std::uint32_t sample);
+    void add_deltas(std::span<const Pixel> pixels, const SampleRange& samples);
     void add_lights(std::span<const Pixel> pixels, const SampleRange& samples);
     void add_environment(std::span<const Pixel> pixels, const SampleRange& samples);
     /// One for each pixel and light.
@@ -89,11 +94,13 @@ class PixelBatch {
     Hits hits_;
     std::vector<Miss> misses_;  // in the order of pixels
     ShadingPoints points_;
+    ShadowedDeltas shadowed_deltas_;
     Unshadowed unshadowed_;
     ShadowedLight shadowed_;
     std::vector<UnshadowedParts> environment_;
     ShadowedEnvironment shadowed_environment_;
     std::vector<std::uint32_t> pixel_seeds_;
+    std::vector<float> brightness_;  // of each pixel by sources without extent, if nothing blocks
 };
 
 }  // namespace shlight

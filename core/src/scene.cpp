@@ -99,6 +99,9 @@ class CompiledScene::Impl {
     }
 
     void build() {
+        const auto first_delta =
+            std::stable_partition(lights.begin(), lights.end(), [](const Light& light) { return !is_delta(light); });
+        extended_light_count = static_cast<std::size_t>(first_delta - lights.begin());
         std::vector<TracedGeometry> geometries;
         for (const TracedMesh& traced : meshes) {
             geometries.push_back({traced.vertices(), traced.mesh->triangles});
@@ -117,6 +120,7 @@ class CompiledScene::Impl {
     std::vector<Placement> placements;
     std::vector<Material> materials;
     std::vector<Light> lights;
+    std::size_t extended_light_count = 0;
     Environment environment;
     bool has_background;
     std::unique_ptr<const RayTracer> rays;
@@ -216,6 +220,9 @@ std::span<const Material> CompiledScene::materials() const {
 }
 std::span<const Light> CompiledScene::lights() const {
     return impl_->lights;
+}
+std::size_t CompiledScene::extended_light_count() const {
+    return impl_->extended_light_count;
 }
 const Environment& CompiledScene::environment() const {
     return impl_->environment;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "light_view.h"
 
@@ -18,8 +17,8 @@ Vec3d towards_viewer(const Hits& hits, std::size_t hit) {
     return std::sqrt(1 - cosine * cosine) * hits.frame[hit].x + cosine * hits.frame[hit].z;
 }
 
-double nearest(std::span<const Light> lights, const Vec3d& position) {
-    double distance = std::numeric_limits<double>::infinity();
+double nearest(std::span<const Light> lights, const DeltaLights& deltas, const Vec3d& position) {
+    double distance = deltas.changing_distance(position);
     for (const Light& light : lights) {
         distance = std::min(distance, changing_distance(light, position));
     }
@@ -49,15 +48,14 @@ bool ShadingPoints::joins(const Hits& hits, std::size_t hit, std::size_t point) 
     return difference <= members.spread;
 }
 
-void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, std::span<const Light> lights,
+void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, double nearest_light,
                           double tolerance) {
     frame.push_back(hits.frame[hit]);
     cos_theta_o.push_back(hits.cos_theta_o[hit]);
     error.push_back(hits.error[hit]);
     material.push_back(hits.material[hit]);
     const double spread = std::sqrt(3 * tolerance) * std::min(kWidestSpread, lobes.narrowest(hits.cos_theta_o[hit]));
-    members_.push_back(
-        {towards_viewer(hits, hit), spread, nearest(lights, hits.frame[hit].origin), Vec3d(0), Vec3d(0), Vec3d(0), 0});
+    members_.push_back({towards_viewer(hits, hit), spread, nearest_light, Vec3d(0), Vec3d(0), Vec3d(0), 0});
 }
 
 void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t point) {
@@ -80,7 +78,7 @@ void ShadingPoints::finish(std::size_t point) {
 }
 
 void ShadingPoints::assign(const Hits& hits, std::span<const MaterialLobes> materials, std::span<const Light> lights,
-                           double tolerance) {
+                           const DeltaLights& deltas, double tolerance) {
     clear();
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
         const std::size_t first_point = size();
@@ -90,7 +88,8 @@ void ShadingPoints::assign(const Hits& hits, std::span<const MaterialLobes> mate
                 ++point;
             }
             if (point == size()) {
-                start(hits, hit, materials[hits.material[hit]], lights, tolerance);
+                start(hits, hit, materials[hits.material[hit]], nearest(lights, deltas, hits.frame[hit].origin),
+                      tolerance);
             }
             add_member(hits, hit, point);
         }

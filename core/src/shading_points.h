@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "delta_lights.h"
 #include "hits.h"
 #include "material_lobes.h"
 #include "shlight/light.h"
@@ -23,7 +24,7 @@ class ShadingPoints {
     /// changes. The mean of a lobe over so small a spread is its value at the mean up to a fraction of the tolerance:
     /// what is left is the second difference.
     void assign(const Hits& hits, std::span<const MaterialLobes> materials, std::span<const Light> lights,
-                double tolerance);
+                const DeltaLights& deltas, double tolerance);
 
     std::size_t size() const { return frame.size(); }
     /// Hits that share a point.
@@ -47,8 +48,7 @@ class ShadingPoints {
 
     void clear();
     bool joins(const Hits& hits, std::size_t hit, std::size_t point) const;
-    void start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, std::span<const Light> lights,
-               double tolerance);
+    void start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, double nearest_light, double tolerance);
     void add_member(const Hits& hits, std::size_t hit, std::size_t point);
     void finish(std::size_t point);
 

@@ -80,18 +80,13 @@ void ShadowRays::trace(const Light& light, const Hits& hits, const LitHits& lit,
         runs_.clear();
         solid_angles_.assign(lit.hit.size() * set_stride_, 0.0);
     }
-    delta_ = is_delta(light);
     rays_.clear();
     const std::size_t before = blocked_.size();
     for (std::size_t i = 0; i < lit.hit.size(); ++i) {
         const std::size_t hit = lit.hit[i];
         const Drawing drawing(light, hits, hit, phase, seed);
-        if (delta_) {
-            draw_delta(drawing, *delta_view(light, hits.frame[hit], hits.error[hit]));
-        } else {
-            light_sampler_.reset(light, hits.frame[hit]);
-            draw(drawing, lit, i);
-        }
+        light_sampler_.reset(light, hits.frame[hit]);
+        draw(drawing, lit, i);
     }
     blocked_.resize(directions_.size());
     if (const auto* mesh = std::get_if<MeshLight>(&light)) {
@@ -148,18 +143,6 @@ void ShadowRays::draw(const Drawing& drawing, const LitHits& lit, std::size_t li
     }
 }
 
-void ShadowRays::draw_delta(const Drawing& drawing, const DeltaView& source) {
-    const std::size_t begin = directions_.size();
-    for (std::uint32_t ray = 0; ray < drawing.mirror_rays; ++ray) {
-        directions_.emplace_back(source.direction);
-        weights_.push_back(1);
-        hidden_layers_.push_back(0);
-        rays_.push_back(drawing.start.towards(source.direction, source.distance));
-    }
-    runs_.push_back({begin, directions_.size()});
-    runs_.resize(runs_.size() + set_stride_ - 1, {directions_.size(), directions_.size()});
-}
-
 void ShadowRays::draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set) {
     const double alpha = materials_[drawing.hit_material].alphas[set];
     const LobeSampler sampler(alpha, drawing.view);
@@ -205,7 +188,7 @@ RaySums ShadowRays::sum(const Hits& hits, const LitHits& lit, std::size_t lit_in
     const auto add = [&](const Run& run) {
         for (std::size_t i = run.begin; i < run.end; ++i) {
             const Vec3d direction(directions_[i]);
-            double value = mirror || delta_ ? 1.0 : weights_[i] * lobe_value(shape, direction, view);
+            double value = mirror ? 1.0 : weights_[i] * lobe_value(shape, direction, view);
             if (!mirror && solid_angle > 0) {
                 // The weights are those of points even in solid angle; so p_light is one over that.
                 value /= 1 + solid_angle * sampler.density(direction);

@@ -4,8 +4,8 @@
 //
 // Both sets serve a glossy lobe, weighted by the balance heuristic (Veach & Guibas 1995): a sample of direction ω that
 // either way could have drawn counts f·cos / (n (p_light + p_lobe)). A lobe much wider than the light lives on the
-// former, one much narrower on the latter, with no switch between them. A mirror has one ray, and so has a source
-// without extent. Weights hold the light's emission profile.
+// former, one much narrower on the latter, with no switch between them. A mirror has one ray. Weights hold the
+// light's emission profile.
 #pragma once
 
 #include <cstdint>
@@ -67,7 +67,6 @@ class ShadowRays {
     class Drawing;
 
     void draw(const Drawing& drawing, const LitHits& lit, std::size_t lit_index);
-    void draw_delta(const Drawing& drawing, const DeltaView& source);
     void follow(const MeshLight& light, std::size_t before);
     void draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set);
     /// layers: of the light, one behind the other, each of which the unshadowed radiance counts.
@@ -80,7 +79,6 @@ class ShadowRays {
     std::span<const MaterialLobes> lobes_;
     std::size_t set_stride_ = 1;  // sets of rays of any hit: the light's, then one per roughness
     LightSampler light_sampler_;
-    bool delta_ = false;  // the light has no extent
     std::uint64_t rays_traced_ = 0;
 
     std::vector<RayHit> met_;

@@ -7,9 +7,6 @@
 namespace shlight {
 namespace {
 
-/// Points of the first phase that a pixel gets at least: fewer would miss too much that stands in the way.
-constexpr std::uint32_t kLeastFirstPoints = 16;
-
 /// a / b, 0 where b is not positive.
 Vec3d quotient(const Vec3d& a, const Vec3d& b) {
     return {b.x > 0 ? a.x / b.x : 0, b.y > 0 ? a.y / b.y : 0, b.z > 0 ? a.z / b.z : 0};
@@ -88,8 +85,7 @@ void ShadowedEnvironment::add_pixel(std::uint32_t seed, std::size_t begin, std::
 
 /// Traces the pixel's rays; false: nothing is in their way.
 bool ShadowedEnvironment::find_obstacles(std::uint32_t seed, const Hits& hits) {
-    const std::uint32_t least = (kLeastFirstPoints + samples_.count - 1) / samples_.count;
-    const std::uint32_t first_rays = std::min(samples_.shadow_rays, std::max((samples_.shadow_rays + 3) / 4, least));
+    const std::uint32_t first_rays = samples_.first_shadow_rays();
     // No two ranges of samples share a point.
     const std::uint32_t first_point = samples_.first * most_rays_;
     rays_.trace(hits, lit_, {true, first_point, samples_.first, first_rays}, seed);

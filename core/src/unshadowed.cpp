@@ -104,10 +104,6 @@ void Unshadowed::see(const Light& light, const ShadingPoints& points, std::span<
 
 void Unshadowed::integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
                            std::size_t light_index, RenderReport& report) {
-    if (is_delta(light)) {
-        reflect(points, some, light, light_index, report);
-        return;
-    }
     if (const auto* mesh = std::get_if<MeshLight>(&light)) {
         integrate_mesh(points, some, *mesh, light_index, report);
         return;
@@ -175,25 +171,6 @@ void Unshadowed::apply_profile(std::size_t lobe, std::size_t k, const ShadingPoi
         std::min(views.absolute_tolerance(view) / double{value}, kProfileTolerance * double{views.tolerances()[view]});
     const double mean = profile_.mean(views.shape(), points.cos_theta_o[point], tolerance * profile_.range().high);
     value = static_cast<float>(value * mean);
-}
-
-void Unshadowed::reflect(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
-                         std::size_t light_index, RenderReport& report) {
-    for (const std::uint32_t point : some) {
-        const std::optional<DeltaView> seen = delta_view(light, points.frame[point], points.error[point]);
-        for (std::size_t lobe = 0; seen && lobe < views_.lobe_count(); ++lobe) {
-            const LobeShape& shape = views_.lobe(lobe).shape();
-            // A mirror shows a source without extent nowhere, or in no pixel's share.
-            if (is_mirror(shape) || !reflects(traits_of(light), shape)) {
-                continue;
-            }
-            const double cosine = points.cos_theta_o[point];
-            const Vec3d view(std::sqrt(1 - cosine * cosine), 0, cosine);
-            values_of(light_index, lobe)[point] =
-                static_cast<float>(seen->irradiance * lobe_value(shape, seen->direction, view));
-            count(Way::cubature, 1, points.hit_count(point), report);
-        }
-    }
 }
 
 }  // namespace shlight

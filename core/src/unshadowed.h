@@ -2,8 +2,7 @@
 //
 // Eq. 5 for many shading points and lights: outgoing radiance per lobe for lights of unit strength that nothing blocks.
 //
-// Lights whose emission profile changes over them as a point sees them are multiplied with its mean; sources without
-// extent are f·cos times their irradiance.
+// Lights whose emission profile changes over them as a point sees them are multiplied with its mean.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +27,7 @@ class Unshadowed {
   public:
     explicit Unshadowed(std::size_t lobe_stride) : lobe_stride_(lobe_stride) {}
 
-    /// Adds to the report what the points' hits take.
+    /// Adds to the report what the points' hits take. Precondition: no light is_delta().
     void compute(const ShadingPoints& points, std::span<const MaterialLobes> materials, std::span<const Light> lights,
                  RenderReport& report);
     /// The values of one light, lobe_stride × points.
@@ -51,9 +50,6 @@ class Unshadowed {
     template <class Lights>
     void shade_seen(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
                     std::size_t light_index, Lights&& lights, RenderReport& report);
-    /// The same of a source without extent.
-    void reflect(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
-                 std::size_t light_index, RenderReport& report);
     /// Multiplies the value of a lobe, of seen_by_[k], with the mean of the light's profile.
     void apply_profile(std::size_t lobe, std::size_t k, const ShadingPoints& points, std::uint32_t point,
                        const Light& light, float& value);

@@ -4,16 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "minor_lights.h"
+
 namespace shlight {
-namespace {
-
-/// Points of the first phase that a pixel gets at least: fewer would miss too much of a penumbra's rim.
-constexpr std::uint32_t kLeastFirstPoints = 16;
-/// A light that adds less than this to a pixel is asked for at fewer of its hits: what its visibility is then off by is
-/// no more than that of a light of this share, and of many such lights the errors go both ways.
-constexpr float kMinorShare = 0.02F;
-
-}  // namespace
 
 ShadowedLight::ShadowedLight(const RayTracer& tracer, std::uint32_t most_rays, std::span<const MaterialLobes> materials,
                              std::size_t lobe_stride)
@@ -23,8 +16,7 @@ void ShadowedLight::add(const Light& light, const SampleRange& samples, std::spa
                         std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds,
                         Hits& hits) {
     samples_ = samples;
-    const std::uint32_t least = (kLeastFirstPoints + samples.count - 1) / samples.count;
-    first_ray_count_ = std::min(samples.shadow_rays, std::max((samples.shadow_rays + 3) / 4, least));
+    first_ray_count_ = samples.first_shadow_rays();
     unshadowed_ = unshadowed;
     point_of_hit_ = point_of_hit;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
@@ -72,7 +64,7 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
         rays_.trace(light, hits, lit_, {true, first_point, samples_.first, first_ray_count_}, seed);
         const std::size_t blocked = rays_.blocked_count();
         // Few rays may miss the part of a light that is seen, and a glossy lobe may have its peak there.
-        if (blocked > 0 && blocked == rays_.count() && (is_delta(light) || !is_glossy(hits.material[lit_.hit[0]]))) {
+        if (blocked > 0 && blocked == rays_.count() && !is_glossy(hits.material[lit_.hit[0]])) {
             return;
         }
         if (blocked > 0) {
@@ -89,24 +81,18 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
 
 std::size_t ShadowedLight::stride_of(const Light& light, const Hits& hits) {
     const Rgb& strength = strength_of(light);
-    const std::uint32_t material = hits.material[lit_.hit[0]];
-    const std::span<const Lobe> lobes = materials_[material].lobes();
     float own = 0;
     bool alike = true;
-    for (std::size_t i = 0; i < lit_.hit.size() && alike; ++i) {
-        const std::size_t hit = lit_.hit[i];
-        alike = hits.material[hit] == material;
+    for (const std::size_t hit : lit_.hit) {
+        const std::span<const Lobe> lobes = materials_[hits.material[hit]].lobes();
+        alike = alike && hits.material[hit] == hits.material[lit_.hit[0]];
         for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
             const Rgb radiance = lobes[lobe].scale(hits.cos_theta_o[hit]) * strength * unshadowed(hit, lobe);
             own += std::abs(radiance.x) + std::abs(radiance.y) + std::abs(radiance.z);
         }
     }
     *pixel_brightness_ += own;
-    if (!alike || !(own < kMinorShare * *pixel_brightness_)) {
-        return 1;
-    }
-    const float stride = kMinorShare * *pixel_brightness_ / own;
-    return stride < static_cast<float>(lit_.hit.size()) ? static_cast<std::size_t>(stride) : lit_.hit.size();
+    return alike ? lit_.hit.size() / hits_to_ask(own, *pixel_brightness_, lit_.hit.size()) : 1;
 }
 
 void ShadowedLight::add_minor(const Light& light, std::size_t stride, std::uint32_t seed, Hits& hits) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Shadows: the unshadowed radiance of each lobe times the ratio of shadowed to unshadowed sampling (Heitz, Hill &
-// McGuire 2018, "Combining analytic direct illumination and stochastic shadows").
+// McGuire 2018, "Combining analytic direct illumination and stochastic shadows"). Of lights with extent; for others see
+// ShadowedDeltas.
 //
 // The ratio is exact where a light is wholly seen or wholly hidden; noise lives in penumbrae only. So a quarter of the
 // rays goes first, and where all those of a pixel agree, the rest is spared, but on glossy surfaces in shadow.
@@ -31,8 +32,8 @@ class ShadowedLight {
     /// pixel, other for each light. A hit's radiance counts as part of the sum over the hits of its shading point.
     void add(const Light& light, const SampleRange& samples, std::span<const float> unshadowed,
              std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds, Hits& hits);
-    /// To be called before the first light of other hits.
-    void start(const Hits& hits) { brightness_.assign(hits.pixel_count(), 0.0F); }
+    /// To be called before the first light of other hits. brightness: of each pixel by other lights, if nothing blocks.
+    void start(std::span<const float> brightness) { brightness_.assign(brightness.begin(), brightness.end()); }
     std::uint64_t rays_traced() const { return rays_.rays_traced(); }
 
   private:

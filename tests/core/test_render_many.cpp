@@ -30,37 +30,83 @@ Scene scene_of(int first, int last, const Bsdf& floor) {
     return scene;
 }
 
+/// Sums of `kGroup` lights each.
+Image sum_of_groups(const Bsdf& floor, const Camera& camera, int size, const RenderSettings& settings) {
+    Image sum = testing::render_image(scene_of(0, kGroup, floor), camera, size, size, settings);
+    for (int first = kGroup; first < kLights; first += kGroup) {
+        const Image part = testing::render_image(scene_of(first, first + kGroup, floor), camera, size, size, settings);
+        for (std::size_t i = 0; i < sum.values.size(); ++i) {
+            sum.values[i] += part.values[i];
+        }
+        sum.report.shadow_rays += part.report.shadow_rays;
+    }
+    return sum;
+}
+
 TEST(RenderMany, LightsTogetherAreTheSumOfTheirParts) {
     RenderSettings settings;
     settings.adaptive = false;
     const Camera camera = testing::camera_above(2);
     for (const Bsdf& floor : {Bsdf::lambert(Rgb(0.5F)), Bsdf::ggx(0.4F, Rgb(0.9F))}) {
         const Image all = testing::render_image(scene_of(0, kLights, floor), camera, kSize, kSize, settings);
-        std::vector<double> sum(all.values.size(), 0.0);
-        std::uint64_t rays = 0;
-        for (int first = 0; first < kLights; first += kGroup) {
-            const Image part =
-                testing::render_image(scene_of(first, first + kGroup, floor), camera, kSize, kSize, settings);
-            rays += part.report.shadow_rays;
-            for (std::size_t i = 0; i < sum.size(); ++i) {
-                sum[i] += double{part.values[i]};
-            }
-        }
+        const Image sum = sum_of_groups(floor, camera, kSize, settings);
         double squares = 0;
         double difference = 0;
         double whole = 0;
-        for (std::size_t i = 0; i < sum.size(); ++i) {
+        for (std::size_t i = 0; i < sum.values.size(); ++i) {
             if (i % 4 == 3) continue;  // alpha
-            const double error = double{all.values[i]} - sum[i];
-            squares += sum[i] > 0 ? error * error / (sum[i] * sum[i]) : 0;
+            const double expected = sum.values[i];
+            const double error = double{all.values[i]} - expected;
+            squares += expected > 0 ? error * error / (expected * expected) : 0;
             difference += error;
-            whole += sum[i];
+            whole += expected;
         }
         // 320 lights, of which a fifth has its shadow's edge in a pixel, and each of these errs by half its share.
         EXPECT_LE(squares / (3 * kSize * kSize), 1e-4);
         EXPECT_LE(std::abs(difference), 1e-3 * whole);
-        EXPECT_LE(all.report.shadow_rays, rays / 2);
+        EXPECT_LE(all.report.shadow_rays, sum.report.shadow_rays / 2);
     }
+}
+
+TEST(RenderMany, PixelsOfMoreRaysThanAreHeldAtATime) {
+    RenderSettings settings;
+    settings.adaptive = false;
+    settings.pixel_samples = 1024;
+    const Camera camera = testing::camera_above(0.5);
+    const Bsdf floor = Bsdf::ggx(0.2F, Rgb(0.9F));
+    const Image all = testing::render_image(scene_of(0, kLights, floor), camera, 2, 2, settings);
+    const Image sum = sum_of_groups(floor, camera, 2, settings);
+    for (int pixel = 0; pixel < 4; ++pixel) {
+        const double expected = sum.red(pixel % 2, pixel / 2);
+        EXPECT_LE(std::abs(all.red(pixel % 2, pixel / 2) - expected), 2e-3 * expected);
+    }
+}
+
+/// A bright half of the floor under lights that a wall hides from the dark other half.
+TEST(RenderMany, APixelOfTwoSurfacesIsNoMixOfTheirShadows) {
+    Scene scene;
+    Mesh floor = testing::floor_mesh(3);
+    floor.vertices = {{-3, -3, 0}, {0, -3, 0}, {0, 3, 0}, {-3, 3, 0}, {3, -3, 0},
+                      {3, 3, 0},   {0, -9, 0}, {0, 9, 0}, {0, 9, 5},  {0, -9, 5}};
+    floor.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}, {6, 7, 8}, {6, 8, 9}};
+    floor.bsdfs = {Bsdf::lambert(Rgb(0.8F)), Bsdf::lambert(Rgb(0.2F))};
+    floor.material_indices = {0, 0, 1, 1, 1, 1};
+    scene.add_mesh(floor);
+    double truth = 0;
+    testing::RandomInput random(6);
+    RenderSettings settings;
+    settings.adaptive = false;
+    for (int i = 0; i < kLights; ++i) {
+        const Vec3d position(random.uniform(-2, -1), random.uniform(-1, 1), random.uniform(0.5, 1));
+        scene.add_point_light(position, Rgb(1));
+        const double distance = glm::length(position);
+        truth += position.z / (distance * distance * distance);
+    }
+    // Of one pixel half is lit.
+    truth *= 0.5 * 0.8 / std::acos(-1.0);
+    const Image image = testing::render_image(scene, testing::camera_above(1e-3), 1, 1, settings);
+    EXPECT_LE(std::abs(image.red(0, 0) - truth), 0.01 * truth);
+    EXPECT_LE(image.report.shadow_rays, std::uint64_t{kLights} * 16 / 2);
 }
 
 }  // namespace

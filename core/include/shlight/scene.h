@@ -42,8 +42,11 @@ class CompiledScene {
     ~CompiledScene();
 
     std::span<const Material> materials() const;
-    /// Lamps first, in the order in which they were added, then emissive faces.
+    /// Those with extent first, then sources without: of either, lamps in the order in which they were added, then
+    /// emissive faces.
     std::span<const Light> lights() const;
+    /// How many have extent.
+    std::size_t extended_light_count() const;
     const Environment& environment() const;
     /// What camera rays that meet no surface see; null: nothing, which is transparent.
     const Environment* background() const;

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+//
+// Sources without extent in lanes, against each by itself.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "delta_lights.h"
+#include "light_view.h"
+#include "random_input.h"
+
+namespace shlight {
+namespace {
+
+using std::numbers::pi;
+
+constexpr std::size_t kCount = 203;  // no multiple of any number of lanes
+constexpr double kError = 1e-7;
+
+Light random_light(testing::RandomInput& random, const Vec3d& around) {
+    LightTraits traits;
+    traits.lights_diffuse = random.chance(0.9);
+    traits.lights_glossy = random.chance(0.9);
+    const Vec3d position = around + random.log_uniform(1e-2, 1e2) * random.direction();
+    const Rgb strength(static_cast<float>(random.uniform(-1, 2)), 1, 0.5F);
+    switch (random.integer(0, 3)) {
+        case 0:
+            return make_sun_light(random.direction(), 0, strength, false, traits);
+        case 1:
+            return make_spot_light(position, make_spot_profile(lamp_axes(random.direction()), 2, 0.3), strength, 0,
+                                   false, traits);
+        default:
+            return make_point_source(random.chance(0.05) ? around : position, strength, traits);
+    }
+}
+
+std::vector<Light> random_lights(testing::RandomInput& random, const Vec3d& around) {
+    std::vector<Light> lights;
+    for (std::size_t i = 0; i < kCount; ++i) {
+        lights.push_back(random_light(random, around));
+    }
+    return lights;
+}
+
+ShadingFrame random_frame(testing::RandomInput& random) {
+    const Vec3d position = 100.0 * random.direction();
+    return shading_frame(position, random.direction(), random.direction());
+}
+
+double value_of(const Light& light, const ShadingFrame& frame, const LobeShape& shape, float cosine) {
+    const auto seen = delta_view(light, frame, kError);
+    const bool glossy = std::holds_alternative<GgxShape>(shape);
+    if (!seen || !(glossy ? traits_of(light).lights_glossy : traits_of(light).lights_diffuse)) {
+        return 0;
+    }
+    const double z = cosine;
+    return seen->irradiance * lobe_value(shape, seen->direction, Vec3d(std::sqrt(1 - z * z), 0, z));
+}
+
+TEST(DeltaLights, ReflectAsEachByItself) {
+    testing::RandomInput random(1);
+    for (int round = 0; round < 20; ++round) {
+        const ShadingFrame frame = random_frame(random);
+        const std::vector<Light> lights = random_lights(random, frame.origin);
+        const DeltaLights deltas(lights);
+        const auto cosine = static_cast<float>(random.uniform(0.1, 1));
+        for (const LobeShape& shape : {LobeShape(LambertShape{}), LobeShape(GgxShape{0.3}), LobeShape(GgxShape{0})}) {
+            for (const DeltaRange range : {DeltaRange{0, deltas.padded_size()}, DeltaRange{48, 32}}) {
+                DeltaViews views;
+                std::vector<float> values(range.count);
+                deltas.see(range, frame, kError, views);
+                deltas.reflect(range, views, shape, cosine, values.data());
+                for (std::size_t i = 0; i < range.count; ++i) {
+                    const std::size_t light = range.begin + i;
+                    const double truth = light < kCount ? value_of(lights[light], frame, shape, cosine) : 0;
+                    EXPECT_LE(std::abs(double{values[i]} - truth), 1e-6 * truth) << light;
+                }
+            }
+        }
+    }
+}
+
+TEST(DeltaLights, ShineAsEachByItself) {
+    testing::RandomInput random(2);
+    for (int round = 0; round < 20; ++round) {
+        const ShadingFrame frame = random_frame(random);
+        const std::vector<Light> lights = random_lights(random, frame.origin);
+        const DeltaLights deltas(lights);
+        double nearest = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < kCount; ++i) {
+            EXPECT_EQ(deltas.shines(i, frame, kError), delta_view(lights[i], frame, kError).has_value()) << i;
+            nearest = std::min(nearest, changing_distance(lights[i], frame.origin));
+        }
+        EXPECT_LE(std::abs(deltas.changing_distance(frame.origin) - nearest), 1e-12 * nearest);
+    }
+}
+
+TEST(DeltaLights, RaysEndAtTheSource) {
+    testing::RandomInput random(3);
+    const Vec3d origin(3, -2, 1);
+    const std::vector<Light> lights = random_lights(random, origin);
+    const DeltaLights deltas(lights);
+    for (std::size_t i = 0; i < kCount; ++i) {
+        const Ray ray = deltas.ray(i, origin);
+        if (const auto* parallel = std::get_if<ParallelSource>(&lights[i])) {
+            EXPECT_EQ(ray.t_max, std::numeric_limits<float>::infinity());
+            EXPECT_LE(glm::length(Vec3d(ray.direction) - parallel->direction), 1e-6);
+            continue;
+        }
+        const Vec3d& position = std::get<PointSource>(lights[i]).position;
+        EXPECT_LE(ray.t_max, 1.0F);
+        EXPECT_LE(glm::length(Vec3d(ray.origin) + double{ray.t_max} * Vec3d(ray.direction) - position),
+                  1e-6 * glm::length(position - origin));
+    }
+}
+
+TEST(DeltaLights, SumsAreThoseOfPlainLoops) {
+    testing::RandomInput random(4);
+    const std::vector<Light> lights = random_lights(random, Vec3d(0));
+    const DeltaLights deltas(lights);
+    std::vector<float> values(deltas.padded_size());
+    for (float& value : values) {
+        value = static_cast<float>(random.uniform(0, 1));
+    }
+    const Rgb weight(0.2F, 0.3F, 0.7F);
+    std::vector<float> sums(values.size(), 1.0F);
+    add_weighted(values.data(), deltas.magnitudes(0), weight, values.size(), sums.data());
+    Vec3d sum(0);
+    for (std::size_t i = 0; i < kCount; ++i) {
+        sum += double{values[i]} * Vec3d(strength_of(lights[i]));
+        const double expected =
+            1 + double{values[i]} * glm::dot(Vec3d(weight), glm::abs(Vec3d(strength_of(lights[i]))));
+        EXPECT_LE(std::abs(double{sums[i]} - expected), 1e-6 * expected);
+    }
+    const Vec3d found(weighted_sum(values.data(), deltas.strengths(0), values.size()));
+    EXPECT_LE(glm::length(found - sum), 1e-5 * glm::length(sum));
+}
+
+}  // namespace
+}  // namespace shlight
