@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from . import against_methods, against_peer, growth, limits, memory, render, targets, threads
+from . import against_methods, against_peer, growth, limits, many_lights, memory, render, targets, threads
 from .run import Section
 
 SECTIONS = [
@@ -18,6 +18,7 @@ SECTIONS = [
     Section("memory", "Memory", memory.measure),
     Section("limits", "Limits of the machine", limits.measure),
     Section("render", "Stages of a render", render.measure),
+    Section("many", "Many point lights ÷ ten", many_lights.measure),
 ]
 
 PEERED = {"basis", "spheres", "warped", "quads", "targets"}  # need sphericart
