@@ -37,6 +37,12 @@ class LightInView {
             return;
         }
         cone_.reset();
+        ellipse_.reset();
+        if (const auto* disk = std::get_if<DiskLight>(&light)) {
+            ellipse_.emplace(Ellipse<double>{frame.point_to_local(disk->center), frame.to_local(disk->half_axis_u),
+                                             frame.to_local(disk->half_axis_v)});
+            return;
+        }
         const auto& polygon = std::get<PolygonLight>(light);
         normal_ = frame.to_local(polygon.normal);
         height_ = glm::dot(polygon.normal, polygon.vertices[0] - frame.origin);
@@ -50,19 +56,27 @@ class LightInView {
         if (cone_) {
             return cone_->sample(point);
         }
+        if (ellipse_) {
+            return ellipse_->sample(point);
+        }
         return triangles_.empty() ? RandomDirection{normal_, 0} : triangles_.sample(point);
     }
     double density(const Vec3d& direction) const {
-        return cone_ ? cone_->density(direction) : triangles_.density(direction);
+        return cone_      ? cone_->density(direction)
+               : ellipse_ ? ellipse_->density(direction)
+                          : triangles_.density(direction);
     }
     /// To the light's surface, in a direction of positive density.
     std::optional<double> distance(const Vec3d& direction) const {
-        return cone_ ? cap_->meets(direction) : std::optional(height_ / glm::dot(normal_, direction));
+        return cone_      ? cap_->meets(direction)
+               : ellipse_ ? std::optional(ellipse_->distance(direction))
+                          : std::optional(height_ / glm::dot(normal_, direction));
     }
 
   private:
     std::optional<ConeSampler> cone_;
     std::optional<CapSampler> cap_;
+    std::optional<EllipseAreaSampler> ellipse_;
     TriangleSampler triangles_;
     Vec3d normal_{0};
     double height_ = 0;

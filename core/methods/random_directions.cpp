@@ -71,6 +71,34 @@ RandomDirection DiskSampler::sample(const glm::dvec2& point) const {
     return {place / distance, distance * distance * distance / (pi * radius * radius)};
 }
 
+EllipseAreaSampler::EllipseAreaSampler(const Ellipse<double>& ellipse)
+    : ellipse_(ellipse), normal_(glm::cross(ellipse.half_axis_u, ellipse.half_axis_v)) {
+    const double length = glm::length(normal_);
+    area_ = pi * length;
+    normal_ /= length;
+    height_ = glm::dot(normal_, ellipse.center);
+}
+
+RandomDirection EllipseAreaSampler::sample(const glm::dvec2& point) const {
+    const double radius = std::sqrt(point.x);
+    const double turn = 2 * pi * point.y;
+    const Vec3d place =
+        ellipse_.center + radius * (std::cos(turn) * ellipse_.half_axis_u + std::sin(turn) * ellipse_.half_axis_v);
+    const double distance = glm::length(place);
+    return height_ == 0 ? RandomDirection{normal_, 0} : RandomDirection{place / distance, density_at(distance)};
+}
+
+double EllipseAreaSampler::density(const Vec3d& direction) const {
+    const double away = distance(direction);
+    if (!(away > 0 && std::isfinite(away))) {
+        return 0;
+    }
+    const Vec3d from_center = away * direction - ellipse_.center;
+    const double a = glm::dot(glm::cross(from_center, ellipse_.half_axis_v), normal_);
+    const double b = glm::dot(glm::cross(ellipse_.half_axis_u, from_center), normal_);
+    return std::hypot(a, b) <= area_ / pi ? density_at(away) : 0;
+}
+
 TriangleSampler::TriangleSampler(Uniform uniform, std::span<const Vec3d> polygon) : uniform_(uniform) {
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
         add(polygon[0], polygon[i], polygon[i + 1]);

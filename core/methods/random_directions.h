@@ -7,6 +7,7 @@
 // of a light lies below counts as dark.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,6 +15,7 @@
 #include <glm/vec2.hpp>
 
 #include "lobe_sampling.h"
+#include "shlight/disk.h"
 #include "shlight/lobe_shape.h"
 #include "shlight/types.h"
 #include "shlight/warp.h"
@@ -100,6 +102,25 @@ class TriangleSampler {
     std::vector<Piece> pieces_;
     double total_ = 0;
     int positive_ = 0, negative_ = 0;  // pieces by the sign of their volume
+};
+
+/// Uniform over the area of an ellipse anywhere; where that is seen edge-on it counts nothing.
+class EllipseAreaSampler {
+  public:
+    explicit EllipseAreaSampler(const Ellipse<double>& ellipse);
+    RandomDirection sample(const glm::dvec2& point) const;
+    /// 0 outside.
+    double density(const Vec3d& direction) const;
+    /// To the ellipse's plane.
+    double distance(const Vec3d& direction) const { return height_ / glm::dot(normal_, direction); }
+
+  private:
+    /// Of a direction that meets it.
+    double density_at(double distance) const { return distance * distance * distance / (area_ * std::abs(height_)); }
+
+    Ellipse<double> ellipse_;
+    Vec3d normal_;
+    double area_, height_;
 };
 
 /// As a lobe that is no mirror reflects the view: microfacets as the viewer sees them, or by the cosine.

@@ -215,6 +215,31 @@ PolygonLight make_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance
             traits};
 }
 
+DiskLight make_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const Vec3d& half_axis_v, const Rgb& radiance,
+                          bool two_sided, const LightTraits& traits) {
+    check_finite("center", center);
+    check_finite("half_axis_u", half_axis_u);
+    check_finite("half_axis_v", half_axis_v);
+    check_finite("radiance", radiance);
+    const double u = glm::length(half_axis_u);
+    const double v = glm::length(half_axis_v);
+    if (!(u > 0)) {
+        reject("half_axis_u must not be zero");
+    }
+    if (!(v > 0)) {
+        reject("half_axis_v must not be zero");
+    }
+    const Vec3d across = glm::cross(half_axis_u / u, half_axis_v / v);
+    if (!(glm::length(across) > kSmallestArea)) {
+        reject("half_axis_v: the half axes are parallel");
+    }
+    // The eigenvalues of the half axes' products are the squares of the principal half axes.
+    const double radius =
+        std::sqrt((u * u + v * v + std::hypot(u * u - v * v, 2 * glm::dot(half_axis_u, half_axis_v))) / 2);
+    const double error = kRayRounding * (largest_component(center) + 2 * radius);
+    return {center, half_axis_u, half_axis_v, glm::normalize(across), radiance, two_sided, radius, error, traits};
+}
+
 PointSource make_point_source(const Vec3d& position, const Rgb& intensity, const LightTraits& traits) {
     check_finite("position", position);
     check_finite("intensity", intensity);

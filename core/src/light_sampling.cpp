@@ -149,11 +149,17 @@ void PolygonSampler::reset(const PolygonLight& light, const ShadingFrame& frame)
 }
 
 void PolygonSampler::reset(const std::array<Vec3d, 4>& corners) {
+    reset(corners, glm::normalize(glm::cross(corners[1] - corners[0], corners[3] - corners[0])));
+}
+
+void PolygonSampler::reset(std::span<const Vec3d> corners, const Vec3d& normal) {
     pieces_.clear();
     total_ = 0;
-    normal_ = glm::normalize(glm::cross(corners[1] - corners[0], corners[3] - corners[0]));
+    normal_ = normal;
     height_ = glm::dot(normal_, corners[0]);
-    add_rectangle(corners);
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+        add_clipped(corners[0], corners[i], corners[i + 1]);
+    }
 }
 
 void PolygonSampler::add_rectangle(const std::array<Vec3d, 4>& corners) {
@@ -237,14 +243,22 @@ LightSample PolygonSampler::sample(const Piece& piece, const glm::dvec2& point) 
 }
 
 void LightSampler::reset(const Light& light, const ShadingFrame& frame) {
-    cap_.reset();
-    const auto* mesh = std::get_if<MeshLight>(&light);
-    mesh_in_use_ = mesh != nullptr;
-    if (mesh_in_use_) {
+    if (const auto* mesh = std::get_if<MeshLight>(&light)) {
+        kind_ = Kind::mesh;
         mesh_.reset(*mesh, frame);
     } else if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
+        kind_ = Kind::polygon;
         polygon_.reset(*polygon, frame);
+    } else if (const auto* disk = std::get_if<DiskLight>(&light)) {
+        const LitDisk lit = lit_part(*disk, frame);
+        kind_ = lit.corners.empty() ? Kind::ellipse : Kind::polygon;
+        if (lit.corners.empty()) {
+            ellipse_.emplace(lit.ellipse);
+        } else {
+            polygon_.reset(lit.corners, frame.to_local(disk->normal));
+        }
     } else {
+        kind_ = Kind::cap;
         cap_.emplace(*cap_view(light, frame));
     }
 }

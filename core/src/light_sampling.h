@@ -2,28 +2,25 @@
 //
 // Directions to a light from a hit, spread over what of it lies above the horizon.
 //
-// Both samplers turn a point of the unit square into a direction and a weight: the mean of weight · g(direction) over
-// evenly spread points is the integral of g over the solid angle of the light above the horizon. Both also meet a light
-// with a ray in a given direction.
+// Samplers turn a point of the unit square into a direction and a weight: the mean of weight · g(direction) over evenly
+// spread points is the integral of g over the solid angle of the light above the horizon. They also meet a light with a
+// ray in a given direction.
 #pragma once
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <glm/vec2.hpp>
 
+#include "ellipse_sampling.h"
+#include "light_sample.h"
 #include "light_view.h"
 #include "mesh_view.h"
 #include "shlight/types.h"
 
 namespace shlight {
-
-struct LightSample {
-    Vec3d direction;  ///< unit, in the shading frame
-    double distance;  ///< to the light's surface
-    double weight;
-};
 
 /// Uniform in the solid angle of a cap; along each meridian that the horizon cuts, uniform in what is left of it.
 class CapSampler {
@@ -69,6 +66,8 @@ class PolygonSampler {
     void reset(const PolygonLight& light, const ShadingFrame& frame);
     /// A planar quadrilateral in the shading frame.
     void reset(const std::array<Vec3d, 4>& corners);
+    /// A convex planar polygon in the shading frame, with its unit normal.
+    void reset(std::span<const Vec3d> corners, const Vec3d& normal);
     /// Where nothing lies above the horizon, a sample of no weight and no distance.
     LightSample sample(glm::dvec2 point) const;
     /// Parts that are smooth images of the unit square, and a point of one of them; weights as if it were the light.
@@ -124,31 +123,50 @@ class MeshSampler {
 
 /// Any of them. Precondition: the light is seen, and not a source without extent.
 class LightSampler {
+    enum class Kind { cap, ellipse, polygon, mesh };
+
+    /// What `ask` returns of the sampler in use.
+    template <class Ask>
+    auto with(const Ask& ask) const {
+        switch (kind_) {
+            case Kind::cap:
+                return ask(*cap_);
+            case Kind::ellipse:
+                return ask(*ellipse_);
+            case Kind::mesh:
+                return ask(mesh_);
+            case Kind::polygon:
+                break;
+        }
+        return ask(polygon_);
+    }
+
   public:
-    /// Of a rectangle, the part that shines on the hit: see lit_rectangle.
+    /// Of a rectangle or disk, the part that shines on the hit: see lit_rectangle and lit_part.
     void reset(const Light& light, const ShadingFrame& frame);
     LightSample sample(const glm::dvec2& point) const {
-        return mesh_in_use_ ? mesh_.sample(point) : cap_ ? cap_->sample(point) : polygon_.sample(point);
+        return with([&](const auto& sampler) { return sampler.sample(point); });
     }
     /// As PolygonSampler's; not of a mesh.
-    std::size_t patch_count() const { return cap_ ? 1 : polygon_.patch_count(); }
+    std::size_t patch_count() const { return kind_ == Kind::polygon ? polygon_.patch_count() : 1; }
     LightSample sample_patch(std::size_t patch, const glm::dvec2& point) const {
-        return cap_ ? cap_->sample(point) : polygon_.sample_patch(patch, point);
+        return kind_ == Kind::polygon ? polygon_.sample_patch(patch, point) : sample(point);
     }
     double solid_angle() const {
-        return mesh_in_use_ ? mesh_.solid_angle() : cap_ ? cap_->solid_angle() : polygon_.solid_angle();
+        return with([](const auto& sampler) { return sampler.solid_angle(); });
     }
     std::optional<double> meets(const Vec3d& direction) const {
-        return mesh_in_use_ ? mesh_.meets(direction) : cap_ ? cap_->meets(direction) : polygon_.meets(direction);
+        return with([&](const auto& sampler) { return sampler.meets(direction); });
     }
 
-    int layers(const Vec3d& direction) const { return mesh_in_use_ ? mesh_.layers(direction) : 1; }
+    int layers(const Vec3d& direction) const { return kind_ == Kind::mesh ? mesh_.layers(direction) : 1; }
 
   private:
+    Kind kind_ = Kind::polygon;
     std::optional<CapSampler> cap_;
+    std::optional<EllipseSampler> ellipse_;
     PolygonSampler polygon_;
     MeshSampler mesh_;
-    bool mesh_in_use_ = false;
 };
 
 }  // namespace shlight

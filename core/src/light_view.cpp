@@ -41,6 +41,7 @@ struct BoundsFrom {
         return distance > 0 ? Bounds{way / distance, std::atan(light.radius / distance)} : kEverywhere;
     }
     Bounds operator()(const PolygonLight& light) const { return sphere_bounds(light.center, light.radius, position); }
+    Bounds operator()(const DiskLight& light) const { return sphere_bounds(light.center, light.radius, position); }
     Bounds operator()(const MeshLight& light) const {
         return sphere_bounds(light.shape->center, light.shape->radius, position);
     }
@@ -83,6 +84,67 @@ std::optional<LitEdges> lit_edges(const PolygonLight& light, const Vec3d& positi
         edges.to[i] = std::clamp(middle + share, 0.0, 1.0);
     }
     return edges;
+}
+
+/// Sides of the polygon that stands for a disk of which a small part is lit: 1e-6 of it lies between them.
+constexpr int kSidesOfDisk = 256;
+/// Of a disk's short half axis: a lit circle with a smaller radius is singled out.
+constexpr double kSmallPart = 0.5;
+
+/// Keeps what of a convex polygon has dot(normal, v) ≤ limit.
+void clip(std::vector<Vec3d>& corners, const Vec3d& normal, double limit) {
+    std::vector<Vec3d> kept;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Vec3d& from = corners[i];
+        const Vec3d& to = corners[(i + 1) % corners.size()];
+        const double a = limit - glm::dot(normal, from);
+        const double b = limit - glm::dot(normal, to);
+        if (a >= 0) {
+            kept.push_back(from);
+        }
+        if ((a >= 0) != (b >= 0)) {
+            kept.push_back(from + a / (a - b) * (to - from));
+        }
+    }
+    corners = std::move(kept);
+}
+
+/// To what of the disk lies in the circle of radius `reach` about a point of its plane, or a little more.
+void restrict(const DiskLight& light, const Vec3d& middle, double reach, LitDisk& lit) {
+    const Vec3d way = middle - light.center;
+    const double area = glm::length(glm::cross(light.half_axis_u, light.half_axis_v));
+    const double short_half_axis = area / light.radius;
+    if (!(reach < kSmallPart * short_half_axis)) {
+        return;
+    }
+    const Vec3d along = glm::normalize(light.half_axis_u);
+    const Vec3d across = glm::cross(light.normal, along);
+    // In the disk's own units, in which it has the radius 1.
+    const double a = glm::dot(glm::cross(way, light.half_axis_v), light.normal) / area;
+    const double b = glm::dot(glm::cross(light.half_axis_u, way), light.normal) / area;
+    if (std::hypot(a, b) + reach / short_half_axis < 1) {
+        lit.ellipse = {middle, reach * along, reach * across};
+        return;
+    }
+    // Of equal area.
+    const double step = 2 * std::numbers::pi / kSidesOfDisk;
+    const double scale = std::sqrt(step / std::sin(step));
+    for (int i = 0; i < kSidesOfDisk; ++i) {
+        lit.corners.push_back(
+            light.center + scale * (std::cos(i * step) * light.half_axis_u + std::sin(i * step) * light.half_axis_v));
+    }
+    for (const Vec3d& side : {along, -along, across, -across}) {
+        clip(lit.corners, side, glm::dot(side, middle) + reach);
+    }
+    if (lit.corners.size() < 3) {
+        lit.corners.assign(3, middle);  // without area
+    }
+}
+
+/// Whether a hit lies off the plane of a light that is planar, on a side that the light shines to.
+template <class PlanarLight>
+bool is_lit_side(const PlanarLight& light, double height, double error) {
+    return (light.two_sided ? std::abs(height) : height) > 2 * (error + light.error);
 }
 
 }  // namespace
@@ -173,9 +235,31 @@ std::optional<std::array<Vec3d, 4>> lit_rectangle(const PolygonLight& light, con
                       at(edges->to[0], edges->to[1]), at(edges->from[0], edges->to[1])};
 }
 
+LitDisk lit_part(const DiskLight& light, const ShadingFrame& frame) {
+    LitDisk lit = {{light.center, light.half_axis_u, light.half_axis_v}, {}};
+    const auto* spread = std::get_if<SpreadProfile>(&light.traits.profile);
+    const double height = glm::dot(frame.origin - light.center, light.normal);
+    if (spread != nullptr && height > 0) {
+        restrict(light, frame.origin - height * light.normal, height * spread->tangent, lit);
+    }
+    Ellipse<double>& e = lit.ellipse;
+    e = {frame.point_to_local(e.center), frame.to_local(e.half_axis_u), frame.to_local(e.half_axis_v)};
+    for (Vec3d& corner : lit.corners) {
+        corner = frame.point_to_local(corner);
+    }
+    return lit;
+}
+
+bool is_seen(const DiskLight& light, const ShadingFrame& frame, double error) {
+    if (!is_lit_side(light, glm::dot(light.normal, frame.origin - light.center), error)) {
+        return false;
+    }
+    const double rise = std::hypot(glm::dot(frame.z, light.half_axis_u), glm::dot(frame.z, light.half_axis_v));
+    return glm::dot(frame.z, light.center - frame.origin) + rise > 0;
+}
+
 bool is_seen(const PolygonLight& light, const ShadingFrame& frame, double error) {
-    const double height = glm::dot(light.normal, frame.origin - light.vertices[0]);
-    if (!((light.two_sided ? std::abs(height) : height) > 2 * (error + light.error))) {
+    if (!is_lit_side(light, glm::dot(light.normal, frame.origin - light.vertices[0]), error)) {
         return false;
     }
     return std::any_of(light.vertices.begin(), light.vertices.end(),
@@ -189,6 +273,10 @@ bool is_seen(const Light& light, const ShadingFrame& frame, double error) {
     if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
         const std::optional<LitEdges> edges = lit_edges(*polygon, frame.origin);
         if ((edges && edges->empty()) || !is_seen(*polygon, frame, error)) {
+            return false;
+        }
+    } else if (const auto* disk = std::get_if<DiskLight>(&light)) {
+        if (!is_seen(*disk, frame, error)) {
             return false;
         }
     } else if (const auto* mesh = std::get_if<MeshLight>(&light)) {
@@ -209,12 +297,15 @@ double least_distance(const Light& light, const Vec3d& position) {
     if (const auto* mesh = std::get_if<MeshLight>(&light)) {
         return std::max(0.0, glm::length(mesh->shape->center - position) - mesh->shape->radius);
     }
-    const auto* polygon = std::get_if<PolygonLight>(&light);
-    if (polygon == nullptr) {
-        return std::numeric_limits<double>::infinity();
+    const auto of_planar = [&](const auto& planar) {
+        return std::max(std::abs(glm::dot(planar.normal, position - planar.center)),
+                        glm::length(planar.center - position) - planar.radius);
+    };
+    if (const auto* disk = std::get_if<DiskLight>(&light)) {
+        return of_planar(*disk);
     }
-    return std::max(std::abs(glm::dot(polygon->normal, position - polygon->center)),
-                    glm::length(polygon->center - position) - polygon->radius);
+    const auto* polygon = std::get_if<PolygonLight>(&light);
+    return polygon != nullptr ? of_planar(*polygon) : std::numeric_limits<double>::infinity();
 }
 
 double changing_distance(const Light& light, const Vec3d& position) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hits.h"
+#include "shlight/disk.h"
 #include "shlight/light.h"
 #include "shlight/types.h"
 #include "shlight/warp.h"
@@ -64,10 +65,21 @@ class ProfileView {
 /// through its spread. Nothing where that is all of it, and for lights of other shapes and profiles.
 std::optional<std::array<Vec3d, 4>> lit_rectangle(const PolygonLight& light, const Vec3d& position);
 
+/// A part of a disk.
+struct LitDisk {
+    Ellipse<double> ellipse;
+    std::vector<Vec3d> corners;  ///< if there are any, the part is this convex polygon
+};
+/// What of a disk shines on a point through its spread, or more, in the shading frame; all of it if the spread lights
+/// a good part.
+LitDisk lit_part(const DiskLight& light, const ShadingFrame& frame);
+
 /// Whether the light's bright side is seen at all, its profile left aside: the hit lies off the polygon's plane, on a
 /// side that it shines to, and some vertex is above the horizon. A hit in the plane, within rounding, gets nothing: a
 /// polygon is dark edge-on, and a surface on which a light lies flat is not lit at random.
 bool is_seen(const PolygonLight& light, const ShadingFrame& frame, double error);
+/// The same of a disk.
+bool is_seen(const DiskLight& light, const ShadingFrame& frame, double error);
 /// The same for any light, its profile considered.
 bool is_seen(const Light& light, const ShadingFrame& frame, double error);
 

@@ -5,6 +5,12 @@
 
 namespace shlight {
 
+double narrowest(const LobeShape& lobe, double cos_theta_o) {
+    const auto* ggx = std::get_if<GgxShape>(&lobe);
+    // At its peak a lobe is 2α wide across the plane of incidence's normal, and cosθ_o times that along it.
+    return ggx != nullptr ? std::min(1.0, 2 * ggx->alpha * std::max(cos_theta_o, kLeastFittedCosine)) : 1.0;
+}
+
 MaterialLobes::MaterialLobes(std::span<const Lobe> lobes, int order, double tolerance)
     : auto_order_(order == 0), tolerance_(tolerance) {
     for (const Lobe& lobe : lobes) {
@@ -21,10 +27,7 @@ MaterialLobes::MaterialLobes(std::span<const Lobe> lobes, int order, double tole
 double MaterialLobes::narrowest(double cos_theta_o) const {
     double least = 1;
     for (const Lobe& lobe : lobes_) {
-        if (const auto* ggx = std::get_if<GgxShape>(&lobe.shape)) {
-            // At its peak a lobe is 2α wide across the plane of incidence's normal, and cosθ_o times that along it.
-            least = std::min(least, 2 * ggx->alpha * std::max(cos_theta_o, kLeastFittedCosine));
-        }
+        least = std::min(least, shlight::narrowest(lobe.shape, cos_theta_o));
     }
     return least;
 }

@@ -12,6 +12,9 @@
 
 namespace shlight {
 
+/// The least distance [rad] over which f·cos of a lobe changes at this view; 0 for a mirror.
+double narrowest(const LobeShape& lobe, double cos_theta_o);
+
 class MaterialLobes {
   public:
     /// order: the only one, 1 … 64, or 0 to meet the tolerance: of the radiance ÷ albedo of the whole material, in each

@@ -258,6 +258,13 @@ void Scene::add_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance, 
     lamps_.emplace_back(std::move(light));
 }
 
+void Scene::add_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const Vec3d& half_axis_v, const Rgb& radiance,
+                           double spread, const LightTraits& traits) {
+    DiskLight light = make_disk_light(center, half_axis_u, half_axis_v, radiance, false, traits);
+    light.traits.profile = make_spread_profile(light.normal, spread);
+    lamps_.emplace_back(std::move(light));
+}
+
 void Scene::add_point_light(const Vec3d& position, const Rgb& intensity, const LightTraits& traits) {
     lamps_.emplace_back(make_point_source(position, intensity, traits));
 }

@@ -45,12 +45,18 @@ bool meets(const SphereLight& light, const View& view) {
     return light.facing_disk ? meets_disk(light, view) : meets_sphere(light, view);
 }
 
-bool meets(const PolygonLight& light, const View& view) {
+/// Where a ray meets a plane from a side that the light in it shines to; 0 where it does not.
+template <class PlanarLight>
+double distance_to_plane(const PlanarLight& light, const Vec3d& in_plane, const View& view) {
     const double approach = -glm::dot(view.direction, light.normal);
     if (approach == 0 || (approach < 0 && !light.two_sided)) {
-        return false;
+        return 0;
     }
-    const double distance = glm::dot(view.start - light.vertices[0], light.normal) / approach;
+    return glm::dot(view.start - in_plane, light.normal) / approach;
+}
+
+bool meets(const PolygonLight& light, const View& view) {
+    const double distance = distance_to_plane(light, light.vertices[0], view);
     if (!view.covers(distance)) {
         return false;
     }
@@ -61,6 +67,18 @@ bool meets(const PolygonLight& light, const View& view) {
     };
     return std::any_of(light.triangles.begin(), light.triangles.end(),
                        [&](const Triangle& t) { return left_of(t.x, t.y) && left_of(t.y, t.z) && left_of(t.z, t.x); });
+}
+
+bool meets(const DiskLight& light, const View& view) {
+    const double distance = distance_to_plane(light, light.center, view);
+    if (!view.covers(distance)) {
+        return false;
+    }
+    const Vec3d way = view.start + distance * view.direction - light.center;
+    const double area = glm::dot(glm::cross(light.half_axis_u, light.half_axis_v), light.normal);
+    const double a = glm::dot(glm::cross(way, light.half_axis_v), light.normal);
+    const double b = glm::dot(glm::cross(light.half_axis_u, way), light.normal);
+    return std::hypot(a, b) <= area;
 }
 
 bool meets(const SunLight& light, const View& view) {

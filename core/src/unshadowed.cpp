@@ -108,6 +108,10 @@ void Unshadowed::integrate(const ShadingPoints& points, std::span<const std::uin
         integrate_mesh(points, some, *mesh, light_index, report);
         return;
     }
+    if (std::holds_alternative<DiskLight>(light)) {
+        integrate_disk(points, some, light, light_index, report);
+        return;
+    }
     seen_by_.clear();
     see(light, points, some);
     if (std::holds_alternative<PolygonLight>(light)) {
@@ -133,30 +137,55 @@ void Unshadowed::integrate_mesh(const ShadingPoints& points, std::span<const std
     shade_seen(points, some, light, light_index, circles_.arrays(), report);
 }
 
+void Unshadowed::integrate_disk(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
+                                std::size_t light_index, RenderReport& report) {
+    disks_.clear();
+    for (std::uint32_t i = 0; i < some.size(); ++i) {
+        const ShadingFrame& frame = points.frame[some[i]];
+        if (is_seen(light, frame, points.error[some[i]])) {
+            const LitDisk lit = lit_part(std::get<DiskLight>(light), frame);
+            if (lit.corners.empty()) {
+                disks_.add(lit.ellipse, i, i);
+            } else {
+                disks_.add(lit.corners, i, i);
+            }
+        }
+    }
+    for (std::size_t lobe = 0; lobe < views_.lobe_count(); ++lobe) {
+        disks_.for_each_size(views_.lobe(lobe), tolerance_, [&] {
+            seen_by_.assign(disks_.views().begin(), disks_.views().end());
+            shade_seen(points, some, light, light_index, lobe, disks_.polygons(), report);
+        });
+    }
+}
+
 template <class Lights>
 void Unshadowed::shade_seen(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
                             std::size_t light_index, Lights&& lights, RenderReport& report) {
-    if (seen_by_.empty()) {
+    for (std::size_t lobe = 0; lobe < views_.lobe_count() && !seen_by_.empty(); ++lobe) {
+        shade_seen(points, some, light, light_index, lobe, lights, report);
+    }
+}
+
+template <class Lights>
+void Unshadowed::shade_seen(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
+                            std::size_t light_index, std::size_t lobe, Lights& lights, RenderReport& report) {
+    const LightTraits& traits = traits_of(light);
+    if (!reflects(traits, views_.lobe(lobe).shape())) {
         return;
     }
-    const LightTraits& traits = traits_of(light);
-    for (std::size_t lobe = 0; lobe < views_.lobe_count(); ++lobe) {
-        if (!reflects(traits, views_.lobe(lobe).shape())) {
-            continue;
+    batch_.shade(views_.lobe(lobe), lights, seen_by_, true);
+    float* values = values_of(light_index, lobe);
+    for (std::size_t k = 0; k < seen_by_.size(); ++k) {
+        const std::uint32_t point = some[seen_by_[k]];
+        values[point] += batch_.values()[k];
+        if (k > 0 && seen_by_[k] == seen_by_[k - 1]) {
+            continue;  // another face of the same mesh
         }
-        batch_.shade(views_.lobe(lobe), lights, seen_by_, true);
-        float* values = values_of(light_index, lobe);
-        for (std::size_t k = 0; k < seen_by_.size(); ++k) {
-            const std::uint32_t point = some[seen_by_[k]];
-            values[point] += batch_.values()[k];
-            if (k > 0 && seen_by_[k] == seen_by_[k - 1]) {
-                continue;  // another face of the same mesh
-            }
-            count(batch_.way(k), batch_.efforts()[k], points.hit_count(point), report);
-            report.over_tolerance += batch_.met(views_.lobe(lobe), k, seen_by_[k]) ? 0 : points.hit_count(point);
-            if (!std::holds_alternative<EvenProfile>(traits.profile) && values[point] > 0) {
-                apply_profile(lobe, k, points, point, light, values[point]);
-            }
+        count(batch_.way(k), batch_.efforts()[k], points.hit_count(point), report);
+        report.over_tolerance += batch_.met(views_.lobe(lobe), k, seen_by_[k]) ? 0 : points.hit_count(point);
+        if (!std::holds_alternative<EvenProfile>(traits.profile) && values[point] > 0) {
+            apply_profile(lobe, k, points, point, light, values[point]);
         }
     }
 }

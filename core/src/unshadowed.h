@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "circle_batch.h"
+#include "disk_polygons.h"
 #include "lobe_batch.h"
 #include "material_lobes.h"
 #include "material_views.h"
@@ -46,10 +47,17 @@ class Unshadowed {
     /// The same of a mesh.
     void integrate_mesh(const ShadingPoints& points, std::span<const std::uint32_t> some, const MeshLight& light,
                         std::size_t light_index, RenderReport& report);
+    /// The same of a disk.
+    void integrate_disk(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
+                        std::size_t light_index, RenderReport& report);
     /// Adds what the points seen_by_ get of lights, one each.
     template <class Lights>
     void shade_seen(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
                     std::size_t light_index, Lights&& lights, RenderReport& report);
+    /// By one lobe.
+    template <class Lights>
+    void shade_seen(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
+                    std::size_t light_index, std::size_t lobe, Lights& lights, RenderReport& report);
     /// Multiplies the value of a lobe, of seen_by_[k], with the mean of the light's profile.
     void apply_profile(std::size_t lobe, std::size_t k, const ShadingPoints& points, std::uint32_t point,
                        const Light& light, float& value);
@@ -68,6 +76,7 @@ class Unshadowed {
     std::vector<std::uint32_t> seen_by_;  // indices of these points
     CircleBatch circles_;
     PolygonBatch polygons_;
+    DiskPolygons disks_;
     MeshOutlines outlines_;
     double tolerance_ = 0;
     ProfileMean profile_;

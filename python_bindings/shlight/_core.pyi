@@ -189,6 +189,19 @@ class Scene:
         glossy: bool = True,
         camera: bool = False,
     ) -> None: ...
+    def add_disk_light(
+        self,
+        center: ArrayLike,
+        half_axis_u: ArrayLike,
+        half_axis_v: ArrayLike,
+        radiance: ArrayLike,
+        *,
+        spread: float = ...,
+        shadows: bool = True,
+        diffuse: bool = True,
+        glossy: bool = True,
+        camera: bool = False,
+    ) -> None: ...
     def add_point_light(
         self,
         position: ArrayLike,

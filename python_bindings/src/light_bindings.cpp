@@ -39,6 +39,14 @@ spread: angle [rad] within which it shines, as through a honeycomb grid, 0 < spr
     alpha to its normal, radiance is multiplied by max(tan h - tan alpha, 0) / (tan h - h), h = spread / 2; pi is even.
 )";
 
+constexpr const char* kDiskDoc =
+    R"(Add a one-sided light that is a disk or an ellipse. It does not block light.
+
+center, half_axis_u, half_axis_v: (3,), as of disk_coefficients: the points center + a half_axis_u + b half_axis_v with
+    a^2 + b^2 <= 1, half axes at right angles or not. It shines to the side of half_axis_u x half_axis_v.
+radiance: RGB [W m^-2 sr^-1]; negative takes light away. spread: see add_polygon_light.
+)";
+
 constexpr const char* kPointDoc = R"(Add a light of no size, with sharp shadows. Mirrors do not show it.
 
 position: (3,). intensity: RGB [W sr^-1]; a sphere of radius r and radiance L has pi r^2 L from afar.
@@ -86,6 +94,15 @@ void add_polygon_light(SceneObject& self, const py::object& vertices, const py::
     self.changed();
 }
 
+void add_disk_light(SceneObject& self, const py::object& center, const py::object& half_axis_u,
+                    const py::object& half_axis_v, const py::object& radiance, double spread, bool shadows,
+                    bool diffuse, bool glossy, bool camera) {
+    self.scene.add_disk_light(vector_from("center", center), vector_from("half_axis_u", half_axis_u),
+                              vector_from("half_axis_v", half_axis_v), rgb_from("radiance", radiance), spread,
+                              traits_from(shadows, diffuse, glossy, camera));
+    self.changed();
+}
+
 void add_point_light(SceneObject& self, const py::object& position, const py::object& intensity, bool shadows,
                      bool diffuse, bool glossy, bool camera) {
     self.scene.add_point_light(vector_from("position", position), rgb_from("intensity", intensity),
@@ -120,6 +137,9 @@ void bind_lights(py::class_<SceneObject>& scene) {
         .def("add_polygon_light", &add_polygon_light, with_traits(kPolygonDoc).c_str(), "vertices"_a, "radiance"_a,
              py::kw_only(), "spread"_a = std::numbers::pi, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true,
              "camera"_a = false)
+        .def("add_disk_light", &add_disk_light, with_traits(kDiskDoc).c_str(), "center"_a, "half_axis_u"_a,
+             "half_axis_v"_a, "radiance"_a, py::kw_only(), "spread"_a = std::numbers::pi, "shadows"_a = true,
+             "diffuse"_a = true, "glossy"_a = true, "camera"_a = false)
         .def("add_point_light", &add_point_light, with_traits(kPointDoc).c_str(), "position"_a, "intensity"_a,
              py::kw_only(), "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true, "camera"_a = false)
         .def("add_spot_light", &add_spot_light, with_traits(kSpotDoc).c_str(), "position"_a, "direction"_a,

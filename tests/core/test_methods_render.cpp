@@ -52,6 +52,11 @@ Scene room(const Bsdf& bsdf, const std::string& lights) {
         scene.add_polygon_light({{-1, 1.5, -1}, {-1, 1.5, 1}, {1, 1.5, 1}, {1, 1.5, -1}}, {2, 1, 0.5});
         scene.add_polygon_light({{1, 1.5, -1}, {1, 1.5, 1}, {-1, 1.5, 1}, {-1, 1.5, -1}}, {2, 1, 0.5});
     }
+    if (has('o')) {
+        scene.add_disk_light({0.3, 0.2, 1.4}, {0.1, 0.5, 0.1}, {0.8, -0.1, 0}, {1, 2, 3});
+        scene.add_disk_light({0.2, 1.5, 0.1}, {1, 0, 0.2}, {0, 0.1, 0.7}, {3, 2, 1}, 2.0);  // through the floor
+        scene.add_disk_light({-1.3, -0.5, 0.15}, {0, 0.6, 0}, {0.6, 0, 0.05}, {1, 1, 1});   // close to it
+    }
     if (has('e')) {
         Mesh glowing;
         glowing.vertices = {{1.2F, -1, 0.1F}, {1.2F, 1, 0.1F}, {1.2F, 1, 0.9F}, {1.2F, -1, 0.9F}};
@@ -119,11 +124,13 @@ TEST(MonteCarloRender, TheMeanIsWhatTheLibraryRenders) {
                           {"lambert, inside", lambert, "i"},
                           {"lambert, polygons", lambert, "p"},
                           {"lambert, glowing mesh", lambert, "e"},
+                          {"lambert, disks", lambert, "o"},
                           {"gold, spheres", gold, "sd"},
                           {"gold, inside", gold, "i"},
                           {"gold, polygons", gold, "pe"},
-                          {"plastic, all", plastic, "sdpe"},
-                          {"mirror, all", mirror, "sdpe"}}) {
+                          {"gold, disks", gold, "o"},
+                          {"plastic, all", plastic, "sdpeo"},
+                          {"mirror, all", mirror, "sdpeo"}}) {
         check_mean(c);
     }
 }

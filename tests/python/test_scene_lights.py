@@ -63,6 +63,20 @@ def test_spread_of_a_polygon_light() -> None:
     assert value(spread=math.pi) == value()
 
 
+def test_disk_light_is_disk_coefficients() -> None:
+    disk = ((0.3, -0.2, 1.0), (0.4, 0.1, 0.3), (-0.1, -0.9, 1.2))  # cut by the horizon
+    irradiance = math.sqrt(4 * math.pi / 3) * shlight.disk_coefficients(*disk, order=2)[2]
+
+    def value(u: Any, v: Any, **options: Any) -> Any:
+        return radiance_at_origin(lambda scene: scene.add_disk_light(disk[0], u, v, (1, 2, 3), **options))
+
+    facing, away = (disk[1:], disk[:0:-1])
+    np.testing.assert_allclose(value(*facing), np.array([1, 2, 3]) * irradiance / math.pi, rtol=2e-5)
+    assert not value(*away).any()
+    assert not value(*facing, diffuse=False).any()
+    assert value(*facing, spread=math.pi)[0] == value(*facing)[0]
+
+
 ADD = {
     "add_point_light": {"position": (0, 0, 1), "intensity": (1, 1, 1)},
     "add_sun_light": {"direction": (0, 0, -1), "angle": 0.1, "irradiance": (1, 1, 1)},
@@ -72,6 +86,12 @@ ADD = {
         "spot_angle": 1.0,
         "blend": 0.5,
         "intensity": (1, 1, 1),
+    },
+    "add_disk_light": {
+        "center": (0, 0, 1),
+        "half_axis_u": (1, 0, 0),
+        "half_axis_v": (0, 1, 0),
+        "radiance": (1, 1, 1),
     },
     "add_polygon_light": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "radiance": (1, 1, 1)},
 }
@@ -94,6 +114,12 @@ ADD = {
         ("add_spot_light", "blend", 1.5),
         ("add_spot_light", "radius", -0.1),
         ("add_spot_light", "intensity", (1, math.nan, 1)),
+        ("add_disk_light", "center", (0, 0)),
+        ("add_disk_light", "half_axis_u", (0, 0, 0)),
+        ("add_disk_light", "half_axis_v", (-2, 0, 0)),
+        ("add_disk_light", "half_axis_v", (math.nan, 1, 0)),
+        ("add_disk_light", "radiance", (1, math.inf, 1)),
+        ("add_disk_light", "spread", 0.0),
         ("add_polygon_light", "spread", 0.0),
         ("add_polygon_light", "spread", 4.0),
     ],

@@ -57,6 +57,15 @@ def test_star_from_its_front_only() -> None:
     assert not picture(lambda s: s.add_polygon_light(star[::-1], RADIANCE, camera=True)).any()
 
 
+def test_ellipse_from_its_front_only() -> None:
+    # In a plane across the view, half axes of lengths 0.9 and 0.5, not at right angles as they are given.
+    disk = ((0.2, -0.1, -2.0), (0.72, 0.3, 0), (-0.54, 0.4, 0))
+    area = filled(lambda s: s.add_disk_light(*disk, RADIANCE, camera=True))
+    assert area == pytest.approx(math.pi * 0.9 * 0.5 / 2.0**2, rel=3e-3)
+    away = (disk[0], disk[2], disk[1])
+    assert not picture(lambda s: s.add_disk_light(*away, RADIANCE, camera=True)).any()
+
+
 def test_sun() -> None:
     irradiance = np.array(RADIANCE) * math.pi * math.sin(0.1) ** 2
     area = filled(lambda s: s.add_sun_light((0, 0, 1), 0.2, irradiance, camera=True))

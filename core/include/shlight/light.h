@@ -47,6 +47,18 @@ struct PolygonLight {
     LightTraits traits = {};
 };
 
+/// A disk or an ellipse: center + a half_axis_u + b half_axis_v, a² + b² ≤ 1, of any two conjugate half axes. One-sided
+/// ones shine to the side of half_axis_u × half_axis_v.
+struct DiskLight {
+    Vec3d center, half_axis_u, half_axis_v;
+    Vec3d normal;  ///< unit, towards half_axis_u × half_axis_v
+    Rgb radiance;
+    bool two_sided;
+    double radius;  ///< half of the long axis
+    double error;   ///< as PolygonLight's
+    LightTraits traits = {};
+};
+
 /// A cap of directions: a disk infinitely far away.
 struct SunLight {
     Vec3d direction;    ///< unit, towards its middle
@@ -86,7 +98,7 @@ struct MeshLight {
     }
 };
 
-using Light = std::variant<SphereLight, PolygonLight, MeshLight, SunLight, PointSource, ParallelSource>;
+using Light = std::variant<SphereLight, PolygonLight, DiskLight, MeshLight, SunLight, PointSource, ParallelSource>;
 
 const LightTraits& traits_of(const Light& light);
 /// Radiance, or of sources without extent: intensity or irradiance.
@@ -105,6 +117,10 @@ SphereLight make_sphere_light(const Vec3d& center, double radius, const Rgb& rad
 /// that are not planar, enclose no area or cross themselves.
 PolygonLight make_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance, bool two_sided,
                                 const LightTraits& traits = {});
+
+/// Throws std::invalid_argument naming the argument: a number that is not finite, half axes that are parallel or zero.
+DiskLight make_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const Vec3d& half_axis_v, const Rgb& radiance,
+                          bool two_sided, const LightTraits& traits = {});
 
 /// Throws std::invalid_argument naming the argument: a number that is not finite.
 PointSource make_point_source(const Vec3d& position, const Rgb& intensity, const LightTraits& traits = {});

@@ -76,6 +76,9 @@ class Scene {
     /// spread: see make_spread_profile, which replaces traits.profile.
     void add_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance, double spread = std::numbers::pi,
                            const LightTraits& traits = {});
+    /// Shines to the side of half_axis_u × half_axis_v. spread: as of a polygon.
+    void add_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const Vec3d& half_axis_v, const Rgb& radiance,
+                        double spread = std::numbers::pi, const LightTraits& traits = {});
     void add_point_light(const Vec3d& position, const Rgb& intensity, const LightTraits& traits = {});
     void add_spot_light(const Vec3d& position, const SpotProfile& profile, const Rgb& intensity, double radius = 0,
                         bool facing_disk = false, const LightTraits& traits = {});
