@@ -145,7 +145,11 @@ def write_pass(render_pass: Any, pixels: NDArray[np.float32]) -> None:
 
 
 def uses_nodes(owner: Any) -> bool:
-    """True if a material, world or lamp is defined by its node tree (from 5.0 on `use_nodes` says nothing)."""
+    """True if a material, world or lamp is defined by its node tree.
+
+    Once Blender has declared `use_nodes` obsolete nothing reads it: of materials and worlds in 5.0, of lamps later.
+    """
     if owner.node_tree is None:
         return False
-    return VERSION >= (5, 0, 0) or bool(owner.use_nodes)
+    switch = owner.bl_rna.properties.get("use_nodes")
+    return switch is None or getattr(switch, "is_deprecated", False) or bool(owner.use_nodes)

@@ -232,6 +232,17 @@ def test_nodes_of_a_lamp(studio: Any) -> None:
     assert [line for line in messages() if "Light 'Area', node 'Noise Texture'" in line]
 
 
+def test_nodes_of_a_lamp_that_are_switched_off(studio: Any) -> None:
+    """Materials and worlds of Blender 5.0 ignore the switch, lamps do later."""
+    studio.plane(material=studio.material())
+    lamp = studio.area(80, (0.5, -1, 2)).data
+    lamp.use_nodes = True
+    next(node for node in lamp.node_tree.nodes if node.type == "EMISSION").inputs["Strength"].default_value = 1.7
+    lamp.use_nodes = False
+    studio.camera()
+    studio.compare()
+
+
 # --- reports
 
 
@@ -328,10 +339,14 @@ def test_cornell_box(shared_scene: Any) -> None:
 
 
 def test_lamps_of_all_types(shared_scene: Any) -> None:
+    """With the grey world that the file has, and without."""
     studio = shared_scene("lights.blend")
     assert "Light" not in "\n".join(messages())
     studio.scene.cycles.samples = 2048  # small lamps: noise of Cycles
     studio.compare(mean=2e-3, error=1e-3)
+    studio.scene.world = bpy.data.worlds["World"]
+    studio.compare(mean=2e-3, error=1e-3)
+    assert "World" not in "\n".join(messages())
 
 
 def test_animated_character(shared_scene: Any) -> None:
