@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -21,6 +22,13 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
+
+/// Below this sine of a cap's tilt or of a horizon, unscaled recurrences would leave the range of T.
+template <class T>
+inline double least_unscaled_sine(std::size_t order) {
+    const double exponent = sizeof(T) == 4 ? -80 : -600;
+    return order > 1 ? std::exp2(exponent / static_cast<double>(order - 1)) : 0;
+}
 
 /// One vector for each degree m.
 template <class T>
@@ -200,10 +208,11 @@ class UncrossedBands {
 ///   X_m = g (N_m p_m + Q_m u_m),   p_m = Σ_{k≤m} Q_k R_k,   u_m = Σ_{k>m} N_k R_k,   R_k less its factor sinθ.
 /// N decays where Q grows: Q is summed upwards and N downwards; a prefix difference would lose all digits.
 ///
+/// N̂ = N / sin^m θ and Q̂ = Q sin^{m-1} θ take the place of N and Q, which would leave the range of T; likewise
+/// P̂ = P̄ / s_0^m on the horizon.
+///
 /// kPlane: the horizon is z = 0, where R_m = 0 for odd l - m and the slopes of P̄_l^m for even l - m.
-/// kScaled: N̂ = N / sin^m θ and Q̂ = Q sin^{m-1} θ take the place of N and Q, which would leave the range of T; likewise
-/// P̂ = P̄ / s_0^m on the horizon. Lanes that need it (`needs_scaling`) should be sorted from those that do not.
-template <class T, bool kPlane, bool kScaled>
+template <class T, bool kPlane>
 class CrossedBands {
     using D = Lanes<T>;
 
@@ -212,13 +221,13 @@ class CrossedBands {
         : cap_(cap),
           light_(cap.cos_half, cap.sin_half),
           arc_(cap, order),
-          turn_(kScaled ? cap.cos_tilt : hn::Div(cap.cos_tilt, cap.sin_tilt)),
+          turn_(cap.cos_tilt),
           square_(hn::Mul(cap.sin_tilt, cap.sin_tilt)) {
-        powers_in_lanes<T, kScaled>(cap.sin_tilt, order, sine_powers_);
+        powers_in_lanes<T, true>(cap.sin_tilt, order, sine_powers_);
         if constexpr (!kPlane) {
-            horizon_turn_ = kScaled ? cap.height : hn::Div(cap.height, cap.horizon_sine);
+            horizon_turn_ = cap.height;
             horizon_square_ = hn::Mul(cap.horizon_sine, cap.horizon_sine);
-            powers_in_lanes<T, kScaled>(cap.horizon_sine, order, horizon_powers_);
+            powers_in_lanes<T, true>(cap.horizon_sine, order, horizon_powers_);
         }
     }
 
@@ -233,9 +242,9 @@ class CrossedBands {
         const auto along_horizon = go_down(l, band, steps);
         const auto n0 = null_[0];
         const auto n1 = null_[1];
-        const auto n1n1 = kScaled ? hn::Mul(hn::Mul(n1, n1), square_) : hn::Mul(n1, n1);
+        const auto n1n1 = hn::Mul(hn::Mul(n1, n1), square_);
         auto green = hn::Div(hn::Set(d, band.casoratian), hn::MulAdd(n0, n0, n1n1));
-        green = kScaled ? hn::Mul(green, cap_.sin_tilt) : green;
+        green = hn::Mul(green, cap_.sin_tilt);
         green = kPlane ? green : hn::Mul(green, cap_.horizon_sine);
         auto sums = visit.open(l);
         const auto dot = hn::Mul(go_up(l, steps, visit, sums), green);
@@ -259,12 +268,12 @@ class CrossedBands {
     HWY_INLINE V<D> lowered(V<D> here, V<D> above, const CapStep<T>& step, V<D> turn, V<D> square) {
         const D d;
         auto fall = hn::Mul(hn::Set(d, step.down_fall), above);
-        fall = kScaled ? hn::Mul(fall, square) : fall;
+        fall = hn::Mul(fall, square);
         return hn::MulSub(hn::Mul(hn::Set(d, step.down_climb), turn), here, fall);
     }
 
     /// N_m with its power of sinθ.
-    HWY_INLINE V<D> full(V<D> n, std::size_t m) const { return kScaled ? hn::Mul(n, sine_powers_[m]) : n; }
+    HWY_INLINE V<D> full(V<D> n, std::size_t m) const { return hn::Mul(n, sine_powers_[m]); }
 
     /// Adds degree m > 0 to the sums and steps to m - 1. kValue, kSlope: whether the horizon has one there.
     template <bool kValue, bool kSlope>
@@ -272,9 +281,7 @@ class CrossedBands {
         const D d;
         null_.put(m, s.n);
         if constexpr (kPlane) {
-            if constexpr (kValue || kScaled) {
-                above_.put(m, s.u);
-            }
+            above_.put(m, s.u);
             if constexpr (kValue) {
                 s.u = hn::MulAdd(s.n, hn::Mul(hn::Set(d, step.on_plane), arc_.moment[m]), s.u);
             }
@@ -285,12 +292,10 @@ class CrossedBands {
             above_.put(m, s.u);
             auto right = hn::Neg(hn::Mul(s.h, arc_.moment[m]));
             auto slope = hn::Mul(hn::Set(d, step.ladder), s.h_above);
-            slope = kScaled ? hn::Mul(slope, horizon_square_) : slope;
+            slope = hn::Mul(slope, horizon_square_);
             slope = hn::NegMulAdd(hn::Mul(all(d, static_cast<double>(m)), horizon_turn_), s.h, slope);
-            if constexpr (kScaled) {
-                right = hn::Mul(right, horizon_powers_[m]);
-                slope = hn::Mul(slope, horizon_powers_[m]);
-            }
+            right = hn::Mul(right, horizon_powers_[m]);
+            slope = hn::Mul(slope, horizon_powers_[m]);
             right_.put(m, right);
             s.u = hn::MulAdd(s.n, right, s.u);
             s.along = hn::MulAdd(full(s.n, m), hn::Mul(slope, arc_.weight[m]), s.along);
@@ -298,7 +303,7 @@ class CrossedBands {
             s.h_above = s.h;
             s.h = h;
         }
-        s.u = kScaled ? hn::Mul(s.u, cap_.sin_tilt) : s.u;
+        s.u = hn::Mul(s.u, cap_.sin_tilt);
         const auto n = lowered(s.n, s.n_above, step, s.turn, square_);
         s.n_above = s.n;
         s.n = n;
@@ -309,9 +314,9 @@ class CrossedBands {
         const D d;
         const auto zero = hn::Zero(d);
         const auto diagonal = hn::Set(d, band.diagonal);
-        Down s{kScaled ? diagonal : hn::Mul(diagonal, sine_powers_[l]), zero, zero, zero, zero, zero, turn_};
+        Down s{diagonal, zero, zero, zero, zero, zero, turn_};
         if constexpr (!kPlane) {
-            s.h = kScaled ? diagonal : hn::Mul(diagonal, horizon_powers_[l]);
+            s.h = diagonal;
         }
         std::size_t m = l;
         for (; m >= 2; m -= 2) {
@@ -328,9 +333,8 @@ class CrossedBands {
             return m == 1 ? hn::MulAdd(s.n, last, s.along) : s.along;
         } else {
             auto slope = hn::Mul(hn::Set(d, steps[0].ladder), s.h_above);
-            slope = hn::Mul(slope, kScaled ? horizon_square_ : cap_.horizon_sine);
-            const auto rest = kScaled ? s.along : hn::Mul(s.along, cap_.horizon_sine);
-            const auto along = hn::MulAdd(s.n, hn::Mul(slope, arc_.weight[0]), rest);
+            slope = hn::Mul(slope, horizon_square_);
+            const auto along = hn::MulAdd(s.n, hn::Mul(slope, arc_.weight[0]), s.along);
             return hn::Mul(hn::Set(d, band.four_pi_over), along);
         }
     }
@@ -346,20 +350,18 @@ class CrossedBands {
     template <bool kValue, class Visit>
     HWY_INLINE void up_site(std::size_t m, const CapStep<T>& step, Up& s, Visit& visit, typename Visit::Band& sums) {
         const D d;
-        s.p = kScaled ? hn::Mul(s.p, cap_.sin_tilt) : s.p;
+        s.p = hn::Mul(s.p, cap_.sin_tilt);
         if constexpr (kValue) {
             const auto right = kPlane ? hn::Mul(hn::Set(d, step.on_plane), arc_.moment[m]) : right_[m];
             s.p = hn::MulAdd(s.q, right, s.p);
         }
-        if constexpr (kValue || kScaled) {
-            s.u = above_[m];
-        }
+        s.u = above_[m];
         const auto n = null_[m];
         const auto x = hn::MulAdd(n, s.p, hn::Mul(s.q, s.u));
         s.dot = hn::MulAdd(full(n, m), x, s.dot);
         visit.term(sums, m, full(n, m), x);
         auto fall = hn::Mul(hn::Set(d, step.up_fall), s.q_below);
-        fall = kScaled ? hn::Mul(fall, square_) : fall;
+        fall = hn::Mul(fall, square_);
         const auto q = hn::MulSub(hn::Mul(hn::Set(d, step.up_climb), s.turn), s.q, fall);
         s.q_below = s.q;
         s.q = q;

@@ -15,6 +15,7 @@ CapBand<T> band(int l) {
     const double diagonal = LegendreConstants<double>::get().diagonal[static_cast<std::size_t>(l)];
     const double square = l * (l + 1);
     return {r(diagonal),
+            r(diagonal / (l + 1)),
             r(l > 0 ? 2 / std::sqrt(square) : 0),
             r(4 * pi / twice),
             r(l > 0 ? 1 / square : 0),
@@ -55,6 +56,8 @@ void fill_steps(int l, const PlaneRow& values, CapStep<T>* steps) {
                     r(m > 0 ? ladder[m] / ladder[m - 1] : 0),
                     r(m > 0 && m < l ? 2 * m / ladder[m] : 0),
                     r(m > 0 && m < l ? ladder[m - 1] / ladder[m] : 0),
+                    r(m > 0 ? 2 / ladder[m - 1] : 0),
+                    r(m > 0 ? 2 * values[static_cast<std::size_t>(m)] / ladder[m - 1] : 0),
                     r((l - m) % 2 == 0 ? -values[static_cast<std::size_t>(m)] : four_pi_over * slope),
                     r(ladder[m])};
     }

@@ -14,6 +14,8 @@ template <class T>
 struct CapStep {
     T down_climb, down_fall;  ///< 2m / c_{m-1}, c_m / c_{m-1}: from m to m-1, 1 ≤ m ≤ l
     T up_climb, up_fall;      ///< 2m / c_m, c_{m-1} / c_m: from m to m+1, 1 ≤ m < l
+    T down_share;             ///< 2 / c_{m-1}
+    T down_plane;             ///< 2 P̄_l^m(0) / c_{m-1}, zero for odd l-m
     T on_plane;               ///< even l-m: -P̄_l^m(0); odd l-m: 4π/(2l+1) dP̄_l^m/dz(0)
     T ladder;                 ///< c_m
 };
@@ -22,6 +24,7 @@ struct CapStep {
 template <class T>
 struct CapBand {
     T diagonal;           ///< P̂_l^l
+    T sectoral;           ///< P̂_l^l / (l+1)
     T casoratian;         ///< 2 / c_0
     T four_pi_over;       ///< 4π / (2l+1)
     T inverse_laplace;    ///< 1 / (l(l+1))

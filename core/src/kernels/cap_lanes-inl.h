@@ -29,6 +29,7 @@ struct CapLanes {
     V<D> cos_half, sin_half;
     V<D> arc, cos_arc, sin_arc;
     V<D> edge;
+    V<D> edge_height;  ///< z_0 - cosσ cosθ = sinσ sinθ cos(edge)
     V<D> solid_angle;
     V<D> height, horizon_sine;
 };
@@ -92,6 +93,7 @@ HWY_INLINE CapLanes<D> unclipped_cap(D d, const CircleLanes<D>& circle) {
     cap.arc = cap.sin_arc = zero;
     cap.cos_arc = all(d, 1);
     cap.edge = all(d, std::numbers::pi);
+    cap.edge_height = zero;
     cap.solid_angle = hn::Mul(all(d, 2 * std::numbers::pi), one_minus(d, circle.cosine, circle.sine));
     cap.height = zero;
     cap.horizon_sine = all(d, 1);
@@ -108,7 +110,8 @@ HWY_INLINE CapLanes<D> cap_across_plane(D d, const CircleLanes<D>& circle) {
     const auto one = all(d, 1);
     const auto chord = root(d, circle.crossing_squared);
     set_arc(d, chord, circle.cosine, cap);
-    cap.edge = arctangent(d, chord, hn::Neg(hn::Mul(circle.cosine, circle.z)));
+    cap.edge_height = hn::Neg(hn::Mul(circle.cosine, circle.z));
+    cap.edge = arctangent(d, chord, cap.edge_height);
     cap.height = zero;
     cap.horizon_sine = one;
     // A cap above a hemisphere is the complement of the opposite one.
@@ -228,6 +231,7 @@ HWY_INLINE CapLanes<D> cap_in_contact(D d, const ContactLanes<D>& contact) {
     set_axis(d, contact.light, cap);
     cap.height = contact.height;
     cap.horizon_sine = contact.sine;
+    cap.edge_height = contact.edge;
     const auto crossing = hn::Gt(contact.chord_squared, hn::Zero(d));
     if (hn::AllFalse(d, crossing)) {
         keep_uncrossed(d, contact, cap);
@@ -255,7 +259,7 @@ HWY_INLINE CapLanes<D> cap_off_plane(D d, const CircleLanes<D>& circle) {
     CapLanes<D> cap;
     set_axis(d, circle, cap);
     const auto zero = hn::Zero(d);
-    cap.height = zero;
+    cap.height = cap.edge_height = zero;
     cap.horizon_sine = all(d, 1);
     keep_uncrossed(d, ContactLanes<D>{circle, zero, cap.horizon_sine, zero, circle.z, zero, zero}, cap);
     return cap;

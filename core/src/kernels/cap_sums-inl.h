@@ -12,30 +12,52 @@
 #include <hwy/highway.h>
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <utility>
 
 #include "kernels/cap_bands-inl.h"
 #include "kernels/cap_lanes-inl.h"
+#include "kernels/cap_sectoral-inl.h"
 #include "kernels/legendre-inl.h"
 #include "kernels/rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
-/// Below this sine of a cap's tilt or of a horizon, unscaled recurrences would leave the range of T.
-template <class T>
-inline double least_unscaled_sine(std::size_t order) {
-    const double exponent = sizeof(T) == 4 ? -80 : -600;
-    return order > 1 ? std::exp2(exponent / static_cast<double>(order - 1)) : 0;
-}
+/// The recurrences for most caps, and those for the others.
+template <class T, bool kCrossing, bool kPlane, bool kMayContainHorizon>
+struct BandsOf {
+    using Most = UncrossedBands<T, false, kMayContainHorizon>;
+    using Others = UncrossedBands<T, true, kMayContainHorizon>;
+};
+template <class T, bool kPlane, bool kMayContainHorizon>
+struct BandsOf<T, true, kPlane, kMayContainHorizon> {
+    using Most = SectoralBands<T, kPlane>;
+    using Others = CrossedBands<T, kPlane>;
+};
 
-template <class D>
-HWY_INLINE M<D> needs_scaling(D d, const CapLanes<D>& cap, double least_sine) {
-    return hn::Lt(hn::Min(cap.sin_tilt, cap.horizon_sine), all(d, least_sine));
-}
+/// Tells which lanes need BandsOf::Others.
+template <class T>
+class BandChoice {
+    using D = Lanes<T>;
+
+  public:
+    explicit BandChoice(std::size_t order) : sectoral_(order), least_sine_(least_unscaled_sine<T>(order)) {}
+
+    template <bool kCrossing>
+    HWY_INLINE M<D> others(const CapLanes<D>& cap) const {
+        if constexpr (kCrossing) {
+            return sectoral_.beyond(cap);
+        } else {
+            return hn::Lt(hn::Min(cap.sin_tilt, cap.horizon_sine), all(D(), least_sine_));
+        }
+    }
+
+  private:
+    SectoralRange<T> sectoral_;
+    double least_sine_;
+};
 
 template <class D>
 HWY_INLINE V<D> band_zero(D d, const CapLanes<D>& cap) {
@@ -66,43 +88,46 @@ class CoefficientVisitor {
         writer_.add(1);
     }
 
-    struct Band {};
-    HWY_INLINE Band open(std::size_t /*l*/) { return {}; }
+    struct Band {
+        T* first;  // where degree -l goes
+        std::size_t l;
+    };
+    HWY_INLINE Band open(std::size_t l) { return {writer_.next(), l}; }
+    HWY_INLINE void put(const Band& band, std::size_t m, V<D> value) const {
+        const D d;
+        constexpr std::size_t kLanes = kLaneCount<D>;
+        T* right = band.first + (band.l + m) * kLanes;
+        if (m == 0) {
+            hn::Store(value, d, right);
+            return;
+        }
+        T* left = band.first + (band.l - m) * kLanes;
+        hn::Store(hn::Mul(value, hn::Load(d, azimuth_.cosine.data() + m * kLanes)), d, right);
+        hn::Store(hn::Mul(value, hn::Load(d, azimuth_.sine.data() + m * kLanes)), d, left);
+    }
     HWY_INLINE void term(Band& /*band*/, std::size_t m, V<D> null) { values_.put(m, null); }
     HWY_INLINE void term(Band& /*band*/, std::size_t m, V<D> /*null*/, V<D> particular) { values_.put(m, particular); }
 
+    HWY_INLINE void close(const Band& /*band*/, std::size_t l) { writer_.add(2 * l + 1); }
     /// Of circles that do not cross.
-    HWY_INLINE void close(const Band& /*band*/, std::size_t l, V<D> share, V<D> extra) {
-        write(l, [&](std::size_t m) HWY_ATTR {
-            const auto value = hn::Mul(share, values_[m]);
-            return m == 0 ? hn::Add(value, extra) : value;
-        });
+    HWY_INLINE void close(const Band& band, std::size_t l, V<D> share, V<D> extra) {
+        put(band, 0, hn::MulAdd(share, values_[0], extra));
+        for (std::size_t m = 1; m <= l; ++m) {
+            put(band, m, hn::Mul(share, values_[m]));
+        }
+        close(band, l);
     }
     template <class Bands>
-    HWY_INLINE void close(const Band& /*band*/, std::size_t l, V<D> green, V<D> share, const Bands& bands) {
-        write(l, [&](std::size_t m) HWY_ATTR { return hn::MulAdd(share, bands.null(m), hn::Mul(green, values_[m])); });
+    HWY_INLINE void close(const Band& band, std::size_t l, V<D> green, V<D> share, const Bands& bands) {
+        for (std::size_t m = 0; m <= l; ++m) {
+            put(band, m, hn::MulAdd(share, bands.null(m), hn::Mul(green, values_[m])));
+        }
+        close(band, l);
     }
 
     void finish() { writer_.finish(); }
 
   private:
-    template <class Value>
-    HWY_INLINE void write(std::size_t l, const Value& value_of) {
-        const D d;
-        constexpr std::size_t kLanes = kLaneCount<D>;
-        T* left = writer_.next() + l * kLanes;
-        T* right = left;
-        hn::Store(value_of(0), d, left);
-        for (std::size_t m = 1; m <= l; ++m) {
-            const auto value = value_of(m);
-            right += kLanes;
-            left -= kLanes;
-            hn::Store(hn::Mul(value, hn::Load(d, azimuth_.cosine.data() + m * kLanes)), d, right);
-            hn::Store(hn::Mul(value, hn::Load(d, azimuth_.sine.data() + m * kLanes)), d, left);
-        }
-        writer_.add(2 * l + 1);
-    }
-
     AzimuthLanes<T> azimuth_;
     RowWriter<T> writer_;
     DegreeRow<T> values_;
@@ -139,6 +164,9 @@ class ShadingVisitor {
         const auto zero = hn::Zero(D());
         return {terms_ + at(static_cast<int>(l), 0) * kLaneCount<D>, zero, zero};
     }
+    HWY_INLINE void put(Band& band, std::size_t m, V<D> value) const {
+        band.with_null = hn::MulAdd(turned(band, m), value, band.with_null);
+    }
     HWY_INLINE void term(Band& band, std::size_t m, V<D> null) const {
         band.with_null = hn::MulAdd(turned(band, m), null, band.with_null);
     }
@@ -148,6 +176,7 @@ class ShadingVisitor {
         band.with_particular = hn::MulAdd(t, particular, band.with_particular);
     }
 
+    HWY_INLINE void close(const Band& band, std::size_t /*l*/) { sum_ = hn::Add(sum_, band.with_null); }
     HWY_INLINE void close(const Band& band, std::size_t /*l*/, V<D> share, V<D> extra) {
         sum_ = hn::MulAdd(extra, hn::Load(D(), band.terms), hn::MulAdd(share, band.with_null, sum_));
     }

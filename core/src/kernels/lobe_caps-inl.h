@@ -37,14 +37,10 @@ HWY_INLINE void repeat_terms(const float* from, std::size_t count, TermLanes& te
 }
 
 /// Σ f_lm L_lm.
-template <bool kCrossing, bool kPlane, bool kScaled>
+template <class Bands>
 HWY_NOINLINE void shade_lanes(const CapLanes<Floats>& cap, std::size_t order, const TermLanes& terms, float* sums) {
     ShadingVisitor<float> visit(cap, order, terms.data());
-    if constexpr (kCrossing) {
-        solve_bands(CrossedBands<float, kPlane, kScaled>(cap, order), order, visit);
-    } else {
-        solve_bands(UncrossedBands<float, kScaled, true>(cap, order), order, visit);
-    }
+    solve_bands(Bands(cap, order), order, visit);
     hn::StoreU(visit.sum(), Floats(), sums);
 }
 
@@ -58,10 +54,7 @@ template <class Source>
 class ShadingBatch {
   public:
     ShadingBatch(const Source& source, float* values)
-        : source_(source),
-          values_(values),
-          order_(static_cast<std::size_t>(source.order())),
-          least_sine_(least_unscaled_sine<float>(order_)) {
+        : source_(source), values_(values), order_(static_cast<std::size_t>(source.order())), choice_(order_) {
         source_.share(terms_);
     }
 
@@ -78,8 +71,8 @@ class ShadingBatch {
     void run_part(std::size_t first, std::size_t last) {
         crossing_.clear();
         uncrossed_.clear();
-        scaled_[0].clear();
-        scaled_[1].clear();
+        others_[0].clear();
+        others_[1].clear();
         std::fill(values_ + first, values_ + last, 0.0F);
         for (std::size_t i = first; i < last; i += kLanes) {
             sort(i, std::min(kLanes, last - i));
@@ -99,7 +92,7 @@ class ShadingBatch {
         const std::uint32_t all_lanes = (1U << count) - 1;
         const std::uint32_t crossing = sides & all_lanes;
         if (crossing == (1U << kLanes) - 1) {
-            shade_unscaled<true>(loaded, chosen);
+            shade_most<true>(loaded, chosen);
             return;
         }
         crossing_.add_block(first, count, crossing);
@@ -107,26 +100,31 @@ class ShadingBatch {
     }
 
     template <bool kCrossing>
+    using Bands = BandsOf<float, kCrossing, Source::kPlane, true>;
+
+    template <bool kCrossing>
     HWY_INLINE void run_group(const LightList& lights) {
         lights.for_each_vector<float>([&](const Lights& chosen)
-                                          HWY_ATTR { shade_unscaled<kCrossing>(source_.load(chosen), chosen); });
-        scaled_[kCrossing].for_each_vector<float>([&](const Lights& chosen) HWY_ATTR {
+                                          HWY_ATTR { shade_most<kCrossing>(source_.load(chosen), chosen); });
+        others_[kCrossing].for_each_vector<float>([&](const Lights& chosen) HWY_ATTR {
             CapLanes<Floats> cap;
             prepare<kCrossing>(source_.load(chosen), chosen, cap);
-            shade<kCrossing, true>(cap, chosen);
+            shade<typename Bands<kCrossing>::Others>(cap, chosen);
         });
     }
 
-    /// Lanes that need scaling are put on a list, to be shaded again.
+    /// Lanes that need other recurrences are put on a list, to be shaded again.
     template <bool kCrossing>
-    HWY_INLINE void shade_unscaled(const Loaded& loaded, const Lights& chosen) {
+    HWY_INLINE void shade_most(const Loaded& loaded, const Lights& chosen) {
         const Floats d;
         CapLanes<Floats> cap;
         prepare<kCrossing>(loaded, chosen, cap);
-        const auto scaled = needs_scaling(d, cap, least_sine_);
-        shade<kCrossing, false>(cap, chosen);
-        if (!hn::AllFalse(d, scaled)) {
-            scaled_[kCrossing].add_marked(d, scaled, chosen);
+        const auto others = choice_.others<kCrossing>(cap);
+        if (!hn::AllTrue(d, others)) {
+            shade<typename Bands<kCrossing>::Most>(cap, chosen);
+        }
+        if (!hn::AllFalse(d, others)) {
+            others_[kCrossing].add_marked(d, others, chosen);
         }
     }
 
@@ -135,14 +133,14 @@ class ShadingBatch {
         source_.template prepare<kCrossing>(loaded, chosen, cap, terms_);
     }
 
-    template <bool kCrossing, bool kScaled>
+    template <class Recurrences>
     HWY_INLINE void shade(const CapLanes<Floats>& cap, const Lights& chosen) {
         if (are_in_a_row(chosen)) {
-            shade_lanes<kCrossing, Source::kPlane, kScaled>(cap, order_, terms_, values_ + chosen[0]);
+            shade_lanes<Recurrences>(cap, order_, terms_, values_ + chosen[0]);
             return;
         }
         alignas(64) std::array<float, kLanes> sums;
-        shade_lanes<kCrossing, Source::kPlane, kScaled>(cap, order_, terms_, sums.data());
+        shade_lanes<Recurrences>(cap, order_, terms_, sums.data());
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             values_[chosen[lane]] = sums[lane];
         }
@@ -151,9 +149,9 @@ class ShadingBatch {
     Source source_;
     float* values_;
     std::size_t order_;
-    double least_sine_;
+    BandChoice<float> choice_;
     LightList crossing_, uncrossed_;
-    std::array<LightList, 2> scaled_;  // of circles that do not cross the horizon, and that do
+    std::array<LightList, 2> others_;  // of circles that do not cross the horizon, and that do
     alignas(64) TermLanes terms_;
 };
 
