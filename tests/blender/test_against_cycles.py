@@ -294,6 +294,24 @@ def test_emissive_mesh(studio: Any) -> None:
     assert image[..., 0].max() == pytest.approx(12.0, rel=1e-3)
 
 
+def test_emissive_icosphere(studio: Any) -> None:
+    """1280 faces that glow, as one light."""
+    import bmesh
+
+    studio.plane(material=studio.material())
+    studio.box((0.5, 0.5, 0.9), studio.material(Color=(0.3, 0.6, 0.7)), location=(0.5, 0.2, 0.45))
+    globe = studio.mesh("Globe", [], [], studio.material("ShaderNodeEmission", Color=(1.0, 0.6, 0.3), Strength=12.0))
+    shape = bmesh.new()
+    bmesh.ops.create_icosphere(shape, subdivisions=4, radius=0.4)
+    shape.to_mesh(globe.data)
+    shape.free()
+    globe.location, globe.scale = (-0.8, 0, 1), (1, 0.7, 1.2)
+    assert len(globe.data.polygons) == 1280
+    studio.camera()
+    studio.scene.shlight.pixel_samples = 64
+    studio.compare(mean=2e-3, error=2e-3)
+
+
 def test_hidden_objects(studio: Any) -> None:
     studio.still_life()
     studio.box((1, 1, 1), location=(0, -2, 1)).hide_render = True
