@@ -17,6 +17,13 @@ class EllipseSampler {
     explicit EllipseSampler(const Ellipse<double>& disk);
     /// Where nothing lies above the horizon, a sample of no weight and no distance.
     LightSample sample(const glm::dvec2& point) const;
+    /// As PolygonSampler's: parts between meridians.
+    static constexpr std::size_t kPatches = 4;
+    LightSample sample_patch(std::size_t patch, const glm::dvec2& point) const {
+        LightSample drawn = sample({point.x, (static_cast<double>(patch) + point.y) / kPatches});
+        drawn.weight /= kPatches;
+        return drawn;
+    }
     /// Above the horizon, to a part in a hundred or so where that cuts.
     double solid_angle() const;
     /// As CapSampler::meets.

@@ -148,9 +148,13 @@ class LightSampler {
         return with([&](const auto& sampler) { return sampler.sample(point); });
     }
     /// As PolygonSampler's; not of a mesh.
-    std::size_t patch_count() const { return kind_ == Kind::polygon ? polygon_.patch_count() : 1; }
+    std::size_t patch_count() const {
+        return kind_ == Kind::polygon ? polygon_.patch_count() : kind_ == Kind::ellipse ? EllipseSampler::kPatches : 1;
+    }
     LightSample sample_patch(std::size_t patch, const glm::dvec2& point) const {
-        return kind_ == Kind::polygon ? polygon_.sample_patch(patch, point) : sample(point);
+        return kind_ == Kind::polygon   ? polygon_.sample_patch(patch, point)
+               : kind_ == Kind::ellipse ? ellipse_->sample_patch(patch, point)
+                                        : sample(point);
     }
     double solid_angle() const {
         return with([](const auto& sampler) { return sampler.solid_angle(); });

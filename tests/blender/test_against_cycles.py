@@ -155,7 +155,7 @@ def test_area_lamp_under_any_scale(studio: Any, scale: tuple[float, float, float
 
 
 @pytest.mark.parametrize("shape", ["DISK", "ELLIPSE"])
-def test_round_area_lamps_are_polygons_of_equal_area(studio: Any, shape: str) -> None:
+def test_round_area_lamps(studio: Any, shape: str) -> None:
     studio.plane(material=studio.material())
     studio.area(120, (0, 0.5, 1.2), shape=shape, size=1.0, size_y=0.5)
     studio.camera()

@@ -22,8 +22,6 @@ from .surface import SurfaceReader
 WIDEST_TANGENT_SUN = 3.0
 # The narrowest spread of an area lamp [rad] that is drawn as it is.
 SMALLEST_SPREAD = math.radians(0.1)
-# Sides of the polygon of equal area that stands for a round area lamp.
-ROUND_SIDES = 24
 
 
 class Traits(TypedDict):
@@ -161,22 +159,19 @@ def _add_sun(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
 
 
 def area_corners(lamp: Any, to_world: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Outline (k, 3) of an area lamp in the world, counter-clockwise seen from the side it shines to (its -Z)."""
-    round_shape = lamp.shape in {"DISK", "ELLIPSE"}
-    width = float(lamp.size)
-    height = width if lamp.shape in {"SQUARE", "DISK"} else float(lamp.size_y)
-    if round_shape:
-        angles = 2.0 * np.pi * np.arange(ROUND_SIDES) / ROUND_SIDES
-        # Radius at which the polygon has the area of the disk of diameter 1.
-        radius = 0.5 * math.sqrt(math.pi / (0.5 * ROUND_SIDES * math.sin(2.0 * math.pi / ROUND_SIDES)))
-        outline = radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    else:
-        outline = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
-    axis_x, axis_y, axis_z, center = to_world[:3].T
-    corners = center + outline[:, :1] * width * axis_x + outline[:, 1:] * height * axis_y
-    # Seen from +Z the outline above is counter-clockwise; a mirrored transform turns the order round.
+    """Corners (4, 3) of an area lamp in the world, counter-clockwise seen from the side it shines to (its -Z)."""
+    along, across = _half_axes(lamp, to_world)
+    return to_world[:3, 3] + np.stack([-along - across, along - across, along + across, across - along])
+
+
+def _half_axes(lamp: Any, to_world: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Of an area lamp, (3,) each, in the order whose cross product is on the side that it shines to."""
+    axis_x, axis_y, axis_z = to_world[:3, :3].T
+    height = lamp.size if lamp.shape in {"SQUARE", "DISK"} else lamp.size_y
+    half_x, half_y = 0.5 * float(lamp.size) * axis_x, 0.5 * float(height) * axis_y
+    # A mirrored transform turns the order round.
     towards_z = np.dot(np.cross(axis_x, axis_y), axis_z) > 0.0
-    return np.ascontiguousarray(corners[::-1] if towards_z else corners)
+    return (half_y, half_x) if towards_z else (half_x, half_y)
 
 
 def _add_area(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
@@ -187,9 +182,9 @@ def _add_area(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
     if area <= 0.0 or not np.linalg.norm(axis_z) > 0.0:
         report.add(lamp.place, "its area is 0; left out")
         return False
-    if data.shape in {"DISK", "ELLIPSE"}:
+    is_round = data.shape in {"DISK", "ELLIPSE"}
+    if is_round:
         area *= 0.25 * math.pi
-        report.add(lamp.place, f"round area lamps are not supported; drawn as a polygon of {ROUND_SIDES} sides")
     spread = float(data.spread)
     if spread < SMALLEST_SPREAD:
         report.add(lamp.place, f"a spread below {math.degrees(SMALLEST_SPREAD):g}° is drawn as that")
@@ -198,7 +193,11 @@ def _add_area(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
     if sheared:
         report.add(lamp.place, "sheared area lamps are drawn as parallelograms; Cycles takes them for rectangles")
     radiance = lamp.power * (LAMPS.area / area if lamp_is_normalized(data) else 1.0 / math.pi)
-    scene.add_polygon_light(area_corners(data, lamp.to_world), rgb(radiance), spread=spread, **lamp.traits)
+    if is_round:
+        half_axes = _half_axes(data, lamp.to_world)
+        scene.add_disk_light(lamp.place_in_world(), *half_axes, rgb(radiance), spread=spread, **lamp.traits)
+    else:
+        scene.add_polygon_light(area_corners(data, lamp.to_world), rgb(radiance), spread=spread, **lamp.traits)
     return True
 
 
