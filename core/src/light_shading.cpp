@@ -12,6 +12,7 @@
 
 #include "checks.h"
 #include "circle_batch.h"
+#include "disk_polygons.h"
 #include "kernels/cap_kernel.h"
 #include "light_checks.h"
 #include "lobe_batch.h"
@@ -21,6 +22,9 @@
 
 namespace shlight {
 namespace {
+
+/// Of the polygons that stand for disks, at most.
+constexpr double kDiskTolerance = 1e-4;
 
 /// Lights that are prepared and sorted at a time: enough for long lists of each kind, few enough for the cache.
 constexpr std::size_t kChunk = 1024;
@@ -120,6 +124,31 @@ class LightShaderWork {
                     [&](LobeViews& lobe) { batch_.shade(lobe, polygons_, view_of_, !effort.empty()); });
     }
 
+    /// disk(i): in the wider type.
+    template <class Disk>
+    void shade_disks(const Disk& disk, std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+        disks_.clear();
+        for (std::uint32_t i = 0; i < radiance.size(); ++i) {
+            disks_.add(disk(i), view_of_[i], i);
+        }
+        std::fill(radiance.begin(), radiance.end(), Rgb(0));
+        std::fill(effort.begin(), effort.end(), 0);
+        const double tolerance = std::min(material_.tolerance(), kDiskTolerance);
+        for (std::size_t l = 0; l < views_.lobe_count(); ++l) {
+            LobeViews& lobe = views_.lobe(l);
+            disks_.for_each_size(lobe, tolerance, [&] {
+                batch_.shade(lobe, disks_.polygons(), disks_.views(), !effort.empty());
+                for (std::size_t k = 0; k < disks_.numbers().size(); ++k) {
+                    const std::uint32_t i = disks_.numbers()[k];
+                    radiance[i] += lobe.scale(view_of_[i]) * batch_.values()[k];
+                    if (!effort.empty()) {
+                        effort[i] = std::max(effort[i], batch_.efforts()[k]);
+                    }
+                }
+            });
+        }
+    }
+
   private:
     template <class T>
     static void check_spheres(std::span<const Vec3<T>> centers, std::span<const T> radii) {
@@ -197,6 +226,7 @@ class LightShaderWork {
     std::vector<std::uint32_t> view_of_;
     CircleBatch circles_;
     PolygonBatch polygons_;
+    DiskPolygons disks_;
 };
 
 LightShader::LightShader(const Bsdf& bsdf, const ShadeSettings& settings)
@@ -232,6 +262,29 @@ void LightShader::polygons(std::span<const Vec3<T>> vertices, int vertex_count, 
     });
 }
 
+template <class T, class U>
+void LightShader::disks(std::span<const Vec3<T>> centers, std::span<const Vec3<T>> half_axes_u,
+                        std::span<const Vec3<T>> half_axes_v, std::span<const U> cos_theta_o, std::span<Rgb> radiance,
+                        std::span<std::int32_t> effort) {
+    const std::size_t count = centers.size();
+    check_size("half_axes_u", half_axes_u.size(), count);
+    check_size("half_axes_v", half_axes_v.size(), count);
+    check_views(cos_theta_o, count);
+    check_size("radiance", radiance.size(), count);
+    check_size("effort", effort.size(), effort.empty() ? 0 : count);
+    for (std::size_t i = 0; i < count; ++i) {
+        using Wide = Vec3<Wider<T>>;
+        check_disk<T>({Wide(centers[i]), Wide(half_axes_u[i]), Wide(half_axes_v[i])});
+    }
+    work_->in_chunks(cos_theta_o, count, [&](std::size_t first, std::size_t size) {
+        const auto disk = [&](std::size_t i) {
+            return Ellipse<double>{Vec3d(centers[first + i]), Vec3d(half_axes_u[first + i]),
+                                   Vec3d(half_axes_v[first + i])};
+        };
+        work_->shade_disks(disk, radiance.subspan(first, size), effort.empty() ? effort : effort.subspan(first, size));
+    });
+}
+
 void shade_spheres(std::span<const Vec3d> centers, std::span<const double> radii, const Bsdf& bsdf,
                    std::span<const double> cos_theta_o, const ShadeSettings& settings, std::span<Rgb> radiance,
                    std::span<std::int32_t> effort) {
@@ -258,6 +311,18 @@ template void LightShader::polygons(std::span<const Vec3<double>>, int, std::spa
                                     std::span<std::int32_t>);
 template void LightShader::spheres(std::span<const Vec3<double>>, std::span<const double>, std::span<const double>,
                                    std::span<Rgb>, std::span<std::int32_t>);
+template void LightShader::disks(std::span<const Vec3<float>>, std::span<const Vec3<float>>,
+                                 std::span<const Vec3<float>>, std::span<const float>, std::span<Rgb>,
+                                 std::span<std::int32_t>);
+template void LightShader::disks(std::span<const Vec3<float>>, std::span<const Vec3<float>>,
+                                 std::span<const Vec3<float>>, std::span<const double>, std::span<Rgb>,
+                                 std::span<std::int32_t>);
+template void LightShader::disks(std::span<const Vec3<double>>, std::span<const Vec3<double>>,
+                                 std::span<const Vec3<double>>, std::span<const float>, std::span<Rgb>,
+                                 std::span<std::int32_t>);
+template void LightShader::disks(std::span<const Vec3<double>>, std::span<const Vec3<double>>,
+                                 std::span<const Vec3<double>>, std::span<const double>, std::span<Rgb>,
+                                 std::span<std::int32_t>);
 template void LightShader::polygons(std::span<const Vec3<double>>, int, std::span<const double>, std::span<Rgb>,
                                     std::span<std::int32_t>);
 

@@ -21,7 +21,7 @@ from shlight.coefficients import (  # noqa: E402
     shade,
     sphere_coefficients,
 )
-from shlight.shading import shade_polygons, shade_spheres  # noqa: E402
+from shlight.shading import shade_disks, shade_polygons, shade_spheres  # noqa: E402
 
 __version__ = "0.1.0"
 
@@ -39,6 +39,7 @@ __all__ = [
     "render",
     "sh_basis",
     "shade",
+    "shade_disks",
     "shade_polygons",
     "shade_spheres",
     "sphere_coefficients",

@@ -56,6 +56,17 @@ def shade_polygons(
     threads: int,
     with_effort: bool,
 ) -> tuple[NDArray[np.float32], NDArray[np.int32]]: ...
+def shade_disks(
+    centers: _Floats,
+    half_axes_u: _Floats,
+    half_axes_v: _Floats,
+    bsdf: Bsdf,
+    cos_theta_o: _Floats,
+    order: int,
+    tolerance: float,
+    threads: int,
+    with_effort: bool,
+) -> tuple[NDArray[np.float32], NDArray[np.int32]]: ...
 
 class MethodOptions:
     def __init__(self, *, tolerance: float, order: int, samples: int, seed: int, sampling: str) -> None: ...

@@ -177,6 +177,74 @@ def shade_polygons(
     return _result(*flat, shape, return_effort)
 
 
+@overload
+def shade_disks(
+    centers: ArrayLike,
+    half_axes_u: ArrayLike,
+    half_axes_v: ArrayLike,
+    bsdf: _core.Bsdf,
+    cos_theta_o: ArrayLike,
+    *,
+    order: int | Literal["auto"] = ...,
+    tolerance: float = ...,
+    threads: int = ...,
+    method: str = ...,
+    return_effort: Literal[False] = ...,
+) -> Radiance: ...
+@overload
+def shade_disks(
+    centers: ArrayLike,
+    half_axes_u: ArrayLike,
+    half_axes_v: ArrayLike,
+    bsdf: _core.Bsdf,
+    cos_theta_o: ArrayLike,
+    *,
+    order: int | Literal["auto"] = ...,
+    tolerance: float = ...,
+    threads: int = ...,
+    method: str = ...,
+    return_effort: Literal[True],
+) -> tuple[Radiance, Effort]: ...
+def shade_disks(
+    centers: ArrayLike,
+    half_axes_u: ArrayLike,
+    half_axes_v: ArrayLike,
+    bsdf: _core.Bsdf,
+    cos_theta_o: ArrayLike,
+    *,
+    order: int | Literal["auto"] = "auto",
+    tolerance: float = 1e-3,
+    threads: int = 0,
+    method: str = "auto",
+    return_effort: bool = False,
+) -> Radiance | tuple[Radiance, Effort]:
+    """As shade_spheres, for disks and ellipses.
+
+    centers, half_axes_u, half_axes_v: (..., 3), in the shading frame, as of disk_coefficients: the points
+    centre + a u + b v with a² + b² ≤ 1, seen from either side. A disk seen edge-on gives zeros.
+    What a lobe reflects is that of a polygon of as many sides as it takes to keep a coefficient within about 1e-4 of
+    L_00, or the tolerance if that is less (docs/algorithms.md, "Lit by disks").
+    method: "auto" only; those of shlight.methods.shading_methods() know no disks.
+    """
+    if method != "auto":
+        raise ValueError(f"method must be 'auto' for disks, got {method!r}")
+    dtype = _given_type(centers, half_axes_u, half_axes_v)
+    c = checked_array("centers", centers, dtype, core_axes=1)
+    u = checked_array("half_axes_u", half_axes_u, dtype, core_axes=1)
+    v = checked_array("half_axes_v", half_axes_v, dtype, core_axes=1)
+    check_last("centers", c, 3)
+    check_last("half_axes_u", u, 3)
+    check_last("half_axes_v", v, 3)
+    cosines = _checked_views(cos_theta_o)
+    shape = broadcast(
+        centers=c.shape[:-1], half_axes_u=u.shape[:-1], half_axes_v=v.shape[:-1], cos_theta_o=cosines.shape
+    )
+    lights = (rows(c, shape, 3), rows(u, shape, 3), rows(v, shape, 3))
+    settings = (_order(order), checked_tolerance(tolerance), checked_threads(threads))
+    flat = _core.shade_disks(*lights, bsdf, _views(cosines, shape), *settings, return_effort)
+    return _result(*flat, shape, return_effort)
+
+
 def _given_type(*arrays: ArrayLike) -> type[np.floating[Any]]:
     """float32 for arrays that are, float64 for all else."""
     single = all(isinstance(a, np.ndarray | np.generic) and a.dtype == np.float32 for a in arrays)

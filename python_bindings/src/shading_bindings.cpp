@@ -61,6 +61,22 @@ py::tuple polygons(const Array<T>& vertices, const Bsdf& bsdf, const Array<U>& c
 }
 
 template <class T, class U>
+py::tuple disks(const Array<T>& centers, const Array<T>& half_axes_u, const Array<T>& half_axes_v, const Bsdf& bsdf,
+                const Array<U>& cos_theta_o, int order, double tolerance, int threads, bool with_effort) {
+    const auto c = vectors("centers", centers);
+    const auto u = vectors("half_axes_u", half_axes_u);
+    const auto v = vectors("half_axes_v", half_axes_v);
+    const auto views = values(cos_theta_o);
+    const Shaded out(c.size(), with_effort);
+    shade_parts(
+        c.size(), bsdf, {order, tolerance}, threads, [&](LightShader& shader, std::size_t first, std::size_t count) {
+            shader.disks(c.subspan(first, count), u.subspan(first, count), v.subspan(first, count),
+                         part_of(views, first, count), out.colors.subspan(first, count), out.effort_of(first, count));
+        });
+    return out.result();
+}
+
+template <class T, class U>
 void bind(py::module_& m) {
     m.def("shade_spheres", &spheres<T, U>, py::arg("centers").noconvert(), py::arg("radii").noconvert(),
           py::arg("bsdf"), py::arg("cos_theta_o").noconvert(), py::arg("order"), py::arg("tolerance"),
@@ -68,6 +84,9 @@ void bind(py::module_& m) {
     m.def("shade_polygons", &polygons<T, U>, py::arg("vertices").noconvert(), py::arg("bsdf"),
           py::arg("cos_theta_o").noconvert(), py::arg("order"), py::arg("tolerance"), py::arg("threads"),
           py::arg("with_effort"));
+    m.def("shade_disks", &disks<T, U>, py::arg("centers").noconvert(), py::arg("half_axes_u").noconvert(),
+          py::arg("half_axes_v").noconvert(), py::arg("bsdf"), py::arg("cos_theta_o").noconvert(), py::arg("order"),
+          py::arg("tolerance"), py::arg("threads"), py::arg("with_effort"));
 }
 
 }  // namespace

@@ -46,6 +46,14 @@ class LightShader {
     void polygons(std::span<const Vec3<T>> vertices, int vertex_count, std::span<const U> cos_theta_o,
                   std::span<Rgb> radiance, std::span<std::int32_t> effort = {});
 
+    /// Disks and ellipses as disk_coefficients takes them; throws as that does, too. A lobe reflects what it reflects
+    /// of a polygon within about 1e-4 of the disk's L_00, or tolerance if that is less (docs/algorithms.md, "Lit by
+    /// disks"); of harmonics of a given order, of 1e-4.
+    template <class T, class U>
+    void disks(std::span<const Vec3<T>> centers, std::span<const Vec3<T>> half_axes_u,
+               std::span<const Vec3<T>> half_axes_v, std::span<const U> cos_theta_o, std::span<Rgb> radiance,
+               std::span<std::int32_t> effort = {});
+
   private:
     std::unique_ptr<class LightShaderWork> work_;
 };
