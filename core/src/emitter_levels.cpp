@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <tuple>
@@ -14,9 +16,6 @@
 namespace shlight {
 namespace {
 
-/// How much of the strip between two outlines lies on one side more than on the other: of levels of one area, a seventh
-/// was the most for spheres.
-constexpr double kOneSided = 0.15;
 /// Sine of an edge's bend that is none.
 constexpr double kFlat = 1e-7;
 /// A level has this share of the faces of the one before: errors grow as fast as faces become fewer, so that their sum
@@ -25,6 +24,8 @@ constexpr std::size_t kReduction = 4;
 /// Faces of the finest level: with more, edges are so short that their outlines zigzag, and of a sphere this many show
 /// 0.05 % of the solid angle too much or too little.
 constexpr std::size_t kMostFaces = 5120;
+/// Edges of a block: of smaller ones there are more to look at, of larger ones more that lie on both sides of a point.
+constexpr std::size_t kBlockEdges = 16;
 /// Of the extent: beyond, a coarse mesh is nothing like the fine one.
 constexpr float kLargestError = 0.05F;
 
@@ -208,9 +209,79 @@ void scale(IndexedMesh& mesh, const Vec3d& center, double factor) {
     }
 }
 
+/// Every third bit, of 21.
+std::uint64_t spread_bits(std::uint64_t x) {
+    x = (x | x << 32U) & 0x1F00000000FFFFU;
+    x = (x | x << 16U) & 0x1F0000FF0000FFU;
+    x = (x | x << 8U) & 0x100F00F00F00F00FU;
+    x = (x | x << 4U) & 0x10C30C30C30C30C3U;
+    return (x | x << 2U) & 0x1249249249249249U;
+}
+
+/// In the order in which a curve that fills space (Morton 1966) passes their middles, so that neighbours are close.
+void sort_along_curve(const IndexedMesh& mesh, std::vector<EmitterEdge>& edges) {
+    Vec3d low = mesh.vertices.front();
+    Vec3d high = low;
+    for (const Vec3d& v : mesh.vertices) {
+        low = glm::min(low, v);
+        high = glm::max(high, v);
+    }
+    const Vec3d extent = high - low;
+    const double scale = 0x1FFFFF / std::max({extent.x, extent.y, extent.z});
+    const auto key = [&](const EmitterEdge& edge) {
+        const Vec3d middle = (0.5 * (mesh.vertices[edge.from] + mesh.vertices[edge.to]) - low) * scale;
+        return spread_bits(static_cast<std::uint64_t>(middle.x)) |
+               spread_bits(static_cast<std::uint64_t>(middle.y)) << 1U |
+               spread_bits(static_cast<std::uint64_t>(middle.z)) << 2U;
+    };
+    std::stable_sort(edges.begin(), edges.end(),
+                     [&](const EmitterEdge& a, const EmitterEdge& b) { return key(a) < key(b); });
+}
+
+EdgeBlock block_of(const IndexedMesh& mesh, std::span<const EmitterEdge> edges, std::size_t first, std::size_t last) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    EdgeBlock block{first, last, Vec3d(0), Vec3d(0), 1, 0, kInfinity, -kInfinity};
+    std::vector<std::uint32_t> faces;
+    bool border = false;
+    for (std::size_t i = first; i < last; ++i) {
+        block.center += 0.5 * (mesh.vertices[edges[i].from] + mesh.vertices[edges[i].to]);
+        for (const std::uint32_t face : {edges[i].left, edges[i].right}) {
+            border = border || face == EmitterEdge::kNone;
+            if (face != EmitterEdge::kNone) {
+                faces.push_back(face);
+            }
+        }
+    }
+    block.center /= static_cast<double>(last - first);
+    for (const std::uint32_t face : faces) {
+        block.axis += glm::normalize(scaled_normal(mesh, mesh.faces[face]));
+    }
+    const double length = glm::length(block.axis);
+    block.axis = length > 0 ? block.axis / length : Vec3d(0, 0, 1);
+    for (const std::uint32_t face : faces) {
+        const Vec3d normal = glm::normalize(scaled_normal(mesh, mesh.faces[face]));
+        const double height = glm::dot(normal, mesh.vertices[mesh.faces[face].x] - block.center);
+        block.cosine = std::min(block.cosine, glm::dot(normal, block.axis));
+        block.low = std::min(block.low, height);
+        block.high = std::max(block.high, height);
+    }
+    // The angles of the planes with each other must be less than half a turn for them to be seen from one side.
+    if (border || block.cosine <= 0) {
+        block.low = -kInfinity;
+        block.high = kInfinity;
+    }
+    block.cosine = std::max(block.cosine, 0.0);
+    block.sine = std::sqrt((1 - block.cosine) * (1 + block.cosine));
+    return block;
+}
+
 EmitterLevel level_of(IndexedMesh mesh, double error) {
     EmitterLevel level;
     level.edges = edges_of(mesh);
+    sort_along_curve(mesh, level.edges);
+    for (std::size_t first = 0; first < level.edges.size(); first += kBlockEdges) {
+        level.blocks.push_back(block_of(mesh, level.edges, first, std::min(first + kBlockEdges, level.edges.size())));
+    }
     for (const Triangle& t : mesh.faces) {
         const Vec3d normal = scaled_normal(mesh, t);
         level.planes.push_back({normal, glm::dot(normal, mesh.vertices[t.x])});

@@ -29,9 +29,20 @@ struct EmitterPlane {
     double height;
 };
 
+/// Neighbouring edges, and bounds of the planes of the faces along them: where a point lies before all of these, or
+/// behind all, none of the edges is part of its outline.
+struct EdgeBlock {
+    std::size_t first, last;  ///< edges first … last - 1
+    Vec3d center;
+    Vec3d axis;           ///< unit, in the middle of the faces' normals
+    double cosine, sine;  ///< of the largest angle between the axis and a normal
+    double low, high;     ///< of the planes' heights over the center; of a block with a border, infinite
+};
+
 struct EmitterLevel {
     std::vector<Vec3d> vertices;
     std::vector<EmitterEdge> edges;
+    std::vector<EdgeBlock> blocks;     ///< of all edges, in their order
     std::vector<EmitterPlane> planes;  ///< one for each face; of any length of the normal
     std::vector<Triangle> faces;
     double error;  ///< distance between this surface and the finest, about [m]
@@ -46,6 +57,10 @@ struct EmitterLevels {
     double radius;                     ///< largest distance of a vertex from it
     double area;
 };
+
+/// How much of the strip between two outlines lies on one side more than on the other: of levels of one area, a seventh
+/// was the most for spheres.
+inline constexpr double kOneSided = 0.15;
 
 /// The coarsest level whose outline, as radiance of a white surface at this distance from the centre, errs by no more
 /// than the tolerance, about; the finest if none does.

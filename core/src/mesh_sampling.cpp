@@ -5,6 +5,7 @@
 
 #include "emitter_levels.h"
 #include "light_sampling.h"
+#include "perpendicular.h"
 
 namespace shlight {
 namespace {
@@ -51,20 +52,12 @@ void MeshSampler::reset(const MeshLight& light, const ShadingFrame& frame) {
 /// Draws the outline's plane, and about the outline the rectangle that is as long as it.
 void MeshSampler::enclose(double shrink) {
     const std::span<const Vec3d> outline = view_.outline();
-    // All vertices have the same height along the normal of their plane.
-    axis_ = Vec3d(0);
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-        axis_ += glm::cross(outline[i], outline[(i + 1) % outline.size()]);
-    }
-    axis_ = glm::normalize(axis_);
-    axis_ *= glm::dot(axis_, outline.front()) < 0 ? -1.0 : 1.0;
-    const double height = glm::dot(axis_, outline.front());
-    along_ =
-        glm::normalize(std::abs(axis_.z) < 0.9 ? glm::cross(axis_, Vec3d(0, 0, 1)) : glm::cross(axis_, Vec3d(1, 0, 0)));
+    axis_ = view_.axis();
+    along_ = perpendicular(axis_);
     across_ = glm::cross(axis_, along_);
     outline_.clear();
     for (const Vec3d& v : outline) {
-        outline_.emplace_back(glm::dot(v, along_) / height, glm::dot(v, across_) / height);
+        outline_.emplace_back(glm::dot(v, along_), glm::dot(v, across_));
     }
     const glm::dvec2 middle = middle_of(outline_);
     for (glm::dvec2& p : outline_) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace shlight {
 namespace {
@@ -64,7 +65,9 @@ MeshView::Kind MeshView::look(const EmitterLevels& emitter, const ShadingFrame& 
     for (const Vec3d& direction : silhouette_.outline()) {
         local_.push_back(frame.to_local(direction));
     }
-    if (flatten(local_, outline_)) {
+    if (const auto axis = flatten(local_, outline_)) {
+        axis_ = *axis;
+        thin_out(axis_, tolerance * std::numbers::pi / kOneSided, outline_);
         const bool above = std::any_of(outline_.begin(), outline_.end(), [](const Vec3d& v) { return v.z > 0; });
         return above ? Kind::outline : Kind::hidden;
     }

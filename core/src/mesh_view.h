@@ -26,8 +26,9 @@ class MeshView {
     /// tolerance: of the radiance of a white surface.
     Kind look(const EmitterLevels& emitter, const ShadingFrame& frame, double tolerance);
 
-    /// Planar and counter-clockwise as seen from the hit.
+    /// Counter-clockwise as seen from the hit, in the plane at distance 1 along axis().
     std::span<const Vec3d> outline() const { return outline_; }
+    const Vec3d& axis() const { return axis_; }
     /// Three corners each, either way round.
     std::span<const Vec3d> faces() const { return faces_; }
     /// Between the level that was looked at and the mesh [m].
@@ -38,6 +39,7 @@ class MeshView {
 
     Silhouette silhouette_;
     std::vector<Vec3d> local_, outline_, faces_;
+    Vec3d axis_{0};
     double error_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,13 +30,13 @@ class Silhouette {
     bool any_front() const { return any_front_; }
 
   private:
+    void find_steps(const EmitterLevel& level, const EdgeBlock& block, bool closed, const Vec3d& point);
     void add(std::uint32_t from, std::uint32_t to, int times);
     void walk(const EmitterLevel& level, const Vec3d& point);
 
     struct Step {
         std::uint32_t to, next;  // next: of the same origin
     };
-    std::vector<std::int8_t> side_;
     std::vector<Step> steps_;
     std::vector<std::uint32_t> first_step_;  // of each vertex
     std::vector<std::uint32_t> origins_;
@@ -43,8 +44,14 @@ class Silhouette {
     bool any_front_ = false;
 };
 
-/// Moves the vertices along their directions into a plane, where they enclose the same directions. False if they do not
-/// all lie in one half of space, well away from its border.
-bool flatten(std::span<const Vec3d> directions, std::vector<Vec3d>& planar);
+/// Moves the vertices along their directions into a plane at distance 1, where they enclose the same directions, and
+/// returns its normal. Nothing if they do not all lie in one half of space, well away from its border.
+std::optional<Vec3d> flatten(std::span<const Vec3d> directions, std::vector<Vec3d>& planar);
+
+/// Takes away vertices of a closed line in the plane at distance 1 along a unit normal: two at a time, with one in
+/// their place so that the area stays the same. What lies on another side of the line than before has an area, hence a
+/// solid angle, below `most`, counted as often as it changes sides, and no part of it is far from one of the opposite
+/// sign.
+void thin_out(const Vec3d& normal, double most, std::vector<Vec3d>& line);
 
 }  // namespace shlight

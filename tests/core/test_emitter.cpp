@@ -114,6 +114,51 @@ TEST(Silhouette, InsideAClosedSurfaceThereIsNone) {
     EXPECT_TRUE(silhouette.find(emitter.levels.front(), true, Vec3d(0, 0, 2)));
 }
 
+double planar_area(std::span<const Vec3d> line) {
+    double twice = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        twice += glm::cross(line[i], line[(i + 1) % line.size()]).z;
+    }
+    return twice / 2;
+}
+
+/// How often a line in the plane z = 1 winds about a point of it.
+int winding(std::span<const Vec3d> line, const Vec3d& point) {
+    double angle = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const Vec3d a = line[i] - point;
+        const Vec3d b = line[(i + 1) % line.size()] - point;
+        angle += std::atan2(glm::cross(a, b).z, glm::dot(a, b));
+    }
+    return static_cast<int>(std::lround(angle / (2 * std::numbers::pi)));
+}
+
+TEST(Silhouette, ThinnedOutKeepsItsAreaAndMostOfItsPlaces) {
+    constexpr double kMost = 4e-3;
+    constexpr int kGrid = 160;
+    constexpr double kHalf = 0.4;
+    RandomInput random(9);
+    for (int round = 0; round < 5; ++round) {
+        std::vector<Vec3d> line;
+        for (int i = 0; i < 150; ++i) {
+            const double azimuth = 2 * std::numbers::pi * i / 150;
+            const double radius = (0.3 + 0.05 * std::cos(3 * azimuth)) * random.uniform(0.995, 1.005);
+            line.emplace_back(radius * std::cos(azimuth), radius * std::sin(azimuth), 1);
+        }
+        std::vector<Vec3d> thin = line;
+        thin_out(Vec3d(0, 0, 1), kMost, thin);
+        EXPECT_LE(thin.size(), line.size() / 3);
+        EXPECT_LE(std::abs(planar_area(thin) - planar_area(line)), 1e-14);
+        int moved = 0;
+        for (int i = 0; i < kGrid * kGrid; ++i) {
+            const Vec3d point(kHalf * (2 * (i % kGrid + 0.5) / kGrid - 1), kHalf * (2 * (i / kGrid + 0.5) / kGrid - 1),
+                              1);
+            moved += winding(thin, point) != winding(line, point) ? 1 : 0;
+        }
+        EXPECT_LE(moved * (2 * kHalf / kGrid) * (2 * kHalf / kGrid), kMost);
+    }
+}
+
 TEST(EmitterLevels, AreWoundOutwardsWhateverTheMeshWas) {
     Solid solid = icosphere(1);
     for (Triangle& t : solid.triangles) {
