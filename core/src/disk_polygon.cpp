@@ -71,10 +71,11 @@ void append_closed(const SphericalEllipse<double>& ellipse, int size, std::vecto
     angles[0] = -angles[1];
     angles[static_cast<std::size_t>(quarter) + 1] = pi - angles[static_cast<std::size_t>(quarter)];
     for (int i = 0; i < size; ++i) {
-        const bool backwards = i / quarter % 2 == 1;
+        const int turn = i / quarter;
+        const bool backwards = turn % 2 == 1;
         const auto k = static_cast<std::size_t>(backwards ? quarter - i % quarter : 1 + i % quarter);
         const double step = (angles[k + 1] - angles[k - 1]) / 2;
-        const double start = pi / 2 * (i / quarter + (backwards ? 1 : 0));
+        const double start = pi / 2 * (turn + (backwards ? 1 : 0));
         vertices.push_back(
             plane.at(backwards ? start - angles[k] : start + angles[k], std::sqrt(step / std::sin(step))));
     }
