@@ -53,7 +53,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
 
         self.update_stats("", "Exporting the scene")
         start = time.perf_counter()
-        scene, report = export_scene(depsgraph, frame=frame, camera=self.camera_override)
+        scene, report = export_scene(depsgraph, frame=frame, camera=self.camera_override, waiting=self._wait)
         settings = render_settings(depsgraph.scene).arguments()
         record.last.export_seconds = time.perf_counter() - start
         record.last.messages = report.to_data()
@@ -74,6 +74,10 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
     def _progress(self, fraction: float) -> bool:
         self.update_progress(fraction)
         self.update_stats("", f"Rendering {fraction:.0%}")
+        return not self.test_break()
+
+    def _wait(self, text: str) -> bool:
+        self.update_stats("", text)
         return not self.test_break()
 
     def _show(self, report: ExportReport) -> None:

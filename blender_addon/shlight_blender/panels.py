@@ -59,6 +59,7 @@ class SHLIGHT_RENDER_PT_accuracy(EnginePanel, bpy.types.Panel):
         column.active = settings.order == "AUTO"
         column.prop(settings, "tolerance")
         layout.prop(settings, "pixel_samples")
+        layout.prop(settings, "world_width")
 
 
 class SHLIGHT_RENDER_PT_shadows(EnginePanel, bpy.types.Panel):

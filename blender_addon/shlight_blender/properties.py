@@ -59,6 +59,14 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
         max=4096,
         soft_max=256,
     )
+    world_width: bpy.props.IntProperty(
+        name="World Width",
+        description="Width of the picture that a world of other nodes than one colour or a picture is baked to",
+        default=2048,
+        min=64,
+        max=16384,
+        subtype="PIXEL",
+    )
 
 
 def register() -> None:

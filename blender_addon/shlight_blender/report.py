@@ -38,6 +38,12 @@ class ExportReport:
         if place not in message.places:
             message.places.append(place)
 
+    def extend(self, other: ExportReport) -> None:
+        """Notes all that `other` has."""
+        for message in other:
+            for place in message.places:
+                self.add(place, message.text)
+
     def __iter__(self) -> Iterator[Message]:
         return iter(self._messages.values())
 

@@ -10,6 +10,8 @@ import bpy
 import numpy as np
 import pytest
 
+from shlight_blender.export.bake import BakeError
+
 
 def set_world(studio: Any, color: tuple[float, float, float], strength: float = 1.0) -> Any:
     """A world of one Background node; returns the node."""
@@ -160,19 +162,41 @@ def test_real_pictures(studio: Any, name: str, floor: bool) -> None:
     studio.compare(error=1e-3)
 
 
-def test_what_of_a_world_is_not_supported_is_named(studio: Any) -> None:
+def turned_and_shifted(studio: Any) -> Any:
+    """A world that is baked, since its Mapping shifts and stretches the picture."""
+    texture = set_picture(studio, gradient(), (0.4, -0.7, 2.0))
+    mapping = texture.inputs["Vector"].links[0].from_node
+    mapping.inputs["Location"].default_value = (0.3, 0.2, -0.1)
+    mapping.inputs["Scale"].default_value = (1, 2, 1)
+    studio.scene.shlight.world_width = 512
+    return texture
+
+
+@pytest.mark.parametrize("kind", ["shifted", "mirror ball"])
+def test_pictures_that_are_baked(studio: Any, kind: str) -> None:
+    studio.ball(material=studio.material(Color=(0.8, 0.8, 0.8)), rings=32)
+    far_camera(studio)
+    texture = turned_and_shifted(studio)
+    if kind == "mirror ball":
+        texture.projection = "MIRROR_BALL"
+    studio.compare(mean=2e-3, error=1e-3)
+    assert messages() == []
+
+
+def test_what_of_a_world_is_not_baked_is_named(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: Any) -> None:
+        raise BakeError("there is no Cycles")
+
+    monkeypatch.setattr("shlight_blender.export.world.bake_world", fail)
     studio.plane()
     studio.area()
     studio.camera()
-    texture = set_picture(studio, gradient(), (0, 0, 1))
-    tree = studio.scene.world.node_tree
-    mapping = texture.inputs["Vector"].links[0].from_node
-    mapping.inputs["Location"].default_value = (1, 0, 0)
-    mapping.inputs["Scale"].default_value = (1, 2, 1)
+    texture = turned_and_shifted(studio)
     texture.interpolation = "Closest"
     text = "\n".join(messages())
-    for part in ("'Location' is not supported", "'Scale' is not supported", "interpolation Closest"):
+    for part in ("(there is no Cycles)", "'Location' is not", "'Scale' is not supported", "interpolation Closest"):
         assert part in text, text
+    tree = studio.scene.world.node_tree
     tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], texture.inputs["Vector"])
     assert "Noise Texture as a Vector" in "\n".join(messages())
     texture.image = None

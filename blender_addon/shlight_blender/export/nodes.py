@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -82,6 +82,14 @@ def _own_value(socket: Any) -> float | RGB:
     if isinstance(value, int | float):
         return float(value)
     return np.array(value[:3], dtype=np.float64)
+
+
+def all_nodes(tree: Any) -> Iterator[Any]:
+    """The nodes of a tree and of the groups in it."""
+    for node in tree.nodes:
+        yield node
+        if node.type == "GROUP" and node.node_tree is not None:
+            yield from all_nodes(node.node_tree)
 
 
 def node_name(node: Any) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 import shlight
 
 from ..report import ExportError, ExportReport
+from .bake import Waiting
 from .camera import Frame, frame_of, set_camera
 from .lights import add_lamp
 from .meshes import MeshCollector
@@ -44,13 +45,16 @@ class ExportedScene(NamedTuple):
     report: ExportReport  # what of the Blender scene is not supported
 
 
-def export_scene(depsgraph: Any, *, frame: Frame | None = None, camera: Any = None) -> ExportedScene:
+def export_scene(
+    depsgraph: Any, *, frame: Frame | None = None, camera: Any = None, waiting: Waiting | None = None
+) -> ExportedScene:
     """The evaluated scene of `depsgraph` with its camera.
 
     depsgraph: in a render engine the one it is given, else `bpy.context.evaluated_depsgraph_get()`, which shows what
         the viewport shows: an object hidden there is missing, and modifiers have their viewport settings.
     frame: the picture and its part to render; None: resolution and render border of `scene.render`.
     camera: the camera object; None: the scene's.
+    waiting: called with what is being done while a world is baked; False stops it, and the scene lacks its world.
     Raises ExportError if there is no camera, no light, or a camera that is not supported.
     """
     blender_scene = depsgraph.scene_eval
@@ -64,7 +68,7 @@ def export_scene(depsgraph: Any, *, frame: Frame | None = None, camera: Any = No
     scene = shlight.Scene()
     set_camera(scene, camera.evaluated_get(depsgraph), depsgraph, frame, blender_scene.render, report)
     report_unsupported_settings(blender_scene, depsgraph.view_layer_eval, report)
-    lit = add_world(scene, blender_scene, report)
+    lit = add_world(scene, blender_scene, report, waiting)
     if not (_add_objects(scene, depsgraph, report) or lit):
         raise ExportError(_no_light(blender_scene, report))
     return ExportedScene(scene, report)

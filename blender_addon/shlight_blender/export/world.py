@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,8 @@ import shlight
 
 from ..compat import uses_nodes
 from ..report import ExportReport
-from .nodes import ConstantReader, Origin, origin
+from .bake import BakeError, Sun, Waiting, bake_world
+from .nodes import ConstantReader, Origin, all_nodes, origin
 from .pictures import linear_pixels
 
 # Kinds of rays that Cycles can hide the world from.
@@ -23,29 +24,33 @@ RAY_KINDS = ("camera", "diffuse", "glossy")
 
 @dataclass
 class World:
-    """Arguments of `Scene.set_environment`."""
+    """Arguments of `Scene.set_environment`, and suns beside it."""
 
     radiance: NDArray[Any]  # RGB, or a lat-long picture (height, width, 3)
     to_world: NDArray[np.float64] | None = None  # a rotation of the picture
+    suns: list[Sun] = field(default_factory=list)
 
 
-def add_world(scene: shlight.Scene, blender_scene: Any, report: ExportReport) -> bool:
+def add_world(scene: shlight.Scene, blender_scene: Any, report: ExportReport, waiting: Waiting | None = None) -> bool:
     """Sets the environment of `scene`; True if it gives light.
 
     Blender's film is opaque: without a world the camera sees black behind the scene, unless the film is transparent.
     """
-    world = blender_scene.world
-    read = _black() if world is None else _read_world(world, f"World '{world.name}'", report)
     visible = not blender_scene.render.film_transparent
+    read = _black() if blender_scene.world is None else _read_world(blender_scene, report, waiting)
     scene.set_environment(read.radiance, to_world=read.to_world, visible=visible)
-    return bool(read.radiance.any())
+    for sun in read.suns:
+        scene.add_sun_light(sun.direction, sun.angle, sun.irradiance, camera=visible)
+    return bool(read.radiance.any() or read.suns)
 
 
 def _black() -> World:
     return World(np.zeros(3))
 
 
-def _read_world(world: Any, place: str, report: ExportReport) -> World:
+def _read_world(blender_scene: Any, report: ExportReport, waiting: Waiting | None) -> World:
+    world = blender_scene.world
+    place = f"World '{world.name}'"
     _report_visibility(world, place, report)
     if not uses_nodes(world):
         return World(np.array(world.color, dtype=np.float64))
@@ -57,9 +62,26 @@ def _read_world(world: Any, place: str, report: ExportReport) -> World:
     source = origin(output.inputs["Surface"])
     if source.node is None:
         return _black()
-    reader = ConstantReader(place, report)
+    findings = ExportReport()
+    read = _read_surface(source, ConstantReader(place, findings))
+    if not len(findings):
+        return read
+    try:
+        baked = bake_world(world, blender_scene, waiting)
+    except BakeError as error:
+        report.add(place, f"it could not be baked to a picture ({error}); it is simplified")
+        report.extend(findings)
+        return read
+    if baked is None:
+        return read
+    _report_rays(world, ConstantReader(place, report))
+    return World(baked.picture, suns=baked.suns)
+
+
+def _read_surface(source: Origin, reader: ConstantReader) -> World:
+    """A world without baking; what of it is otherwise than this is in the reader's report."""
     if source.node.type != "BACKGROUND":
-        report.add(reader.at(source.node), f"{source.node.bl_label} is not supported; black is used")
+        reader.report.add(reader.at(source.node), f"{source.node.bl_label} is not supported; black is used")
         return _black()
     strength = max(reader.number(source.node, "Strength", source.groups), 0.0)
     color = origin(source.node.inputs["Color"], source.groups)
@@ -119,3 +141,13 @@ def _report_visibility(world: Any, place: str, report: ExportReport) -> None:
     hidden = [kind for kind in RAY_KINDS if not getattr(visibility, kind, True)]
     if hidden:
         report.add(place, f"hiding it from {' and '.join(hidden)} rays is not supported; it lights and is seen")
+
+
+def _report_rays(world: Any, reader: ConstantReader) -> None:
+    """Names nodes whose values one picture cannot hold."""
+    for node in all_nodes(world.node_tree):
+        linked = {output.name for output in node.outputs if output.is_linked}
+        if node.type == "LIGHT_PATH" and linked:
+            reader.report.add(reader.at(node), "kinds of rays are not told apart; all see what diffuse rays see")
+        if (node.type == "TEX_COORD" and linked & {"Camera", "Window"}) or (node.type == "CAMERA" and linked):
+            reader.report.add(reader.at(node), "coordinates of the camera are not supported; baked without them")

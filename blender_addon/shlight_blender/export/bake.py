@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A world of any nodes as a lat-long picture and suns, rendered by Cycles in a Blender of its own.
+
+A render cannot start another one in the same process. `bake_worker` runs in the other one and says how it measures.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from .nodes import all_nodes
+
+WORKER = Path(__file__).with_name("bake_worker.py")
+LONGEST_SECONDS = 1800.0
+TICK_SECONDS = 0.1
+
+# Called with what is being done while time passes; False: stop it.
+Waiting = Callable[[str], bool]
+
+
+class BakeError(Exception):
+    """The world was not baked; the message says why."""
+
+
+@dataclass(frozen=True)
+class Sun:
+    """The disc of a sky: what `shlight.Scene.add_sun_light` takes."""
+
+    direction: NDArray[np.float64]  # (3,), the way its light travels
+    angle: float  # its diameter [rad]
+    irradiance: NDArray[np.float64]  # RGB [W m^-2], at right angles to its direction
+
+
+@dataclass(frozen=True)
+class Baked:
+    """A world without its suns, and these."""
+
+    picture: NDArray[np.float32]  # (width / 2, width, 3), as `shlight.Scene.set_environment` takes it
+    suns: list[Sun] = field(default_factory=list)
+
+
+def bake_world(world: Any, scene: Any, waiting: Waiting | None = None) -> Baked | None:
+    """The world at the scene's current frame, `scene.shlight.world_width` texels wide; None if `waiting` stopped it.
+
+    Raises BakeError if the other Blender cannot be started, fails, or takes longer than half an hour.
+    """
+    with tempfile.TemporaryDirectory(prefix="shlight_world_") as name:
+        folder = Path(name)
+        try:
+            bpy.data.libraries.write(str(folder / "world.blend"), {world.original}, path_remap="ABSOLUTE")
+            (folder / "request.json").write_text(json.dumps(_request(world, scene, folder)), encoding="utf-8")
+            if not _run(folder, waiting):
+                return None
+            picture = np.load(folder / "picture.npy", allow_pickle=False)
+            suns = json.loads((folder / "suns.json").read_text(encoding="utf-8"))
+        except (OSError, RuntimeError, ValueError) as error:
+            raise BakeError(" ".join(str(error).split())) from error
+    return Baked(picture, [Sun(np.array(s["direction"]), s["angle"], np.array(s["irradiance"])) for s in suns])
+
+
+def _request(world: Any, scene: Any, folder: Path) -> dict[str, Any]:
+    render = scene.render
+    return {
+        "world": world.original.name,
+        "frame": scene.frame_current,
+        "subframe": scene.frame_subframe,
+        "width": scene.shlight.world_width,
+        "threads": render.threads if render.threads_mode == "FIXED" else 0,
+        "images": _save_unsaved_images(world, folder),
+    }
+
+
+def _save_unsaved_images(world: Any, folder: Path) -> dict[str, str]:
+    """Names of the world's images whose changes are in no file, and of the files in `folder` with their pixels."""
+    images = {node.image.original for node in all_nodes(world.node_tree) if getattr(node, "image", None)}
+    files = {}
+    for number, image in enumerate(image for image in images if image.is_dirty):
+        pixels = np.empty(len(image.pixels), dtype=np.float32)
+        image.pixels.foreach_get(pixels)
+        files[image.name] = f"image_{number}.npy"
+        np.save(folder / files[image.name], pixels)
+    return files
+
+
+def _run(folder: Path, waiting: Waiting | None) -> bool:
+    """Runs the worker to its end; False if `waiting` stopped it."""
+    log = folder / "blender.log"
+    with log.open("wb") as output:
+        process = subprocess.Popen(
+            _command(folder), stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT, env=_environment()
+        )
+    try:
+        end = time.monotonic() + LONGEST_SECONDS
+        while process.poll() is None:
+            if waiting is not None and not waiting("Baking the world"):
+                return False
+            if time.monotonic() > end:
+                raise BakeError(f"it takes longer than {LONGEST_SECONDS:.0f} s")
+            time.sleep(TICK_SECONDS)
+    finally:
+        process.kill()
+        process.wait()
+    if process.returncode != 0:
+        raise BakeError(_last_words(process.returncode, log))
+    return True
+
+
+def _command(folder: Path) -> list[str]:
+    """Blender's program, or the Python that has the module bpy."""
+    if bpy.app.binary_path:
+        return [bpy.app.binary_path, "--background", "--factory-startup", "--python", str(WORKER), "--", str(folder)]
+    return [sys.executable, str(WORKER), "--", str(folder)]
+
+
+def _environment() -> dict[str, str]:
+    """The other Python finds the modules of this one, except Blender's own: their bpy is not the one to start with."""
+    if bpy.app.binary_path:
+        return dict(os.environ)
+    scripts = bpy.utils.system_resource("SCRIPTS")
+    return os.environ | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p and not p.startswith(scripts))}
+
+
+def _last_words(code: int, log: Path) -> str:
+    lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
+    said = [line.strip() for line in lines if line.strip()]
+    return f"Blender ended with code {code}" + (f"; its last words: {said[-1][:300]}" if said else "")
