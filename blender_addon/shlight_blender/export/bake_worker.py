@@ -29,11 +29,12 @@ from numpy.typing import NDArray
 Picture = NDArray[np.float32]
 
 PICTURE_SAMPLES = 16
+SEARCH_WIDTH, SEARCH_SAMPLES = 512, 4
 SUN_SAMPLES, SUN_SIZE = 64, 128
 ZOOM = 16.0
 NARROWEST_SUN = 5e-4  # [rad], to which Cycles widens narrower ones
 WIDEST_SUN = math.radians(5.0)  # wider ones stay in the picture
-NARROWEST_SOUGHT = 4.0  # texels; narrower discs are widened while their direction is sought
+NARROWEST_SOUGHT = 4.0  # texels of that width; narrower discs are widened while their direction is sought
 SKIES_WITHOUT_SUN = {"PREETHAM", "HOSEK_WILKIE"}
 BRIGHTEST = 65504.0  # what is infinite becomes this
 
@@ -98,30 +99,29 @@ class Baker:
         suns = [node for tree in self._trees for node in tree.nodes if _has_narrow_sun(node)]
         for node in suns:
             node.sun_disc = False
-        picture = self._panorama()
-        measured = [self._measure(node, picture) for node in suns]
+        picture = self._panorama(self._width, PICTURE_SAMPLES)
+        measured = [self._measure(node) for node in suns]
         return picture, [sun for sun in measured if sun is not None]
 
-    def _panorama(self) -> Picture:
+    def _panorama(self, width: int, samples: int) -> Picture:
         """The world all around: +x in the middle, +y to its left, +z on top."""
         camera = self._camera.data
         camera.type = "PANO"
         (camera if hasattr(camera, "panorama_type") else camera.cycles).panorama_type = "EQUIRECTANGULAR"
         self._camera.rotation_euler = Euler((0.5 * math.pi, 0.0, -0.5 * math.pi))
-        return self._render(self._width, self._width // 2, PICTURE_SAMPLES)
+        return self._render(width, width // 2, samples)
 
-    def _measure(self, node: Any, dark: Picture) -> dict[str, Any] | None:
-        """The sun of a sky texture; `dark` is the picture without it."""
+    def _measure(self, node: Any) -> dict[str, Any] | None:
+        """The sun of a sky texture, whose disc is off; None if it gives no light."""
         angle = node.sun_size
-        texel = 2.0 * math.pi / self._width
-        node.sun_size = sought = max(angle, NARROWEST_SOUGHT * texel)
-        node.sun_disc = True
-        around = self._panorama() - dark
+        texel = 2.0 * math.pi / SEARCH_WIDTH
+        dark = self._panorama(SEARCH_WIDTH, SEARCH_SAMPLES)
+        node.sun_disc, node.sun_size = True, max(angle, NARROWEST_SOUGHT * texel)
+        around = self._panorama(SEARCH_WIDTH, SEARCH_SAMPLES) - dark
+        width = 2.0 * node.sun_size + texel
         node.sun_disc, node.sun_size = False, angle
         towards = _weighted_mean(around, *_panorama_directions(*around.shape[:2]))
-        if towards is None:
-            return None
-        return self._close_in(node, towards, 2.0 * sought + texel)
+        return None if towards is None else self._close_in(node, towards, width)
 
     def _close_in(self, node: Any, towards: NDArray[np.float64], width: float) -> dict[str, Any]:
         """The sun within half `width` of `towards`, looked at ever closer until it fills half the picture."""
