@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from . import record
 from .compat import write_pass
-from .report import ExportError, ExportReport
+from .report import ExportCancelled, ExportError, ExportReport
 
 ENGINE = "SHLIGHT"
 MOST_WARNINGS = 20
@@ -53,7 +53,11 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
 
         self.update_stats("", "Exporting the scene")
         start = time.perf_counter()
-        scene, report = export_scene(depsgraph, frame=frame, camera=self.camera_override, waiting=self._wait)
+        try:
+            scene, report = export_scene(depsgraph, frame=frame, camera=self.camera_override, waiting=self._wait)
+        except ExportCancelled:
+            self._deliver(depsgraph, frame, None)
+            return
         settings = render_settings(depsgraph.scene).arguments()
         record.last.export_seconds = time.perf_counter() - start
         record.last.messages = report.to_data()

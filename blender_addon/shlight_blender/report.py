@@ -11,6 +11,10 @@ class ExportError(ValueError):
     """The scene cannot be rendered at all (no camera, no light, a camera type without a picture plane)."""
 
 
+class ExportCancelled(Exception):  # noqa: N818
+    """The user stopped the export; nothing is wrong."""
+
+
 @dataclass
 class Message:
     """One finding: what is the case and what is done instead (`text`), and everything it holds for (`places`)."""

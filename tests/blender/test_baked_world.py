@@ -10,15 +10,15 @@ import bpy
 import numpy as np
 import pytest
 
-from shlight_blender.export import bake
+from shlight_blender.engine import ShlightRenderEngine
+from shlight_blender.export import bake, export_scene
+from shlight_blender.report import ExportCancelled
 
 # Angles and turns without symmetry.
 ELEVATION, TURN = 0.5, 0.8
 
 
 def messages() -> list[str]:
-    from shlight_blender.export import export_scene
-
     return export_scene(bpy.context.evaluated_depsgraph_get()).report.lines()
 
 
@@ -200,6 +200,18 @@ def test_a_bake_can_be_stopped(studio: Any, monkeypatch: pytest.MonkeyPatch) -> 
     said: list[str] = []
     assert bake.bake_world(studio.scene.world, studio.scene, lambda text: bool(said.append(text))) is None
     assert said == ["Baking the world"]
+    assert started[0].returncode < 0
+    studio.camera()
+    with pytest.raises(ExportCancelled):
+        export_scene(bpy.context.evaluated_depsgraph_get(), waiting=lambda _: False)
+
+
+def test_a_render_that_is_stopped_in_the_bake_is_empty(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    studio.camera()
+    set_sky(studio, disc=False)
+    started = sleeping(monkeypatch)
+    monkeypatch.setattr(ShlightRenderEngine, "_wait", lambda self, text: False)
+    assert not studio.render("SHLIGHT").any()
     assert started[0].returncode < 0
 
 

@@ -54,8 +54,9 @@ def export_scene(
         the viewport shows: an object hidden there is missing, and modifiers have their viewport settings.
     frame: the picture and its part to render; None: resolution and render border of `scene.render`.
     camera: the camera object; None: the scene's.
-    waiting: called with what is being done while a world is baked; False stops it, and the scene lacks its world.
-    Raises ExportError if there is no camera, no light, or a camera that is not supported.
+    waiting: called with what is being done while a world is baked; False stops it.
+    Raises ExportError if there is no camera, no light, or a camera that is not supported, and ExportCancelled if
+    `waiting` stopped it.
     """
     blender_scene = depsgraph.scene_eval
     frame = frame or frame_of(blender_scene.render)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 import shlight
 
 from ..compat import uses_nodes
-from ..report import ExportReport
+from ..report import ExportCancelled, ExportReport
 from .bake import BakeError, Sun, Waiting, bake_world
 from .nodes import ConstantReader, Origin, all_nodes, origin
 from .pictures import linear_pixels
@@ -73,7 +73,7 @@ def _read_world(blender_scene: Any, report: ExportReport, waiting: Waiting | Non
         report.extend(findings)
         return read
     if baked is None:
-        return read
+        raise ExportCancelled
     _report_rays(world, ConstantReader(place, report))
     return World(baked.picture, suns=baked.suns)
 
