@@ -121,7 +121,8 @@ def _run(folder: Path, waiting: Waiting | None) -> bool:
 def _command(folder: Path) -> list[str]:
     """Blender's program, or the Python that has the module bpy."""
     if bpy.app.binary_path:
-        return [bpy.app.binary_path, "--background", "--factory-startup", "--python", str(WORKER), "--", str(folder)]
+        options = ["--background", "--factory-startup", "--python-exit-code", "1", "--python", str(WORKER)]
+        return [bpy.app.binary_path, *options, "--", str(folder)]
     return [sys.executable, str(WORKER), "--", str(folder)]
 
 
