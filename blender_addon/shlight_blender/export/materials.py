@@ -39,8 +39,9 @@ def read_material(material: Any, report: ExportReport) -> Surface:
         socket = output.inputs.get(name)
         if socket is not None and origin(socket).node is not None:
             report.add(place, f"{name.lower()} is not supported; left out")
-    surface = SurfaceReader(place, report, SHADERS).surface(output.inputs["Surface"])
-    if not np.isfinite(surface.emission).all():
+    surface = SurfaceReader(place, report, SHADERS, has_uvs=True).surface(output.inputs["Surface"])
+    factors = [surface.emission, *(glow.factor for glow in surface.textured)]
+    if not np.isfinite(factors).all():
         report.add(place, "the emitted light is not finite; nothing is emitted")
-        surface.emission = np.zeros(3)
+        surface.emission, surface.textured = np.zeros(3), ()
     return surface

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,21 +17,14 @@ from ..compat import smooth_corner_normals
 from ..report import ExportReport
 from .materials import read_material
 from .surface import Surface
+from .textured_meshes import MeshArrays, corner_uvs, with_even_emission
 
 FloatArray = NDArray[np.float32]
 
-# Every emissive triangle is a lamp of its own; from this number on the user is told why the render takes long.
+# Of one material in one place, more emissive triangles than these are one light to the core.
+MOST_SINGLE_FACES = 16
+# From this number of lights on the user is told why the render takes long.
 MANY_EMITTERS = 200
-
-
-@dataclass
-class MeshArrays:
-    """A triangulated mesh in its own frame; normals (k, 3, 3) per corner, None where all faces are flat."""
-
-    vertices: FloatArray
-    triangles: NDArray[np.int32]
-    normals: FloatArray | None
-    material_indices: NDArray[np.int32]
 
 
 @dataclass
@@ -105,9 +99,11 @@ class MeshCollector:
             use.transforms.append(to_world)
 
     def _convert(self, mesh_object: Any, place: str, materials: Sequence[Any]) -> MeshUse | None:
+        surfaces = [self._surface(material) for material in materials or [None]]
         mesh = mesh_object.to_mesh()
         try:
             arrays = mesh_arrays(mesh)
+            uvs = {} if arrays is None else self._uvs_of(mesh, surfaces, place)
         finally:
             mesh_object.to_mesh_clear()
         if arrays is None:
@@ -117,7 +113,22 @@ class MeshCollector:
             return None
         if arrays.normals is not None and not np.isfinite(arrays.normals).all():
             arrays.normals = None
-        return MeshUse(place, arrays, [self._surface(material) for material in materials or [None]])
+        if uvs:
+            remark = partial(self._report.add, place)
+            arrays, surfaces = with_even_emission(arrays, surfaces, uvs, remark)
+        return MeshUse(place, arrays, surfaces)
+
+    def _uvs_of(self, mesh: Any, surfaces: list[Surface], place: str) -> dict[str, NDArray[np.float64]]:
+        """The UV maps that textured emission asks for; where one is missing all of it is at (0, 0), as in Cycles."""
+        textures = [texture for surface in surfaces for glow in surface.textured for texture in glow.textures]
+        uvs = {}
+        for name in dict.fromkeys(texture.uv_map for texture in textures):
+            found = corner_uvs(mesh, name)
+            if found is None:
+                self._report.add(place, f"the texture of its emission has no UV map '{name}'; one colour is used")
+                found = np.zeros((len(mesh.loop_triangles), 3, 2))
+            uvs[name] = found
+        return uvs
 
     def _surface(self, material: Any) -> Surface:
         material = self._override or material
@@ -140,9 +151,10 @@ class MeshCollector:
         used = np.unique(indices)
         emission = np.array([surface.emission for surface in surfaces])
         emits = bool(emission[used].any())
-        emitters = int(emission.any(axis=1)[indices].sum()) * len(use.transforms)
-        if emitters >= MANY_EMITTERS:
-            self._report.add(use.place, f"{emitters} emissive triangles, each a lamp of its own, take long to render")
+        faces = np.bincount(indices, minlength=len(surfaces))[emission.any(axis=1)]
+        lights = int(np.where(faces > MOST_SINGLE_FACES, 1, faces).sum()) * len(use.transforms)
+        if lights >= MANY_EMITTERS:
+            self._report.add(use.place, f"its emissive faces are up to {lights} lights, which take long to render")
         for arrays, transforms in standing(use):
             scene.add_mesh(
                 arrays.vertices,

@@ -28,10 +28,9 @@ def read_principled(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -
     reader.ignore_linked(node, groups, "Normal")
     for name, neutral in PRINCIPLED.unsupported.items():
         reader.ignore_unless(node, groups, name, neutral)
-    emission = reader.color(node, PRINCIPLED.emission, groups)
-    emission = emission * max(reader.number(node, "Emission Strength", groups), 0.0)
+    glow = reader.emitter(node, PRINCIPLED.emission, "Emission Strength", groups)
     read = _read_layered if PRINCIPLED.layered else _read_sum
-    return Surface(read(reader, node, groups), emission)
+    return Surface(read(reader, node, groups)).plus(glow)
 
 
 def _read_layered(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> shlight.Bsdf | None:

@@ -30,10 +30,7 @@ def _glossy(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> Surfac
 
 
 def _emission(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> Surface:
-    strength = reader.number(node, "Strength", groups)
-    if strength < 0.0:
-        reader.report.add(reader.at(node), "negative Strength is not supported; nothing is emitted")
-    return Surface(emission=reader.color(node, "Color", groups) * max(strength, 0.0))
+    return reader.emitter(node, "Color", "Strength", groups)
 
 
 def _mix(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> Surface:

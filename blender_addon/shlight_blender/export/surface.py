@@ -4,27 +4,48 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import shlight
 
 from ..report import ExportReport
 from .nodes import RGB, ConstantReader, origin, rgb
+from .textures import ImageTexture, read_image_texture
 
 
 def _black() -> RGB:
     return np.zeros(3)
 
 
+@dataclass(frozen=True)
+class TexturedEmission:
+    """Radiance (RGB) that varies over a surface: a constant times the product of textures."""
+
+    factor: RGB
+    textures: tuple[ImageTexture, ...]
+
+    def radiance(self, uvs: Mapping[str, NDArray[np.float64]]) -> NDArray[np.float64]:
+        """Linear RGB (n, 3) at n places, (n, 2) in each UV map that the textures name."""
+        product = np.ones((len(next(iter(uvs.values()))), 3)) * self.factor
+        for texture in self.textures:
+            product *= texture.sample(uvs[texture.uv_map])
+        return product
+
+
 @dataclass
 class Surface:
-    """What a shader does to light: reflection (None: none) and the radiance it emits on both sides (RGB)."""
+    """What a shader does to light: reflection (None: none) and the radiance it emits on both sides (RGB).
+
+    The radiance is `emission`, the same all over, plus all of `textured`.
+    """
 
     bsdf: shlight.Bsdf | None = None
     emission: RGB = field(default_factory=_black)
+    textured: tuple[TexturedEmission, ...] = ()
 
     def scaled(self, factor: float) -> Surface:
         """The surface under a constant weight."""
@@ -32,7 +53,8 @@ class Surface:
             return Surface()
         if factor == 1.0:
             return self
-        return Surface(None if self.bsdf is None else factor * self.bsdf, factor * self.emission)
+        textured = tuple(replace(glow, factor=factor * glow.factor) for glow in self.textured)
+        return Surface(None if self.bsdf is None else factor * self.bsdf, factor * self.emission, textured)
 
     def plus(self, other: Surface) -> Surface:
         """Both surfaces at once."""
@@ -40,7 +62,11 @@ class Surface:
             bsdf = other.bsdf if self.bsdf is None else self.bsdf
         else:
             bsdf = self.bsdf + other.bsdf
-        return Surface(bsdf, self.emission + other.emission)
+        return Surface(bsdf, self.emission + other.emission, self.textured + other.textured)
+
+    def emits(self) -> bool:
+        """True if it may give light."""
+        return bool(self.emission.any() or self.textured)
 
     def opaque_bsdf(self) -> shlight.Bsdf:
         """The reflection, black where there is none."""
@@ -53,11 +79,17 @@ def lambert(albedo: RGB) -> shlight.Bsdf | None:
 
 
 class SurfaceReader(ConstantReader):
-    """Walks the shader nodes of one tree; `shaders` says how a node of each type is read."""
+    """Walks the shader nodes of one tree; `shaders` says how a node of each type is read.
 
-    def __init__(self, place: str, report: ExportReport, shaders: Mapping[str, ReadShader]) -> None:
+    has_uvs: textures of what is emitted can be looked up, as on a mesh; else they are reported as other varying values.
+    """
+
+    def __init__(
+        self, place: str, report: ExportReport, shaders: Mapping[str, ReadShader], *, has_uvs: bool = False
+    ) -> None:
         super().__init__(place, report)
         self._shaders = shaders
+        self._has_uvs = has_uvs
 
     def surface(self, socket: Any, groups: tuple[Any, ...] = ()) -> Surface:
         """The surface that a shader socket receives; black where nothing is linked."""
@@ -68,6 +100,27 @@ class SurfaceReader(ConstantReader):
         if read is not None:
             return read(self, source.node, source.groups)
         return self._unsupported(source.node, source.groups)
+
+    def emitter(self, node: Any, color: str, strength: str, groups: tuple[Any, ...]) -> Surface:
+        """What a node emits whose inputs are named `color` and `strength`."""
+        textures = {name: self._texture(node, name, groups, name == strength) for name in (color, strength)}
+        factor = np.ones(3)
+        if textures[strength] is None:
+            number = self.number(node, strength, groups)
+            if number < 0.0:
+                self.report.add(self.at(node), f"negative {strength} is not supported; nothing is emitted")
+            factor *= max(number, 0.0)
+        if textures[color] is None:
+            factor *= self.color(node, color, groups)
+        found = tuple(texture for texture in textures.values() if texture is not None)
+        if not found:
+            return Surface(emission=factor)
+        return Surface(textured=(TexturedEmission(factor, found),)) if factor.any() else Surface()
+
+    def _texture(self, node: Any, name: str, groups: tuple[Any, ...], is_number: bool) -> ImageTexture | None:
+        if not self._has_uvs:
+            return None
+        return read_image_texture(self, origin(node.inputs[name], groups), is_number)
 
     def _unsupported(self, node: Any, groups: tuple[Any, ...]) -> Surface:
         kind = node.bl_label or node.bl_idname

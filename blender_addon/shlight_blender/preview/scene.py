@@ -133,7 +133,7 @@ def without_shadows() -> Iterator[None]:
 
 def _glows(seen: Any) -> bool:
     materials = (slot.material for slot in seen.material_slots)
-    return any(read_material(material, ExportReport()).emission.any() for material in materials)
+    return any(read_material(material, ExportReport()).emits() for material in materials)
 
 
 def use_cycles(scene: Any, samples: int, seed: int) -> None:

@@ -1,0 +1,293 @@
+# SPDX-License-Identifier: MIT
+"""Emission from image textures: means over triangles, the cut into even pieces, and pictures compared with Cycles."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+bpy = pytest.importorskip("bpy", reason="tests/blender needs bpy: ./dev setup installs it")
+
+Array = NDArray[np.float64]
+TRIANGLES = np.array([[(0.1, -0.2), (1.3, 0.1), (0.9, 1.15)], [(0.1, -0.2), (0.9, 1.15), (-0.3, 0.6)]])
+
+
+def noise_texture(**options: Any) -> Any:
+    from shlight_blender.export.textures import ImageTexture
+
+    return ImageTexture(np.random.default_rng(3).random((11, 17, 3)).astype(np.float32), **options)
+
+
+def interpolated(texture: Any, u: float, v: float) -> Array:
+    """One lookup written with loops, for repeated bilinear pictures of linear light."""
+    height, width = texture.pixels.shape[:2]
+    x, y = u * width - 0.5, v * height - 0.5
+    i, j = int(np.floor(x)), int(np.floor(y))
+    total = np.zeros(3)
+    for di, weight_x in ((0, 1 - (x - i)), (1, x - i)):
+        for dj, weight_y in ((0, 1 - (y - j)), (1, y - j)):
+            total += weight_x * weight_y * texture.pixels[(j + dj) % height, (i + di) % width]
+    return total
+
+
+def brute_force_mean(texture: Any, triangle: Array, count: int = 60000) -> Array:
+    """The mean over a triangle in UV from random places, which is right to a few tenths of a percent."""
+    random = np.random.default_rng(11).random((count, 2))
+    root = np.sqrt(random[:, :1])
+    weights = np.concatenate([1 - root, root * (1 - random[:, 1:]), root * random[:, 1:]], axis=1)
+    return np.mean([interpolated(texture, u, v) for u, v in weights @ triangle], axis=0)
+
+
+def cut_all(texture: Any, area: Array, most: int = 300) -> Any:
+    from shlight_blender.export.emission_pieces import cut, sampling_levels
+
+    return cut(texture.sample, TRIANGLES, sampling_levels(texture.texels(TRIANGLES)), area, most)
+
+
+def test_mean_over_triangles_against_brute_force() -> None:
+    texture = noise_texture()
+    pieces = cut_all(texture, np.array([2.0, 1.0]), most=1)
+    assert len(pieces.area) == 2
+    for triangle, radiance in zip(TRIANGLES, pieces.radiance, strict=True):
+        np.testing.assert_allclose(radiance, brute_force_mean(texture, triangle), rtol=8e-3)
+
+
+@pytest.mark.parametrize("interpolation", ["Linear", "Closest"])
+def test_pieces_keep_area_and_light(interpolation: str) -> None:
+    texture, area = noise_texture(interpolation=interpolation), np.array([2.0, 1.0])
+    whole, pieces = cut_all(texture, area, most=1), cut_all(texture, area)
+    assert 290 <= len(pieces.area) <= 300
+    assert pieces.area.sum() == pytest.approx(area.sum(), rel=1e-12)
+    np.testing.assert_allclose(pieces.area @ pieces.radiance, area @ whole.radiance, rtol=1e-12)
+    assert 0.0 < pieces.error < whole.error
+    # The mean of each piece, from samples of its own.
+    for index in (0, 100, 280):
+        triangle = pieces.corners[index] @ TRIANGLES[pieces.triangle[index]]
+        weights = np.random.default_rng(5).dirichlet((1, 1, 1), 40000)
+        np.testing.assert_allclose(pieces.radiance[index], texture.sample(weights @ triangle).mean(axis=0), rtol=2e-2)
+
+
+def test_an_even_texture_stays_whole() -> None:
+    from shlight_blender.export.textures import ImageTexture
+
+    pieces = cut_all(ImageTexture(np.full((8, 8, 3), 0.25, dtype=np.float32)), np.array([1.0, 3.0]))
+    assert len(pieces.area) == 2
+    np.testing.assert_allclose(pieces.radiance, 0.25)
+
+
+def test_colors_keep_the_light_and_black() -> None:
+    from shlight_blender.export.emission_pieces import TOLERANCE, share_colors
+
+    random = np.random.default_rng(2)
+    area = random.random(400)
+    radiance = np.outer(random.random(400), (1.0, 0.7, 0.1))
+    radiance[:50] = 0.0
+    colors = share_colors(radiance, area, most=64)
+    np.testing.assert_allclose(area @ colors.radiance[colors.color_of], area @ radiance, rtol=1e-12)
+    assert not colors.radiance[colors.color_of[:50]].any()
+    left = np.sqrt((area @ (colors.radiance[colors.color_of] - radiance) ** 2).sum() / (area @ radiance**2).sum())
+    assert colors.error == pytest.approx(left, rel=1e-6)
+    assert left <= TOLERANCE
+    assert len(share_colors(radiance, area, most=3).radiance) == 4
+    assert not share_colors(np.zeros((3, 3)), np.ones(3)).radiance.any()
+
+
+# --- in Blender
+
+
+def image_of(pixels: Array, *, is_float: bool = True) -> Any:
+    """A picture of pixels (height, width, 3), row 0 at the bottom; bytes are encoded as sRGB."""
+    height, width = pixels.shape[:2]
+    made = bpy.data.images.new("Picture", width, height, float_buffer=is_float)
+    values = np.ones((height, width, 4), dtype=np.float32)
+    values[..., :3] = pixels
+    made.pixels.foreach_set(values.ravel())
+    made.update()
+    return made
+
+
+def gradient() -> Array:
+    """Brighter to the right and the top, so that it tells every flip, and of one colour."""
+    v, u = np.mgrid[:16, :24] + 0.5
+    return np.asarray((0.15 + u / 24 + 0.8 * (v / 16) ** 2)[..., None] * (1.0, 0.7, 0.4))
+
+
+def checker() -> Array:
+    row, column = np.mgrid[:4, :4]
+    return np.where(((row + column) % 2 == 0)[..., None], (0.9, 0.6, 0.3), (0.1, 0.2, 0.5))
+
+
+def screen(studio: Any, image: Any, coordinates: Any, strength: float = 5.0, **options: Any) -> Any:
+    """A material that emits `image`, on a leaning rectangle."""
+    material = studio.material("ShaderNodeEmission", name="Screen", Strength=strength)
+    tree = material.node_tree
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image = image
+    for name, value in options.items():
+        setattr(node, name, value)
+    tree.links.new(node.outputs["Color"], tree.nodes["Emission"].inputs["Color"])
+    corners = [(-1, -0.6, 0), (1, -0.6, 0), (1, 0.6, 0), (-1, 0.6, 0)]
+    made = studio.mesh("Screen", corners, [(0, 1, 2, 3)], material)
+    made.location, made.rotation_euler = (0.3, 0.8, 1.1), (1.2, 0.1, 0.3)
+    for loop, place in zip(made.data.uv_layers.new(name="Map").data, coordinates, strict=True):
+        loop.uv = place
+    return made
+
+
+def floors(studio: Any) -> None:
+    """A diffuse floor and a glossy plate, and a camera that sees nothing else."""
+    studio.plane(material=studio.material(Color=(0.7, 0.7, 0.6)))
+    glossy = studio.material("ShaderNodeBsdfAnisotropic", Color=(0.8, 0.8, 0.8), Roughness=0.3, distribution="GGX")
+    studio.plane(2.2, glossy, location=(0.3, -0.6, 0.05))
+    studio.camera(location=(1.5, -4, 3.5), target=(0.2, -0.9, 0), lens=60)
+    studio.scene.render.resolution_x, studio.scene.render.resolution_y = 32, 24
+    studio.scene.cycles.samples = 1024
+
+
+OFF_CENTRE = [(0.1, 0.05), (0.95, 0.15), (0.85, 0.9), (0.05, 0.8)]
+
+
+@pytest.mark.parametrize(("pixels", "is_float"), [(gradient(), True), (checker(), False)])
+def test_a_screen_lights_floors_as_in_cycles(studio: Any, pixels: Array, is_float: bool) -> None:
+    interpolation = "Linear" if is_float else "Closest"
+    screen(studio, image_of(pixels, is_float=is_float), OFF_CENTRE, interpolation=interpolation)
+    floors(studio)
+    studio.compare(mean=5e-3, error=2e-3)
+
+
+def mapped(made: Any, vector_type: str, uv_map: str) -> None:
+    """Puts a Mapping node that shifts, turns and scales between a UV map and the picture."""
+    tree = made.data.materials[0].node_tree
+    mapping = tree.nodes.new("ShaderNodeMapping")
+    mapping.vector_type = vector_type
+    if vector_type != "VECTOR":
+        mapping.inputs["Location"].default_value = (0.2, -0.35, 0.1)
+    mapping.inputs["Rotation"].default_value = (0.2, 0.0, 0.5)
+    mapping.inputs["Scale"].default_value = (1.4, 0.7, 1.0)
+    coordinates = tree.nodes.new("ShaderNodeUVMap")
+    coordinates.uv_map = uv_map
+    tree.links.new(coordinates.outputs["UV"], mapping.inputs["Vector"])
+    tree.links.new(mapping.outputs["Vector"], tree.nodes["Image Texture"].inputs["Vector"])
+
+
+def looked_up(studio: Any, made: Any) -> tuple[Array, Array]:
+    """What Cycles shows of an emissive rectangle, seen face to face, and the texture's means over its pixels (n, 3)."""
+    from shlight_blender.export.materials import read_material
+    from shlight_blender.report import ExportReport
+
+    made.location = made.rotation_euler = (0, 0, 0)
+    studio.camera(location=(0, 0, 5), target=(0, 0, 0), type="ORTHO", ortho_scale=2.0)
+    render, cycles = studio.scene.render, studio.scene.cycles
+    render.resolution_x, render.resolution_y = 80, 48
+    cycles.samples = 1024
+    reference = studio.render("CYCLES")[::-1, :, :3].reshape(-1, 3)
+    report = ExportReport()
+    (glow,) = read_material(made.data.materials[0], report).textured
+    assert not len(report)
+    x, y = np.meshgrid((np.arange(80 * 12) + 0.5) / 480 - 1, (np.arange(48 * 12) + 0.5) / 480 - 0.6)
+    places = np.stack([x, y, np.ones_like(x)], axis=-1).reshape(-1, 3)
+    (texture,) = glow.textures
+    layer = made.data.uv_layers[texture.uv_map or "Map"]
+    corners = [(*vertex.co[:2], 1) for vertex in made.data.vertices]
+    to_uv = np.linalg.lstsq(np.array(corners), np.array([tuple(loop.uv) for loop in layer.data]), rcond=None)[0]
+    found = glow.radiance({texture.uv_map: places @ to_uv})
+    return reference, found.reshape(48, 12, 80, 12, 3).mean(axis=(1, 3)).reshape(-1, 3)
+
+
+@pytest.mark.parametrize(
+    ("extension", "interpolation", "vector_type"),
+    [
+        ("REPEAT", "Linear", ""),
+        ("EXTEND", "Linear", "POINT"),
+        ("CLIP", "Linear", "TEXTURE"),
+        ("CLIP", "Closest", "VECTOR"),
+        ("MIRROR", "Closest", "POINT"),
+    ],
+)
+@pytest.mark.parametrize("is_float", [True, False])
+def test_lookups_as_in_cycles(
+    studio: Any, extension: str, interpolation: str, vector_type: str, is_float: bool
+) -> None:
+    pixels = np.random.default_rng(4).random((3, 5, 3))
+    # Beyond the picture on every side, by a map that keeps parallels.
+    beyond = [(-0.6, -0.3), (1.2, -0.6), (1.6, 1.2), (-0.2, 1.5)]
+    made = screen(
+        studio, image_of(pixels, is_float=is_float), beyond, 1.0, extension=extension, interpolation=interpolation
+    )
+    if vector_type:
+        second = made.data.uv_layers.new(name="Second")
+        for loop, (u, v) in zip(second.data, beyond, strict=True):
+            loop.uv = (v, u)
+        mapped(made, vector_type, "Second")
+    reference, found = looked_up(studio, made)
+    difference = np.abs(found - reference).max(axis=1)
+    assert difference.mean() <= 2e-3
+    assert difference.max() <= 0.05  # where texels end within a pixel, Cycles' samples are few
+
+
+def test_strength_from_a_picture_and_principled(studio: Any) -> None:
+    from shlight_blender.export.materials import read_material
+    from shlight_blender.report import ExportReport
+
+    made = screen(studio, image_of(gradient()), OFF_CENTRE)
+    material = made.data.materials[0]
+    tree = material.node_tree
+    node, picture = tree.nodes["Emission"], tree.nodes["Image Texture"]
+    tree.links.new(picture.outputs["Color"], node.inputs["Strength"])
+    place = {"": np.array([[0.3, 0.6], [0.8, 0.2]])}
+    (glow,) = read_material(material, ExportReport()).textured
+    color, strength = glow.textures
+    values = color.sample(place[""])
+    np.testing.assert_allclose(glow.radiance(place), values * (values @ (0.2126, 0.7152, 0.0722))[:, None])
+    assert strength.is_number
+    shader = tree.nodes.new("ShaderNodeBsdfPrincipled")
+    name = "Emission Color" if "Emission Color" in shader.inputs else "Emission"
+    shader.inputs["Emission Strength"].default_value = 3.0
+    tree.links.new(picture.outputs["Color"], shader.inputs[name])
+    tree.links.new(shader.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
+    surface = read_material(material, ExportReport())
+    assert surface.bsdf is not None
+    (glow,) = surface.textured
+    np.testing.assert_allclose(glow.radiance(place), 3.0 * values)
+
+
+def messages() -> list[str]:
+    from shlight_blender.export import export_scene
+
+    return export_scene(bpy.context.evaluated_depsgraph_get()).report.lines()
+
+
+def test_what_is_not_supported_is_named(studio: Any) -> None:
+    made = screen(studio, image_of(checker()), OFF_CENTRE, interpolation="Closest")
+    studio.area()
+    studio.camera()
+    (line,) = messages()
+    assert "Object 'Screen'" in line
+    assert "pieces of even light" in line
+    made.data.uv_layers.remove(made.data.uv_layers[0])
+    made.data.update()
+    (line,) = messages()
+    assert "has no UV map" in line
+    tree = made.data.materials[0].node_tree
+    picture = tree.nodes["Image Texture"]
+    picture.projection = "BOX"
+    (line,) = messages()
+    assert "varying values are not supported" in line
+    picture.projection, picture.image = "FLAT", None
+    assert any("it has no image" in line for line in messages())
+    tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], tree.nodes["Emission"].inputs["Color"])
+    assert any("node 'Noise Texture'" in line for line in messages())
+
+
+def test_the_camera_sees_the_picture(studio: Any) -> None:
+    made = screen(studio, image_of(gradient()), OFF_CENTRE)
+    made.rotation_euler = (0.4, 0, 0)
+    made.data.polygons.foreach_set("use_smooth", [True])
+    studio.camera(location=(0.3, 0.3, 3.5), target=made.location)
+    studio.scene.render.resolution_x, studio.scene.render.resolution_y = 40, 32
+    image, reference = studio.compare(mean=5e-3, error=2e-2)
+    for flipped in (reference[::-1], reference[:, ::-1]):
+        assert np.square(image - flipped).mean() > 4 * np.square(image - reference).mean()
