@@ -113,23 +113,29 @@ class SHLIGHT_LIGHT_PT_light(EnginePanel, bpy.types.Panel):
         layout.prop(light, "type", expand=True)
         layout.use_property_split = True
         layout.use_property_decorate = False
-        if light.type not in {"POINT", "AREA"}:
-            layout.label(text="shlight renders Point and Area lights", icon="ERROR")
-            return
         column = layout.column()
         for name in ("color", "use_temperature", "temperature", "energy", "exposure", "normalize"):
             if name in light.bl_rna.properties:  # 3.4 has colour and power alone
                 row = column.row()
                 row.active = name != "temperature" or light.use_temperature
                 row.prop(light, name)
-        draw_shape = _draw_point if light.type == "POINT" else _draw_area
-        draw_shape(layout.column(), light)
+        _DRAW_SHAPE[light.type](layout.column(), light)
 
 
 def _draw_point(column: Any, light: Any) -> None:
     column.prop(light, "shadow_soft_size", text="Radius")
     if "use_soft_falloff" in light.bl_rna.properties:
         column.prop(light, "use_soft_falloff")
+
+
+def _draw_spot(column: Any, light: Any) -> None:
+    _draw_point(column, light)
+    column.prop(light, "spot_size", text="Beam Size")
+    column.prop(light, "spot_blend", text="Blend", slider=True)
+
+
+def _draw_sun(column: Any, light: Any) -> None:
+    column.prop(light, "angle")
 
 
 def _draw_area(column: Any, light: Any) -> None:
@@ -141,6 +147,8 @@ def _draw_area(column: Any, light: Any) -> None:
         column.prop(light, "size_y", text="Y")
     column.prop(light, "spread")
 
+
+_DRAW_SHAPE = {"POINT": _draw_point, "SPOT": _draw_spot, "SUN": _draw_sun, "AREA": _draw_area}
 
 CLASSES = (
     SHLIGHT_RENDER_PT_accuracy,

@@ -199,6 +199,39 @@ def test_blenders_own_panels_and_unregistering(studio: Any) -> None:
     assert panels() == joined
 
 
+@pytest.mark.parametrize(
+    ("kind", "shape"),
+    [
+        ("POINT", {"shadow_soft_size"}),
+        ("SPOT", {"shadow_soft_size", "spot_size", "spot_blend"}),
+        ("SUN", {"angle"}),
+        ("AREA", {"shape", "size", "spread"}),
+    ],
+)
+def test_the_panel_of_a_lamp_shows_what_shapes_its_light(studio: Any, kind: str, shape: set[str]) -> None:
+    from types import SimpleNamespace
+
+    from shlight_blender.panels import SHLIGHT_LIGHT_PT_light
+
+    shown: set[str] = set()
+
+    class Layout:
+        """Notes which properties are drawn; as Blender's, it raises for those that a lamp does not have."""
+
+        def prop(self, light: Any, name: str, **_: Any) -> None:
+            getattr(light, name)
+            shown.add(name)
+
+        def column(self) -> Layout:
+            return self
+
+        row = column
+
+    light = bpy.data.lights.new(kind, kind)
+    SHLIGHT_LIGHT_PT_light.draw(SimpleNamespace(layout=Layout()), SimpleNamespace(light=light))
+    assert shape | {"type", "color", "energy"} <= shown
+
+
 def test_without_the_native_module_the_engine_says_so(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     import sys
 
