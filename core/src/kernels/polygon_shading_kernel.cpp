@@ -214,7 +214,7 @@ class PolygonShading : public PolygonLists<PolygonShading<kWarped>, kWarped> {
 
 /// Polygons that are taken apart before their arcs are integrated: many of them fill vectors of arcs with the same
 /// number of points.
-constexpr std::size_t kChunk = 1024;
+constexpr std::size_t kChunk = 2048;
 
 template <bool kWarped>
 void shade_all(const PolygonArray& polygons, const std::uint32_t* polygon_of, const LobeArrays& lobe,
