@@ -15,10 +15,9 @@ def basis(n: int) -> int:
 
 
 def clipped_sphere(n: int) -> int:
-    """Each degree of each band: 7 a step of N downwards with its two sums, 10.5 one of Q upwards with the integral, 5
-    for the share of N and the turn by the azimuth, or for the two sums of Eq. 5. A band: 27; a degree: 19, its arcs and
-    powers."""
-    return 45 * n * (n - 1) // 4 + 27 * (n - 1) + 19 * n + 200
+    """Each degree of each band: 5 a step of the recurrence downwards, 3 for the turn by the azimuth and the sum of Eq. 5
+    or for two coefficients. A band: 13, its sectoral term; a degree: 21, its arcs and powers."""
+    return 4 * n * (n - 1) + 13 * (n - 1) + 21 * n + 200
 
 
 def whole_sphere(n: int) -> int:
@@ -27,9 +26,9 @@ def whole_sphere(n: int) -> int:
 
 
 def warped_sphere(n: int) -> int:
-    """A quarter of the lights crosses the horizon, which at any height takes 18 downwards, 11 upwards and 5 for the two
-    sums of Eq. 5; of the others each degree of each band takes 7. The lobe's terms are interpolated by 7 each."""
-    crossed, whole = 17 * n * (n - 1) + 35 * (n - 1) + 26 * n, 7 * n * (n - 1) // 2 + 24 * (n - 1) + 7 * n
+    """A quarter of the lights crosses the horizon, which at any height takes 11 a step downwards and 3 for the sum of
+    Eq. 5; of the others each degree of each band takes 7. The lobe's terms are interpolated by 7 each."""
+    crossed, whole = 7 * n * (n - 1) + 15 * (n - 1) + 21 * n, 7 * n * (n - 1) // 2 + 24 * (n - 1) + 7 * n
     return (crossed + 3 * whole) // 4 + 7 * n * (n + 1) // 2 + 400
 
 
