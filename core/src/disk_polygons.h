@@ -26,9 +26,9 @@ class DiskPolygons {
     /// A disk in the shading frame, under the view number `view`; what lies wholly below the horizon or is seen edge-on
     /// is left out. number: what it is known by.
     void add(const Ellipse<double>& disk, std::uint32_t view, std::uint32_t number) {
-        SphericalEllipse<double> ellipse(disk, true);
+        const SphericalEllipse<double> ellipse(disk, true);
         if (!ellipse.empty()) {
-            seen_.push_back({std::move(ellipse), 0, 0, view, number});
+            seen_.push_back({ellipse, 0, 0, view, number});
         }
     }
     /// A part of a disk, as a convex polygon.

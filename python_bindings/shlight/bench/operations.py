@@ -15,8 +15,8 @@ def basis(n: int) -> int:
 
 
 def clipped_sphere(n: int) -> int:
-    """Each degree of each band: 5 a step of the recurrence downwards, 3 for the turn by the azimuth and the sum of Eq. 5
-    or for two coefficients. A band: 13, its sectoral term; a degree: 21, its arcs and powers."""
+    """Each degree of each band: 5 a step of the recurrence downwards, 3 for the turn by the azimuth and the sum of
+    Eq. 5 or for two coefficients. A band: 13, its sectoral term; a degree: 21, its arcs and powers."""
     return 4 * n * (n - 1) + 13 * (n - 1) + 21 * n + 200
 
 
