@@ -262,7 +262,7 @@ void Scene::add_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const 
                            double spread, const LightTraits& traits) {
     DiskLight light = make_disk_light(center, half_axis_u, half_axis_v, radiance, false, traits);
     light.traits.profile = make_spread_profile(light.normal, spread);
-    lamps_.emplace_back(std::move(light));
+    lamps_.emplace_back(light);
 }
 
 void Scene::add_point_light(const Vec3d& position, const Rgb& intensity, const LightTraits& traits) {
