@@ -67,7 +67,10 @@ MeshView::Kind MeshView::look(const EmitterLevels& emitter, const ShadingFrame& 
     }
     if (const auto axis = flatten(local_, outline_)) {
         axis_ = *axis;
-        thin_out(axis_, tolerance * std::numbers::pi / kOneSided, outline_);
+        // Of lines that are joined, one direction of what joins them would move and the other stay.
+        if (silhouette_.is_simple()) {
+            thin_out(axis_, tolerance * std::numbers::pi / kOneSided, outline_);
+        }
         const bool above = std::any_of(outline_.begin(), outline_.end(), [](const Vec3d& v) { return v.z > 0; });
         return above ? Kind::outline : Kind::hidden;
     }

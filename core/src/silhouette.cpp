@@ -112,18 +112,23 @@ void Silhouette::add(std::uint32_t from, std::uint32_t to, int times) {
 /// As many steps enter a vertex as leave it, so that every walk ends where it began.
 void Silhouette::walk(const EmitterLevel& level, const Vec3d& point) {
     const auto direction = [&](std::uint32_t vertex) { return level.vertices[vertex] - point; };
+    is_simple_ = true;
     for (const std::uint32_t origin : origins_) {
         if (first_step_[origin] == kNoStep) {
             continue;
         }
-        if (!outline_.empty() && outline_.back() != outline_.front()) {
-            outline_.push_back(outline_.front());
+        if (!outline_.empty()) {
+            is_simple_ = false;
+            if (outline_.back() != outline_.front()) {
+                outline_.push_back(outline_.front());
+            }
         }
         std::uint32_t vertex = origin;
         outline_.push_back(direction(origin));
         while (first_step_[vertex] != kNoStep) {
             const Step& step = steps_[first_step_[vertex]];
             first_step_[vertex] = step.next;
+            is_simple_ = is_simple_ && step.next == kNoStep;
             vertex = step.to;
             outline_.push_back(direction(vertex));
         }

@@ -26,6 +26,8 @@ class Silhouette {
     /// One closed line, counter-clockwise as seen from the point, relative to the point; separate lines are joined by
     /// edges that are passed in both directions.
     std::span<const Vec3d> outline() const { return outline_; }
+    /// Whether the outline is one line by itself that passes no vertex twice.
+    bool is_simple() const { return is_simple_; }
     /// Whether some face shows its outer side.
     bool any_front() const { return any_front_; }
 
@@ -42,15 +44,16 @@ class Silhouette {
     std::vector<std::uint32_t> origins_;
     std::vector<Vec3d> outline_;
     bool any_front_ = false;
+    bool is_simple_ = false;
 };
 
 /// Moves the vertices along their directions into a plane at distance 1, where they enclose the same directions, and
 /// returns its normal. Nothing if they do not all lie in one half of space, well away from its border.
 std::optional<Vec3d> flatten(std::span<const Vec3d> directions, std::vector<Vec3d>& planar);
 
-/// Takes away vertices of a closed line in the plane at distance 1 along a unit normal: two at a time, with one in
-/// their place so that the area stays the same. What lies on another side of the line than before has an area, hence a
-/// solid angle, below `most`, counted as often as it changes sides, and no part of it is far from one of the opposite
+/// Takes away vertices of a simple closed line in the plane at distance 1 along a unit normal: two at a time, with one
+/// in their place so that the area stays the same. What lies on another side of the line than before has an area, hence
+/// a solid angle, below `most`, counted as often as it changes sides, and no part of it is far from one of the opposite
 /// sign.
 void thin_out(const Vec3d& normal, double most, std::vector<Vec3d>& line);
 

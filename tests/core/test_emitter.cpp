@@ -114,6 +114,29 @@ TEST(Silhouette, InsideAClosedSurfaceThereIsNone) {
     EXPECT_TRUE(silhouette.find(emitter.levels.front(), true, Vec3d(0, 0, 2)));
 }
 
+TEST(Silhouette, IsSimpleWhereItIsOneLine) {
+    const auto is_simple = [](const Solid& solid, bool closed, const Vec3d& point) {
+        const EmitterLevels emitter = make_emitter_levels(solid.vertices, solid.triangles, 1000);
+        Silhouette silhouette;
+        EXPECT_TRUE(silhouette.find(emitter.levels.front(), closed, point));
+        return silhouette.is_simple();
+    };
+    const Solid ball = icosphere(1);
+    EXPECT_TRUE(is_simple(ball, true, {0.1, 0.2, 3}));
+    Solid two = ball;
+    const auto count = static_cast<std::uint32_t>(ball.vertices.size());
+    for (const Vec3d& v : ball.vertices) {
+        two.vertices.push_back(v + Vec3d(4, 0, 0));
+    }
+    for (const Triangle& t : ball.triangles) {
+        two.triangles.push_back({t.x + count, t.y + count, t.z + count});
+    }
+    EXPECT_FALSE(is_simple(two, true, {0.1, 0.2, 3}));
+    // Two triangles that touch at a corner.
+    const Solid corners{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}};
+    EXPECT_FALSE(is_simple(corners, false, {0.1, 0.2, 3}));
+}
+
 double planar_area(std::span<const Vec3d> line) {
     double twice = 0;
     for (std::size_t i = 0; i < line.size(); ++i) {
