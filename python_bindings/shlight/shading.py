@@ -8,7 +8,7 @@ the true f·cos, and a roughness of 0 shows the light's own image. Nothing here 
 
 from __future__ import annotations
 
-from typing import Any, Literal, overload
+from typing import Any, Literal, TypedDict, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,6 +30,23 @@ Effort = NDArray[np.int32]
 Sampling = Literal["solid_angle", "area", "bsdf", "mis"]
 
 
+class _Settings(TypedDict, total=False):
+    """Keywords of every function here, for the overloads, which differ in the result only."""
+
+    order: int | Literal["auto"]
+    tolerance: float
+    threads: int
+    method: str
+
+
+class _MethodSettings(_Settings, total=False):
+    """Those of lights that the other methods know, too."""
+
+    samples: int | None
+    seed: int | None
+    sampling: Sampling | None
+
+
 @overload
 def shade_spheres(
     centers: ArrayLike,
@@ -37,14 +54,8 @@ def shade_spheres(
     bsdf: _core.Bsdf,
     cos_theta_o: ArrayLike,
     *,
-    order: int | Literal["auto"] = ...,
-    tolerance: float = ...,
-    threads: int = ...,
-    method: str = ...,
-    samples: int | None = ...,
-    seed: int | None = ...,
-    sampling: Sampling | None = ...,
     return_effort: Literal[False] = ...,
+    **settings: Unpack[_MethodSettings],
 ) -> Radiance: ...
 @overload
 def shade_spheres(
@@ -53,14 +64,8 @@ def shade_spheres(
     bsdf: _core.Bsdf,
     cos_theta_o: ArrayLike,
     *,
-    order: int | Literal["auto"] = ...,
-    tolerance: float = ...,
-    threads: int = ...,
-    method: str = ...,
-    samples: int | None = ...,
-    seed: int | None = ...,
-    sampling: Sampling | None = ...,
     return_effort: Literal[True],
+    **settings: Unpack[_MethodSettings],
 ) -> tuple[Radiance, Effort]: ...
 def shade_spheres(
     centers: ArrayLike,
@@ -115,14 +120,8 @@ def shade_polygons(
     bsdf: _core.Bsdf,
     cos_theta_o: ArrayLike,
     *,
-    order: int | Literal["auto"] = ...,
-    tolerance: float = ...,
-    threads: int = ...,
-    method: str = ...,
-    samples: int | None = ...,
-    seed: int | None = ...,
-    sampling: Sampling | None = ...,
     return_effort: Literal[False] = ...,
+    **settings: Unpack[_MethodSettings],
 ) -> Radiance: ...
 @overload
 def shade_polygons(
@@ -130,14 +129,8 @@ def shade_polygons(
     bsdf: _core.Bsdf,
     cos_theta_o: ArrayLike,
     *,
-    order: int | Literal["auto"] = ...,
-    tolerance: float = ...,
-    threads: int = ...,
-    method: str = ...,
-    samples: int | None = ...,
-    seed: int | None = ...,
-    sampling: Sampling | None = ...,
     return_effort: Literal[True],
+    **settings: Unpack[_MethodSettings],
 ) -> tuple[Radiance, Effort]: ...
 def shade_polygons(
     vertices: ArrayLike,
@@ -185,11 +178,8 @@ def shade_disks(
     bsdf: _core.Bsdf,
     cos_theta_o: ArrayLike,
     *,
-    order: int | Literal["auto"] = ...,
-    tolerance: float = ...,
-    threads: int = ...,
-    method: str = ...,
     return_effort: Literal[False] = ...,
+    **settings: Unpack[_Settings],
 ) -> Radiance: ...
 @overload
 def shade_disks(
@@ -199,11 +189,8 @@ def shade_disks(
     bsdf: _core.Bsdf,
     cos_theta_o: ArrayLike,
     *,
-    order: int | Literal["auto"] = ...,
-    tolerance: float = ...,
-    threads: int = ...,
-    method: str = ...,
     return_effort: Literal[True],
+    **settings: Unpack[_Settings],
 ) -> tuple[Radiance, Effort]: ...
 def shade_disks(
     centers: ArrayLike,
