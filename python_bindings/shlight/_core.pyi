@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
 from collections.abc import Callable, Sequence
-from typing import Any, Literal, overload
+from typing import Any, Literal, TypedDict, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 _Floats = NDArray[Any]
+_Shaded = tuple[NDArray[np.float32], NDArray[np.int32]]  # radiance and effort
 
 def kernel_targets() -> list[str]: ...
 def kernel_target() -> str: ...
@@ -46,7 +47,7 @@ def shade_spheres(
     tolerance: float,
     threads: int,
     with_effort: bool,
-) -> tuple[NDArray[np.float32], NDArray[np.int32]]: ...
+) -> _Shaded: ...
 def shade_polygons(
     vertices: _Floats,
     bsdf: Bsdf,
@@ -55,7 +56,7 @@ def shade_polygons(
     tolerance: float,
     threads: int,
     with_effort: bool,
-) -> tuple[NDArray[np.float32], NDArray[np.int32]]: ...
+) -> _Shaded: ...
 def shade_disks(
     centers: _Floats,
     half_axes_u: _Floats,
@@ -66,7 +67,7 @@ def shade_disks(
     tolerance: float,
     threads: int,
     with_effort: bool,
-) -> tuple[NDArray[np.float32], NDArray[np.int32]]: ...
+) -> _Shaded: ...
 
 class MethodOptions:
     def __init__(self, *, tolerance: float, order: int, samples: int, seed: int, sampling: str) -> None: ...
@@ -121,7 +122,7 @@ def method_shade_spheres(
     cos_theta_o: _Floats,
     options: MethodOptions,
     threads: int,
-) -> tuple[NDArray[np.float32], NDArray[np.int32]]: ...
+) -> _Shaded: ...
 def method_shade_polygons(
     method: str,
     vertices: _Floats,
@@ -129,7 +130,7 @@ def method_shade_polygons(
     cos_theta_o: _Floats,
     options: MethodOptions,
     threads: int,
-) -> tuple[NDArray[np.float32], NDArray[np.int32]]: ...
+) -> _Shaded: ...
 
 class RenderCancelled(RuntimeError): ...  # noqa: N818  the name says what happened, not what went wrong
 
@@ -163,6 +164,14 @@ class RenderReport:
     @property
     def stage_seconds(self) -> dict[str, float]: ...
 
+class _SeenBy(TypedDict, total=False):
+    """Keywords of every light."""
+
+    shadows: bool  # True unless given
+    diffuse: bool  # True unless given
+    glossy: bool  # True unless given
+    camera: bool  # False unless given
+
 class Scene:
     def __init__(self) -> None: ...
     def add_mesh(
@@ -184,10 +193,7 @@ class Scene:
         radiance: ArrayLike,
         *,
         facing_disk: bool = False,
-        shadows: bool = True,
-        diffuse: bool = True,
-        glossy: bool = True,
-        camera: bool = False,
+        **seen_by: Unpack[_SeenBy],
     ) -> None: ...
     def add_polygon_light(
         self,
@@ -195,10 +201,7 @@ class Scene:
         radiance: ArrayLike,
         *,
         spread: float = ...,
-        shadows: bool = True,
-        diffuse: bool = True,
-        glossy: bool = True,
-        camera: bool = False,
+        **seen_by: Unpack[_SeenBy],
     ) -> None: ...
     def add_disk_light(
         self,
@@ -208,20 +211,13 @@ class Scene:
         radiance: ArrayLike,
         *,
         spread: float = ...,
-        shadows: bool = True,
-        diffuse: bool = True,
-        glossy: bool = True,
-        camera: bool = False,
+        **seen_by: Unpack[_SeenBy],
     ) -> None: ...
     def add_point_light(
         self,
         position: ArrayLike,
         intensity: ArrayLike,
-        *,
-        shadows: bool = True,
-        diffuse: bool = True,
-        glossy: bool = True,
-        camera: bool = False,
+        **seen_by: Unpack[_SeenBy],
     ) -> None: ...
     def add_spot_light(
         self,
@@ -234,10 +230,7 @@ class Scene:
         radius: float = 0.0,
         facing_disk: bool = False,
         times_cosine: bool = False,
-        shadows: bool = True,
-        diffuse: bool = True,
-        glossy: bool = True,
-        camera: bool = False,
+        **seen_by: Unpack[_SeenBy],
     ) -> None: ...
     def add_sun_light(
         self,
@@ -246,10 +239,7 @@ class Scene:
         irradiance: ArrayLike,
         *,
         tangent: bool = False,
-        shadows: bool = True,
-        diffuse: bool = True,
-        glossy: bool = True,
-        camera: bool = False,
+        **seen_by: Unpack[_SeenBy],
     ) -> None: ...
     def set_environment(
         self, radiance: ArrayLike, *, to_world: ArrayLike | None = None, visible: bool = True
