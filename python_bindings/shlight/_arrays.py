@@ -65,6 +65,17 @@ def check_last(name: str, array: Floats, size: int) -> None:
         raise ValueError(f"{name} must have shape (..., {size}), got {array.shape}")
 
 
+def checked_disks(
+    centers: ArrayLike, half_axes_u: ArrayLike, half_axes_v: ArrayLike, dtype: DTypeLike
+) -> tuple[Floats, Floats, Floats]:
+    """The arrays (..., 3) of disks and ellipses: the points centre + a u + b v with a² + b² ≤ 1."""
+    given = {"centers": centers, "half_axes_u": half_axes_u, "half_axes_v": half_axes_v}
+    checked = {name: checked_array(name, value, dtype, core_axes=1) for name, value in given.items()}
+    for name, array in checked.items():
+        check_last(name, array, 3)
+    return checked["centers"], checked["half_axes_u"], checked["half_axes_v"]
+
+
 def broadcast(**shapes: tuple[int, ...]) -> tuple[int, ...]:
     try:
         return np.broadcast_shapes(*shapes.values())

@@ -24,6 +24,7 @@ from shlight._arrays import (
     broadcast,
     check_last,
     checked_array,
+    checked_disks,
     checked_order,
     checked_threads,
     common_type,
@@ -180,12 +181,7 @@ def disk_coefficients(
     in float32, at contact, too. ValueError for dependent half axes and for a shading point in the ellipse.
     Stokes' theorem along the outline as elliptic functions: docs/algorithms.md, "Disks and ellipses".
     """
-    c = checked_array("centers", centers, dtype, core_axes=1)
-    u = checked_array("half_axes_u", half_axes_u, dtype, core_axes=1)
-    v = checked_array("half_axes_v", half_axes_v, dtype, core_axes=1)
-    check_last("centers", c, 3)
-    check_last("half_axes_u", u, 3)
-    check_last("half_axes_v", v, 3)
+    c, u, v = checked_disks(centers, half_axes_u, half_axes_v, dtype)
     shape = broadcast(centers=c.shape[:-1], half_axes_u=u.shape[:-1], half_axes_v=v.shape[:-1])
     n = checked_order(order)
     lights = (rows(c, shape, 3), rows(u, shape, 3), rows(v, shape, 3))

@@ -19,6 +19,7 @@ from shlight._arrays import (
     broadcast,
     check_last,
     checked_array,
+    checked_disks,
     checked_order,
     checked_threads,
     rows,
@@ -216,12 +217,7 @@ def shade_disks(
     if method != "auto":
         raise ValueError(f"method must be 'auto' for disks, got {method!r}")
     dtype = _given_type(centers, half_axes_u, half_axes_v)
-    c = checked_array("centers", centers, dtype, core_axes=1)
-    u = checked_array("half_axes_u", half_axes_u, dtype, core_axes=1)
-    v = checked_array("half_axes_v", half_axes_v, dtype, core_axes=1)
-    check_last("centers", c, 3)
-    check_last("half_axes_u", u, 3)
-    check_last("half_axes_v", v, 3)
+    c, u, v = checked_disks(centers, half_axes_u, half_axes_v, dtype)
     cosines = _checked_views(cos_theta_o)
     shape = broadcast(
         centers=c.shape[:-1], half_axes_u=u.shape[:-1], half_axes_v=v.shape[:-1], cos_theta_o=cosines.shape
