@@ -1,31 +1,24 @@
 # SPDX-License-Identifier: MIT
-"""The command `shlight charts` and what its figures measure with."""
+"""The command `shlight charts`."""
 
 from __future__ import annotations
 
-import csv
 import importlib.util
 import io
 import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterable
-from dataclasses import replace
+from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
 
-import numpy as np
 import pytest
+from charts_cases import names
 
-from shlight import methods
-from shlight.charts import command, figures, fused, growth, measure, options, speed_error, stability, style
+from shlight.charts import command, figures, options, style
 from shlight.charts.figure import Drawn, Figure, Run, Table
-from shlight.charts.lights import CLASSES, LightClass, Lights, spheres, squares
 from shlight.charts.page import PAGE
 from shlight.progress import Progress
-
-# --- the command -------------------------------------------------------------------------------------------------
 
 
 def draw_dots(run: Run) -> Drawn:
@@ -55,10 +48,6 @@ def use(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
 
 DOTS = Figure("dots", "Dots", draw_dots)
 VAIN = Figure("vain", "In vain", draw_in_vain)
-
-
-def names(folder: Path) -> list[str]:
-    return sorted(path.name for path in folder.iterdir())
 
 
 def test_a_figure_and_its_page(tmp_path: Path, use: Callable[..., None], capsys: pytest.CaptureFixture[str]) -> None:
@@ -219,279 +208,6 @@ def test_plain_lines_elsewhere() -> None:
     assert first == "1/2 Dots"
     assert second.endswith(" s")
     assert "\r" not in stream.getvalue()
-
-
-# --- lights ------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("light_class", CLASSES, ids=lambda c: c.name)
-def test_lights_of_a_class(light_class: LightClass) -> None:
-    lights = light_class.lights(3, 40)
-    assert len(lights) == 40
-    for array, again in zip(lights.arrays, light_class.lights(3, 40).arrays, strict=True):
-        np.testing.assert_array_equal(array, again)
-        np.testing.assert_array_equal(array, array.astype(np.float32))  # both precisions hold them
-    kept = lights.coefficients("exact", 1, np.float64)[:, 0]
-    whole = lights.coefficients("exact", 1, np.float64, clip=False)[:, 0]
-    assert (kept > 0).all()
-    cut = kept < whole * (1 - 1e-9)
-    assert cut.mean() >= 0.6 if "clipped" in light_class.name else not cut.any()
-    assert (whole.max() < 0.01) == ("small" in light_class.name)
-    measure.truth(lights.take(slice(0, 4)), 2)  # takes only what is planar
-    if light_class.kind == "polygon":
-        np.testing.assert_array_equal(*in_one_plane(lights, (0, 1, 3, 2)))
-
-
-def in_one_plane(lights: Lights, order: tuple[int, int, int, int]) -> tuple[np.ndarray, np.ndarray]:
-    """Two sides that are equal if the corners lie exactly in one plane."""
-    first, second, third, fourth = (lights.arrays[0][:, i] for i in order)
-    return second - first, fourth - third
-
-
-def test_elevation_and_half_angle_of_a_sphere() -> None:
-    lights = spheres(np.array([0.3, -1.0]), np.array([0.2, 1e-4]), 0.6)
-    centers, radii = lights.arrays
-    np.testing.assert_allclose(np.arcsin(centers[:, 2]), [0.3, -1.0], atol=1e-6)
-    np.testing.assert_allclose(np.arctan2(centers[:, 1], centers[:, 0]), 0.6, atol=1e-6)
-    np.testing.assert_allclose(np.arcsin(radii), [0.2, 1e-4], rtol=1e-6)
-
-
-@pytest.mark.parametrize("half", [1e-4, 0.1, 1.4])
-@pytest.mark.parametrize("beyond", [-1e-7, 1e-7, 0.1])
-def test_edges_of_a_square_near_the_horizon(half: float, beyond: float) -> None:
-    upper, lower = squares(np.array([beyond - half, beyond + half]), half, 0.6).arrays[0]
-    for corners, near in ((upper, slice(2, 4)), (lower, slice(0, 2))):
-        np.testing.assert_allclose(corners[near, 2], np.sin(beyond) / np.cos(half), rtol=1e-6)
-    for corners in (upper, lower):
-        sides = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=-1)
-        np.testing.assert_allclose(sides, 2 * np.tan(half), rtol=0.01)
-
-
-def test_squares_are_plane() -> None:
-    rng = np.random.default_rng(4)
-    half = 1e-4 * 1.4e4 ** rng.random(300)
-    lights = squares(rng.uniform(-1.5, 1.5, 300), half, rng.uniform(0, 6, 300))
-    np.testing.assert_array_equal(*in_one_plane(lights, (0, 1, 3, 2)))
-
-
-# --- measurements ------------------------------------------------------------------------------------------------
-
-
-def dummy(**changes: object) -> SimpleNamespace:
-    known = {
-        "name": "dummy",
-        "largest_order": 8,
-        "adaptive": False,
-        "random": False,
-        "knows_caps": True,
-        "knows_polygons": False,
-    }
-    return SimpleNamespace(**{**known, **changes})
-
-
-@pytest.fixture
-def register(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
-    """Registers further methods; all of them give 1.001 times what "exact" gives."""
-    real_methods, real = methods.coefficient_methods(), Lights.coefficients
-
-    def coefficients(self: Lights, method: str, *arguments: object, **named: object) -> object:
-        if method in real_methods:
-            return real(self, method, *arguments, **named)
-        known = {key: value for key, value in named.items() if key not in ("samples", "tolerance")}
-        return real(self, "exact", *arguments, **known) * 1.001
-
-    def add(*others: SimpleNamespace) -> None:
-        all_methods = real_methods | {other.name: other for other in others}
-        monkeypatch.setattr(methods, "coefficient_methods", lambda: all_methods)
-        monkeypatch.setattr(Lights, "coefficients", coefficients)
-
-    return add
-
-
-def test_a_new_method_appears_by_itself(register: Callable[..., None]) -> None:
-    register(dummy(), dummy(name="other", random=True), dummy(name="third", adaptive=True))
-    found = {series.label: series for series in measure.all_series("sphere")}
-    assert next(iter(found)) == "exact"
-    assert "reference" not in found
-    new = [label for label, series in found.items() if series.method in ("dummy", "other", "third")]
-    assert new == ["dummy", "other, 64 samples", "other, 1024 samples", "third", "third to 0.001"]
-    looks = {(series.color, series.marker) for series in found.values()}
-    assert len(looks) == len({series.method for series in found.values()})
-    assert [s.label for s in measure.main_series("sphere") if s.label in new] == [
-        "dummy",
-        "other, 1024 samples",
-        "third",
-    ]
-    assert "dummy" not in {series.label for series in measure.all_series("polygon")}
-
-
-def test_errors_by_hand() -> None:
-    true = np.array([[2.0, 0.0, 1.0, 0.0, 9.0], [1e-3, 0.0, 0.0, 0.0, 9.0], [1.0, 0.0, 0.0, 0.0, 9.0]])
-    values = np.array([[2.0, 0.1, 1.0, 0.0], [1e-3, 0.0, 2e-3, 0.0], [1.0, np.nan, 0.0, 5.0]], dtype=np.float32)
-    np.testing.assert_allclose(measure.relative_errors(values, true), [0.05, 2, np.inf], rtol=1e-6)
-    np.testing.assert_allclose(measure.relative_errors(values, true, 0.1), [0.05, 0.02, np.inf], rtol=1e-6)
-
-
-def test_the_truth_is_that_of_the_lights() -> None:
-    lights = CLASSES[1].lights(5, 12)
-    true = measure.truth(lights, 6)
-    assert measure.relative_errors(lights.coefficients("exact", 6, np.float64), true).max() <= 1e-13
-    lower = measure.truth(lights, 3)
-    np.testing.assert_allclose(true[:, :9], lower, rtol=0, atol=1e-15)
-
-
-@pytest.mark.parametrize("order", [1, 2, 7])
-@pytest.mark.parametrize("light_class", [CLASSES[1], CLASSES[3]], ids=lambda c: c.name)
-def test_errors_of_fused_calls(order: int, light_class: LightClass) -> None:
-    (series,) = fused.fused_series("float32")
-    lights = light_class.lights(5, 12)
-    true = measure.truth(lights, order)
-    values = series.coefficients(lights, order, np.float32)
-    assert values.shape == (12, 1)
-    assert series.errors(values, true).max() <= 3e-6
-    np.testing.assert_allclose(series.errors(values + true[:, :1], true), 1, atol=1e-5)
-    assert np.isinf(series.errors(values * np.nan, true)).all()
-    assert fused.fused_series("float64") == []
-
-
-def test_the_exponent_of_growth() -> None:
-    orders = [2, 4, 8, 16, 32, 64]
-    seconds = [5.0, 5.0, *(1e-6 * n**1.7 for n in orders[2:5]), np.nan]
-    assert measure.exponent(orders, seconds) == pytest.approx(1.7, abs=1e-9)
-    assert np.isnan(measure.exponent([2, 4, 8], [1.0, 2.0, 3.0]))
-
-
-def test_times_stop_at_the_largest_order(register: Callable[..., None]) -> None:
-    register(dummy())
-    lights = CLASSES[0].lights(1, 8)
-    both = [series for series in measure.all_series("sphere") if series.label in ("exact", "dummy")]
-    library, other = measure.best_seconds(both, lights, 9, "float32", rounds=1, budget=1e-4)
-    assert library > 0
-    assert np.isnan(other)
-
-
-def rows_of(file: Path) -> list[dict[str, str]]:
-    with file.open(newline="") as stream:
-        return list(csv.DictReader(stream))
-
-
-def drawn(
-    figure: str, draw: Callable[[Run], Drawn], folder: Path, numbers: str = ""
-) -> tuple[Drawn, list[dict[str, str]], list[float]]:
-    """The figure, the rows of its CSV, and the shares that it reported."""
-    shares: list[float] = []
-    run = Run(figure, folder, quick=True, report=lambda share, _: shares.append(share))
-    with style.look():
-        result = draw(run)
-    return result, rows_of(folder / f"{numbers or figure}.csv"), shares
-
-
-def increasing(shares: Iterable[float]) -> bool:
-    listed = list(shares)
-    return listed == sorted(listed) and listed[0] >= 0 and listed[-1] <= 1
-
-
-@pytest.fixture
-def only_exact_and_dummy(register: Callable[..., None], monkeypatch: pytest.MonkeyPatch) -> None:
-    register(dummy())
-    for module in (growth, speed_error, stability):
-        for name in ("all_series", "main_series"):
-            if hasattr(module, name):
-                few = [series for series in measure.all_series("sphere") if series.label in ("exact", "dummy")]
-                monkeypatch.setattr(module, name, lambda kind, few=few: few)
-
-
-@pytest.mark.usefixtures("only_exact_and_dummy")
-def test_growth_draws_what_is_registered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(growth, "SHOWN", ("sphere_whole", "sphere_clipped"))
-    result, rows, shares = drawn("growth", growth.draw, tmp_path)
-    assert (tmp_path / "growth.png").is_file()
-    assert increasing(shares)
-    reached = {name: max(int(row["order"]) for row in rows if row["method"] == name) for name in ("exact", "dummy")}
-    assert reached == {"exact": 64, "dummy": 8}
-    fused = [row for row in rows if "Eq. 5" in row["method"]]
-    assert {row["precision"] for row in fused} == {"float32"}
-    assert {(row["lights"], row["method"]) for row in fused} == {
-        ("sphere_whole", "exact, with Eq. 5"),
-        ("sphere_clipped", "exact, with Eq. 5"),
-        ("sphere_clipped", "glossy lobe, with Eq. 5"),
-    }
-    assert all(float(row["microseconds"]) > 0 for row in rows)
-    cells = {(row[0], row[1], row[2]): row[3] for row in result.tables[0].rows}
-    assert 0 < float(cells["sphere_clipped", "float32", "exact"]) < 4
-
-
-@pytest.mark.usefixtures("only_exact_and_dummy")
-def test_speed_and_error_of_what_is_registered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(speed_error, "CLASSES", CLASSES[1:2])
-    monkeypatch.setattr(speed_error, "QUICK_ORDERS", (1, 2, 8, 16))
-    result, rows, shares = drawn("speed_error", speed_error.draw, tmp_path)
-    assert increasing(shares)
-    for precision, floor in (("float32", 3e-6), ("float64", 1e-13)):
-        assert (tmp_path / f"speed_error_sphere_clipped_{precision}.png").is_file()
-        own = [row for row in rows if row["precision"] == precision]
-        for row in own:
-            error = float(row["worst_error"])
-            assert float(row["median_error"]) <= error
-            assert error <= floor if row["method"].startswith("exact") else 1e-3 <= error <= 1.1e-2
-        assert {row["order"] for row in own if row["method"] == "dummy"} == {"1", "2", "8"}
-    ratios = result.tables[0].rows
-    assert [row[:3] for row in ratios] == [["sphere_clipped", p, "dummy"] for p in ("float32", "float64")]
-    assert all(float(cell) > 0 for row in ratios for cell in row[3:6])
-    assert ratios[0][6] == ""
-
-
-@pytest.mark.usefixtures("only_exact_and_dummy")
-def test_a_map_of_what_is_registered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(stability, "REGIONS", stability.REGIONS[:2])
-    monkeypatch.setattr(stability, "KINDS", {"sphere": "spheres"})
-    result, rows, shares = drawn("stability", stability.draw, tmp_path, "stability_sphere_map_8")
-    assert increasing(shares)
-    assert [name for name in names(tmp_path) if "map" in name] == [
-        f"stability_sphere_map_{order}.{kind}" for order in (16, 8) for kind in ("csv", "png")
-    ]
-    assert (tmp_path / "stability_sphere_horizon_16.png").is_file()
-    for row in rows:
-        hidden = np.radians(float(row["elevation [°]"])) < -float(row["half angle [rad]"])
-        for method, least, most in (("exact", 0, 3e-6), ("dummy", 1e-6, 1.1e-2)):
-            error = row[f"{method}, float32"]
-            assert error == "hidden" if hidden else least <= float(error) <= most
-    table = {row[2]: row[3:] for row in result.tables[0].rows if row[1] == "all lights"}
-    assert all(cell.endswith(" · 0.0 % · 0.0 %") for cell in table["exact"])
-    assert [bool(cell) for cell in table["dummy"]] == [True, False, True, False]
-    worst, over, broken = table["dummy"][0].split(" · ")
-    assert 1e-3 <= float(worst) <= 1.1e-2
-    assert float(over.removesuffix(" %")) >= 90
-    assert broken == "0.0 %"
-
-
-def made_map(errors: list[list[float]]) -> stability.Map:
-    series = measure.all_series("sphere")[0]
-    return stability.Map("sphere", stability.REGIONS[0], 8, "float32", series, np.array(errors))
-
-
-def test_shares_of_a_map_by_hand() -> None:
-    unknown, covered = stability.UNKNOWN, stability.COVERED
-    of = made_map([[1e-6, unknown, 0.5], [covered, np.inf, 1e-4]])
-    assert of.worst() == 0.5
-    assert of.share_over_limit() == 0.5  # what is not finite is above any limit
-    assert of.share_not_finite() == 0.25
-
-
-def test_a_coarse_map_fills_its_picture() -> None:
-    unknown = stability.UNKNOWN
-    of = made_map([[1, unknown, 2], [unknown] * 3, [3, unknown, 4], [unknown] * 3])
-    np.testing.assert_array_equal(stability._filled(of.errors), [[1, 1, 2], [1, 1, 2], [3, 3, 4], [3, 3, 4]])
-
-
-def test_a_slow_method_has_a_coarse_map(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(stability, "batch_size", lambda *_: 20)
-    region = replace(stability.REGIONS[0], title="some lights")
-    monkeypatch.setattr(stability, "main_series", lambda kind: measure.all_series(kind)[:1])
-    for of in stability._measure(Run("stability", Path(), quick=True), "sphere", region, lambda *_: None):
-        rows, columns = (np.flatnonzero(~np.isnan(of.errors).all(axis=axis)) for axis in (1, 0))
-        np.testing.assert_array_equal(rows, [0, 3, 6])
-        np.testing.assert_array_equal(columns, [0, 3, 6, 9, 12])
 
 
 @pytest.mark.slow

@@ -3,17 +3,16 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from charts_cases import drawn
 
 import shlight
-from shlight.charts import pictures, scenes, style
-from shlight.charts.figure import Run
+from shlight.charts import pictures, scenes
 
 
 def noisy(rng: np.random.Generator, truth: Any, sigma: float) -> Any:
@@ -134,14 +133,7 @@ def test_insets_lie_in_the_picture() -> None:
 def test_pictures_are_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     quick = replace(pictures.QUICK, width=48, height=30, half_samples=16, most_samples=32, rays=((1, 1), (4, 4)))
     monkeypatch.setattr(pictures, "QUICK", quick)
-    shares: list[float] = []
-    with style.look():
-        result = pictures.draw(Run("pictures", tmp_path, quick=True, report=lambda share, _: shares.append(share)))
-    assert shares == sorted(shares)
-    assert shares[0] >= 0
-    assert shares[-1] <= 1
-    with (tmp_path / "pictures.csv").open(newline="") as stream:
-        rows = list(csv.DictReader(stream))
+    result, rows = drawn("pictures", pictures.draw, tmp_path)
     assert (tmp_path / "pictures.png").is_file()
     assert (tmp_path / "pictures_curves.png").is_file()
     for name in ("matt", "gold"):

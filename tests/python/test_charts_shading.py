@@ -3,20 +3,18 @@
 
 from __future__ import annotations
 
-import csv
 import math
-from collections.abc import Iterable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from charts_cases import drawn
 
 import shlight
 from shlight import methods
-from shlight.charts import lobe_lights, lobes, order_error, style, which_method
-from shlight.charts.figure import Drawn, Run
+from shlight.charts import lobe_lights, lobes, order_error, which_method
 from shlight.charts.lobe_lights import Clock, about_lobe, best_seconds
 
 ORDERS = [1, 2, 4, 8, 16, 64]
@@ -127,22 +125,6 @@ def test_the_order_that_stays_within_a_tolerance() -> None:
     assert order_error.order_for([1, 2, 3, 4, 5], errors, 0.01) == 4
     assert order_error.order_for([1, 2, 3, 4, 5], errors, 1.0) == 1
     assert order_error.order_for([1, 2, 3, 4, 5], errors, 1e-4) is None
-
-
-def drawn(figure: str, draw: Any, folder: Path) -> tuple[Drawn, list[dict[str, str]]]:
-    """The figure and the rows of its CSV."""
-    shares: list[float] = []
-    run = Run(figure, folder, quick=True, report=lambda share, _: shares.append(share))
-    with style.look():
-        result: Drawn = draw(run)
-    assert increasing(shares)
-    with (folder / f"{figure}.csv").open(newline="") as stream:
-        return result, list(csv.DictReader(stream))
-
-
-def increasing(shares: Iterable[float]) -> bool:
-    listed = list(shares)
-    return listed == sorted(listed) and listed[0] >= 0 and listed[-1] <= 1
 
 
 def test_order_against_error_is_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
