@@ -12,7 +12,7 @@ import pytest
 from charts_cases import drawn
 
 import shlight
-from shlight.charts import pictures, scenes
+from shlight.charts import picture_measure, picture_panels, pictures, scenes
 
 
 def noisy(rng: np.random.Generator, truth: Any, sigma: float) -> Any:
@@ -22,20 +22,20 @@ def noisy(rng: np.random.Generator, truth: Any, sigma: float) -> Any:
 def test_the_references_noise_does_not_count_as_error() -> None:
     rng = np.random.default_rng(4)
     truth = np.ones((200, 300, 4))
-    reference = pictures.Reference((noisy(rng, truth, 0.03), noisy(rng, truth, 0.03)), 2)
+    reference = picture_measure.Reference((noisy(rng, truth, 0.03), noisy(rng, truth, 0.03)), 2)
     error = reference.error(noisy(rng, truth, 0.01))
     assert error.value == pytest.approx(1e-4 / 1.01, rel=0.2)
     assert abs(error.value - 1e-4 / 1.01) <= 4 * error.uncertainty <= 1e-4
     perfect = reference.error(truth)
     assert abs(perfect.value) <= 4 * perfect.uncertainty
-    assert str(pictures.Error(1e-6, 2e-6)) == "≤ 4e-06"
-    assert str(pictures.Error(3e-5, 2e-6)) == "3.0e-05"
+    assert str(picture_measure.Error(1e-6, 2e-6)) == "≤ 4e-06"
+    assert str(picture_measure.Error(3e-5, 2e-6)) == "3.0e-05"
 
 
 def test_equal_time_and_equal_quality(monkeypatch: pytest.MonkeyPatch) -> None:
     """Pictures of noise, on a clock that they turn themselves: 2 s, and 0.1 s a sample."""
     now = [0.0]
-    monkeypatch.setattr(pictures.time, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(picture_measure.time, "perf_counter", lambda: now[0])
     truth = np.ones((200, 300, 4))
     seeds: list[int] = []
 
@@ -48,11 +48,11 @@ def test_equal_time_and_equal_quality(monkeypatch: pytest.MonkeyPatch) -> None:
         seeds.append(seed)
         return noisy(np.random.default_rng([seed, samples]), truth, 0.2 / np.sqrt(samples))
 
-    monkeypatch.setattr(pictures, "_harmonics", harmonics)
-    monkeypatch.setattr(pictures, "_monte_carlo", monte_carlo)
+    monkeypatch.setattr(picture_measure, "_harmonics", harmonics)
+    monkeypatch.setattr(picture_measure, "_monte_carlo", monte_carlo)
     effort = replace(pictures.QUICK, half_samples=256, samples=(1, 16), most_samples=120)
     setting = replace(pictures.SETTINGS[0], build=lambda: None)
-    found = pictures.compare(setting, effort, 7, lambda share, text: None)
+    found = picture_measure.compare(setting, effort, 7, lambda share, text: None)
     assert found.equal_time.effort == "20 samples a pixel"
     assert found.equal_time.seconds == pytest.approx(2.0)
     assert found.shown.error.value == pytest.approx(4e-4 / 1.01, rel=0.1)
@@ -61,11 +61,11 @@ def test_equal_time_and_equal_quality(monkeypatch: pytest.MonkeyPatch) -> None:
     assert found.samples_for_quality == pytest.approx(100, rel=0.1)
     assert found.seconds_for_quality == pytest.approx(10, rel=0.1)
     assert found.equal_quality.error.value == pytest.approx(found.shown.error.value, rel=0.15)
-    assert pictures._by_monte_carlo(found, found.shown) == pytest.approx(10, rel=0.1)
+    assert found.by_monte_carlo(found.shown) == pytest.approx(10, rel=0.1)
     # The reference shares no random number with what is compared to it.
     assert seeds[:2] == [8, 9]
     assert set(seeds[2:]) == {7}
-    fewer = pictures.compare(setting, replace(effort, most_samples=50), 7, lambda share, text: None)
+    fewer = picture_measure.compare(setting, replace(effort, most_samples=50), 7, lambda share, text: None)
     assert not fewer.reached
     assert fewer.equal_quality.effort == "50 samples a pixel"
     assert fewer.seconds_for_quality == pytest.approx(10, rel=0.1)
@@ -96,7 +96,9 @@ def test_meshes_face_outwards(mesh: scenes.Mesh, closed: bool) -> None:
 
 
 @pytest.mark.parametrize("setting", pictures.SETTINGS, ids=lambda setting: setting.name)
-def test_the_scenes_are_lit_by_each_of_three_lights(setting: pictures.Setting, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_scenes_are_lit_by_each_of_three_lights(
+    setting: picture_measure.Setting, monkeypatch: pytest.MonkeyPatch
+) -> None:
     whole = shlight.render(setting.build(), 48, 30, shadow_rays=4, pixel_samples=1, tolerance=1e-3)
     assert (whole[..., 3] == 1).mean() >= 0.99  # no sky
     assert np.median(whole[..., :3].mean(axis=-1)) >= 0.01
@@ -125,7 +127,7 @@ def test_the_scenes_are_lit_by_each_of_three_lights(setting: pictures.Setting, m
 
 def test_insets_lie_in_the_picture() -> None:
     for middle in [(0.0, 0.0), (1.0, 1.0), *(inset for s in pictures.SETTINGS for inset in s.insets)]:
-        (left, top), size = pictures._inset(middle, 240, 150)
+        (left, top), size = picture_panels._inset(middle, 240, 150)
         assert 0 <= left <= 240 - size
         assert 0 <= top <= 150 - size
 
