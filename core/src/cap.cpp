@@ -105,11 +105,7 @@ void sphere_coefficients(std::span<const Vec3<T>> centers, std::span<const T> ra
     check_size("radii", radii.size(), centers.size());
     const auto row = static_cast<std::size_t>(coefficient_count(order));
     check_size("coefficients", coefficients.size(), centers.size() * row);
-    if (!spheres_are_sound(centers.data(), radii.data(), centers.size())) {
-        for (std::size_t i = 0; i < centers.size(); ++i) {
-            check_sphere(Vec3d(centers[i]), radii[i], std::numeric_limits<T>::epsilon());
-        }
-    }
+    check_spheres(centers, radii, std::numeric_limits<T>::epsilon());
     sphere_rows(centers.data(), radii.data(), centers.size(), order, clip, coefficients.data(), output);
 }
 

@@ -9,9 +9,21 @@
 
 #include "checks.h"
 #include "exact_sums.h"
+#include "kernels/cap_kernel.h"
+#include "kernels/polygon_views.h"
 #include "spherical_ellipse.h"
 
 namespace shlight {
+namespace {
+
+void check_each(std::span<const Vec3d> vertices, int vertex_count) {
+    const auto k = static_cast<std::size_t>(vertex_count);
+    for (std::size_t first = 0; first < vertices.size(); first += k) {
+        check_polygon<float>(vertices.subspan(first, k));
+    }
+}
+
+}  // namespace
 
 void check_sphere(const Vec3d& center, double radius, double epsilon) {
     check_finite("centers", center);
@@ -21,6 +33,15 @@ void check_sphere(const Vec3d& center, double radius, double epsilon) {
     // Contact within the rounding of the inputs is contact.
     if (difference_of_squares({center.x, center.y, center.z}, radius) < -4 * epsilon * radius * radius) {
         reject("radii: the shading point lies inside a sphere (|center| < radius)");
+    }
+}
+
+template <class T>
+void check_spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, double epsilon) {
+    if (!spheres_are_sound(centers.data(), radii.data(), centers.size())) {
+        for (std::size_t i = 0; i < centers.size(); ++i) {
+            check_sphere(Vec3d(centers[i]), static_cast<double>(radii[i]), epsilon);
+        }
     }
 }
 
@@ -57,6 +78,18 @@ void check_polygon(std::span<const Vec3<Wider<T>>> vertices) {
     }
 }
 
+void check_polygons(std::span<const Vec3d> vertices, int vertex_count) {
+    if (!polygons_are_sound(vertices, vertex_count)) {
+        check_each(vertices, vertex_count);
+    }
+}
+
+void check_polygons(std::span<const Vec3f> given, std::span<const Vec3d> vertices, int vertex_count) {
+    if (!polygons_are_sound(given, vertices, vertex_count)) {
+        check_each(vertices, vertex_count);
+    }
+}
+
 template <class T>
 void check_disk(const Ellipse<Wider<T>>& disk) {
     using Real = Wider<T>;
@@ -79,6 +112,8 @@ void check_disk(const Ellipse<Wider<T>>& disk) {
     }
 }
 
+template void check_spheres(std::span<const Vec3<float>>, std::span<const float>, double);
+template void check_spheres(std::span<const Vec3<double>>, std::span<const double>, double);
 template void check_polygon<float>(std::span<const Vec3d>);
 template void check_polygon<double>(std::span<const Vec3<long double>>);
 template void check_disk<float>(const Ellipse<double>&);

@@ -13,7 +13,6 @@
 #include "checks.h"
 #include "circle_batch.h"
 #include "disk_polygons.h"
-#include "kernels/cap_kernel.h"
 #include "light_checks.h"
 #include "lobe_batch.h"
 #include "material_views.h"
@@ -92,7 +91,7 @@ class LightShaderWork {
             const auto own_radii = radii.subspan(first, size);
             const auto own_radiance = radiance.subspan(first, size);
             const auto own_effort = effort.empty() ? effort : effort.subspan(first, size);
-            check_spheres(own_centers, own_radii);
+            check_spheres(own_centers, own_radii, std::numeric_limits<float>::epsilon());
             if constexpr (std::is_same_v<T, float>) {
                 if (plain_) {
                     const auto views = cos_theta_o.size() == 1 ? cos_theta_o : cos_theta_o.subspan(first, size);
@@ -115,11 +114,7 @@ class LightShaderWork {
                         std::span<std::int32_t> effort) {
         polygons_.clear(vertex_count);
         polygons_.append(vertices, radiance.size());
-        if (!polygons_.are_sound(vertices)) {
-            for (std::size_t i = 0; i < radiance.size(); ++i) {
-                check_polygon<float>(polygons_.polygon(i));
-            }
-        }
+        polygons_.check(vertices);
         shade_lobes(radiance, effort,
                     [&](LobeViews& lobe) { batch_.shade(lobe, polygons_, view_of_, !effort.empty()); });
     }
@@ -150,15 +145,6 @@ class LightShaderWork {
     }
 
   private:
-    template <class T>
-    static void check_spheres(std::span<const Vec3<T>> centers, std::span<const T> radii) {
-        if (!spheres_are_sound(centers.data(), radii.data(), centers.size())) {
-            for (std::size_t i = 0; i < centers.size(); ++i) {
-                check_sphere(Vec3d(centers[i]), radii[i], std::numeric_limits<float>::epsilon());
-            }
-        }
-    }
-
     /// Each change from light to light is a new view.
     template <class U>
     void find_views(std::span<const U> cos_theta_o, std::size_t first, std::size_t count) {
@@ -201,20 +187,16 @@ class LightShaderWork {
     /// Adds what the batch found of a lobe, or sets the radiance to it.
     void add(const LobeViews& lobe, bool first, std::span<Rgb> radiance) const {
         const auto values = batch_.values();
+        const auto add_scaled = [&](const auto& scale_of) {
+            for (std::size_t k = 0; k < radiance.size(); ++k) {
+                const Rgb reflected = scale_of(k) * values[k];
+                radiance[k] = first ? reflected : radiance[k] + reflected;
+            }
+        };
         if (lobe.has_weight()) {
-            for (std::size_t k = 0; k < radiance.size(); ++k) {
-                radiance[k] = lobe.scale(view_of_[k]) * values[k] + (first ? Rgb(0) : radiance[k]);
-            }
-        } else if (first) {
-            const Rgb color = lobe.scale(0);
-            for (std::size_t k = 0; k < radiance.size(); ++k) {
-                radiance[k] = color * values[k];
-            }
+            add_scaled([&](std::size_t k) { return lobe.scale(view_of_[k]); });
         } else {
-            const Rgb color = lobe.scale(0);
-            for (std::size_t k = 0; k < radiance.size(); ++k) {
-                radiance[k] += color * values[k];
-            }
+            add_scaled([color = lobe.scale(0)](std::size_t /*k*/) { return color; });
         }
     }
 
@@ -297,33 +279,23 @@ void shade_polygons(std::span<const Vec3d> vertices, int vertex_count, const Bsd
     LightShader(bsdf, settings).polygons(vertices, vertex_count, cos_theta_o, radiance, effort);
 }
 
-template void LightShader::spheres(std::span<const Vec3<float>>, std::span<const float>, std::span<const float>,
-                                   std::span<Rgb>, std::span<std::int32_t>);
-template void LightShader::polygons(std::span<const Vec3<float>>, int, std::span<const float>, std::span<Rgb>,
-                                    std::span<std::int32_t>);
-template void LightShader::spheres(std::span<const Vec3<float>>, std::span<const float>, std::span<const double>,
-                                   std::span<Rgb>, std::span<std::int32_t>);
-template void LightShader::polygons(std::span<const Vec3<float>>, int, std::span<const double>, std::span<Rgb>,
-                                    std::span<std::int32_t>);
-template void LightShader::spheres(std::span<const Vec3<double>>, std::span<const double>, std::span<const float>,
-                                   std::span<Rgb>, std::span<std::int32_t>);
-template void LightShader::polygons(std::span<const Vec3<double>>, int, std::span<const float>, std::span<Rgb>,
-                                    std::span<std::int32_t>);
-template void LightShader::spheres(std::span<const Vec3<double>>, std::span<const double>, std::span<const double>,
-                                   std::span<Rgb>, std::span<std::int32_t>);
-template void LightShader::disks(std::span<const Vec3<float>>, std::span<const Vec3<float>>,
-                                 std::span<const Vec3<float>>, std::span<const float>, std::span<Rgb>,
-                                 std::span<std::int32_t>);
-template void LightShader::disks(std::span<const Vec3<float>>, std::span<const Vec3<float>>,
-                                 std::span<const Vec3<float>>, std::span<const double>, std::span<Rgb>,
-                                 std::span<std::int32_t>);
-template void LightShader::disks(std::span<const Vec3<double>>, std::span<const Vec3<double>>,
-                                 std::span<const Vec3<double>>, std::span<const float>, std::span<Rgb>,
-                                 std::span<std::int32_t>);
-template void LightShader::disks(std::span<const Vec3<double>>, std::span<const Vec3<double>>,
-                                 std::span<const Vec3<double>>, std::span<const double>, std::span<Rgb>,
-                                 std::span<std::int32_t>);
-template void LightShader::polygons(std::span<const Vec3<double>>, int, std::span<const double>, std::span<Rgb>,
-                                    std::span<std::int32_t>);
+namespace {
+template <class T>
+using In = std::span<const T>;
+using Radiance = std::span<Rgb>;
+using Effort = std::span<std::int32_t>;
+}  // namespace
+template void LightShader::spheres(In<Vec3<float>>, In<float>, In<float>, Radiance, Effort);
+template void LightShader::spheres(In<Vec3<float>>, In<float>, In<double>, Radiance, Effort);
+template void LightShader::spheres(In<Vec3<double>>, In<double>, In<float>, Radiance, Effort);
+template void LightShader::spheres(In<Vec3<double>>, In<double>, In<double>, Radiance, Effort);
+template void LightShader::polygons(In<Vec3<float>>, int, In<float>, Radiance, Effort);
+template void LightShader::polygons(In<Vec3<float>>, int, In<double>, Radiance, Effort);
+template void LightShader::polygons(In<Vec3<double>>, int, In<float>, Radiance, Effort);
+template void LightShader::polygons(In<Vec3<double>>, int, In<double>, Radiance, Effort);
+template void LightShader::disks(In<Vec3<float>>, In<Vec3<float>>, In<Vec3<float>>, In<float>, Radiance, Effort);
+template void LightShader::disks(In<Vec3<float>>, In<Vec3<float>>, In<Vec3<float>>, In<double>, Radiance, Effort);
+template void LightShader::disks(In<Vec3<double>>, In<Vec3<double>>, In<Vec3<double>>, In<float>, Radiance, Effort);
+template void LightShader::disks(In<Vec3<double>>, In<Vec3<double>>, In<Vec3<double>>, In<double>, Radiance, Effort);
 
 }  // namespace shlight

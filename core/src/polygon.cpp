@@ -10,7 +10,6 @@
 
 #include "checks.h"
 #include "kernels/polygon_rows.h"
-#include "kernels/polygon_views.h"
 #include "light_checks.h"
 #include "polygon_boundary.h"
 #include "polygon_cubature.h"
@@ -93,8 +92,8 @@ void automatic_coefficients(std::span<const Vec3f> vertices, std::size_t vertex_
                             float* coefficients, bool checked) {
     const std::vector<Vec3d> exact(vertices.begin(), vertices.end());
     const auto k = static_cast<int>(vertex_count);
-    if (!checked && !polygons_are_sound(exact, k)) {
-        check_each(vertices, vertex_count);
+    if (!checked) {
+        check_polygons(vertices, exact, k);
     }
     const auto row = static_cast<std::size_t>(coefficient_count(order));
     for (const std::uint32_t i : polygon_rows(exact, k, order, clip, coefficients)) {

@@ -9,6 +9,7 @@
 
 #include "kernels/cubature_kernel.h"
 #include "kernels/polygon_views.h"
+#include "light_checks.h"
 #include "shlight/types.h"
 #include "spherical_polygon.h"
 
@@ -33,13 +34,13 @@ class PolygonBatch {
             std::copy_n(&vertices->x, 3 * count, &vertices_[first].x);
         }
     }
-    /// polygons_are_sound; given: all that append() was given.
+    /// check_polygons; given: all that append() was given.
     template <class T>
-    bool are_sound(const Vec3<T>* given) const {
+    void check(const Vec3<T>* given) const {
         if constexpr (std::is_same_v<T, float>) {
-            return polygons_are_sound(std::span(given, vertices_.size()), vertices_, vertex_count());
+            check_polygons(std::span(given, vertices_.size()), vertices_, vertex_count());
         } else {
-            return polygons_are_sound(vertices_, vertex_count());
+            check_polygons(vertices_, vertex_count());
         }
     }
 

@@ -40,10 +40,7 @@ Array<float> contract_spheres(const Array<float>& centers, const Array<float>& r
     Array<float> out(static_cast<py::ssize_t>(c.size()));
     float* sums = out.mutable_data();
     in_chunks(c.size(), threads, [&](std::size_t first, std::size_t count) {
-        const bool sound = spheres_are_sound(&c[first], &r[first], count);
-        for (std::size_t i = first; !sound && i < first + count; ++i) {
-            check_sphere(Vec3d(c[i]), r[i], std::numeric_limits<float>::epsilon());
-        }
+        check_spheres(c.subspan(first, count), r.subspan(first, count), std::numeric_limits<float>::epsilon());
         shade_spheres_on_plane(&c[first], &r[first], count, lobe.data(), order, sums + first);
     });
     return out;
@@ -60,10 +57,7 @@ Array<float> contract_polygons(const Array<float>& vertices, const Array<float>&
         PolygonBatch polygons;
         polygons.clear(k);
         polygons.append(&v[first * k], count);
-        const bool sound = polygons.are_sound(&v[first * k]);
-        for (std::size_t i = 0; !sound && i < count; ++i) {
-            check_polygon<float>(polygons.polygon(i));
-        }
+        polygons.check(&v[first * k]);
         std::vector<std::uint32_t> all(count);
         std::iota(all.begin(), all.end(), 0U);
         const std::vector<std::uint32_t> first_view(count, 0);
