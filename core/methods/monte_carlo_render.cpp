@@ -9,9 +9,9 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include "cap_sampling.h"
 #include "checks.h"
 #include "hits.h"
-#include "light_sampling.h"
 #include "light_view.h"
 #include "random_directions.h"
 #include "random_numbers.h"

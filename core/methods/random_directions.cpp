@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "light_sampling.h"
 #include "perpendicular.h"
+#include "polygon_sampling.h"
 
 namespace shlight::methods {
 namespace {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include "mesh_sampling.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "emitter_levels.h"
-#include "light_sampling.h"
 #include "perpendicular.h"
 
 namespace shlight {
@@ -98,10 +100,7 @@ int MeshSampler::layers(const Vec3d& direction) const {
         const std::span<const Vec3d> corners = view_.faces();
         int count = 0;
         for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
-            const double ab = glm::dot(direction, glm::cross(corners[i], corners[i + 1]));
-            const double bc = glm::dot(direction, glm::cross(corners[i + 1], corners[i + 2]));
-            const double ca = glm::dot(direction, glm::cross(corners[i + 2], corners[i]));
-            const bool through = (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
+            const bool through = line_meets(direction, corners[i], corners[i + 1], corners[i + 2]);
             if (through && glm::dot(direction, corners[i] + corners[i + 1] + corners[i + 2]) > 0) {
                 ++count;
             }

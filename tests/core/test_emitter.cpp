@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "emitter_levels.h"
-#include "light_sampling.h"
+#include "mesh_sampling.h"
 #include "random_input.h"
 #include "shlight/cap.h"
 #include "shlight/polygon.h"
