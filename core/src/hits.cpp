@@ -2,7 +2,8 @@
 #include "hits.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "perpendicular.h"
 
 namespace shlight {
 namespace {
@@ -11,13 +12,6 @@ constexpr double kSmallestViewCosine = 1e-4;
 
 /// Points on a light that the first shadow rays of a pixel get together, at least.
 constexpr std::uint32_t kLeastFirstPoints = 16;
-
-/// Any unit vector at right angles to a unit vector (Duff et al. 2017).
-Vec3d perpendicular(const Vec3d& n) {
-    const double sign = std::copysign(1.0, n.z);
-    const double a = -1 / (sign + n.z);
-    return {1 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x};
-}
 
 }  // namespace
 
