@@ -14,6 +14,12 @@ namespace shlight::testing {
 
 using truth::EllipseInput;
 
+/// One kind of disks.
+struct EllipseClass {
+    const char* name;
+    EllipseInput (*draw)(RandomInput&);
+};
+
 /// Half axes of these lengths in a plane, replaced by a random conjugate pair of the same ellipse.
 inline EllipseInput conjugate(RandomInput& random, const Vec3d& center, const Plane& plane, double half_u,
                               double half_v) {
@@ -24,12 +30,9 @@ inline EllipseInput conjugate(RandomInput& random, const Vec3d& center, const Pl
             (random.chance(0.5) ? 1.0 : -1.0) * (std::cos(t) * v - std::sin(t) * u)};
 }
 
-/// Somewhere in front, turned by up to about 80° away, of the given size relative to its distance.
 inline EllipseInput facing_ellipse(RandomInput& random, double size, double flatness) {
-    const Vec3d center = random.log_uniform(0.01, 100) * seen_direction(random);
-    const Vec3d normal = glm::normalize(center) + 0.98 * random.direction();
-    const double half = size * glm::length(center);
-    return conjugate(random, center, Plane(random, normal), half, flatness * half);
+    const Place place = facing_place(random, size);
+    return conjugate(random, place.center, place.plane, place.half, flatness * place.half);
 }
 
 inline EllipseInput plain_disk(RandomInput& random) {
@@ -48,14 +51,9 @@ inline EllipseInput large_disk(RandomInput& random) {
     return facing_ellipse(random, random.log_uniform(1, 30), random.log_uniform(0.2, 1));
 }
 
-/// All but touching the shading point, which sees it as nearly half the sphere.
 inline EllipseInput disk_near_contact(RandomInput& random) {
-    const Vec3d normal = seen_direction(random);
-    const Plane plane(random, normal);
-    const double size = random.log_uniform(0.1, 10);
-    const Vec3d center = size * (random.log_uniform(1e-6, 1e-2) * normal + random.uniform(-0.3, 0.3) * plane.u +
-                                 random.uniform(-0.3, 0.3) * plane.v);
-    return conjugate(random, center, plane, size, random.uniform(0.5, 1) * size);
+    const Place place = place_near_contact(random);
+    return conjugate(random, place.center, place.plane, place.half, random.uniform(0.5, 1) * place.half);
 }
 
 /// A point of the rim all but touches the shading point, from inside or outside.
@@ -77,13 +75,9 @@ inline EllipseInput thin_ellipse(RandomInput& random) {
     return conjugate(random, center, plane, 1, random.log_uniform(1e-6, 1e-2));
 }
 
-/// A plane that all but passes through the shading point, beside the disk.
 inline EllipseInput disk_nearly_edge_on(RandomInput& random) {
-    const Vec3d center = seen_direction(random);
-    const Vec3d aside = glm::normalize(glm::cross(center, random.direction()));
-    const double size = random.log_uniform(0.1, 0.8);
-    const Plane plane(random, aside + random.log_uniform(1e-6, 1e-2) * center);
-    return conjugate(random, center, plane, size, random.uniform(0.3, 1) * size);
+    const Place place = place_nearly_edge_on(random);
+    return conjugate(random, place.center, place.plane, place.half, random.uniform(0.3, 1) * place.half);
 }
 
 /// Turned about the direction to it until its lowest or highest point is at the horizon but for `share` of its height.

@@ -3,6 +3,7 @@
 // Seeded random inputs: the same on every machine, as std's distributions are not.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -37,6 +38,12 @@ class RandomInput {
   private:
     std::mt19937_64 engine_;
 };
+
+/// The axis of a cap that the horizon cuts.
+inline Vec3d across_horizon(RandomInput& random, double half_angle) {
+    return random.at_tilt(std::numbers::pi / 2 +
+                          random.uniform(-0.95, 0.95) * std::min(half_angle, std::numbers::pi - half_angle));
+}
 
 /// The nearest float. Through memory, because GCC 12 takes double → float → double for nothing when it vectorizes it.
 inline double as_float(double x) {

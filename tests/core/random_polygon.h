@@ -15,6 +15,12 @@ namespace shlight::testing {
 
 using Vertices = std::vector<Vec3d>;
 
+/// One kind of polygons.
+struct PolygonClass {
+    const char* name;
+    Vertices (*draw)(RandomInput&);
+};
+
 /// A plane's two axes, orthonormal; their cross product is `normal`.
 struct Plane {
     Vec3d u, v;
@@ -40,12 +46,41 @@ inline Vec3d seen_direction(RandomInput& random) {
     return random.at_tilt(random.uniform(0, 1.7));
 }
 
+/// Where a plane figure is, and half its size.
+struct Place {
+    Vec3d center;
+    Plane plane;
+    double half;
+};
+
 /// Somewhere in front, turned by up to about 80° away, of the given size relative to its distance.
-inline Vertices facing(RandomInput& random, int count, double inner, double size) {
+inline Place facing_place(RandomInput& random, double size) {
     const Vec3d center = random.log_uniform(0.01, 100) * seen_direction(random);
-    Vec3d normal = glm::normalize(center) + 0.98 * random.direction();
-    const double half = size * glm::length(center);
-    return star(random, center, Plane(random, normal), count, inner, half, half);
+    const Vec3d normal = glm::normalize(center) + 0.98 * random.direction();
+    return {center, Plane(random, normal), size * glm::length(center)};
+}
+
+/// All but touching the shading point, which sees the figure as nearly half the sphere.
+inline Place place_near_contact(RandomInput& random) {
+    const Vec3d normal = seen_direction(random);
+    const Plane plane(random, normal);
+    const double size = random.log_uniform(0.1, 10);
+    const Vec3d center = size * (random.log_uniform(1e-6, 1e-2) * normal + random.uniform(-0.3, 0.3) * plane.u +
+                                 random.uniform(-0.3, 0.3) * plane.v);
+    return {center, plane, size};
+}
+
+/// A plane that all but passes through the shading point, beside the figure.
+inline Place place_nearly_edge_on(RandomInput& random) {
+    const Vec3d center = seen_direction(random);
+    const Vec3d aside = glm::normalize(glm::cross(center, random.direction()));
+    const double size = random.log_uniform(0.1, 0.8);
+    return {center, Plane(random, aside + random.log_uniform(1e-6, 1e-2) * center), size};
+}
+
+inline Vertices facing(RandomInput& random, int count, double inner, double size) {
+    const Place place = facing_place(random, size);
+    return star(random, place.center, place.plane, count, inner, place.half, place.half);
 }
 
 inline Vertices plain(RandomInput& random) {
@@ -64,14 +99,9 @@ inline Vertices large(RandomInput& random) {
     return facing(random, random.integer(3, 5), 0.6, random.log_uniform(1, 30));
 }
 
-/// All but touching the shading point, which sees it as nearly half the sphere.
 inline Vertices near_contact(RandomInput& random) {
-    const Vec3d normal = seen_direction(random);
-    const Plane plane(random, normal);
-    const double size = random.log_uniform(0.1, 10);
-    const Vec3d center = size * (random.log_uniform(1e-6, 1e-2) * normal + random.uniform(-0.3, 0.3) * plane.u +
-                                 random.uniform(-0.3, 0.3) * plane.v);
-    return star(random, center, plane, random.integer(3, 5), 0.6, size, size);
+    const Place place = place_near_contact(random);
+    return star(random, place.center, place.plane, random.integer(3, 5), 0.6, place.half, place.half);
 }
 
 /// One edge all but touches the shading point, which sees it as half a turn.
@@ -90,13 +120,9 @@ inline Vertices thin(RandomInput& random) {
     return star(random, center, Plane(random, center + 0.5 * random.direction()), random.integer(3, 4), 0.6, 1, width);
 }
 
-/// A plane that all but passes through the shading point, beside the polygon.
 inline Vertices nearly_edge_on(RandomInput& random) {
-    const Vec3d center = seen_direction(random);
-    const Vec3d aside = glm::normalize(glm::cross(center, random.direction()));
-    const double size = random.log_uniform(0.1, 0.8);
-    const Plane plane(random, aside + random.log_uniform(1e-6, 1e-2) * center);
-    return star(random, center, plane, random.integer(3, 5), 0.6, size, size);
+    const Place place = place_nearly_edge_on(random);
+    return star(random, place.center, place.plane, random.integer(3, 5), 0.6, place.half, place.half);
 }
 
 /// A wall that stands on the horizon's plane, with one edge in it.

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "error_record.h"
+#include "light_errors.h"
 #include "quad_truth.h"
 #include "random_input.h"
 
@@ -20,8 +20,8 @@ namespace shlight {
 namespace {
 
 using testing::as_float;
-using testing::ErrorRecord;
-using testing::on_two_threads;
+using testing::BothErrors;
+using testing::errors_by_order;
 using testing::RandomInput;
 using truth::CapInput;
 using Kind = truth::CapInput::Kind;
@@ -209,23 +209,19 @@ void compare_class(const Class& kind, std::size_t count, const std::vector<int>&
         lights32[i] = kind.draw(random);
         lights32[i].input = rounded_to_float(lights32[i].input);
     }
-    std::vector<ErrorRecord> errors64(orders.size(), ErrorRecord(count));
-    std::vector<ErrorRecord> errors32(orders.size(), ErrorRecord(count));
-    on_two_threads(count, [&](std::size_t i) {
-        const truth::Coefficients reference64 = truth::cap(lights64[i].input, orders.back(), lights64[i].clip);
-        const truth::Coefficients reference32 = truth::cap(lights32[i].input, orders.back(), lights32[i].clip);
-        for (std::size_t k = 0; k < orders.size(); ++k) {
-            errors64[k][i] = relative_error<double>(lights64[i], reference64, orders[k], kind.relative64);
-            errors32[k][i] = relative_error<float>(lights32[i], reference32, orders[k], kind.relative32);
-        }
+    const std::vector<BothErrors> errors = errors_by_order(kind.name, count, orders, [&](std::size_t i) {
+        return [&kind, &light64 = lights64[i], &light32 = lights32[i],
+                reference64 = truth::cap(lights64[i].input, orders.back(), lights64[i].clip),
+                reference32 = truth::cap(lights32[i].input, orders.back(), lights32[i].clip)](int order) {
+            return std::array{relative_error<double>(light64, reference64, order, kind.relative64),
+                              relative_error<float>(light32, reference32, order, kind.relative32)};
+        };
     });
     for (std::size_t k = 0; k < orders.size(); ++k) {
-        const std::string name = std::string(kind.name) + ", n = " + std::to_string(orders[k]);
-        errors64[k].publish(name + ", float64");
-        errors32[k].publish(name + ", float32");
-        EXPECT_LE(errors64[k].largest(), kind.bound64) << name << ": " << describe(lights64[errors64[k].worst()]);
-        EXPECT_LE(errors32[k].largest(), bound32(orders[k], kind.sliver))
-            << name << ": " << describe(lights32[errors32[k].worst()]);
+        const auto& [float64, float32] = errors[k];
+        EXPECT_LE(float64.largest(), kind.bound64) << kind.name << ": " << describe(lights64[float64.worst()]);
+        EXPECT_LE(float32.largest(), bound32(orders[k], kind.sliver))
+            << kind.name << ": " << describe(lights32[float32.worst()]);
     }
 }
 

@@ -8,14 +8,13 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "error_message.h"
-#include "error_record.h"
+#include "light_errors.h"
 #include "quad_truth.h"
 #include "random_disk.h"
 #include "shlight/cap.h"
@@ -24,10 +23,14 @@ namespace shlight {
 namespace {
 
 using testing::as_float;
+using testing::BothErrors;
+using testing::describe;
+using testing::EllipseClass;
 using testing::EllipseInput;
-using testing::ErrorRecord;
+using testing::errors_by_order;
 using testing::Plane;
 using testing::RandomInput;
+using testing::relative_error;
 
 template <class T>
 std::vector<T> coefficients(const EllipseInput& disk, int order, bool clip, DiskMethod method = DiskMethod::automatic) {
@@ -43,30 +46,11 @@ EllipseInput rounded_to_float(const EllipseInput& disk) {
     return {as_float(disk.center), as_float(disk.half_axis_u), as_float(disk.half_axis_v)};
 }
 
-std::string describe(const EllipseInput& disk, bool clip) {
-    std::string text = clip ? "clipped" : "unclipped";
-    for (const Vec3d& v : {disk.center, disk.half_axis_u, disk.half_axis_v}) {
-        std::array<char, 100> vector{};
-        std::snprintf(vector.data(), vector.size(), " {%.17g, %.17g, %.17g}", v.x, v.y, v.z);
-        text += vector.data();
-    }
-    return text;
+std::array<Vec3d, 3> vectors_of(const EllipseInput& disk) {
+    return {disk.center, disk.half_axis_u, disk.half_axis_v};
 }
 
-/// 0 for lights that are not seen at all.
-template <class T>
-double relative_error(const EllipseInput& disk, int order, bool clip, const truth::Coefficients& reference,
-                      DiskMethod method = DiskMethod::automatic) {
-    const double largest = truth::largest_error(reference, order, coefficients<T>(disk, order, clip, method).data());
-    return largest == 0 ? 0 : largest / reference.high[0];
-}
-
-struct Class {
-    const char* name;
-    EllipseInput (*draw)(RandomInput&);
-};
-
-constexpr auto kClasses = std::to_array<Class>({
+constexpr auto kClasses = std::to_array<EllipseClass>({
     {"disk", testing::plain_disk},
     {"ellipse", testing::plain_ellipse},
     {"small", testing::small_disk},
@@ -84,7 +68,7 @@ constexpr auto kClasses = std::to_array<Class>({
 });
 
 /// One in four is not clipped. At high orders, where the reference takes long, float64 gets the disks of float32.
-void compare_class(const Class& kind, std::size_t count, const std::vector<int>& orders, std::uint64_t seed) {
+void compare_class(const EllipseClass& kind, std::size_t count, const std::vector<int>& orders, std::uint64_t seed) {
     RandomInput random(seed);
     const auto clipped = [seed](std::size_t i) { return (i + seed) % 4 != 0; };
     const bool shared = orders.back() > 16;
@@ -94,30 +78,28 @@ void compare_class(const Class& kind, std::size_t count, const std::vector<int>&
         disks32[i] = rounded_to_float(kind.draw(random));
         disks64[i] = shared ? disks32[i] : kind.draw(random);
     }
-    std::vector<ErrorRecord> errors64(orders.size(), ErrorRecord(count));
-    std::vector<ErrorRecord> errors32(orders.size(), ErrorRecord(count));
-    testing::on_two_threads(count, [&](std::size_t i) {
+    const std::vector<BothErrors> errors = errors_by_order(kind.name, count, orders, [&](std::size_t i) {
         const bool clip = clipped(i);
-        const truth::Coefficients reference32 = truth::ellipse(disks32[i], orders.back(), clip);
-        const truth::Coefficients reference64 = shared ? reference32 : truth::ellipse(disks64[i], orders.back(), clip);
-        for (std::size_t k = 0; k < orders.size(); ++k) {
-            errors64[k][i] = relative_error<double>(disks64[i], orders[k], clip, reference64);
-            errors32[k][i] = relative_error<float>(disks32[i], orders[k], clip, reference32);
-        }
+        truth::Coefficients reference32 = truth::ellipse(disks32[i], orders.back(), clip);
+        truth::Coefficients reference64 = shared ? reference32 : truth::ellipse(disks64[i], orders.back(), clip);
+        return [&disk64 = disks64[i], &disk32 = disks32[i], clip, reference64 = std::move(reference64),
+                reference32 = std::move(reference32)](int order) {
+            return std::array{relative_error(reference64, order, coefficients<double>(disk64, order, clip)),
+                              relative_error(reference32, order, coefficients<float>(disk32, order, clip))};
+        };
     });
-    for (std::size_t k = 0; k < orders.size(); ++k) {
-        const std::string name = std::string(kind.name) + ", n = " + std::to_string(orders[k]);
-        errors64[k].publish(name + ", float64");
-        errors32[k].publish(name + ", float32");
-        const std::size_t worst64 = errors64[k].worst();
-        const std::size_t worst32 = errors32[k].worst();
-        EXPECT_LE(errors64[k].largest(), 1e-10) << name << ": " << describe(disks64[worst64], clipped(worst64));
-        EXPECT_LE(errors32[k].largest(), 1e-5) << name << ": " << describe(disks32[worst32], clipped(worst32));
+    for (const auto& [float64, float32] : errors) {
+        const std::size_t worst64 = float64.worst();
+        const std::size_t worst32 = float32.worst();
+        EXPECT_LE(float64.largest(), 1e-10)
+            << kind.name << ": " << describe(vectors_of(disks64[worst64]), clipped(worst64));
+        EXPECT_LE(float32.largest(), 1e-5)
+            << kind.name << ": " << describe(vectors_of(disks32[worst32]), clipped(worst32));
     }
 }
 
 void compare(std::size_t count, const std::vector<int>& orders, std::uint64_t seed) {
-    for (const Class& kind : kClasses) {
+    for (const EllipseClass& kind : kClasses) {
         compare_class(kind, count, orders, seed++);
     }
 }
@@ -134,7 +116,7 @@ TEST(Disk, AgreesWithReferenceAtOrders33And64) {
 /// Both roads at what either can do.
 TEST(Disk, OutlineAndSweepAgree) {
     RandomInput random(1700);
-    for (const Class& kind : kClasses) {
+    for (const EllipseClass& kind : kClasses) {
         for (int i = 0; i < 20; ++i) {
             const EllipseInput disk = kind.draw(random);
             const bool clip = i % 4 != 0;
@@ -143,7 +125,7 @@ TEST(Disk, OutlineAndSweepAgree) {
             if (swept[0] > 0.02 || (!clip && swept[0] > 1e-3)) {
                 for (std::size_t k = 0; k < swept.size(); ++k) {
                     EXPECT_LE(std::abs(swept[k] - outlined[k]), 1e-11 * swept[0])
-                        << kind.name << ": " << describe(disk, clip);
+                        << kind.name << ": " << describe(vectors_of(disk), clip);
                 }
             }
         }
@@ -166,7 +148,7 @@ void compare_facing_disks_with_caps(double tolerance) {
         const double whole = coefficients<T>(disk, 1, false)[0];
         for (std::size_t k = 0; k < cap.size(); ++k) {
             EXPECT_LE(std::abs(computed[k] - cap[k]), tolerance * whole)
-                << "order " << order << ' ' << describe(disk, clip);
+                << "order " << order << ' ' << describe(vectors_of(disk), clip);
         }
     }
 }

@@ -55,28 +55,23 @@ double polygon_error(const Ellipse<double>& disk, int order, int size) {
     return error / exact[0];
 }
 
-struct Class {
-    const char* name;
-    EllipseInput (*draw)(RandomInput&);
-};
-
-constexpr auto kClasses = std::to_array<Class>({{"disk", plain_disk},
-                                                {"ellipse", plain_ellipse},
-                                                {"small", small_disk},
-                                                {"tiny", tiny_disk},
-                                                {"large", large_disk},
-                                                {"near contact", disk_near_contact},
-                                                {"rim near contact", rim_near_contact},
-                                                {"thin", thin_ellipse},
-                                                {"nearly edge-on", disk_nearly_edge_on},
-                                                {"sliver", sliver_of_disk},
-                                                {"tangent", tangent_disk},
-                                                {"cut", cut_disk},
-                                                {"cut strip", cut_strip},
-                                                {"lune", lune}});
+constexpr auto kClasses = std::to_array<EllipseClass>({{"disk", plain_disk},
+                                                       {"ellipse", plain_ellipse},
+                                                       {"small", small_disk},
+                                                       {"tiny", tiny_disk},
+                                                       {"large", large_disk},
+                                                       {"near contact", disk_near_contact},
+                                                       {"rim near contact", rim_near_contact},
+                                                       {"thin", thin_ellipse},
+                                                       {"nearly edge-on", disk_nearly_edge_on},
+                                                       {"sliver", sliver_of_disk},
+                                                       {"tangent", tangent_disk},
+                                                       {"cut", cut_disk},
+                                                       {"cut strip", cut_strip},
+                                                       {"lune", lune}});
 
 TEST(DiskPolygon, IsWithinATenThousandthOfTheDisk) {
-    for (const Class& c : kClasses) {
+    for (const EllipseClass& c : kClasses) {
         RandomInput random(21);
         double error = 0;
         for (int i = 0; i < 100; ++i) {
@@ -87,11 +82,11 @@ TEST(DiskPolygon, IsWithinATenThousandthOfTheDisk) {
 }
 
 TEST(DiskPolygon, ConvergesWithTheFourthPowerOfItsSides) {
-    for (const Class& c : {Class{"disk", plain_disk},
-                           {"large", large_disk},
-                           {"rim", rim_near_contact},
-                           {"thin", thin_ellipse},
-                           {"cut", cut_disk}}) {
+    for (const EllipseClass& c : {EllipseClass{"disk", plain_disk},
+                                  {"large", large_disk},
+                                  {"rim", rim_near_contact},
+                                  {"thin", thin_ellipse},
+                                  {"cut", cut_disk}}) {
         RandomInput random(22);
         std::array<double, 2> sums{};
         for (int i = 0; i < 40; ++i) {
@@ -139,7 +134,7 @@ TEST(DiskLight, ItsRadiusHoldsAllOfIt) {
 
 TEST(EllipseSampling, CoversWhatIsAboveTheHorizon) {
     constexpr std::uint32_t kPoints = 1 << 14;
-    for (const Class& c : kClasses) {
+    for (const EllipseClass& c : kClasses) {
         RandomInput random(24);
         for (int i = 0; i < 20; ++i) {
             const Ellipse<double> disk = ellipse_of(c.draw(random));

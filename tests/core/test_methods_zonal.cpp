@@ -10,15 +10,14 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
 
-#include "batch.h"
 #include "error_record.h"
+#include "light_errors.h"
 #include "lobe_directions.h"
-#include "method.h"
+#include "method_calls.h"
 #include "quad_truth.h"
 #include "random_input.h"
 #include "random_polygon.h"
@@ -27,37 +26,18 @@
 namespace shlight {
 namespace {
 
-using methods::find_method;
 using testing::ErrorRecord;
+using testing::of_cap;
+using testing::of_polygon;
+using testing::of_sphere;
+using testing::PolygonClass;
 using testing::RandomInput;
+using testing::relative_error;
 using testing::Vertices;
 using Kind = truth::CapInput::Kind;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180;
-
-template <class T>
-std::vector<T> cap(const char* method, const Vec3d& axis, double half, int order, bool clip = true) {
-    std::vector<T> result(coefficient_count(order), std::numeric_limits<T>::quiet_NaN());
-    const Vec3<T> rounded(axis);
-    const auto half_angle = static_cast<T>(half);
-    methods::cap_coefficients<T>(find_method(method), std::span(&rounded, 1), std::span(&half_angle, 1), order, clip,
-                                 {}, 0, result);
-    return result;
-}
-
-template <class T>
-std::vector<T> polygon(const char* method, const Vertices& vertices, int order, bool clip) {
-    std::vector<T> result(coefficient_count(order), std::numeric_limits<T>::quiet_NaN());
-    const std::vector<Vec3<T>> rounded(vertices.begin(), vertices.end());
-    methods::polygon_coefficients<T>(find_method(method), rounded, static_cast<int>(vertices.size()), order, clip, {},
-                                     0, result);
-    return result;
-}
-
-double relative(const truth::Coefficients& reference, double largest) {
-    return largest == 0 ? 0 : largest / reference.high[0];
-}
 
 /// A cap as the angles of its axis and edge, both in radians.
 struct CapLight {
@@ -74,8 +54,8 @@ std::vector<double> cap_errors(const char* method, const CapLight& light, const 
     const truth::Coefficients reference = truth::cap({axis, Kind::angle, half}, orders.back(), light.clip);
     std::vector<double> errors;
     for (const int n : orders) {
-        const std::vector<T> computed = cap<T>(method, axis, half, n, light.clip);
-        errors.push_back(relative(reference, truth::largest_error(reference, n, computed.data())));
+        const std::vector<T> computed = of_cap<T>(method, axis, half, n, light.clip);
+        errors.push_back(relative_error(reference, n, computed));
     }
     return errors;
 }
@@ -88,8 +68,8 @@ std::vector<double> polygon_errors(const char* method, Vertices vertices, const 
     const truth::Coefficients reference = truth::polygon(vertices, orders.back(), clip);
     std::vector<double> errors;
     for (const int n : orders) {
-        const std::vector<T> computed = polygon<T>(method, vertices, n, clip);
-        errors.push_back(relative(reference, truth::largest_error(reference, n, computed.data())));
+        const std::vector<T> computed = of_polygon<T>(method, vertices, n, clip);
+        errors.push_back(relative_error(reference, n, computed));
     }
     return errors;
 }
@@ -229,11 +209,7 @@ void compare_polygons(const char* name, Vertices (*draw)(RandomInput&), std::siz
 }
 
 TEST(ZonalPolygons, LegendreRecurrencesAreRight) {
-    struct Class {
-        const char* name;
-        Vertices (*draw)(RandomInput&);
-    };
-    for (const auto& [name, draw] : {Class{"easy quads", easy_quad}, Class{"concave", concave}, Class{"walls", wall}}) {
+    for (const auto& [name, draw] : {PolygonClass{"easy quads", easy_quad}, {"concave", concave}, {"walls", wall}}) {
         compare_polygons(name, draw, 40, {{1, 1e-13, 3e-5}, {2, 1e-11, 3e-3}, {3, 1e-11, 3e-3}, {10, 1e-11, 1e-2}});
         compare_polygons(name, draw, 8, {{31, 1e-10, 1e-1}, {32, 1e-10, 1e-1}});
     }
@@ -243,7 +219,7 @@ TEST(ZonalPolygons, SeeNothingBelowTheHorizonOrEdgeOn) {
     for (const Vertices& vertices :
          {Vertices{{1, 0, -1}, {0, 1, -1}, {-1, -1, -1}}, Vertices{{1, 0, 0}, {2, 0, 0}, {2, 0, 1}},
           Vertices{{1, 0, 1}, {2, 0, 1}, {1, 0, 1}}, Vertices{{0, 0, 0}, {2, 0, 1}, {0, 1, 1}}}) {
-        const std::vector<double> none = polygon<double>("wang_ramamoorthi", vertices, 8, true);
+        const std::vector<double> none = of_polygon<double>("wang_ramamoorthi", vertices, 8, true);
         EXPECT_TRUE(std::all_of(none.begin(), none.end(), [](double c) { return c == 0; }));
     }
 }
@@ -251,7 +227,7 @@ TEST(ZonalPolygons, SeeNothingBelowTheHorizonOrEdgeOn) {
 TEST(ZonalCaps, SeeNothingBelowTheHorizon) {
     for (const char* method : {"zhou_wei", "snyder"}) {
         for (const Vec3d& axis : {Vec3d(0, 0, -1), Vec3d(1, 0, -1), Vec3d(0.2, 0.1, -0.7)}) {
-            const std::vector<float> none = cap<float>(method, axis, 0.5, 8);
+            const std::vector<float> none = of_cap<float>(method, axis, 0.5, 8);
             EXPECT_TRUE(std::all_of(none.begin(), none.end(), [](float c) { return c == 0; }));
         }
     }
@@ -340,7 +316,7 @@ TEST(ZonalCaps, StayFinite) {
             axis[random.integer(0, 2)] = 0;
         }
         for (const char* method : {"zhou_wei", "snyder"}) {
-            const std::vector<float> values = cap<float>(method, axis, half, 9);
+            const std::vector<float> values = of_cap<float>(method, axis, half, 9);
             EXPECT_TRUE(std::all_of(values.begin(), values.end(), [](float c) { return std::isfinite(c); }))
                 << method << ": axis " << axis.x << " " << axis.y << " " << axis.z << ", half angle " << half;
         }
@@ -351,11 +327,7 @@ TEST(ZonalCaps, StayFinite) {
 TEST(ZonalCaps, StayRightForSpheresThatTouchFromAbove) {
     for (const char* method : {"zhou_wei", "snyder"}) {
         for (const float aside : {0.0F, 1e-30F, 1e-23F, 1e-22F, 1e-18F, 1e-12F, 1e-6F}) {
-            const Vec3f center(aside, -aside, 1);
-            const float radius = 1;
-            std::vector<float> values(25);
-            methods::sphere_coefficients<float>(find_method(method), std::span(&center, 1), std::span(&radius, 1), 5,
-                                                true, {}, 0, values);
+            const std::vector<float> values = of_sphere<float>(method, Vec3d(aside, -aside, 1), 1, 5);
             const truth::Coefficients reference = truth::cap({Vec3d(0, 0, 1), Kind::angle, kPi / 2}, 5, true);
             EXPECT_LE(truth::largest_error(reference, 5, values.data()), 2e-5) << method << ", aside " << aside;
         }

@@ -7,12 +7,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdio>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "error_record.h"
+#include "light_errors.h"
 #include "quad_truth.h"
 #include "random_polygon.h"
 
@@ -20,8 +19,12 @@ namespace shlight {
 namespace {
 
 using testing::as_float;
-using testing::ErrorRecord;
+using testing::BothErrors;
+using testing::describe;
+using testing::errors_by_order;
+using testing::PolygonClass;
 using testing::RandomInput;
+using testing::relative_error;
 using testing::Vertices;
 
 template <class T>
@@ -40,29 +43,7 @@ Vertices rounded_to_float(Vertices vertices) {
     return vertices;
 }
 
-std::string describe(const Vertices& vertices, bool clip) {
-    std::string text = clip ? "clipped" : "unclipped";
-    for (const Vec3d& v : vertices) {
-        std::array<char, 100> vertex{};
-        std::snprintf(vertex.data(), vertex.size(), " {%.17g, %.17g, %.17g}", v.x, v.y, v.z);
-        text += vertex.data();
-    }
-    return text;
-}
-
-/// 0 for lights that are not seen at all.
-template <class T>
-double relative_error(const Vertices& vertices, int order, bool clip, const truth::Coefficients& reference) {
-    const double largest = truth::largest_error(reference, order, coefficients<T>(vertices, order, clip).data());
-    return largest == 0 ? 0 : largest / reference.high[0];
-}
-
-struct Class {
-    const char* name;
-    Vertices (*draw)(RandomInput&);
-};
-
-constexpr auto kClasses = std::to_array<Class>({
+constexpr auto kClasses = std::to_array<PolygonClass>({
     {"plain", testing::plain},
     {"concave", testing::concave},
     {"small", testing::small},
@@ -77,7 +58,7 @@ constexpr auto kClasses = std::to_array<Class>({
 });
 
 /// One in four is not clipped; half are wound the other way.
-void compare_class(const Class& kind, std::size_t count, const std::vector<int>& orders, std::uint64_t seed) {
+void compare_class(const PolygonClass& kind, std::size_t count, const std::vector<int>& orders, std::uint64_t seed) {
     RandomInput random(seed);
     std::vector<Vertices> polygons64(count);
     std::vector<Vertices> polygons32(count);
@@ -89,31 +70,27 @@ void compare_class(const Class& kind, std::size_t count, const std::vector<int>&
             std::reverse(polygons32[i].begin(), polygons32[i].end());
         }
     }
-    std::vector<ErrorRecord> errors64(orders.size(), ErrorRecord(count));
-    std::vector<ErrorRecord> errors32(orders.size(), ErrorRecord(count));
-    testing::on_two_threads(count, [&](std::size_t i) {
-        const bool clip = i % 4 != 0;
-        const truth::Coefficients reference64 = truth::polygon(polygons64[i], orders.back(), clip);
-        const truth::Coefficients reference32 = truth::polygon(polygons32[i], orders.back(), clip);
-        for (std::size_t k = 0; k < orders.size(); ++k) {
-            errors64[k][i] = relative_error<double>(polygons64[i], orders[k], clip, reference64);
-            errors32[k][i] = relative_error<float>(polygons32[i], orders[k], clip, reference32);
-        }
+    const auto clipped = [](std::size_t i) { return i % 4 != 0; };
+    const std::vector<BothErrors> errors = errors_by_order(kind.name, count, orders, [&](std::size_t i) {
+        const bool clip = clipped(i);
+        return [&polygon64 = polygons64[i], &polygon32 = polygons32[i], clip,
+                reference64 = truth::polygon(polygons64[i], orders.back(), clip),
+                reference32 = truth::polygon(polygons32[i], orders.back(), clip)](int order) {
+            return std::array{relative_error(reference64, order, coefficients<double>(polygon64, order, clip)),
+                              relative_error(reference32, order, coefficients<float>(polygon32, order, clip))};
+        };
     });
-    for (std::size_t k = 0; k < orders.size(); ++k) {
-        const std::string name = std::string(kind.name) + ", n = " + std::to_string(orders[k]);
-        errors64[k].publish(name + ", float64");
-        errors32[k].publish(name + ", float32");
-        const std::size_t worst64 = errors64[k].worst();
-        const std::size_t worst32 = errors32[k].worst();
-        EXPECT_LE(errors64[k].largest(), 1e-10) << name << ": " << describe(polygons64[worst64], worst64 % 4 != 0);
-        EXPECT_LE(errors32[k].largest(), 1e-3) << name << ": " << describe(polygons32[worst32], worst32 % 4 != 0);
-        EXPECT_LE(errors32[k].median(), 1e-5) << name;
+    for (const auto& [float64, float32] : errors) {
+        const std::size_t worst64 = float64.worst();
+        const std::size_t worst32 = float32.worst();
+        EXPECT_LE(float64.largest(), 1e-10) << kind.name << ": " << describe(polygons64[worst64], clipped(worst64));
+        EXPECT_LE(float32.largest(), 1e-3) << kind.name << ": " << describe(polygons32[worst32], clipped(worst32));
+        EXPECT_LE(float32.median(), 1e-5) << kind.name;
     }
 }
 
 void compare(std::size_t count, const std::vector<int>& orders, std::uint64_t seed) {
-    for (const Class& kind : kClasses) {
+    for (const PolygonClass& kind : kClasses) {
         compare_class(kind, count, orders, seed++);
     }
 }

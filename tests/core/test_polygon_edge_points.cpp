@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "error_record.h"
+#include "light_errors.h"
 #include "polygon_boundary.h"
 #include "polygon_low_bands.h"
 #include "quad_truth.h"
@@ -25,18 +25,16 @@
 namespace shlight {
 namespace {
 
+using testing::BothErrors;
 using testing::ErrorRecord;
+using testing::errors_by_order;
+using testing::PolygonClass;
 using testing::RandomInput;
 using testing::Vertices;
 
 constexpr double kSphere = 4 * std::numbers::pi;
 
-struct Class {
-    const char* name;
-    Vertices (*draw)(RandomInput&);
-};
-
-constexpr auto kClasses = std::to_array<Class>({
+constexpr auto kClasses = std::to_array<PolygonClass>({
     {"plain", testing::plain},
     {"concave", testing::concave},
     {"small", testing::small},
@@ -50,7 +48,7 @@ constexpr auto kClasses = std::to_array<Class>({
 });
 
 /// Vertices that float holds exactly, so that one reference serves both precisions.
-Vertices draw(const Class& kind, RandomInput& random) {
+Vertices draw(const PolygonClass& kind, RandomInput& random) {
     Vertices vertices = kind.draw(random);
     std::transform(vertices.begin(), vertices.end(), vertices.begin(),
                    [](const Vec3d& v) { return testing::as_float(v); });
@@ -74,9 +72,9 @@ double width(const SphericalPolygon<Real>& polygon) {
     return static_cast<double>(polygon.solid_angle()) / outline;
 }
 
-/// Relative to L_00; 0 for lights that are not seen at all.
+/// Relative to L_00, in double times the width; 0 for lights that are not seen at all.
 template <class T>
-double relative_error(const Vertices& vertices, int order, const truth::Coefficients& reference) {
+double width_error(const Vertices& vertices, int order, const truth::Coefficients& reference) {
     const SphericalPolygon<Wider<T>> polygon = clipped<T>(vertices);
     if (polygon.empty()) {
         return reference.high[0];
@@ -89,25 +87,19 @@ double relative_error(const Vertices& vertices, int order, const truth::Coeffici
 }
 
 void compare(std::size_t count, const std::vector<int>& orders, std::uint64_t seed) {
-    for (const Class& kind : kClasses) {
+    for (const PolygonClass& kind : kClasses) {
         RandomInput random(seed++);
         std::vector<Vertices> polygons(count);
         std::generate(polygons.begin(), polygons.end(), [&] { return draw(kind, random); });
-        std::vector<ErrorRecord> errors64(orders.size(), ErrorRecord(count));
-        std::vector<ErrorRecord> errors32(orders.size(), ErrorRecord(count));
-        testing::on_two_threads(count, [&](std::size_t i) {
-            const truth::Coefficients reference = truth::polygon(polygons[i], orders.back(), true);
-            for (std::size_t k = 0; k < orders.size(); ++k) {
-                errors64[k][i] = relative_error<double>(polygons[i], orders[k], reference);
-                errors32[k][i] = relative_error<float>(polygons[i], orders[k], reference);
-            }
+        const std::vector<BothErrors> errors = errors_by_order(kind.name, count, orders, [&](std::size_t i) {
+            return [&vertices = polygons[i], reference = truth::polygon(polygons[i], orders.back(), true)](int order) {
+                return std::array{width_error<double>(vertices, order, reference),
+                                  width_error<float>(vertices, order, reference)};
+            };
         });
-        for (std::size_t k = 0; k < orders.size(); ++k) {
-            const std::string name = std::string(kind.name) + ", n = " + std::to_string(orders[k]);
-            errors64[k].publish(name + ", float64, times width");
-            errors32[k].publish(name + ", float32");
-            EXPECT_LE(errors64[k].largest(), 1e-14) << name;
-            EXPECT_LE(errors32[k].largest(), 5e-6) << name;
+        for (const auto& [float64, float32] : errors) {
+            EXPECT_LE(float64.largest(), 1e-14) << kind.name;
+            EXPECT_LE(float32.largest(), 5e-6) << kind.name;
         }
     }
 }

@@ -25,6 +25,7 @@ namespace shlight {
 namespace {
 
 using testing::ErrorRecord;
+using testing::PolygonClass;
 using testing::RandomInput;
 using testing::Vertices;
 using truth::WarpInput;
@@ -88,12 +89,7 @@ Vertices around_the_mirror_plane(RandomInput& random) {
                          random.integer(3, 6), 0.6, half, half);
 }
 
-struct Class {
-    const char* name;
-    Vertices (*draw)(RandomInput&);
-};
-
-constexpr auto kClasses = std::to_array<Class>({
+constexpr auto kClasses = std::to_array<PolygonClass>({
     {"plain", testing::plain},
     {"around the mirror plane", around_the_mirror_plane},
     {"concave", testing::concave},
@@ -115,7 +111,7 @@ double error_of(const Input& input, int order, const truth::Coefficients& refere
 }
 
 void compare(std::size_t count, int order, std::uint64_t seed) {
-    for (const Class& kind : kClasses) {
+    for (const PolygonClass& kind : kClasses) {
         RandomInput random(seed++);
         std::vector<Input> inputs(count);
         std::generate(inputs.begin(), inputs.end(), [&] { return random_input(random, kind.draw); });
