@@ -3,6 +3,7 @@
 // Small scenes for the render tests: floors, boxes, cameras, and a render into vectors.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -103,6 +104,25 @@ inline RenderSettings analytic_settings() {
     settings.shadow_rays = 0;
     settings.adaptive = false;
     return settings;
+}
+
+/// A picture's red against truth(column, row).
+struct PictureError {
+    double largest = 0;
+    double brightest = 0;  // of the truth
+};
+template <class Truth>
+PictureError picture_error(const Image& image, const Truth& truth) {
+    PictureError error;
+    for (int row = 0; row < image.height; ++row) {
+        for (int column = 0; column < image.width; ++column) {
+            const double expected = truth(column, row);
+            const double difference = std::abs(image.red(column, row) - expected);
+            error.largest = difference <= error.largest ? error.largest : difference;  // keeps NaN
+            error.brightest = std::max(error.brightest, expected);
+        }
+    }
+    return error;
 }
 
 }  // namespace shlight::testing

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "delta_lights.h"
@@ -46,9 +47,19 @@ std::vector<Light> random_lights(testing::RandomInput& random, const Vec3d& arou
     return lights;
 }
 
-ShadingFrame random_frame(testing::RandomInput& random) {
+/// Lights around a shading point.
+struct Lit {
+    ShadingFrame frame;
+    std::vector<Light> lights;
+    DeltaLights deltas;
+};
+
+Lit random_lit(testing::RandomInput& random) {
     const Vec3d position = 100.0 * random.direction();
-    return shading_frame(position, random.direction(), random.direction());
+    const ShadingFrame frame = shading_frame(position, random.direction(), random.direction());
+    std::vector<Light> lights = random_lights(random, frame.origin);
+    DeltaLights deltas(lights);
+    return {frame, std::move(lights), std::move(deltas)};
 }
 
 double value_of(const Light& light, const ShadingFrame& frame, const LobeShape& shape, float cosine) {
@@ -64,9 +75,7 @@ double value_of(const Light& light, const ShadingFrame& frame, const LobeShape& 
 TEST(DeltaLights, ReflectAsEachByItself) {
     testing::RandomInput random(1);
     for (int round = 0; round < 20; ++round) {
-        const ShadingFrame frame = random_frame(random);
-        const std::vector<Light> lights = random_lights(random, frame.origin);
-        const DeltaLights deltas(lights);
+        const auto [frame, lights, deltas] = random_lit(random);
         const auto cosine = static_cast<float>(random.uniform(0.1, 1));
         for (const LobeShape& shape : {LobeShape(LambertShape{}), LobeShape(GgxShape{0.3}), LobeShape(GgxShape{0})}) {
             for (const DeltaRange range : {DeltaRange{0, deltas.padded_size()}, DeltaRange{48, 32}}) {
@@ -87,9 +96,7 @@ TEST(DeltaLights, ReflectAsEachByItself) {
 TEST(DeltaLights, ShineAsEachByItself) {
     testing::RandomInput random(2);
     for (int round = 0; round < 20; ++round) {
-        const ShadingFrame frame = random_frame(random);
-        const std::vector<Light> lights = random_lights(random, frame.origin);
-        const DeltaLights deltas(lights);
+        const auto [frame, lights, deltas] = random_lit(random);
         double nearest = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < kCount; ++i) {
             EXPECT_EQ(deltas.shines(i, frame, kError), delta_view(lights[i], frame, kError).has_value()) << i;

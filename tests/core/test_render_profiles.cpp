@@ -59,15 +59,8 @@ double error_under(const std::function<void(Scene&)>& add_light, const Truth& tr
     const LobeShape shape =
         diffuse ? LobeShape(LambertShape{}) : LobeShape(GgxShape{roughness * roughness, Fresnel::one, 1.5});
     const Reflection reflection = [&](const Vec3d& w) { return lobe_value(shape, w, slanted.towards_viewer()); };
-    double error = 0;
-    for (int row = 0; row < kSize; ++row) {
-        for (int column = 0; column < kSize; ++column) {
-            const double expected = truth(slanted.point(column, row), reflection);
-            const double difference = std::abs(image.red(column, row) - expected);
-            error = difference <= error ? error : difference;  // keeps NaN
-        }
-    }
-    return error;
+    const auto expected = [&](int column, int row) { return truth(slanted.point(column, row), reflection); };
+    return picture_error(image, expected).largest;
 }
 
 constexpr double kDiffuse = 2;

@@ -35,17 +35,9 @@ Image floor_under(const std::function<void(Scene&)>& add_lights, const RenderSet
 
 /// Largest error of the floor's radiance ÷ the largest radiance.
 double error_of(const Image& image, const std::function<double(const Vec3d&)>& truth) {
-    double error = 0;
-    double largest = 0;
-    for (int row = 0; row < kSize; ++row) {
-        for (int column = 0; column < kSize; ++column) {
-            const double expected = truth(floor_point(column, row, kSize, kHalf));
-            const double difference = std::abs(image.red(column, row) - expected);
-            error = difference <= error ? error : difference;  // keeps NaN
-            largest = std::max(largest, expected);
-        }
-    }
-    return error / largest;
+    const auto expected = [&](int column, int row) { return truth(floor_point(column, row, kSize, kHalf)); };
+    const PictureError error = picture_error(image, expected);
+    return error.largest / error.brightest;
 }
 
 TEST(RenderSources, PointLightFallsWithTheSquareOfTheDistance) {
