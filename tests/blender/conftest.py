@@ -164,6 +164,27 @@ class Studio:
         self.box((0.4, 0.4, 0.4), self.material(Color=(0.2, 0.7, 0.2)), location=(0.2, 1.6, 0.2))
         self.area(energy=150, shape="RECTANGLE", size=1.5, size_y=0.6, rotation_euler=(0.3, 0.4, 0.2))
 
+    def world(self, color: Sequence[float] | None = None, strength: float = 1.0) -> Any:
+        """A fresh world of one Background node, by default in Blender's grey; returns that node."""
+        made = self.scene.world = bpy.data.worlds.new("World")
+        made.use_nodes = True
+        node = next(node for node in made.node_tree.nodes if node.type == "BACKGROUND")
+        if color is not None:
+            node.inputs["Color"].default_value = (*color, 1)
+        node.inputs["Strength"].default_value = strength
+        return node
+
+    def plain_world(self, color: Sequence[float]) -> None:
+        """The scene's world, fresh if there is none, in one colour and without nodes."""
+        if self.scene.world is None:
+            self.scene.world = bpy.data.worlds.new("World")
+            self.scene.world.use_nodes = False
+        world = self.scene.world
+        world.color = color
+        if world.node_tree is not None:  # from Blender 5.0 on its colour is that of a node
+            background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
+            background.inputs["Color"].default_value = (*color, 1)
+
     # --- pictures
 
     def render(self, engine: str, seed: int = 7) -> Image:
@@ -177,15 +198,22 @@ class Studio:
         bpy.ops.render.render(write_still=True)
         return read_exr(path)
 
-    def compare(self, *, mean: float = 5e-3, error: float = 5e-3) -> tuple[Image, Image]:
-        """Renders with both engines and compares mean and relMSE; returns both pictures (shlight, Cycles)."""
+    def compare(self, *, mean: float = 5e-3, error: float = 5e-3, alpha: float = math.inf) -> tuple[Image, Image]:
+        """Renders with both engines and compares mean, relMSE and alpha; returns both pictures (shlight, Cycles)."""
         image, reference = self.render("SHLIGHT"), self.render("CYCLES")
         assert image.shape == reference.shape
         ratio, mse = mean_ratio(image, reference), rel_mse(image, reference)
         print(f"mean {100 * (ratio - 1):+.3f} %, relMSE {mse:.2e}")
         assert abs(ratio - 1.0) <= mean
         assert mse <= error
+        assert np.abs(image[..., 3] - reference[..., 3]).mean() <= alpha
         return image, reference
+
+    def messages(self, **options: int) -> list[str]:
+        """What the export of the scene reports; `options` are Report.lines'."""
+        from shlight_blender.export import export_scene
+
+        return export_scene(bpy.context.evaluated_depsgraph_get()).report.lines(**options)
 
 
 @pytest.fixture(scope="session")

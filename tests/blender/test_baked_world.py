@@ -18,16 +18,10 @@ from shlight_blender.report import ExportCancelled
 ELEVATION, TURN = 0.5, 0.8
 
 
-def messages() -> list[str]:
-    return export_scene(bpy.context.evaluated_depsgraph_get()).report.lines()
-
-
 def background(studio: Any) -> Any:
     """The Background node of a fresh world; the picture it is baked to is small."""
     studio.scene.shlight.world_width = 512
-    studio.scene.world = world = bpy.data.worlds.new("World")
-    world.use_nodes = True
-    return next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
+    return studio.world()
 
 
 def add_node(studio: Any, kind: str, **properties: Any) -> Any:
@@ -99,7 +93,7 @@ def test_sky(studio: Any, place: Any) -> None:
     place(studio)
     set_sky(studio, disc=False)
     studio.compare(error=2e-3)
-    assert messages() == []
+    assert studio.messages() == []
 
 
 @pytest.mark.parametrize(
@@ -122,7 +116,7 @@ def test_gradient_and_noise(studio: Any) -> None:
     ball_in_view_of_the_world(studio)
     set_gradient(studio)
     studio.compare(error=2e-3)
-    assert messages() == []
+    assert studio.messages() == []
 
 
 def bake_now(studio: Any) -> bake.Baked:
@@ -145,7 +139,7 @@ def test_rays_are_not_told_apart(studio: Any) -> None:
     link(studio, mixed.outputs["Color"], lit.inputs["Color"])
     np.testing.assert_allclose(bake_now(studio).picture.mean(axis=(0, 1)), (0, 0, 1), atol=1e-6)
     studio.camera()
-    assert messages() == [
+    assert studio.messages() == [
         "World 'World', node 'Light Path': kinds of rays are not told apart; all see what diffuse rays see"
     ]
 
@@ -173,12 +167,12 @@ def test_a_bake_that_fails_is_named(studio: Any, monkeypatch: pytest.MonkeyPatch
     studio.camera()
     set_sky(studio, disc=False)
     monkeypatch.setattr(bake, "_command", lambda folder: [bake.sys.executable, "-c", "raise SystemExit('no Cycles')"])
-    text = "\n".join(messages())
+    text = "\n".join(studio.messages())
     assert "World 'World': it could not be baked to a picture (Blender ended with code 1" in text
     assert "no Cycles" in text
     assert "node 'Sky Texture': varying values are not supported" in text
     monkeypatch.setattr(bake, "_command", lambda folder: ["/nowhere/blender"])
-    assert "No such file" in "\n".join(messages())
+    assert "No such file" in "\n".join(studio.messages())
 
 
 def sleeping(monkeypatch: pytest.MonkeyPatch) -> list[Any]:

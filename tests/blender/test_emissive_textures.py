@@ -254,32 +254,26 @@ def test_strength_from_a_picture_and_principled(studio: Any) -> None:
     np.testing.assert_allclose(glow.radiance(place), 3.0 * values)
 
 
-def messages() -> list[str]:
-    from shlight_blender.export import export_scene
-
-    return export_scene(bpy.context.evaluated_depsgraph_get()).report.lines()
-
-
 def test_what_is_not_supported_is_named(studio: Any) -> None:
     made = screen(studio, image_of(checker()), OFF_CENTRE, interpolation="Closest")
     studio.area()
     studio.camera()
-    (line,) = messages()
+    (line,) = studio.messages()
     assert "Object 'Screen'" in line
     assert "pieces of even light" in line
     made.data.uv_layers.remove(made.data.uv_layers[0])
     made.data.update()
-    (line,) = messages()
+    (line,) = studio.messages()
     assert "has no UV map" in line
     tree = made.data.materials[0].node_tree
     picture = tree.nodes["Image Texture"]
     picture.projection = "BOX"
-    (line,) = messages()
+    (line,) = studio.messages()
     assert "varying values are not supported" in line
     picture.projection, picture.image = "FLAT", None
-    assert any("it has no image" in line for line in messages())
+    assert any("it has no image" in line for line in studio.messages())
     tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], tree.nodes["Emission"].inputs["Color"])
-    assert any("node 'Noise Texture'" in line for line in messages())
+    assert any("node 'Noise Texture'" in line for line in studio.messages())
 
 
 def test_the_camera_sees_the_picture(studio: Any) -> None:

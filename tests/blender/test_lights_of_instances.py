@@ -67,12 +67,6 @@ def place_instance(studio: Any, collection: Any, place: str) -> Any:
     return empty
 
 
-def messages() -> list[str]:
-    from shlight_blender.export import export_scene
-
-    return export_scene(bpy.context.evaluated_depsgraph_get()).report.lines()
-
-
 @pytest.mark.parametrize(("kind", "place"), KINDS_IN_PLACES)
 def test_lamp_in_a_collection_instance(studio: Any, kind: str, place: str) -> None:
     stage(studio)
@@ -82,7 +76,7 @@ def test_lamp_in_a_collection_instance(studio: Any, kind: str, place: str) -> No
     place_instance(studio, collection_of(studio, inside), place)
     studio.scene.cycles.use_light_tree = False  # it bounds the cone of a sheared spot lamp too tightly
     studio.compare(mean=3e-3, error=3e-3)
-    assert messages() == []
+    assert studio.messages() == []
 
 
 @pytest.mark.parametrize(("kind", "place"), KINDS_IN_PLACES)
@@ -94,7 +88,7 @@ def test_parented_lamp(studio: Any, kind: str, place: str) -> None:
     child = lamp(studio, kind)
     child.parent, child.rotation_euler = parent, (0, 0, QUARTER)
     studio.compare(mean=3e-3, error=3e-3)
-    assert messages() == []
+    assert studio.messages() == []
 
 
 @pytest.mark.parametrize("kind", [pytest.param("POINT", marks=SLOW), "SPOT", pytest.param("SUN", marks=SLOW)])
@@ -105,7 +99,7 @@ def test_lamp_sheared_by_its_parent(studio: Any, kind: str) -> None:
     child.parent, child.rotation_euler = parent, (0.4, 0.2, 0.5)
     studio.scene.cycles.use_light_tree = False  # it bounds the cone of a sheared spot lamp too tightly
     studio.compare(mean=3e-3, error=3e-3)
-    assert messages() == []
+    assert studio.messages() == []
 
 
 def test_a_sheared_area_lamp_is_named(studio: Any) -> None:
@@ -113,7 +107,7 @@ def test_a_sheared_area_lamp_is_named(studio: Any) -> None:
     inside = lamp(studio, "AREA")
     inside.rotation_euler = (0.2, -0.1, 0.5)
     place_instance(studio, collection_of(studio, inside), "scaled")
-    (line,) = messages()
+    (line,) = studio.messages()
     assert line.startswith("Light 'Area': sheared area lamps")
 
 
@@ -160,7 +154,7 @@ def test_lamps_of_geometry_nodes(studio: Any, kind: str) -> None:
     stage(studio)
     nodes_on_points(studio, from_collection(collection_of(studio, lamp(studio, kind))))
     studio.compare(mean=3e-3, error=3e-3)
-    assert messages() == []
+    assert studio.messages() == []
 
 
 @pytest.mark.parametrize("instance_type", ["VERTS", "FACES"])
@@ -183,7 +177,7 @@ def test_emissive_mesh_in_a_collection_instance(studio: Any, place: str) -> None
     place_instance(studio, collection_of(studio, glowing(studio)), place)
     studio.scene.shlight.pixel_samples = 64
     studio.compare(mean=3e-3, error=3e-3)
-    assert messages() == []
+    assert studio.messages() == []
 
 
 def test_emissive_meshes_of_geometry_nodes(studio: Any) -> None:
@@ -191,7 +185,7 @@ def test_emissive_meshes_of_geometry_nodes(studio: Any) -> None:
     nodes_on_points(studio, from_collection(collection_of(studio, glowing(studio))))
     studio.scene.shlight.pixel_samples = 64
     studio.compare(mean=3e-3, error=3e-3)
-    assert messages() == []
+    assert studio.messages() == []
 
 
 @pytest.mark.parametrize("carrier", ["instancer", "lamp"])
@@ -209,13 +203,13 @@ def test_ray_visibility(studio: Any, flag: str, carrier: str) -> None:
         assert not reference.any()
         return
     assert image.mean() == pytest.approx(reference.mean(), rel=3e-3)
-    assert messages() == []
+    assert studio.messages() == []
 
 
 def test_flags_of_what_shows_a_mesh_are_named(studio: Any) -> None:
     stage(studio)
     place_instance(studio, collection_of(studio, glowing(studio)), "turned").visible_diffuse = False
-    assert messages() == ["Object 'Glow': objects hidden from diffuse rays are not supported; drawn as usual"]
+    assert studio.messages() == ["Object 'Glow': objects hidden from diffuse rays are not supported; drawn as usual"]
 
 
 def test_light_and_shadow_linking_are_named(studio: Any) -> None:
@@ -224,12 +218,12 @@ def test_light_and_shadow_linking_are_named(studio: Any) -> None:
     linked.location, linked.name = (0, 0, 2), "Key"
     if not hasattr(linked, "light_linking"):
         pytest.skip("this version of Blender has no light linking")
-    assert messages() == []
+    assert studio.messages() == []
     linked.light_linking.receiver_collection = bpy.data.collections.new("Receivers")
-    assert messages() == ["Light 'Key': light linking is not supported; it lights everything"]
+    assert studio.messages() == ["Light 'Key': light linking is not supported; it lights everything"]
     linked.light_linking.receiver_collection = None
     linked.light_linking.blocker_collection = bpy.data.collections.new("Blockers")
-    assert messages() == ["Light 'Key': shadow linking is not supported; everything shadows it"]
+    assert studio.messages() == ["Light 'Key': shadow linking is not supported; everything shadows it"]
 
 
 def test_portals_give_no_light(studio: Any) -> None:
@@ -240,5 +234,5 @@ def test_portals_give_no_light(studio: Any) -> None:
     # A grey one: Cycles 5.2 crashes on portals without a world.
     studio.scene.world = bpy.data.worlds.new("World")
     image, _ = studio.compare(mean=3e-3, error=3e-3)
-    assert messages() == []
+    assert studio.messages() == []
     np.testing.assert_array_equal(image[..., :3].max() > 0, True)

@@ -27,13 +27,6 @@ def shine_on(studio: Any, material: Any, *, sharp: bool = False) -> None:
     studio.scene.render.resolution_x, studio.scene.render.resolution_y = 64, 48
 
 
-def messages_of(studio: Any) -> list[str]:
-    """Lines of the export's report."""
-    from shlight_blender.export import export_scene
-
-    return export_scene(bpy.context.evaluated_depsgraph_get()).report.lines(most=99)
-
-
 @pytest.mark.parametrize(
     ("distribution", "roughness"), [("GGX", 0.4), ("GGX", 0.6), ("MULTI_GGX", 0.4), ("MULTI_GGX", 0.7)]
 )
@@ -46,7 +39,7 @@ def test_glossy(studio: Any, distribution: str, roughness: float) -> None:
         sharp=roughness < 0.5,
     )
     studio.compare()
-    assert messages_of(studio) == []
+    assert studio.messages(most=99) == []
 
 
 @pytest.mark.parametrize(
@@ -65,7 +58,7 @@ def test_principled(studio: Any, inputs: dict[str, Any]) -> None:
     sharp = inputs.get("Roughness", 0.5) < 0.5
     shine_on(studio, studio.material("ShaderNodeBsdfPrincipled", **inputs), sharp=sharp)
     studio.compare()
-    assert messages_of(studio) == []
+    assert studio.messages(most=99) == []
 
 
 @pytest.mark.parametrize("roughness", [0.0, 0.003, 0.01, 0.03])
@@ -84,7 +77,7 @@ def test_mirrors(studio: Any, shader: str, inputs: dict[str, Any], roughness: fl
     studio.scene.shlight.pixel_samples = 64  # the image has edges
     studio.scene.cycles.samples = 1024  # 256 miss the narrow peak in too many pixels
     studio.compare()
-    assert messages_of(studio) == []
+    assert studio.messages(most=99) == []
 
 
 def test_all_distributions_end_in_the_same_mirror(studio: Any) -> None:
@@ -93,7 +86,7 @@ def test_all_distributions_end_in_the_same_mirror(studio: Any) -> None:
     )
     studio.area()
     studio.camera()
-    assert messages_of(studio) == []
+    assert studio.messages(most=99) == []
 
 
 def test_principled_emission(studio: Any) -> None:
@@ -155,7 +148,7 @@ def test_mixed_and_added_shaders_in_groups(studio: Any) -> None:
     studio.camera()
     studio.scene.render.resolution_x, studio.scene.render.resolution_y = 64, 48
     studio.compare()
-    assert messages_of(studio) == []
+    assert studio.messages(most=99) == []
 
 
 @pytest.mark.parametrize("temperature", [900.0, 1700.0, 3000.0, 6500.0, 15000.0])
@@ -235,7 +228,7 @@ def test_textures_are_named_and_the_sockets_value_used(studio: Any) -> None:
     material = studio.material(name="Wood", Color=(0.25, 0.5, 0.75))
     linked_noise(material, material.node_tree.nodes["Diffuse BSDF"].inputs["Color"]).label = "Grain"
     studio.plane(material=material)
-    (line,) = messages_of(studio)
+    (line,) = studio.messages(most=99)
     assert "Material 'Wood'" in line
     assert "node 'Grain'" in line
     assert "'Color' of 'Diffuse BSDF'" in line
@@ -264,7 +257,8 @@ def test_unsupported_shaders_are_named(studio: Any, shader: str, inputs: dict[st
     studio.area()
     studio.camera()
     studio.plane(material=studio.material(shader, name="Odd", **inputs))
-    assert [line for line in messages_of(studio) if named in line and "Material 'Odd'" in line], messages_of(studio)
+    lines = studio.messages(most=99)
+    assert [line for line in lines if named in line and "Material 'Odd'" in line], lines
     studio.scene.render.resolution_percentage = 25
     assert np.isfinite(studio.render("SHLIGHT")).all()
 
@@ -283,7 +277,7 @@ def test_normal_maps_volumes_and_displacement_are_named(studio: Any) -> None:
         tree.links.new(tree.nodes.new(kind).outputs[0], socket)
     linked_noise(material, tree.nodes["Principled BSDF"].inputs["Coat Weight"])
     studio.plane(material=material)
-    text = "\n".join(messages_of(studio))
+    text = "\n".join(studio.messages(most=99))
     for part in ("'Normal'", "volume is", "displacement is", "'Coat Weight'"):
         assert part in text
     assert text.count("\n") == 3
@@ -295,5 +289,5 @@ def test_material_without_output_is_black(studio: Any) -> None:
     empty = studio.material(name="Empty")
     empty.node_tree.nodes.clear()
     studio.plane(material=empty)
-    assert any("no Material Output" in line for line in messages_of(studio))
+    assert any("no Material Output" in line for line in studio.messages(most=99))
     assert studio.render("SHLIGHT")[..., :3].max() == 0.0

@@ -51,12 +51,6 @@ def set_up(studio: Any, lamp: str) -> Any:
     return made
 
 
-def messages() -> list[str]:
-    from shlight_blender.export import export_scene
-
-    return export_scene(bpy.context.evaluated_depsgraph_get()).report.lines()
-
-
 def interior(reference: Any) -> Any:
     """Pixels that hardly differ from their neighbours: those that no edge crosses."""
     shifts = [np.roll(reference, (y, x), axis=(0, 1)) for y in (-1, 0, 1) for x in (-1, 0, 1)]
@@ -69,7 +63,7 @@ def interior(reference: Any) -> Any:
 def test_lamp(studio: Any, lamp: str) -> None:
     set_up(studio, lamp)
     image, reference = studio.compare(mean=2e-3, error=2e-3)
-    assert messages() == []
+    assert studio.messages() == []
     assert np.abs(image[..., 3] - reference[..., 3]).mean() < 2e-3
     if lamp not in {"turned_away", "small"}:
         bright = interior(reference[..., :3]) & (reference[..., 0] > 0.25 * reference[..., 0].max())

@@ -13,22 +13,6 @@ import pytest
 from shlight_blender.export.bake import BakeError
 
 
-def set_world(studio: Any, color: tuple[float, float, float], strength: float = 1.0) -> Any:
-    """A world of one Background node; returns the node."""
-    world = studio.scene.world = bpy.data.worlds.new("World")
-    world.use_nodes = True
-    node = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
-    node.inputs["Color"].default_value = (*color, 1)
-    node.inputs["Strength"].default_value = strength
-    return node
-
-
-def messages() -> list[str]:
-    from shlight_blender.export import export_scene
-
-    return export_scene(bpy.context.evaluated_depsgraph_get()).report.lines()
-
-
 def balls(studio: Any) -> None:
     """A diffuse and a glossy ball on a floor."""
     studio.plane(material=studio.material(Color=(0.7, 0.6, 0.5)))
@@ -40,9 +24,9 @@ def balls(studio: Any) -> None:
 
 def test_constant_world(studio: Any) -> None:
     balls(studio)
-    set_world(studio, (0.4, 0.6, 1.0), 1.5)
+    studio.world((0.4, 0.6, 1.0), 1.5)
     image, _ = studio.compare(error=1e-3)
-    assert messages() == []
+    assert studio.messages() == []
     np.testing.assert_array_equal(image[..., 3], 1)
 
 
@@ -50,18 +34,15 @@ def test_constant_world(studio: Any) -> None:
 def test_world_without_nodes_and_film(studio: Any, transparent: bool) -> None:
     studio.ball(material=studio.material(Color=(0.8, 0.5, 0.3)), rings=32)
     studio.camera()
-    studio.scene.world = world = bpy.data.worlds.new("World")
-    world.use_nodes = False
-    world.color = (0.2, 0.4, 0.6)
+    studio.plain_world((0.2, 0.4, 0.6))
     studio.scene.render.film_transparent = transparent
-    image, reference = studio.compare(error=1e-3)
-    assert np.abs(image[..., 3] - reference[..., 3]).mean() < 2e-3
+    studio.compare(error=1e-3, alpha=2e-3)
 
 
 def test_world_and_lamp(studio: Any) -> None:
     studio.still_life()
     studio.camera()
-    set_world(studio, (0.3, 0.3, 0.4))
+    studio.world((0.3, 0.3, 0.4))
     studio.compare(error=2e-3)
 
 
@@ -74,7 +55,7 @@ QUICK = {("courtyard", False), ("sunrise", True)}
 
 def set_picture(studio: Any, image: Any, rotation: tuple[float, float, float] | None = None) -> Any:
     """A world with an Environment Texture of `image`; returns its node."""
-    background = set_world(studio, (0, 0, 0))
+    background = studio.world((0, 0, 0))
     tree = studio.scene.world.node_tree
     texture = tree.nodes.new("ShaderNodeTexEnvironment")
     texture.image = image
@@ -111,7 +92,7 @@ def test_orientation_of_a_picture(studio: Any, rotation: tuple[float, float, flo
     far_camera(studio)
     set_picture(studio, gradient(), rotation)
     studio.compare(mean=2e-3, error=1e-3)
-    assert messages() == []
+    assert studio.messages() == []
 
 
 @pytest.mark.parametrize("kind", ["TEXTURE", "VECTOR", "NORMAL"])
@@ -180,7 +161,7 @@ def test_pictures_that_are_baked(studio: Any, kind: str) -> None:
     if kind == "mirror ball":
         texture.projection = "MIRROR_BALL"
     studio.compare(mean=2e-3, error=1e-3)
-    assert messages() == []
+    assert studio.messages() == []
 
 
 def test_what_of_a_world_is_not_baked_is_named(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -193,16 +174,16 @@ def test_what_of_a_world_is_not_baked_is_named(studio: Any, monkeypatch: pytest.
     studio.camera()
     texture = turned_and_shifted(studio)
     texture.interpolation = "Closest"
-    text = "\n".join(messages())
+    text = "\n".join(studio.messages())
     for part in ("(there is no Cycles)", "'Location' is not", "'Scale' is not supported", "interpolation Closest"):
         assert part in text, text
     tree = studio.scene.world.node_tree
     tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], texture.inputs["Vector"])
-    assert "Noise Texture as a Vector" in "\n".join(messages())
+    assert "Noise Texture as a Vector" in "\n".join(studio.messages())
     texture.image = None
-    assert "has no image" in "\n".join(messages())
+    assert "has no image" in "\n".join(studio.messages())
     texture.image, texture.projection = gradient(), "MIRROR_BALL"
-    assert "projection MIRROR_BALL" in "\n".join(messages())
+    assert "projection MIRROR_BALL" in "\n".join(studio.messages())
     background = texture.outputs["Color"].links[0].to_node
     tree.links.new(tree.nodes.new("ShaderNodeTexSky").outputs["Color"], background.inputs["Color"])
-    assert "node 'Sky Texture': varying values are not supported" in "\n".join(messages())
+    assert "node 'Sky Texture': varying values are not supported" in "\n".join(studio.messages())
