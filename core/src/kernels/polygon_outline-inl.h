@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Polygons in lanes: cut by the horizon, warped, measured, and taken apart into arcs (docs/algorithms.md, "Polygons").
-// Included once per instruction set.
+// Polygons in lanes: warped, measured, and taken apart into arcs (docs/algorithms.md, "Polygons"). Included once per
+// instruction set.
 #if defined(SHLIGHT_KERNELS_POLYGON_OUTLINE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_POLYGON_OUTLINE_INL_H_
 #undef SHLIGHT_KERNELS_POLYGON_OUTLINE_INL_H_
@@ -15,7 +15,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <type_traits>
 #include <vector>
@@ -24,43 +23,11 @@
 #include "kernels/arc_rows.h"
 #include "kernels/lanes-inl.h"
 #include "kernels/lobe_arrays.h"
-#include "kernels/polygon_array.h"
+#include "kernels/polygon_edges-inl.h"
 #include "kernels/rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
-
-/// One number for each lane.
-template <class R>
-struct alignas(64) LaneValues : std::array<R, kLaneCount<Lanes<R>>> {};
-
-/// What a vector of polygons has at one edge, from vertex e to the next.
-template <class R>
-struct EdgeLanes {
-    using Values = LaneValues<R>;
-
-    Values x, y, z;                    ///< the vertex
-    Values cross_x, cross_y, cross_z;  ///< vertex × next, towards the interior
-    Values cut_x, cut_y;               ///< where the edge meets the horizon
-    Values share;                      ///< of the edge that is kept
-    Values crossing;                   ///< 1: enters, -1: leaves the upper half, from vertex to next
-    // The arc that is kept, as ArcRow; half is 0 if nothing is.
-    Values axis_x, axis_y, axis_z, middle_x, middle_y, middle_z, cosine, sine, half;
-};
-
-/// One arc of each outline that lies in the horizon, as HorizonRow; where a polygon has none, `angle` is 0.
-template <class R>
-struct HorizonLanes {
-    LaneValues<R> from_cosine, from_sine, to_cosine, to_sine, angle;
-};
-
-/// A vector of polygons.
-template <class R>
-struct PolygonLanes {
-    std::vector<EdgeLanes<R>> edges;
-    std::vector<HorizonLanes<R>> horizon;
-    LaneValues<R> side;  ///< 1 or -1 by the winding, 0 if edge-on or without area
-};
 
 /// What a region is known by beside its arcs.
 template <class R>
@@ -68,163 +35,6 @@ struct RegionLanes {
     V<Lanes<R>> solid_angle, outline;
     V<Lanes<R>> clearness;     ///< square of what the solid angle's angles are measured by: its rounding ÷ this counts
     Vectors3<R> first_moment;  ///< ∫ u du
-};
-
-template <class R>
-HWY_INLINE V<Lanes<R>> get(const LaneValues<R>& values) {
-    return hn::Load(Lanes<R>(), values.data());
-}
-
-template <class R>
-HWY_INLINE void put(LaneValues<R>& values, V<Lanes<R>> v) {
-    hn::Store(v, Lanes<R>(), values.data());
-}
-
-/// Rounds lanes of doubles to lanes [offset, …) of R.
-template <class R>
-HWY_INLINE void put_rounded(LaneValues<R>& values, std::size_t offset, V<Doubles> v) {
-    if constexpr (std::is_same_v<R, double>) {
-        hn::Store(v, Doubles(), values.data() + offset);
-    } else {
-        const hn::Rebind<float, Doubles> d;
-        hn::StoreU(hn::DemoteTo(d, v), d, values.data() + offset);
-    }
-}
-
-/// The vertices of a vector of polygons.
-class VertexLanes {
-    using D = Doubles;
-
-  public:
-    static constexpr std::size_t kWidth = kLaneCount<D>;
-
-    explicit VertexLanes(const PolygonArray& polygons)
-        : polygons_(polygons), vertices_(3 * polygons.vertex_count * kWidth) {}
-
-    std::size_t count() const { return polygons_.vertex_count; }
-
-    /// index: which polygon each lane takes. Scales those far from the range of float.
-    HWY_INLINE void load(const std::uint32_t* index) {
-        const D d;
-        const std::size_t numbers = 3 * polygons_.vertex_count;
-        RowPointers<const double> rows;
-        for (std::size_t lane = 0; lane < kWidth; ++lane) {
-            rows[lane] = polygons_.vertices + numbers * index[lane];
-        }
-        auto largest = hn::Zero(d);
-        for (std::size_t i = 0; i < numbers; i += kSquare<D>) {
-            const std::size_t column = std::min(i, numbers - kSquare<D>);
-            const auto columns = load_columns(d, rows.data(), column);
-            for (std::size_t j = 0; j < kSquare<D>; ++j) {
-                largest = hn::Max(largest, hn::Abs(columns[j]));
-                hn::StoreU(columns[j], d, vertices_.data() + (column + j) * kWidth);
-            }
-        }
-        const auto usual = hn::And(hn::Gt(largest, all(d, 1e-6)), hn::Lt(largest, all(d, 1e6)));
-        if (!hn::AllTrue(d, usual)) {
-            rescale(largest);
-        }
-    }
-
-    HWY_INLINE Vectors3<double> vertex(std::size_t i) const {
-        const double* at = vertices_.data() + 3 * i * kWidth;
-        return {hn::LoadU(D(), at), hn::LoadU(D(), at + kWidth), hn::LoadU(D(), at + 2 * kWidth)};
-    }
-
-    /// The side of the polygon's plane that the origin is on; neither if the polygon is seen edge-on or has no area.
-    HWY_INLINE V<D> side() const {
-        const D d;
-        const Vectors3<double> v0 = vertex(0);
-        Vectors3<double> normal = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-        Vectors3<double> sum = v0 + vertex(1);
-        auto farthest = hn::Max(dot<double>(v0, v0), dot<double>(vertex(1), vertex(1)));
-        Vectors3<double> before = vertex(1) - v0;
-        for (std::size_t i = 2; i < polygons_.vertex_count; ++i) {
-            const Vectors3<double> v = vertex(i);
-            const Vectors3<double> after = v - v0;
-            normal = normal + cross<double>(before, after);
-            before = after;
-            sum = sum + v;
-            farthest = hn::Max(farthest, dot<double>(v, v));
-        }
-        constexpr double kEdgeOn = 64 * std::numeric_limits<double>::epsilon();
-        const auto distance =
-            hn::Mul(dot<double>(normal, sum), all(d, 1 / static_cast<double>(polygons_.vertex_count)));
-        const auto least = hn::Mul(all(d, kEdgeOn * kEdgeOn), hn::Mul(farthest, dot<double>(normal, normal)));
-        const auto seen = hn::Gt(hn::Mul(distance, distance), least);
-        return hn::IfThenElseZero(seen, hn::CopySign(all(d, 1), distance));
-    }
-
-  private:
-    /// By powers of two, which change no digit: squares of tiny and huge coordinates stay in the range of float.
-    HWY_NOINLINE void rescale(V<D> largest) {
-        const D d;
-        const hn::RebindToUnsigned<D> du;
-        // The exponent's bits of 1 ÷ largest.
-        const auto power = hn::And(hn::BitCast(du, hn::Div(all(d, 1), largest)), hn::Set(du, 0x7FF0000000000000));
-        const auto scale = hn::IfThenElse(hn::Gt(largest, all(d, 1e-300)), hn::BitCast(d, power), all(d, 1));
-        for (std::size_t i = 0; i < 3 * polygons_.vertex_count; ++i) {
-            double* v = vertices_.data() + i * kWidth;
-            hn::StoreU(hn::Mul(hn::LoadU(d, v), scale), d, v);
-        }
-    }
-
-    PolygonArray polygons_;
-    std::vector<double> vertices_;
-};
-
-/// Fills the first part of EdgeLanes in double, whatever R is: crosses, cuts and orientation are differences of the
-/// vertices. index: which polygon each lane has.
-template <class R>
-class EdgePreparation {
-    using D = Doubles;
-
-  public:
-    EdgePreparation(const PolygonArray& polygons, bool clip) : vertices_(polygons), clip_(clip) {}
-
-    void prepare(const std::uint32_t* index, PolygonLanes<R>& lanes) {
-        for (std::size_t offset = 0; offset < kLaneCount<Lanes<R>>; offset += kLaneCount<D>) {
-            vertices_.load(index + offset);
-            const V<D> side = vertices_.side();
-            put_rounded<R>(lanes.side, offset, side);
-            for (std::size_t e = 0; e < vertices_.count(); ++e) {
-                fill(lanes.edges[e], offset, e, e + 1 < vertices_.count() ? e + 1 : 0, side);
-            }
-        }
-    }
-
-  private:
-    HWY_INLINE void fill(EdgeLanes<R>& edge, std::size_t offset, std::size_t from, std::size_t to, V<D> side) const {
-        const D d;
-        const Vectors3<double> a = vertices_.vertex(from);
-        const Vectors3<double> b = vertices_.vertex(to);
-        const Vectors3<double> c = cross<double>(a, b - a);
-        put_rounded<R>(edge.x, offset, a.x);
-        put_rounded<R>(edge.y, offset, a.y);
-        put_rounded<R>(edge.z, offset, a.z);
-        put_rounded<R>(edge.cross_x, offset, hn::Mul(c.x, side));
-        put_rounded<R>(edge.cross_y, offset, hn::Mul(c.y, side));
-        put_rounded<R>(edge.cross_z, offset, hn::Mul(c.z, side));
-        if (!clip_) {
-            return;
-        }
-        const auto zero = hn::Zero(d);
-        const auto one = all(d, 1);
-        const auto above_a = hn::Ge(a.z, zero);
-        const auto above_b = hn::Ge(b.z, zero);
-        const auto cuts = hn::Xor(above_a, above_b);
-        const auto t = hn::IfThenElseZero(cuts, hn::Div(a.z, hn::Sub(a.z, b.z)));
-        put_rounded<R>(edge.cut_x, offset, hn::MulAdd(t, hn::Sub(b.x, a.x), a.x));
-        put_rounded<R>(edge.cut_y, offset, hn::MulAdd(t, hn::Sub(b.y, a.y), a.y));
-        const auto kept_whole = hn::IfThenElseZero(above_a, one);
-        put_rounded<R>(edge.share, offset,
-                       hn::IfThenElse(cuts, hn::IfThenElse(above_a, t, hn::Sub(one, t)), kept_whole));
-        const auto crossing = hn::IfThenElseZero(cuts, hn::IfThenElse(above_b, one, hn::Neg(one)));
-        put_rounded<R>(edge.crossing, offset, crossing);
-    }
-
-    VertexLanes vertices_;
-    bool clip_;
 };
 
 /// A vector's warps.

@@ -14,7 +14,7 @@
 #include <limits>
 #include <vector>
 
-#include "kernels/polygon_outline-inl.h"
+#include "kernels/polygon_vertices-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
