@@ -26,6 +26,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
+template <class R>
+struct SeriesPair {
+    V<Lanes<R>> down, same;
+};
+
 /// The two series of each degree for a vector of lobes. kShared: one lobe in all lanes, and one number a coefficient.
 template <class R, bool kShared>
 class PotentialSeries {
@@ -61,32 +66,18 @@ class PotentialSeries {
         }
     }
 
-    struct Pair {
-        V<D> down, same;
-    };
-    /// D_m and S_m at kPoints heights, by Clenshaw's recurrence b_l = c_l + rise z b_{l+1} - b_{l+2}.
-    /// first: where degree m begins; count: its terms.
+    HWY_INLINE SeriesPair<R> coefficients(std::size_t i) const {
+        return {coefficient(down_, i), coefficient(same_, i)};
+    }
+    /// By which Clenshaw's recurrence multiplies b_{l+1} at heights.
     template <std::size_t kPoints>
-    HWY_INLINE std::array<Pair, kPoints> sums(std::size_t first, std::size_t count,
-                                              const std::array<V<D>, kPoints>& z) const {
-        const D d;
-        std::array<Pair, kPoints> b;
-        std::array<Pair, kPoints> other;
+    HWY_INLINE std::array<V<D>, kPoints> slopes(std::size_t i, const std::array<V<D>, kPoints>& z) const {
+        const auto rise = hn::Set(D(), rise_[i]);
+        std::array<V<D>, kPoints> slopes;
         for (std::size_t k = 0; k < kPoints; ++k) {
-            b[k] = {coefficient(down_, first), coefficient(same_, first)};
-            other[k] = {hn::Zero(d), hn::Zero(d)};
+            slopes[k] = hn::Mul(rise, z[k]);
         }
-        std::size_t i = first + 1;
-        const std::size_t end = first + count;
-        for (; i + 1 < end; i += 2) {
-            step(i, z, b, other);
-            step(i + 1, z, other, b);
-        }
-        if (i < end) {
-            step(i, z, b, other);
-            return other;
-        }
-        return b;
+        return slopes;
     }
 
   private:
@@ -97,20 +88,6 @@ class PotentialSeries {
             return hn::Set(D(), values[i]);
         } else {
             return hn::LoadU(D(), values.data() + i * kWidth);
-        }
-    }
-
-    /// before: b_{l+2}, becomes b_l.
-    template <std::size_t kPoints>
-    HWY_INLINE void step(std::size_t i, const std::array<V<D>, kPoints>& z, const std::array<Pair, kPoints>& b,
-                         std::array<Pair, kPoints>& before) const {
-        const auto rise = hn::Set(D(), rise_[i]);
-        const auto down = coefficient(down_, i);
-        const auto same = coefficient(same_, i);
-        for (std::size_t k = 0; k < kPoints; ++k) {
-            const auto slope = hn::Mul(rise, z[k]);
-            before[k].down = hn::MulAdd(slope, b[k].down, hn::Sub(down, before[k].down));
-            before[k].same = hn::MulAdd(slope, b[k].same, hn::Sub(same, before[k].same));
         }
     }
 
@@ -171,49 +148,60 @@ class ChebyshevSeries {
 
     std::size_t order() const { return order_; }
 
-    struct Pair {
-        V<D> down, same;
-    };
     /// As PotentialSeries has them.
+    HWY_INLINE SeriesPair<R> coefficients(std::size_t i) const {
+        return {hn::Set(D(), down_[i]), hn::Set(D(), same_[i])};
+    }
     template <std::size_t kPoints>
-    HWY_INLINE std::array<Pair, kPoints> sums(std::size_t first, std::size_t count,
-                                              const std::array<V<D>, kPoints>& z) const {
-        const D d;
-        std::array<Pair, kPoints> b;
-        std::array<Pair, kPoints> other;
+    HWY_INLINE std::array<V<D>, kPoints> slopes(std::size_t /*i*/, const std::array<V<D>, kPoints>& z) const {
+        std::array<V<D>, kPoints> slopes;
         for (std::size_t k = 0; k < kPoints; ++k) {
-            b[k] = {hn::Set(d, down_[first]), hn::Set(d, same_[first])};
-            other[k] = {hn::Zero(d), hn::Zero(d)};
+            slopes[k] = hn::Add(z[k], z[k]);
         }
-        std::size_t i = first + 1;
-        const std::size_t end = first + count;
-        for (; i + 1 < end; i += 2) {
-            step(i, z, b, other);
-            step(i + 1, z, other, b);
-        }
-        if (i < end) {
-            step(i, z, b, other);
-            return other;
-        }
-        return b;
+        return slopes;
     }
 
   private:
-    template <std::size_t kPoints>
-    HWY_INLINE void step(std::size_t i, const std::array<V<D>, kPoints>& z, const std::array<Pair, kPoints>& b,
-                         std::array<Pair, kPoints>& before) const {
-        const auto down = hn::Set(D(), down_[i]);
-        const auto same = hn::Set(D(), same_[i]);
-        for (std::size_t k = 0; k < kPoints; ++k) {
-            const auto slope = hn::Add(z[k], z[k]);
-            before[k].down = hn::MulAdd(slope, b[k].down, hn::Sub(down, before[k].down));
-            before[k].same = hn::MulAdd(slope, b[k].same, hn::Sub(same, before[k].same));
-        }
-    }
-
     std::size_t order_;
     std::vector<R> down_, same_;
 };
+
+/// before: b_{l+2}, becomes b_l.
+template <class R, class Series, std::size_t kPoints>
+HWY_INLINE void clenshaw_step(const Series& series, std::size_t i, const std::array<V<Lanes<R>>, kPoints>& z,
+                              const std::array<SeriesPair<R>, kPoints>& b, std::array<SeriesPair<R>, kPoints>& before) {
+    const auto c = series.coefficients(i);
+    const auto slopes = series.slopes(i, z);
+    for (std::size_t k = 0; k < kPoints; ++k) {
+        before[k].down = hn::MulAdd(slopes[k], b[k].down, hn::Sub(c.down, before[k].down));
+        before[k].same = hn::MulAdd(slopes[k], b[k].same, hn::Sub(c.same, before[k].same));
+    }
+}
+
+/// D_m and S_m at kPoints heights, by Clenshaw's recurrence b_l = c_l + slope b_{l+1} - b_{l+2}.
+/// first: where degree m begins; count: its terms.
+template <class R, class Series, std::size_t kPoints>
+HWY_INLINE std::array<SeriesPair<R>, kPoints> clenshaw_sums(const Series& series, std::size_t first, std::size_t count,
+                                                            const std::array<V<Lanes<R>>, kPoints>& z) {
+    const Lanes<R> d;
+    std::array<SeriesPair<R>, kPoints> b;
+    std::array<SeriesPair<R>, kPoints> other;
+    for (std::size_t k = 0; k < kPoints; ++k) {
+        b[k] = series.coefficients(first);
+        other[k] = {hn::Zero(d), hn::Zero(d)};
+    }
+    std::size_t i = first + 1;
+    const std::size_t end = first + count;
+    for (; i + 1 < end; i += 2) {
+        clenshaw_step<R>(series, i, z, b, other);
+        clenshaw_step<R>(series, i + 1, z, other, b);
+    }
+    if (i < end) {
+        clenshaw_step<R>(series, i, z, b, other);
+        return other;
+    }
+    return b;
+}
 
 /// ν·∇F ds at points, ÷ weight · 2 half.
 ///
@@ -237,7 +225,7 @@ HWY_INLINE std::array<V<Lanes<R>>, kPoints> normal_derivatives(const Series& ser
     }
     std::size_t first = 0;
     for (std::size_t count = 1; count < series.order(); first += count++) {
-        const auto sums = series.sums(first, count, z);
+        const auto sums = clenshaw_sums<R>(series, first, count, z);
         for (std::size_t k = 0; k < kPoints; ++k) {
             auto& [twice_x, square, down, same, down_before, same_before] = b[k];
             const auto next_down = hn::MulAdd(twice_x, down, hn::NegMulAdd(square, down_before, sums[k].down));
@@ -299,7 +287,7 @@ HWY_INLINE void horizon_slopes(const Series& series, V<Lanes<R>> height, V<Lanes
     auto waiting = hn::Zero(d);
     for (std::size_t count = 1; count < order; first += count++) {
         const std::size_t m = order - count;
-        const auto sums = series.template sums<1>(first, count, {height})[0];
+        const auto sums = clenshaw_sums<R>(series, first, count, std::array{height})[0];
         const auto of_same = hn::NegMulAdd(hn::Mul(height, power[m]), sums.same, waiting);
         hn::StoreU(of_same, d, slopes + m * kWidth);
         waiting = hn::Mul(power[m + 1], sums.down);
