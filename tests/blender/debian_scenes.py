@@ -195,6 +195,22 @@ def border():
     camera.shift_x, camera.shift_y, camera.sensor_fit = 0.1, -0.05, "VERTICAL"
 
 
+def sky():
+    """A world that is baked to a picture and a sun."""
+    plane()
+    ball(shader(Color=(0.8, 0.6, 0.2, 1)))
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = 64, 48
+    scene.shlight.world_width, scene.shlight.shadow_rays = 512, 64
+    scene.world = world = bpy.data.worlds.new("World")
+    world.use_nodes = True
+    tree = world.node_tree
+    node = tree.nodes.new("ShaderNodeTexSky")
+    node.sun_elevation, node.sun_rotation = 0.5, 0.8
+    tree.links.new(node.outputs[0], tree.nodes["Background"].inputs["Color"])
+    tree.nodes["Background"].inputs["Strength"].default_value = 0.1
+
+
 def dark():
     plane()
 
@@ -226,6 +242,7 @@ def main():
         blackbody,
         curves,
         border,
+        sky,
         dark,
     ):
         prepare()

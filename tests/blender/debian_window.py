@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Runs inside a window of Debian's Blender: selects shlight, shows its panels and the viewport, renders, and quits."""
+"""Runs inside a window of Debian's Blender: selects shlight, shows panels and viewport, renders twice, and quits."""
 
 import json
 import sys
@@ -8,10 +8,11 @@ from pathlib import Path
 import bpy
 
 import shlight_blender
-from shlight_blender import engine, panels
+from shlight_blender import engine, panels, record
+from shlight_blender.export import bake
 
 FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
-drawn = {"panels": [], "viewport_updates": 0}
+drawn = {"panels": [], "viewport_updates": 0, "messages": [], "kept": []}
 
 
 def watched(original, name):
@@ -58,12 +59,31 @@ def steps():
         bpy.data.objects["Cube"].location.x += 0.1
         yield
         yield
-    render = scene.render
-    render.resolution_x, render.resolution_y = 64, 48
-    render.image_settings.file_format = "OPEN_EXR"
-    render.filepath = str(FOLDER / "final.exr")
-    bpy.ops.render.render(write_still=True)
+    set_sky(scene)
+    for number in range(2):
+        yield from final_render(scene, FOLDER / f"final_{number}.exr")
+
+
+def set_sky(scene):
+    """A world that has to be baked, around things that are drawn as they are."""
+    bpy.data.objects["Cube"].data.materials.clear()
+    tree = scene.world.node_tree
+    tree.links.new(tree.nodes.new("ShaderNodeTexSky").outputs[0], tree.nodes["Background"].inputs["Color"])
+    scene.shlight.world_width = 256
+
+
+def final_render(scene, path):
+    """As F12 does it: the window goes on meanwhile."""
+    scene.render.resolution_x, scene.render.resolution_y = 64, 48
+    bpy.ops.render.render("INVOKE_DEFAULT")
     yield
+    while bpy.app.is_job_running("RENDER"):
+        yield
+    drawn["messages"].append(record.last.messages)
+    drawn["kept"].append(len(bake.kept))
+    scene.render.image_settings.file_format = "OPEN_EXR"
+    scene.render.image_settings.color_depth = "32"
+    bpy.data.images["Render Result"].save_render(str(path), scene=scene)
 
 
 def run(plan):

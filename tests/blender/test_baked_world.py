@@ -18,6 +18,11 @@ from shlight_blender.report import ExportCancelled
 ELEVATION, TURN = 0.5, 0.8
 
 
+@pytest.fixture(autouse=True)
+def _nothing_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bake, "kept", type(bake.kept)())
+
+
 def background(studio: Any) -> Any:
     """The Background node of a fresh world; the picture it is baked to is small."""
     studio.scene.shlight.world_width = 512
@@ -157,6 +162,21 @@ def test_frame_of_an_animated_world(studio: Any) -> None:
         half.outputs[0].keyframe_insert("default_value", frame=frame)
     studio.scene.frame_set(11)
     np.testing.assert_allclose(bake_now(studio).picture.mean(), 0.6, rtol=1e-5)
+
+
+def test_renders_of_the_same_world_bake_it_once(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    ball_in_view_of_the_world(studio)
+    set_gradient(studio)
+    started: list[Any] = []
+    run = bake._run
+    monkeypatch.setattr(bake, "_run", lambda *given: started.append(given) or run(*given))
+    first, second = studio.render("SHLIGHT"), studio.render("SHLIGHT")
+    assert len(started) == 1
+    np.testing.assert_array_equal(first, second)
+    studio.scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value *= 2.0
+    # Twice the light everywhere: both draw the same samples.
+    np.testing.assert_allclose(studio.render("SHLIGHT")[..., :3], 2.0 * first[..., :3], rtol=1e-3, atol=1e-5)
+    assert len(started) == 2
 
 
 # --- what can go wrong

@@ -2,6 +2,7 @@
 """A world of any nodes as a lat-long picture and suns, rendered by Cycles in a Blender of its own.
 
 A render cannot start another one in the same process. `bake_worker` runs in the other one and says how it measures.
+What was baked is kept as long as Blender runs; `bake_key` says what a world must share with it.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,11 +23,13 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from .bake_key import bake_key
 from .nodes import all_nodes
 
 WORKER = Path(__file__).with_name("bake_worker.py")
 LONGEST_SECONDS = 1800.0
 TICK_SECONDS = 0.1
+MOST_KEPT_BYTES = 2**28  # ten pictures 2048 texels wide; the last one is kept whatever its size
 
 # Called with what is being done while time passes; False: stop it.
 Waiting = Callable[[str], bool]
@@ -52,11 +56,34 @@ class Baked:
     suns: list[Sun] = field(default_factory=list)
 
 
+kept: OrderedDict[bytes, Baked] = OrderedDict()  # by their keys, the last used at the end
+
+
 def bake_world(world: Any, scene: Any, waiting: Waiting | None = None) -> Baked | None:
     """The world at the scene's current frame, `scene.shlight.world_width` texels wide; None if `waiting` stopped it.
 
+    A world that is kept is not baked again; its picture must not be written to.
     Raises BakeError if the other Blender cannot be started, fails, or takes longer than half an hour.
     """
+    key = bake_key(world, scene)
+    if key is not None and key in kept:
+        kept.move_to_end(key)
+        return kept[key]
+    baked = _bake(world, scene, waiting)
+    # What was edited meanwhile may be in the picture and not in the key.
+    if baked is not None and key is not None and bake_key(world, scene) == key:
+        _keep(key, baked)
+    return baked
+
+
+def _keep(key: bytes, baked: Baked) -> None:
+    baked.picture.flags.writeable = False
+    kept[key] = baked
+    while len(kept) > 1 and sum(each.picture.nbytes for each in kept.values()) > MOST_KEPT_BYTES:
+        kept.popitem(last=False)
+
+
+def _bake(world: Any, scene: Any, waiting: Waiting | None) -> Baked | None:
     with tempfile.TemporaryDirectory(prefix="shlight_world_") as name:
         folder = Path(name)
         try:
