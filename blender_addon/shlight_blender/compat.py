@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Everything in which the supported Blender versions differ: 3.4 on one side, 4.2 and later on the other.
 
-The differences are in three tables (`LAMPS`, `PRINCIPLED`, and the functions on meshes and results, which ask for the
-attribute they need instead of the version), so that no other module knows a version number.
+The differences are in tables (`LAMPS`, `PRINCIPLED`, `MATERIALS`) and in functions on meshes and results, which ask for
+the attribute they need instead of the version, so that no other module knows a version number.
 """
 
 from __future__ import annotations
@@ -93,6 +93,28 @@ PRINCIPLED = (
         },
     )
 )
+
+
+@dataclass(frozen=True)
+class MaterialConvention:
+    """What Cycles draws on faces without material."""
+
+    default_is_principled: bool  # a Principled BSDF as a new node is, or a Diffuse BSDF of albedo 0.8
+    empty_slot_is_default: bool  # an object's own empty slot is without material, or has that of the object's data
+
+
+MATERIALS = MaterialConvention(default_is_principled=VERSION >= (5, 0, 0), empty_slot_is_default=VERSION >= (5, 2, 0))
+
+
+def slot_materials(evaluated: Any) -> tuple[Any, ...]:
+    """What Cycles draws in the material slots of an evaluated object; None: the default surface."""
+    materials = [slot.material for slot in evaluated.material_slots]
+    if MATERIALS.empty_slot_is_default:
+        # The evaluated slots show the materials of the object's data there.
+        for number, slot in enumerate(evaluated.original.material_slots[: len(materials)]):
+            if slot.link == "OBJECT" and slot.material is None:
+                materials[number] = None
+    return tuple(materials)
 
 
 def lamp_tint(lamp: Any) -> NDArray[np.float64]:

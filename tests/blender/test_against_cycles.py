@@ -211,7 +211,7 @@ def test_several_materials_and_slots_of_the_object(studio: Any) -> None:
     other = studio.link("Other", box.data, (1.0, 0, 0.5))
     other.material_slots[1].link = "OBJECT"
     other.material_slots[1].material = studio.material(Color=(0.9, 0.9, 0.1))
-    other.material_slots[2].link = "OBJECT"  # an empty slot: Cycles' default grey
+    other.material_slots[2].link = "OBJECT"  # an empty slot
     studio.area(150, (1.5, -1, 3), size=0.8)
     studio.camera()
     studio.compare()

@@ -9,9 +9,10 @@ import numpy as np
 
 import shlight
 
-from ..compat import uses_nodes
+from ..compat import MATERIALS, uses_nodes
 from ..report import ExportReport
 from .nodes import origin
+from .principled import untouched_principled
 from .shaders import SHADERS
 from .surface import Surface, SurfaceReader, lambert
 
@@ -21,6 +22,8 @@ DEFAULT_ALBEDO = 0.8
 
 def default_surface() -> Surface:
     """The surface of an object without material."""
+    if MATERIALS.default_is_principled:
+        return Surface(untouched_principled(np.full(3, DEFAULT_ALBEDO)))
     return Surface(shlight.Bsdf.lambert(DEFAULT_ALBEDO))
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import shlight
 
-from ..compat import smooth_corner_normals
+from ..compat import slot_materials, smooth_corner_normals
 from ..report import ExportReport
 from .materials import read_material
 from .surface import Surface
@@ -90,7 +90,7 @@ class MeshCollector:
         if not np.isfinite(to_world).all():
             self._report.add(place, "its transform is not finite; left out")
             return
-        materials = tuple(slot.material for slot in mesh_object.material_slots)
+        materials = slot_materials(mesh_object)
         key = (mesh_object.data.as_pointer(), *(material and material.as_pointer() for material in materials))
         if key not in self._uses:
             self._uses[key] = self._convert(mesh_object, place, materials)

@@ -33,6 +33,11 @@ def read_principled(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -
     return Surface(read(reader, node, groups)).plus(glow)
 
 
+def untouched_principled(base: RGB) -> shlight.Bsdf | None:
+    """What a node of Blender 4 does whose inputs but the base colour are as it was made."""
+    return _dielectric_over(base, 0.5, 1.5, 0.5, np.ones(3), lambda text: None)
+
+
 def _read_layered(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> shlight.Bsdf | None:
     base = reader.color(node, "Base Color", groups)
     metallic = reader.share(node, "Metallic", groups)
