@@ -19,9 +19,15 @@ from shlight.images import read_exr  # noqa: E402
 from shlight.metrics import mean_ratio, rel_mse  # noqa: E402
 
 Image = NDArray[np.float32]
-# Properties of lamps that older versions of Blender lack.
-SINCE_4_5 = {"normalize", "exposure", "use_temperature", "temperature"}
+# Properties of lamps and inputs of shaders that older versions of Blender lack.
+SINCE_4_5 = {"normalize", "exposure", "use_temperature", "temperature", "Diffuse_Roughness"}
 SCENES = Path(__file__).resolve().parents[3] / "shared" / "scenes"
+
+
+def need(name: str) -> None:
+    """Skips the test if this version of Blender has no property or input `name`."""
+    if name in SINCE_4_5 and bpy.app.version < (4, 5, 0):
+        pytest.skip(f"this version of Blender has no {name}")
 
 
 class Studio:
@@ -117,8 +123,7 @@ class Studio:
         data.energy = energy
         made = self.link(kind.title(), data, location)
         for key, value in properties.items():
-            if key in SINCE_4_5 and bpy.app.version < (4, 5, 0):
-                pytest.skip(f"this version of Blender has no {key} of lamps")
+            need(key)
             setattr(data if hasattr(data, key) else made, key, value)
         return made
 
@@ -147,6 +152,7 @@ class Studio:
         output = tree.nodes.new("ShaderNodeOutputMaterial")
         tree.links.new(node.outputs[0], output.inputs["Surface"])
         for key, value in inputs.items():
+            need(key)
             socket = node.inputs.get(key.replace("_", " "))
             if socket is None:
                 setattr(node, key, value)
