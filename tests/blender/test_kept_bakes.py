@@ -253,6 +253,18 @@ def test_width(studio: Any, bakes: list[bake.Baked]) -> None:
     assert len(bakes) == 2
 
 
+@pytest.mark.skipif(not hasattr(bpy.data, "colorspace"), reason="this Blender's colours are always Rec. 709")
+def test_space_of_the_colours(studio: Any, bakes: list[bake.Baked]) -> None:
+    set_world(studio)
+    before = bpy.data.colorspace.working_space
+    for space in ("Linear Rec.2020", before):
+        assert bake_now(studio) is bake_now(studio)
+        bpy.ops.wm.set_working_color_space(working_space=space, convert_colors=False)
+    assert bpy.data.colorspace.working_space == before
+    bake_now(studio)
+    assert len(bakes) == 2
+
+
 def drive(socket: Any, expression: str = "frame") -> None:
     socket.driver_add("default_value").driver.expression = expression
 
