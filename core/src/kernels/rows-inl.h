@@ -30,23 +30,25 @@ inline constexpr std::size_t kSquare = 16 / sizeof(Scalar<D>);
 template <class T>
 using RowPointers = std::array<T*, kLaneCount<Lanes<T>>>;
 
+/// Half of transpose_squares: rows 0 … kSquare/2 - 1 of each block's lanes, or for kUpper the others.
+template <bool kUpper, class D>
+HWY_INLINE std::array<V<D>, kSquare<D> / 2> transpose_half(D d, const std::array<V<D>, kSquare<D>>& v) {
+    if constexpr (kSquare<D> == 4) {
+        const auto even = kUpper ? hn::InterleaveUpper(d, v[0], v[2]) : hn::InterleaveLower(d, v[0], v[2]);
+        const auto odd = kUpper ? hn::InterleaveUpper(d, v[1], v[3]) : hn::InterleaveLower(d, v[1], v[3]);
+        return {hn::InterleaveLower(d, even, odd), hn::InterleaveUpper(d, even, odd)};
+    } else {
+        return {kUpper ? hn::InterleaveUpper(d, v[0], v[1]) : hn::InterleaveLower(d, v[0], v[1])};
+    }
+}
+
 /// v[j]: column j of all lanes → row j of each block's lanes. Block b of the result's v[j] is lane b · kSquare + j.
 template <class D>
 HWY_INLINE void transpose_squares(D d, std::array<V<D>, kSquare<D>>& v) {
-    if constexpr (kSquare<D> == 4) {
-        const auto even_low = hn::InterleaveLower(d, v[0], v[2]);
-        const auto even_high = hn::InterleaveUpper(d, v[0], v[2]);
-        const auto odd_low = hn::InterleaveLower(d, v[1], v[3]);
-        const auto odd_high = hn::InterleaveUpper(d, v[1], v[3]);
-        v[0] = hn::InterleaveLower(d, even_low, odd_low);
-        v[1] = hn::InterleaveUpper(d, even_low, odd_low);
-        v[2] = hn::InterleaveLower(d, even_high, odd_high);
-        v[3] = hn::InterleaveUpper(d, even_high, odd_high);
-    } else {
-        const auto low = hn::InterleaveLower(d, v[0], v[1]);
-        v[1] = hn::InterleaveUpper(d, v[0], v[1]);
-        v[0] = low;
-    }
+    const auto lower = transpose_half<false>(d, v);
+    const auto upper = transpose_half<true>(d, v);
+    std::copy(lower.begin(), lower.end(), v.begin());
+    std::copy(upper.begin(), upper.end(), v.begin() + kSquare<D> / 2);
 }
 
 /// Block b of q[0] … q[3] → q[b], for vectors of four blocks; for vectors of two, blocks 0 and 1 of the pairs.
@@ -126,38 +128,72 @@ class RowWriter {
     static constexpr std::size_t kColumns = 4 * kMaxOrder;  // rows of order 16, or 16 KiB
 
     /// Writes whole lines, and moves the rest to the front.
+    ///
+    /// Half the rows at a time, and two neighbouring lines of each: rows of order 32 or 64 lie a multiple of 4 KiB
+    /// apart, and stores to the same line of all of them in turn compete for one set of the cache
+    /// (docs/performance.md).
     void write_lines() {
-        std::size_t done = 0;
-        for (; done + kLine <= waiting_; done += kLine) {
-            write_line(done);
-        }
+        const std::size_t lines = waiting_ / kLine;
+        write_lines_of_half<false>(lines);
+        write_lines_of_half<true>(lines);
+        const std::size_t done = lines * kLine;
+        column_ += done;
         std::copy(buffer_.data() + done * kLaneCount<D>, next(), buffer_.data());
         waiting_ -= done;
     }
 
-    HWY_INLINE void write_line(std::size_t first) {
-        const D d;
-        std::array<std::array<V<D>, kSquare<D>>, 4> squares;  // a line is four squares of either type
-        for (std::size_t s = 0; s < 4; ++s) {
-            for (std::size_t j = 0; j < kSquare<D>; ++j) {
-                squares[s][j] = hn::Load(d, buffer_.data() + (first + s * kSquare<D> + j) * kLaneCount<D>);
-            }
-            transpose_squares(d, squares[s]);
+    /// kUpper: which half of each square's rows.
+    template <bool kUpper>
+    HWY_INLINE void write_lines_of_half(std::size_t lines) {
+        std::size_t line = 0;
+        for (; line + 2 <= lines; line += 2) {
+            write_half<2, kUpper>(line * kLine);
         }
-        for (std::size_t j = 0; j < kSquare<D>; ++j) {
-            std::array<V<D>, 4> q = {squares[0][j], squares[1][j], squares[2][j], squares[3][j]};
-            transpose_blocks(d, q);
-            constexpr std::size_t kParts = kLine / kLaneCount<D>;
-            for (std::size_t i = 0; i < 4; ++i) {
-                T* row = rows_[i / kParts * kSquare<D> + j] + column_ + i % kParts * kLaneCount<D>;
+        if (line < lines) {
+            write_half<1, kUpper>(line * kLine);
+        }
+    }
+
+    /// kLines lines from column `first` on. Two of them, of half the rows, are what registers hold.
+    template <std::size_t kLines, bool kUpper>
+    HWY_INLINE void write_half(std::size_t first) {
+        const D d;
+        constexpr std::size_t kHalf = kSquare<D> / 2;
+        std::array<std::array<V<D>, kHalf>, 4 * kLines> squares;  // a line is four squares of either type
+        for (std::size_t s = 0; s < squares.size(); ++s) {
+            std::array<V<D>, kSquare<D>> columns;
+            for (std::size_t j = 0; j < kSquare<D>; ++j) {
+                columns[j] = hn::Load(d, buffer_.data() + (first + s * kSquare<D> + j) * kLaneCount<D>);
+            }
+            squares[s] = transpose_half<kUpper>(d, columns);
+        }
+        for (std::size_t j = 0; j < kHalf; ++j) {
+            std::array<std::array<V<D>, 4>, kLines> lines;
+            for (std::size_t k = 0; k < kLines; ++k) {
+                lines[k] = {squares[4 * k][j], squares[4 * k + 1][j], squares[4 * k + 2][j], squares[4 * k + 3][j]};
+                transpose_blocks(d, lines[k]);
+            }
+            write_rows(lines, j + (kUpper ? kHalf : 0), column_ + first);
+        }
+    }
+
+    /// Row j of each square of lanes: its parts in lines[…][…], those of one row side by side.
+    template <std::size_t kLines>
+    HWY_INLINE void write_rows(const std::array<std::array<V<D>, 4>, kLines>& lines, std::size_t j,
+                               std::size_t column) {
+        const D d;
+        constexpr std::size_t kParts = kLine / kLaneCount<D>;
+        for (std::size_t i = 0; i < 4; i += kParts) {
+            T* row = rows_[i / kParts * kSquare<D> + j] + column;
+            for (std::size_t part = 0; part < kLines * kParts; ++part) {
+                const auto values = lines[part / kParts][i + part % kParts];
                 if (streamed_) {
-                    hn::Stream(q[i], d, row);
+                    hn::Stream(values, d, row + part * kLaneCount<D>);
                 } else {
-                    hn::StoreU(q[i], d, row);
+                    hn::StoreU(values, d, row + part * kLaneCount<D>);
                 }
             }
         }
-        column_ += kLine;
     }
 
     RowPointers<T> rows_;
