@@ -117,6 +117,15 @@ def slot_materials(evaluated: Any) -> tuple[Any, ...]:
     return tuple(materials)
 
 
+REC709 = "Linear Rec.709"
+
+
+def working_space() -> str:
+    """What the file's colours are relative to: since Blender 5.0 it may be another space than Rec. 709."""
+    colors = getattr(bpy.data, "colorspace", None)
+    return REC709 if colors is None else str(colors.working_space)
+
+
 def lamp_tint(lamp: Any) -> NDArray[np.float64]:
     """RGB factor on a lamp's power: its colour and, where Blender has them (4.5), temperature and exposure."""
     tint = np.array(lamp.color, dtype=np.float64)

@@ -248,6 +248,17 @@ def test_nodes_of_a_lamp_that_are_switched_off(studio: Any) -> None:
 # --- reports
 
 
+@pytest.mark.skipif(not hasattr(bpy.data, "colorspace"), reason="this Blender's colours are always Rec. 709")
+def test_another_working_space_is_named(studio: Any) -> None:
+    simple_scene(studio)
+    before = bpy.data.colorspace.working_space
+    bpy.ops.wm.set_working_color_space(working_space="Linear Rec.2020", convert_colors=False)
+    (line,) = studio.messages()
+    bpy.ops.wm.set_working_color_space(working_space=before, convert_colors=False)
+    assert "working space Linear Rec.2020 is not supported" in line
+    assert studio.messages() == []
+
+
 def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any) -> None:
     simple_scene(studio)
     scene = studio.scene

@@ -15,6 +15,8 @@ from typing import Any
 import bpy
 import numpy as np
 
+from ..compat import working_space
+
 # Nodes whose values come from elsewhere than the node tree.
 NODES_OF_ELSEWHERE = {"ATTRIBUTE", "SCRIPT"}
 # Kinds of images whose contents are known by `_image`: one file, or none.
@@ -44,8 +46,7 @@ def bake_key(world: Any, scene: Any) -> bytes | None:
     reader = _Reader()
     try:
         reader.add("width", scene.shlight.world_width)
-        # Since Blender 5.0 a file says what its colours are relative to.
-        reader.add("space", getattr(getattr(bpy.data, "colorspace", None), "working_space", None))
+        reader.add("space", working_space())
         reader.tree(world.node_tree)
         reader.tree(world.original.node_tree)
     except (_UnknownError, OSError, RuntimeError):

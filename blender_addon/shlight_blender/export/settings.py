@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from ..compat import REC709, working_space
 from ..report import ExportReport
 
 PASSES_WRITTEN = {"use_pass_combined"}
@@ -51,6 +52,10 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
         report.add(place, "stereoscopy is not supported; all views show the same picture")
     if getattr(render, "use_freestyle", False):
         report.add(place, "Freestyle lines are not supported; left out")
+    if working_space() != REC709:
+        report.add(
+            place, f"working space {working_space()} is not supported; skies and pictures stay Rec. 709"
+        )
     passes = sorted(
         name
         for name in dir(view_layer)
