@@ -53,9 +53,7 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
     if getattr(render, "use_freestyle", False):
         report.add(place, "Freestyle lines are not supported; left out")
     if working_space() != REC709:
-        report.add(
-            place, f"working space {working_space()} is not supported; skies and pictures stay Rec. 709"
-        )
+        report.add(place, f"working space {working_space()} is not supported; skies and pictures stay Rec. 709")
     passes = sorted(
         name
         for name in dir(view_layer)
