@@ -9,10 +9,11 @@
 namespace shlight {
 namespace {
 
-/// Along each axis. A rim of the profile within the light may fool two rules alike; so the steps are small, and it
-/// takes two that change nothing.
+/// Along each axis.
 constexpr std::array kPoints = {4, 6, 9, 13, 19, 28, 42, kMaxGaussPoints};
+/// Steps that change nothing. Where a rim of the profile may lie across a patch it may fool two rules alike.
 constexpr int kAgreements = 2;
+constexpr int kAgreementsOfRings = 1;
 /// A lobe takes nodes of its own where it may be denser than this many times the light's.
 constexpr double kNarrowLobe = 8;
 
@@ -35,33 +36,47 @@ void ProfileMean::reset(const Light& light, const ShadingFrame& frame) {
     profile_.emplace(light, frame);
     if (range().high > range().low) {
         sampler_.reset(light, frame);
+        has_rings_ = rings_.reset(light, frame);
     }
 }
 
-void ProfileMean::add(const Reflection& reflection, const Vec3d& direction, double weight, Sums& sums) const {
+template <class Visit>
+void ProfileMean::for_light_nodes(int points, const Visit& visit) {
+    if (has_rings_) {
+        rings_.for_nodes(
+            points, [&](const Vec3d& direction) { return profile_->factor(direction); }, visit);
+        return;
+    }
+    const GaussRule& rule = gauss_rule(points);
+    for (std::size_t patch = 0; patch < sampler_.patch_count(); ++patch) {
+        for_nodes(rule, [&](const glm::dvec2& point, double share) {
+            const LightSample sample = sampler_.sample_patch(patch, point);
+            visit(sample.direction, share * sample.weight, profile_->factor(sample.direction));
+        });
+    }
+}
+
+void ProfileMean::add(const Reflection& reflection, const Vec3d& direction, double weight, double factor,
+                      Sums& sums) const {
     double value = weight * lobe_value(*reflection.shape, direction, reflection.view);
     if (reflection.sampler) {
         // The light's density is taken as even: one over its solid angle.
         value /= 1 + sampler_.solid_angle() * reflection.sampler->density(direction);
     }
     sums.even += value;
-    sums.lit += value * profile_->factor(direction);
+    sums.lit += value * factor;
 }
 
-ProfileMean::Sums ProfileMean::sums(const Reflection& reflection, int points) const {
+ProfileMean::Sums ProfileMean::sums(const Reflection& reflection, int points) {
     Sums sums;
-    const GaussRule& rule = gauss_rule(points);
-    for (std::size_t patch = 0; patch < sampler_.patch_count(); ++patch) {
-        for_nodes(rule, [&](const glm::dvec2& point, double share) {
-            const LightSample sample = sampler_.sample_patch(patch, point);
-            add(reflection, sample.direction, share * sample.weight, sums);
-        });
-    }
+    for_light_nodes(points, [&](const Vec3d& direction, double weight, double factor) {
+        add(reflection, direction, weight, factor, sums);
+    });
     if (reflection.sampler) {
-        for_nodes(rule, [&](const glm::dvec2& point, double share) {
+        for_nodes(gauss_rule(points), [&](const glm::dvec2& point, double share) {
             const Vec3d direction = reflection.sampler->sample(point);
             if (direction.z > 0 && sampler_.meets(direction)) {
-                add(reflection, direction, share * sampler_.solid_angle(), sums);
+                add(reflection, direction, share * sampler_.solid_angle(), profile_->factor(direction), sums);
             }
         });
     }
@@ -90,7 +105,7 @@ double ProfileMean::mean(const LobeShape& lobe, double cos_theta_o, double toler
         const double before = mean;
         mean = sums.even > 0 ? sums.lit / sums.even : range().low;
         agreements = agreements < 0 || !(std::abs(mean - before) <= tolerance) ? 0 : agreements + 1;
-        if (agreements == kAgreements) {
+        if (agreements == (has_rings_ && !reflection.sampler ? kAgreementsOfRings : kAgreements)) {
             break;
         }
     }

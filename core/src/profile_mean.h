@@ -13,6 +13,7 @@
 #include "light_sampling.h"
 #include "light_view.h"
 #include "lobe_sampling.h"
+#include "profile_rings.h"
 #include "shlight/light.h"
 #include "shlight/lobe_shape.h"
 
@@ -40,11 +41,16 @@ class ProfileMean {
         Vec3d view;
         std::optional<LobeSampler> sampler;
     };
-    Sums sums(const Reflection& reflection, int points) const;
-    void add(const Reflection& reflection, const Vec3d& direction, double weight, Sums& sums) const;
+    Sums sums(const Reflection& reflection, int points);
+    /// visit(direction, weight, factor of the profile) at nodes that fill the light.
+    template <class Visit>
+    void for_light_nodes(int points, const Visit& visit);
+    void add(const Reflection& reflection, const Vec3d& direction, double weight, double factor, Sums& sums) const;
 
     std::optional<ProfileView> profile_;
     LightSampler sampler_;
+    ProfileRings rings_;
+    bool has_rings_ = false;
 };
 
 }  // namespace shlight
