@@ -30,10 +30,10 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
         name="Tolerance",
         description="Error that the automatic order may make: of a light's reflection, relative to the light's own "
         "radiance times the material's reflectance",
-        default=1e-4,
+        default=1e-5,
         min=1e-6,
         max=0.5,
-        soft_min=1e-4,
+        soft_min=1e-5,
         soft_max=0.1,
         precision=5,
         step=0.1,

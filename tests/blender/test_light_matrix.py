@@ -84,7 +84,6 @@ def set_up(studio: Any, lamp: str, glossy: bool) -> None:
     render.resolution_x = render.resolution_y = 48
     studio.scene.cycles.samples = 256
     studio.scene.shlight.pixel_samples = 64
-    studio.scene.shlight.tolerance = 1e-5  # where little is reflected, the default shows beside Cycles' noise
 
 
 @pytest.mark.parametrize("material", ["diffuse", "glossy"])
