@@ -28,6 +28,7 @@ class LampConvention:
     spot_is_scaled: bool  # a scaled spot lamp has an elliptical cone
     spot_times_cosine: bool  # a spot lamp's light falls with the cosine of the angle to its axis too
     sun_is_tangent: bool  # a sun is even on the plane tangent to the sphere of directions, not on that sphere
+    area_has_uvs: bool  # textures of an area lamp find coordinates on it by default, as if it had a UV map
     instancer_hides: bool  # a lamp is hidden from the rays that the object which shows its instance is hidden from
 
 
@@ -38,6 +39,7 @@ LAMPS = (
         spot_is_scaled=True,
         spot_times_cosine=False,
         sun_is_tangent=False,
+        area_has_uvs=True,
         instancer_hides=VERSION >= (4, 5, 0),
     )
     if IS_BLENDER_4
@@ -47,6 +49,7 @@ LAMPS = (
         spot_is_scaled=False,
         spot_times_cosine=True,
         sun_is_tangent=True,
+        area_has_uvs=False,
         instancer_hides=False,
     )
 )

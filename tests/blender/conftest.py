@@ -191,7 +191,26 @@ class Studio:
             background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
             background.inputs["Color"].default_value = (*color, 1)
 
+    def floors(self) -> None:
+        """A diffuse floor and a glossy plate, and a camera that sees nothing else; many samples."""
+        self.plane(material=self.material(Color=(0.7, 0.7, 0.6)))
+        glossy = self.material("ShaderNodeBsdfAnisotropic", Color=(0.8, 0.8, 0.8), Roughness=0.3, distribution="GGX")
+        self.plane(2.2, glossy, location=(0.3, -0.6, 0.05))
+        self.camera(location=(1.5, -4, 3.5), target=(0.2, -0.9, 0), lens=60)
+        self.scene.render.resolution_x, self.scene.render.resolution_y = 32, 24
+        self.scene.cycles.samples = 1024
+
     # --- pictures
+
+    def picture(self, pixels: NDArray[np.float64], *, is_float: bool = True) -> Any:
+        """An image of pixels (height, width, 3), row 0 at the bottom; bytes are encoded as sRGB."""
+        height, width = pixels.shape[:2]
+        made = bpy.data.images.new("Picture", width, height, float_buffer=is_float)
+        values = np.ones((height, width, 4), dtype=np.float32)
+        values[..., :3] = pixels
+        made.pixels.foreach_set(values.ravel())
+        made.update()
+        return made
 
     def render(self, engine: str, seed: int = 7) -> Image:
         """The picture of `engine` (height, width, 4), row 0 on top; `seed` is Cycles'."""

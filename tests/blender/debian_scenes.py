@@ -143,6 +143,25 @@ def spread():
     lit_by("AREA", 60, (0.2, 0.1, 0.3), shape="RECTANGLE", size=1.4, size_y=0.5, spread=math.radians(60))
 
 
+def textured_by_default():
+    """An area lamp that shines as a picture without symmetry."""
+    plane()
+    made = lamp("AREA", 60, (0.2, -0.3, 0.8), (0.4, 0.2, 0.3), shape="RECTANGLE", size=1.5, size_y=1.0)
+    image = bpy.data.images.new("Picture", 4, 3, float_buffer=True)
+    image.pixels = [value for y in range(3) for x in range(4) for value in (0.1 + 0.2 * x, 0.1 + 0.4 * y, 0.3, 1.0)]
+    made.data.use_nodes = True
+    tree = made.data.node_tree
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image, node.extension, node.interpolation = image, "EXTEND", "Closest"
+    tree.links.new(node.outputs["Color"], tree.nodes["Emission"].inputs["Color"])
+    return tree, node
+
+
+def textured():
+    tree, node = textured_by_default()
+    tree.links.new(tree.nodes.new("ShaderNodeNewGeometry").outputs["Parametric"], node.inputs["Vector"])
+
+
 def smooth():
     plane()
     made = ball(shader(Color=(0.8, 0.6, 0.2, 1)), location=(-1.2, 0, 0.8), scale=(0.7, 0.7, 0.8))
@@ -235,6 +254,8 @@ def main():
         sun,
         small_sun,
         spread,
+        textured,
+        textured_by_default,
         smooth,
         glossy,
         metal,

@@ -69,7 +69,7 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     return results
 
 
-LAMPS = ["lamps", "area", "spot", "small_spot", "small_point", "sun", "small_sun", "spread"]
+LAMPS = ["lamps", "area", "spot", "small_spot", "small_point", "sun", "small_sun", "spread", "textured"]
 
 
 @pytest.mark.parametrize("scene", [*LAMPS, "smooth", "glossy", "metal", "blackbody", "curves", "border", "sky"])
@@ -82,6 +82,13 @@ def test_pictures_against_cycles(pictures: dict[str, Any], scene: str) -> None:
     print(f"mean {100 * (ratio - 1):+.3f} %, relMSE {mse:.2e}")
     assert abs(ratio - 1.0) <= 5e-3
     assert mse <= 1e-2
+
+
+def test_lamps_have_no_uv_map(pictures: dict[str, Any]) -> None:
+    result = pictures["textured_by_default"]
+    assert len(result["messages"]) == 1
+    assert "a lamp has no UV map in this version of Blender" in result["messages"][0]
+    assert abs(mean_ratio(read_exr(result["SHLIGHT"]), read_exr(result["CYCLES"])) - 1.0) <= 5e-3
 
 
 def test_principled_names_its_diffuse_part(pictures: dict[str, Any]) -> None:

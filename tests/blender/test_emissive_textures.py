@@ -98,17 +98,6 @@ def test_colors_keep_the_light_and_black() -> None:
 # --- in Blender
 
 
-def image_of(pixels: Array, *, is_float: bool = True) -> Any:
-    """A picture of pixels (height, width, 3), row 0 at the bottom; bytes are encoded as sRGB."""
-    height, width = pixels.shape[:2]
-    made = bpy.data.images.new("Picture", width, height, float_buffer=is_float)
-    values = np.ones((height, width, 4), dtype=np.float32)
-    values[..., :3] = pixels
-    made.pixels.foreach_set(values.ravel())
-    made.update()
-    return made
-
-
 def gradient() -> Array:
     """Brighter to the right and the top, so that it tells every flip, and of one colour."""
     v, u = np.mgrid[:16, :24] + 0.5
@@ -137,24 +126,14 @@ def screen(studio: Any, image: Any, coordinates: Any, strength: float = 5.0, **o
     return made
 
 
-def floors(studio: Any) -> None:
-    """A diffuse floor and a glossy plate, and a camera that sees nothing else."""
-    studio.plane(material=studio.material(Color=(0.7, 0.7, 0.6)))
-    glossy = studio.material("ShaderNodeBsdfAnisotropic", Color=(0.8, 0.8, 0.8), Roughness=0.3, distribution="GGX")
-    studio.plane(2.2, glossy, location=(0.3, -0.6, 0.05))
-    studio.camera(location=(1.5, -4, 3.5), target=(0.2, -0.9, 0), lens=60)
-    studio.scene.render.resolution_x, studio.scene.render.resolution_y = 32, 24
-    studio.scene.cycles.samples = 1024
-
-
 OFF_CENTRE = [(0.1, 0.05), (0.95, 0.15), (0.85, 0.9), (0.05, 0.8)]
 
 
 @pytest.mark.parametrize(("pixels", "is_float"), [(gradient(), True), (checker(), False)])
 def test_a_screen_lights_floors_as_in_cycles(studio: Any, pixels: Array, is_float: bool) -> None:
     interpolation = "Linear" if is_float else "Closest"
-    screen(studio, image_of(pixels, is_float=is_float), OFF_CENTRE, interpolation=interpolation)
-    floors(studio)
+    screen(studio, studio.picture(pixels, is_float=is_float), OFF_CENTRE, interpolation=interpolation)
+    studio.floors()
     studio.compare(mean=5e-3, error=2e-3)
 
 
@@ -215,7 +194,7 @@ def test_lookups_as_in_cycles(
     # Beyond the picture on every side, by a map that keeps parallels.
     beyond = [(-0.6, -0.3), (1.2, -0.6), (1.6, 1.2), (-0.2, 1.5)]
     made = screen(
-        studio, image_of(pixels, is_float=is_float), beyond, 1.0, extension=extension, interpolation=interpolation
+        studio, studio.picture(pixels, is_float=is_float), beyond, 1.0, extension=extension, interpolation=interpolation
     )
     if vector_type:
         second = made.data.uv_layers.new(name="Second")
@@ -228,11 +207,22 @@ def test_lookups_as_in_cycles(
     assert difference.max() <= 0.05  # where texels end within a pixel, Cycles' samples are few
 
 
+def test_a_mapping_node_of_nothing_is_one_place(studio: Any) -> None:
+    made = screen(studio, studio.picture(gradient()), OFF_CENTRE, 1.0)
+    mapped(made, "POINT", "Map")
+    tree = made.data.materials[0].node_tree
+    (link,) = tree.nodes["Mapping"].inputs["Vector"].links
+    tree.links.remove(link)
+    reference, found = looked_up(studio, made)
+    assert np.ptp(found, axis=0).max() <= 1e-9
+    np.testing.assert_allclose(found, reference, rtol=1e-3)
+
+
 def test_strength_from_a_picture_and_principled(studio: Any) -> None:
     from shlight_blender.export.materials import read_material
     from shlight_blender.report import ExportReport
 
-    made = screen(studio, image_of(gradient()), OFF_CENTRE)
+    made = screen(studio, studio.picture(gradient()), OFF_CENTRE)
     material = made.data.materials[0]
     tree = material.node_tree
     node, picture = tree.nodes["Emission"], tree.nodes["Image Texture"]
@@ -255,7 +245,7 @@ def test_strength_from_a_picture_and_principled(studio: Any) -> None:
 
 
 def test_what_is_not_supported_is_named(studio: Any) -> None:
-    made = screen(studio, image_of(checker()), OFF_CENTRE, interpolation="Closest")
+    made = screen(studio, studio.picture(checker()), OFF_CENTRE, interpolation="Closest")
     studio.area()
     studio.camera()
     (line,) = studio.messages()
@@ -277,7 +267,7 @@ def test_what_is_not_supported_is_named(studio: Any) -> None:
 
 
 def test_the_camera_sees_the_picture(studio: Any) -> None:
-    made = screen(studio, image_of(gradient()), OFF_CENTRE)
+    made = screen(studio, studio.picture(gradient()), OFF_CENTRE)
     made.rotation_euler = (0.4, 0, 0)
     made.data.polygons.foreach_set("use_smooth", [True])
     studio.camera(location=(0.3, 0.3, 3.5), target=made.location)

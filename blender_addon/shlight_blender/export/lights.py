@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple, TypedDict
 
 import numpy as np
@@ -17,11 +18,14 @@ from ..report import ExportReport
 from .nodes import RGB, rgb
 from .shaders import SHADERS
 from .surface import SurfaceReader
+from .textured_lamps import UNIT_SQUARE, EvenLamp, EvenPart, even_lamp
+from .textures import UvOwner
 
 # The widest sun of Blender 3.4 [rad]: beyond, the plane that it is even on is nearly parallel to its light.
 WIDEST_TANGENT_SUN = 3.0
 # The narrowest spread of an area lamp [rad] that is drawn as it is.
 SMALLEST_SPREAD = math.radians(0.1)
+ROUND_SHAPES = {"DISK", "ELLIPSE"}
 
 
 class Traits(TypedDict):
@@ -37,7 +41,8 @@ class Lamp(NamedTuple):
     """A lamp that gives light."""
 
     data: Any  # bpy.types.Light
-    power: RGB  # [W], of a sun [W m^-2]
+    power: RGB  # [W], of a sun [W m^-2]; the mean where an area lamp has parts
+    parts: list[EvenPart]  # of an area lamp with a texture; their emission is power, as if all of it shone like them
     to_world: NDArray[np.float64]  # (4, 4)
     place: str  # how the report names it
     traits: Traits
@@ -62,7 +67,9 @@ def add_lamp(
     place = f"Light '{lamp_object.name}'"
     if lamp.type == "AREA" and getattr(getattr(lamp, "cycles", None), "is_portal", False):
         return False  # guides Cycles' sampling of the world, emits nothing
-    power = float(lamp.energy) * lamp_tint(lamp) * _emission_of_nodes(lamp, place, report)
+    unit = float(lamp.energy) * lamp_tint(lamp)
+    glow = _glow_of_nodes(lamp, place, report)
+    power = unit * glow.mean
     if not np.isfinite(power).all() or not np.isfinite(to_world).all():
         report.add(place, "its power or its transform is not finite; left out")
         return False
@@ -78,17 +85,22 @@ def add_lamp(
         "camera": all(shown.visible_camera for shown in shown_by),
         "glossy": all(shown.visible_glossy for shown in shown_by),
     }
-    return LAMP_TYPES[lamp.type](scene, Lamp(lamp, power, to_world, place, traits), report)
+    parts = [part._replace(emission=unit * part.emission) for part in glow.parts]
+    return LAMP_TYPES[lamp.type](scene, Lamp(lamp, power, parts, to_world, place, traits), report)
 
 
-def _emission_of_nodes(lamp: Any, place: str, report: ExportReport) -> RGB:
-    """RGB factor from the lamp's node tree: the emission of its shader, 1 without nodes."""
+def _glow_of_nodes(lamp: Any, place: str, report: ExportReport) -> EvenLamp:
+    """RGB factors from the lamp's node tree: the emission of its shader, 1 without nodes."""
     if not uses_nodes(lamp):
-        return np.ones(3)
+        return EvenLamp(np.ones(3), [])
     output = lamp.node_tree.get_output_node("CYCLES")
     if output is None:
-        return np.zeros(3)
-    return SurfaceReader(place, report, SHADERS).surface(output.inputs["Surface"]).emission
+        return EvenLamp(np.zeros(3), [])
+    uvs_of: UvOwner | None = "area lamp" if lamp.type == "AREA" else None
+    surface = SurfaceReader(place, report, SHADERS, uvs_of=uvs_of).surface(output.inputs["Surface"])
+    if not surface.textured:
+        return EvenLamp(surface.emission, [])
+    return even_lamp(surface, lamp.shape in ROUND_SHAPES, partial(report.add, place))
 
 
 def _add_point(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
@@ -158,31 +170,38 @@ def _add_sun(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
     return True
 
 
-def area_corners(lamp: Any, to_world: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Corners (4, 3) of an area lamp in the world, counter-clockwise seen from the side it shines to (its -Z)."""
-    along, across = _half_axes(lamp, to_world)
-    return to_world[:3, 3] + np.stack([-along - across, along - across, along + across, across - along])
+def area_corners(
+    lamp: Any, to_world: NDArray[np.float64], corners: NDArray[np.float64] = UNIT_SQUARE
+) -> NDArray[np.float64]:
+    """Corners of (a part of) an area lamp in the world, counter-clockwise seen from the side it shines to (its -Z).
+
+    corners: (k, 2), (0, 0) … (1, 1) along the lamp's x and y, counter-clockwise; by default all of the lamp.
+    """
+    half_x, half_y = _half_axes(lamp, to_world)
+    placed = to_world[:3, 3] + (2.0 * corners - 1.0) @ np.stack([half_x, half_y])
+    return placed[::-1] if _turns_right(to_world) else placed
 
 
 def _half_axes(lamp: Any, to_world: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Of an area lamp, (3,) each, in the order whose cross product is on the side that it shines to."""
-    axis_x, axis_y, axis_z = to_world[:3, :3].T
-    height = lamp.size if lamp.shape in {"SQUARE", "DISK"} else lamp.size_y
-    half_x, half_y = 0.5 * float(lamp.size) * axis_x, 0.5 * float(height) * axis_y
-    # A mirrored transform turns the order round.
-    towards_z = np.dot(np.cross(axis_x, axis_y), axis_z) > 0.0
-    return (half_y, half_x) if towards_z else (half_x, half_y)
+    """Of an area lamp along its x and y, (3,) each."""
+    height = lamp.size_y if lamp.shape in {"RECTANGLE", "ELLIPSE"} else lamp.size
+    return 0.5 * float(lamp.size) * to_world[:3, 0], 0.5 * float(height) * to_world[:3, 1]
+
+
+def _turns_right(to_world: NDArray[np.float64]) -> bool:
+    """True if a lamp's x is turned clockwise to its y, seen from the side that it shines to; not if it is mirrored."""
+    return float(np.linalg.det(to_world[:3, :3])) > 0.0
 
 
 def _add_area(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
     data = lamp.data
     axis_x, axis_y, axis_z = lamp.to_world[:3, :3].T
-    area = float(np.linalg.norm(axis_x) * np.linalg.norm(axis_y) * data.size)
-    area *= float(data.size if data.shape in {"SQUARE", "DISK"} else data.size_y)
+    half_axes = _half_axes(data, lamp.to_world)
+    area = 4.0 * float(np.linalg.norm(half_axes[0]) * np.linalg.norm(half_axes[1]))
     if area <= 0.0 or not np.linalg.norm(axis_z) > 0.0:
         report.add(lamp.place, "its area is 0; left out")
         return False
-    is_round = data.shape in {"DISK", "ELLIPSE"}
+    is_round = data.shape in ROUND_SHAPES
     if is_round:
         area *= 0.25 * math.pi
     spread = float(data.spread)
@@ -192,12 +211,14 @@ def _add_area(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
     sheared = abs(float(axis_x @ axis_y)) > 1e-3 * float(np.linalg.norm(axis_x) * np.linalg.norm(axis_y))
     if sheared:
         report.add(lamp.place, "sheared area lamps are drawn as parallelograms; Cycles takes them for rectangles")
-    radiance = lamp.power * (LAMPS.area / area if lamp_is_normalized(data) else 1.0 / math.pi)
-    if is_round:
-        half_axes = _half_axes(data, lamp.to_world)
-        scene.add_disk_light(lamp.place_in_world(), *half_axes, rgb(radiance), spread=spread, **lamp.traits)
-    else:
-        scene.add_polygon_light(area_corners(data, lamp.to_world), rgb(radiance), spread=spread, **lamp.traits)
+    factor = LAMPS.area / area if lamp_is_normalized(data) else 1.0 / math.pi
+    if is_round and not lamp.parts:
+        u, v = half_axes[::-1] if _turns_right(lamp.to_world) else half_axes
+        scene.add_disk_light(lamp.place_in_world(), u, v, rgb(factor * lamp.power), spread=spread, **lamp.traits)
+        return True
+    for corners, power in lamp.parts or [EvenPart(UNIT_SQUARE, lamp.power)]:
+        outline = area_corners(data, lamp.to_world, corners)
+        scene.add_polygon_light(outline, rgb(factor * power), spread=spread, **lamp.traits)
     return True
 
 

@@ -42,7 +42,7 @@ def read_material(material: Any, report: ExportReport) -> Surface:
         socket = output.inputs.get(name)
         if socket is not None and origin(socket).node is not None:
             report.add(place, f"{name.lower()} is not supported; left out")
-    surface = SurfaceReader(place, report, SHADERS, has_uvs=True).surface(output.inputs["Surface"])
+    surface = SurfaceReader(place, report, SHADERS, uvs_of="mesh").surface(output.inputs["Surface"])
     factors = [surface.emission, *(glow.factor for glow in surface.textured)]
     if not np.isfinite(factors).all():
         report.add(place, "the emitted light is not finite; nothing is emitted")

@@ -14,7 +14,7 @@ import shlight
 
 from ..report import ExportReport
 from .nodes import RGB, ConstantReader, origin, rgb
-from .textures import ImageTexture, read_image_texture
+from .textures import ImageTexture, UvOwner, read_image_texture
 
 
 def _black() -> RGB:
@@ -68,6 +68,13 @@ class Surface:
         """True if it may give light."""
         return bool(self.emission.any() or self.textured)
 
+    def radiance(self, uvs: Mapping[str, NDArray[np.float64]]) -> NDArray[np.float64]:
+        """What it emits at n places (n, 3); see `TexturedEmission.radiance`."""
+        total = np.broadcast_to(self.emission, (len(next(iter(uvs.values()))), 3)).copy()
+        for glow in self.textured:
+            total += glow.radiance(uvs)
+        return total
+
     def opaque_bsdf(self) -> shlight.Bsdf:
         """The reflection, black where there is none."""
         return shlight.Bsdf.lambert(0.0) if self.bsdf is None else self.bsdf
@@ -81,15 +88,20 @@ def lambert(albedo: RGB) -> shlight.Bsdf | None:
 class SurfaceReader(ConstantReader):
     """Walks the shader nodes of one tree; `shaders` says how a node of each type is read.
 
-    has_uvs: textures of what is emitted can be looked up, as on a mesh; else they are reported as other varying values.
+    uvs_of: what textures of the emission are looked up on; None: they are reported as other varying values.
     """
 
     def __init__(
-        self, place: str, report: ExportReport, shaders: Mapping[str, ReadShader], *, has_uvs: bool = False
+        self,
+        place: str,
+        report: ExportReport,
+        shaders: Mapping[str, ReadShader],
+        *,
+        uvs_of: UvOwner | None = None,
     ) -> None:
         super().__init__(place, report)
         self._shaders = shaders
-        self._has_uvs = has_uvs
+        self._uvs_of = uvs_of
 
     def surface(self, socket: Any, groups: tuple[Any, ...] = ()) -> Surface:
         """The surface that a shader socket receives; black where nothing is linked."""
@@ -118,9 +130,9 @@ class SurfaceReader(ConstantReader):
         return Surface(textured=(TexturedEmission(factor, found),)) if factor.any() else Surface()
 
     def _texture(self, node: Any, name: str, groups: tuple[Any, ...], is_number: bool) -> ImageTexture | None:
-        if not self._has_uvs:
+        if self._uvs_of is None:
             return None
-        return read_image_texture(self, origin(node.inputs[name], groups), is_number)
+        return read_image_texture(self, origin(node.inputs[name], groups), self._uvs_of, is_number)
 
     def _unsupported(self, node: Any, groups: tuple[Any, ...]) -> Surface:
         kind = node.bl_label or node.bl_idname

@@ -82,11 +82,7 @@ def _cut_surface(part: MeshArrays, surface: Surface, uvs: Mapping[str, Array], m
     joined = np.concatenate([uvs[name] for name in names], axis=2)
 
     def radiance(places: Array) -> Array:
-        of_map = {name: places[:, 2 * i : 2 * i + 2] for i, name in enumerate(names)}
-        total = np.broadcast_to(surface.emission, (len(places), 3)).copy()
-        for glow in surface.textured:
-            total += glow.radiance(of_map)
-        return total
+        return surface.radiance({name: places[:, 2 * i : 2 * i + 2] for i, name in enumerate(names)})
 
     return cut(radiance, joined, levels, area, most)
 

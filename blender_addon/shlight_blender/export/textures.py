@@ -1,20 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Image Texture nodes: which picture is looked up, where, and the values that Cycles finds there."""
+"""Image Texture nodes: which picture is looked up, where, and the values that Cycles finds there.
+
+On an area lamp (u, v) is (0, 0) … (1, 1) along its own x and y: what Cycles gives there as Parametric and, if
+`LAMPS.area_has_uvs`, as the default UV map. Any other map is (0, 0), as those that a mesh lacks.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from mathutils import Euler
 from numpy.typing import NDArray
 
+from ..compat import LAMPS
 from ..report import ExportReport
 from .nodes import REC709_LUMINANCE, ConstantReader, Origin, origin
 from .pictures import linear_from_srgb, stored_pixels
 
 Array = NDArray[np.float64]
+UvOwner = Literal["mesh", "area lamp"]
 # Colour spaces whose bytes are read right; images of floats are linear in any.
 COLOR_SPACES = {"sRGB", "Non-Color", "Raw", "Linear", "Linear Rec.709"}
 INTERPOLATIONS = {"Linear", "Closest"}
@@ -23,13 +30,13 @@ EXTENSIONS = {"REPEAT", "EXTEND", "CLIP", "MIRROR"}
 
 @dataclass(frozen=True)
 class ImageTexture:
-    """A picture over texture coordinates (u, v), and how a mesh's UV map becomes these."""
+    """A picture over texture coordinates (u, v), and how a UV map becomes these."""
 
     pixels: NDArray[np.float32]  # (height, width, 3), row 0 at v = 0, encoded where `is_srgb`
     is_srgb: bool = False
     interpolation: str = "Linear"  # or "Closest"
     extension: str = "REPEAT"  # or "EXTEND", "CLIP", "MIRROR"
-    uv_map: str = ""  # "": the mesh's map for rendering
+    uv_map: str = ""  # "": a mesh's map for rendering, a lamp's own coordinates
     matrix: Array | None = None  # (2, 3): (u, v, 1) of the map to texture coordinates; None: they are the same
     is_number: bool = False  # its luminance counts, as where a number is asked for
 
@@ -73,14 +80,17 @@ class ImageTexture:
         return np.clip(index, 0, count - 1).astype(np.int64)
 
 
-def read_image_texture(reader: ConstantReader, source: Origin, is_number: bool) -> ImageTexture | None:
-    """The texture that `source` looks up, None if it is no such texture; `reader` reports what is not as in Cycles."""
+def read_image_texture(reader: ConstantReader, source: Origin, owner: UvOwner, is_number: bool) -> ImageTexture | None:
+    """The texture that `source` looks up, None if it is no such texture; `reader` reports what is not as in Cycles.
+
+    owner: what has the UV maps.
+    """
     node = source.node
     if node is None or node.type != "TEX_IMAGE" or source.output.name != "Color" or node.projection != "FLAT":
         return None
     if node.image is not None and node.image.source == "TILED":
         return None
-    placed = _placed(reader, origin(node.inputs["Vector"], source.groups))
+    placed = _placed(reader, origin(node.inputs["Vector"], source.groups), owner)
     if placed is None:
         return None
     uv_map, to_texture = placed
@@ -114,19 +124,40 @@ def _report_differences(report: ExportReport, place: str, node: Any) -> None:
         report.add(place, f"colour space {image.colorspace_settings.name} is not supported; taken for linear")
 
 
-def _placed(reader: ConstantReader, source: Origin) -> tuple[str, Array] | None:
+def _placed(reader: ConstantReader, source: Origin, owner: UvOwner) -> tuple[str, Array] | None:
     """The UV map that a Vector comes from, and what Mapping nodes (4, 4) do with it; None: it is something else."""
-    node = source.node
-    if node is None or (node.type == "TEX_COORD" and source.output.name == "UV" and not node.from_instancer):
+    node, name = source.node, _uv_map(source)
+    if name is not None:
+        if owner == "mesh" or (LAMPS.area_has_uvs and not name):
+            return name, np.eye(4)
+        which = f" '{name}'" if name else " in this version of Blender"
+        reader.report.add(reader.place, f"a lamp has no UV map{which}; one colour of its texture is used")
+        return "", _constant_place((0.0, 0.0, 0.0))
+    if owner == "area lamp" and node.type == "NEW_GEOMETRY" and source.output.name == "Parametric":
         return "", np.eye(4)
-    if node.type == "UVMAP" and not node.from_instancer:
-        return str(node.uv_map), np.eye(4)
     if node.type != "MAPPING" or node.vector_type == "NORMAL":
         return None
     if any(origin(socket, source.groups).node is not None for socket in node.inputs if socket.name != "Vector"):
         return None
-    before = _placed(reader, origin(node.inputs["Vector"], source.groups))
+    vector = origin(node.inputs["Vector"], source.groups)
+    linked = vector.node is not None
+    before = _placed(reader, vector, owner) if linked else ("", _constant_place(vector.socket.default_value))
     return None if before is None else (before[0], _mapping(node, source.groups) @ before[1])
+
+
+def _uv_map(source: Origin) -> str | None:
+    """The name of the UV map that a texture's Vector is, "" for the default; None if it is no UV map."""
+    node = source.node
+    if node is None or (node.type == "TEX_COORD" and source.output.name == "UV" and not node.from_instancer):
+        return ""
+    return str(node.uv_map) if node.type == "UVMAP" and not node.from_instancer else None
+
+
+def _constant_place(place: Sequence[float]) -> Array:
+    """What takes every place to this one, (4, 4)."""
+    constant = np.zeros((4, 4))
+    constant[:, 3] = (*place, 1.0)
+    return constant
 
 
 def _mapping(node: Any, groups: tuple[Any, ...]) -> Array:
