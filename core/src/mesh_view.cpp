@@ -37,6 +37,16 @@ bool encloses(const EmitterLevel& level, const Vec3d& point) {
     return winding != 0;
 }
 
+/// Whether a flattened outline runs counter-clockwise about its inside, as seen from the hit. One that runs the other
+/// way round stands for all directions but those inside: within a bowl the surface is everywhere but in its mouth.
+bool is_about_its_inside(std::span<const Vec3d> outline, const Vec3d& axis) {
+    Vec3d sum(0);
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+        sum += glm::cross(outline[i], outline[(i + 1) % outline.size()]);
+    }
+    return glm::dot(sum, axis) < 0;
+}
+
 }  // namespace
 
 MeshView::Kind MeshView::look(const EmitterLevels& emitter, const ShadingFrame& frame, double tolerance) {
@@ -65,7 +75,7 @@ MeshView::Kind MeshView::look(const EmitterLevels& emitter, const ShadingFrame& 
     for (const Vec3d& direction : silhouette_.outline()) {
         local_.push_back(frame.to_local(direction));
     }
-    if (const auto axis = flatten(local_, outline_)) {
+    if (const auto axis = flatten(local_, outline_); axis && is_about_its_inside(outline_, *axis)) {
         axis_ = *axis;
         // Of lines that are joined, one direction of what joins them would move and the other stay.
         if (silhouette_.is_simple()) {

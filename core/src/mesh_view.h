@@ -19,7 +19,7 @@ class MeshView {
     enum class Kind {
         hidden,
         outline,  ///< the region inside outline()
-        faces,    ///< that of each of faces(): the outline is wider than half of space
+        faces,    ///< that of each of faces(): the outline is wider than half of space, or the mesh is around it
         inside    ///< all directions: the hit lies within a closed surface
     };
 

@@ -255,5 +255,40 @@ TEST(MeshSampler, WeightsAddUpToTheSolidAngle) {
     }
 }
 
+/// Whether a ray from the origin meets a triangle: the three corners weigh the direction with one sign.
+bool ray_meets(const Vec3d& direction, const std::array<Vec3d, 3>& corners) {
+    const Vec3d weights = glm::inverse(glm::dmat3(corners[0], corners[1], corners[2])) * direction;
+    return weights.x >= 0 && weights.y >= 0 && weights.z >= 0;
+}
+
+/// In a cup, whose outline fits on no plane: its faces are counted one by one.
+TEST(MeshSampler, CountsTheFacesAroundItInEachDirection) {
+    Solid solid = icosphere(2);
+    std::erase_if(solid.triangles, [&](const Triangle& t) { return solid.vertices[t.x].z > 0.3; });
+    const auto shape =
+        std::make_shared<const EmitterLevels>(make_emitter_levels(solid.vertices, solid.triangles, 1 << 20));
+    const MeshLight light{shape, Rgb(1), 0, nullptr, 0};
+    RandomInput random(8);
+    MeshSampler sampler;
+    int met = 0;
+    constexpr int kDirections = 2000;
+    for (int i = 0; i < kDirections; ++i) {
+        const ShadingFrame frame{0.4 * random.direction(), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        sampler.reset(light, frame);
+        const Vec3d direction = random.direction();
+        int layers = 0;
+        for (const Triangle& t : solid.triangles) {
+            layers += ray_meets(direction, {solid.vertices[t.x] - frame.origin, solid.vertices[t.y] - frame.origin,
+                                            solid.vertices[t.z] - frame.origin})
+                          ? 1
+                          : 0;
+        }
+        EXPECT_EQ(sampler.layers(direction), layers) << i;
+        met += layers;
+    }
+    EXPECT_GE(met, kDirections / 3);
+    EXPECT_LE(met, kDirections);
+}
+
 }  // namespace
 }  // namespace shlight
