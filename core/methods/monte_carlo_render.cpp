@@ -119,6 +119,7 @@ class Worker {
     std::vector<Vec3d> radiance_;        // likewise, summed up
     std::vector<std::size_t> covered_;   // likewise
     std::vector<Ray> rays_;
+    std::vector<std::size_t> pixel_of_camera_ray_;
     std::vector<RayHit> ray_hits_;
     Hits hits_;
     std::vector<std::size_t> pixel_of_hit_;
@@ -170,6 +171,7 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
     const Picture& p = *picture_;
     const auto columns = static_cast<std::size_t>(p.width);
     rays_.clear();
+    pixel_of_camera_ray_.clear();
     for (std::size_t pixel = 0; pixel < random_.size(); ++pixel) {
         const auto column = static_cast<double>((first + pixel) % columns);
         const std::size_t above = (first + pixel) / columns;
@@ -179,6 +181,7 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
             const double y = (static_cast<double>(above) + place.y) / p.height;
             rays_.push_back(p.camera.ray(p.window.left + x * (p.window.right - p.window.left),
                                          p.window.top + y * (p.window.bottom - p.window.top)));
+            pixel_of_camera_ray_.push_back(pixel);
         }
     }
     ray_hits_.resize(rays_.size());
@@ -186,19 +189,20 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
     hits_.clear();
     pixel_of_hit_.clear();
     for (std::size_t i = 0; i < rays_.size(); ++i) {
+        const std::size_t pixel = pixel_of_camera_ray_[i];
         if (!ray_hits_[i].missed()) {
             const SurfacePoint surface = p.scene.surface(ray_hits_[i], rays_[i].direction);
             const Vec3d direction = glm::normalize(Vec3d(rays_[i].direction));
             const double distance = glm::dot(surface.position - Vec3d(rays_[i].origin), direction);
             hits_.add(surface, -direction,
                       p.scene.materials()[surface.material].emission + p.scene.lamps_along(rays_[i], distance), 0);
-            pixel_of_hit_.push_back(i / samples);
+            pixel_of_hit_.push_back(pixel);
             continue;
         }
-        radiance_[i / samples] += Vec3d(p.scene.lamps_along(rays_[i], std::nullopt));
+        radiance_[pixel] += Vec3d(p.scene.lamps_along(rays_[i], std::nullopt));
         if (const Environment* background = p.scene.background()) {
-            radiance_[i / samples] += Vec3d(background->radiance(glm::normalize(Vec3d(rays_[i].direction))));
-            ++covered_[i / samples];
+            radiance_[pixel] += Vec3d(background->radiance(glm::normalize(Vec3d(rays_[i].direction))));
+            ++covered_[pixel];
         }
     }
 }
