@@ -93,8 +93,7 @@ def test_it_lights_floors_as_in_cycles(studio: Any, case: str) -> None:
         place(node, *coordinates)
     studio.floors()
     assert told_differences(studio) == []
-    # A round lamp of narrow spread is 0.27 % off, and Cycles' mean has an error of 0.15 %.
-    studio.compare(mean=6e-3 if case == "disk_spread" else 3e-3, error=2e-3)
+    studio.compare(mean=3e-3, error=2e-3)
 
 
 @pytest.mark.parametrize("interpolation", ["Closest", pytest.param("Linear", marks=SLOW)])
