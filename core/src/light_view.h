@@ -65,6 +65,15 @@ class ProfileView {
 /// through its spread. Nothing where that is all of it, and for lights of other shapes and profiles.
 std::optional<std::array<Vec3d, 4>> lit_rectangle(const PolygonLight& light, const Vec3d& position);
 
+/// visit(corner) for the corners of that rectangle, or else of all of the polygon, in the shading frame.
+template <class Visit>
+void for_lit_corners(const PolygonLight& light, const ShadingFrame& frame, const Visit& visit) {
+    const auto part = lit_rectangle(light, frame.origin);
+    for (const Vec3d& v : part ? std::span<const Vec3d>(*part) : std::span<const Vec3d>(light.vertices)) {
+        visit(frame.point_to_local(v));
+    }
+}
+
 /// A part of a disk.
 struct LitDisk {
     Ellipse<double> ellipse;

@@ -2,6 +2,7 @@
 #include "profile_rings.h"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 #include <variant>
 
@@ -33,7 +34,7 @@ double root_between(double from, double to, const Function& f) {
     for (int i = 0; i < kMostSteps && std::abs(to - from) > kRootError; ++i) {
         middle = at_to == at_from ? (from + to) / 2 : to - at_to * (to - from) / (at_to - at_from);
         const double value = f(middle);
-        if (value == 0) {
+        if (std::abs(value) < kRootError * kRootError) {
             break;
         }
         if ((value > 0) != (at_to > 0)) {
@@ -44,9 +45,6 @@ double root_between(double from, double to, const Function& f) {
         }
         to = middle;
         at_to = value;
-        if (std::abs(value) < kRootError * kRootError) {
-            break;
-        }
     }
     return middle;
 }
@@ -59,7 +57,7 @@ double angle_to_axis(const Vec3d& direction) {
 /// profile has kinks. No direction: its rings are no circles.
 struct Axis {
     std::optional<Vec3d> direction;
-    std::vector<double> kinks;
+    std::array<double, 2> kinks{};
 };
 
 Axis axis_of(const EmissionProfile& profile) {
@@ -70,7 +68,7 @@ Axis axis_of(const EmissionProfile& profile) {
         return {-glm::normalize(along), {std::acos(spot->cosine), std::acos(std::min(1.0, inner))}};
     }
     if (const auto* spread = std::get_if<SpreadProfile>(&profile)) {
-        return {-spread->normal, {spread->half_angle}};
+        return {-spread->normal, {spread->half_angle, spread->half_angle}};
     }
     return {};
 }
@@ -151,13 +149,8 @@ bool ProfileRings::reset(const Light& light, const ShadingFrame& frame) {
     const Vec3d x = perpendicular(z);
     to_shading_ = {x, glm::cross(z, x), z};
     if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
-        std::vector<Vec3d> corners(polygon->vertices.begin(), polygon->vertices.end());
-        if (const auto lit = lit_rectangle(*polygon, frame.origin)) {
-            corners.assign(lit->begin(), lit->end());
-        }
-        for (Vec3d& corner : corners) {
-            corner = frame.point_to_local(corner);
-        }
+        std::vector<Vec3d> corners;
+        for_lit_corners(*polygon, frame, [&](const Vec3d& corner) { corners.push_back(corner); });
         if (!add_polygon(corners)) {
             return false;
         }
@@ -181,18 +174,15 @@ void ProfileRings::add_side(const Vec3d& normal, double offset) {
 
 bool ProfileRings::add_cap(const Light& light, const ShadingFrame& frame) {
     const std::optional<CapView> cap = cap_view(light, frame);
-    const bool sphere = cap && cap->kind == CapView::Kind::sphere;
-    if (!sphere && !(cap && cap->kind == CapView::Kind::facing_disk)) {
+    if (!cap || (cap->kind != CapView::Kind::sphere && cap->kind != CapView::Kind::facing_disk)) {
         return false;
     }
-    const double distance = glm::length(cap->center);
-    const double sine = cap->radius / (sphere ? distance : std::hypot(distance, cap->radius));
-    if (!(sine >= kLeastSine)) {
+    const Circle circle = circle_of(*cap);
+    if (!(circle.sine >= kLeastSine)) {
         return false;
     }
-    const Vec3d axis = cap->center / distance;
-    add_side(to_rings(axis), std::sqrt(std::max(0.0, (1 - sine) * (1 + sine))));
-    if (axis.z < sine) {
+    add_side(to_rings(circle.axis), circle.cosine);
+    if (circle.axis.z < circle.sine) {
         add_horizon();
     }
     return true;

@@ -6,7 +6,6 @@
 // all is smooth, so that few nodes do.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -48,9 +47,8 @@ class ProfileRings {
     struct Disk {
         double height;  // of its plane above the hit
         glm::dvec2 center, u, v;
-        double radius;  // of a circle; 0: it is none
-        std::vector<double>
-            turns;  // parameters t of c + u cos t + v sin t where it is nearest and farthest to the axis
+        double radius;                   // of a circle; 0: it is none
+        std::vector<double> turns;       // t of c + u cos t + v sin t where it is nearest and farthest to the axis
         std::vector<double> near_turns;  // where it nearly is: the crossings' azimuths move fast there
 
         glm::dvec2 at(double t) const { return center + u * std::cos(t) + v * std::sin(t); }

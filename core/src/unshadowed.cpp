@@ -87,10 +87,7 @@ void Unshadowed::see(const Light& light, const ShadingPoints& points, std::span<
             if (!is_seen(light, frame, points.error[some[i]])) {
                 continue;
             }
-            const auto part = lit_rectangle(*polygon, frame.origin);
-            for (const Vec3d& v : part ? std::span<const Vec3d>(*part) : std::span<const Vec3d>(polygon->vertices)) {
-                polygons_.push_back(frame.point_to_local(v));
-            }
+            for_lit_corners(*polygon, frame, [&](const Vec3d& corner) { polygons_.push_back(corner); });
         } else {
             const std::optional<CapView> cap = cap_view(light, frame);
             if (!cap || !(ProfileView(light, frame).range().high > 0)) {

@@ -44,12 +44,7 @@ std::vector<double> truth(const Light& light, const ShadingFrame& frame) {
     std::vector<double> l(kTerms);
     std::vector<Vec3d> corners;
     if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
-        corners = polygon->vertices;
-        if (const auto lit = lit_rectangle(*polygon, frame.origin)) {
-            corners.assign(lit->begin(), lit->end());
-        }
-        std::transform(corners.begin(), corners.end(), corners.begin(),
-                       [&](const Vec3d& corner) { return frame.point_to_local(corner); });
+        for_lit_corners(*polygon, frame, [&](const Vec3d& corner) { corners.push_back(corner); });
     } else if (const auto* disk = std::get_if<DiskLight>(&light)) {
         const LitDisk lit = lit_part(*disk, frame);
         if (lit.corners.empty()) {

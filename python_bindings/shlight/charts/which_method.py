@@ -153,9 +153,9 @@ def measure(run: Run, grid: Grid) -> list[Cell]:
         row = smoothed([costs[cos_o, half_angle] for half_angle in grid.half_angles])
         costs.update(zip([(cos_o, half_angle) for half_angle in grid.half_angles], row, strict=True))
     cells = []
-    todo = [(roughness, *place) for roughness in grid.roughnesses for place in places]
-    for i, (roughness, cos_o, half_angle) in enumerate(todo):
-        run.step(0.2 + 0.8 * i / len(todo), f"roughness {roughness:.2f}, cosθ_o = {cos_o:g}")
+    grid_points = [(roughness, *place) for roughness in grid.roughnesses for place in places]
+    for i, (roughness, cos_o, half_angle) in enumerate(grid_points):
+        run.step(0.2 + 0.8 * i / len(grid_points), f"roughness {roughness:.2f}, cosθ_o = {cos_o:g}")
         at = _Place(cos_o, roughness, _lights(run.seed, roughness, cos_o, half_angle, grid.lights))
         choices = at.cheapest(costs[cos_o, half_angle], clock)
         cells.append(Cell(cos_o, roughness, half_angle, tuple(choices)))
