@@ -3,6 +3,7 @@
 
 import json
 import sys
+import traceback
 from pathlib import Path
 
 import bpy
@@ -12,6 +13,7 @@ from shlight_blender import engine, panels, record
 from shlight_blender.export import bake
 
 FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
+ended = []
 drawn = {"panels": [], "viewport_updates": 0, "messages": [], "kept": []}
 
 
@@ -75,9 +77,10 @@ def set_sky(scene):
 def final_render(scene, path):
     """As F12 does it: the window goes on meanwhile."""
     scene.render.resolution_x, scene.render.resolution_y = 64, 48
+    ended.clear()
     bpy.ops.render.render("INVOKE_DEFAULT")
-    yield
-    while bpy.app.is_job_running("RENDER"):
+    # The job is not yet running while it waits for another one, such as the material's preview, to stop.
+    while not ended or bpy.app.is_job_running("RENDER"):
         yield
     drawn["messages"].append(record.last.messages)
     drawn["kept"].append(len(bake.kept))
@@ -89,15 +92,19 @@ def final_render(scene, path):
 def run(plan):
     try:
         next(plan)
+        return 0.1
     except StopIteration:
         (FOLDER / "drawn.json").write_text(json.dumps(drawn))
-        bpy.ops.wm.quit_blender()
-        return None
-    return 0.1
+    except Exception:
+        traceback.print_exc()
+    bpy.ops.wm.quit_blender()
+    return None
 
 
 bpy.context.preferences.view.show_splash = False
 watch()
+for handlers in (bpy.app.handlers.render_complete, bpy.app.handlers.render_cancel):
+    handlers.append(lambda *_: ended.append(True))
 shlight_blender.register()
 plan = steps()
 bpy.app.timers.register(lambda: run(plan), first_interval=0.5)

@@ -49,7 +49,11 @@ def run_blender(
         *before, str(BLENDER), *arguments, "--factory-startup", "--python-exit-code", "1",
         "--python-expr", f"import sys; sys.path[:0] = {paths!r}", "--python", str(HERE / script), "--", str(folder),
     ]  # fmt: skip
-    return subprocess.run(command, capture_output=True, text=True, env=environment, timeout=240, check=False)
+    try:
+        return subprocess.run(command, capture_output=True, text=True, env=environment, timeout=240, check=False)
+    except subprocess.TimeoutExpired as late:
+        said = [part.decode(errors="replace") for part in (late.stdout, late.stderr) if isinstance(part, bytes)]
+        pytest.fail(f"{script} did not end:\n" + "".join(said))
 
 
 def spoken(done: Any) -> str:
