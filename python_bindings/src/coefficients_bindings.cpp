@@ -46,8 +46,8 @@ Array<T> evaluated(const Array<T>& coefficients, const Array<T>& directions, int
     Array<T> out(static_cast<py::ssize_t>(d.size()));
     T* data = out.mutable_data();
     in_chunks(d.size(), threads, [&](std::size_t first, std::size_t count) {
-        evaluate(slice(c.data(), order, first, count), d.subspan(first, count), order,
-                 std::span<T>(data + first, count));
+        shlight::evaluate(slice(c.data(), order, first, count), d.subspan(first, count), order,
+                          std::span<T>(data + first, count));
     });
     return out;
 }
@@ -122,7 +122,7 @@ Array<T> shaded(const Array<T>& light, const Array<T>& bsdf, int order, int thre
 }
 
 template <class T>
-void bind_for(py::module_& m) {
+void bind_coefficients_for(py::module_& m) {
     m.def("sh_basis", &basis<T>, py::arg("directions").noconvert(), py::arg("order"), py::arg("threads"));
     m.def("evaluate", &evaluated<T>, py::arg("coefficients").noconvert(), py::arg("directions").noconvert(),
           py::arg("order"), py::arg("threads"));
@@ -141,8 +141,8 @@ void bind_for(py::module_& m) {
 }  // namespace
 
 void bind_coefficients(py::module_& m) {
-    bind_for<float>(m);
-    bind_for<double>(m);
+    bind_coefficients_for<float>(m);
+    bind_coefficients_for<double>(m);
 }
 
 }  // namespace shlight::python

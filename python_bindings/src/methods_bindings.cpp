@@ -49,7 +49,7 @@ Array<T> integrated(std::size_t count, int order, int threads, const Integrate& 
 }
 
 template <class T>
-void bind_for(py::module_& m) {
+void bind_methods_for(py::module_& m) {
     m.def(
         "method_sphere_coefficients",
         [](const std::string& method, const Array<T>& centers, const Array<T>& radii, int order, bool clip,
@@ -95,8 +95,8 @@ void bind_for(py::module_& m) {
         py::arg("threads"));
 }
 
-py::tuple spheres(const std::string& method, const Array<double>& centers, const Array<double>& radii, const Bsdf& bsdf,
-                  const Array<double>& cos_theta_o, const Options& options, int threads) {
+py::tuple shaded_spheres(const std::string& method, const Array<double>& centers, const Array<double>& radii,
+                         const Bsdf& bsdf, const Array<double>& cos_theta_o, const Options& options, int threads) {
     const ShadingMethod& found = find_shading_method(method);
     const auto c = vectors("centers", centers);
     const auto r = values(radii);
@@ -110,8 +110,8 @@ py::tuple spheres(const std::string& method, const Array<double>& centers, const
     return out.result();
 }
 
-py::tuple polygons(const std::string& method, const Array<double>& vertices, const Bsdf& bsdf,
-                   const Array<double>& cos_theta_o, const Options& options, int threads) {
+py::tuple shaded_polygons(const std::string& method, const Array<double>& vertices, const Bsdf& bsdf,
+                          const Array<double>& cos_theta_o, const Options& options, int threads) {
     const ShadingMethod& found = find_shading_method(method);
     const auto v = vectors("vertices", vertices);
     const auto k = static_cast<std::size_t>(vertices.shape(1));
@@ -166,13 +166,13 @@ void bind_methods(py::module_& m) {
             return methods::lobe_condition(band);
         },
         py::arg("band"));
-    bind_for<float>(m);
-    bind_for<double>(m);
-    m.def("method_shade_spheres", &spheres, py::arg("method"), py::arg("centers").noconvert(),
+    bind_methods_for<float>(m);
+    bind_methods_for<double>(m);
+    m.def("method_shade_spheres", &shaded_spheres, py::arg("method"), py::arg("centers").noconvert(),
           py::arg("radii").noconvert(), py::arg("bsdf"), py::arg("cos_theta_o").noconvert(), py::arg("options"),
           py::arg("threads"));
-    m.def("method_shade_polygons", &polygons, py::arg("method"), py::arg("vertices").noconvert(), py::arg("bsdf"),
-          py::arg("cos_theta_o").noconvert(), py::arg("options"), py::arg("threads"));
+    m.def("method_shade_polygons", &shaded_polygons, py::arg("method"), py::arg("vertices").noconvert(),
+          py::arg("bsdf"), py::arg("cos_theta_o").noconvert(), py::arg("options"), py::arg("threads"));
 }
 
 }  // namespace shlight::python
