@@ -129,7 +129,9 @@ def screen(studio: Any, image: Any, coordinates: Any, strength: float = 5.0, **o
 OFF_CENTRE = [(0.1, 0.05), (0.95, 0.15), (0.85, 0.9), (0.05, 0.8)]
 
 
-@pytest.mark.parametrize(("pixels", "is_float"), [(gradient(), True), (checker(), False)])
+@pytest.mark.parametrize(
+    ("pixels", "is_float"), [(gradient(), True), pytest.param(checker(), False, marks=pytest.mark.slow)]
+)
 def test_a_screen_lights_floors_as_in_cycles(studio: Any, pixels: Array, is_float: bool) -> None:
     interpolation = "Linear" if is_float else "Closest"
     screen(studio, studio.picture(pixels, is_float=is_float), OFF_CENTRE, interpolation=interpolation)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -61,16 +62,23 @@ def test_principled(studio: Any, inputs: dict[str, Any]) -> None:
     assert studio.messages(most=99) == []
 
 
-@pytest.mark.parametrize("roughness", [0.0, 0.003, 0.01, 0.03])
-@pytest.mark.parametrize(
-    ("shader", "inputs"),
-    [
-        ("ShaderNodeBsdfAnisotropic", {"Color": (0.9, 0.6, 0.3), "distribution": "GGX"}),
-        ("ShaderNodeBsdfAnisotropic", {"Color": (0.9, 0.6, 0.3), "distribution": "MULTI_GGX"}),
-        ("ShaderNodeBsdfPrincipled", {"Base_Color": (0.9, 0.7, 0.3), "Metallic": 1.0}),
-        ("ShaderNodeBsdfPrincipled", {"Base_Color": (0.2, 0.5, 0.8), "IOR": 1.8}),
-    ],
-)
+MIRRORS: list[tuple[str, dict[str, Any]]] = [
+    ("ShaderNodeBsdfAnisotropic", {"Color": (0.9, 0.6, 0.3), "distribution": "GGX"}),
+    ("ShaderNodeBsdfAnisotropic", {"Color": (0.9, 0.6, 0.3), "distribution": "MULTI_GGX"}),
+    ("ShaderNodeBsdfPrincipled", {"Base_Color": (0.9, 0.7, 0.3), "Metallic": 1.0}),
+    ("ShaderNodeBsdfPrincipled", {"Base_Color": (0.2, 0.5, 0.8), "IOR": 1.8}),
+]
+MIRROR_ROUGHNESSES = (0.003, 0.0, 0.01, 0.03)
+
+
+def mirrors() -> Iterator[Any]:
+    """All shaders and roughnesses; each of either once among the quick ones."""
+    for i, (shader, inputs) in enumerate(MIRRORS):
+        for j, roughness in enumerate(MIRROR_ROUGHNESSES):
+            yield pytest.param(shader, inputs, roughness, marks=[] if i == j else [pytest.mark.slow])
+
+
+@pytest.mark.parametrize(("shader", "inputs", "roughness"), mirrors())
 def test_mirrors(studio: Any, shader: str, inputs: dict[str, Any], roughness: float) -> None:
     """Down to roughness 0, where a lamp's own image is seen; Cycles draws it from 0.0037 on."""
     shine_on(studio, studio.material(shader, Roughness=roughness, **inputs))
