@@ -10,8 +10,12 @@
 namespace shlight {
 namespace {
 
-/// Lights whose unshadowed values are held at a time.
-constexpr std::size_t kLightBlock = 8;
+/// Unshadowed values that are held at a time, as many as fit the cache, but those of some lights at least.
+constexpr std::size_t kValues = std::size_t{1} << 21;
+constexpr std::size_t kLeastLights = 8;
+/// Camera rays of a batch: enough for long batches, few enough for the cache.
+constexpr std::size_t kMostSamples = 4096;
+constexpr std::size_t kLeastSamples = 256;
 /// In the place of a light's number.
 constexpr std::uint32_t kEnvironmentSeed = 0xFFFFFFFFU;
 constexpr std::uint32_t kDeltaSeed = 0xFFFFFFFEU;
@@ -69,6 +73,11 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
     if (!s.environment().is_black()) {
         environment.emplace(s.environment(), materials, lobe_stride, r.order, r.tolerance);
     }
+}
+
+std::uint32_t Picture::batch_samples() const {
+    const std::size_t values = std::max<std::size_t>(lights.size() * lobe_stride, 1);
+    return static_cast<std::uint32_t>(std::clamp(kValues / values, kLeastSamples, kMostSamples));
 }
 
 PixelBatch::PixelBatch(const Picture& picture)
@@ -163,17 +172,21 @@ void PixelBatch::add_deltas(std::span<const Pixel> pixels, const SampleRange& sa
 void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& samples) {
     const auto lights = picture_->lights;
     StageClock clock(report_);
-    shadowed_.start(brightness_);
-    for (std::size_t first = 0; first < lights.size(); first += kLightBlock) {
-        const auto block = lights.subspan(first, std::min(kLightBlock, lights.size() - first));
+    shadowed_.start(points_, brightness_);
+    const std::size_t values = std::max<std::size_t>(points_.size() * picture_->lobe_stride, 1);
+    const std::size_t most = std::max(kValues / values, kLeastLights);
+    for (std::size_t first = 0; first < lights.size(); first += most) {
+        const auto block = lights.subspan(first, std::min(most, lights.size() - first));
         unshadowed_.compute(points_, picture_->materials, block, report_);
         clock.end(RenderStage::light);
+        shadowed_.expect(block, unshadowed_);
         for (std::size_t i = 0; i < block.size(); ++i) {
             seed_pixels(pixels, static_cast<std::uint32_t>(first + i));
-            shadowed_.add(block[i], samples, unshadowed_.light(i), points_.of_hit, pixel_seeds_, hits_);
+            shadowed_.add(block[i], i, samples, unshadowed_.light(i), pixel_seeds_, hits_);
         }
         clock.end(RenderStage::shadows);
     }
+    shadowed_.finish(hits_);
 }
 
 void PixelBatch::add_environment(std::span<const Pixel> pixels, const SampleRange& samples) {

@@ -48,6 +48,9 @@ struct Picture {
     Picture(const CompiledScene& s, const Camera& c, int w, int h, const RenderSettings& r,
             std::vector<glm::dvec2> points);
 
+    /// Camera rays that a batch should hold. Under many lights fewer: what each light adds is kept until all are known.
+    std::uint32_t batch_samples() const;
+
     const CompiledScene* scene;
     const Camera* camera;
     RenderSettings settings;

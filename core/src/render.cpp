@@ -24,9 +24,7 @@ constexpr int kMostSamples = 1 << 20;
 constexpr std::int64_t kMostRaysPerPixel = 1 << 22;
 constexpr std::int64_t kMostPixels = 1 << 28;
 
-/// Camera rays that a batch holds at a time, and the largest edge of the tiles of the first pass: enough for long
-/// batches, few enough for the cache.
-constexpr std::int64_t kBatchSamples = 4096;
+/// Edge of the tiles of the first pass.
 constexpr int kLargestTile = 32;
 
 /// An adaptive pixel has up to 4^kMostLevel times the rays of the first pass. Each round can follow something
@@ -40,9 +38,9 @@ constexpr std::uint32_t kLeastShadowRays = 8;
 /// The share of progress that is left to all later passes.
 constexpr double kLaterShare = 0.4;
 
-int tile_edge(std::uint32_t pixel_samples) {
+int tile_edge(std::uint32_t pixel_samples, std::uint32_t batch_samples) {
     int edge = kLargestTile;
-    while (edge > 1 && std::int64_t{edge} * edge * pixel_samples > kBatchSamples) {
+    while (edge > 1 && std::int64_t{edge} * edge * pixel_samples > batch_samples) {
         edge /= 2;
     }
     return edge;
@@ -101,6 +99,7 @@ class Passes {
         : picture_(&picture),
           image_(image),
           progress_(progress),
+          batch_samples_(picture.batch_samples()),
           refinement_(picture.width, picture.height, base_samples(picture.settings), most_level(picture.settings)),
           batches_([&picture] { return PixelBatch(picture); }) {}
 
@@ -116,6 +115,7 @@ class Passes {
     const Picture* picture_;
     std::span<float> image_;
     const Progress& progress_;
+    std::uint32_t batch_samples_;
     double share_ = 0;  // of the work, as reported
     Refinement refinement_;
     tbb::enumerable_thread_specific<PixelBatch> batches_;
@@ -145,14 +145,14 @@ void Passes::run_parallel(std::size_t count, double share_after, const std::func
 }
 
 void Passes::first_pass() {
-    const auto tiles = tiles_of(picture_->width, picture_->height, tile_edge(refinement_.samples(0)));
+    const auto tiles = tiles_of(picture_->width, picture_->height, tile_edge(refinement_.samples(0), batch_samples_));
     run_parallel(tiles.size(), is_adaptive(picture_->settings) ? 1 - kLaterShare : 1.0,
                  [&](std::size_t i) { render(pixels_of(tiles[i]), -1, 0); });
 }
 
 void Passes::refine(const RefinementGroup& group) {
     const std::size_t rays = refinement_.samples(group.to) - refinement_.samples(group.from);
-    const std::size_t count = kBatchSamples / std::clamp<std::size_t>(rays, 1, kBatchSamples);
+    const std::size_t count = batch_samples_ / std::clamp<std::size_t>(rays, 1, batch_samples_);
     const std::span<const Pixel> pixels(group.pixels);
     // How many passes are left is not known.
     run_parallel((pixels.size() + count - 1) / count, (1 + share_) / 2, [&](std::size_t i) {
@@ -166,7 +166,7 @@ void Passes::render(std::span<const Pixel> pixels, int from, int to) {
     const std::uint32_t shadow_rays =
         std::max(std::min(most_shadow_rays, kLeastShadowRays), most_shadow_rays >> (2 * to));
     const std::uint32_t most = std::max<std::uint32_t>(
-        refinement_.samples(0), std::min<std::uint32_t>(kBatchSamples, kMostRaysPerPixel / std::max(shadow_rays, 1U)));
+        refinement_.samples(0), std::min<std::uint32_t>(batch_samples_, kMostRaysPerPixel / std::max(shadow_rays, 1U)));
     std::vector<PixelSums> sums(pixels.size());
     for (std::uint32_t first = refinement_.samples(from); first < refinement_.samples(to);) {
         const std::uint32_t count = std::min(most, refinement_.samples(to) - first);

@@ -33,6 +33,7 @@ void ShadingPoints::clear() {
     error.clear();
     material.clear();
     of_hit.clear();
+    pixel_begin.assign(1, 0);
     members_.clear();
 }
 
@@ -55,7 +56,7 @@ void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes
     error.push_back(hits.error[hit]);
     material.push_back(hits.material[hit]);
     const double spread = std::sqrt(3 * tolerance) * std::min(kWidestSpread, lobes.narrowest(hits.cos_theta_o[hit]));
-    members_.push_back({towards_viewer(hits, hit), spread, nearest_light, Vec3d(0), Vec3d(0), Vec3d(0), 0});
+    members_.push_back({towards_viewer(hits, hit), spread, nearest_light, Vec3d(0), Vec3d(0), Vec3d(0), 0, 0});
 }
 
 void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t point) {
@@ -96,6 +97,22 @@ void ShadingPoints::assign(const Hits& hits, std::span<const MaterialLobes> mate
         for (std::size_t point = first_point; point < size(); ++point) {
             finish(point);
         }
+        pixel_begin.push_back(size());
+    }
+    sort_hits();
+}
+
+void ShadingPoints::sort_hits() {
+    std::size_t end = 0;
+    for (Members& members : members_) {
+        members.first_hit = end;
+        end += members.count;
+        members.count = 0;
+    }
+    hits_by_point_.resize(end);
+    for (std::size_t hit = 0; hit < of_hit.size(); ++hit) {
+        Members& members = members_[of_hit[hit]];
+        hits_by_point_[members.first_hit + members.count++] = hit;
     }
 }
 

@@ -29,12 +29,16 @@ class ShadingPoints {
     std::size_t size() const { return frame.size(); }
     /// Hits that share a point.
     std::uint32_t hit_count(std::size_t point) const { return members_[point].count; }
+    std::span<const std::size_t> hits_of(std::size_t point) const {
+        return std::span(hits_by_point_).subspan(members_[point].first_hit, members_[point].count);
+    }
 
     std::vector<ShadingFrame> frame;
     std::vector<float> cos_theta_o;
     std::vector<double> error;  ///< see SurfacePoint
     std::vector<std::uint32_t> material;
-    std::vector<std::uint32_t> of_hit;  ///< the point of each hit
+    std::vector<std::uint32_t> of_hit;     ///< the point of each hit
+    std::vector<std::size_t> pixel_begin;  ///< pixel p has the points pixel_begin[p] … pixel_begin[p + 1] - 1
 
   private:
     /// The hits of a point: what the first one demands of the others, and their sum.
@@ -44,6 +48,7 @@ class ShadingPoints {
         double nearest_light;  // distance
         Vec3d position, normal, towards_viewer;
         std::uint32_t count;
+        std::size_t first_hit;  // in hits_by_point_
     };
 
     void clear();
@@ -51,8 +56,10 @@ class ShadingPoints {
     void start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, double nearest_light, double tolerance);
     void add_member(const Hits& hits, std::size_t hit, std::size_t point);
     void finish(std::size_t point);
+    void sort_hits();
 
     std::vector<Members> members_;
+    std::vector<std::size_t> hits_by_point_;  // numbers of hits, in the order of their points
 };
 
 }  // namespace shlight

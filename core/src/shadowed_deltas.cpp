@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "minor_lights.h"
+#include "even_steps.h"
+#include "minor_share.h"
 #include "shlight/sampling.h"
 
 namespace shlight {
@@ -31,22 +32,19 @@ void ShadowedDeltas::add(const ShadingPoints& points, bool shadows, std::span<co
                          Hits& hits, std::span<float> brightness, RenderReport& report) {
     shadows_ = shadows;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
-        const std::size_t first = hits.pixel_begin[pixel];
-        const std::size_t last = hits.pixel_begin[pixel + 1];
+        const std::size_t hit_count = hits.pixel_begin[pixel + 1] - hits.pixel_begin[pixel];
         brightness[pixel] = 0;
-        if (first == last || lights_->padded_size() == 0) continue;
-        // Points are numbered in the order of their first hits.
-        const std::uint32_t last_point = *std::max_element(&points.of_hit[first], &points.of_hit[last - 1] + 1);
-        const PixelRange range = {first, last, points.of_hit[first], last_point + 1U, pixel_seeds[pixel]};
+        if (hit_count == 0 || lights_->padded_size() == 0) continue;
+        const PixelRange range = {hit_count, points.pixel_begin[pixel], points.pixel_begin[pixel + 1],
+                                  pixel_seeds[pixel]};
         brightness[pixel] = add_pixel(points, range, hits, report);
     }
 }
 
 float ShadowedDeltas::add_pixel(const ShadingPoints& points, const PixelRange& pixel, Hits& hits,
                                 RenderReport& report) {
-    sort_hits(points, pixel);
     const std::size_t count = lights_->padded_size();
-    const std::size_t step = range_size((pixel.last_point - pixel.first_point) * lobe_stride_, count);
+    const std::size_t step = range_size(pixel.point_count() * lobe_stride_, count);
     const auto range_from = [&](std::size_t begin) { return DeltaRange{begin, std::min(step, count - begin)}; };
     float all = 0;
     for (std::size_t begin = 0; begin < count; begin += step) {
@@ -69,22 +67,8 @@ float ShadowedDeltas::add_pixel(const ShadingPoints& points, const PixelRange& p
     return all;
 }
 
-void ShadowedDeltas::sort_hits(const ShadingPoints& points, const PixelRange& pixel) {
-    first_of_point_.assign(1, 0);
-    for (std::size_t point = pixel.first_point; point < pixel.last_point; ++point) {
-        first_of_point_.push_back(first_of_point_.back() + points.hit_count(point));
-    }
-    hits_by_point_.resize(pixel.last_hit - pixel.first_hit);
-    for (std::size_t hit = pixel.first_hit; hit < pixel.last_hit; ++hit) {
-        hits_by_point_[first_of_point_[points.of_hit[hit] - pixel.first_point]++] = hit;
-    }
-    // Each has come to where the next one began.
-    first_of_point_.insert(first_of_point_.begin(), 0);
-    first_of_point_.pop_back();
-}
-
 void ShadowedDeltas::find_values(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range) {
-    const std::size_t point_count = pixel.last_point - pixel.first_point;
+    const std::size_t point_count = pixel.point_count();
     values_.resize(point_count * lobe_stride_ * range.count);
     point_brightness_.assign(point_count * range.count, 0.0F);
     brightness_.assign(range.count, 0.0F);
@@ -108,47 +92,41 @@ void ShadowedDeltas::find_values(const ShadingPoints& points, const PixelRange& 
 
 void ShadowedDeltas::ask(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, float all,
                          const Hits& hits) {
-    const std::size_t hit_count = hits_by_point_.size();
     asked_.clear();
     questions_.clear();
     rays_.clear();
     for (std::size_t light = 0; light < range.count; ++light) {
         if (!(brightness_[light] > 0)) continue;
-        const std::size_t rays = hits_to_ask(brightness_[light], all, hit_count);
-        if (rays == hit_count) {
-            ask_each(range, light, hits);
+        const std::size_t rays = hits_to_ask(brightness_[light], all, pixel.hit_count);
+        if (rays == pixel.hit_count) {
+            ask_each(points, pixel, range, light, hits);
         } else {
             ask_some(points, pixel, range, light, rays, hits);
         }
-        asked_.push_back({light, questions_.size(), rays == hit_count});
+        asked_.push_back({light, questions_.size(), rays == pixel.hit_count});
     }
 }
 
-void ShadowedDeltas::ask_each(const DeltaRange& range, std::size_t light, const Hits& hits) {
-    for (std::size_t p = 0; p + 1 < first_of_point_.size(); ++p) {
-        for (std::size_t k = first_of_point_[p];
-             k < first_of_point_[p + 1] && point_brightness_[p * range.count + light] > 0; ++k) {
-            question(range, light, hits_by_point_[k], hits);
+void ShadowedDeltas::ask_each(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range,
+                              std::size_t light, const Hits& hits) {
+    for (std::size_t p = 0; p < pixel.point_count(); ++p) {
+        if (point_brightness_[p * range.count + light] > 0) {
+            for (const std::size_t hit : points.hits_of(pixel.first_point + p)) {
+                question(range, light, hit, hits);
+            }
         }
     }
 }
 
 void ShadowedDeltas::ask_some(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range,
                               std::size_t light, std::size_t rays, const Hits& hits) {
-    // Evenly spaced steps of brightness, from a random start that is less than a step: so there is one at least.
-    const float step = brightness_[light] / static_cast<float>(rays);
-    const std::uint32_t random = hash(pixel.seed, static_cast<std::uint32_t>(range.begin + light)) >> 9U;
-    float next = step * (static_cast<float>(random) * 0x1p-23F);
-    float before = 0;
-    for (std::size_t p = 0; next < brightness_[light] && p + 1 < first_of_point_.size(); ++p) {
-        const float own = point_brightness_[p * range.count + light];
-        const std::size_t count = points.hit_count(pixel.first_point + p);
-        while (next < before + own) {
-            const auto k = static_cast<std::size_t>((next - before) / own * static_cast<float>(count));
-            question(range, light, hits_by_point_[first_of_point_[p] + std::min(k, count - 1)], hits);
-            next += step;
-        }
-        before += own;
+    EvenSteps steps(brightness_[light], rays, hash(pixel.seed, static_cast<std::uint32_t>(range.begin + light)));
+    for (std::size_t p = 0; p < pixel.point_count(); ++p) {
+        const std::span<const std::size_t> own_hits = points.hits_of(pixel.first_point + p);
+        steps.within(point_brightness_[p * range.count + light], [&](float place) {
+            const auto k = static_cast<std::size_t>(place * static_cast<float>(own_hits.size()));
+            question(range, light, own_hits[std::min(k, own_hits.size() - 1)], hits);
+        });
     }
 }
 
@@ -205,12 +183,11 @@ void ShadowedDeltas::find_shares(const ShadingPoints& points, const PixelRange& 
 void ShadowedDeltas::add_shares(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range,
                                 Hits& hits) {
     const ColorArrays seen = {seen_r_.data(), seen_g_.data(), seen_b_.data()};
-    for (std::size_t p = 0; p + 1 < first_of_point_.size(); ++p) {
+    for (std::size_t p = 0; p < pixel.point_count(); ++p) {
         const auto lobes = materials_[points.material[pixel.first_point + p]].lobes();
         for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
             const Rgb sum = weighted_sum(values(p, lobe, range), seen, range.count);
-            for (std::size_t k = first_of_point_[p]; k < first_of_point_[p + 1]; ++k) {
-                const std::size_t hit = hits_by_point_[k];
+            for (const std::size_t hit : points.hits_of(pixel.first_point + p)) {
                 hits.radiance[hit] += lobes[lobe].scale(hits.cos_theta_o[hit]) * sum;
             }
         }
@@ -220,7 +197,7 @@ void ShadowedDeltas::add_shares(const ShadingPoints& points, const PixelRange& p
 std::uint64_t ShadowedDeltas::count_values(const ShadingPoints& points, const PixelRange& pixel,
                                            const DeltaRange& range) const {
     std::uint64_t sum = 0;
-    for (std::size_t p = 0; p + 1 < first_of_point_.size(); ++p) {
+    for (std::size_t p = 0; p < pixel.point_count(); ++p) {
         const std::size_t lobe_count = materials_[points.material[pixel.first_point + p]].lobes().size();
         for (std::size_t lobe = 0; lobe < lobe_count; ++lobe) {
             const float* of_lobe = values(p, lobe, range);

@@ -35,11 +35,13 @@ class ShadowedDeltas {
     std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
-    /// Of a pixel: its hits and points are those numbered first … last - 1.
+    /// Of a pixel: its points are those numbered first … last - 1.
     struct PixelRange {
-        std::size_t first_hit, last_hit;
+        std::size_t hit_count;
         std::size_t first_point, last_point;
         std::uint32_t seed;
+
+        std::size_t point_count() const { return last_point - first_point; }
     };
     /// A hit that asks for a source.
     struct Question {
@@ -56,11 +58,11 @@ class ShadowedDeltas {
     float add_pixel(const ShadingPoints& points, const PixelRange& pixel, Hits& hits, RenderReport& report);
     /// Values of a range of sources at each point of the pixel, and the sources' brightness.
     void find_values(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range);
-    void sort_hits(const ShadingPoints& points, const PixelRange& pixel);
     void ask(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, float all,
              const Hits& hits);
     /// Every hit that the source lights, or some in proportion to how much.
-    void ask_each(const DeltaRange& range, std::size_t light, const Hits& hits);
+    void ask_each(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, std::size_t light,
+                  const Hits& hits);
     void ask_some(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, std::size_t light,
                   std::size_t rays, const Hits& hits);
     void question(const DeltaRange& range, std::size_t light, std::size_t hit, const Hits& hits);
@@ -84,9 +86,6 @@ class ShadowedDeltas {
     bool shadows_ = false;
     std::uint64_t rays_traced_ = 0;
 
-    // Of a pixel:
-    std::vector<std::size_t> hits_by_point_;
-    std::vector<std::size_t> first_of_point_;  // in hits_by_point_; one more than there are points
     // Of a pixel and a range of sources:
     DeltaViews views_;
     std::vector<float> values_;            // points × lobe_stride × sources

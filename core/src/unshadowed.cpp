@@ -79,7 +79,7 @@ void Unshadowed::see(const Light& light, const ShadingPoints& points, std::span<
     if (polygon != nullptr) {
         polygons_.clear(polygon->vertices.size());
     } else {
-        circles_.resize(some.size());
+        caps_.clear();
     }
     for (std::size_t i = 0; i < some.size(); ++i) {
         const ShadingFrame& frame = points.frame[some[i]];
@@ -93,9 +93,29 @@ void Unshadowed::see(const Light& light, const ShadingPoints& points, std::span<
             if (!cap || !(ProfileView(light, frame).range().high > 0)) {
                 continue;
             }
-            circles_.set(seen_by_.size(), circle_of(*cap));
+            caps_.push_back(*cap);
         }
         seen_by_.push_back(static_cast<std::uint32_t>(i));
+    }
+    if (polygon == nullptr) {
+        find_circles();
+    }
+}
+
+void Unshadowed::find_circles() {
+    circles_.resize(caps_.size());
+    centers_.resize(caps_.size());
+    radii_.resize(caps_.size());
+    for (std::size_t k = 0; k < caps_.size(); ++k) {
+        const bool sphere = caps_[k].kind == CapView::Kind::sphere;
+        centers_[k] = sphere ? caps_[k].center : Vec3d(0, 0, 1);
+        radii_[k] = sphere ? caps_[k].radius : 1;
+    }
+    circles_of_spheres(std::span<const Vec3d>(centers_), radii_.data(), circles_.output());
+    for (std::size_t k = 0; k < caps_.size(); ++k) {
+        if (caps_[k].kind != CapView::Kind::sphere) {
+            circles_.set(k, circle_of(caps_[k]));
+        }
     }
 }
 

@@ -11,6 +11,7 @@
 
 #include "circle_batch.h"
 #include "disk_polygons.h"
+#include "light_view.h"
 #include "lobe_batch.h"
 #include "material_lobes.h"
 #include "material_views.h"
@@ -42,6 +43,8 @@ class Unshadowed {
                std::span<const Light> lights, RenderReport& report);
     /// Finds which of the points a light shines on, and how they see it.
     void see(const Light& light, const ShadingPoints& points, std::span<const std::uint32_t> some);
+    /// Circles of caps_: those of spheres in lanes.
+    void find_circles();
     void integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
                    std::size_t light_index, RenderReport& report);
     /// The same of a mesh.
@@ -74,6 +77,9 @@ class Unshadowed {
     MaterialViews views_;  // of some points
     LobeBatch batch_;
     std::vector<std::uint32_t> seen_by_;  // indices of these points
+    std::vector<CapView> caps_;
+    std::vector<Vec3d> centers_;
+    std::vector<double> radii_;
     CircleBatch circles_;
     PolygonBatch polygons_;
     DiskPolygons disks_;

@@ -4,24 +4,45 @@
 #include <algorithm>
 #include <cmath>
 
-#include "minor_lights.h"
+#include "minor_share.h"
 
 namespace shlight {
 
 ShadowedLight::ShadowedLight(const RayTracer& tracer, std::uint32_t most_rays, std::span<const MaterialLobes> materials,
                              std::size_t lobe_stride)
-    : materials_(materials), lobe_stride_(lobe_stride), most_rays_(most_rays), rays_(tracer, materials, lobe_stride) {}
+    : materials_(materials),
+      lobe_stride_(lobe_stride),
+      most_rays_(most_rays),
+      rays_(tracer, materials, lobe_stride),
+      brightness_(materials, lobe_stride),
+      minor_(brightness_, lobe_stride) {}
 
-void ShadowedLight::add(const Light& light, const SampleRange& samples, std::span<const float> unshadowed,
-                        std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds,
-                        Hits& hits) {
+void ShadowedLight::start(const ShadingPoints& points, std::span<const float> brightness) {
+    points_ = &points;
+    brightness_.start(points, brightness);
+    minor_.start(points);
+}
+
+void ShadowedLight::add(const Light& light, std::size_t index, const SampleRange& samples,
+                        std::span<const float> unshadowed, std::span<const std::uint32_t> pixel_seeds, Hits& hits) {
     samples_ = samples;
     first_ray_count_ = samples.first_shadow_rays();
     unshadowed_ = unshadowed;
-    point_of_hit_ = point_of_hit;
+    const bool shadows = samples.shadow_rays > 0 && traits_of(light).casts_shadows;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
-        pixel_brightness_ = &brightness_[pixel];
-        add_pixel(light, pixel_seeds[pixel], hits.pixel_begin[pixel], hits.pixel_begin[pixel + 1], hits);
+        const float own = brightness_.of_pixel(index, pixel);
+        if (!(own > 0)) {
+            continue;
+        }
+        const std::size_t begin = hits.pixel_begin[pixel];
+        const std::size_t end = hits.pixel_begin[pixel + 1];
+        const std::size_t asked = hits_to_ask(own, brightness_.all(pixel), end - begin);
+        if (shadows && asked < end - begin) {
+            const RayPhase phase = {true, samples.first * most_rays_, samples.first, 1};
+            minor_.add(light, unshadowed, pixel, own, phase, asked, pixel_seeds[pixel], hits, rays_);
+        } else {
+            add_pixel(light, pixel_seeds[pixel], begin, end, hits);
+        }
     }
 }
 
@@ -55,10 +76,6 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
         return;
     }
     if (samples_.shadow_rays > 0 && traits_of(light).casts_shadows) {
-        if (const std::size_t stride = stride_of(light, hits); stride > 1) {
-            add_minor(light, stride, seed, hits);
-            return;
-        }
         // No two ranges of samples share a point.
         const std::uint32_t first_point = samples_.first * most_rays_;
         rays_.trace(light, hits, lit_, {true, first_point, samples_.first, first_ray_count_}, seed);
@@ -77,53 +94,6 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
         }
     }
     shade_unblocked(light, hits);
-}
-
-std::size_t ShadowedLight::stride_of(const Light& light, const Hits& hits) {
-    const Rgb& strength = strength_of(light);
-    float own = 0;
-    bool alike = true;
-    for (const std::size_t hit : lit_.hit) {
-        const std::span<const Lobe> lobes = materials_[hits.material[hit]].lobes();
-        alike = alike && hits.material[hit] == hits.material[lit_.hit[0]];
-        for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
-            const Rgb radiance = lobes[lobe].scale(hits.cos_theta_o[hit]) * strength * unshadowed(hit, lobe);
-            own += std::abs(radiance.x) + std::abs(radiance.y) + std::abs(radiance.z);
-        }
-    }
-    *pixel_brightness_ += own;
-    return alike ? lit_.hit.size() / hits_to_ask(own, *pixel_brightness_, lit_.hit.size()) : 1;
-}
-
-void ShadowedLight::add_minor(const Light& light, std::size_t stride, std::uint32_t seed, Hits& hits) {
-    std::swap(lit_, all_lit_);
-    lit_.hit.clear();
-    lit_.shines.clear();
-    for (std::size_t i = seed % stride; i < all_lit_.hit.size(); i += stride) {
-        lit_.hit.push_back(all_lit_.hit[i]);
-        const auto* shines = &all_lit_.shines[i * lobe_stride_];
-        lit_.shines.insert(lit_.shines.end(), shines, shines + lobe_stride_);
-    }
-    rays_.trace(light, hits, lit_, {true, samples_.first * most_rays_, samples_.first, first_ray_count_}, seed);
-    for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-        double seen = 0;
-        double all = 0;
-        for (std::size_t i = 0; i < lit_.hit.size(); ++i) {
-            if (shines(i, lobe)) {
-                const RaySums sums = rays_.sum(hits, lit_, i, lobe);
-                seen += sums.seen;
-                all += sums.all;
-            }
-        }
-        const double share = all > 0 ? seen / all : 1.0;
-        for (std::size_t i = 0; i < all_lit_.hit.size(); ++i) {
-            if (all_lit_.shines[i * lobe_stride_ + lobe] != 0) {
-                hits.radiance[all_lit_.hit[i]] +=
-                    scaled_radiance(light, hits, all_lit_.hit[i], lobe) * static_cast<float>(share);
-            }
-        }
-    }
-    std::swap(lit_, all_lit_);
 }
 
 Rgb ShadowedLight::scaled_radiance(const Light& light, const Hits& hits, std::size_t hit, std::size_t lobe) const {
@@ -153,15 +123,15 @@ void ShadowedLight::shade(const Light& light, Hits& hits) {
 
 void ShadowedLight::shade_lobe(const Light& light, std::size_t lobe, Hits& hits) {
     const auto [first, last] = std::minmax_element(lit_.hit.begin(), lit_.hit.end(), [&](std::size_t a, std::size_t b) {
-        return point_of_hit_[a] < point_of_hit_[b];
+        return points_->of_hit[a] < points_->of_hit[b];
     });
-    const std::uint32_t first_point = point_of_hit_[*first];
+    const std::uint32_t first_point = points_->of_hit[*first];
     hit_sums_.assign(lit_.hit.size(), {});
-    point_sums_.assign(point_of_hit_[*last] - first_point + 1, {});
+    point_sums_.assign(points_->of_hit[*last] - first_point + 1, {});
     for (std::size_t i = 0; i < lit_.hit.size(); ++i) {
         if (!shines(i, lobe)) continue;
         hit_sums_[i] = rays_.sum(hits, lit_, i, lobe);
-        PointSums& of_point = point_sums_[point_of_hit_[lit_.hit[i]] - first_point];
+        PointSums& of_point = point_sums_[points_->of_hit[lit_.hit[i]] - first_point];
         of_point.all += hit_sums_[i].all;
         ++of_point.hits;
     }
@@ -169,7 +139,7 @@ void ShadowedLight::shade_lobe(const Light& light, std::size_t lobe, Hits& hits)
         if (!shines(i, lobe)) continue;
         const std::size_t hit = lit_.hit[i];
         const RaySums& sums = hit_sums_[i];
-        const PointSums& of_point = point_sums_[point_of_hit_[hit] - first_point];
+        const PointSums& of_point = point_sums_[points_->of_hit[hit] - first_point];
         const double share = of_point.all > 0 ? of_point.hits * sums.seen / of_point.all : 0.0;
         const Rgb unblocked = scaled_radiance(light, hits, hit, lobe);
         hits.radiance[hit] += unblocked * static_cast<float>(share);

@@ -13,10 +13,14 @@
 #include <vector>
 
 #include "hits.h"
+#include "light_brightness.h"
 #include "material_lobes.h"
+#include "minor_lights.h"
+#include "shading_points.h"
 #include "shadow_rays.h"
 #include "shlight/light.h"
 #include "shlight/ray_tracer.h"
+#include "unshadowed.h"
 
 namespace shlight {
 
@@ -26,14 +30,23 @@ class ShadowedLight {
     /// most_rays: per camera ray and light, of any call of add().
     ShadowedLight(const RayTracer& tracer, std::uint32_t most_rays, std::span<const MaterialLobes> materials,
                   std::size_t lobe_stride);
+    ~ShadowedLight() = default;
+    // The parts refer to each other.
+    ShadowedLight(const ShadowedLight&) = delete;
+    ShadowedLight& operator=(const ShadowedLight&) = delete;
 
-    /// Adds one light to the hits' radiance and noise. samples: what the hits are of; unshadowed: see
-    /// Unshadowed::light; point_of_hit: the shading point of each hit, none shared by pixels; pixel_seeds: one per
-    /// pixel, other for each light. A hit's radiance counts as part of the sum over the hits of its shading point.
-    void add(const Light& light, const SampleRange& samples, std::span<const float> unshadowed,
-             std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds, Hits& hits);
-    /// To be called before the first light of other hits. brightness: of each pixel by other lights, if nothing blocks.
-    void start(std::span<const float> brightness) { brightness_.assign(brightness.begin(), brightness.end()); }
+    /// To be called before the first light of other hits. points: theirs, which stay as they are until finish();
+    /// brightness: of each pixel by other lights, if nothing blocks.
+    void start(const ShadingPoints& points, std::span<const float> brightness);
+    /// Lights that are to be added: those are major or minor beside all that are known so far.
+    void expect(std::span<const Light> lights, const Unshadowed& unshadowed) { brightness_.expect(lights, unshadowed); }
+    /// Adds one light to the hits' radiance and noise. index: its place among those expected last; samples: what the
+    /// hits are of; unshadowed: see Unshadowed::light; pixel_seeds: one per pixel, other for each light. A hit's
+    /// radiance counts as part of the sum over the hits of its shading point.
+    void add(const Light& light, std::size_t index, const SampleRange& samples, std::span<const float> unshadowed,
+             std::span<const std::uint32_t> pixel_seeds, Hits& hits);
+    /// To be called after the last light.
+    void finish(Hits& hits) const { minor_.finish(hits); }
     std::uint64_t rays_traced() const { return rays_.rays_traced(); }
 
   private:
@@ -42,15 +55,11 @@ class ShadowedLight {
     void find_lit(const Light& light, const Hits& hits, std::size_t begin, std::size_t end);
     /// The value of one lobe at a hit.
     float unshadowed(std::size_t hit, std::size_t lobe) const {
-        return unshadowed_[lobe * (unshadowed_.size() / lobe_stride_) + point_of_hit_[hit]];
+        return unshadowed_[lobe * points_->size() + points_->of_hit[hit]];
     }
     bool shines(std::size_t lit_index, std::size_t lobe) const {
         return lit_.shines[lit_index * lobe_stride_ + lobe] != 0;
     }
-    /// Of how many hits one is enough to tell how much of a light a pixel sees; 1 where each must be asked.
-    std::size_t stride_of(const Light& light, const Hits& hits);
-    /// Asks every so many of the lit hits, and shades all of them with what these see.
-    void add_minor(const Light& light, std::size_t stride, std::uint32_t seed, Hits& hits);
     void shade_unblocked(const Light& light, Hits& hits) const;
     void shade(const Light& light, Hits& hits);
     void shade_lobe(const Light& light, std::size_t lobe, Hits& hits);
@@ -67,17 +76,16 @@ class ShadowedLight {
     std::uint32_t most_rays_;
     ShadowRays rays_;
 
-    SampleRange samples_{};                        // of the call of add()
-    std::uint32_t first_ray_count_ = 0;            // likewise, rays per hit of the first phase
-    std::span<const float> unshadowed_;            // of the light being added
-    std::span<const std::uint32_t> point_of_hit_;  // likewise
-    std::vector<float> brightness_;                // of each pixel by the lights so far, if nothing blocks
-    float* pixel_brightness_ = nullptr;            // of the pixel
-    LitHits lit_;                                  // likewise
-    LitHits all_lit_;                              // likewise, while some of them are asked
-    std::vector<RaySums> hit_sums_;                // of one lobe, by lit hit
-    std::vector<PointSums> point_sums_;            // likewise, by shading point
-    std::vector<Rgb> deviation_;                   // of the light by lit hit, from its few rays
+    SampleRange samples_{};              // of the call of add()
+    std::uint32_t first_ray_count_ = 0;  // likewise, rays per hit of the first phase
+    std::span<const float> unshadowed_;  // of the light being added
+    const ShadingPoints* points_ = nullptr;
+    LightBrightness brightness_;
+    MinorLights minor_;
+    LitHits lit_;                        // of the pixel
+    std::vector<RaySums> hit_sums_;      // of one lobe, by lit hit
+    std::vector<PointSums> point_sums_;  // likewise, by shading point
+    std::vector<Rgb> deviation_;         // of the light by lit hit, from its few rays
 };
 
 }  // namespace shlight

@@ -3,6 +3,8 @@
 // Many lights: each asked for at a few of a pixel's hits, and all together as if each had been asked for everywhere.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "random_input.h"
 #include "render_scenes.h"
 
@@ -15,7 +17,16 @@ constexpr int kSize = 24;
 constexpr int kLights = 320;
 constexpr int kGroup = 20;  // of which each adds more than the share that is asked for less
 
-Scene scene_of(int first, int last, const Bsdf& floor) {
+/// radius 0: a source without extent.
+void add_light(Scene& scene, const Vec3d& position, double radius, const Rgb& intensity) {
+    if (radius == 0) {
+        scene.add_point_light(position, intensity);
+    } else {
+        scene.add_sphere_light(position, radius, intensity / static_cast<float>(std::numbers::pi * radius * radius));
+    }
+}
+
+Scene scene_of(int first, int last, double radius, const Bsdf& floor) {
     Scene scene;
     scene.add_mesh(testing::floor_mesh(3, 0, floor));
     scene.add_mesh(testing::sphere_mesh({0.3, 0.2, 0.5}, 0.4, 16, true));
@@ -24,17 +35,18 @@ Scene scene_of(int first, int last, const Bsdf& floor) {
         const Vec3d position(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(1.2, 2.5));
         const Rgb intensity(static_cast<float>(random.uniform(0.5, 1.5)), 1, 0.3F);
         if (i >= first) {
-            scene.add_point_light(position, intensity);
+            add_light(scene, position, radius, intensity);
         }
     }
     return scene;
 }
 
 /// Sums of `kGroup` lights each.
-Image sum_of_groups(const Bsdf& floor, const Camera& camera, int size, const RenderSettings& settings) {
-    Image sum = testing::render_image(scene_of(0, kGroup, floor), camera, size, size, settings);
+Image sum_of_groups(double radius, const Bsdf& floor, const Camera& camera, int size, const RenderSettings& settings) {
+    Image sum = testing::render_image(scene_of(0, kGroup, radius, floor), camera, size, size, settings);
     for (int first = kGroup; first < kLights; first += kGroup) {
-        const Image part = testing::render_image(scene_of(first, first + kGroup, floor), camera, size, size, settings);
+        const Image part =
+            testing::render_image(scene_of(first, first + kGroup, radius, floor), camera, size, size, settings);
         for (std::size_t i = 0; i < sum.values.size(); ++i) {
             sum.values[i] += part.values[i];
         }
@@ -43,13 +55,17 @@ Image sum_of_groups(const Bsdf& floor, const Camera& camera, int size, const Ren
     return sum;
 }
 
-TEST(RenderMany, LightsTogetherAreTheSumOfTheirParts) {
+/// Of lights with that radius.
+class RenderMany : public ::testing::TestWithParam<double> {};
+
+TEST_P(RenderMany, LightsTogetherAreTheSumOfTheirParts) {
     RenderSettings settings;
     settings.adaptive = false;
     const Camera camera = testing::camera_above(2);
     for (const Bsdf& floor : {Bsdf::lambert(Rgb(0.5F)), Bsdf::ggx(0.4F, Rgb(0.9F))}) {
-        const Image all = testing::render_image(scene_of(0, kLights, floor), camera, kSize, kSize, settings);
-        const Image sum = sum_of_groups(floor, camera, kSize, settings);
+        const Image all =
+            testing::render_image(scene_of(0, kLights, GetParam(), floor), camera, kSize, kSize, settings);
+        const Image sum = sum_of_groups(GetParam(), floor, camera, kSize, settings);
         double squares = 0;
         double difference = 0;
         double whole = 0;
@@ -68,14 +84,14 @@ TEST(RenderMany, LightsTogetherAreTheSumOfTheirParts) {
     }
 }
 
-TEST(RenderMany, PixelsOfMoreRaysThanAreHeldAtATime) {
+TEST_P(RenderMany, PixelsOfMoreRaysThanAreHeldAtATime) {
     RenderSettings settings;
     settings.adaptive = false;
     settings.pixel_samples = 1024;
     const Camera camera = testing::camera_above(0.5);
     const Bsdf floor = Bsdf::ggx(0.2F, Rgb(0.9F));
-    const Image all = testing::render_image(scene_of(0, kLights, floor), camera, 2, 2, settings);
-    const Image sum = sum_of_groups(floor, camera, 2, settings);
+    const Image all = testing::render_image(scene_of(0, kLights, GetParam(), floor), camera, 2, 2, settings);
+    const Image sum = sum_of_groups(GetParam(), floor, camera, 2, settings);
     for (int pixel = 0; pixel < 4; ++pixel) {
         const double expected = sum.red(pixel % 2, pixel / 2);
         EXPECT_LE(std::abs(all.red(pixel % 2, pixel / 2) - expected), 2e-3 * expected);
@@ -83,7 +99,7 @@ TEST(RenderMany, PixelsOfMoreRaysThanAreHeldAtATime) {
 }
 
 /// A bright half of the floor under lights that a wall hides from the dark other half.
-TEST(RenderMany, APixelOfTwoSurfacesIsNoMixOfTheirShadows) {
+TEST_P(RenderMany, APixelOfTwoSurfacesIsNoMixOfTheirShadows) {
     Scene scene;
     Mesh floor = testing::floor_mesh(3);
     floor.vertices = {{-3, -3, 0}, {0, -3, 0}, {0, 3, 0}, {-3, 3, 0}, {3, -3, 0},
@@ -98,7 +114,7 @@ TEST(RenderMany, APixelOfTwoSurfacesIsNoMixOfTheirShadows) {
     settings.adaptive = false;
     for (int i = 0; i < kLights; ++i) {
         const Vec3d position(random.uniform(-2, -1), random.uniform(-1, 1), random.uniform(0.5, 1));
-        scene.add_point_light(position, Rgb(1));
+        add_light(scene, position, GetParam(), Rgb(1));
         const double distance = glm::length(position);
         truth += position.z / (distance * distance * distance);
     }
@@ -108,6 +124,9 @@ TEST(RenderMany, APixelOfTwoSurfacesIsNoMixOfTheirShadows) {
     EXPECT_LE(std::abs(image.red(0, 0) - truth), 0.01 * truth);
     EXPECT_LE(image.report.shadow_rays, std::uint64_t{kLights} * 16 / 2);
 }
+
+INSTANTIATE_TEST_SUITE_P(Radii, RenderMany, ::testing::Values(0.0, 0.05),
+                         [](const auto& radius) { return radius.param == 0 ? "WithoutExtent" : "WithExtent"; });
 
 }  // namespace
 }  // namespace shlight

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How a render's time grows with the number of point lights: of the same total strength, around the same things."""
+"""How a render's time grows with the number of lights: of the same total strength, around the same things."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from .run import Run
 
 COUNTS = (10, 100, 1000)
 BOUND = 20.0  # of the most beside the least
-SIZE, QUICK_SIZE = (96, 72), (48, 36)
+SIZE, QUICK_SIZE, SPHERES_SIZE = (96, 72), (48, 36), (32, 24)
+RADIUS = 0.02  # of lights with extent
 SEED = 1
 HALF, STRENGTH = 4.0, 30.0  # of the floor; of all lights together
 OBSTACLES, EDGE = 6, 0.3
@@ -24,22 +25,22 @@ EYE, TARGET = (0.0, -6.0, 4.0), (0.0, 0.0, 0.2)
 
 
 def measure(run: Run) -> list[Row]:
-    width, height = QUICK_SIZE if run.quick else SIZE
-    scenes = {count: scene_of(count) for count in COUNTS}
+    points = _rows(run, "point lights", 0.0, QUICK_SIZE if run.quick else SIZE, COUNTS)
+    return points + _rows(run, "spheres", RADIUS, SPHERES_SIZE, (COUNTS[0], COUNTS[-1]))
+
+
+def _rows(run: Run, kind: str, radius: float, size: tuple[int, int], counts: tuple[int, ...]) -> list[Row]:
     works = {
-        _name(count): Work(partial(shlight.render, scene, width, height, threads=1), 1)
-        for count, scene in scenes.items()
+        f"{count} {kind}": Work(partial(shlight.render, scene_of(count, radius), *size, threads=1), 1)
+        for count in counts
     }
     seconds = run.alternate(works)
-    least, most = _name(COUNTS[0]), _name(COUNTS[-1])
-    return [
-        run.ratio(seconds, _name(count), least, unit="×", bound=BOUND if _name(count) == most else None)
-        for count in COUNTS[1:]
-    ]
+    least, *others = works
+    return [run.ratio(seconds, name, least, unit="×", bound=BOUND if name == others[-1] else None) for name in others]
 
 
-def scene_of(count: int) -> shlight.Scene:
-    """Tetrahedra on a floor under `count` point lights."""
+def scene_of(count: int, radius: float) -> shlight.Scene:
+    """Tetrahedra on a floor under `count` lights; radius 0: sources without extent."""
     rng = np.random.default_rng(SEED)
     scene = shlight.Scene()
     floor = HALF * np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
@@ -51,10 +52,10 @@ def scene_of(count: int) -> shlight.Scene:
         scene.add_mesh(corners + center, faces, bsdf=shlight.Bsdf.lambert(0.6))
     positions = rng.uniform((-3, -3, 1.5), (3, 3, 3), (count, 3))
     for position, colour in zip(positions, rng.uniform(0.5, 1.5, (count, 3)), strict=True):
-        scene.add_point_light(position, tuple(STRENGTH / count * colour))
+        intensity = STRENGTH / count * colour
+        if radius == 0:
+            scene.add_point_light(position, tuple(intensity))
+        else:
+            scene.add_sphere_light(position, radius, tuple(intensity / (np.pi * radius**2)))
     scene.set_camera(look_at(EYE, TARGET), 0.9)
     return scene
-
-
-def _name(count: int) -> str:
-    return f"{count} point lights"

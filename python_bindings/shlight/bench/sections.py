@@ -18,7 +18,7 @@ SECTIONS = [
     Section("memory", "Memory", memory.measure),
     Section("limits", "Limits of the machine", limits.measure),
     Section("render", "Stages of a render", render.measure),
-    Section("many", "Many point lights ÷ ten", many_lights.measure),
+    Section("many", "Many lights ÷ ten", many_lights.measure),
 ]
 
 PEERED = {"basis", "spheres", "warped", "quads", "targets"}  # need sphericart
