@@ -50,10 +50,10 @@ EllipseSampler::EllipseSampler(const Ellipse<double>& disk)
     }
 }
 
-EllipseSampler::Meridian EllipseSampler::meridian(double parameter) const {
+EllipseSampler::Meridian EllipseSampler::meridian(const Turn& parameter) const {
     const Cone<double>& cone = ellipse_.cone();
-    const double along = long_ * std::sin(parameter);
-    const double across = short_ * std::cos(parameter);
+    const double along = long_ * parameter.sine;
+    const double across = short_ * parameter.cosine;
     const double radius_square = along * along + across * across;
     const double over = 1 / std::sqrt(radius_square);
     Meridian line{(along * over) * cone.long_axis + (across * over) * cone.short_axis, 0, 0, 0};
@@ -79,18 +79,27 @@ LightSample EllipseSampler::sample(const glm::dvec2& point) const {
     if (ellipse_.empty()) {
         return {Vec3d(0, 0, 1), 0, 0};
     }
-    const Meridian line = meridian(middle_ + widest_ * (2 * point.y - 1));
+    const Meridian line = meridian(Turn(middle_ + widest_ * (2 * point.y - 1)));
     const double drop = line.from + point.x * (line.to - line.from);
     const Vec3d direction = (1 - drop) * ellipse_.cone().axis + std::sqrt(drop * (2 - drop)) * line.across;
     return {direction, distance(direction), 2 * widest_ * line.weight};
 }
 
 double EllipseSampler::solid_angle() const {
-    double sum = 0;
-    for (int i = 0; i < kMeridians && !ellipse_.empty(); ++i) {
-        sum += meridian(middle_ + widest_ * ((2 * i + 1.0) / kMeridians - 1)).weight;
+    if (ellipse_.empty()) {
+        return 0;
     }
-    return 2 * widest_ * sum / kMeridians;
+    // Of a whole light each quarter is alike.
+    const bool whole = !ellipse_.cut();
+    const int count = whole ? kMeridians / 4 : kMeridians;
+    const double range = whole ? pi / 2 : 2 * widest_;
+    const Turn step(range / count);
+    Turn parameter((whole ? 0 : middle_ - widest_) + range / count / 2);
+    double sum = 0;
+    for (int i = 0; i < count; ++i, parameter = parameter.then(step)) {
+        sum += meridian(parameter).weight;
+    }
+    return 2 * widest_ * sum / count;
 }
 
 std::optional<double> EllipseSampler::meets(const Vec3d& direction) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "light_sample.h"
@@ -30,13 +31,24 @@ class EllipseSampler {
     std::optional<double> meets(const Vec3d& direction) const;
 
   private:
+    /// Sine and cosine of an angle.
+    struct Turn {
+        explicit Turn(double angle) : sine(std::sin(angle)), cosine(std::cos(angle)) {}
+        Turn(double s, double c) : sine(s), cosine(c) {}
+        /// Of the sum of two angles.
+        Turn then(const Turn& other) const {
+            return {sine * other.cosine + cosine * other.sine, cosine * other.cosine - sine * other.sine};
+        }
+
+        double sine, cosine;
+    };
     /// What a meridian has of the light: 1 - cos of the angle to the axis, and solid angle per unit of the parameter.
     struct Meridian {
         Vec3d across;  ///< unit, at right angles to the axis
         double from, to;
         double weight;
     };
-    Meridian meridian(double parameter) const;
+    Meridian meridian(const Turn& parameter) const;
     double distance(const Vec3d& direction) const { return height_ / glm::dot(normal_, direction); }
 
     SphericalEllipse<double> ellipse_;
