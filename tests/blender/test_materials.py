@@ -78,7 +78,7 @@ def mirrors() -> Iterator[Any]:
             yield pytest.param(shader, inputs, roughness, marks=[] if i == j else [pytest.mark.slow])
 
 
-@pytest.mark.parametrize(("shader", "inputs", "roughness"), mirrors())
+@pytest.mark.parametrize(("shader", "inputs", "roughness"), list(mirrors()))
 def test_mirrors(studio: Any, shader: str, inputs: dict[str, Any], roughness: float) -> None:
     """Down to roughness 0, where a lamp's own image is seen; Cycles draws it from 0.0037 on."""
     shine_on(studio, studio.material(shader, Roughness=roughness, **inputs))

@@ -25,16 +25,17 @@ EYE, TARGET = (0.0, -6.0, 4.0), (0.0, 0.0, 0.2)
 
 
 def measure(run: Run) -> list[Row]:
-    points = _rows(run, "point lights", 0.0, QUICK_SIZE if run.quick else SIZE, COUNTS)
-    return points + _rows(run, "spheres", RADIUS, SPHERES_SIZE, (COUNTS[0], COUNTS[-1]))
+    size = QUICK_SIZE if run.quick else SIZE
+    points = _rows(run, 0, "point lights", 0.0, size, COUNTS)
+    return points + _rows(run, 1, "spheres", RADIUS, SPHERES_SIZE, (COUNTS[0], COUNTS[-1]))
 
 
-def _rows(run: Run, kind: str, radius: float, size: tuple[int, int], counts: tuple[int, ...]) -> list[Row]:
+def _rows(run: Run, part: int, kind: str, radius: float, size: tuple[int, int], counts: tuple[int, ...]) -> list[Row]:
     works = {
         f"{count} {kind}": Work(partial(shlight.render, scene_of(count, radius), *size, threads=1), 1)
         for count in counts
     }
-    seconds = run.alternate(works)
+    seconds = run.alternate(works, (part, 2))
     least, *others = works
     return [run.ratio(seconds, name, least, unit="×", bound=BOUND if name == others[-1] else None) for name in others]
 
