@@ -3,6 +3,7 @@
 // Systematic sampling: so many places on a line of parts, drawn in proportion to the parts' lengths.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -15,11 +16,12 @@ class EvenSteps {
     EvenSteps(float length, std::size_t count, std::uint32_t random)
         : step_(length / static_cast<float>(count)), next_(step_ * (static_cast<float>(random >> 9U) * 0x1p-23F)) {}
 
-    /// The next part of the line: visit(place) for each step in it, place in 0 … 1 from its begin to its end.
+    /// The next part of the line: visit(piece) for each step in it, of so many equal pieces 0 … pieces - 1.
     template <class Visit>
-    void within(float length, const Visit& visit) {
+    void within(float length, std::size_t pieces, const Visit& visit) {
         for (; next_ < before_ + length; next_ += step_) {
-            visit((next_ - before_) / length);
+            const float place = (next_ - before_) / length;
+            visit(std::min(static_cast<std::size_t>(place * static_cast<float>(pieces)), pieces - 1));
         }
         before_ += length;
     }

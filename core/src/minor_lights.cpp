@@ -77,9 +77,8 @@ void MinorLights::draw(const Light& light, std::span<const float> unshadowed, fl
     EvenSteps steps(brightness, questions, hash(seed, kStartSeed));
     for (const Member& member : members_) {
         const std::span<const std::size_t> own_hits = points_->hits_of(member.point);
-        steps.within(member.brightness, [&](float place) {
-            const auto k = static_cast<std::size_t>(place * static_cast<float>(own_hits.size()));
-            const std::size_t hit = own_hits[std::min(k, own_hits.size() - 1)];
+        steps.within(member.brightness, own_hits.size(), [&](std::size_t k) {
+            const std::size_t hit = own_hits[k];
             // The hit itself may see less of the light than the point that it shares.
             if (!is_seen(light, hits.frame[hit], hits.error[hit])) {
                 return;

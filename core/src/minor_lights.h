@@ -27,9 +27,8 @@ class MinorLights {
 
     /// To be called before the first light of other points, which stay as they are until finish().
     void start(const ShadingPoints& points);
-    /// Adds a light to the hits of a pixel. unshadowed: see Unshadowed::light; first_sample: number of the batch's
-    /// first camera ray; first_point: its point on the light; questions: hits to ask, about; seed: of the pixel and
-    /// light.
+    /// Adds a light to the hits of a pixel. unshadowed: see Unshadowed::light; brightness: of the light over the pixel;
+    /// phase: the batch's, of any number of rays; questions: about how many hits to ask; seed: of the pixel and light.
     void add(const Light& light, std::span<const float> unshadowed, std::size_t pixel, float brightness,
              const RayPhase& phase, std::size_t questions, std::uint32_t seed, const Hits& hits, ShadowRays& rays);
     /// Adds all that was added to the hits' radiance.

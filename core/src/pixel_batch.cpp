@@ -171,6 +171,9 @@ void PixelBatch::add_deltas(std::span<const Pixel> pixels, const SampleRange& sa
 
 void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& samples) {
     const auto lights = picture_->lights;
+    if (lights.empty()) {
+        return;
+    }
     StageClock clock(report_);
     shadowed_.start(points_, brightness_);
     const std::size_t values = std::max<std::size_t>(points_.size() * picture_->lobe_stride, 1);

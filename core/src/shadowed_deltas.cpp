@@ -123,10 +123,8 @@ void ShadowedDeltas::ask_some(const ShadingPoints& points, const PixelRange& pix
     EvenSteps steps(brightness_[light], rays, hash(pixel.seed, static_cast<std::uint32_t>(range.begin + light)));
     for (std::size_t p = 0; p < pixel.point_count(); ++p) {
         const std::span<const std::size_t> own_hits = points.hits_of(pixel.first_point + p);
-        steps.within(point_brightness_[p * range.count + light], [&](float place) {
-            const auto k = static_cast<std::size_t>(place * static_cast<float>(own_hits.size()));
-            question(range, light, own_hits[std::min(k, own_hits.size() - 1)], hits);
-        });
+        steps.within(point_brightness_[p * range.count + light], own_hits.size(),
+                     [&](std::size_t k) { question(range, light, own_hits[k], hits); });
     }
 }
 

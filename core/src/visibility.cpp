@@ -28,7 +28,7 @@ void ShadowedLight::add(const Light& light, std::size_t index, const SampleRange
     samples_ = samples;
     first_ray_count_ = samples.first_shadow_rays();
     unshadowed_ = unshadowed;
-    const bool shadows = samples.shadow_rays > 0 && traits_of(light).casts_shadows;
+    shadows_ = samples.shadow_rays > 0 && traits_of(light).casts_shadows;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
         const float own = brightness_.of_pixel(index, pixel);
         if (!(own > 0)) {
@@ -37,7 +37,7 @@ void ShadowedLight::add(const Light& light, std::size_t index, const SampleRange
         const std::size_t begin = hits.pixel_begin[pixel];
         const std::size_t end = hits.pixel_begin[pixel + 1];
         const std::size_t asked = hits_to_ask(own, brightness_.all(pixel), end - begin);
-        if (shadows && asked < end - begin) {
+        if (shadows_ && asked < end - begin) {
             const RayPhase phase = {true, samples.first * most_rays_, samples.first, 1};
             minor_.add(light, unshadowed, pixel, own, phase, asked, pixel_seeds[pixel], hits, rays_);
         } else {
@@ -75,7 +75,7 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
     if (lit_.hit.empty()) {
         return;
     }
-    if (samples_.shadow_rays > 0 && traits_of(light).casts_shadows) {
+    if (shadows_) {
         // No two ranges of samples share a point.
         const std::uint32_t first_point = samples_.first * most_rays_;
         rays_.trace(light, hits, lit_, {true, first_point, samples_.first, first_ray_count_}, seed);
