@@ -30,6 +30,14 @@ RadianceSums& RadianceSums::operator+=(const RadianceSums& other) {
     return *this;
 }
 
+RadianceSums& RadianceSums::operator*=(const Vec3d& factor) {
+    all *= factor;
+    seen *= factor;
+    squares *= factor * factor;
+    seen_squares *= factor * factor;
+    return *this;
+}
+
 /// Directions from one hit, and how densely all sets together draw them.
 class EnvironmentRays::Directions {
   public:

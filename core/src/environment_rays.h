@@ -26,6 +26,8 @@ struct RadianceSums {
     Vec3d all{0}, seen{0}, squares{0}, seen_squares{0};
 
     RadianceSums& operator+=(const RadianceSums& other);
+    /// As if each weight were multiplied.
+    RadianceSums& operator*=(const Vec3d& factor);
 };
 
 /// Keeps its memory from pixel to pixel; one per thread.

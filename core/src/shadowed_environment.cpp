@@ -47,7 +47,7 @@ void ShadowedEnvironment::add(const EnvironmentShading& shading, const SampleRan
 }
 
 UnshadowedParts ShadowedEnvironment::unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const {
-    const Rgb scale = materials_[hits.material[hit]].lobes()[lobe].scale(hits.cos_theta_o[hit]);
+    const Rgb scale = lobe_of(hit, lobe, hits).scale(hits.cos_theta_o[hit]);
     const UnshadowedParts& parts = unshadowed_[lobe * point_count_ + point_of_hit_[hit]];
     return {scale * parts.smooth, scale * parts.spots};
 }
@@ -100,50 +100,54 @@ bool ShadowedEnvironment::find_obstacles(std::uint32_t seed, const Hits& hits) {
 }
 
 void ShadowedEnvironment::shade_lobe(std::size_t lobe, Hits& hits) {
-    const auto has_lobe = [&](std::size_t i) { return lobe < materials_[hits.material[lit_[i]]].lobes().size(); };
-    const auto [first, last] = std::minmax_element(
-        lit_.begin(), lit_.end(), [&](std::size_t a, std::size_t b) { return point_of_hit_[a] < point_of_hit_[b]; });
-    const std::uint32_t first_point = point_of_hit_[*first];
+    const auto material_of = [&](std::size_t i) -> std::size_t { return hits.material[lit_[i]]; };
+    const auto has_lobe = [&](std::size_t i) { return lobe < materials_[material_of(i)].lobes().size(); };
     hit_sums_.assign(lit_.size(), {});
-    point_sums_.assign(point_of_hit_[*last] - first_point + 1, {});
+    material_sums_.clear();
     for (std::size_t i = 0; i < lit_.size(); ++i) {
-        if (!has_lobe(i)) continue;
-        hit_sums_[i] = rays_.sum(hits, lit_, i, lobe, shading_->splits(hits.material[lit_[i]], lobe));
-        PointSums& of_point = point_sums_[point_of_hit_[lit_[i]] - first_point];
-        of_point.sums.smooth += hit_sums_[i].smooth;
-        of_point.sums.spots += hit_sums_[i].spots;
-        ++of_point.hits;
+        if (has_lobe(i)) {
+            hit_sums_[i] = rays_.sum(hits, lit_, i, lobe, shading_->splits(material_of(i), lobe));
+            const Vec3d scale(lobe_of(lit_[i], lobe, hits).scale(hits.cos_theta_o[lit_[i]]));
+            hit_sums_[i].smooth *= scale;
+            hit_sums_[i].spots *= scale;
+            EnvironmentRays::Sums& sums = sums_of(material_of(i));
+            sums.smooth += hit_sums_[i].smooth;
+            sums.spots += hit_sums_[i].spots;
+        }
     }
     for (std::size_t i = 0; i < lit_.size(); ++i) {
         if (has_lobe(i)) {
-            shade_hit(i, lobe, point_sums_[point_of_hit_[lit_[i]] - first_point], hits);
+            shade_hit(i, lobe, sums_of(material_of(i)), hits);
         }
     }
 }
 
-void ShadowedEnvironment::shade_hit(std::size_t lit_index, std::size_t lobe, const PointSums& of_point, Hits& hits) {
-    const std::size_t hit = lit_[lit_index];
-    const Lobe& material_lobe = materials_[hits.material[hit]].lobes()[lobe];
-    const Rgb scale = material_lobe.scale(hits.cos_theta_o[hit]);
-    const UnshadowedParts& whole = unshadowed_[lobe * point_count_ + point_of_hit_[hit]];
-    const EnvironmentRays::Sums& of_hit = hit_sums_[lit_index];
-    if (is_mirror(material_lobe.shape)) {
-        // One ray, that is all of its light.
-        hits.radiance[hit] += scale * whole.smooth * Rgb(quotient(of_hit.smooth.seen, of_hit.smooth.all));
-        return;
-    }
-    const Vec3d kept = kept_share(of_point.sums.smooth, Vec3d(1));
-    hits.radiance[hit] += scale * seen_part(whole.smooth, of_hit.smooth, of_point.sums.smooth, of_point.hits, kept);
-    // Spots that no ray has met are taken to be as hidden as the rest.
-    hits.radiance[hit] += scale * seen_part(whole.spots, of_hit.spots, of_point.sums.spots, of_point.hits,
-                                            kept_share(of_point.sums.spots, kept));
-    deviation_[lit_index] += scale * (deviation(whole.smooth, of_hit.smooth) + deviation(whole.spots, of_hit.spots));
+EnvironmentRays::Sums& ShadowedEnvironment::sums_of(std::size_t material) {
+    const auto known = std::find_if(material_sums_.begin(), material_sums_.end(),
+                                    [&](const MaterialSums& sums) { return sums.material == material; });
+    return known != material_sums_.end() ? known->sums : material_sums_.emplace_back(MaterialSums{material, {}}).sums;
 }
 
-Rgb ShadowedEnvironment::seen_part(const Rgb& unblocked, const RadianceSums& of_hit, const RadianceSums& of_point,
-                                   std::uint32_t hit_count, const Vec3d& kept) const {
+void ShadowedEnvironment::shade_hit(std::size_t lit_index, std::size_t lobe, const EnvironmentRays::Sums& of_material,
+                                    Hits& hits) {
+    const std::size_t hit = lit_[lit_index];
+    const UnshadowedParts whole = unblocked(hits, hit, lobe);
+    const EnvironmentRays::Sums& of_hit = hit_sums_[lit_index];
+    if (is_mirror(lobe_of(hit, lobe, hits).shape)) {
+        // One ray, that is all of its light.
+        hits.radiance[hit] += whole.smooth * Rgb(quotient(of_hit.smooth.seen, of_hit.smooth.all));
+        return;
+    }
+    const Vec3d kept = kept_share(of_material.smooth, Vec3d(1));
+    hits.radiance[hit] += seen_part(whole.smooth, of_hit.smooth, kept);
+    // Spots that no ray has met are taken to be as hidden as the rest.
+    hits.radiance[hit] += seen_part(whole.spots, of_hit.spots, kept_share(of_material.spots, kept));
+    deviation_[lit_index] += deviation(whole.smooth, of_hit.smooth) + deviation(whole.spots, of_hit.spots);
+}
+
+Rgb ShadowedEnvironment::seen_part(const Rgb& unblocked, const RadianceSums& of_hit, const Vec3d& kept) const {
     const double rays = samples_.shadow_rays;
-    return Rgb(of_hit.seen / rays + kept * (Vec3d(unblocked) - of_point.all / (rays * hit_count)));
+    return Rgb(of_hit.seen / rays + kept * (Vec3d(unblocked) - of_hit.all / rays));
 }
 
 }  // namespace shlight

@@ -28,27 +28,30 @@ class ShadowedEnvironment {
 
     /// Adds the environment to the hits' radiance and noise. samples: what the hits are of; unshadowed: see
     /// EnvironmentShading; point_of_hit: the shading point of each hit, none shared by pixels; pixel_seeds: one per
-    /// pixel. A hit's radiance counts as part of the sum over the hits of its shading point.
+    /// pixel. A hit's radiance counts as part of the sum over the hits of its pixel.
     void add(const EnvironmentShading& shading, const SampleRange& samples, std::span<const UnshadowedParts> unshadowed,
              std::size_t point_count, std::span<const std::uint32_t> point_of_hit,
              std::span<const std::uint32_t> pixel_seeds, Hits& hits);
     std::uint64_t rays_traced() const { return rays_.rays_traced(); }
 
   private:
-    /// Rays of all hits of a shading point.
-    struct PointSums {
+    /// Rays of all hits of a pixel that have a material.
+    struct MaterialSums {
+        std::size_t material;
         EnvironmentRays::Sums sums;
-        std::uint32_t hits = 0;
     };
 
     void add_pixel(std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits);
     bool find_obstacles(std::uint32_t seed, const Hits& hits);
+    const Lobe& lobe_of(std::size_t hit, std::size_t lobe, const Hits& hits) const {
+        return materials_[hits.material[hit]].lobes()[lobe];
+    }
     /// The values of one lobe at a hit.
     UnshadowedParts unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const;
     void shade_lobe(std::size_t lobe, Hits& hits);
-    void shade_hit(std::size_t lit_index, std::size_t lobe, const PointSums& of_point, Hits& hits);
-    Rgb seen_part(const Rgb& unblocked, const RadianceSums& of_hit, const RadianceSums& of_point,
-                  std::uint32_t hit_count, const Vec3d& kept) const;
+    EnvironmentRays::Sums& sums_of(std::size_t material);
+    void shade_hit(std::size_t lit_index, std::size_t lobe, const EnvironmentRays::Sums& of_material, Hits& hits);
+    Rgb seen_part(const Rgb& unblocked, const RadianceSums& of_hit, const Vec3d& kept) const;
 
     std::span<const MaterialLobes> materials_;
     std::uint32_t most_rays_;
@@ -61,7 +64,7 @@ class ShadowedEnvironment {
     std::span<const std::uint32_t> point_of_hit_;
     std::vector<std::size_t> lit_;                 // hits of the pixel
     std::vector<EnvironmentRays::Sums> hit_sums_;  // of one lobe, by lit hit
-    std::vector<PointSums> point_sums_;            // likewise, by shading point
+    std::vector<MaterialSums> material_sums_;      // likewise
     std::vector<Rgb> deviation_;                   // by lit hit, from its few rays
 };
 

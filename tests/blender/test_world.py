@@ -131,7 +131,6 @@ def test_real_pictures(studio: Any, name: str, floor: bool) -> None:
         studio.scene.render.resolution_x, studio.scene.render.resolution_y = 64, 48
     studio.scene.cycles.samples = 1024
     studio.scene.render.film_transparent = True  # what is seen behind is not the question
-    studio.scene.shlight.shadow_rays = 64
     if floor:
         balls(studio)
     else:

@@ -353,5 +353,39 @@ TEST(EnvironmentMap, TurningEverythingChangesNothing) {
     EXPECT_LE(difference / all, 5e-3);
 }
 
+/// A wall hides a bright window of the picture from a glossy ball. Few rays of a hit find the window, but what the
+/// others lack of it is not seen.
+TEST(EnvironmentMap, FewRaysLetNothingThroughAWall) {
+    const auto mean_of = [](float window, int shadow_rays) {
+        LatLong picture;
+        picture.width = 64;
+        picture.height = 32;
+        picture.pixels.assign(64 * 32, Rgb(0.1F));
+        for (const std::size_t row : {12, 13, 14, 15, 16, 17}) {
+            std::fill_n(picture.pixels.begin() + static_cast<std::ptrdiff_t>(row * 64 + 13), 6, Rgb(window));
+        }
+        Scene scene;
+        Mesh ball = sphere_mesh({0, 0, 0}, 1, 48, true);
+        ball.bsdfs = {Bsdf::ggx(0.5F, Rgb(0.9F))};
+        Mesh wall = floor_mesh(4);
+        wall.transforms = {frame_matrix({1, 0, 0}, {0, 0, 1}, {0, -1, 0}, {0, 1.2, 0})};
+        scene.add_mesh(ball);
+        scene.add_mesh(wall);
+        scene.set_environment(Environment(picture));
+        RenderSettings settings;
+        settings.shadow_rays = shadow_rays;
+        settings.adaptive = false;
+        const Image image = render_image(scene, {look_at({-8, 0.2, 0.5}, {-1, 0.4, 0}), 0.12}, 12, 12, settings);
+        double sum = 0;
+        for (int pixel = 0; pixel < 144; ++pixel) {
+            sum += image.red(pixel % 12, pixel / 12) / 144.0;
+        }
+        return sum;
+    };
+    const double without = mean_of(0.1F, 256);
+    EXPECT_NEAR(mean_of(20, 256) / without, 1, 5e-3);
+    EXPECT_NEAR(mean_of(20, 2) / without, 1, 5e-2);
+}
+
 }  // namespace
 }  // namespace shlight::testing
