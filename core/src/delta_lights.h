@@ -17,6 +17,8 @@
 
 namespace shlight {
 
+std::vector<const Light*> pointers_to(std::span<const Light> lights);
+
 /// Some sources: those numbered begin … begin + count - 1. Both are multiples of kDeltaLanes.
 struct DeltaRange {
     std::size_t begin, count;
@@ -35,7 +37,7 @@ class DeltaViews {
 class DeltaLights {
   public:
     /// Precondition: is_delta of each.
-    explicit DeltaLights(std::span<const Light> lights);
+    explicit DeltaLights(std::span<const Light* const> lights);
 
     /// With what fills the last vector up, which shines nowhere.
     std::size_t padded_size() const { return x_.size(); }
@@ -66,7 +68,7 @@ class DeltaLights {
     /// Of the profile, for the world direction to a source, of any length > 0.
     double factor(std::size_t i, const Vec3d& way) const;
 
-    std::span<const Light> lights_;
+    std::vector<const Light*> lights_;
     std::vector<double> x_, y_, z_, w_;
     std::vector<float> r_, g_, b_, abs_r_, abs_g_, abs_b_;
     std::vector<float> lights_diffuse_, lights_glossy_;  // 1 or 0

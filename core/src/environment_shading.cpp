@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
-#include "band_rotation.h"
 #include "environment_map.h"
 #include "kernels/dot_products.h"
 #include "lobe_sampling.h"
-#include "shlight/basis.h"
+#include "turned_lobe.h"
 #include "view_grid.h"
 
 namespace shlight {
@@ -102,19 +100,15 @@ class EnvironmentShading::Point {
     Point(const EnvironmentMap& map, const ShadingFrame& frame, double cos_theta_o)
         : map_(&map),
           to_map_(map.to_map(frame.x), map.to_map(frame.y), map.to_map(frame.z)),
-          view_(std::sqrt(1 - cos_theta_o * cos_theta_o), 0, cos_theta_o) {}
+          view_(std::sqrt(1 - cos_theta_o * cos_theta_o), 0, cos_theta_o),
+          turned_(to_map_) {}
 
     /// Without the spots.
     Rgb by_harmonics(const ClampedLobe& lobe, int order) {
-        lobe.coefficients(static_cast<float>(view_.z), order, terms_.data());
-        if (lobe.is_zonal()) {
-            set_zonal(order);
-        } else {
-            set_turned(order);
-        }
+        const float* turned = turned_.coefficients(lobe, static_cast<float>(view_.z), order);
         Rgb sum;
         for (int c = 0; c < 3; ++c) {
-            dot_products(map_->coefficients.channels[static_cast<std::size_t>(c)].data(), coefficients_.data(),
+            dot_products(map_->coefficients.channels[static_cast<std::size_t>(c)].data(), turned,
                          static_cast<std::size_t>(coefficient_count(order)), 1, &sum[c]);
         }
         return sum;
@@ -155,40 +149,10 @@ class EnvironmentShading::Point {
     Rgb mirrored() const { return map_->picture.radiance(to_map_ * Vec3d(-view_.x, 0, view_.z)); }
 
   private:
-    void set_zonal(int order) {
-        // An expansion about an axis is the sum of P_l(ω·axis) = 4π/(2l+1) Σ_m Y_lm(axis) Y_lm(ω).
-        sh_basis(Vec3f(to_map_[2]), order, coefficients_.data());
-        for (int l = 0; l < order; ++l) {
-            const float factor = terms_[static_cast<std::size_t>(cosine_index(l, 0))] *
-                                 std::sqrt(4 * std::numbers::pi_v<float> / static_cast<float>(2 * l + 1));
-            for (int m = -l; m <= l; ++m) {
-                coefficients_[static_cast<std::size_t>(coefficient_index(l, m))] *= factor;
-            }
-        }
-    }
-
-    void set_turned(int order) {
-        for (int l = 0; l < order; ++l) {
-            float* center = &coefficients_[static_cast<std::size_t>(coefficient_index(l, 0))];
-            const float* band = &terms_[static_cast<std::size_t>(cosine_index(l, 0))];
-            center[0] = band[0];
-            for (int m = 1; m <= l; ++m) {
-                center[m] = band[m];
-                center[-m] = 0;
-            }
-        }
-        if (!rotation_) {
-            rotation_.emplace(to_map_);
-        }
-        rotation_->apply(order, coefficients_.data());
-    }
-
     const EnvironmentMap* map_;
     glm::dmat3 to_map_;  // from the shading frame
     Vec3d view_;
-    std::optional<BandRotation> rotation_;
-    std::array<float, cosine_count(kMaxOrder)> terms_;
-    std::array<float, coefficient_count(kMaxOrder)> coefficients_;
+    TurnedLobe turned_;
 };
 
 void EnvironmentShading::shade(const ShadingPoints& points, std::vector<UnshadowedParts>& values,

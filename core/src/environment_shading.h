@@ -22,8 +22,6 @@
 
 namespace shlight {
 
-class BandRotation;
-
 /// What a lobe reflects, in parts that have shadows of their own: a sun is hidden or not, whatever the sky is.
 struct UnshadowedParts {
     Rgb smooth{0}, spots{0};

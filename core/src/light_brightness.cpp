@@ -18,11 +18,11 @@ void LightBrightness::start(const ShadingPoints& points, std::span<const float> 
     }
 }
 
-void LightBrightness::expect(std::span<const Light> lights, const Unshadowed& unshadowed) {
+void LightBrightness::expect(std::span<const Light* const> lights, const Unshadowed& unshadowed) {
     const std::size_t pixels = all_.size();
     own_.assign(lights.size() * pixels, 0.0F);
     for (std::size_t light = 0; light < lights.size(); ++light) {
-        const Rgb& strength = strength_of(lights[light]);
+        const Rgb& strength = strength_of(*lights[light]);
         const std::span<const float> values = unshadowed.light(light);
         for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
             float& own = own_[light * pixels + pixel];

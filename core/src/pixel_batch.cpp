@@ -19,6 +19,7 @@ constexpr std::size_t kLeastSamples = 256;
 /// In the place of a light's number.
 constexpr std::uint32_t kEnvironmentSeed = 0xFFFFFFFFU;
 constexpr std::uint32_t kDeltaSeed = 0xFFFFFFFEU;
+constexpr std::uint32_t kLumpSeed = 0xFFFFFFFDU;
 
 /// Times stages that follow each other.
 class StageClock {
@@ -65,11 +66,13 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
       window(c.window(w, h)),
       pixel_points(std::move(points)),
       lights(s.lights().first(s.extended_light_count())),
-      deltas(s.lights().subspan(s.extended_light_count())) {
+      extended(pointers_to(lights)),
+      deltas(pointers_to(s.lights().subspan(s.extended_light_count()))) {
     for (const Material& material : s.materials()) {
         materials.emplace_back(material.bsdf.lobes(), r.order, r.tolerance);
         lobe_stride = std::max(lobe_stride, materials.back().lobes().size());
     }
+    far = FarLights(s.lights(), materials, r.order);
     if (!s.environment().is_black()) {
         environment.emplace(s.environment(), materials, lobe_stride, r.order, r.tolerance);
     }
@@ -82,7 +85,9 @@ std::uint32_t Picture::batch_samples() const {
 
 PixelBatch::PixelBatch(const Picture& picture)
     : picture_(&picture),
-      shadowed_deltas_(picture.scene->rays(), picture.materials, picture.lobe_stride, picture.deltas),
+      lumps_(picture.far, picture.materials, picture.settings.tolerance),
+      shadowed_lumps_(picture.scene->rays(), picture.materials, picture.lobe_stride, picture.scene->lights()),
+      shadowed_deltas_(picture.scene->rays(), picture.materials, picture.lobe_stride),
       unshadowed_(picture.lobe_stride),
       shadowed_(picture.scene->rays(), static_cast<std::uint32_t>(picture.settings.shadow_rays), picture.materials,
                 picture.lobe_stride),
@@ -95,8 +100,10 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
     clock.end(RenderStage::camera_rays);
     points_.assign(hits_, picture_->materials, picture_->lights, picture_->deltas, picture_->settings.tolerance);
     clock.end(RenderStage::views);
+    sort_lights();
     add_deltas(pixels, samples);
     add_lights(pixels, samples);
+    add_lumps(pixels, samples);
     if (picture_->environment) {
         add_environment(pixels, samples);
     }
@@ -107,7 +114,8 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
 
 RenderReport PixelBatch::report() const {
     RenderReport report = report_;
-    report.shadow_rays = shadowed_deltas_.rays_traced() + shadowed_.rays_traced() + shadowed_environment_.rays_traced();
+    report.shadow_rays = shadowed_lumps_.rays_traced() + shadowed_deltas_.rays_traced() + shadowed_.rays_traced() +
+                         shadowed_environment_.rays_traced();
     return report;
 }
 
@@ -159,19 +167,41 @@ void PixelBatch::add_miss(const Ray& ray, std::uint32_t pixel, std::uint32_t sam
     }
 }
 
+void PixelBatch::sort_lights() {
+    StageClock clock(report_);
+    lumps_.choose(points_);
+    lights_.clear();
+    delta_list_.clear();
+    deltas_.reset();
+    if (!lumps_.empty()) {
+        const std::span<const Light> all = picture_->scene->lights();
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (!lumps_.holds(i)) {
+                (i < picture_->lights.size() ? lights_ : delta_list_).push_back(&all[i]);
+            }
+        }
+        deltas_.emplace(delta_list_);
+    }
+    brightness_.assign(hits_.pixel_count(), 0.0F);
+    for (std::size_t pixel = 0; pixel < hits_.pixel_count() && !lumps_.empty(); ++pixel) {
+        brightness_[pixel] = lumps_.brightness(pixel);
+    }
+    clock.end(RenderStage::light);
+}
+
 void PixelBatch::add_deltas(std::span<const Pixel> pixels, const SampleRange& samples) {
     StageClock clock(report_);
-    brightness_.assign(hits_.pixel_count(), 0.0F);
-    if (picture_->deltas.padded_size() > 0) {
+    const DeltaLights& deltas = deltas_ ? *deltas_ : picture_->deltas;
+    if (deltas.padded_size() > 0) {
         seed_pixels(pixels, hash(kDeltaSeed, samples.first));
-        shadowed_deltas_.add(points_, samples.shadow_rays > 0, pixel_seeds_, hits_, brightness_, report_);
+        shadowed_deltas_.add(deltas, points_, samples.shadow_rays > 0, pixel_seeds_, hits_, brightness_, report_);
     }
     clock.end(RenderStage::shadows);
 }
 
 void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& samples) {
-    const auto lights = picture_->lights;
-    if (lights.empty()) {
+    const std::span<const Light* const> lights(lumps_.empty() ? picture_->extended : lights_);
+    if (lights.empty() && lumps_.empty()) {
         return;
     }
     StageClock clock(report_);
@@ -185,11 +215,22 @@ void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& sa
         shadowed_.expect(block, unshadowed_);
         for (std::size_t i = 0; i < block.size(); ++i) {
             seed_pixels(pixels, static_cast<std::uint32_t>(first + i));
-            shadowed_.add(block[i], i, samples, unshadowed_.light(i), pixel_seeds_, hits_);
+            shadowed_.add(*block[i], i, samples, unshadowed_.light(i), pixel_seeds_, hits_);
         }
         clock.end(RenderStage::shadows);
     }
     shadowed_.finish(hits_);
+}
+
+void PixelBatch::add_lumps(std::span<const Pixel> pixels, const SampleRange& samples) {
+    if (lumps_.empty()) {
+        return;
+    }
+    StageClock clock(report_);
+    seed_pixels(pixels, hash(kLumpSeed, samples.first));
+    shadowed_lumps_.add(lumps_, points_, samples.shadow_rays > 0, pixel_seeds_, shadowed_.brightness(), hits_);
+    report_.summed_count += lumps_.size() * hits_.size();
+    clock.end(RenderStage::shadows);
 }
 
 void PixelBatch::add_environment(std::span<const Pixel> pixels, const SampleRange& samples) {

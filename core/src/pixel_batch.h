@@ -10,11 +10,14 @@
 
 #include "delta_lights.h"
 #include "environment_shading.h"
+#include "far_lights.h"
 #include "hits.h"
+#include "light_lumps.h"
 #include "material_lobes.h"
 #include "shading_points.h"
 #include "shadowed_deltas.h"
 #include "shadowed_environment.h"
+#include "shadowed_lumps.h"
 #include "shlight/camera.h"
 #include "shlight/render.h"
 #include "shlight/scene.h"
@@ -59,8 +62,10 @@ struct Picture {
     std::vector<glm::dvec2> pixel_points;  ///< where each camera ray of a pixel goes through its unit square
     std::vector<MaterialLobes> materials;
     std::size_t lobe_stride = 1;
-    std::span<const Light> lights;  ///< with extent
+    std::span<const Light> lights;       ///< with extent
+    std::vector<const Light*> extended;  ///< the same
     DeltaLights deltas;
+    FarLights far;
     std::optional<EnvironmentShading> environment;  ///< none: black
 };
 
@@ -77,8 +82,11 @@ class PixelBatch {
     void trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples);
     void add_hit(const Ray& ray, const RayHit& hit, std::uint32_t sample);
     void add_miss(const Ray& ray, std::uint32_t pixel, std::uint32_t sample);
+    /// Sums the dimmest lights up; the others are shaded one by one.
+    void sort_lights();
     void add_deltas(std::span<const Pixel> pixels, const SampleRange& samples);
     void add_lights(std::span<const Pixel> pixels, const SampleRange& samples);
+    void add_lumps(std::span<const Pixel> pixels, const SampleRange& samples);
     void add_environment(std::span<const Pixel> pixels, const SampleRange& samples);
     /// One for each pixel and light.
     void seed_pixels(std::span<const Pixel> pixels, std::uint32_t light);
@@ -97,13 +105,18 @@ class PixelBatch {
     Hits hits_;
     std::vector<Miss> misses_;  // in the order of pixels
     ShadingPoints points_;
+    LightLumps lumps_;
+    std::vector<const Light*> lights_;      // with extent, that are not summed up
+    std::vector<const Light*> delta_list_;  // likewise, without
+    std::optional<DeltaLights> deltas_;     // of these; none: all
+    ShadowedLumps shadowed_lumps_;
     ShadowedDeltas shadowed_deltas_;
     Unshadowed unshadowed_;
     ShadowedLight shadowed_;
     std::vector<UnshadowedParts> environment_;
     ShadowedEnvironment shadowed_environment_;
     std::vector<std::uint32_t> pixel_seeds_;
-    std::vector<float> brightness_;  // of each pixel by sources without extent, if nothing blocks
+    std::vector<float> brightness_;  // of each pixel by sums and sources without extent, if nothing blocks
 };
 
 }  // namespace shlight

@@ -25,28 +25,29 @@ std::size_t range_size(std::size_t values_per_light, std::size_t lights) {
 }  // namespace
 
 ShadowedDeltas::ShadowedDeltas(const RayTracer& tracer, std::span<const MaterialLobes> materials,
-                               std::size_t lobe_stride, const DeltaLights& lights)
-    : tracer_(&tracer), materials_(materials), lobe_stride_(lobe_stride), lights_(&lights) {}
+                               std::size_t lobe_stride)
+    : tracer_(&tracer), materials_(materials), lobe_stride_(lobe_stride) {}
 
-void ShadowedDeltas::add(const ShadingPoints& points, bool shadows, std::span<const std::uint32_t> pixel_seeds,
-                         Hits& hits, std::span<float> brightness, RenderReport& report) {
+void ShadowedDeltas::add(const DeltaLights& lights, const ShadingPoints& points, bool shadows,
+                         std::span<const std::uint32_t> pixel_seeds, Hits& hits, std::span<float> brightness,
+                         RenderReport& report) {
+    lights_ = &lights;
     shadows_ = shadows;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
         const std::size_t hit_count = hits.pixel_begin[pixel + 1] - hits.pixel_begin[pixel];
-        brightness[pixel] = 0;
         if (hit_count == 0 || lights_->padded_size() == 0) continue;
         const PixelRange range = {hit_count, points.pixel_begin[pixel], points.pixel_begin[pixel + 1],
                                   pixel_seeds[pixel]};
-        brightness[pixel] = add_pixel(points, range, hits, report);
+        brightness[pixel] = add_pixel(points, range, brightness[pixel], hits, report);
     }
 }
 
-float ShadowedDeltas::add_pixel(const ShadingPoints& points, const PixelRange& pixel, Hits& hits,
+float ShadowedDeltas::add_pixel(const ShadingPoints& points, const PixelRange& pixel, float others, Hits& hits,
                                 RenderReport& report) {
     const std::size_t count = lights_->padded_size();
     const std::size_t step = range_size(pixel.point_count() * lobe_stride_, count);
     const auto range_from = [&](std::size_t begin) { return DeltaRange{begin, std::min(step, count - begin)}; };
-    float all = 0;
+    float all = others;
     for (std::size_t begin = 0; begin < count; begin += step) {
         find_values(points, pixel, range_from(begin));
         for (const float own : brightness_) {

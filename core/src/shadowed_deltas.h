@@ -24,14 +24,14 @@ namespace shlight {
 /// Keeps its memory from call to call; one per thread.
 class ShadowedDeltas {
   public:
-    ShadowedDeltas(const RayTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride,
-                   const DeltaLights& lights);
+    ShadowedDeltas(const RayTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride);
 
     /// Adds all sources to the hits' radiance, and what the hits take to the report. shadows: whether any are cast;
-    /// pixel_seeds: one per pixel. brightness: of each pixel by the sources, if nothing blocks. No noise is added: what
-    /// the few rays of minor sources are off by is the same at all hits of a pixel.
-    void add(const ShadingPoints& points, bool shadows, std::span<const std::uint32_t> pixel_seeds, Hits& hits,
-             std::span<float> brightness, RenderReport& report);
+    /// pixel_seeds: one per pixel. brightness: of each pixel by other lights, to which that by the sources is added, if
+    /// nothing blocks. No noise is added: what the few rays of minor sources are off by is the same at all hits of a
+    /// pixel.
+    void add(const DeltaLights& lights, const ShadingPoints& points, bool shadows,
+             std::span<const std::uint32_t> pixel_seeds, Hits& hits, std::span<float> brightness, RenderReport& report);
     std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
@@ -55,7 +55,9 @@ class ShadowedDeltas {
         bool each_hit;
     };
 
-    float add_pixel(const ShadingPoints& points, const PixelRange& pixel, Hits& hits, RenderReport& report);
+    /// others: brightness by other lights; returns that by all.
+    float add_pixel(const ShadingPoints& points, const PixelRange& pixel, float others, Hits& hits,
+                    RenderReport& report);
     /// Values of a range of sources at each point of the pixel, and the sources' brightness.
     void find_values(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range);
     void ask(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, float all,
@@ -82,7 +84,7 @@ class ShadowedDeltas {
     const RayTracer* tracer_;
     std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
-    const DeltaLights* lights_;
+    const DeltaLights* lights_ = nullptr;  // of the call of add()
     bool shadows_ = false;
     std::uint64_t rays_traced_ = 0;
 

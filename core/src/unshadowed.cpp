@@ -40,7 +40,7 @@ bool reflects(const LightTraits& traits, const LobeShape& shape) {
 }  // namespace
 
 void Unshadowed::compute(const ShadingPoints& points, std::span<const MaterialLobes> materials,
-                         std::span<const Light> lights, RenderReport& report) {
+                         std::span<const Light* const> lights, RenderReport& report) {
     point_count_ = points.size();
     values_.assign(lights.size() * lobe_stride_ * point_count_, 0.0F);
     by_material_.resize(point_count_);
@@ -60,7 +60,7 @@ void Unshadowed::compute(const ShadingPoints& points, std::span<const MaterialLo
 }
 
 void Unshadowed::shade(const ShadingPoints& points, std::span<const std::uint32_t> some, const MaterialLobes& material,
-                       std::span<const Light> lights, RenderReport& report) {
+                       std::span<const Light* const> lights, RenderReport& report) {
     cosines_.resize(some.size());
     std::transform(some.begin(), some.end(), cosines_.begin(),
                    [&](std::uint32_t point) { return double{points.cos_theta_o[point]}; });
@@ -70,7 +70,7 @@ void Unshadowed::shade(const ShadingPoints& points, std::span<const std::uint32_
         return;
     }
     for (std::size_t i = 0; i < lights.size(); ++i) {
-        integrate(points, some, lights[i], i, report);
+        integrate(points, some, *lights[i], i, report);
     }
 }
 

@@ -30,8 +30,8 @@ class Unshadowed {
     explicit Unshadowed(std::size_t lobe_stride) : lobe_stride_(lobe_stride) {}
 
     /// Adds to the report what the points' hits take. Precondition: no light is_delta().
-    void compute(const ShadingPoints& points, std::span<const MaterialLobes> materials, std::span<const Light> lights,
-                 RenderReport& report);
+    void compute(const ShadingPoints& points, std::span<const MaterialLobes> materials,
+                 std::span<const Light* const> lights, RenderReport& report);
     /// The values of one light, lobe_stride × points.
     std::span<const float> light(std::size_t index) const {
         return std::span(values_).subspan(index * lobe_stride_ * point_count_, lobe_stride_ * point_count_);
@@ -40,7 +40,7 @@ class Unshadowed {
   private:
     /// Some points of one material, under all lights.
     void shade(const ShadingPoints& points, std::span<const std::uint32_t> some, const MaterialLobes& material,
-               std::span<const Light> lights, RenderReport& report);
+               std::span<const Light* const> lights, RenderReport& report);
     /// Finds which of the points a light shines on, and how they see it.
     void see(const Light& light, const ShadingPoints& points, std::span<const std::uint32_t> some);
     /// Circles of caps_: those of spheres in lanes.

@@ -39,7 +39,11 @@ class ShadowedLight {
     /// brightness: of each pixel by other lights, if nothing blocks.
     void start(const ShadingPoints& points, std::span<const float> brightness);
     /// Lights that are to be added: those are major or minor beside all that are known so far.
-    void expect(std::span<const Light> lights, const Unshadowed& unshadowed) { brightness_.expect(lights, unshadowed); }
+    void expect(std::span<const Light* const> lights, const Unshadowed& unshadowed) {
+        brightness_.expect(lights, unshadowed);
+    }
+    /// Of the pixels, by all lights that were expected and those that were not, see start().
+    std::span<const float> brightness() const { return brightness_.all(); }
     /// Adds one light to the hits' radiance and noise. index: its place among those expected last; samples: what the
     /// hits are of; unshadowed: see Unshadowed::light; pixel_seeds: one per pixel, other for each light. A hit's
     /// radiance counts as part of the sum over the hits of its shading point.

@@ -65,6 +65,9 @@ struct Report {
     double cubature_share() const { return share(core.cubature_count); }
     double mirror_share() const { return share(core.mirror_count); }
     double over_tolerance() const { return share(core.over_tolerance); }
+    double summed_lights() const {
+        return core.hits == 0 ? 0.0 : static_cast<double>(core.summed_count) / static_cast<double>(core.hits);
+    }
     py::dict stage_seconds() const {
         py::dict seconds;
         for (std::size_t stage = 0; stage < kRenderStages.size(); ++stage) {
@@ -131,6 +134,9 @@ void bind_render(py::module_& m) {
         .def_property_readonly("mirror_share", &Report::mirror_share, "Share of what showed a light's own image.")
         .def_property_readonly("over_tolerance", &Report::over_tolerance,
                                "Share whose estimated error exceeds the tolerance.")
+        .def_property_readonly("summed_lights", &Report::summed_lights,
+                               "Lights that a hit had summed up from afar in place of being shaded one by one, on "
+                               "average; not part of the shares.")
         .def_property_readonly(
             "hits", [](const Report& r) { return r.core.hits; }, "Camera rays that met a surface.")
         .def_property_readonly(

@@ -58,7 +58,7 @@ Lit random_lit(testing::RandomInput& random) {
     const Vec3d position = 100.0 * random.direction();
     const ShadingFrame frame = shading_frame(position, random.direction(), random.direction());
     std::vector<Light> lights = random_lights(random, frame.origin);
-    DeltaLights deltas(lights);
+    DeltaLights deltas(pointers_to(lights));
     return {frame, std::move(lights), std::move(deltas)};
 }
 
@@ -110,7 +110,7 @@ TEST(DeltaLights, RaysEndAtTheSource) {
     testing::RandomInput random(3);
     const Vec3d origin(3, -2, 1);
     const std::vector<Light> lights = random_lights(random, origin);
-    const DeltaLights deltas(lights);
+    const DeltaLights deltas(pointers_to(lights));
     for (std::size_t i = 0; i < kCount; ++i) {
         const Ray ray = deltas.ray(i, origin);
         if (const auto* parallel = std::get_if<ParallelSource>(&lights[i])) {
@@ -128,7 +128,7 @@ TEST(DeltaLights, RaysEndAtTheSource) {
 TEST(DeltaLights, SumsAreThoseOfPlainLoops) {
     testing::RandomInput random(4);
     const std::vector<Light> lights = random_lights(random, Vec3d(0));
-    const DeltaLights deltas(lights);
+    const DeltaLights deltas(pointers_to(lights));
     std::vector<float> values(deltas.padded_size());
     for (float& value : values) {
         value = static_cast<float>(random.uniform(0, 1));

@@ -86,6 +86,8 @@ def _details(shlight: dict[str, Any]) -> list[str]:
     shares += [("cubature", shlight["cubature_share"]), ("mirrors", shlight["mirror_share"])]
     shaded = ", ".join(f"{name}: {share:.1%}" for name, share in shares if share > 0)
     lines = [f"shaded by {shaded or 'nothing'}; over tolerance: {shlight['over_tolerance']:.2%}"]
+    if shlight["summed_lights"] > 0:
+        lines.append(f"dim lights summed up from afar, per hit: {shlight['summed_lights']:.0f}")
     if shlight["unsupported"]:
         lines.append("not supported by shlight:")
     for message in shlight["unsupported"]:

@@ -21,27 +21,31 @@ RADIUS = 0.02  # of lights with extent
 SEED = 1
 HALF, STRENGTH = 4.0, 30.0  # of the floor; of all lights together
 OBSTACLES, EDGE = 6, 0.3
+ANGLE, DETAIL = 0.9, 0.9 / 24  # as of one part of a fine picture
 EYE, TARGET = (0.0, -6.0, 4.0), (0.0, 0.0, 0.2)
 
 
 def measure(run: Run) -> list[Row]:
     size = QUICK_SIZE if run.quick else SIZE
-    points = _rows(run, 0, "point lights", 0.0, size, COUNTS)
-    return points + _rows(run, 1, "spheres", RADIUS, SPHERES_SIZE, (COUNTS[0], COUNTS[-1]))
+    few_and_many = (COUNTS[0], COUNTS[-1])
+    return [
+        *_rows(run, 0, "point lights", {count: scene_of(count, 0.0) for count in COUNTS}, size),
+        *_rows(run, 1, "spheres", {count: scene_of(count, RADIUS) for count in few_and_many}, SPHERES_SIZE),
+        *_rows(run, 2, "spheres, detail", {n: scene_of(n, RADIUS, DETAIL) for n in few_and_many}, SPHERES_SIZE),
+    ]
 
 
-def _rows(run: Run, part: int, kind: str, radius: float, size: tuple[int, int], counts: tuple[int, ...]) -> list[Row]:
+def _rows(run: Run, part: int, kind: str, scenes: dict[int, shlight.Scene], size: tuple[int, int]) -> list[Row]:
     works = {
-        f"{count} {kind}": Work(partial(shlight.render, scene_of(count, radius), *size, threads=1), 1)
-        for count in counts
+        f"{count} {kind}": Work(partial(shlight.render, scene, *size, threads=1), 1) for count, scene in scenes.items()
     }
-    seconds = run.alternate(works, (part, 2))
+    seconds = run.alternate(works, (part, 3))
     least, *others = works
     return [run.ratio(seconds, name, least, unit="×", bound=BOUND if name == others[-1] else None) for name in others]
 
 
-def scene_of(count: int, radius: float) -> shlight.Scene:
-    """Tetrahedra on a floor under `count` lights; radius 0: sources without extent."""
+def scene_of(count: int, radius: float, angle: float = ANGLE) -> shlight.Scene:
+    """Tetrahedra on a floor under `count` lights; radius 0: sources without extent. angle: of the view."""
     rng = np.random.default_rng(SEED)
     scene = shlight.Scene()
     floor = HALF * np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
@@ -58,5 +62,5 @@ def scene_of(count: int, radius: float) -> shlight.Scene:
             scene.add_point_light(position, tuple(intensity))
         else:
             scene.add_sphere_light(position, radius, tuple(intensity / (np.pi * radius**2)))
-    scene.set_camera(look_at(EYE, TARGET), 0.9)
+    scene.set_camera(look_at(EYE, TARGET), angle)
     return scene
