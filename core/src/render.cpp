@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tbb/enumerable_thread_specific.h>
@@ -26,6 +27,9 @@ constexpr std::int64_t kMostPixels = 1 << 28;
 
 /// Edge of the tiles of the first pass.
 constexpr int kLargestTile = 32;
+
+/// Edge of the blocks of pixels of later passes.
+constexpr int kBlock = 4;
 
 /// An adaptive pixel has up to 4^kMostLevel times the rays of the first pass. Each round can follow something
 /// thin by one pixel more.
@@ -68,6 +72,14 @@ std::vector<Pixel> pixels_of(const Tile& tile) {
         }
     }
     return pixels;
+}
+
+/// In blocks, so that those which are rendered together see what lies together.
+std::vector<Pixel> close_together(std::span<const Pixel> pixels) {
+    std::vector<Pixel> sorted(pixels.begin(), pixels.end());
+    const auto block = [](const Pixel& p) { return std::pair(p.row / kBlock, p.column / kBlock); };
+    std::stable_sort(sorted.begin(), sorted.end(), [&](const Pixel& a, const Pixel& b) { return block(a) < block(b); });
+    return sorted;
 }
 
 bool is_adaptive(const RenderSettings& settings) {
@@ -153,10 +165,10 @@ void Passes::first_pass() {
 void Passes::refine(const RefinementGroup& group) {
     const std::size_t rays = refinement_.samples(group.to) - refinement_.samples(group.from);
     const std::size_t count = batch_samples_ / std::clamp<std::size_t>(rays, 1, batch_samples_);
-    const std::span<const Pixel> pixels(group.pixels);
+    const std::vector<Pixel> pixels = close_together(group.pixels);
     // How many passes are left is not known.
     run_parallel((pixels.size() + count - 1) / count, (1 + share_) / 2, [&](std::size_t i) {
-        render(pixels.subspan(i * count, std::min(count, pixels.size() - i * count)), group.from, group.to);
+        render(std::span(pixels).subspan(i * count, std::min(count, pixels.size() - i * count)), group.from, group.to);
     });
 }
 

@@ -164,6 +164,23 @@ def test_instanced_lamp(studio: Any) -> None:
     studio.compare()
 
 
+def test_a_crowd_of_far_lamps_is_summed_up(studio: Any) -> None:
+    from shlight_blender import record
+
+    studio.still_life()
+    studio.camera()
+    studio.scene.shlight.tolerance = 1e-4
+    data = bpy.data.lights.new("Far", "POINT")
+    data.energy, data.shadow_soft_size = 100.0, 0.05
+    rng = np.random.default_rng(3)
+    for _ in range(600):
+        x, y, z = rng.normal(size=3)
+        direction = np.array([x, y, abs(z) + 0.3]) / np.linalg.norm([x, y, abs(z) + 0.3])
+        studio.link("Far", data, tuple(rng.uniform(30, 60) * direction))
+    studio.compare(mean=3e-3)
+    assert record.last.statistics.summed_lights > 300
+
+
 # --- meshes
 
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from . import against_methods, against_peer, growth, limits, many_lights, memory, render, targets, threads
+from . import against_methods, against_peer, growth, limits, many_lights, memory, mesh_emitter, render, targets, threads
 from .run import Section
 
 SECTIONS = [
@@ -19,6 +19,7 @@ SECTIONS = [
     Section("limits", "Limits of the machine", limits.measure),
     Section("render", "Stages of a render", render.measure),
     Section("many", "Many lights ÷ ten", many_lights.measure),
+    Section("emitter", "A shining mesh of many faces ÷ one of 80", mesh_emitter.measure),
 ]
 
 PEERED = {"basis", "spheres", "warped", "quads", "targets"}  # need sphericart
