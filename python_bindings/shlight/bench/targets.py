@@ -6,12 +6,12 @@ from __future__ import annotations
 from shlight import _core
 
 from . import against_peer, inputs, kinds, peer
+from .against_peer import AVX2, LANES
 from .rounds import Work
 from .row import Row
 from .run import Run
 
 ORDER = 16
-AVX2, LANES = "AVX2", 2.2  # a machine with no more than this may take so much longer than the bounds
 BOUNDS = {
     "basis": against_peer.BASIS,
     "clipped sphere": against_peer.CLIPPED,
