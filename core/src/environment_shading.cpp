@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "environment_map.h"
-#include "kernels/dot_products.h"
 #include "lobe_sampling.h"
 #include "turned_lobe.h"
 #include "view_grid.h"
@@ -106,12 +105,7 @@ class EnvironmentShading::Point {
     /// Without the spots.
     Rgb by_harmonics(const ClampedLobe& lobe, int order) {
         const float* turned = turned_.coefficients(lobe, static_cast<float>(view_.z), order);
-        Rgb sum;
-        for (int c = 0; c < 3; ++c) {
-            dot_products(map_->coefficients.channels[static_cast<std::size_t>(c)].data(), turned,
-                         static_cast<std::size_t>(coefficient_count(order)), 1, &sum[c]);
-        }
-        return sum;
+        return TurnedLobe::reflected(map_->coefficients.channels, turned, order);
     }
 
     Rgb spots(const LobeShape& shape) const {

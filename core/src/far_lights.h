@@ -3,7 +3,6 @@
 // Lights of a picture that can be summed up from afar, and the lobes that can reflect the sum.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -13,7 +12,6 @@
 #include "material_lobes.h"
 #include "shlight/light.h"
 #include "shlight/types.h"
-#include "view_grid.h"
 
 namespace shlight {
 

@@ -7,9 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "kernels/dot_products.h"
 #include "shlight/basis.h"
-#include "turned_lobe.h"
 
 namespace shlight {
 namespace {
@@ -119,8 +117,8 @@ void LightLumps::estimate_brightness() {
         TurnedLobe turned(frame_of(point));
         for (std::size_t lobe = 0; lobe < materials_[material].lobes().size(); ++lobe) {
             const float* coefficients = turned.coefficients(*far_->lobe(material, lobe).lobe, cosine, kEstimateOrder);
-            const Rgb reflected =
-                materials_[material].lobes()[lobe].scale(cosine) * product(corners_[0], coefficients, kEstimateOrder);
+            const Rgb reflected = materials_[material].lobes()[lobe].scale(cosine) *
+                                  TurnedLobe::reflected(corners_[0], coefficients, kEstimateOrder);
             brightness_[point] += std::max(double{reflected.x} + double{reflected.y} + double{reflected.z}, 0.0);
         }
     }
@@ -173,7 +171,7 @@ std::size_t LightLumps::count_within(const Limits& limits) {
     return count;
 }
 
-void LightLumps::add_up(const Vec3d& place, std::size_t count, int order, Harmonics& sum) {
+void LightLumps::add_up(const Vec3d& place, std::size_t count, int order, ColorHarmonics& sum) {
     const auto size = static_cast<std::size_t>(coefficient_count(order));
     for (std::vector<float>& channel : sum) {
         channel.assign(size, 0.0F);
@@ -201,7 +199,7 @@ void LightLumps::add_up(const Vec3d& place, std::size_t count, int order, Harmon
 }
 
 /// The root of a band's mean power per degree, among the last ones that there are; of all channels together.
-double LightLumps::last_power(const Harmonics& sum) {
+double LightLumps::last_power(const ColorHarmonics& sum) {
     double all = 0;
     for (const std::vector<float>& channel : sum) {
         double power = 0;
@@ -245,7 +243,7 @@ void LightLumps::reflect() {
             const float* coefficients = turned.coefficients(*far_->lobe(material, lobe).lobe, cosine, kLumpOrder);
             Rgb sum(0);
             for (std::size_t i = 0; i < corners_.size(); ++i) {
-                sum += weights[i] * product(corners_[i], coefficients, kLumpOrder);
+                sum += weights[i] * TurnedLobe::reflected(corners_[i], coefficients, kLumpOrder);
             }
             if (far_->all_positive()) {
                 sum = glm::max(sum, Rgb(0));
@@ -278,15 +276,6 @@ std::array<float, 8> LightLumps::corner_weights(std::size_t point) const {
         weights[i] = static_cast<float>(along.x * along.y * along.z);
     }
     return weights;
-}
-
-Rgb LightLumps::product(const Harmonics& sum, const float* lobe, int order) {
-    Rgb result;
-    for (int c = 0; c < 3; ++c) {
-        dot_products(sum[static_cast<std::size_t>(c)].data(), lobe, static_cast<std::size_t>(coefficient_count(order)),
-                     1, &result[c]);
-    }
-    return result;
 }
 
 }  // namespace shlight

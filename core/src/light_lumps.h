@@ -20,6 +20,7 @@
 #include "far_lights.h"
 #include "material_lobes.h"
 #include "shading_points.h"
+#include "turned_lobe.h"
 
 namespace shlight {
 
@@ -65,23 +66,19 @@ class LightLumps {
         double curved;  // of a candidate: per brightness · curvature
         double left;    // of a sum: per root of the power of each band that is left out
     };
-    /// Three colour channels.
-    using Harmonics = std::array<std::vector<float>, 3>;
-
     bool set_box();
     void find_candidates();
     void estimate_brightness();
     Limits find_limits();
     std::size_t count_within(const Limits& limits);
     /// Of the first so many candidates, as seen from a place.
-    void add_up(const Vec3d& place, std::size_t count, int order, Harmonics& sum);
-    static double last_power(const Harmonics& sum);
+    void add_up(const Vec3d& place, std::size_t count, int order, ColorHarmonics& sum);
+    static double last_power(const ColorHarmonics& sum);
     void take(std::size_t count);
     void reflect();
     glm::dmat3 frame_of(std::size_t point) const;
     /// For interpolation in the box.
     std::array<float, 8> corner_weights(std::size_t point) const;
-    static Rgb product(const Harmonics& sum, const float* lobe, int order);
 
     const FarLights* far_;
     std::span<const MaterialLobes> materials_;
@@ -90,7 +87,7 @@ class LightLumps {
     Vec3d low_{0}, size_{0};  // the box
     std::vector<Candidate> candidates_;
     std::vector<double> brightness_;  // by point, of the candidates together
-    std::array<Harmonics, 8> corners_;
+    std::array<ColorHarmonics, 8> corners_;
     std::vector<Lumped> lumped_;
     std::vector<std::uint8_t> is_lumped_;  // by FarLight::index
     std::vector<Rgb> radiance_;            // by point

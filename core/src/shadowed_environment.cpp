@@ -110,10 +110,15 @@ void ShadowedEnvironment::shade_lobe(std::size_t lobe, Hits& hits) {
             const Vec3d scale(lobe_of(lit_[i], lobe, hits).scale(hits.cos_theta_o[lit_[i]]));
             hit_sums_[i].smooth *= scale;
             hit_sums_[i].spots *= scale;
-            EnvironmentRays::Sums& sums = sums_of(material_of(i));
+            EnvironmentRays::Sums& sums = sums_of(material_of(i)).sums;
             sums.smooth += hit_sums_[i].smooth;
             sums.spots += hit_sums_[i].spots;
         }
+    }
+    for (MaterialSums& material : material_sums_) {
+        material.kept_smooth = kept_share(material.sums.smooth, Vec3d(1));
+        // Spots that no ray has met are taken to be as hidden as the rest.
+        material.kept_spots = kept_share(material.sums.spots, material.kept_smooth);
     }
     for (std::size_t i = 0; i < lit_.size(); ++i) {
         if (has_lobe(i)) {
@@ -122,13 +127,13 @@ void ShadowedEnvironment::shade_lobe(std::size_t lobe, Hits& hits) {
     }
 }
 
-EnvironmentRays::Sums& ShadowedEnvironment::sums_of(std::size_t material) {
+ShadowedEnvironment::MaterialSums& ShadowedEnvironment::sums_of(std::size_t material) {
     const auto known = std::find_if(material_sums_.begin(), material_sums_.end(),
                                     [&](const MaterialSums& sums) { return sums.material == material; });
-    return known != material_sums_.end() ? known->sums : material_sums_.emplace_back(MaterialSums{material, {}}).sums;
+    return known != material_sums_.end() ? *known : material_sums_.emplace_back(MaterialSums{material, {}, {}, {}});
 }
 
-void ShadowedEnvironment::shade_hit(std::size_t lit_index, std::size_t lobe, const EnvironmentRays::Sums& of_material,
+void ShadowedEnvironment::shade_hit(std::size_t lit_index, std::size_t lobe, const MaterialSums& of_material,
                                     Hits& hits) {
     const std::size_t hit = lit_[lit_index];
     const UnshadowedParts whole = unblocked(hits, hit, lobe);
@@ -138,10 +143,8 @@ void ShadowedEnvironment::shade_hit(std::size_t lit_index, std::size_t lobe, con
         hits.radiance[hit] += whole.smooth * Rgb(quotient(of_hit.smooth.seen, of_hit.smooth.all));
         return;
     }
-    const Vec3d kept = kept_share(of_material.smooth, Vec3d(1));
-    hits.radiance[hit] += seen_part(whole.smooth, of_hit.smooth, kept);
-    // Spots that no ray has met are taken to be as hidden as the rest.
-    hits.radiance[hit] += seen_part(whole.spots, of_hit.spots, kept_share(of_material.spots, kept));
+    hits.radiance[hit] += seen_part(whole.smooth, of_hit.smooth, of_material.kept_smooth);
+    hits.radiance[hit] += seen_part(whole.spots, of_hit.spots, of_material.kept_spots);
     deviation_[lit_index] += deviation(whole.smooth, of_hit.smooth) + deviation(whole.spots, of_hit.spots);
 }
 

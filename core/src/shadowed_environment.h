@@ -39,6 +39,7 @@ class ShadowedEnvironment {
     struct MaterialSums {
         std::size_t material;
         EnvironmentRays::Sums sums;
+        Vec3d kept_smooth, kept_spots;  // see kept_share
     };
 
     void add_pixel(std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits);
@@ -49,8 +50,8 @@ class ShadowedEnvironment {
     /// The values of one lobe at a hit.
     UnshadowedParts unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const;
     void shade_lobe(std::size_t lobe, Hits& hits);
-    EnvironmentRays::Sums& sums_of(std::size_t material);
-    void shade_hit(std::size_t lit_index, std::size_t lobe, const EnvironmentRays::Sums& of_material, Hits& hits);
+    MaterialSums& sums_of(std::size_t material);
+    void shade_hit(std::size_t lit_index, std::size_t lobe, const MaterialSums& of_material, Hits& hits);
     Rgb seen_part(const Rgb& unblocked, const RadianceSums& of_hit, const Vec3d& kept) const;
 
     std::span<const MaterialLobes> materials_;

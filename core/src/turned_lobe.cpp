@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernels/dot_products.h"
 #include "shlight/basis.h"
 
 namespace shlight {
@@ -16,6 +17,15 @@ const float* TurnedLobe::coefficients(const ClampedLobe& lobe, float cos_theta_o
         set_turned(order);
     }
     return coefficients_.data();
+}
+
+Rgb TurnedLobe::reflected(const ColorHarmonics& light, const float* lobe, int order) {
+    Rgb sum;
+    for (int c = 0; c < 3; ++c) {
+        dot_products(light[static_cast<std::size_t>(c)].data(), lobe,
+                     static_cast<std::size_t>(coefficient_count(order)), 1, &sum[c]);
+    }
+    return sum;
 }
 
 void TurnedLobe::set_zonal(int order) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include <glm/mat3x3.hpp>
 
@@ -14,6 +15,9 @@
 
 namespace shlight {
 
+/// Harmonics of a light in three colour channels.
+using ColorHarmonics = std::array<std::vector<float>, 3>;
+
 /// At one shading point.
 class TurnedLobe {
   public:
@@ -22,6 +26,8 @@ class TurnedLobe {
 
     /// order² coefficients of f·cos, until the next call.
     const float* coefficients(const ClampedLobe& lobe, float cos_theta_o, int order);
+    /// What a lobe of such coefficients reflects of a light with as many or more.
+    static Rgb reflected(const ColorHarmonics& light, const float* lobe, int order);
 
   private:
     void set_zonal(int order);

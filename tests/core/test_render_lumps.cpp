@@ -67,11 +67,14 @@ RenderSettings plain_settings(int shadow_rays) {
     return settings;
 }
 
-Image sum_of_groups(const Bsdf& bsdf, const RenderSettings& settings, const LightTraits& traits = {}) {
-    const Camera camera(look_at({0.3, -1, 0.8}, {0, 0, 0.03}), 0.12);
-    Image sum = render_image(scene_of(0, kGroup, bsdf, traits), camera, kSize, kSize, settings);
+Image rendered(const Scene& scene, const RenderSettings& settings) {
+    return render_image(scene, {look_at({0.3, -1, 0.8}, {0, 0, 0.03}), 0.12}, kSize, kSize, settings);
+}
+
+Image sum_of_groups(const Bsdf& bsdf, const RenderSettings& settings) {
+    Image sum = rendered(scene_of(0, kGroup, bsdf), settings);
     for (int first = kGroup; first < kLights; first += kGroup) {
-        const Image part = render_image(scene_of(first, first + kGroup, bsdf, traits), camera, kSize, kSize, settings);
+        const Image part = rendered(scene_of(first, first + kGroup, bsdf), settings);
         EXPECT_EQ(part.report.summed_count, 0U);
         for (std::size_t i = 0; i < sum.values.size(); ++i) {
             sum.values[i] += i % 4 == 3 ? 0 : part.values[i];
@@ -81,8 +84,7 @@ Image sum_of_groups(const Bsdf& bsdf, const RenderSettings& settings, const Ligh
 }
 
 Image all_of_them(const Bsdf& bsdf, const RenderSettings& settings, const LightTraits& traits = {}) {
-    const Camera camera(look_at({0.3, -1, 0.8}, {0, 0, 0.03}), 0.12);
-    return render_image(scene_of(0, kLights, bsdf, traits), camera, kSize, kSize, settings);
+    return rendered(scene_of(0, kLights, bsdf, traits), settings);
 }
 
 struct Difference {
@@ -156,7 +158,7 @@ TEST(RenderLumps, HaveTheirShadows) {
 
 /// Near enough for their light to change over a group of pixels, and from one side.
 TEST(RenderLumps, ChangeWithThePlace) {
-    const auto rendered = [](int first, int last) {
+    const auto floor_under = [](int first, int last) {
         Scene scene;
         scene.add_mesh(floor_mesh(1));
         RandomInput random(8);
@@ -168,17 +170,17 @@ TEST(RenderLumps, ChangeWithThePlace) {
         }
         return render_image(scene, camera_above(0.1), kSize, kSize, plain_settings(0));
     };
-    const Image all = rendered(0, 2 * kGroup);
+    const Image all = floor_under(0, 2 * kGroup);
     EXPECT_GE(all.report.summed_count, all.report.hits * kGroup / 2);
-    Image sum = rendered(0, kGroup);
-    const Image other = rendered(kGroup, 2 * kGroup);
+    Image sum = floor_under(0, kGroup);
+    const Image other = floor_under(kGroup, 2 * kGroup);
     std::transform(sum.values.begin(), sum.values.end(), other.values.begin(), sum.values.begin(), std::plus<>());
     EXPECT_LE(std::sqrt(difference_between(all, sum).relative_mse), 1e-3);
 }
 
 /// A wall hides the brighter half.
 TEST(RenderLumps, CountInShadowsAsBrightAsTheyAre) {
-    const auto rendered = [](float hidden) {
+    const auto half_hidden = [](float hidden) {
         Scene scene;
         scene.add_mesh(floor_mesh(1));
         Mesh wall = floor_mesh(40);
@@ -196,7 +198,7 @@ TEST(RenderLumps, CountInShadowsAsBrightAsTheyAre) {
         EXPECT_GE(image.report.summed_count, image.report.hits * kLights / 4);
         return image;
     };
-    const Difference difference = difference_between(rendered(10), rendered(0));
+    const Difference difference = difference_between(half_hidden(10), half_hidden(0));
     EXPECT_LE(std::abs(difference.mean), 0.02);
     EXPECT_LE(std::sqrt(difference.relative_mse), 0.2);  // a tenth of the light, by some hundred rays
 }
