@@ -24,8 +24,6 @@ constexpr std::size_t kReduction = 4;
 /// Faces of the finest level: with more, edges are so short that their outlines zigzag, and of a sphere this many show
 /// 0.05 % of the solid angle too much or too little.
 constexpr std::size_t kMostFaces = 5120;
-/// Edges of a block: of smaller ones there are more to look at, of larger ones more that lie on both sides of a point.
-constexpr std::size_t kBlockEdges = 16;
 /// Of the extent: beyond, a coarse mesh is nothing like the fine one.
 constexpr float kLargestError = 0.05F;
 
@@ -238,21 +236,26 @@ void sort_along_curve(const IndexedMesh& mesh, std::vector<EmitterEdge>& edges) 
                      [&](const EmitterEdge& a, const EmitterEdge& b) { return key(a) < key(b); });
 }
 
-EdgeBlock block_of(const IndexedMesh& mesh, std::span<const EmitterEdge> edges, std::size_t first, std::size_t last) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    EdgeBlock block{first, last, Vec3d(0), Vec3d(0), 1, 0, kInfinity, -kInfinity};
+/// Of the faces along some edges, each once; kNone for those that have none.
+std::vector<std::uint32_t> faces_along(std::span<const EmitterEdge> edges) {
     std::vector<std::uint32_t> faces;
-    bool border = false;
-    for (std::size_t i = first; i < last; ++i) {
-        block.center += 0.5 * (mesh.vertices[edges[i].from] + mesh.vertices[edges[i].to]);
-        for (const std::uint32_t face : {edges[i].left, edges[i].right}) {
-            border = border || face == EmitterEdge::kNone;
-            if (face != EmitterEdge::kNone) {
-                faces.push_back(face);
-            }
-        }
+    for (const EmitterEdge& edge : edges) {
+        faces.insert(faces.end(), {edge.left, edge.right});
     }
-    block.center /= static_cast<double>(last - first);
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces;
+}
+
+/// The bounds of faces' planes, without where to find them.
+EdgeBlock bounds_of(const IndexedMesh& mesh, std::span<const EmitterEdge> edges, std::vector<std::uint32_t> faces) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    EdgeBlock block{0, 0, 0, 0, Vec3d(0), Vec3d(0), 1, 0, kInfinity, -kInfinity};
+    const bool border = std::erase(faces, EmitterEdge::kNone) > 0;
+    for (const EmitterEdge& edge : edges) {
+        block.center += 0.5 * (mesh.vertices[edge.from] + mesh.vertices[edge.to]);
+    }
+    block.center /= static_cast<double>(edges.size());
     for (const std::uint32_t face : faces) {
         block.axis += glm::normalize(scaled_normal(mesh, mesh.faces[face]));
     }
@@ -275,16 +278,35 @@ EdgeBlock block_of(const IndexedMesh& mesh, std::span<const EmitterEdge> edges, 
     return block;
 }
 
+void add_block(const IndexedMesh& mesh, std::span<const EmitterEdge> edges, EmitterLevel& level) {
+    const std::vector<std::uint32_t> faces = faces_along(edges);
+    EdgeBlock block = bounds_of(mesh, edges, faces);
+    block.first = level.edges.size();
+    block.last = block.first + edges.size();
+    block.first_plane = level.block_planes.size();
+    block.plane_count = faces.size();
+    for (const std::uint32_t face : faces) {
+        level.block_planes.push_back(face == EmitterEdge::kNone ? EmitterPlane{Vec3d(0), 0} : level.planes[face]);
+    }
+    const auto place = [&](std::uint32_t face) {
+        return static_cast<std::uint8_t>(std::lower_bound(faces.begin(), faces.end(), face) - faces.begin());
+    };
+    for (const EmitterEdge& edge : edges) {
+        level.edges.push_back({edge.from, edge.to, place(edge.left), place(edge.right)});
+    }
+    level.blocks.push_back(block);
+}
+
 EmitterLevel level_of(IndexedMesh mesh, double error) {
     EmitterLevel level;
-    level.edges = edges_of(mesh);
-    sort_along_curve(mesh, level.edges);
-    for (std::size_t first = 0; first < level.edges.size(); first += kBlockEdges) {
-        level.blocks.push_back(block_of(mesh, level.edges, first, std::min(first + kBlockEdges, level.edges.size())));
-    }
     for (const Triangle& t : mesh.faces) {
         const Vec3d normal = scaled_normal(mesh, t);
         level.planes.push_back({normal, glm::dot(normal, mesh.vertices[t.x])});
+    }
+    std::vector<EmitterEdge> edges = edges_of(mesh);
+    sort_along_curve(mesh, edges);
+    for (std::size_t first = 0; first < edges.size(); first += kBlockEdges) {
+        add_block(mesh, std::span(edges).subspan(first, std::min(kBlockEdges, edges.size() - first)), level);
     }
     level.vertices = std::move(mesh.vertices);
     level.faces = std::move(mesh.faces);
@@ -308,13 +330,16 @@ void find_extent(const IndexedMesh& mesh, EmitterLevels& emitter) {
 
 }  // namespace
 
-const EmitterLevel& level_for(const EmitterLevels& emitter, double distance, double tolerance) {
+double shown_share(const EmitterLevels& emitter, double distance) {
     // A surface shows a quarter of its area on average (Cauchy), which is a share of the hemisphere.
-    const double shown = emitter.area / 4;
-    const double share = std::min(1.0, shown / (std::numbers::pi * distance * distance));
+    return std::min(1.0, emitter.area / 4 / (std::numbers::pi * distance * distance));
+}
+
+const EmitterLevel& level_for(const EmitterLevels& emitter, double distance, double tolerance) {
+    const double share = shown_share(emitter, distance);
     for (std::size_t i = emitter.levels.size() - 1; i > 0; --i) {
         const double strip = 2 * std::numbers::pi * emitter.radius * emitter.levels[i].error;
-        if (kOneSided * strip / shown * share <= tolerance) {
+        if (kOneSided * strip / (emitter.area / 4) * share <= tolerance) {
             return emitter.levels[i];
         }
     }

@@ -32,18 +32,29 @@ struct EmitterPlane {
 /// Neighbouring edges, and bounds of the planes of the faces along them: where a point lies before all of these, or
 /// behind all, none of the edges is part of its outline.
 struct EdgeBlock {
-    std::size_t first, last;  ///< edges first … last - 1
+    std::size_t first, last;               ///< edges first … last - 1
+    std::size_t first_plane, plane_count;  ///< in EmitterLevel::block_planes, each face once
     Vec3d center;
     Vec3d axis;           ///< unit, in the middle of the faces' normals
     double cosine, sine;  ///< of the largest angle between the axis and a normal
     double low, high;     ///< of the planes' heights over the center; of a block with a border, infinite
 };
 
+/// As EmitterEdge, with the numbers of its faces' planes in its block; for none, one that is 0 everywhere.
+struct BlockEdge {
+    std::uint32_t from, to;
+    std::uint8_t left, right;
+};
+
+/// Edges of a block: of smaller ones there are more to look at, of larger ones more that lie on both sides of a point.
+inline constexpr std::size_t kBlockEdges = 16;
+
 struct EmitterLevel {
     std::vector<Vec3d> vertices;
-    std::vector<EmitterEdge> edges;
-    std::vector<EdgeBlock> blocks;     ///< of all edges, in their order
-    std::vector<EmitterPlane> planes;  ///< one for each face; of any length of the normal
+    std::vector<BlockEdge> edges;
+    std::vector<EdgeBlock> blocks;           ///< of all edges, in their order
+    std::vector<EmitterPlane> block_planes;  ///< of their faces
+    std::vector<EmitterPlane> planes;        ///< one for each face; of any length of the normal
     std::vector<Triangle> faces;
     double error;  ///< distance between this surface and the finest, about [m]
 };
@@ -61,6 +72,9 @@ struct EmitterLevels {
 /// How much of the strip between two outlines lies on one side more than on the other: of levels of one area, a seventh
 /// was the most for spheres.
 inline constexpr double kOneSided = 0.15;
+
+/// Radiance of a white surface that faces the centre at this distance, ÷ the emitter's, about.
+double shown_share(const EmitterLevels& emitter, double distance);
 
 /// The coarsest level whose outline, as radiance of a white surface at this distance from the centre, errs by no more
 /// than the tolerance, about; the finest if none does.

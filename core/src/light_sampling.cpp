@@ -26,4 +26,12 @@ void LightSampler::reset(const Light& light, const ShadingFrame& frame) {
     }
 }
 
+void LightSampler::move(const Light& light, const ShadingFrame& frame) {
+    if (const auto* mesh = std::get_if<MeshLight>(&light)) {
+        mesh_.move(*mesh, frame);
+    } else {
+        reset(light, frame);
+    }
+}
+
 }  // namespace shlight

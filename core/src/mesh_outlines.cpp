@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "mesh_outlines.h"
 
+#include "flat_outline.h"
+
 namespace shlight {
 namespace {
 
@@ -17,15 +19,21 @@ void MeshOutlines::clear() {
 
 void MeshOutlines::look(const EmitterLevels& emitter, const ShadingFrame& frame, double tolerance,
                         std::uint32_t point) {
+    const std::size_t first = vertices_.size();
     switch (view_.look(emitter, frame, tolerance)) {
         case MeshView::Kind::hidden:
             break;
         case MeshView::Kind::outline:
-            add(view_.outline(), point);
+            for (const FlatOutline::Vertex& v : view_.outline().line(0)) {
+                vertices_.push_back(view_.outline().direction(v.at));
+            }
+            add(first, point);
             break;
         case MeshView::Kind::faces:
             for (std::size_t i = 0; i + 2 < view_.faces().size(); i += 3) {
-                add(view_.faces().subspan(i, 3), point);
+                const std::span<const Vec3d> face = view_.faces().subspan(i, 3);
+                vertices_.insert(vertices_.end(), face.begin(), face.end());
+                add(first + i, point);
             }
             break;
         case MeshView::Kind::inside:
@@ -34,11 +42,10 @@ void MeshOutlines::look(const EmitterLevels& emitter, const ShadingFrame& frame,
     }
 }
 
-void MeshOutlines::add(std::span<const Vec3d> polygon, std::uint32_t point) {
-    const auto count = static_cast<std::uint32_t>(polygon.size());
+void MeshOutlines::add(std::size_t first, std::uint32_t point) {
+    const auto count = static_cast<std::uint32_t>(vertices_.size() - first);
     const std::uint32_t padded = count == 3 ? 3 : (count + kSizeStep - 1) / kSizeStep * kSizeStep;
-    seen_.push_back({point, static_cast<std::uint32_t>(vertices_.size()), count, padded});
-    vertices_.insert(vertices_.end(), polygon.begin(), polygon.end());
+    seen_.push_back({point, static_cast<std::uint32_t>(first), count, padded});
 }
 
 }  // namespace shlight

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -47,7 +48,8 @@ class MeshOutlines {
     struct Seen {
         std::uint32_t point, first, count, padded;
     };
-    void add(std::span<const Vec3d> polygon, std::uint32_t point);
+    /// The vertices from `first` on, as what a point sees.
+    void add(std::size_t first, std::uint32_t point);
 
     MeshView view_;
     std::vector<Vec3d> vertices_;

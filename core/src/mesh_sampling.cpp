@@ -2,18 +2,23 @@
 #include "mesh_sampling.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <span>
 
 #include "emitter_levels.h"
-#include "perpendicular.h"
 
 namespace shlight {
 namespace {
 
-/// Of the radiance of a white surface: rays see the light itself, the outline only guides them.
-constexpr double kTolerance = 2e-3;
+/// Of the radiance that the mesh gives a white surface: rays see the light itself, the outline only guides them.
+constexpr double kTolerance = 2e-2;
+/// Of what is shrunk away, at most.
+constexpr double kMostShrink = 0.1;
+/// Between hits that share an outline, ÷ distance to the mesh.
+constexpr double kNear = 0.05;
 
 /// Angle by which a plane figure is longest, of points about the origin.
 double longest_direction(std::span<const glm::dvec2> points, const glm::dvec2& middle) {
@@ -40,30 +45,57 @@ glm::dvec2 middle_of(std::span<const glm::dvec2> points) {
 }  // namespace
 
 void MeshSampler::reset(const MeshLight& light, const ShadingFrame& frame) {
+    const EmitterLevels& shape = *light.shape;
     around_.reset();
-    convex_ = light.shape->convex;
-    kind_ = view_.look(*light.shape, frame, kTolerance);
+    convex_ = shape.convex;
+    looked_from_ = frame.origin;
+    const double distance = glm::length(shape.center - frame.origin);
+    kind_ = view_.look(shape, frame, kTolerance * shown_share(shape, distance));
     if (kind_ == MeshView::Kind::outline) {
         // The mesh may lie inside its coarse outline, where rays would pass by.
-        enclose(0.5 * view_.error() / light.shape->radius);
+        shrink_ = std::min(0.5 * view_.error() / shape.radius, kMostShrink);
+        keep(frame);
+        plane_ = view_.outline();
+        enclose();
     } else {
         around_.emplace(CapView{CapView::Kind::inside, Vec3d(0, 0, 1), 1});
     }
 }
 
-/// Draws the outline's plane, and about the outline the rectangle that is as long as it.
-void MeshSampler::enclose(double shrink) {
-    const std::span<const Vec3d> outline = view_.outline();
-    axis_ = view_.axis();
-    along_ = perpendicular(axis_);
-    across_ = glm::cross(axis_, along_);
+void MeshSampler::move(const MeshLight& light, const ShadingFrame& frame) {
+    const double distance = glm::length(light.shape->center - frame.origin) - light.shape->radius;
+    const bool near = glm::length(frame.origin - looked_from_) <= kNear * distance;
+    if (kind_ == MeshView::Kind::outline && near) {
+        local_.clear();
+        for (const Vec3d& v : edge_) {
+            local_.push_back(frame.point_to_local(v));
+        }
+        const std::array<std::size_t, 1> ends = {local_.size()};
+        if (plane_.draw(local_, ends)) {
+            enclose();
+            return;
+        }
+    }
+    reset(light, frame);
+}
+
+/// The outline for hits near this one.
+void MeshSampler::keep(const ShadingFrame& frame) {
+    edge_.clear();
+    for (const FlatOutline::Vertex& v : view_.outline().line(0)) {
+        edge_.push_back(frame.origin + frame.to_world(v.depth * view_.outline().direction(v.at)));
+    }
+}
+
+/// Shrinks the outline, and draws about it the rectangle that is as long as it.
+void MeshSampler::enclose() {
     outline_.clear();
-    for (const Vec3d& v : outline) {
-        outline_.emplace_back(glm::dot(v, along_), glm::dot(v, across_));
+    for (const FlatOutline::Vertex& v : plane_.line(0)) {
+        outline_.push_back(v.at);
     }
     const glm::dvec2 middle = middle_of(outline_);
     for (glm::dvec2& p : outline_) {
-        p = middle + (1 - std::min(shrink, 0.1)) * (p - middle);
+        p = middle + (1 - shrink_) * (p - middle);
     }
     const double angle = longest_direction(outline_, middle);
     const glm::dvec2 u(std::cos(angle), std::sin(angle));
@@ -75,10 +107,7 @@ void MeshSampler::enclose(double shrink) {
         low = glm::min(low, q);
         high = glm::max(high, q);
     }
-    const auto corner = [&](double a, double b) {
-        const glm::dvec2 p = a * u + b * v;
-        return axis_ + p.x * along_ + p.y * across_;
-    };
+    const auto corner = [&](double a, double b) { return plane_.direction(a * u + b * v); };
     rectangle_.reset({corner(low.x, low.y), corner(high.x, low.y), corner(high.x, high.y), corner(low.x, high.y)});
 }
 
@@ -110,12 +139,11 @@ int MeshSampler::layers(const Vec3d& direction) const {
     if (kind_ != MeshView::Kind::outline) {
         return kind_ == MeshView::Kind::inside ? 1 : 0;
     }
-    const double height = glm::dot(direction, axis_);
-    if (!(height > 0)) {
+    if (!(glm::dot(direction, plane_.axis()) > 0)) {
         return 0;
     }
     // How often the outline winds about the direction: edges that cross the ray from it to the right.
-    const glm::dvec2 p(glm::dot(direction, along_) / height, glm::dot(direction, across_) / height);
+    const glm::dvec2 p = plane_.shown(direction);
     int winding = 0;
     for (std::size_t i = 0; i < outline_.size(); ++i) {
         const glm::dvec2& a = outline_[i];

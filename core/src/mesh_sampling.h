@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 
 #include "cap_sampling.h"
+#include "flat_outline.h"
 #include "light_sample.h"
 #include "light_view.h"
 #include "mesh_view.h"
@@ -22,6 +23,9 @@ namespace shlight {
 class MeshSampler {
   public:
     void reset(const MeshLight& light, const ShadingFrame& frame);
+    /// As reset, with the outline of the last hit that was looked from if this one is close to that, as the light's
+    /// distance goes: what was its edge is hardly less so from here. The same light as before.
+    void move(const MeshLight& light, const ShadingFrame& frame);
     LightSample sample(const glm::dvec2& point) const;
     /// Of what directions are drawn from.
     double solid_angle() const { return around_ ? around_->solid_angle() : rectangle_.solid_angle(); }
@@ -31,15 +35,20 @@ class MeshSampler {
     int layers(const Vec3d& direction) const;
 
   private:
-    void enclose(double shrink);
+    void keep(const ShadingFrame& frame);
+    void enclose();
 
     MeshView view_;
     MeshView::Kind kind_ = MeshView::Kind::hidden;
     bool convex_ = false;               // whose coarse outlines may fold, but not its own
     std::optional<CapSampler> around_;  // where there is no outline
+    Vec3d looked_from_{0};
+    double shrink_ = 0;                // of the outline, about its middle
+    std::vector<Vec3d> edge_;          // the outline in space
+    std::vector<Vec3d> local_;         // from the hit
+    FlatOutline plane_;                // the outline from the hit, before it was shrunk
+    std::vector<glm::dvec2> outline_;  // in that plane
     PolygonSampler rectangle_;
-    Vec3d axis_{0}, along_{0}, across_{0};  // of the outline's plane at distance 1
-    std::vector<glm::dvec2> outline_;       // in that plane
 };
 
 }  // namespace shlight

@@ -2,6 +2,7 @@
 #include "mesh_view.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -37,16 +38,6 @@ bool encloses(const EmitterLevel& level, const Vec3d& point) {
     return winding != 0;
 }
 
-/// Whether a flattened outline runs counter-clockwise about its inside, as seen from the hit. One that runs the other
-/// way round stands for all directions but those inside: within a bowl the surface is everywhere but in its mouth.
-bool is_about_its_inside(std::span<const Vec3d> outline, const Vec3d& axis) {
-    Vec3d sum(0);
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-        sum += glm::cross(outline[i], outline[(i + 1) % outline.size()]);
-    }
-    return glm::dot(sum, axis) < 0;
-}
-
 }  // namespace
 
 MeshView::Kind MeshView::look(const EmitterLevels& emitter, const ShadingFrame& frame, double tolerance) {
@@ -72,17 +63,25 @@ MeshView::Kind MeshView::look(const EmitterLevels& emitter, const ShadingFrame& 
         return Kind::hidden;
     }
     local_.clear();
-    for (const Vec3d& direction : silhouette_.outline()) {
+    for (const Vec3d& direction : silhouette_.directions()) {
         local_.push_back(frame.to_local(direction));
     }
-    if (const auto axis = flatten(local_, outline_); axis && is_about_its_inside(outline_, *axis)) {
-        axis_ = *axis;
-        // Of lines that are joined, one direction of what joins them would move and the other stay.
-        if (silhouette_.is_simple()) {
-            thin_out(axis_, tolerance * std::numbers::pi / kOneSided, outline_);
+    // A convex surface is below the horizon of a hit on it, but may rise above it where a level is not that surface.
+    const double above = emitter.convex && distance < emitter.radius + error_ ? 2 * error_ : 0;
+    const bool rises = std::any_of(local_.begin(), local_.end(), [&](const Vec3d& v) { return v.z > above; });
+    // Within an outline from outside a convex surface is less than half of space, so never all above the horizon.
+    if (emitter.convex && !rises) {
+        return Kind::hidden;
+    }
+    // An outline that runs the other way round stands for all directions but those inside: within a bowl the surface is
+    // everywhere but in its mouth.
+    if (outline_.draw(local_, silhouette_.ends()) && outline_.area() > 0) {
+        if (!rises) {
+            return Kind::hidden;
         }
-        const bool above = std::any_of(outline_.begin(), outline_.end(), [](const Vec3d& v) { return v.z > 0; });
-        return above ? Kind::outline : Kind::hidden;
+        outline_.thin_out(tolerance * std::numbers::pi / kOneSided, kOneSided);
+        outline_.join();
+        return Kind::outline;
     }
     return look_at_faces(level, point, frame, emitter.closed);
 }
@@ -96,8 +95,12 @@ MeshView::Kind MeshView::look_at_faces(const EmitterLevel& level, const Vec3d& p
         if (height == 0 || (front_only && height < 0)) {
             continue;
         }
+        std::array<Vec3d, 3> corners;
         for (int corner = 0; corner < 3; ++corner) {
-            faces_.push_back(frame.to_local(level.vertices[level.faces[i][corner]] - point));
+            corners[corner] = frame.to_local(level.vertices[level.faces[i][corner]] - point);
+        }
+        if (std::any_of(corners.begin(), corners.end(), [](const Vec3d& v) { return v.z > 0; })) {
+            faces_.insert(faces_.end(), corners.begin(), corners.end());
         }
     }
     return faces_.empty() ? Kind::hidden : Kind::faces;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "emitter_levels.h"
+#include "flat_outline.h"
 #include "hits.h"
 #include "shlight/types.h"
 #include "silhouette.h"
@@ -26,9 +27,9 @@ class MeshView {
     /// tolerance: of the radiance of a white surface.
     Kind look(const EmitterLevels& emitter, const ShadingFrame& frame, double tolerance);
 
-    /// Counter-clockwise as seen from the hit, in the plane at distance 1 along axis().
-    std::span<const Vec3d> outline() const { return outline_; }
-    const Vec3d& axis() const { return axis_; }
+    /// One line, counter-clockwise as seen from the hit; lines that are apart are joined by edges that are passed in
+    /// both directions.
+    const FlatOutline& outline() const { return outline_; }
     /// Three corners each, either way round.
     std::span<const Vec3d> faces() const { return faces_; }
     /// Between the level that was looked at and the mesh [m].
@@ -38,8 +39,8 @@ class MeshView {
     Kind look_at_faces(const EmitterLevel& level, const Vec3d& point, const ShadingFrame& frame, bool front_only);
 
     Silhouette silhouette_;
-    std::vector<Vec3d> local_, outline_, faces_;
-    Vec3d axis_{0};
+    FlatOutline outline_;
+    std::vector<Vec3d> local_, faces_;
     double error_ = 0;
 };
 

@@ -85,7 +85,11 @@ void ShadowRays::trace(const Light& light, const Hits& hits, const LitHits& lit,
     for (std::size_t i = 0; i < lit.hit.size(); ++i) {
         const std::size_t hit = lit.hit[i];
         const Drawing drawing(light, hits, hit, phase, seed);
-        light_sampler_.reset(light, hits.frame[hit]);
+        if (i == 0) {
+            light_sampler_.reset(light, hits.frame[hit]);
+        } else {
+            light_sampler_.move(light, hits.frame[hit]);
+        }
         draw(drawing, lit, i);
     }
     blocked_.resize(directions_.size());

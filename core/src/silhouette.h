@@ -3,8 +3,8 @@
 // The outline inside which a point sees an emissive mesh.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,18 +23,19 @@ class Silhouette {
     /// if there is none: the point lies within a closed surface, or every face is seen edge-on.
     bool find(const EmitterLevel& level, bool closed, const Vec3d& point);
 
-    /// One closed line, counter-clockwise as seen from the point, relative to the point; separate lines are joined by
-    /// edges that are passed in both directions.
-    std::span<const Vec3d> outline() const { return outline_; }
-    /// Whether the outline is one line by itself that passes no vertex twice.
-    bool is_simple() const { return is_simple_; }
+    /// Closed lines that pass no vertex twice, relative to the point, one after the other; counter-clockwise as seen
+    /// from there about what shows the point its outer side.
+    std::span<const Vec3d> directions() const { return directions_; }
+    /// Of each line, past its last vertex.
+    std::span<const std::size_t> ends() const { return ends_; }
     /// Whether some face shows its outer side.
     bool any_front() const { return any_front_; }
 
   private:
     void find_steps(const EmitterLevel& level, const EdgeBlock& block, bool closed, const Vec3d& point);
     void add(std::uint32_t from, std::uint32_t to, int times);
-    void walk(const EmitterLevel& level, const Vec3d& point);
+    void walk(std::uint32_t origin, const EmitterLevel& level, const Vec3d& point);
+    void cut_off(std::size_t first, const EmitterLevel& level, const Vec3d& point);
 
     struct Step {
         std::uint32_t to, next;  // next: of the same origin
@@ -42,19 +43,11 @@ class Silhouette {
     std::vector<Step> steps_;
     std::vector<std::uint32_t> first_step_;  // of each vertex
     std::vector<std::uint32_t> origins_;
-    std::vector<Vec3d> outline_;
+    std::vector<std::uint32_t> path_;   // vertices passed, none of them twice
+    std::vector<std::uint32_t> place_;  // of each vertex in the path
+    std::vector<Vec3d> directions_;
+    std::vector<std::size_t> ends_;
     bool any_front_ = false;
-    bool is_simple_ = false;
 };
-
-/// Moves the vertices along their directions into a plane at distance 1, where they enclose the same directions, and
-/// returns its normal. Nothing if they do not all lie in one half of space, well away from its border.
-std::optional<Vec3d> flatten(std::span<const Vec3d> directions, std::vector<Vec3d>& planar);
-
-/// Takes away vertices of a simple closed line in the plane at distance 1 along a unit normal: two at a time, with one
-/// in their place so that the area stays the same. What lies on another side of the line than before has an area, hence
-/// a solid angle, below `most`, counted as often as it changes sides, and no part of it is far from one of the opposite
-/// sign.
-void thin_out(const Vec3d& normal, double most, std::vector<Vec3d>& line);
 
 }  // namespace shlight

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "emitter_levels.h"
+#include "flat_outline.h"
 #include "mesh_sampling.h"
+#include "perpendicular.h"
 #include "random_input.h"
 #include "shlight/cap.h"
 #include "shlight/polygon.h"
@@ -59,10 +61,15 @@ Row sum_of_faces(const EmitterLevel& level, bool outer_only, const Vec3d& point,
 Row of_outline(const EmitterLevels& emitter, const EmitterLevel& level, const Vec3d& point, bool clip) {
     Row row{};
     Silhouette silhouette;
-    std::vector<Vec3d> planar;
+    FlatOutline flat;
     EXPECT_TRUE(silhouette.find(level, emitter.closed, point));
-    EXPECT_TRUE(flatten(silhouette.outline(), planar));
-    polygon_coefficients<double>(planar, kOrder, clip, row.data());
+    EXPECT_TRUE(flat.draw(silhouette.directions(), silhouette.ends()));
+    flat.join();
+    std::vector<Vec3d> outline;
+    for (const FlatOutline::Vertex& v : flat.line(0)) {
+        outline.push_back(flat.direction(v.at));
+    }
+    polygon_coefficients<double>(outline, kOrder, clip, row.data());
     return row;
 }
 
@@ -114,15 +121,15 @@ TEST(Silhouette, InsideAClosedSurfaceThereIsNone) {
     EXPECT_TRUE(silhouette.find(emitter.levels.front(), true, Vec3d(0, 0, 2)));
 }
 
-TEST(Silhouette, IsSimpleWhereItIsOneLine) {
-    const auto is_simple = [](const Solid& solid, bool closed, const Vec3d& point) {
+TEST(Silhouette, IsLinesThatPassNoVertexTwice) {
+    const auto line_count = [](const Solid& solid, bool closed, const Vec3d& point) {
         const EmitterLevels emitter = make_emitter_levels(solid.vertices, solid.triangles, 1000);
         Silhouette silhouette;
         EXPECT_TRUE(silhouette.find(emitter.levels.front(), closed, point));
-        return silhouette.is_simple();
+        return silhouette.ends().size();
     };
     const Solid ball = icosphere(1);
-    EXPECT_TRUE(is_simple(ball, true, {0.1, 0.2, 3}));
+    EXPECT_EQ(line_count(ball, true, {0.1, 0.2, 3}), 1U);
     Solid two = ball;
     const auto count = static_cast<std::uint32_t>(ball.vertices.size());
     for (const Vec3d& v : ball.vertices) {
@@ -131,55 +138,10 @@ TEST(Silhouette, IsSimpleWhereItIsOneLine) {
     for (const Triangle& t : ball.triangles) {
         two.triangles.push_back({t.x + count, t.y + count, t.z + count});
     }
-    EXPECT_FALSE(is_simple(two, true, {0.1, 0.2, 3}));
+    EXPECT_EQ(line_count(two, true, {0.1, 0.2, 3}), 2U);
     // Two triangles that touch at a corner.
     const Solid corners{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}};
-    EXPECT_FALSE(is_simple(corners, false, {0.1, 0.2, 3}));
-}
-
-double planar_area(std::span<const Vec3d> line) {
-    double twice = 0;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        twice += glm::cross(line[i], line[(i + 1) % line.size()]).z;
-    }
-    return twice / 2;
-}
-
-/// How often a line in the plane z = 1 winds about a point of it.
-int winding(std::span<const Vec3d> line, const Vec3d& point) {
-    double angle = 0;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        const Vec3d a = line[i] - point;
-        const Vec3d b = line[(i + 1) % line.size()] - point;
-        angle += std::atan2(glm::cross(a, b).z, glm::dot(a, b));
-    }
-    return static_cast<int>(std::lround(angle / (2 * std::numbers::pi)));
-}
-
-TEST(Silhouette, ThinnedOutKeepsItsAreaAndMostOfItsPlaces) {
-    constexpr double kMost = 4e-3;
-    constexpr int kGrid = 160;
-    constexpr double kHalf = 0.4;
-    RandomInput random(9);
-    for (int round = 0; round < 5; ++round) {
-        std::vector<Vec3d> line;
-        for (int i = 0; i < 150; ++i) {
-            const double azimuth = 2 * std::numbers::pi * i / 150;
-            const double radius = (0.3 + 0.05 * std::cos(3 * azimuth)) * random.uniform(0.995, 1.005);
-            line.emplace_back(radius * std::cos(azimuth), radius * std::sin(azimuth), 1);
-        }
-        std::vector<Vec3d> thin = line;
-        thin_out(Vec3d(0, 0, 1), kMost, thin);
-        EXPECT_LE(thin.size(), line.size() / 3);
-        EXPECT_LE(std::abs(planar_area(thin) - planar_area(line)), 1e-14);
-        int moved = 0;
-        for (int i = 0; i < kGrid * kGrid; ++i) {
-            const Vec3d point(kHalf * (2 * (i % kGrid + 0.5) / kGrid - 1), kHalf * (2 * (i / kGrid + 0.5) / kGrid - 1),
-                              1);
-            moved += winding(thin, point) != winding(line, point) ? 1 : 0;
-        }
-        EXPECT_LE(moved * (2 * kHalf / kGrid) * (2 * kHalf / kGrid), kMost);
-    }
+    EXPECT_EQ(line_count(corners, false, {0.1, 0.2, 3}), 2U);
 }
 
 TEST(EmitterLevels, AreWoundOutwardsWhateverTheMeshWas) {
@@ -255,6 +217,38 @@ TEST(MeshSampler, WeightsAddUpToTheSolidAngle) {
     }
 }
 
+/// From near the last hit the outline that was found there does, from elsewhere it is found again.
+TEST(MeshSampler, MovedItSeesWhatItWouldSeeFromThere) {
+    const Solid solid = icosphere(4);
+    const auto shape = std::make_shared<const EmitterLevels>(make_emitter_levels(solid.vertices, solid.triangles, 64));
+    const MeshLight light{shape, Rgb(1), 0, nullptr, 0};
+    RandomInput random(13);
+    for (int i = 0; i < 40; ++i) {
+        const Vec3d last = random.uniform(1.5, 6) * random.direction();
+        const Vec3d way = i % 2 == 0 ? 0.05 * random.direction() : 2.0 * perpendicular(glm::normalize(last));
+        const Vec3d here = last + (glm::length(last) - 1) * way;
+        const auto frame_at = [](const Vec3d& point) {
+            const Vec3d z = -glm::normalize(point);
+            const Vec3d x = perpendicular(z);
+            return ShadingFrame{point, x, glm::cross(z, x), z};
+        };
+        MeshSampler moved;
+        moved.reset(light, frame_at(last));
+        moved.move(light, frame_at(here));
+        // The centre is along z. A coarse outline differs by some hundredths, and shrinks by up to a tenth.
+        const double angle = std::asin(1 / glm::length(here));
+        for (int k = 0; k < 48; ++k) {
+            const double azimuth = 2 * std::numbers::pi * k / 48;
+            const auto at = [&](double part) {
+                const double sine = std::sin(part * angle);
+                return Vec3d(sine * std::cos(azimuth), sine * std::sin(azimuth), std::cos(part * angle));
+            };
+            EXPECT_EQ(moved.layers(at(0.86)), 1) << i << ", azimuth " << azimuth;
+            EXPECT_EQ(moved.layers(at(1.06)), 0) << i << ", azimuth " << azimuth;
+        }
+    }
+}
+
 /// Whether a ray from the origin meets a triangle: the three corners weigh the direction with one sign.
 bool ray_meets(const Vec3d& direction, const std::array<Vec3d, 3>& corners) {
     const Vec3d weights = glm::inverse(glm::dmat3(corners[0], corners[1], corners[2])) * direction;
@@ -273,9 +267,10 @@ TEST(MeshSampler, CountsTheFacesAroundItInEachDirection) {
     int met = 0;
     constexpr int kDirections = 2000;
     for (int i = 0; i < kDirections; ++i) {
-        const ShadingFrame frame{0.4 * random.direction(), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        const ShadingFrame frame{0.4 * random.direction(), {1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
         sampler.reset(light, frame);
-        const Vec3d direction = random.direction();
+        Vec3d direction = random.direction();
+        direction.z = -std::abs(direction.z);  // above the horizon: below it nothing is asked for
         int layers = 0;
         for (const Triangle& t : solid.triangles) {
             layers += ray_meets(direction, {solid.vertices[t.x] - frame.origin, solid.vertices[t.y] - frame.origin,
@@ -283,7 +278,7 @@ TEST(MeshSampler, CountsTheFacesAroundItInEachDirection) {
                           ? 1
                           : 0;
         }
-        EXPECT_EQ(sampler.layers(direction), layers) << i;
+        EXPECT_EQ(sampler.layers(frame.to_local(direction)), layers) << i;
         met += layers;
     }
     EXPECT_GE(met, kDirections / 3);
