@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "light_view.h"
+#include "ray_rounding.h"
 
 namespace shlight {
 
@@ -106,9 +107,9 @@ void DeltaLights::reflect(const DeltaRange& range, const DeltaViews& views, cons
 }
 
 Ray DeltaLights::ray(std::size_t i, const Vec3d& origin) const {
-    // The way from the rounded origin: to the source, all but the last few roundings.
+    // The way from the rounded origin.
     const Vec3f start(origin);
-    const float end = w_[i] > 0 ? 1.0F - 0x1p-22F : std::numeric_limits<float>::infinity();
+    const float end = w_[i] > 0 ? kRayEnd : std::numeric_limits<float>::infinity();
     return {start, 0.0F, Vec3f(way(i, Vec3d(start))), end};
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "hits.h"
+#include "ray_rounding.h"
 #include "shlight/light.h"
 #include "shlight/ray_tracer.h"
 #include "shlight/types.h"
@@ -28,14 +29,14 @@ class RayStart {
           z_(frame.z),
           offset_(frame.to_local(frame.origin - Vec3d(origin_) + target_offset)) {}
 
-    /// To a point in the shading frame, given by a unit direction and a distance, all but the last few roundings.
+    /// To a point in the shading frame, given by a unit direction and a distance.
     /// Infinitely far: without an end.
     Ray towards(const Vec3d& local_direction, double distance) const {
         if (std::isinf(distance)) {
             return along(local_direction);
         }
         const Vec3f way(distance * local_direction + offset_);
-        return {origin_, 0.0F, way.x * x_ + way.y * y_ + way.z * z_, 1.0F - 0x1p-22F};
+        return {origin_, 0.0F, way.x * x_ + way.y * y_ + way.z * z_, kRayEnd};
     }
 
     /// Without an end.

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "minor_share.h"
+#include "ray_rounding.h"
 #include "ray_start.h"
 #include "shlight/sampling.h"
 
@@ -121,11 +122,11 @@ float ShadowedLumps::value(const FarLight& light, const Hits& hits, std::size_t 
     return sum;
 }
 
-/// To the light's middle, all but the last few roundings.
+/// To the light's middle.
 Ray ShadowedLumps::ray(const FarLight& light, const Hits& hits, std::size_t hit) const {
     const Vec3f start(hits.shadow_origin[hit]);
     const Vec3d end = light.position + clearance(lights_[light.index], hits.frame[hit]);
-    return {start, 0.0F, Vec3f(end - Vec3d(start)), 1.0F - 0x1p-22F};
+    return {start, 0.0F, Vec3f(end - Vec3d(start)), kRayEnd};
 }
 
 }  // namespace shlight

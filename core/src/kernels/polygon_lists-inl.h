@@ -193,7 +193,7 @@ class PolygonLists {
             }
             preparation.prepare(polygon.data(), lanes);
             if constexpr (kWarped) {
-                const WarpLanes warp(self().warps(), views.data());
+                const PolygonWarps warp(self().warps(), views.data());
                 measure(lanes, Outline<R, kClipped, true>(lanes, &warp).region(), list.data() + start, count, measured);
             } else {
                 measure(lanes, Outline<R, kClipped, false>(lanes, nullptr).region(), list.data() + start, count,

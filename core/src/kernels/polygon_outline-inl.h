@@ -38,11 +38,11 @@ struct RegionLanes {
 };
 
 /// A vector's warps.
-struct WarpLanes {
+struct PolygonWarps {
     using D = Doubles;
     V<D> sin_tilt, cos_tilt, speed, one_minus_speed, gamma, horizon_x, horizon_z, height, sine;
 
-    WarpLanes(const WarpArrays& warps, const std::uint32_t* view) {
+    PolygonWarps(const WarpArrays& warps, const std::uint32_t* view) {
         const D d;
         const hn::RebindToSigned<D> di;
         alignas(64) std::array<std::int64_t, kLaneCount<D>> wide;
@@ -86,7 +86,7 @@ class Outline {
     static_assert(!kWarped || std::is_same_v<R, double>);
 
   public:
-    Outline(PolygonLanes<R>& lanes, const WarpLanes* warp) : lanes_(lanes), warp_(warp) {}
+    Outline(PolygonLanes<R>& lanes, const PolygonWarps* warp) : lanes_(lanes), warp_(warp) {}
 
     HWY_INLINE RegionLanes<R> region() {
         const D d;
@@ -232,9 +232,9 @@ class Outline {
                               V<D> cosine, M<D> kept, RegionLanes<R>& region) {
         const D d;
         const auto one = all(d, 1);
-        const WarpLanes::Image arc = warp_->of_circle(pole, one);
+        const PolygonWarps::Image arc = warp_->of_circle(pole, one);
         const auto lack = hn::Div(hn::Mul(sine, sine), hn::Add(one, cosine));
-        const WarpLanes::Image diameter = warp_->of_circle(middle, lack);
+        const PolygonWarps::Image diameter = warp_->of_circle(middle, lack);
         const auto arc_sine = arc.inverse_length;
         const auto rise = hn::Mul(sine, diameter.inverse_length);
         const auto run = hn::Mul(arc_sine, diameter.cosine);
@@ -347,7 +347,7 @@ class Outline {
     }
 
     PolygonLanes<R>& lanes_;
-    const WarpLanes* warp_;
+    const PolygonWarps* warp_;
     Vectors3<R> reference_;
     V<D> re_, im_;
 };
