@@ -15,6 +15,8 @@ namespace {
 
 /// Of the radiance that the mesh gives a white surface: rays see the light itself, the outline only guides them.
 constexpr double kTolerance = 2e-2;
+/// Of that, close to the mesh, where a level's error is much of the way there.
+constexpr double kLeastShare = 5e-3;
 /// Of what is shrunk away, at most.
 constexpr double kMostShrink = 0.1;
 /// Between hits that share an outline, ÷ distance to the mesh.
@@ -50,7 +52,8 @@ void MeshSampler::reset(const MeshLight& light, const ShadingFrame& frame) {
     convex_ = shape.convex;
     looked_from_ = frame.origin;
     const double distance = glm::length(shape.center - frame.origin);
-    kind_ = view_.look(shape, frame, kTolerance * shown_share(shape, distance));
+    const double part = std::clamp(distance / shape.radius - 1, kLeastShare, 1.0);
+    kind_ = view_.look(shape, frame, part * kTolerance * shown_share(shape, distance));
     if (kind_ == MeshView::Kind::outline) {
         // The mesh may lie inside its coarse outline, where rays would pass by.
         shrink_ = std::min(0.5 * view_.error() / shape.radius, kMostShrink);
