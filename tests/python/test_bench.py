@@ -271,7 +271,7 @@ def test_planted_times_give_their_ratios(monkeypatch: pytest.MonkeyPatch) -> Non
     assert of_spheres["clipped sphere, fused, n = 8"].met is False
     for row in growth.measure(run):
         assert row.value == pytest.approx(1.5)
-    assert [row.value for row in threads.measure(run)] == [1.0] * 14
+    assert [row.value for row in threads.measure(run)] == [1.0] * 16
     assert {row.unit for row in against_methods.measure(run)} == {"× zhou_wei", "× wang_ramamoorthi"}
 
 

@@ -8,6 +8,8 @@ no cache holds. Where the results fit into one, more than 100 % of memset is pos
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
@@ -28,14 +30,14 @@ ROUNDS, FILL_BYTES = 200_000, 100_000_000
 
 def measure(run: Run) -> list[Row]:
     rows: list[Row] = []
-    limits = {PEAK: _multiply_adds(), FILL: _fill()}
+    limits = {PEAK: multiply_adds(), FILL: fill()}
     for i, order in enumerate(ORDERS):
         works = {**limits, **kinds.works(run.count(order), order)}
         seconds = run.alternate(works, (i, len(ORDERS)))
-        peak, fill = 2 / seconds[PEAK], 1 / seconds[FILL]
+        peak, writing = 2 / seconds[PEAK], 1 / seconds[FILL]
         if not rows:
             rows.append(Row.of(run.section, PEAK, Spread.of(peak / GIGA), "Gflop/s", bound_is="least"))
-            rows.append(Row.of(run.section, FILL, Spread.of(fill / GIGA), "GB/s", bound_is="least"))
+            rows.append(Row.of(run.section, FILL, Spread.of(writing / GIGA), "GB/s", bound_is="least"))
         for name in works:
             if name in OPERATIONS:
                 flop = OPERATIONS[name](order)
@@ -55,7 +57,7 @@ def measure(run: Run) -> list[Row]:
                     Row.of(
                         run.section,
                         row,
-                        Spread.of(100 * written / fill),
+                        Spread.of(100 * written / writing),
                         f"% of {FILL}",
                         detail=detail,
                         bound_is="least",
@@ -64,12 +66,27 @@ def measure(run: Run) -> list[Row]:
     return rows
 
 
-def _multiply_adds() -> Work:
-    count = _core.multiply_adds(ROUNDS)
-    return Work(lambda: _core.multiply_adds(ROUNDS), count)
+def multiply_adds(threads: int = 1, rounds: int = ROUNDS) -> Work:
+    """As many on each thread."""
+    return Work(_in_threads(lambda part: _core.multiply_adds(rounds), threads), threads * _core.multiply_adds(rounds))
 
 
-def _fill() -> Work:
+def fill(threads: int = 1) -> Work:
+    """Of one block, a part of it on each thread."""
     # Not with zeros, which some machines write faster than anything else.
     block = np.empty(FILL_BYTES, np.uint8)
-    return Work(lambda: ctypes.memset(block.ctypes.data, 1, FILL_BYTES), FILL_BYTES)
+    size = FILL_BYTES // threads
+    return Work(_in_threads(lambda part: ctypes.memset(block.ctypes.data + part * size, 1, size), threads), FILL_BYTES)
+
+
+def _in_threads(call: Callable[[int], object], threads: int) -> Callable[[], None]:
+    """`call` for each part at once, the first one on the caller's thread. It must let others run meanwhile."""
+    pool = ThreadPoolExecutor(max(1, threads - 1))
+
+    def run() -> None:
+        others = [pool.submit(call, part) for part in range(1, threads)]
+        call(0)
+        for other in others:
+            other.result()
+
+    return run
