@@ -19,6 +19,7 @@ FEW, MANY = 1, 7  # subdivisions of an icosahedron
 BOUND = 3.0
 SIZE, QUICK_SIZE = (64, 48), (32, 24)
 EYE, TARGET = (0.0, -6.0, 3.0), (0.0, 0.0, 0.5)
+CENTER, RADIUS, RADIANCE = (0.9, -0.6, 2.4), 0.4, (10.0, 10.0, 10.0)  # of the lamp
 
 Solid = tuple[NDArray[np.float64], NDArray[np.int64]]
 
@@ -43,13 +44,19 @@ def measure(run: Run) -> list[Row]:
 
 def scene_of(lamp: Solid, bsdf: shlight.Bsdf) -> shlight.Scene:
     """A ball on a floor, under a mesh."""
+    scene = ball_on_floor(bsdf)
+    vertices, faces = lamp
+    scene.add_mesh(RADIUS * vertices + CENTER, faces, emission=RADIANCE)
+    return scene
+
+
+def ball_on_floor(bsdf: shlight.Bsdf) -> shlight.Scene:
+    """With a camera, and without a lamp."""
     scene = shlight.Scene()
     floor = 4 * np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
     scene.add_mesh(floor, np.array([[0, 1, 2], [0, 2, 3]]), bsdf=bsdf)
     normals, faces = icosphere(4)
     scene.add_mesh(0.8 * normals + (0, 0, 0.8), faces, bsdf=bsdf, normals=normals)
-    vertices, faces = lamp
-    scene.add_mesh(0.4 * vertices + (0.9, -0.6, 2.4), faces, emission=(10.0, 10.0, 10.0))
     scene.set_camera(look_at(EYE, TARGET), 0.7)
     return scene
 
