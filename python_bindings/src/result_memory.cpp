@@ -20,6 +20,7 @@ constexpr std::size_t kHugePage = std::size_t{2} << 20;
 struct Block {
     void* memory;
     std::size_t size;
+    bool is_free_to_take = false;  // by the system, which may or may not have done so
 };
 
 Block fresh_block(std::size_t bytes) {
@@ -32,9 +33,9 @@ Block fresh_block(std::size_t bytes) {
     return {memory, size};
 }
 
-std::size_t most_waiting() {
+std::size_t machine_memory() {
     const auto pages = static_cast<std::size_t>(std::max(0L, sysconf(_SC_PHYS_PAGES)));
-    return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) / 8;
+    return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
 /// Blocks of dead results, the last one returned in front.
@@ -54,14 +55,13 @@ class Waiting {
         if (found == blocks_.end()) {
             return fresh_block(bytes);
         }
-        const Block block = *found;
+        const Block block{found->memory, found->size};
         size_ -= block.size;
         blocks_.erase(found);
         return block;
     }
 
     void give_back(const Block& block) {
-        madvise(block.memory, block.size, MADV_FREE);
         const std::scoped_lock lock(mutex_);
         blocks_.insert(blocks_.begin(), block);
         size_ += block.size;
@@ -70,13 +70,27 @@ class Waiting {
             munmap(blocks_.back().memory, blocks_.back().size);
             blocks_.pop_back();
         }
+        free_all_but_latest();
     }
 
   private:
+    /// Not the latest: each time the other cores must forget where the pages were, and come back to them slowly.
+    void free_all_but_latest() {
+        std::size_t latest = 0;
+        for (Block& block : blocks_) {
+            latest += block.size;
+            if (latest > most_kept_ && !block.is_free_to_take) {
+                madvise(block.memory, block.size, MADV_FREE);
+                block.is_free_to_take = true;
+            }
+        }
+    }
+
     std::mutex mutex_;
     std::vector<Block> blocks_;
     std::size_t size_ = 0;
-    std::size_t most_waiting_ = most_waiting();
+    std::size_t most_waiting_ = machine_memory() / 8;
+    std::size_t most_kept_ = machine_memory() / 32;
 };
 
 }  // namespace
