@@ -57,7 +57,7 @@ HWY_NOINLINE void write(const Directions<T>& u, std::size_t order, const RowPoin
     alignas(64) std::array<T, kMaxOrder * kLanes> sine;
     complex_powers_in_lanes(d, u.x, u.y, std::numbers::sqrt2, order, cosine.data(), sine.data());
     LegendreLanes<T, kAtPole> legendre(u.z, u.sine_squared);
-    RowWriter<T> writer(rows, output);
+    RowWriter<T> writer(rows, order, output);
     for (std::size_t l = 0; l < order; ++l) {
         T* middle = writer.next() + l * kLanes;
         hn::Store(legendre[0], d, middle);

@@ -83,7 +83,7 @@ class CoefficientVisitor {
 
   public:
     HWY_INLINE CoefficientVisitor(const CapLanes<D>& cap, std::size_t order, const RowPointers<T>& rows, Output output)
-        : azimuth_(cap, order), writer_(rows, output) {
+        : azimuth_(cap, order), writer_(rows, order, output) {
         hn::Store(band_zero(D(), cap), D(), writer_.next());
         writer_.add(1);
     }

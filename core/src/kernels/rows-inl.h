@@ -30,40 +30,18 @@ inline constexpr std::size_t kSquare = 16 / sizeof(Scalar<D>);
 template <class T>
 using RowPointers = std::array<T*, kLaneCount<Lanes<T>>>;
 
-/// Half of transpose_squares: rows 0 … kSquare/2 - 1 of each block's lanes, or for kUpper the others.
-template <bool kUpper, class D>
-HWY_INLINE std::array<V<D>, kSquare<D> / 2> transpose_half(D d, const std::array<V<D>, kSquare<D>>& v) {
-    if constexpr (kSquare<D> == 4) {
-        const auto even = kUpper ? hn::InterleaveUpper(d, v[0], v[2]) : hn::InterleaveLower(d, v[0], v[2]);
-        const auto odd = kUpper ? hn::InterleaveUpper(d, v[1], v[3]) : hn::InterleaveLower(d, v[1], v[3]);
-        return {hn::InterleaveLower(d, even, odd), hn::InterleaveUpper(d, even, odd)};
-    } else {
-        return {kUpper ? hn::InterleaveUpper(d, v[0], v[1]) : hn::InterleaveLower(d, v[0], v[1])};
-    }
-}
-
 /// v[j]: column j of all lanes → row j of each block's lanes. Block b of the result's v[j] is lane b · kSquare + j.
 template <class D>
 HWY_INLINE void transpose_squares(D d, std::array<V<D>, kSquare<D>>& v) {
-    const auto lower = transpose_half<false>(d, v);
-    const auto upper = transpose_half<true>(d, v);
-    std::copy(lower.begin(), lower.end(), v.begin());
-    std::copy(upper.begin(), upper.end(), v.begin() + kSquare<D> / 2);
-}
-
-/// Block b of q[0] … q[3] → q[b], for vectors of four blocks; for vectors of two, blocks 0 and 1 of the pairs.
-template <class D>
-HWY_INLINE void transpose_blocks(D d, std::array<V<D>, 4>& q) {
-    if constexpr (hn::MaxLanes(d) == 4 * kSquare<D>) {
-        const auto even01 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(q[1]), q[0]);
-        const auto even23 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(q[3]), q[2]);
-        const auto odd01 = hn::OddEvenBlocks(q[1], hn::SwapAdjacentBlocks(q[0]));
-        const auto odd23 = hn::OddEvenBlocks(q[3], hn::SwapAdjacentBlocks(q[2]));
-        q = {hn::ConcatLowerLower(d, even23, even01), hn::ConcatLowerLower(d, odd23, odd01),
-             hn::ConcatUpperUpper(d, even23, even01), hn::ConcatUpperUpper(d, odd23, odd01)};
-    } else if constexpr (hn::MaxLanes(d) == 2 * kSquare<D>) {
-        q = {hn::ConcatLowerLower(d, q[1], q[0]), hn::ConcatLowerLower(d, q[3], q[2]),
-             hn::ConcatUpperUpper(d, q[1], q[0]), hn::ConcatUpperUpper(d, q[3], q[2])};
+    if constexpr (kSquare<D> == 4) {
+        const auto even_lower = hn::InterleaveLower(d, v[0], v[2]);
+        const auto even_upper = hn::InterleaveUpper(d, v[0], v[2]);
+        const auto odd_lower = hn::InterleaveLower(d, v[1], v[3]);
+        const auto odd_upper = hn::InterleaveUpper(d, v[1], v[3]);
+        v = {hn::InterleaveLower(d, even_lower, odd_lower), hn::InterleaveUpper(d, even_lower, odd_lower),
+             hn::InterleaveLower(d, even_upper, odd_upper), hn::InterleaveUpper(d, even_upper, odd_upper)};
+    } else {
+        v = {hn::InterleaveLower(d, v[0], v[1]), hn::InterleaveUpper(d, v[0], v[1])};
     }
 }
 
@@ -75,6 +53,18 @@ HWY_INLINE V<D> load_blocks(D d, const T* const* rows, std::size_t column) {
         return hn::Combine(d, load_blocks(half, rows + hn::MaxLanes(half), column), load_blocks(half, rows, column));
     } else {
         return hn::LoadU(d, *rows + column);
+    }
+}
+
+/// 128-bit blocks that lie `step` apart, as one vector.
+template <class D, class T>
+HWY_INLINE V<D> spread_blocks(D d, const T* first, std::size_t step) {
+    if constexpr (hn::MaxLanes(d) > kSquare<D>) {
+        const hn::Half<D> half;
+        constexpr std::size_t kBlocks = hn::MaxLanes(half) / kSquare<D>;
+        return hn::Combine(d, spread_blocks(half, first + kBlocks * step, step), spread_blocks(half, first, step));
+    } else {
+        return hn::Load(d, first);
     }
 }
 
@@ -94,7 +84,8 @@ template <class T>
 class RowWriter {
   public:
     /// Lines are streamed only if all rows begin at one.
-    RowWriter(const RowPointers<T>& rows, Output output) : rows_(rows), streamed_(output == Output::streamed) {
+    RowWriter(const RowPointers<T>& rows, std::size_t order, Output output)
+        : rows_(rows), streamed_(output == Output::streamed), rows_collide_(order * order * sizeof(T) % kPage == 0) {
         for (const T* row : rows) {
             streamed_ &= reinterpret_cast<std::uintptr_t>(row) % 64 == 0;
         }
@@ -124,73 +115,83 @@ class RowWriter {
 
   private:
     using D = Lanes<T>;
+    using Neighbours = std::array<T*, kSquare<D>>;
     static constexpr std::size_t kLine = 64 / sizeof(T);
-    static constexpr std::size_t kColumns = 4 * kMaxOrder;  // rows of order 16, or 16 KiB
+    static constexpr std::size_t kPage = 4096;
+    static constexpr std::size_t kParts = kLine / kLaneCount<D>;             // vectors in a line
+    static constexpr std::size_t kLinesAtOnce = 16 / (kParts * kSquare<D>);  // what registers hold
+    static constexpr std::size_t kColumns = 4 * kMaxOrder;                   // rows of order 16, or 16 KiB
 
     /// Writes whole lines, and moves the rest to the front.
-    ///
-    /// Half the rows at a time, and two neighbouring lines of each: rows of order 32 or 64 lie a multiple of 4 KiB
-    /// apart, and stores to the same line of all of them in turn compete for one set of the cache
-    /// (docs/performance.md).
-    void write_lines() {
+    HWY_NOINLINE void write_lines() {
         const std::size_t lines = waiting_ / kLine;
-        write_lines_of_half<false>(lines);
-        write_lines_of_half<true>(lines);
+        for (std::size_t lane = 0; lane < kLaneCount<D>; lane += kSquare<D>) {
+            if (streamed_ && rows_collide_) {
+                stage_lines(lane, lines);
+            } else {
+                Neighbours rows;
+                for (std::size_t j = 0; j < rows.size(); ++j) {
+                    rows[j] = rows_[lane + j] + column_;
+                }
+                transpose_lines(lane, lines, rows, streamed_);
+            }
+        }
         const std::size_t done = lines * kLine;
         column_ += done;
         std::copy(buffer_.data() + done * kLaneCount<D>, next(), buffer_.data());
         waiting_ -= done;
     }
 
-    /// kUpper: which half of each square's rows.
-    template <bool kUpper>
-    HWY_INLINE void write_lines_of_half(std::size_t lines) {
+    /// The lines of one row after the other, by way of a copy in the first cache: lines of several rows in turn, at the
+    /// same place in their pages, take three times as long to stream (docs/performance.md).
+    void stage_lines(std::size_t lane, std::size_t lines) {
+        const D d;
+        constexpr std::size_t kPitch = kColumns + kLine;
+        alignas(64) std::array<T, kSquare<D> * kPitch> staged;
+        Neighbours rows;
+        for (std::size_t j = 0; j < rows.size(); ++j) {
+            rows[j] = staged.data() + j * kPitch;
+        }
+        transpose_lines(lane, lines, rows, false);
+        for (std::size_t j = 0; j < rows.size(); ++j) {
+            T* row = rows_[lane + j] + column_;
+            for (std::size_t c = 0; c < lines * kLine; c += kLaneCount<D>) {
+                hn::Stream(hn::Load(d, rows[j] + c), d, row + c);
+            }
+        }
+    }
+
+    void transpose_lines(std::size_t lane, std::size_t lines, const Neighbours& rows, bool streamed) {
         std::size_t line = 0;
-        for (; line + 2 <= lines; line += 2) {
-            write_half<2, kUpper>(line * kLine);
+        for (; line + kLinesAtOnce <= lines; line += kLinesAtOnce) {
+            transpose_neighbours<kLinesAtOnce>(lane, line * kLine, rows, streamed);
         }
-        if (line < lines) {
-            write_half<1, kUpper>(line * kLine);
-        }
-    }
-
-    /// kLines lines from column `first` on. Two of them, of half the rows, are what registers hold.
-    template <std::size_t kLines, bool kUpper>
-    HWY_INLINE void write_half(std::size_t first) {
-        const D d;
-        constexpr std::size_t kHalf = kSquare<D> / 2;
-        std::array<std::array<V<D>, kHalf>, 4 * kLines> squares;  // a line is four squares of either type
-        for (std::size_t s = 0; s < squares.size(); ++s) {
-            std::array<V<D>, kSquare<D>> columns;
-            for (std::size_t j = 0; j < kSquare<D>; ++j) {
-                columns[j] = hn::Load(d, buffer_.data() + (first + s * kSquare<D> + j) * kLaneCount<D>);
-            }
-            squares[s] = transpose_half<kUpper>(d, columns);
-        }
-        for (std::size_t j = 0; j < kHalf; ++j) {
-            std::array<std::array<V<D>, 4>, kLines> lines;
-            for (std::size_t k = 0; k < kLines; ++k) {
-                lines[k] = {squares[4 * k][j], squares[4 * k + 1][j], squares[4 * k + 2][j], squares[4 * k + 3][j]};
-                transpose_blocks(d, lines[k]);
-            }
-            write_rows(lines, j + (kUpper ? kHalf : 0), column_ + first);
+        for (; line < lines; ++line) {
+            transpose_neighbours<1>(lane, line * kLine, rows, streamed);
         }
     }
 
-    /// Row j of each square of lanes: its parts in lines[…][…], those of one row side by side.
+    /// kLines lines from column `first` on, of as many neighbouring rows as a block has lanes: rows further apart
+    /// collide at more orders, every fourth one of order 16.
     template <std::size_t kLines>
-    HWY_INLINE void write_rows(const std::array<std::array<V<D>, 4>, kLines>& lines, std::size_t j,
-                               std::size_t column) {
+    HWY_INLINE void transpose_neighbours(std::size_t lane, std::size_t first, const Neighbours& rows, bool streamed) {
         const D d;
-        constexpr std::size_t kParts = kLine / kLaneCount<D>;
-        for (std::size_t i = 0; i < 4; i += kParts) {
-            T* row = rows_[i / kParts * kSquare<D> + j] + column;
-            for (std::size_t part = 0; part < kLines * kParts; ++part) {
-                const auto values = lines[part / kParts][i + part % kParts];
-                if (streamed_) {
-                    hn::Stream(values, d, row + part * kLaneCount<D>);
+        constexpr std::size_t kLanes = kLaneCount<D>;
+        std::array<std::array<V<D>, kSquare<D>>, kLines * kParts> squares;
+        for (std::size_t part = 0; part < squares.size(); ++part) {
+            const T* from = buffer_.data() + (first + part * kLanes) * kLanes + lane;
+            for (std::size_t j = 0; j < kSquare<D>; ++j) {
+                squares[part][j] = spread_blocks(d, from + j * kLanes, kSquare<D> * kLanes);
+            }
+            transpose_squares(d, squares[part]);
+        }
+        for (std::size_t j = 0; j < kSquare<D>; ++j) {
+            T* row = rows[j] + first;
+            for (std::size_t part = 0; part < squares.size(); ++part) {
+                if (streamed) {
+                    hn::Stream(squares[part][j], d, row + part * kLanes);
                 } else {
-                    hn::StoreU(values, d, row + part * kLaneCount<D>);
+                    hn::StoreU(squares[part][j], d, row + part * kLanes);
                 }
             }
         }
@@ -198,6 +199,7 @@ class RowWriter {
 
     RowPointers<T> rows_;
     bool streamed_;
+    bool rows_collide_;
     std::size_t waiting_ = 0;
     std::size_t column_ = 0;
     alignas(64) std::array<T, kColumns * kLaneCount<D>> buffer_;
