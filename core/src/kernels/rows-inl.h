@@ -133,7 +133,7 @@ class RowWriter {
                 for (std::size_t j = 0; j < rows.size(); ++j) {
                     rows[j] = rows_[lane + j] + column_;
                 }
-                transpose_lines(lane, lines, rows, streamed_);
+                transpose_lines(lane, lines, rows, streamed_ ? rows.size() : 0);
             }
         }
         const std::size_t done = lines * kLine;
@@ -142,18 +142,20 @@ class RowWriter {
         waiting_ -= done;
     }
 
-    /// The lines of one row after the other, by way of a copy in the first cache: lines of several rows in turn, at the
-    /// same place in their pages, take three times as long to stream (docs/performance.md).
+    /// The lines of one row after the other: lines of several rows in turn, at the same place in their pages, take
+    /// three times as long to stream (docs/performance.md). The first row is streamed at once; the others meanwhile go
+    /// into a copy in the first cache.
     void stage_lines(std::size_t lane, std::size_t lines) {
         const D d;
         constexpr std::size_t kPitch = kColumns + kLine;
-        alignas(64) std::array<T, kSquare<D> * kPitch> staged;
+        alignas(64) std::array<T, (kSquare<D> - 1) * kPitch> staged;
         Neighbours rows;
-        for (std::size_t j = 0; j < rows.size(); ++j) {
-            rows[j] = staged.data() + j * kPitch;
+        rows[0] = rows_[lane] + column_;
+        for (std::size_t j = 1; j < rows.size(); ++j) {
+            rows[j] = staged.data() + (j - 1) * kPitch;
         }
-        transpose_lines(lane, lines, rows, false);
-        for (std::size_t j = 0; j < rows.size(); ++j) {
+        transpose_lines(lane, lines, rows, 1);
+        for (std::size_t j = 1; j < rows.size(); ++j) {
             T* row = rows_[lane + j] + column_;
             for (std::size_t c = 0; c < lines * kLine; c += kLaneCount<D>) {
                 hn::Stream(hn::Load(d, rows[j] + c), d, row + c);
@@ -161,7 +163,8 @@ class RowWriter {
         }
     }
 
-    void transpose_lines(std::size_t lane, std::size_t lines, const Neighbours& rows, bool streamed) {
+    /// streamed: how many of the rows, from the first, are written around the caches.
+    void transpose_lines(std::size_t lane, std::size_t lines, const Neighbours& rows, std::size_t streamed) {
         std::size_t line = 0;
         for (; line + kLinesAtOnce <= lines; line += kLinesAtOnce) {
             transpose_neighbours<kLinesAtOnce>(lane, line * kLine, rows, streamed);
@@ -174,7 +177,8 @@ class RowWriter {
     /// kLines lines from column `first` on, of as many neighbouring rows as a block has lanes: rows further apart
     /// collide at more orders, every fourth one of order 16.
     template <std::size_t kLines>
-    HWY_INLINE void transpose_neighbours(std::size_t lane, std::size_t first, const Neighbours& rows, bool streamed) {
+    HWY_INLINE void transpose_neighbours(std::size_t lane, std::size_t first, const Neighbours& rows,
+                                         std::size_t streamed) {
         const D d;
         constexpr std::size_t kLanes = kLaneCount<D>;
         std::array<std::array<V<D>, kSquare<D>>, kLines * kParts> squares;
@@ -188,7 +192,7 @@ class RowWriter {
         for (std::size_t j = 0; j < kSquare<D>; ++j) {
             T* row = rows[j] + first;
             for (std::size_t part = 0; part < squares.size(); ++part) {
-                if (streamed) {
+                if (j < streamed) {
                     hn::Stream(squares[part][j], d, row + part * kLanes);
                 } else {
                     hn::StoreU(squares[part][j], d, row + part * kLanes);
