@@ -26,7 +26,9 @@ def measure(run: Run) -> list[Row]:
     targets, usual = _core.kernel_targets(), _core.kernel_target()
     calls = kinds.works(run.lights, ORDER)
     works = {f"{name}, {target}": _on(target, work) for name, work in calls.items() for target in targets}
-    works[against_peer.PEER] = peer.basis(inputs.directions(run.lights), ORDER)
+    # Of fewer directions, whose basis fits into what its allocator keeps: beside so many large results fresh memory
+    # would be most of its time.
+    works[against_peer.PEER] = peer.basis(inputs.directions(max(1, run.lights // 10)), ORDER)
     try:
         seconds = run.alternate(works)
     finally:
