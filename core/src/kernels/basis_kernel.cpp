@@ -59,14 +59,13 @@ HWY_NOINLINE void write(const Directions<T>& u, std::size_t order, const RowPoin
     LegendreLanes<T, kAtPole> legendre(u.z, u.sine_squared);
     RowWriter<T> writer(rows, order, output);
     for (std::size_t l = 0; l < order; ++l) {
-        T* middle = writer.next() + l * kLanes;
+        T* middle = writer.take(2 * l + 1) + l * kLanes;
         hn::Store(legendre[0], d, middle);
         for (std::size_t m = 1; m <= l; ++m) {
             const auto value = legendre[m];
             hn::Store(hn::Mul(value, hn::Load(d, cosine.data() + m * kLanes)), d, middle + m * kLanes);
             hn::Store(hn::Mul(value, hn::Load(d, sine.data() + m * kLanes)), d, middle - m * kLanes);
         }
-        writer.add(2 * l + 1);
         if (l + 1 < order) {
             legendre.advance();
         }

@@ -111,19 +111,26 @@ class PlaneBatch {
     template <bool kCrossing>
     HWY_INLINE void run_group(const LightList& lights) {
         using Bands = BandsOf<T, kCrossing, true, Source::kMayContainHorizon>;
+        most_.clear();
         others_.clear();
         lights.for_each_vector<T>([&](const Chosen<T>& chosen) HWY_ATTR {
             const auto cap = load<kCrossing>(chosen);
             const auto others = choice_.template others<kCrossing>(cap);
-            if (!hn::AllTrue(D(), others)) {
-                sink_.template take<typename Bands::Most>(cap, chosen, false);
-            }
-            if (!hn::AllFalse(D(), others)) {
+            if (hn::AllFalse(D(), others)) {
+                sink_.template take<typename Bands::Most>(cap, chosen);
+            } else {
+                most_.add_marked(D(), hn::Not(others), chosen);
                 others_.add_marked(D(), others, chosen);
             }
         });
-        others_.for_each_vector<T>([&](const Chosen<T>& chosen) HWY_ATTR {
-            sink_.template take<typename Bands::Others>(load<kCrossing>(chosen), chosen, true);
+        take_all<kCrossing, typename Bands::Most>(most_);
+        take_all<kCrossing, typename Bands::Others>(others_);
+    }
+
+    template <bool kCrossing, class Recurrences>
+    HWY_INLINE void take_all(const LightList& lights) {
+        lights.for_each_vector<T>([&](const Chosen<T>& chosen) HWY_ATTR {
+            sink_.template take<Recurrences>(load<kCrossing>(chosen), chosen);
         });
     }
 
@@ -142,7 +149,8 @@ class PlaneBatch {
     const Sink& sink_;
     bool clip_;
     BandChoice<T> choice_;
-    LightList crossing_, uncrossed_, others_;
+    LightList crossing_, uncrossed_;
+    LightList most_, others_;  // of vectors that have both
 };
 
 template <class T, class Source, class Sink>

@@ -32,7 +32,7 @@ class LobeSink {
     void hide(std::size_t i) const { values_[i] = 0; }
 
     template <class Bands>
-    HWY_NOINLINE void take(const CapLanes<D>& cap, const Chosen<float>& chosen, bool /*again*/) const {
+    HWY_NOINLINE void take(const CapLanes<D>& cap, const Chosen<float>& chosen) const {
         ShadingVisitor<float> visit(cap, order_, terms_.data());
         solve_bands(Bands(cap, order_), order_, visit);
         alignas(64) std::array<float, kLaneCount<D>> sums;

@@ -83,14 +83,13 @@ class RowSink {
     std::size_t order() const { return order_; }
     void hide(std::size_t i) const { std::fill_n(rows_ + i * order_ * order_, order_ * order_, T(0)); }
 
-    /// again: lanes of this vector may have been written before, and need other recurrences.
     template <class Bands>
-    HWY_NOINLINE void take(const CapLanes<D>& cap, const Chosen<T>& chosen, bool again) const {
+    HWY_NOINLINE void take(const CapLanes<D>& cap, const Chosen<T>& chosen) const {
         RowPointers<T> rows;
         for (std::size_t lane = 0; lane < rows.size(); ++lane) {
             rows[lane] = rows_ + chosen[lane] * order_ * order_;
         }
-        CoefficientVisitor<T> visit(cap, order_, rows, again ? Output::cached : output_);
+        CoefficientVisitor<T> visit(cap, order_, rows, output_);
         if (order_ > 1) {
             solve_bands(Bands(cap, order_), order_, visit);
         }

@@ -95,27 +95,50 @@ class SectoralBands {
         }
     }
 
-    /// band = visit.open(l), visit.put(band, m, X_m) for m = l … 0, visit.close(band, l). l ≥ 1, one after the other.
+    /// band = visit.open(l); visit.put(band, m, visit.turn(m), X_m) for m = l … 1; visit.put_zonal(band, X_0) and
+    /// visit.close(band, l). l ≥ 1, one after the other.
     template <class Visit>
     HWY_INLINE void solve(std::size_t l, Visit& visit) {
-        const D d;
-        const CapConstants<T>& constants = CapConstants<T>::get();
-        const CapStep<T>* steps = &constants.steps[at(static_cast<int>(l), 0)];
+        Down s = sectoral(l);
         auto band = visit.open(l);
-        Down s{next_sectoral(l, constants.bands[l]), hn::Zero(d), hn::Zero(d), hn::Zero(d), turn_};
-        if constexpr (!kPlane) {
-            s.horizon = hn::Mul(hn::Set(d, constants.bands[l].diagonal), hn::Mul(power_, horizon_sine_));
-        }
         std::size_t m = l;
         for (; m >= 2; m -= 2) {
-            step_down<true>(m, steps[m], s, visit, band);
-            step_down<!kPlane>(m - 1, steps[m - 1], s, visit, band);
+            step_down<true>(m, s, visit, band, visit.turn(m));
+            step_down<!kPlane>(m - 1, s, visit, band, visit.turn(m - 1));
         }
         if (m == 1) {
-            step_down<true>(1, steps[1], s, visit, band);
+            step_down<true>(1, s, visit, band, visit.turn(1));
         }
-        visit.put(band, 0, s.x);
+        visit.put_zonal(band, s.x);
         visit.close(band, l);
+    }
+
+    /// The same for bands l and l + 1, opened by visit.open_two(l). One fills the time in which the other waits for its
+    /// next degree, and they share what the visitor turns by.
+    template <class Visit>
+    HWY_INLINE void solve_two(std::size_t l, Visit& visit) {
+        Down a = sectoral(l);
+        Down b = sectoral(l + 1);
+        auto bands = visit.open_two(l);
+        step_down<true>(l + 1, b, visit, bands[1], visit.turn(l + 1));
+        std::size_t m = l;
+        for (; m >= 2; m -= 2) {
+            const auto turn = visit.turn(m);
+            step_down<true>(m, a, visit, bands[0], turn);
+            step_down<!kPlane>(m, b, visit, bands[1], turn);
+            const auto next_turn = visit.turn(m - 1);
+            step_down<!kPlane>(m - 1, a, visit, bands[0], next_turn);
+            step_down<true>(m - 1, b, visit, bands[1], next_turn);
+        }
+        if (m == 1) {
+            const auto turn = visit.turn(1);
+            step_down<true>(1, a, visit, bands[0], turn);
+            step_down<!kPlane>(1, b, visit, bands[1], turn);
+        }
+        visit.put_zonal(bands[0], a.x);
+        visit.close(bands[0], l);
+        visit.put_zonal(bands[1], b.x);
+        visit.close(bands[1], l + 1);
     }
 
   private:
@@ -123,7 +146,21 @@ class SectoralBands {
         V<D> x, x_above;
         V<D> horizon, horizon_above;  // s_0 P̄_l^m(z_0) of the same degrees
         V<D> turn;                    // here, to stay in a register
+        const CapStep<T>* steps;
     };
+
+    /// Where band l begins, after band l - 1.
+    HWY_INLINE Down sectoral(std::size_t l) {
+        const D d;
+        const CapConstants<T>& constants = CapConstants<T>::get();
+        const CapBand<T>& band = constants.bands[l];
+        Down s{next_sectoral(l, band), hn::Zero(d), hn::Zero(d), hn::Zero(d), turn_,
+               &constants.steps[at(static_cast<int>(l), 0)]};
+        if constexpr (!kPlane) {
+            s.horizon = hn::Mul(hn::Set(d, band.diagonal), hn::Mul(power_, horizon_sine_));
+        }
+        return s;
+    }
 
     /// X_l of band l, after that of band l - 1.
     HWY_INLINE V<D> next_sectoral(std::size_t l, const CapBand<T>& band) {
@@ -142,21 +179,31 @@ class SectoralBands {
 
     /// Gives degree m > 0 away and steps to m - 1. kValue: whether the horizon has a value there.
     template <bool kValue, class Visit>
-    HWY_INLINE void step_down(std::size_t m, const CapStep<T>& step, Down& s, Visit& visit,
-                              typename Visit::Band& band) {
+    HWY_INLINE void step_down(std::size_t m, Down& s, Visit& visit, typename Visit::Band& band,
+                              const typename Visit::Turn& by) {
         const D d;
-        visit.put(band, m, s.x);
-        auto rest = hn::Mul(hn::Set(d, step.down_fall), s.x_above);
-        if constexpr (kPlane && kValue) {
-            rest = hn::NegMulAdd(hn::Set(d, step.down_plane), arc_.moment[m], rest);
+        const CapStep<T>& step = s.steps[m];
+        visit.put(band, m, by, s.x);
+        const auto climb = hn::Set(d, step.down_climb);
+        const auto fall = hn::Set(d, step.down_fall);
+        const auto turn = hn::Mul(climb, s.turn);
+        V<D> below;
+        if constexpr (kPlane && !kValue) {
+            below = hn::MulSub(turn, s.x, hn::Mul(fall, s.x_above));
+        } else {
+            // What the horizon gives comes first, and each degree then is two multiply-adds away from the one before
+            // the last, without a product between them: in long bands the next degree waits for nothing else.
+            auto given = hn::Mul(hn::Set(d, kPlane ? step.down_plane : step.down_share), arc_.moment[m]);
+            if constexpr (!kPlane) {
+                given = hn::Mul(given, s.horizon);
+            }
+            below = hn::MulAdd(turn, s.x, hn::NegMulAdd(fall, s.x_above, given));
         }
         if constexpr (!kPlane) {
-            rest = hn::NegMulAdd(hn::Mul(hn::Set(d, step.down_share), arc_.moment[m]), s.horizon, rest);
-            const auto fall = hn::Mul(hn::Set(d, step.down_fall), s.horizon_above);
+            const auto horizon = hn::MulSub(hn::Mul(climb, horizon_turn_), s.horizon, hn::Mul(fall, s.horizon_above));
             s.horizon_above = s.horizon;
-            s.horizon = hn::MulSub(hn::Mul(hn::Set(d, step.down_climb), horizon_turn_), s.horizon, fall);
+            s.horizon = horizon;
         }
-        const auto below = hn::MulSub(hn::Mul(hn::Set(d, step.down_climb), s.turn), s.x, rest);
         s.x_above = s.x;
         s.x = below;
     }

@@ -84,50 +84,57 @@ class CoefficientVisitor {
   public:
     HWY_INLINE CoefficientVisitor(const CapLanes<D>& cap, std::size_t order, const RowPointers<T>& rows, Output output)
         : azimuth_(cap, order), writer_(rows, order, output) {
-        hn::Store(band_zero(D(), cap), D(), writer_.next());
-        writer_.add(1);
+        hn::Store(band_zero(D(), cap), D(), writer_.take(1));
     }
 
     struct Band {
         T* first;  // where degree -l goes
         std::size_t l;
     };
-    HWY_INLINE Band open(std::size_t l) { return {writer_.next(), l}; }
-    HWY_INLINE void put(const Band& band, std::size_t m, V<D> value) const {
-        const D d;
-        constexpr std::size_t kLanes = kLaneCount<D>;
-        T* right = band.first + (band.l + m) * kLanes;
-        if (m == 0) {
-            hn::Store(value, d, right);
-            return;
-        }
-        T* left = band.first + (band.l - m) * kLanes;
-        hn::Store(hn::Mul(value, hn::Load(d, azimuth_.cosine.data() + m * kLanes)), d, right);
-        hn::Store(hn::Mul(value, hn::Load(d, azimuth_.sine.data() + m * kLanes)), d, left);
+    HWY_INLINE Band open(std::size_t l) { return {writer_.take(2 * l + 1), l}; }
+    /// Bands l and l + 1.
+    HWY_INLINE std::array<Band, 2> open_two(std::size_t l) {
+        T* first = writer_.take(4 * l + 4);
+        return {Band{first, l}, Band{first + (2 * l + 1) * kLanes, l + 1}};
+    }
+    /// What degree m > 0 of any band is multiplied with.
+    struct Turn {
+        V<D> cosine, sine;
+    };
+    HWY_INLINE Turn turn(std::size_t m) const {
+        return {hn::Load(D(), azimuth_.cosine.data() + m * kLanes), hn::Load(D(), azimuth_.sine.data() + m * kLanes)};
+    }
+    HWY_INLINE void put_zonal(const Band& band, V<D> value) const {
+        hn::Store(value, D(), band.first + band.l * kLanes);
+    }
+    HWY_INLINE void put(const Band& band, std::size_t m, const Turn& turn, V<D> value) const {
+        hn::Store(hn::Mul(value, turn.cosine), D(), band.first + (band.l + m) * kLanes);
+        hn::Store(hn::Mul(value, turn.sine), D(), band.first + (band.l - m) * kLanes);
     }
     HWY_INLINE void term(Band& /*band*/, std::size_t m, V<D> null) { values_.put(m, null); }
     HWY_INLINE void term(Band& /*band*/, std::size_t m, V<D> /*null*/, V<D> particular) { values_.put(m, particular); }
 
-    HWY_INLINE void close(const Band& /*band*/, std::size_t l) { writer_.add(2 * l + 1); }
+    HWY_INLINE void close(const Band& /*band*/, std::size_t /*l*/) const {}
     /// Of circles that do not cross.
-    HWY_INLINE void close(const Band& band, std::size_t l, V<D> share, V<D> extra) {
-        put(band, 0, hn::MulAdd(share, values_[0], extra));
+    HWY_INLINE void close(const Band& band, std::size_t l, V<D> share, V<D> extra) const {
+        put_zonal(band, hn::MulAdd(share, values_[0], extra));
         for (std::size_t m = 1; m <= l; ++m) {
-            put(band, m, hn::Mul(share, values_[m]));
+            put(band, m, turn(m), hn::Mul(share, values_[m]));
         }
-        close(band, l);
     }
     template <class Bands>
-    HWY_INLINE void close(const Band& band, std::size_t l, V<D> green, V<D> share, const Bands& bands) {
-        for (std::size_t m = 0; m <= l; ++m) {
-            put(band, m, hn::MulAdd(share, bands.null(m), hn::Mul(green, values_[m])));
+    HWY_INLINE void close(const Band& band, std::size_t l, V<D> green, V<D> share, const Bands& bands) const {
+        put_zonal(band, hn::MulAdd(share, bands.null(0), hn::Mul(green, values_[0])));
+        for (std::size_t m = 1; m <= l; ++m) {
+            put(band, m, turn(m), hn::MulAdd(share, bands.null(m), hn::Mul(green, values_[m])));
         }
-        close(band, l);
     }
 
     void finish() { writer_.finish(); }
 
   private:
+    static constexpr std::size_t kLanes = kLaneCount<D>;
+
     AzimuthLanes<T> azimuth_;
     RowWriter<T> writer_;
     DegreeRow<T> values_;
@@ -164,14 +171,19 @@ class ShadingVisitor {
         const auto zero = hn::Zero(D());
         return {terms_ + at(static_cast<int>(l), 0) * kLaneCount<D>, zero, zero};
     }
-    HWY_INLINE void put(Band& band, std::size_t m, V<D> value) const {
-        band.with_null = hn::MulAdd(turned(band, m), value, band.with_null);
+    HWY_INLINE std::array<Band, 2> open_two(std::size_t l) const { return {open(l), open(l + 1)}; }
+    /// What degree m > 0 of any band is multiplied with.
+    using Turn = V<D>;
+    HWY_INLINE Turn turn(std::size_t m) const { return cosine_[m]; }
+    HWY_INLINE void put_zonal(Band& band, V<D> value) const {
+        band.with_null = hn::MulAdd(hn::Load(D(), band.terms), value, band.with_null);
     }
-    HWY_INLINE void term(Band& band, std::size_t m, V<D> null) const {
-        band.with_null = hn::MulAdd(turned(band, m), null, band.with_null);
+    HWY_INLINE void put(Band& band, std::size_t m, const Turn& turn, V<D> value) const {
+        band.with_null = hn::MulAdd(turned(band, m, turn), value, band.with_null);
     }
+    HWY_INLINE void term(Band& band, std::size_t m, V<D> null) const { put(band, m, turn(m), null); }
     HWY_INLINE void term(Band& band, std::size_t m, V<D> null, V<D> particular) const {
-        const auto t = turned(band, m);
+        const auto t = turned(band, m, turn(m));
         band.with_null = hn::MulAdd(t, null, band.with_null);
         band.with_particular = hn::MulAdd(t, particular, band.with_particular);
     }
@@ -188,9 +200,8 @@ class ShadingVisitor {
     HWY_INLINE V<D> sum() const { return sum_; }
 
   private:
-    HWY_INLINE V<D> turned(const Band& band, std::size_t m) const {
-        const D d;
-        return hn::Mul(hn::Load(d, band.terms + m * kLaneCount<D>), cosine_[m]);
+    static HWY_INLINE V<D> turned(const Band& band, std::size_t m, V<D> turn) {
+        return hn::Mul(hn::Load(D(), band.terms + m * kLaneCount<D>), turn);
     }
 
     DegreeRow<T> cosine_;  // √2 cos mφ, 1 for m = 0
@@ -198,17 +209,33 @@ class ShadingVisitor {
     V<D> sum_;
 };
 
+/// Bands l and l + 1, together where they can be.
+template <class Bands, class Visit>
+HWY_INLINE void solve_two_bands(Bands& bands, std::size_t l, Visit& visit) {
+    if constexpr (requires { bands.solve_two(l, visit); }) {
+        bands.solve_two(l, visit);
+    } else {
+        bands.solve(l, visit);
+        bands.solve(l + 1, visit);
+    }
+}
+
 /// All bands from 1 on. Order 8, where loops are shortest, has them laid out.
 template <class Bands, class Visit>
 HWY_INLINE void solve_bands(Bands&& bands, std::size_t order, Visit& visit) {
     if (order == 8) {
-        [&]<std::size_t... kBand>(std::index_sequence<kBand...>) HWY_ATTR {
-            (bands.solve(kBand + 1, visit), ...);
+        [&]<std::size_t... kPair>(std::index_sequence<kPair...>) HWY_ATTR {
+            (solve_two_bands(bands, 2 * kPair + 1, visit), ...);
         }
-        (std::make_index_sequence<7>());
+        (std::make_index_sequence<3>());
+        bands.solve(7, visit);
         return;
     }
-    for (std::size_t l = 1; l < order; ++l) {
+    std::size_t l = 1;
+    for (; l + 1 < order; l += 2) {
+        solve_two_bands(bands, l, visit);
+    }
+    if (l < order) {
         bands.solve(l, visit);
     }
 }

@@ -91,15 +91,14 @@ class RowWriter {
         }
     }
 
-    /// Where the next columns go, column after column of kLaneCount values each, at most 2 kMaxOrder - 1 of them.
-    T* next() { return buffer_.data() + waiting_ * kLaneCount<D>; }
-
-    /// So many columns were put there.
-    void add(std::size_t columns) {
-        waiting_ += columns;
-        if (waiting_ + 2 * kMaxOrder > kColumns) {
+    /// Where the next columns are to be put before anything else is asked for, column after column of kLaneCount values
+    /// each. At most 4 kMaxOrder of them, two bands.
+    T* take(std::size_t columns) {
+        if (waiting_ + columns > kColumns) {
             write_lines();
         }
+        waiting_ += columns;
+        return column(waiting_ - columns);
     }
 
     /// Writes what waits.
@@ -107,7 +106,7 @@ class RowWriter {
         write_lines();
         for (std::size_t c = 0; c < waiting_; ++c) {
             for (std::size_t lane = 0; lane < kLaneCount<D>; ++lane) {
-                rows_[lane][column_ + c] = buffer_[c * kLaneCount<D> + lane];
+                rows_[lane][column_ + c] = column(c)[lane];
             }
         }
         waiting_ = 0;
@@ -120,7 +119,9 @@ class RowWriter {
     static constexpr std::size_t kPage = 4096;
     static constexpr std::size_t kParts = kLine / kLaneCount<D>;             // vectors in a line
     static constexpr std::size_t kLinesAtOnce = 16 / (kParts * kSquare<D>);  // what registers hold
-    static constexpr std::size_t kColumns = 4 * kMaxOrder;                   // rows of order 16, or 16 KiB
+    static constexpr std::size_t kColumns = 4 * kMaxOrder + kLine;           // rows of order 16, or two bands
+
+    T* column(std::size_t c) { return buffer_.data() + c * kLaneCount<D>; }
 
     /// Writes whole lines, and moves the rest to the front.
     HWY_NOINLINE void write_lines() {
@@ -138,7 +139,7 @@ class RowWriter {
         }
         const std::size_t done = lines * kLine;
         column_ += done;
-        std::copy(buffer_.data() + done * kLaneCount<D>, next(), buffer_.data());
+        std::copy(column(done), column(waiting_), buffer_.data());
         waiting_ -= done;
     }
 
@@ -183,7 +184,7 @@ class RowWriter {
         constexpr std::size_t kLanes = kLaneCount<D>;
         std::array<std::array<V<D>, kSquare<D>>, kLines * kParts> squares;
         for (std::size_t part = 0; part < squares.size(); ++part) {
-            const T* from = buffer_.data() + (first + part * kLanes) * kLanes + lane;
+            const T* from = column(first + part * kLanes) + lane;
             for (std::size_t j = 0; j < kSquare<D>; ++j) {
                 squares[part][j] = spread_blocks(d, from + j * kLanes, kSquare<D> * kLanes);
             }

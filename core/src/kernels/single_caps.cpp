@@ -102,7 +102,10 @@ class TermVisitor {
 
     struct Band {};
     Band open(std::size_t /*l*/) { return {}; }
-    void put(const Band& /*band*/, std::size_t m, V<D> value) { values_.put(m, value); }
+    struct Turn {};
+    Turn turn(std::size_t /*m*/) const { return {}; }
+    void put_zonal(const Band& /*band*/, V<D> value) { values_.put(0, value); }
+    void put(const Band& /*band*/, std::size_t m, Turn /*turn*/, V<D> value) { values_.put(m, value); }
     void close(const Band& /*band*/, std::size_t l) {
         for (std::size_t m = 0; m <= l; ++m) {
             give(l, m, values_[m]);
