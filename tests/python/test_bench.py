@@ -275,26 +275,36 @@ def test_planted_times_give_their_ratios(monkeypatch: pytest.MonkeyPatch) -> Non
     assert {row.unit for row in against_methods.measure(run)} == {"× zhou_wei", "× wang_ramamoorthi"}
 
 
-@pytest.mark.parametrize("on_two_cores", [11, 3])
-def test_turns_on_one_core_do_not_count_unless_most_are(monkeypatch: pytest.MonkeyPatch, on_two_cores: int) -> None:
+@pytest.mark.parametrize("on_two_cores", [11, 3, 2])
+def test_turns_on_one_core_do_not_count_and_are_repeated(monkeypatch: pytest.MonkeyPatch, on_two_cores: int) -> None:
     def planted(self: Run, works: dict[str, Work], part: object = None, clock: object = None) -> dict[str, np.ndarray]:
         gain = np.where(np.arange(self.rounds) < on_two_cores, 1.9, 1.0)
         seconds = {name: 1e-9 / (gain if name.endswith(", 2") else 1.0) * np.ones(self.rounds) for name in works}
+        seconds["memset, 2"][:] = 2e-12
         seconds["before quad, 2"][0] = 1e-9  # and so neither this turn of the quad nor that of the work before it
         return seconds
 
     monkeypatch.setattr(Run, "alternate", planted)
     rows = {row.name: row for row in threads.measure(Run("x", 12, 11))}
-    expected = 1.9 if on_two_cores == 11 else 1.0
-    assert rows["basis, n = 8"].value == pytest.approx(expected)
+    basis, quad, warped = (rows[f"{name}, n = 8"] for name in ("basis", "quad", "warped lobe"))
     assert rows["multiply-adds"].value == 1.0  # of all turns
+    assert rows["memset"].met is None
     if on_two_cores == 11:
-        assert rows["basis, n = 8"].detail == "1 ns ÷ 0.526 ns; 11 of 33 turns, 1.00 in all"
-        assert "; 10 of 33 turns" in rows["quad, n = 8"].detail
-        assert "; 10 of 33 turns" in rows["warped lobe, n = 8"].detail
-        assert rows["basis, n = 8"].met
+        assert basis.detail == "1 ns ÷ 0.526 ns; 11 of 33 turns, 1.00 in all; writes at 97 % of memset"
+        assert "; 10 of 33 turns," in quad.detail
+        assert "; 10 of 33 turns," in warped.detail
+        assert "writes" not in warped.detail
+        assert basis.met
+        assert quad.met
+    elif on_two_cores == 3:
+        assert "; 9 of 99 turns," in basis.detail
+        assert basis.met
+        assert "; 6 of 99 turns had two cores: not judged," in quad.detail
     else:
-        assert "; 33 of 33 turns" in rows["basis, n = 8"].detail
+        assert "; 6 of 99 turns had two cores: not judged, 1.00 in all" in basis.detail
+    if on_two_cores < 11:
+        assert quad.met is None
+        assert quad.value == 1.0
 
 
 def test_operations_are_counted_for_kinds_that_there_are() -> None:

@@ -114,8 +114,9 @@ class SectoralBands {
     }
 
     /// The same for bands l and l + 1, opened by visit.open_two(l). One fills the time in which the other waits for its
-    /// next degree, and they share what the visitor turns by.
+    /// next degree, and they share what the visitor turns by. At other horizons each has work enough of its own.
     template <class Visit>
+        requires(kPlane)
     HWY_INLINE void solve_two(std::size_t l, Visit& visit) {
         Down a = sectoral(l);
         Down b = sectoral(l + 1);
@@ -125,15 +126,15 @@ class SectoralBands {
         for (; m >= 2; m -= 2) {
             const auto turn = visit.turn(m);
             step_down<true>(m, a, visit, bands[0], turn);
-            step_down<!kPlane>(m, b, visit, bands[1], turn);
+            step_down<false>(m, b, visit, bands[1], turn);
             const auto next_turn = visit.turn(m - 1);
-            step_down<!kPlane>(m - 1, a, visit, bands[0], next_turn);
+            step_down<false>(m - 1, a, visit, bands[0], next_turn);
             step_down<true>(m - 1, b, visit, bands[1], next_turn);
         }
         if (m == 1) {
             const auto turn = visit.turn(1);
             step_down<true>(1, a, visit, bands[0], turn);
-            step_down<!kPlane>(1, b, visit, bands[1], turn);
+            step_down<false>(1, b, visit, bands[1], turn);
         }
         visit.put_zonal(bands[0], a.x);
         visit.close(bands[0], l);
