@@ -149,8 +149,8 @@ struct ArcLanes {
 /// Circles that do not cross: the light's own zonal integrals, the horizon's, or, where both cover the sphere between
 /// them, the sum of both less the whole sphere, which has no bands above 0. The cap's arc and edge, 0 or π, tell.
 ///
-/// band = visit.open(l), visit.term(band, m, N_m) for m = l … 0 and visit.close(band, l, share, extra): the integral of
-/// degree m is share · N_m, and `extra` more for m = 0.
+/// part = visit.open(l, share), visit.put(part, m, N_m) for m = l … 1 and visit.close(part, l, N_0,
+/// extra): the integral of degree m is share · N_m, and `extra` more for m = 0.
 ///
 /// kHorizon: whether caps may contain the horizon; else `extra` is 0 and costs nothing.
 template <class T, bool kScaled, bool kHorizon>
@@ -170,32 +170,47 @@ class UncrossedBands {
     template <class Visit>
     HWY_INLINE void solve(std::size_t l, Visit& visit) {
         const D d;
-        const CapConstants<T>& constants = CapConstants<T>::get();
-        const CapBand<T>& band = constants.bands[l];
-        const CapStep<T>* step = &constants.steps[at(static_cast<int>(l), 0)];
-        const auto turn = turn_;
-        auto sums = visit.open(l);
-        auto above = hn::Zero(d);
-        auto n = hn::Set(d, band.diagonal);
-        n = kScaled ? n : hn::Mul(n, sine_powers_[l]);
-        for (std::size_t m = l; m > 0; --m) {
-            visit.term(sums, m, kScaled ? hn::Mul(n, sine_powers_[m]) : n);
-            auto fall = hn::Mul(hn::Set(d, step[m].down_fall), above);
-            fall = kScaled ? hn::Mul(fall, square_) : fall;
-            above = n;
-            n = hn::MulSub(hn::Mul(hn::Set(d, step[m].down_climb), turn), n, fall);
-        }
-        visit.term(sums, 0, n);
+        const CapBand<T>& band = CapConstants<T>::get().bands[l];
         const auto scale = hn::Set(d, 2 * band.inverse_laplace);
-        const auto share = hn::Mul(hn::Mul(scale, cap_.edge), light_.next(l));
+        auto part = visit.open(l, hn::Mul(hn::Mul(scale, cap_.edge), light_.next(l)));
+        Down s = diagonal(l);
+        for (std::size_t m = l; m > 0; --m) {
+            step_down(m, s, visit, part);
+        }
         auto extra = hn::Zero(d);
         if constexpr (kHorizon) {
             extra = hn::Mul(hn::Mul(hn::Mul(scale, cap_.arc), horizon_.next(l)), hn::Set(d, band.at_pole));
         }
-        visit.close(sums, l, share, extra);
+        visit.close(part, l, s.n, extra);
     }
 
   private:
+    struct Down {
+        V<D> n, n_above;
+        V<D> turn;  // here, to stay in a register
+        const CapStep<T>* steps;
+    };
+
+    /// Where band l begins.
+    HWY_INLINE Down diagonal(std::size_t l) const {
+        const D d;
+        const CapConstants<T>& constants = CapConstants<T>::get();
+        const auto n = hn::Set(d, constants.bands[l].diagonal);
+        return {kScaled ? n : hn::Mul(n, sine_powers_[l]), hn::Zero(d), turn_,
+                &constants.steps[at(static_cast<int>(l), 0)]};
+    }
+
+    /// Gives degree m > 0 away and steps to m - 1.
+    template <class Visit>
+    HWY_INLINE void step_down(std::size_t m, Down& s, Visit& visit, typename Visit::Part& part) const {
+        const D d;
+        visit.put(part, m, kScaled ? hn::Mul(s.n, sine_powers_[m]) : s.n);
+        auto fall = hn::Mul(hn::Set(d, s.steps[m].down_fall), s.n_above);
+        fall = kScaled ? hn::Mul(fall, square_) : fall;
+        s.n_above = s.n;
+        s.n = hn::MulSub(hn::Mul(hn::Set(d, s.steps[m].down_climb), s.turn), s.n, fall);
+    }
+
     const CapLanes<D>& cap_;
     ZonalLanes<T> light_, horizon_;
     V<D> turn_, square_;

@@ -129,9 +129,8 @@ class PlaneBatch {
 
     template <bool kCrossing, class Recurrences>
     HWY_INLINE void take_all(const LightList& lights) {
-        lights.for_each_vector<T>([&](const Chosen<T>& chosen) HWY_ATTR {
-            sink_.template take<Recurrences>(load<kCrossing>(chosen), chosen);
-        });
+        lights.for_each_vector<T>([&](const Chosen<T>& chosen)
+                                      HWY_ATTR { sink_.template take<Recurrences>(load<kCrossing>(chosen), chosen); });
     }
 
     template <bool kCrossing>

@@ -116,8 +116,7 @@ class SectoralBands {
     /// The same for bands l and l + 1, opened by visit.open_two(l). One fills the time in which the other waits for its
     /// next degree, and they share what the visitor turns by. At other horizons each has work enough of its own.
     template <class Visit>
-        requires(kPlane)
-    HWY_INLINE void solve_two(std::size_t l, Visit& visit) {
+    requires(kPlane) HWY_INLINE void solve_two(std::size_t l, Visit& visit) {
         Down a = sectoral(l);
         Down b = sectoral(l + 1);
         auto bands = visit.open_two(l);
@@ -155,7 +154,11 @@ class SectoralBands {
         const D d;
         const CapConstants<T>& constants = CapConstants<T>::get();
         const CapBand<T>& band = constants.bands[l];
-        Down s{next_sectoral(l, band), hn::Zero(d), hn::Zero(d), hn::Zero(d), turn_,
+        Down s{next_sectoral(l, band),
+               hn::Zero(d),
+               hn::Zero(d),
+               hn::Zero(d),
+               turn_,
                &constants.steps[at(static_cast<int>(l), 0)]};
         if constexpr (!kPlane) {
             s.horizon = hn::Mul(hn::Set(d, band.diagonal), hn::Mul(power_, horizon_sine_));

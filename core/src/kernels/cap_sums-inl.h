@@ -111,17 +111,22 @@ class CoefficientVisitor {
         hn::Store(hn::Mul(value, turn.cosine), D(), band.first + (band.l + m) * kLanes);
         hn::Store(hn::Mul(value, turn.sine), D(), band.first + (band.l - m) * kLanes);
     }
-    HWY_INLINE void term(Band& /*band*/, std::size_t m, V<D> null) { values_.put(m, null); }
-    HWY_INLINE void term(Band& /*band*/, std::size_t m, V<D> /*null*/, V<D> particular) { values_.put(m, particular); }
-
     HWY_INLINE void close(const Band& /*band*/, std::size_t /*l*/) const {}
-    /// Of circles that do not cross.
-    HWY_INLINE void close(const Band& band, std::size_t l, V<D> share, V<D> extra) const {
-        put_zonal(band, hn::MulAdd(share, values_[0], extra));
-        for (std::size_t m = 1; m <= l; ++m) {
-            put(band, m, turn(m), hn::Mul(share, values_[m]));
-        }
+
+    /// A band whose values are to be multiplied with `share`.
+    struct Part {
+        Band band;
+        V<D> share;
+    };
+    HWY_INLINE Part open(std::size_t l, V<D> share) { return {open(l), share}; }
+    HWY_INLINE void put(const Part& part, std::size_t m, V<D> null) const {
+        put(part.band, m, turn(m), hn::Mul(part.share, null));
     }
+    HWY_INLINE void close(const Part& part, std::size_t /*l*/, V<D> null, V<D> extra) const {
+        put_zonal(part.band, hn::MulAdd(part.share, null, extra));
+    }
+
+    HWY_INLINE void term(Band& /*band*/, std::size_t m, V<D> /*null*/, V<D> particular) { values_.put(m, particular); }
     template <class Bands>
     HWY_INLINE void close(const Band& band, std::size_t l, V<D> green, V<D> share, const Bands& bands) const {
         put_zonal(band, hn::MulAdd(share, bands.null(0), hn::Mul(green, values_[0])));
@@ -181,17 +186,26 @@ class ShadingVisitor {
     HWY_INLINE void put(Band& band, std::size_t m, const Turn& turn, V<D> value) const {
         band.with_null = hn::MulAdd(turned(band, m, turn), value, band.with_null);
     }
-    HWY_INLINE void term(Band& band, std::size_t m, V<D> null) const { put(band, m, turn(m), null); }
+    HWY_INLINE void close(const Band& band, std::size_t /*l*/) { sum_ = hn::Add(sum_, band.with_null); }
+
+    /// A band whose sum is to be multiplied with `share`.
+    struct Part {
+        Band band;
+        V<D> share;
+    };
+    HWY_INLINE Part open(std::size_t l, V<D> share) const { return {open(l), share}; }
+    HWY_INLINE void put(Part& part, std::size_t m, V<D> null) const { put(part.band, m, turn(m), null); }
+    HWY_INLINE void close(Part& part, std::size_t /*l*/, V<D> null, V<D> extra) {
+        put_zonal(part.band, null);
+        sum_ = hn::MulAdd(extra, hn::Load(D(), part.band.terms), hn::MulAdd(part.share, part.band.with_null, sum_));
+    }
+
     HWY_INLINE void term(Band& band, std::size_t m, V<D> null, V<D> particular) const {
         const auto t = turned(band, m, turn(m));
         band.with_null = hn::MulAdd(t, null, band.with_null);
         band.with_particular = hn::MulAdd(t, particular, band.with_particular);
     }
 
-    HWY_INLINE void close(const Band& band, std::size_t /*l*/) { sum_ = hn::Add(sum_, band.with_null); }
-    HWY_INLINE void close(const Band& band, std::size_t /*l*/, V<D> share, V<D> extra) {
-        sum_ = hn::MulAdd(extra, hn::Load(D(), band.terms), hn::MulAdd(share, band.with_null, sum_));
-    }
     template <class Bands>
     HWY_INLINE void close(const Band& band, std::size_t /*l*/, V<D> green, V<D> share, const Bands& /*bands*/) {
         sum_ = hn::MulAdd(green, band.with_particular, hn::MulAdd(share, band.with_null, sum_));

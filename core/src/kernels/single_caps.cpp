@@ -111,14 +111,19 @@ class TermVisitor {
             give(l, m, values_[m]);
         }
     }
-    void term(Band& /*band*/, std::size_t m, V<D> null) { values_.put(m, null); }
-    void term(Band& /*band*/, std::size_t m, V<D> /*null*/, V<D> particular) { values_.put(m, particular); }
-    void close(const Band& /*band*/, std::size_t l, V<D> share, V<D> extra) {
-        for (std::size_t m = 0; m <= l; ++m) {
-            const auto value = hn::Mul(share, values_[m]);
-            give(l, m, m == 0 ? hn::Add(value, extra) : value);
-        }
+
+    /// A band whose values are to be multiplied with `share`.
+    struct Part {
+        V<D> share;
+    };
+    Part open(std::size_t /*l*/, V<D> share) { return {share}; }
+    void put(const Part& part, std::size_t m, V<D> null) { values_.put(m, hn::Mul(part.share, null)); }
+    void close(const Part& part, std::size_t l, V<D> null, V<D> extra) {
+        values_.put(0, hn::MulAdd(part.share, null, extra));
+        close(Band(), l);
     }
+
+    void term(Band& /*band*/, std::size_t m, V<D> /*null*/, V<D> particular) { values_.put(m, particular); }
     template <class Bands>
     void close(const Band& /*band*/, std::size_t l, V<D> green, V<D> share, const Bands& bands) {
         for (std::size_t m = 0; m <= l; ++m) {
