@@ -19,7 +19,7 @@ from . import kinds
 from .operations import OPERATIONS
 from .rounds import Spread, Work
 from .row import Row
-from .run import Run
+from .run import Run, result_bytes
 
 ORDERS = (8, 16, 32)
 PEAK, FILL = "multiply-adds", "memset"
@@ -50,8 +50,8 @@ def measure(run: Run) -> list[Row]:
                     )
                 )
             if name in WRITING:
-                written = 4 * order**2 / seconds[name]
-                detail = f"{4 * order**2} bytes a light, {Spread.of(written / GIGA).median:.1f} GB/s"
+                written = result_bytes(order) / seconds[name]
+                detail = f"{result_bytes(order)} bytes a light, {Spread.of(written / GIGA).median:.1f} GB/s"
                 row = f"{name}, n = {order}, writes"
                 rows.append(
                     Row.of(

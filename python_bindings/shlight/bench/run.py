@@ -32,7 +32,7 @@ class Run:
 
     def count(self, order: int, wanted: int | None = None) -> int:
         """As many lights as wanted (None: as usual), or as their coefficients of this order fit into memory."""
-        return min(self.lights if wanted is None else wanted, int(RESULT_BYTES / (4 * order**2)))
+        return min(self.lights if wanted is None else wanted, int(RESULT_BYTES / result_bytes(order)))
 
     def alternate(
         self, works: Mapping[str, Work], part: tuple[int, int] = (0, 1), clock: Clock = ONE_THREAD
@@ -57,6 +57,11 @@ class Section:
     name: str  # on the command line
     title: str
     measure: Callable[[Run], list[Row]]
+
+
+def result_bytes(order: int) -> int:
+    """Of one light's coefficients in float32."""
+    return 4 * order**2
 
 
 def duration(seconds: Floats) -> str:

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What a second thread brings: the time of one ÷ that of two, on the wall.
 
-The two processors of a virtual machine may be two cores at one moment and the two threads of one core at the next,
-where multiply-adds alone gain nothing. They are measured before and after each turn, and of a kind of work those turns
-count in which the machine had two cores to give; the gain over all turns stands beside it. Without enough such turns
-no bound is judged.
+The host of a virtual machine may take its processors away, or hand out two threads of one core: multiply-adds alone
+then gain nothing. They are measured before and after each turn, and of a kind of work those turns count in which the
+machine had two cores to give; the gain over all turns stands beside it. Without enough such turns all of them count.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from numpy.typing import NDArray
 from . import kinds, limits
 from .rounds import WALL, Seconds, Spread, Work
 from .row import Row
-from .run import Run, duration
+from .run import Run, duration, result_bytes
 
 ORDERS = (8, 16)
 BOUND = 1.8
@@ -67,23 +66,23 @@ def _row(run: Run, names: list[str], k: int, order: int, seconds: Seconds) -> Ro
     every = _gain(seconds, name)
     counts = _counts(seconds, names, k)
     turns = f"{np.count_nonzero(counts)} of {len(every)} turns"
-    is_judged = name != limits.FILL and _has_enough(counts)
     if not _has_enough(counts):
         counts = np.ones_like(counts)
-        turns += " had two cores: not judged"
+        turns += " had two cores: all count"
     one, two, filled = (
         seconds[_turn(work, threads)][counts] for work, threads in ((name, 1), (name, 2), (limits.FILL, 2))
     )
     detail = f"{duration(one)} ÷ {duration(two)}; {turns}, {Spread.of(every).median:.2f} in all"
     if name in limits.WRITING:
-        written = Spread.of(100 * 4 * order**2 * filled / two).median
+        written = Spread.of(100 * result_bytes(order) * filled / two).median
         detail += f"; writes at {written:.0f} % of {limits.FILL}"
+    is_limit = name == limits.FILL
     return Row.of(
         run.section,
-        name if name == limits.FILL else f"{name}, n = {order}",
+        name if is_limit else f"{name}, n = {order}",
         Spread.of(one / two),
         "× as fast",
-        bound=BOUND if is_judged else None,
+        bound=None if is_limit else BOUND,
         bound_is="least",
         detail=detail,
     )
