@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <thread>
 
@@ -83,6 +84,13 @@ class Work {
     std::thread thread_;  // last: it uses all the others
 };
 
+/// The calling thread's own for so many threads. It is kept: workers find the way to a fresh one as slowly as they
+/// wake.
+tbb::task_arena& arena_of(int threads) {
+    thread_local std::map<int, tbb::task_arena> arenas;
+    return arenas.try_emplace(threads, threads).first->second;
+}
+
 /// Without anything to report the caller takes part, and what one thread does needs no scheduler: small batches of
 /// lights take less time than a thread takes to start.
 void run_unwatched(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
@@ -102,8 +110,7 @@ void run_in_arena(int threads, const std::function<void()>& work) {
     check_threads(threads);
     // More than the machine has would only make oneTBB warn.
     const int cores = tbb::info::default_concurrency();
-    tbb::task_arena arena(threads == 0 ? cores : std::min(threads, cores));
-    arena.execute(work);
+    arena_of(threads == 0 ? cores : std::min(threads, cores)).execute(work);
 }
 
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body,

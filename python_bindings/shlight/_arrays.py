@@ -13,6 +13,8 @@ Floats = NDArray[Any]
 
 MAX_ORDER = 64
 
+_TYPES = (np.dtype(np.float32), np.dtype(np.float64))
+
 
 def shaped(flat: Floats, shape: tuple[int, ...]) -> Floats:
     """Results without axes are numpy scalars, as numpy's own functions return them."""
@@ -45,19 +47,26 @@ def common_type(*arrays: ArrayLike) -> DTypeLike:
 
 def checked_array(name: str, value: ArrayLike, dtype: DTypeLike, *, core_axes: int = 0) -> Floats:
     wanted = np.dtype(dtype)
-    if wanted not in (np.dtype(np.float32), np.dtype(np.float64)):
+    if wanted not in _TYPES:
         raise ValueError(f"dtype must be float32 or float64, got {wanted}")
+    if type(value) is np.ndarray and value.dtype == wanted and value.flags.c_contiguous:
+        array: Floats = value  # finding out with numpy that nothing is to be done takes as long as a hundred lights
+    else:
+        array = _converted(name, value, wanted)
+    if array.ndim < core_axes:
+        raise ValueError(f"{name} must have at least {core_axes} axes, got shape {array.shape}")
+    return array
+
+
+def _converted(name: str, value: ArrayLike, dtype: np.dtype[Any]) -> Floats:
     try:
         given = np.asarray(value)
         if not (np.issubdtype(given.dtype, np.floating) or np.issubdtype(given.dtype, np.integer)):
             raise ValueError
         with np.errstate(over="ignore"):  # what does not fit becomes infinite and is refused as such
-            array = np.ascontiguousarray(given, dtype=wanted).reshape(given.shape)
+            return np.ascontiguousarray(given, dtype=dtype).reshape(given.shape)
     except (TypeError, ValueError):
         raise ValueError(f"{name} must be an array of real numbers") from None
-    if array.ndim < core_axes:
-        raise ValueError(f"{name} must have at least {core_axes} axes, got shape {array.shape}")
-    return array
 
 
 def check_last(name: str, array: Floats, size: int) -> None:
@@ -77,8 +86,11 @@ def checked_disks(
 
 
 def broadcast(**shapes: tuple[int, ...]) -> tuple[int, ...]:
+    first, *others = shapes.values()
+    if all(shape == first for shape in others):
+        return first
     try:
-        return np.broadcast_shapes(*shapes.values())
+        return np.broadcast_shapes(first, *others)
     except ValueError:
         described = " and ".join(f"{name} {shape}" for name, shape in shapes.items())
         raise ValueError(f"the leading axes of {described} do not broadcast") from None

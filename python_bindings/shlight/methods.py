@@ -12,6 +12,7 @@ the others with their sources. Each takes the options that make sense for it and
 
 from __future__ import annotations
 
+import functools
 import math
 import operator
 from collections.abc import Callable, Iterable
@@ -31,11 +32,21 @@ DEFAULT_SAMPLES = 256
 
 def coefficient_methods() -> dict[str, _core.Method]:
     """What `method=` of sphere_, cap_ and polygon_coefficients may be, by name, "exact" first."""
-    return {method.name: method for method in _core.all_methods()}
+    return dict(_coefficient_methods())
 
 
 def shading_methods() -> dict[str, _core.ShadingMethod]:
     """What `method=` of shade_spheres and shade_polygons may be beside "auto", by name."""
+    return dict(_shading_methods())
+
+
+@functools.cache
+def _coefficient_methods() -> dict[str, _core.Method]:
+    return {method.name: method for method in _core.all_methods()}
+
+
+@functools.cache
+def _shading_methods() -> dict[str, _core.ShadingMethod]:
     return {method.name: method for method in _core.all_shading_methods()}
 
 
@@ -69,14 +80,14 @@ def render_monte_carlo(
 
 def coefficient_options(method: str, **given: Any) -> _core.MethodOptions:
     """Checks the options that were given (None: not) against the method's, and converts them."""
-    found = _named(method, coefficient_methods())
+    found = _named(method, _coefficient_methods())
     takes = {"tolerance": found.adaptive, "samples": found.random, "seed": found.random, "sampling": found.random}
     return _options(method, takes, given, order=0, sampling="solid_angle")
 
 
 def shading_options(method: str, order: int, **given: Any) -> _core.MethodOptions:
     """As coefficient_options. order: 0 where none was given."""
-    found = _named(method, shading_methods(), extra=["auto"])
+    found = _named(method, _shading_methods(), extra=["auto"])
     takes = {"tolerance": True, "samples": found.sampled, "seed": found.random, "sampling": found.random}
     if found.harmonic and order == 0:
         raise ValueError(f"order must be 1 … 64 for method {method!r}")

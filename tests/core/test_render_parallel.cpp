@@ -81,6 +81,26 @@ TEST(RenderParallel, NoMoreThreadsThanAskedFor) {
     EXPECT_THROW(parallel_for(1, -1, [](std::size_t) {}), std::invalid_argument);
 }
 
+TEST(RenderParallel, CallersAtOnceAndCallsInCalls) {
+    std::vector<std::atomic<int>> runs(4000);
+    const auto outer = [&](std::size_t caller) {
+        parallel_for(10, 0, [&](std::size_t i) {
+            for (const int threads : {0, 2}) {
+                const std::size_t first = 1000 * caller + 100 * i + (threads == 0 ? 0 : 50);
+                parallel_for(50, threads, [&](std::size_t k) { ++runs[first + k]; });
+            }
+        });
+    };
+    std::vector<std::thread> callers;
+    for (std::size_t caller = 0; caller < 4; ++caller) {
+        callers.emplace_back([&, caller] { outer(caller); });
+    }
+    for (std::thread& caller : callers) {
+        caller.join();
+    }
+    EXPECT_TRUE(std::all_of(runs.begin(), runs.end(), [](const auto& count) { return count == 1; }));
+}
+
 TEST(RenderParallel, ProgressComesFromTheCallerAndNeverFalls) {
     std::vector<double> shares;
     const auto caller = std::this_thread::get_id();
@@ -119,6 +139,9 @@ TEST(RenderParallel, ExceptionsReachTheCaller) {
     } catch (const std::out_of_range& error) {
         EXPECT_EQ(std::string(error.what()), "from the body");
     }
+    std::atomic<int> runs = 0;
+    parallel_for(100, 0, [&](std::size_t) { ++runs; });
+    EXPECT_EQ(runs, 100) << "after an exception";
 }
 
 TEST(RenderParallel, ARenderCanBeCancelled) {

@@ -84,7 +84,10 @@ def test_takes_integers_lists_and_strides() -> None:
     strided = np.zeros((2, 6), np.float32)
     strided[:, ::2] = [[1, 2, 3], [4, 5, 6]]
     np.testing.assert_array_equal(shlight.sh_basis(strided[:, ::2], 5), expected)
-    np.testing.assert_array_equal(shlight.sh_basis(np.asfortranarray([[1.0, 2, 3], [4, 5, 6]]), 5), expected)
+    for dtype in (np.float64, np.float32, ">f4"):
+        given = np.asfortranarray(np.array([[1, 2, 3], [4, 5, 6]], dtype))
+        np.testing.assert_array_equal(shlight.sh_basis(given, 5), expected)
+        np.testing.assert_array_equal(shlight.sh_basis(np.ascontiguousarray(given), 5), expected)
 
 
 def test_input_is_left_alone() -> None:

@@ -278,8 +278,11 @@ def test_planted_times_give_their_ratios(monkeypatch: pytest.MonkeyPatch) -> Non
 @pytest.mark.parametrize("on_two_cores", [11, 3, 2])
 def test_turns_on_one_core_do_not_count_and_are_repeated(monkeypatch: pytest.MonkeyPatch, on_two_cores: int) -> None:
     def planted(self: Run, works: dict[str, Work], part: object = None, clock: object = None) -> dict[str, np.ndarray]:
-        gain = np.where(np.arange(self.rounds) < on_two_cores, 1.9, 1.0)
-        seconds = {name: 1e-9 / (gain if name.endswith(", 2") else 1.0) * np.ones(self.rounds) for name in works}
+        on_two = np.arange(self.rounds) < on_two_cores
+        seconds = {}
+        for name in works:
+            gain = 1.7 if name.startswith("one call of ") else 1.9
+            seconds[name] = 1e-9 / np.where(on_two & name.endswith(", 2"), gain, 1.0)
         seconds["memset, 2"][:] = 2e-12
         seconds["before quad, 2"][0] = 1e-9  # and so neither this turn of the quad nor that of the work before it
         return seconds
@@ -291,7 +294,8 @@ def test_turns_on_one_core_do_not_count_and_are_repeated(monkeypatch: pytest.Mon
     assert rows["multiply-adds"].value == 1.0  # of all turns
     assert rows["memset"].met is None
     if on_two_cores == 11:
-        assert basis.detail == "1 ns ÷ 0.526 ns; 11 of 33 turns, 1.00 in all; writes at 97 % of memset"
+        gains = "11 of 33 turns, 1.00 in all; 1.70 after a pause"
+        assert basis.detail == f"1 ns ÷ 0.526 ns; {gains}; writes at 97 % of memset"
         assert "; 10 of 33 turns," in quad.detail
         assert "; 10 of 33 turns," in warped.detail
         assert "writes" not in warped.detail
@@ -302,10 +306,17 @@ def test_turns_on_one_core_do_not_count_and_are_repeated(monkeypatch: pytest.Mon
         assert basis.met
         assert "; 6 of 99 turns had two cores: all count," in quad.detail
     else:
-        assert "; 6 of 99 turns had two cores: all count, 1.00 in all" in basis.detail
+        assert "; 6 of 99 turns had two cores: all count, 1.00 in all; 1.00 after a pause" in basis.detail
     if on_two_cores < 11:
         assert quad.met is False
         assert quad.value == 1.0
+
+
+def test_a_turn_of_threads_is_calls_in_a_row() -> None:
+    calls: list[int] = []
+    work = threads._in_a_row(Work(lambda: calls.append(1), 5))
+    work.call()
+    assert (len(calls), work.count) == (threads.CALLS, 5 * threads.CALLS)
 
 
 def test_operations_are_counted_for_kinds_that_there_are() -> None:

@@ -4,6 +4,9 @@
 The host of a virtual machine may take its processors away, or hand out two threads of one core: multiply-adds alone
 then gain nothing. They are measured before and after each turn, and of a kind of work those turns count in which the
 machine had two cores to give; the gain over all turns stands beside it. Without enough such turns all of them count.
+
+Calls follow each other in a turn as in a loop, where the second thread still looks for work when the next one comes.
+After a pause it has to be woken: what one such call gains is measured besides.
 """
 
 from __future__ import annotations
@@ -22,6 +25,7 @@ ORDERS = (8, 16)
 BOUND = 1.8
 TURNS = 3  # so many times as many as of other sections, because some do not count
 MOST_REPEATS = 3  # of them, until enough do
+CALLS = 3  # in a turn
 PROBE_ROUNDS = 10 * limits.ROUNDS  # long beside what it takes to wake a thread
 TWO_CORES = 1.6  # what multiply-adds gain from them at least
 FEWEST = 9  # turns that make a median
@@ -51,7 +55,8 @@ def _with_two_cores(run: Run, names: list[str], by_threads: dict[int, dict[str, 
     for before, name in zip(_probes(names), [*names, None], strict=True):
         works |= {_turn(before, threads): probe[threads] for threads in (1, 2)}
         if name is not None:
-            works |= {_turn(name, threads): by_threads[threads][name] for threads in (1, 2)}
+            works |= {_turn(_paused(name), threads): by_threads[threads][name] for threads in (1, 2)}
+            works |= {_turn(name, threads): _in_a_row(by_threads[threads][name]) for threads in (1, 2)}
     seconds: Seconds = {name: np.empty(0) for name in works}
     for repeat in range(MOST_REPEATS):
         more = run.alternate(works, (MOST_REPEATS * i + repeat, MOST_REPEATS * len(ORDERS)), WALL)
@@ -63,7 +68,7 @@ def _with_two_cores(run: Run, names: list[str], by_threads: dict[int, dict[str, 
 
 def _row(run: Run, names: list[str], k: int, order: int, seconds: Seconds) -> Row:
     name = names[k]
-    every = _gain(seconds, name)
+    every, paused = _gain(seconds, name), _gain(seconds, _paused(name))
     counts = _counts(seconds, names, k)
     turns = f"{np.count_nonzero(counts)} of {len(every)} turns"
     if not _has_enough(counts):
@@ -73,6 +78,7 @@ def _row(run: Run, names: list[str], k: int, order: int, seconds: Seconds) -> Ro
         seconds[_turn(work, threads)][counts] for work, threads in ((name, 1), (name, 2), (limits.FILL, 2))
     )
     detail = f"{duration(one)} ÷ {duration(two)}; {turns}, {Spread.of(every).median:.2f} in all"
+    detail += f"; {Spread.of(paused[counts]).median:.2f} after a pause"
     if name in limits.WRITING:
         written = Spread.of(100 * result_bytes(order) * filled / two).median
         detail += f"; writes at {written:.0f} % of {limits.FILL}"
@@ -86,6 +92,18 @@ def _row(run: Run, names: list[str], k: int, order: int, seconds: Seconds) -> Ro
         bound_is="least",
         detail=detail,
     )
+
+
+def _in_a_row(work: Work) -> Work:
+    def calls() -> None:
+        for _ in range(CALLS):
+            work.call()
+
+    return Work(calls, CALLS * work.count)
+
+
+def _paused(name: str) -> str:
+    return f"one call of {name}"
 
 
 def _probes(names: list[str]) -> list[str]:
