@@ -17,7 +17,7 @@ namespace {
 constexpr double kLongestSide = 0.7;
 
 template <class Real>
-struct Triangle {
+struct ProjectedTriangle {
     Vec3<Real> a, b, c;
 };
 
@@ -32,7 +32,7 @@ int points_per_side(int order, double side) {
 
 /// Adds the integral over a small triangle. Returns the sum of the weights.
 template <class T>
-Wider<T> add_small_triangle(const Triangle<Wider<T>>& t, Wider<T> side, int order, T* coefficients) {
+Wider<T> add_small_triangle(const ProjectedTriangle<Wider<T>>& t, Wider<T> side, int order, T* coefficients) {
     using Real = Wider<T>;
     const int count = coefficient_count(order);
     std::array<T, static_cast<std::size_t>(coefficient_count(kMaxOrder))> basis;
@@ -46,14 +46,14 @@ Wider<T> add_small_triangle(const Triangle<Wider<T>>& t, Wider<T> side, int orde
 }
 
 template <class T>
-Wider<T> add_triangle(const Triangle<Wider<T>>& t, int order, T* coefficients) {
+Wider<T> add_triangle(const ProjectedTriangle<Wider<T>>& t, int order, T* coefficients) {
     using Real = Wider<T>;
     const std::array<Real, 3> sides = {glm::length(t.b - t.a), glm::length(t.c - t.b), glm::length(t.a - t.c)};
     const Real longest = *std::max_element(sides.begin(), sides.end());
     if (longest <= kLongestSide) {
         return add_small_triangle<T>(t, longest, order, coefficients);
     }
-    using Turned = Triangle<Real>;
+    using Turned = ProjectedTriangle<Real>;
     const Turned turned = longest == sides[0] ? t : longest == sides[1] ? Turned{t.b, t.c, t.a} : Turned{t.c, t.a, t.b};
     const Vec3<Real> middle = glm::normalize(turned.a + turned.b);
     return add_triangle<T>(Turned{turned.a, middle, turned.c}, order, coefficients) +
@@ -69,7 +69,7 @@ void polygon_by_cubature(const SphericalPolygon<Wider<T>>& polygon, int order, T
     const std::vector<Vec3<Real>>& v = polygon.directions();
     Real total = 0;
     for (std::size_t i = 1; i + 1 < v.size(); ++i) {
-        total += add_triangle<T>(Triangle<Real>{v[0], v[i], v[i + 1]}, order, coefficients);
+        total += add_triangle<T>(ProjectedTriangle<Real>{v[0], v[i], v[i + 1]}, order, coefficients);
     }
     // The area of a tiny or thin polygon drowns in the rounding of unit vectors; its solid angle was measured before
     // that.

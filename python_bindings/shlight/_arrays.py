@@ -86,11 +86,11 @@ def checked_disks(
 
 
 def broadcast(**shapes: tuple[int, ...]) -> tuple[int, ...]:
-    first, *others = shapes.values()
-    if all(shape == first for shape in others):
-        return first
+    distinct = {shape for shape in shapes.values() if shape}
+    if len(distinct) <= 1:
+        return next(iter(distinct), ())
     try:
-        return np.broadcast_shapes(first, *others)
+        return np.broadcast_shapes(*distinct)
     except ValueError:
         described = " and ".join(f"{name} {shape}" for name, shape in shapes.items())
         raise ValueError(f"the leading axes of {described} do not broadcast") from None
