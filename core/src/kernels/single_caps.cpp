@@ -73,22 +73,27 @@ void in_contact(const Contact& c, Cap<double>& out) {
     out = first_lane(cap_in_contact(d, contact), c.chord > 0);
 }
 
-/// Calls run(bands) with the recurrences that the cap needs.
-template <bool kPlane, class T, class Run>
-void with_bands(const Cap<T>& cap, const CapLanes<Lanes<T>>& lanes, std::size_t order, const Run& run) {
+/// Visits the bands from 1 on, by the recurrences that the cap needs.
+template <bool kPlane, class T, class Visit>
+void visit_bands(const Cap<T>& cap, const CapLanes<Lanes<T>>& lanes, std::size_t order, Visit& visit) {
     const BandChoice<T> choice(order);
-    const auto run_one = [&]<bool kCrossing>(std::bool_constant<kCrossing> /*crossing*/) HWY_ATTR {
+    const auto solve = [&](auto&& bands) HWY_ATTR {
+        for (std::size_t l = 1; l < order; ++l) {
+            bands.solve(l, visit);
+        }
+    };
+    const auto choose = [&]<bool kCrossing>(std::bool_constant<kCrossing> /*crossing*/) HWY_ATTR {
         using Bands = BandsOf<T, kCrossing, kPlane, true>;
         if (hn::AllTrue(Lanes<T>(), choice.template others<kCrossing>(lanes))) {
-            run(typename Bands::Others(lanes, order));
+            solve(typename Bands::Others(lanes, order));
         } else {
-            run(typename Bands::Most(lanes, order));
+            solve(typename Bands::Most(lanes, order));
         }
     };
     if (cap.crossing) {
-        run_one(std::true_type());
+        choose(std::true_type());
     } else {
-        run_one(std::false_type());
+        choose(std::false_type());
     }
 }
 
@@ -146,11 +151,7 @@ void terms_of(const Cap<T>& cap, std::size_t order, T* terms) {
     const auto lanes = in_all_lanes(cap);
     TermVisitor<T> visit(terms);
     terms[0] = hn::GetLane(band_zero(Lanes<T>(), lanes));
-    with_bands<false>(cap, lanes, order, [&](auto&& bands) HWY_ATTR {
-        for (std::size_t l = 1; l < order; ++l) {
-            bands.solve(l, visit);
-        }
-    });
+    visit_bands<false>(cap, lanes, order, visit);
 }
 
 template <class T>
@@ -162,11 +163,7 @@ T shaded(const Cap<T>& cap, const T* lobe_terms, std::size_t order) {
         hn::Store(hn::Set(d, lobe_terms[k]), d, terms.data() + k * kLaneCount<Lanes<T>>);
     }
     ShadingVisitor<T> visit(lanes, order, terms.data());
-    with_bands<false>(cap, lanes, order, [&](auto&& bands) HWY_ATTR {
-        for (std::size_t l = 1; l < order; ++l) {
-            bands.solve(l, visit);
-        }
-    });
+    visit_bands<false>(cap, lanes, order, visit);
     return hn::GetLane(visit.sum());
 }
 
@@ -176,11 +173,7 @@ void row_of(const Cap<T>& cap, std::size_t order, T* row) {
     RowPointers<T> rows;
     rows.fill(row);
     CoefficientVisitor<T> visit(lanes, order, rows, Output::cached);
-    with_bands<true>(cap, lanes, order, [&](auto&& bands) HWY_ATTR {
-        for (std::size_t l = 1; l < order; ++l) {
-            bands.solve(l, visit);
-        }
-    });
+    visit_bands<true>(cap, lanes, order, visit);
     visit.finish();
 }
 
