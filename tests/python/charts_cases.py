@@ -14,11 +14,6 @@ from shlight.charts.figure import Drawn, Run
 Rows = list[dict[str, str]]
 
 
-def names(folder: Path) -> list[str]:
-    """Of its files."""
-    return sorted(path.name for path in folder.iterdir())
-
-
 def dummy(**changes: object) -> SimpleNamespace:
     """A method for caps, of small orders, to register."""
     known = {

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from command_cases import names, putter
 
 from shlight import _core
 from shlight.bench import command, options, sections
@@ -32,20 +33,11 @@ def measure_in_vain(run: Run) -> list[Row]:
 @pytest.fixture
 def use(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     """Puts other sections in place of the real ones."""
-
-    def put(*others: Section) -> None:
-        for module in (command, options):
-            monkeypatch.setattr(module, "SECTIONS", list(others))
-
-    return put
+    return putter(monkeypatch, "SECTIONS", command, options)
 
 
 TWO = Section("two", "Two rows", measure_two)
 VAIN = Section("vain", "In vain", measure_in_vain)
-
-
-def names(folder: Path) -> list[str]:
-    return sorted(path.name for path in folder.iterdir())
 
 
 def test_a_run_prints_tables_and_leaves_a_file(

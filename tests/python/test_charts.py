@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from charts_cases import names
+from command_cases import names, putter
 
 from shlight.charts import command, figures, options, style
 from shlight.charts.figure import Drawn, Figure, Run, Table
@@ -38,12 +38,7 @@ def draw_in_vain(run: Run) -> Drawn:
 @pytest.fixture
 def use(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     """Puts other figures in place of the real ones."""
-
-    def put(*others: Figure) -> None:
-        for module in (command, options):
-            monkeypatch.setattr(module, "FIGURES", list(others))
-
-    return put
+    return putter(monkeypatch, "FIGURES", command, options)
 
 
 DOTS = Figure("dots", "Dots", draw_dots)

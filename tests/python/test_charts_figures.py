@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from charts_cases import drawn, dummy, names
+from charts_cases import drawn, dummy
+from command_cases import names
 
 from shlight.charts import growth, measure, speed_error, stability
 from shlight.charts.figure import Run
