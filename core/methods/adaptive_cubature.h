@@ -15,8 +15,8 @@
 #include <span>
 #include <vector>
 
-#include "gauss_legendre.h"
 #include "kept_region.h"
+#include "math/gauss_legendre.h"
 
 namespace shlight::methods {
 

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "checks.h"
-#include "light_checks.h"
+#include "base/checks.h"
+#include "caps/cap_checks.h"
+#include "polygons/polygon_checks.h"
 #include "shlight/sampling.h"
 
 namespace shlight::methods {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 
+#include "base/safe_length.h"
 #include "method.h"
-#include "safe_length.h"
 
 namespace shlight::methods {
 

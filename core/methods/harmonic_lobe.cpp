@@ -4,8 +4,8 @@
 #include <numeric>
 #include <vector>
 
-#include "circle_batch.h"
-#include "kernels/cap_shading.h"
+#include "caps/cap_shading.h"
+#include "caps/circle_batch.h"
 
 namespace shlight::methods {
 

@@ -3,8 +3,8 @@
 // A lobe at one view as harmonics of one order: Eq. 5, by the library's own kernels.
 #pragma once
 
-#include "kernels/lobe_arrays.h"
 #include "method.h"
+#include "simd/lobe_arrays.h"
 
 namespace shlight::methods {
 

@@ -9,9 +9,9 @@
 
 #include <vector>
 
+#include "polygons/spherical_polygon.h"
 #include "shlight/types.h"
 #include "shlight/warp.h"
-#include "spherical_polygon.h"
 
 namespace shlight::methods {
 

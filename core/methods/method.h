@@ -11,10 +11,10 @@
 #include <span>
 #include <string_view>
 
+#include "polygons/spherical_polygon.h"
 #include "shlight/lobe_shape.h"
 #include "shlight/types.h"
 #include "shlight/warp.h"
-#include "spherical_polygon.h"
 
 namespace shlight::methods {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "checks.h"
+#include "base/checks.h"
 #include "light_circle.h"
 #include "method.h"
 #include "random_directions.h"

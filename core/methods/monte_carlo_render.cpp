@@ -9,15 +9,15 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include "cap_sampling.h"
-#include "checks.h"
-#include "hits.h"
-#include "light_view.h"
+#include "base/checks.h"
+#include "lights/cap_sampling.h"
+#include "lights/seen_light.h"
 #include "random_directions.h"
 #include "random_numbers.h"
-#include "ray_start.h"
+#include "shadows/ray_start.h"
 #include "shlight/render.h"
 #include "surface_reflection.h"
+#include "tracing/hits.h"
 
 namespace shlight::methods {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "perpendicular.h"
-#include "polygon_sampling.h"
+#include "base/perpendicular.h"
+#include "lights/polygon_sampling.h"
 
 namespace shlight::methods {
 namespace {

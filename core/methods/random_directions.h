@@ -14,12 +14,12 @@
 
 #include <glm/vec2.hpp>
 
-#include "lobe_sampling.h"
+#include "lobes/lobe_sampling.h"
+#include "polygons/spherical_polygon.h"
 #include "shlight/disk.h"
 #include "shlight/lobe_shape.h"
 #include "shlight/types.h"
 #include "shlight/warp.h"
-#include "spherical_polygon.h"
 
 namespace shlight::methods {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "checks.h"
+#include "base/checks.h"
 #include "method.h"
 
 // One line for each method.

@@ -8,11 +8,11 @@
 #include <numbers>
 #include <vector>
 
-#include "gauss_legendre.h"
+#include "base/perpendicular.h"
 #include "kept_region.h"
-#include "light_cubature.h"
+#include "math/gauss_legendre.h"
 #include "method.h"
-#include "perpendicular.h"
+#include "shading/light_cubature.h"
 #include "shlight/cap.h"
 
 namespace shlight::methods {

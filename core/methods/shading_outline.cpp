@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // The true f·cos along the light's outline, in the plane of half vectors.
-#include "checks.h"
-#include "light_outline.h"
+#include "base/checks.h"
 #include "method.h"
+#include "shading/light_outline.h"
 
 namespace shlight::methods {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Harmonics without a warp: Eq. 5 of Zhou & Wei 2020 with the hemisphere fit of f·cos.
-#include "aligned_floats.h"
+#include "base/aligned_floats.h"
 #include "harmonic_lobe.h"
-#include "polygon_shading.h"
+#include "polygons/polygon_shading.h"
 #include "shlight/lobe_fit.h"
 
 namespace shlight::methods {

@@ -2,8 +2,8 @@
 //
 // Harmonics of one order in the lobe's warp.
 #include "harmonic_lobe.h"
-#include "material_views.h"
-#include "polygon_shading.h"
+#include "lobes/material_views.h"
+#include "polygons/polygon_shading.h"
 
 namespace shlight::methods {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "lobe_sampling.h"
+#include "lobes/lobe_sampling.h"
 #include "random_directions.h"
 #include "shlight/bsdf.h"
 #include "shlight/types.h"

@@ -7,15 +7,16 @@
 #include <numeric>
 #include <vector>
 
-#include "aligned_floats.h"
 #include "arrays.h"
+#include "base/aligned_floats.h"
+#include "base/checks.h"
 #include "bindings.h"
-#include "checks.h"
+#include "caps/cap_checks.h"
+#include "caps/cap_kernel.h"
 #include "chunks.h"
-#include "kernels/cap_kernel.h"
-#include "kernels/polygon_shading_kernel.h"
-#include "light_checks.h"
-#include "polygon_batch.h"
+#include "polygons/polygon_batch.h"
+#include "polygons/polygon_checks.h"
+#include "polygons/polygon_shading_kernel.h"
 
 namespace shlight::python {
 namespace {

@@ -4,8 +4,8 @@
 #include <pybind11/stl.h>
 
 #include "bindings.h"
-#include "kernels/multiply_adds.h"
-#include "kernels/targets.h"
+#include "simd/multiply_adds.h"
+#include "simd/targets.h"
 
 namespace shlight::python {
 

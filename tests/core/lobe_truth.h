@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "gauss_legendre.h"
+#include "math/gauss_legendre.h"
 #include "shlight/lobe_shape.h"
 #include "shlight/types.h"
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "delta_lights.h"
-#include "light_view.h"
+#include "lights/delta_lights.h"
+#include "lights/seen_light.h"
 #include "random_input.h"
 
 namespace shlight {

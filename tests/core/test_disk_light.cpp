@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "disk_polygon.h"
-#include "ellipse_sampling.h"
+#include "disks/disk_polygon.h"
 #include "error_message.h"
-#include "gauss_legendre.h"
-#include "light_view.h"
+#include "lights/ellipse_sampling.h"
+#include "lights/seen_light.h"
+#include "math/gauss_legendre.h"
 #include "random_disk.h"
 #include "render_scenes.h"
 #include "shlight/lobe_shape.h"

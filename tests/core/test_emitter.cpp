@@ -10,14 +10,14 @@
 #include <span>
 #include <vector>
 
-#include "emitter_levels.h"
-#include "flat_outline.h"
-#include "mesh_sampling.h"
-#include "perpendicular.h"
+#include "base/perpendicular.h"
+#include "emitters/emitter_levels.h"
+#include "emitters/flat_outline.h"
+#include "emitters/silhouette.h"
+#include "lights/mesh_sampling.h"
 #include "random_input.h"
 #include "shlight/cap.h"
 #include "shlight/polygon.h"
-#include "silhouette.h"
 #include "solids.h"
 
 namespace shlight {

@@ -10,11 +10,11 @@
 
 #include <gtest/gtest.h>
 
-#include "band_rotation.h"
-#include "clamped_lobe.h"
-#include "environment_map.h"
+#include "environment/environment_map.h"
 #include "error_message.h"
-#include "lobe_moments.h"
+#include "lobes/lobe_moments.h"
+#include "lobes/sh_projection.h"
+#include "math/band_rotation.h"
 #include "render_scenes.h"
 #include "shlight/basis.h"
 #include "shlight/environment.h"

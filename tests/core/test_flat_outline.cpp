@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "flat_outline.h"
+#include "emitters/flat_outline.h"
 #include "random_input.h"
 
 namespace shlight {

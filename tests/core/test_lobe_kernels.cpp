@@ -8,11 +8,11 @@
 #include <numbers>
 #include <vector>
 
-#include "kernels/cubature_kernel.h"
-#include "kernels/view_kernel.h"
 #include "lobe_truth.h"
-#include "material_views.h"
+#include "lobes/material_views.h"
+#include "lobes/view_kernel.h"
 #include "random_input.h"
+#include "shading/cubature_kernel.h"
 #include "shlight/warped_fit.h"
 
 namespace shlight {

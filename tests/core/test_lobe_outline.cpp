@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lobe_outline.h"
+#include "lobes/contour_integral.h"
 
 #include <gtest/gtest.h>
 

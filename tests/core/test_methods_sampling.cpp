@@ -13,11 +13,11 @@
 #include "lobe_truth.h"
 #include "mean.h"
 #include "method.h"
+#include "polygons/spherical_polygon.h"
 #include "random_directions.h"
 #include "random_input.h"
 #include "random_numbers.h"
 #include "random_polygon.h"
-#include "spherical_polygon.h"
 
 namespace shlight {
 namespace {

@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "error_record.h"
-#include "light_cubature.h"
 #include "lobe_truth.h"
 #include "mean.h"
 #include "method.h"
+#include "polygons/spherical_polygon.h"
 #include "quadrature.h"
 #include "random_input.h"
 #include "random_polygon.h"
-#include "spherical_polygon.h"
+#include "shading/light_cubature.h"
 
 namespace shlight {
 namespace {

@@ -2,7 +2,7 @@
 //
 // Gauss points on the edges, the road that polygons take by default, against the 113-bit reference and against the
 // recurrences along the same edges.
-#include "polygon_edge_points.h"
+#include "polygons/polygon_edge_points.h"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "light_errors.h"
-#include "polygon_boundary.h"
-#include "polygon_low_bands.h"
+#include "polygons/polygon_boundary.h"
+#include "polygons/polygon_low_bands.h"
 #include "quad_truth.h"
 #include "random_polygon.h"
 #include "shlight/polygon.h"

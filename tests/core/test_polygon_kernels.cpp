@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include "kernels/polygon_shading_kernel.h"
-#include "kernels/polygon_views.h"
-#include "light_checks.h"
+#include "polygons/polygon_checks.h"
+#include "polygons/polygon_shading_kernel.h"
+#include "polygons/polygon_views.h"
 #include "random_polygon.h"
 #include "shlight/polygon.h"
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "error_record.h"
-#include "polygon_shading.h"
+#include "polygons/polygon_shading.h"
 #include "quad_polygon.h"
 #include "random_polygon.h"
 #include "shlight/polygon.h"

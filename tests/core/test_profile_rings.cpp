@@ -10,15 +10,15 @@
 #include <span>
 #include <vector>
 
-#include "hits.h"
-#include "light_view.h"
-#include "profile_rings.h"
+#include "lights/profile_rings.h"
+#include "lights/seen_light.h"
 #include "random_input.h"
 #include "shlight/basis.h"
 #include "shlight/cap.h"
 #include "shlight/disk.h"
 #include "shlight/light.h"
 #include "shlight/polygon.h"
+#include "tracing/hits.h"
 
 namespace shlight {
 namespace {

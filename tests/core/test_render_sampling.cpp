@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "light_sampling.h"
+#include "lights/light_sampling.h"
 #include "random_input.h"
 #include "shlight/cap.h"
 #include "shlight/polygon.h"

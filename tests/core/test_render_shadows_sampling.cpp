@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "light_sampling.h"
-#include "lobe_sampling.h"
+#include "lights/light_sampling.h"
+#include "lobes/lobe_sampling.h"
 #include "random_input.h"
 #include "shlight/bsdf.h"
 #include "shlight/sampling.h"

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "kernels/targets.h"
 #include "random_input.h"
 #include "shlight/basis.h"
 #include "shlight/cap.h"
+#include "simd/targets.h"
 
 namespace shlight {
 namespace {

@@ -2,7 +2,7 @@
 //
 // Instruction sets: each gives the same numbers within rounding, and SHLIGHT_KERNEL_TARGET forces one for a whole run
 // of the tests. CMakeLists.txt runs every test of accuracy on each.
-#include "kernels/targets.h"
+#include "simd/targets.h"
 
 #include <gtest/gtest.h>
 

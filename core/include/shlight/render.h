@@ -3,14 +3,12 @@
 // Pictures: direct light from area lights by Eq. 5 of Zhou & Wei 2020, times a visibility ratio from shadow rays.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <span>
 
 #include "shlight/camera.h"
 #include "shlight/parallel.h"
+#include "shlight/render_report.h"
 #include "shlight/scene.h"
-#include "shlight/types.h"
 
 namespace shlight {
 
@@ -26,25 +24,6 @@ struct RenderSettings {
     /// %, or where a neighbour saw something that may have been missed. One ray per pixel cannot disagree and stays
     /// one.
     bool adaptive = true;
-};
-
-/// Where the time goes: tracing camera rays; materials at their views; light without shadows; shadow rays; and adding
-/// up what the rays of a pixel brought.
-enum class RenderStage { camera_rays, views, light, shadows, pixels };
-inline constexpr std::array<const char*, 5> kRenderStages = {"camera rays", "views", "light", "shadows", "pixels"};
-
-/// What the picture took.
-struct RenderReport {
-    // A lobe of a camera hit under a light that it sees is shaded once, by …
-    std::array<std::uint64_t, kMaxOrder + 1> order_counts{};  ///< … harmonics of this order
-    std::uint64_t cubature_count = 0;                         ///< … values of f·cos
-    std::uint64_t mirror_count = 0;                           ///< … the light's own image
-    std::uint64_t over_tolerance = 0;                         ///< of these, where the estimate exceeds the tolerance
-    std::uint64_t summed_count = 0;                           ///< camera hits × lights that were summed up instead
-    std::uint64_t hits = 0;                                   ///< camera rays that met a surface
-    std::uint64_t shadow_rays = 0;
-    double seconds = 0;
-    std::array<double, kRenderStages.size()> stage_seconds{};  ///< by RenderStage, summed over threads
 };
 
 /// Throws std::invalid_argument naming the member or argument: order outside 0 … 64, tolerance ≤ 0 or not finite,

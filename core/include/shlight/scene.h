@@ -15,6 +15,7 @@
 #include "shlight/light.h"
 #include "shlight/mesh.h"
 #include "shlight/ray_tracer.h"
+#include "shlight/surface_point.h"
 #include "shlight/types.h"
 
 namespace shlight {
@@ -23,16 +24,6 @@ namespace shlight {
 struct Material {
     Bsdf bsdf;
     Rgb emission;  ///< radiance of both sides
-};
-
-/// A surface where a ray has met it, turned to the side that the ray came from.
-struct SurfacePoint {
-    Vec3d position;
-    Vec3d geometric_normal;  ///< unit
-    Vec3d shading_normal;    ///< unit, on the side of the geometric normal
-    /// Bound of the distance between this point and the surface that float rays meet here.
-    double error;
-    std::uint32_t material;
 };
 
 class CompiledScene {

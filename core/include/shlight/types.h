@@ -8,6 +8,8 @@
 //   * order n means the bands l = 0 … n-1, that is n² coefficients at index l² + l + m.
 #pragma once
 
+#include <type_traits>
+
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -21,6 +23,10 @@ using Vec3d = Vec3<double>;
 
 /// Linear colour or radiance [W m⁻² sr⁻¹], Rec. 709 primaries.
 using Rgb = glm::vec<3, float, glm::defaultp>;
+
+/// The type in which a light of precision T is prepared.
+template <class T>
+using Wider = std::conditional_t<std::is_same_v<T, float>, double, long double>;
 
 /// The highest order: bands 0 … 63.
 inline constexpr int kMaxOrder = 64;

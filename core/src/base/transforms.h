@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+//
+// Affine transforms as 4×4 matrices.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+
+#include "base/checks.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+inline Vec3d transform_point(const glm::dmat4& to_world, const Vec3d& point) {
+    return Vec3d(to_world * glm::dvec4(point, 1.0));
+}
+
+inline Vec3d transform_vector(const glm::dmat4& to_world, const Vec3d& vector) {
+    return Vec3d(to_world * glm::dvec4(vector, 0.0));
+}
+
+/// Throws std::invalid_argument naming the argument unless the matrix is finite, affine and invertible.
+inline void check_transform(const char* name, const glm::dmat4& matrix) {
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 4; ++row) {
+            if (!std::isfinite(matrix[column][row])) {
+                reject(std::string(name) + " contains a number that is not finite");
+            }
+        }
+        if (std::abs(matrix[column][3] - (column == 3 ? 1.0 : 0.0)) > 1e-6) {
+            reject(std::string(name) + " is not affine: its last row must be 0 0 0 1");
+        }
+    }
+    // The determinant against the product of the axes' lengths: a measure of flatness that ignores scale.
+    const glm::dmat3 linear(matrix);
+    const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
+    if (!(std::abs(glm::determinant(linear)) > 1e-9 * lengths)) {
+        reject(std::string(name) + " is degenerate: it flattens space");
+    }
+}
+
+}  // namespace shlight

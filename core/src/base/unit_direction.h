@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/checks.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// `direction` at length 1. Throws std::invalid_argument naming it if it is not finite or has length 0.
+inline Vec3d unit_direction(const Vec3d& direction) {
+    check_finite("direction", direction);
+    const double largest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+    if (!(largest > 0)) {
+        reject("direction has length 0");
+    }
+    // Scaled first: the square of a component may overflow or vanish.
+    return glm::normalize(direction / largest);
+}
+
+/// The angle between two directions of any length > 0, precise where they are nearly parallel or opposed too.
+inline double angle_between(const Vec3d& a, const Vec3d& b) {
+    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+}  // namespace shlight

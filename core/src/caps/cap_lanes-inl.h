@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: MIT
+//
+// Caps and what a horizon keeps of them, one light in each lane (docs/algorithms.md, "Caps" and "Caps against a horizon
+// at any height"). Included once per instruction set.
+#if defined(SHLIGHT_KERNELS_CAP_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHLIGHT_KERNELS_CAP_LANES_INL_H_
+#undef SHLIGHT_KERNELS_CAP_LANES_INL_H_
+#else
+#define SHLIGHT_KERNELS_CAP_LANES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+
+#include "simd/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace shlight::HWY_NAMESPACE {
+
+/// As Cap (cap.h).
+template <class D>
+struct CapLanes {
+    V<D> cos_tilt, sin_tilt;
+    V<D> cos_azimuth, sin_azimuth;
+    V<D> cos_half, sin_half;
+    V<D> arc, cos_arc, sin_arc;
+    V<D> edge;
+    V<D> edge_height;  ///< z_0 - cosσ cosθ = sinσ sinθ cos(edge)
+    V<D> solid_angle;
+    V<D> height, horizon_sine;
+};
+
+/// As Circle (warp.h), and two squares that would lose digits if they were taken of rounded members.
+template <class D>
+struct CircleLanes {
+    V<D> x, y, z;
+    V<D> cosine, sine;
+    V<D> tilt_squared;      ///< sin²θ
+    V<D> crossing_squared;  ///< sin²σ - L_z², positive where the circle crosses the plane z = 0
+};
+
+/// As Warp (warp.h).
+template <class D>
+struct WarpLanes {
+    V<D> sin_tilt, cos_tilt;
+    V<D> speed, one_minus_speed, gamma;
+    V<D> horizon_x, horizon_z;
+    V<D> horizon_height, horizon_sine;
+};
+
+/// 1 - x for x = cos α, without cancellation.
+template <class D>
+HWY_INLINE V<D> one_minus(D d, V<D> cosine, V<D> sine) {
+    const auto one = all(d, 1);
+    const auto acute = hn::Div(hn::Mul(sine, sine), hn::Add(one, hn::Abs(cosine)));
+    return hn::IfThenElse(hn::Gt(cosine, hn::Zero(d)), acute, hn::Sub(one, cosine));
+}
+
+/// The direction of the cap's axis.
+template <class D>
+HWY_INLINE void set_axis(D d, const CircleLanes<D>& circle, CapLanes<D>& cap) {
+    cap.cos_tilt = circle.z;
+    cap.sin_tilt = hn::Sqrt(circle.tilt_squared);
+    cap.cos_half = circle.cosine;
+    cap.sin_half = circle.sine;
+    const auto tilted = hn::Gt(cap.sin_tilt, hn::Zero(d));
+    const auto across = hn::Div(all(d, 1), cap.sin_tilt);
+    cap.cos_azimuth = hn::IfThenElse(tilted, hn::Mul(circle.x, across), all(d, 1));
+    cap.sin_azimuth = hn::IfThenElseZero(tilted, hn::Mul(circle.y, across));
+}
+
+/// cos_arc, sin_arc and arc from the point (arc_cosine, chord), of any length.
+template <class D>
+HWY_INLINE void set_arc(D d, V<D> chord, V<D> arc_cosine, CapLanes<D>& cap) {
+    const auto square = hn::MulAdd(chord, chord, hn::Mul(arc_cosine, arc_cosine));
+    const auto some = hn::Gt(square, hn::Zero(d));
+    const auto across = hn::Div(all(d, 1), hn::Sqrt(square));
+    cap.arc = arctangent(d, chord, arc_cosine);
+    cap.cos_arc = hn::IfThenElse(some, hn::Mul(arc_cosine, across), all(d, 1));
+    cap.sin_arc = hn::IfThenElseZero(some, hn::Mul(chord, across));
+}
+
+/// A whole cap, without a horizon.
+template <class D>
+HWY_INLINE CapLanes<D> unclipped_cap(D d, const CircleLanes<D>& circle) {
+    CapLanes<D> cap;
+    set_axis(d, circle, cap);
+    const auto zero = hn::Zero(d);
+    cap.arc = cap.sin_arc = zero;
+    cap.cos_arc = all(d, 1);
+    cap.edge = all(d, std::numbers::pi);
+    cap.edge_height = zero;
+    cap.solid_angle = hn::Mul(all(d, 2 * std::numbers::pi), one_minus(d, circle.cosine, circle.sine));
+    cap.height = zero;
+    cap.horizon_sine = all(d, 1);
+    return cap;
+}
+
+/// A cap that crosses the plane z = 0, in the precision of D: given crossing_squared with all digits, nothing cancels
+/// but the last sum of solid angles below the horizon.
+template <class D>
+HWY_INLINE CapLanes<D> cap_across_plane(D d, const CircleLanes<D>& circle) {
+    CapLanes<D> cap;
+    set_axis(d, circle, cap);
+    const auto zero = hn::Zero(d);
+    const auto one = all(d, 1);
+    const auto chord = root(d, circle.crossing_squared);
+    set_arc(d, chord, circle.cosine, cap);
+    cap.edge_height = hn::Neg(hn::Mul(circle.cosine, circle.z));
+    cap.edge = arctangent(d, chord, cap.edge_height);
+    cap.height = zero;
+    cap.horizon_sine = one;
+    // A cap above a hemisphere is the complement of the opposite one.
+    const auto wide = hn::Lt(circle.cosine, zero);
+    const auto cosine = hn::Abs(circle.cosine);
+    const auto z = hn::IfThenElse(wide, hn::Neg(circle.z), circle.z);
+    const auto lack = hn::Div(hn::Mul(circle.sine, circle.sine), hn::Add(one, cosine));
+    const auto turn =
+        arctangent(d, hn::Mul(hn::Mul(chord, z), lack), hn::MulAdd(chord, chord, hn::Mul(hn::Mul(cosine, z), z)));
+    const auto half_area = hn::MulAdd(cap.edge, lack, turn);
+    const auto area = hn::Add(half_area, half_area);
+    const auto kept = hn::IfThenElse(wide, hn::Sub(all(d, 2 * std::numbers::pi), area), area);
+    cap.solid_angle = hn::Max(zero, kept);
+    return cap;
+}
+
+/// The circles of a light and of the horizon, and the triangle of their poles and a point where they cross. Each pair
+/// (`chord`, cosine) is the product of two sides' sines times the (sine, cosine) of the angle between those sides.
+template <class D>
+struct ContactLanes {
+    CircleLanes<D> light;
+    V<D> height, sine;   // the horizon
+    V<D> chord_squared;  // not positive where the circles do not cross
+    V<D> corner;         // cosθ - cosσ z_0: at the crossing
+    V<D> arc;            // cosσ - z_0 cosθ: at the horizon's pole
+    V<D> edge;           // z_0 - cosσ cosθ: at the light's pole
+};
+
+/// `arc` and `edge` from `corner`, as the form whose terms are smaller gives them. The first keeps every digit of small
+/// lights and of the plane z_0 = 0; the second that of nearly equal or nearly opposite circles, where it is
+/// arc ± edge = (cosσ ± z_0)(1 ∓ cosθ) that must be right.
+template <class D>
+HWY_INLINE void complete(D d, ContactLanes<D>& contact) {
+    const auto c = contact.light.cosine;
+    const auto z = contact.height;
+    const auto own = hn::Mul(c, hn::Mul(contact.sine, contact.sine));
+    const auto other = hn::Mul(z, hn::Mul(contact.light.sine, contact.light.sine));
+    // 1 ∓ cosθ, one of which would cancel.
+    const auto more = hn::Add(all(d, 1), hn::Abs(contact.light.z));
+    const auto less = hn::Div(contact.light.tilt_squared, more);
+    const auto up = hn::Gt(contact.light.z, hn::Zero(d));
+    const auto sum = hn::Mul(hn::Add(c, z), hn::IfThenElse(up, less, more));
+    const auto difference = hn::Mul(hn::Sub(c, z), hn::IfThenElse(up, more, less));
+    const auto size =
+        hn::MulAdd(hn::Add(hn::Abs(c), hn::Abs(z)), hn::Abs(contact.corner), hn::Add(hn::Abs(own), hn::Abs(other)));
+    const auto direct = hn::Le(size, hn::Add(hn::Abs(sum), hn::Abs(difference)));
+    const auto half = all(d, 0.5);
+    contact.arc =
+        hn::IfThenElse(direct, hn::NegMulAdd(z, contact.corner, own), hn::Mul(half, hn::Add(sum, difference)));
+    contact.edge =
+        hn::IfThenElse(direct, hn::NegMulAdd(c, contact.corner, other), hn::Mul(half, hn::Sub(sum, difference)));
+}
+
+/// Area of the lens that two crossing circles enclose. Gauss–Bonnet for caps up to hemispheres, others are turned
+/// inside out; with E the excess of the triangle and β the exterior angle at the crossing,
+///   Ω/2 = ψ_0 (1 - cosσ) + φ_a (1 - z_0) - E = ψ_0 (1 - cosσ) + (β - ψ_0) - φ_a z_0.
+/// The first form is for high horizons, where E is small; the second for low ones, where β - ψ_0 is one arctangent of
+/// numbers as small as the light.
+template <class D>
+HWY_INLINE V<D> lens_area(D d, const ContactLanes<D>& contact, V<D> chord, V<D> arc, V<D> edge) {
+    const auto zero = hn::Zero(d);
+    const auto one = all(d, 1);
+    const auto pi = all(d, std::numbers::pi);
+    const auto wide = hn::Lt(contact.light.cosine, zero);
+    const auto below = hn::Lt(contact.height, zero);
+    const auto inverted = hn::Xor(wide, below);
+    const auto cosine = hn::Abs(contact.light.cosine);
+    const auto height = hn::Abs(contact.height);
+    const auto tilt = hn::IfThenElse(inverted, hn::Neg(contact.light.z), contact.light.z);
+    const auto corner = hn::IfThenElse(inverted, hn::Neg(contact.corner), contact.corner);
+    const auto light_cosine = hn::IfThenElse(below, hn::Neg(contact.edge), contact.edge);
+    arc = hn::IfThenElse(wide, hn::Sub(pi, arc), arc);
+    edge = hn::IfThenElse(below, hn::Sub(pi, edge), edge);
+    const auto lack = hn::Div(hn::Mul(contact.light.sine, contact.light.sine), hn::Add(one, cosine));
+    const auto short_of_pole = hn::Div(hn::Mul(contact.sine, contact.sine), hn::Add(one, height));
+
+    const auto high = hn::Gt(height, all(d, 0.5));
+    const auto y = hn::Mul(chord, hn::IfThenElse(high, one, hn::Mul(hn::Add(height, tilt), lack)));
+    const auto x = hn::IfThenElse(high, hn::Add(hn::Add(one, tilt), hn::Add(cosine, height)),
+                                  hn::NegMulAdd(light_cosine, corner, contact.chord_squared));
+    const auto angle = arctangent(d, y, x);
+    const auto rest =
+        hn::IfThenElse(high, hn::MulSub(arc, short_of_pole, hn::Add(angle, angle)), hn::NegMulAdd(arc, height, angle));
+    const auto half_area = hn::MulAdd(edge, lack, rest);
+    auto area = hn::Add(half_area, half_area);
+    const auto two_pi = all(d, 2 * std::numbers::pi);
+    area = hn::IfThenElse(below, hn::MulSub(two_pi, lack, area), area);
+    const auto above = hn::IfThenElse(below, hn::Add(one, height), short_of_pole);
+    return hn::IfThenElse(wide, hn::MulSub(two_pi, above, area), area);
+}
+
+/// What is kept where circles do not cross: they are nested, or apart, or together they cover the sphere. `corner`
+/// decides whether they are nested; which of the two others holds is a question of size, continuous where they touch.
+template <class D>
+HWY_INLINE void keep_uncrossed(D d, const ContactLanes<D>& contact, CapLanes<D>& cap) {
+    const auto zero = hn::Zero(d);
+    const auto pi = all(d, std::numbers::pi);
+    const auto two_pi = all(d, 2 * std::numbers::pi);
+    const auto cosine = contact.light.cosine;
+    const auto nested = hn::Ge(contact.corner, zero);
+    const auto inner = hn::Ge(cosine, contact.height);
+    const auto light = hn::Mul(two_pi, one_minus(d, cosine, contact.light.sine));
+    const auto above = hn::Mul(two_pi, one_minus(d, contact.height, contact.sine));
+    const auto rest = hn::Max(zero, hn::Neg(hn::Mul(two_pi, hn::Add(cosine, contact.height))));
+    const auto overlap = hn::AndNot(nested, hn::Gt(rest, zero));
+    cap.arc = hn::IfThenElseZero(hn::Or(overlap, hn::AndNot(inner, nested)), pi);
+    cap.edge = hn::IfThenElseZero(hn::Or(overlap, hn::And(inner, nested)), pi);
+    cap.solid_angle = hn::IfThenElse(nested, hn::IfThenElse(inner, light, above), rest);
+    cap.cos_arc = all(d, 1);
+    cap.sin_arc = zero;
+}
+
+/// Cap and horizon from their contact: lanes that cross, lanes that do not, in any mixture.
+template <class D>
+HWY_INLINE CapLanes<D> cap_in_contact(D d, const ContactLanes<D>& contact) {
+    CapLanes<D> cap;
+    set_axis(d, contact.light, cap);
+    cap.height = contact.height;
+    cap.horizon_sine = contact.sine;
+    cap.edge_height = contact.edge;
+    const auto crossing = hn::Gt(contact.chord_squared, hn::Zero(d));
+    if (hn::AllFalse(d, crossing)) {
+        keep_uncrossed(d, contact, cap);
+        return cap;
+    }
+    const auto chord = root(d, contact.chord_squared);
+    set_arc(d, chord, contact.arc, cap);
+    cap.edge = arctangent(d, chord, contact.edge);
+    cap.solid_angle = hn::Max(hn::Zero(d), lens_area(d, contact, chord, cap.arc, cap.edge));
+    if (!hn::AllTrue(d, crossing)) {
+        CapLanes<D> other;
+        keep_uncrossed(d, contact, other);
+        cap.arc = hn::IfThenElse(crossing, cap.arc, other.arc);
+        cap.cos_arc = hn::IfThenElse(crossing, cap.cos_arc, other.cos_arc);
+        cap.sin_arc = hn::IfThenElse(crossing, cap.sin_arc, other.sin_arc);
+        cap.edge = hn::IfThenElse(crossing, cap.edge, other.edge);
+        cap.solid_angle = hn::IfThenElse(crossing, cap.solid_angle, other.solid_angle);
+    }
+    return cap;
+}
+
+/// A cap that does not cross the plane z = 0.
+template <class D>
+HWY_INLINE CapLanes<D> cap_off_plane(D d, const CircleLanes<D>& circle) {
+    CapLanes<D> cap;
+    set_axis(d, circle, cap);
+    const auto zero = hn::Zero(d);
+    cap.height = cap.edge_height = zero;
+    cap.horizon_sine = all(d, 1);
+    keep_uncrossed(d, ContactLanes<D>{circle, zero, cap.horizon_sine, zero, circle.z, zero, zero}, cap);
+    return cap;
+}
+
+/// sin²θ and sin²σ - L_z² = sin²θ - cos²σ from the other members, the latter from the smaller pair: near hemispheres
+/// may be seen straight above or below.
+template <class D>
+HWY_INLINE void set_squares(D /*d*/, CircleLanes<D>& circle) {
+    circle.tilt_squared = hn::MulAdd(circle.x, circle.x, hn::Mul(circle.y, circle.y));
+    const auto by_sine = hn::Mul(hn::Sub(circle.sine, circle.z), hn::Add(circle.sine, circle.z));
+    const auto by_cosine = hn::NegMulAdd(circle.cosine, circle.cosine, circle.tilt_squared);
+    circle.crossing_squared = hn::IfThenElse(hn::Lt(circle.sine, hn::Abs(circle.cosine)), by_sine, by_cosine);
+}
+
+/// A light against the image of the plane z = 0. The warp is a Lorentz transform of the circles' 4-vectors (cosine;
+/// axis): their product is invariant, so where a light crosses the horizon is known from before the warp, with all
+/// digits. shrink: sine of the image ÷ sine of the light.
+template <class D>
+HWY_INLINE ContactLanes<D> contact_of_image(D d, const CircleLanes<D>& light, const CircleLanes<D>& image, V<D> shrink,
+                                            V<D> height, V<D> horizon_sine) {
+    const auto zero = hn::Zero(d);
+    const auto scale = hn::Mul(shrink, horizon_sine);
+    ContactLanes<D> contact{image, height, horizon_sine, zero, zero, zero, zero};
+    contact.chord_squared = hn::Mul(light.crossing_squared, hn::Mul(scale, scale));
+    contact.corner = hn::Mul(light.z, scale);
+    complete(d, contact);
+    return contact;
+}
+
+/// The same with the image that Warp::warped gives.
+template <class D>
+HWY_INLINE ContactLanes<D> warped_contact(D d, const CircleLanes<D>& circle, const WarpLanes<D>& warp) {
+    const auto one = all(d, 1);
+    // The differences from 1 that a strong boost would cancel: |L| - L·axis and |L| - c, with |L| = 1.
+    const auto lack = one_minus(d, circle.cosine, circle.sine);
+    const auto off_x = hn::Add(circle.x, warp.sin_tilt);
+    const auto off_z = hn::Sub(circle.z, warp.cos_tilt);
+    const auto off = hn::MulAdd(off_x, off_x, hn::MulAdd(circle.y, circle.y, hn::Mul(off_z, off_z)));
+    const auto gap = hn::Mul(all(d, 0.5), off);
+    const auto across = hn::MulAdd(warp.cos_tilt, circle.x, hn::Mul(warp.sin_tilt, circle.z));
+    // γ (L_∥ - b c) and γ (c - b L_∥) with L_∥ = 1 - gap, c = 1 - lack.
+    const auto along = hn::Mul(warp.gamma, hn::MulAdd(warp.speed, lack, hn::Sub(warp.one_minus_speed, gap)));
+    const auto cosine = hn::Mul(warp.gamma, hn::MulAdd(warp.speed, gap, hn::Sub(warp.one_minus_speed, lack)));
+    const auto x = hn::MulSub(warp.horizon_z, across, hn::Mul(warp.horizon_x, along));
+    const auto z = hn::MulAdd(warp.horizon_x, across, hn::Mul(warp.horizon_z, along));
+    const auto square = hn::MulAdd(x, x, hn::MulAdd(circle.y, circle.y, hn::Mul(z, z)));
+    const auto scale = hn::Div(one, hn::Sqrt(square));
+    const auto ux = hn::Mul(x, scale);
+    const auto uy = hn::Mul(circle.y, scale);
+    const CircleLanes<D> image{ux,
+                               uy,
+                               hn::Mul(z, scale),
+                               hn::Mul(cosine, scale),
+                               hn::Mul(circle.sine, scale),
+                               hn::MulAdd(ux, ux, hn::Mul(uy, uy)),
+                               hn::Zero(d)};
+    return contact_of_image(d, circle, image, scale, warp.horizon_height, warp.horizon_sine);
+}
+
+/// Two vectors of doubles as one of floats, rounded; the first of them as it is where T is double.
+template <class T>
+HWY_INLINE V<Lanes<T>> narrowed(V<Doubles> low, V<Doubles> high) {
+    if constexpr (sizeof(T) == 4) {
+        const Lanes<T> d;
+        const hn::Half<Lanes<T>> half;
+        return hn::Combine(d, hn::DemoteTo(half, high), hn::DemoteTo(half, low));
+    } else {
+        return low;
+    }
+}
+
+template <class T>
+HWY_INLINE CircleLanes<Lanes<T>> narrowed_circle(const CircleLanes<Doubles>& low, const CircleLanes<Doubles>& high) {
+    return {narrowed<T>(low.x, high.x),
+            narrowed<T>(low.y, high.y),
+            narrowed<T>(low.z, high.z),
+            narrowed<T>(low.cosine, high.cosine),
+            narrowed<T>(low.sine, high.sine),
+            narrowed<T>(low.tilt_squared, high.tilt_squared),
+            narrowed<T>(low.crossing_squared, high.crossing_squared)};
+}
+
+/// What is sensitive was worked out: angles and areas lose no more in T than the bands do.
+template <class T>
+HWY_INLINE ContactLanes<Lanes<T>> narrowed_contact(const ContactLanes<Doubles>& low,
+                                                   const ContactLanes<Doubles>& high) {
+    return {narrowed_circle<T>(low.light, high.light), narrowed<T>(low.height, high.height),
+            narrowed<T>(low.sine, high.sine),          narrowed<T>(low.chord_squared, high.chord_squared),
+            narrowed<T>(low.corner, high.corner),      narrowed<T>(low.arc, high.arc),
+            narrowed<T>(low.edge, high.edge)};
+}
+
+}  // namespace shlight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

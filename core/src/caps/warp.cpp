@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/warp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/exact_sums.h"
+#include "base/safe_length.h"
+
+namespace shlight {
+namespace {
+
+double squared_length(const Vec3d& v) {
+    return glm::dot(v, v);
+}
+
+}  // namespace
+
+Circle circle_of_sphere(const Vec3d& center, double radius) {
+    const double distance = safe_length(center);
+    const double tangent_squared = std::max(0.0, difference_of_squares({center.x, center.y, center.z}, radius));
+    const double inverse = 1 / distance;
+    return {center * inverse, std::sqrt(tangent_squared) * inverse, std::min(1.0, radius * inverse)};
+}
+
+Circle circle_of_facing_disk(const Vec3d& center, double radius) {
+    const double distance = safe_length(center);
+    const double slant = std::hypot(distance, radius);
+    return {center / distance, distance / slant, radius / slant};
+}
+
+Circle circle_about_axis(const Vec3d& axis, double half_angle) {
+    const double half = std::min(half_angle, std::numbers::pi);
+    return {axis / safe_length(axis), std::cos(half), std::sin(half)};
+}
+
+Warp::Warp(double tilt, double narrowness) : sin_tilt_(std::sin(tilt)), cos_tilt_(std::cos(tilt)) {
+    const double r = 1 - narrowness;
+    const double scale = 1 + r * r;
+    speed_ = 2 * r / scale;
+    one_minus_speed_ = narrowness * narrowness / scale;
+    gamma_ = scale / (narrowness * (1 + r));
+    // The horizon is the circle (0; z): its image is (-γ b cos t; sin t, 0, γ cos t) in the boost's frame.
+    const double length = std::hypot(sin_tilt_, gamma_ * cos_tilt_);
+    horizon_x_ = sin_tilt_ / length;
+    horizon_z_ = gamma_ * cos_tilt_ / length;
+    horizon_height_ = -gamma_ * speed_ * cos_tilt_ / length;
+    horizon_sine_ = 1 / length;
+}
+
+Warp::Boosted Warp::boosted(const Vec3d& vector, double gap, double lack) const {
+    const double across = cos_tilt_ * vector.x + sin_tilt_ * vector.z;
+    // γ (L_∥ - b c) and γ (c - b L_∥) with L_∥ = 1 - gap, c = 1 - lack.
+    const double along = gamma_ * (one_minus_speed_ + speed_ * lack - gap);
+    const double cosine = gamma_ * (one_minus_speed_ - lack + speed_ * gap);
+    return {{horizon_z_ * across - horizon_x_ * along, vector.y, horizon_x_ * across + horizon_z_ * along}, cosine};
+}
+
+Vec3d Warp::warped(const Vec3d& direction) const {
+    const Boosted b = boosted(direction, squared_length(direction - axis()) / 2, 0);
+    return b.vector / b.cosine;
+}
+
+Vec3d Warp::direction(const Vec3d& warped) const {
+    const Vec3d middle(-horizon_x_, 0, horizon_z_);  // the boost's axis, seen in the warped frame
+    const double across = horizon_z_ * warped.x + horizon_x_ * warped.z;
+    const double above = squared_length(warped + middle) / 2;  // 1 + u·axis
+    // 1 + b u_∥ and u_∥ + b, as sums of what is small when the boost is strong and u opposite.
+    const double weight = one_minus_speed_ + speed_ * above;
+    const double along = (above - one_minus_speed_) / weight;
+    const double side = across / (gamma_ * weight);
+    return {cos_tilt_ * side - sin_tilt_ * along, warped.y / (gamma_ * weight), sin_tilt_ * side + cos_tilt_ * along};
+}
+
+Vec3d Warp::tangent(const Vec3d& warped, const Vec3d& direction, const Vec3d& step) const {
+    // direction() is a quotient with the denominator `weight`: d(p/w) = (dp - (p/w) dw) / w.
+    const Vec3d middle(-horizon_x_, 0, horizon_z_);
+    const double weight = one_minus_speed_ + speed_ * squared_length(warped + middle) / 2;
+    const double rise = glm::dot(step, middle);
+    const double grow = speed_ * rise;
+    const double side = cos_tilt_ * direction.x + sin_tilt_ * direction.z;
+    const double along = cos_tilt_ * direction.z - sin_tilt_ * direction.x;
+    const double d_side = ((horizon_z_ * step.x + horizon_x_ * step.z) / gamma_ - side * grow) / weight;
+    const double d_along = (rise - along * grow) / weight;
+    const double d_y = (step.y / gamma_ - direction.y * grow) / weight;
+    return {cos_tilt_ * d_side - sin_tilt_ * d_along, d_y, sin_tilt_ * d_side + cos_tilt_ * d_along};
+}
+
+double Warp::density(const Vec3d& warped) const {
+    const Vec3d middle(-horizon_x_, 0, horizon_z_);
+    const double weight = gamma_ * (one_minus_speed_ + speed_ * squared_length(warped + middle) / 2);
+    return 1 / (weight * weight);
+}
+
+Circle Warp::warped(const Circle& circle) const {
+    const double lack = circle.cosine > 0 ? circle.sine * circle.sine / (1 + circle.cosine) : 1 - circle.cosine;
+    const Boosted b = boosted(circle.axis, squared_length(circle.axis - axis()) / 2, lack);
+    const double length = glm::length(b.vector);
+    return {b.vector / length, b.cosine / length, circle.sine / length};
+}
+
+}  // namespace shlight

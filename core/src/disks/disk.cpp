@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/disk.h"
+
+#include <algorithm>
+#include <type_traits>
+#include <vector>
+
+#include "base/checks.h"
+#include "disks/disk_checks.h"
+#include "disks/disk_outline.h"
+#include "disks/disk_sweep.h"
+#include "disks/spherical_ellipse.h"
+
+namespace shlight {
+namespace {
+
+/// Below this ratio of solid angle to length of outline the outline cancels to too few digits: its sum is wrong by
+/// about 1e-15 of L_00 ÷ that ratio. Where the horizon cuts an outline, its ends are off by a rounding of unit vectors:
+/// below this solid angle that is too much.
+template <class T>
+constexpr double kNarrowestForOutline = std::is_same_v<T, float> ? 1e-7 : 2e-3;
+template <class T>
+constexpr double kSmallestCut = std::is_same_v<T, float> ? 1e-8 : 1e-4;
+
+template <class T>
+bool takes_sweep(const SphericalEllipse<Wider<T>>& ellipse, DiskMethod method) {
+    if (method == DiskMethod::outline || !can_be_swept(ellipse)) {
+        return false;
+    }
+    return method == DiskMethod::sweep || ellipse.least_solid_angle() < kNarrowestForOutline<T> * ellipse.outline() ||
+           (ellipse.cut() && ellipse.least_solid_angle() < kSmallestCut<T>);
+}
+
+/// Outlines that wait for the lanes, with sums in R, and where their results go.
+template <class R, class T>
+class WaitingOutlines {
+  public:
+    WaitingOutlines(std::size_t most, int order)
+        : order_(order), row_(static_cast<std::size_t>(coefficient_count(order))), sums_(most * row_) {}
+
+    void add(const SphericalEllipse<Wider<T>>& ellipse, T* result) {
+        R* const sums = sums_.data() + results_.size() * row_;
+        std::fill_n(sums, row_, R(0));
+        start_disk_outline<T>(ellipse, order_, results_.size(), outlines_, sums);
+        results_.push_back(result);
+    }
+
+    void finish() {
+        if (results_.empty()) {
+            return;
+        }
+        add_disk_outlines(outlines_, order_, sums_.data());
+        const R* from = sums_.data();
+        for (T* const result : results_) {
+            std::transform(from, from + row_, result, [](R c) { return static_cast<T>(c); });
+            from += row_;
+        }
+        outlines_.clear();
+        results_.clear();
+    }
+
+  private:
+    int order_;
+    std::size_t row_;
+    std::vector<R> sums_;
+    DiskOutlines<R> outlines_;
+    std::vector<T*> results_;
+};
+
+/// disk(i): number i of `count`, in the wider type.
+template <class T, class Disk>
+void integrate(std::size_t count, int order, bool clip, T* coefficients, DiskMethod method, const Disk& disk) {
+    constexpr std::size_t kChunk = 128;
+    const auto row = static_cast<std::size_t>(coefficient_count(order));
+    WaitingOutlines<double, T> outlines(std::min(count, kChunk), order);
+    WaitingOutlines<float, T> in_float(std::is_same_v<T, float> ? std::min(count, kChunk) : 0, order);
+    for (std::size_t first = 0; first < count; first += kChunk) {
+        for (std::size_t i = first; i < std::min(first + kChunk, count); ++i) {
+            T* const result = coefficients + i * row;
+            const SphericalEllipse<Wider<T>> ellipse(disk(i), clip);
+            if (ellipse.empty()) {
+                std::fill_n(result, row, T(0));
+            } else if (takes_sweep<T>(ellipse, method)) {
+                disk_by_sweep(ellipse, order, result);
+            } else if (disk_outline_in_float<T>(ellipse, order)) {
+                if constexpr (std::is_same_v<T, float>) {
+                    in_float.add(ellipse, result);
+                }
+            } else {
+                outlines.add(ellipse, result);
+            }
+        }
+        outlines.finish();
+        in_float.finish();
+    }
+}
+
+template <class T>
+Ellipse<Wider<T>> widened(const Vec3<T>& center, const Vec3<T>& u, const Vec3<T>& v) {
+    using Wide = Vec3<Wider<T>>;
+    return {Wide(center), Wide(u), Wide(v)};
+}
+
+}  // namespace
+
+template <class T>
+void disk_coefficients(const Ellipse<T>& disk, int order, bool clip, T* coefficients, DiskMethod method) {
+    integrate(1, order, clip, coefficients, method,
+              [&](std::size_t) { return widened(disk.center, disk.half_axis_u, disk.half_axis_v); });
+}
+
+template <class T>
+void disk_coefficients(std::span<const Vec3<T>> centers, std::span<const Vec3<T>> half_axes_u,
+                       std::span<const Vec3<T>> half_axes_v, int order, bool clip, std::span<T> coefficients,
+                       DiskMethod method) {
+    check_order(order);
+    const std::size_t count = centers.size();
+    check_size("half_axes_u", half_axes_u.size(), count);
+    check_size("half_axes_v", half_axes_v.size(), count);
+    check_size("coefficients", coefficients.size(), count * static_cast<std::size_t>(coefficient_count(order)));
+    const auto disk = [&](std::size_t i) { return widened(centers[i], half_axes_u[i], half_axes_v[i]); };
+    for (std::size_t i = 0; i < count; ++i) {
+        check_disk<T>(disk(i));
+    }
+    integrate(count, order, clip, coefficients.data(), method, disk);
+}
+
+template void disk_coefficients(const Ellipse<float>&, int, bool, float*, DiskMethod);
+template void disk_coefficients(const Ellipse<double>&, int, bool, double*, DiskMethod);
+template void disk_coefficients(std::span<const Vec3f>, std::span<const Vec3f>, std::span<const Vec3f>, int, bool,
+                                std::span<float>, DiskMethod);
+template void disk_coefficients(std::span<const Vec3d>, std::span<const Vec3d>, std::span<const Vec3d>, int, bool,
+                                std::span<double>, DiskMethod);
+
+}  // namespace shlight

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+//
+// Coefficients of disks by Stokes' theorem along their outlines (docs/algorithms.md, "Disks and ellipses").
+#pragma once
+
+#include "disks/ellipse_rows.h"
+#include "disks/spherical_ellipse.h"
+#include "polygons/polygon_rows.h"
+
+namespace shlight {
+
+/// Outlines of many disks, for add_cone_coefficients and add_arc_coefficients.
+template <class R>
+struct DiskOutlines {
+    ConeLists<R> cones;
+    ArcLists<R> horizon;
+
+    void clear() {
+        cones.clear();
+        horizon.clear();
+    }
+};
+
+/// Whether the points go through the recurrences in float, twice as many at once: wide outlines lose nothing by it that
+/// float could hold, as with polygons; the result is right to 4e-6 of L_00. Up to order 2 double costs next to nothing.
+template <class T>
+bool disk_outline_in_float(const SphericalEllipse<Wider<T>>& ellipse, int order);
+
+/// A disk's outline under its number into lists, to the precision of T. coefficients: order² zeros, to which bands 0
+/// and 1 of what lies along the horizon are added.
+template <class T, class R>
+void start_disk_outline(const SphericalEllipse<Wider<T>>& ellipse, int order, std::size_t number,
+                        DiskOutlines<R>& outlines, R* coefficients);
+
+/// Adds what the lists hold to order² numbers for each disk, row by row.
+template <class R>
+void add_disk_outlines(const DiskOutlines<R>& outlines, int order, R* coefficients) {
+    add_cone_coefficients(outlines.cones, order, coefficients);
+    add_arc_coefficients(outlines.horizon, true, order, coefficients);
+}
+
+/// Natural logarithm of what a harmonic's integral may err by, as a part of its largest value along the outline.
+template <class T>
+double digits_for(const SphericalEllipse<Wider<T>>& ellipse, int order);
+
+}  // namespace shlight

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/environment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "base/checks.h"
+#include "environment/environment_map.h"
+
+namespace shlight {
+namespace {
+
+constexpr std::int64_t kMostTexels = 1 << 28;
+/// Squares of brighter ones would leave the range of float.
+constexpr float kBrightest = 1e15F;
+/// How far the elements of a rotation times its transpose may be from the identity's.
+constexpr double kRotationError = 1e-4;
+
+void check_radiance(const Rgb& radiance) {
+    check_finite("radiance", radiance);
+    if (glm::any(glm::lessThan(radiance, Rgb(0)))) {
+        reject("radiance must not be negative");
+    }
+}
+
+/// The rotation nearest to it, by Newton's iteration.
+glm::dmat3 checked_rotation(glm::dmat3 m) {
+    for (int column = 0; column < 3; ++column) {
+        check_finite("to_world", m[column]);
+    }
+    const glm::dmat3 square = glm::transpose(m) * m;
+    double error = 0;
+    for (int i = 0; i < 9; ++i) {
+        error = std::max(error, std::abs(square[i / 3][i % 3] - (i % 4 == 0 ? 1.0 : 0.0)));
+    }
+    if (!(error <= kRotationError && glm::determinant(m) > 0)) {
+        reject("to_world must be a rotation");
+    }
+    for (int step = 0; step < 3; ++step) {
+        m = 0.5 * (m + glm::transpose(glm::inverse(m)));
+    }
+    return m;
+}
+
+LatLong checked(LatLong picture) {
+    const std::int64_t texels = std::int64_t{picture.width} * picture.height;
+    if (picture.width < 1 || picture.height < 1 || texels > kMostTexels) {
+        reject("radiance must have 1 … 2^28 pixels");
+    }
+    check_size("radiance", picture.pixels.size(), static_cast<std::size_t>(texels));
+    for (const Rgb& texel : picture.pixels) {
+        check_radiance(texel);
+        if (glm::any(glm::greaterThan(texel, Rgb(kBrightest)))) {
+            reject("radiance must not exceed 1e15");
+        }
+    }
+    picture.to_world = checked_rotation(picture.to_world);
+    return picture;
+}
+
+bool is_constant(const LatLong& picture) {
+    return std::all_of(picture.pixels.begin(), picture.pixels.end(),
+                       [&](const Rgb& texel) { return texel == picture.pixels.front(); });
+}
+
+}  // namespace
+
+Environment::Environment(const Rgb& radiance) : constant_(radiance) {
+    check_radiance(radiance);
+}
+
+Environment::Environment(const LatLong& picture) {
+    const LatLong good = checked(picture);
+    if (is_constant(good)) {
+        constant_ = good.pixels.front();
+    } else {
+        map_ = std::make_shared<const EnvironmentMap>(good);
+    }
+}
+
+bool Environment::is_black() const {
+    return !map_ && constant_ == Rgb(0);
+}
+
+Rgb Environment::radiance(const Vec3d& direction) const {
+    return map_ ? map_->picture.radiance(map_->to_map(direction)) : constant_;
+}
+
+Rgb Environment::smooth_radiance(const Vec3d& direction) const {
+    return map_ ? map_->smooth.radiance(map_->to_map(direction)) : constant_;
+}
+
+}  // namespace shlight

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+#include "environment/environment_shading.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "environment/environment_map.h"
+#include "lobes/lobe_sampling.h"
+#include "lobes/rotated_lobe.h"
+#include "lobes/view_grid.h"
+
+namespace shlight {
+namespace {
+
+/// Directions along each side of the unit square that a narrow lobe is summed over.
+constexpr int kDirections = 16;
+/// Relative to the lobe's albedo and the picture's mean: harmonics that err by more are not left alone.
+constexpr double kDirectionError = 5e-3;
+/// Of the tolerance of a light: a picture is the sum of many.
+constexpr double kToleranceScale = 10;
+
+/// A lobe this many times as wide as a texel sees a spot as one direction.
+constexpr double kTexelsPerAlpha = 2;
+/// From here on the spectrum of a picture is taken to go on as it is: what is brightest has the same power per degree
+/// in all bands.
+constexpr int kFirstOfLastBands = 48;
+
+/// The root mean square error, over all turns of the picture, that orders 1 … 64 leave, ÷ the lobe's albedo and the
+/// picture's mean radiance: bands are turned independently.
+std::array<double, kMaxOrder> relative_errors(const float* lobe, double lobe_tail, const RadianceCoefficients& light) {
+    std::array<double, kMaxOrder> errors;
+    double last = 0;
+    for (int l = kFirstOfLastBands; l < kMaxOrder; ++l) {
+        last += light.powers[static_cast<std::size_t>(l)] / (2 * l + 1) / (kMaxOrder - kFirstOfLastBands);
+    }
+    double left = lobe_tail * last;
+    for (int l = kMaxOrder - 1; l >= 0; --l) {
+        const auto i = static_cast<std::size_t>(l);
+        errors[i] = std::sqrt(left / (double{lobe[0]} * light.powers[0]));
+        left += double{lobe[i]} * light.powers[i] / (2 * l + 1);
+    }
+    return errors;
+}
+
+}  // namespace
+
+EnvironmentShading::EnvironmentShading(const Environment& environment, std::span<const MaterialLobes> materials,
+                                       std::size_t lobe_stride, int order, double tolerance)
+    : environment_(&environment), materials_(materials), lobe_stride_(lobe_stride) {
+    if (environment.map() == nullptr) {
+        return;
+    }
+    for (const MaterialLobes& material : materials) {
+        auto& plans = plans_.emplace_back();
+        for (const Lobe& lobe : material.lobes()) {
+            plans.push_back(plan(lobe.shape, order, kToleranceScale * tolerance));
+        }
+    }
+}
+
+EnvironmentShading::Plan EnvironmentShading::plan(const LobeShape& shape, int order, double tolerance) const {
+    if (is_mirror(shape)) {
+        return {};
+    }
+    const EnvironmentMap& map = *environment_->map();
+    const auto* ggx = std::get_if<GgxShape>(&shape);
+    const bool may_be_narrow = order == 0 && ggx != nullptr;
+    Plan plan = {clamped_lobe(shape), may_be_narrow && ggx->alpha < kTexelsPerAlpha * map.texel, {}};
+    for (std::size_t node = 0; node < plan.lobe->node_count(); ++node) {
+        const auto errors = relative_errors(plan.lobe->powers(node), plan.lobe->tail(node), map.coefficients);
+        int chosen = order;
+        if (order == 0) {
+            const auto sufficient =
+                std::find_if(errors.begin(), errors.end() - 1, [&](double error) { return error <= tolerance; });
+            chosen = static_cast<int>(sufficient - errors.begin()) + 1;
+        }
+        const double error = errors[static_cast<std::size_t>(chosen - 1)];
+        const bool narrow = plan.sees_texels || (may_be_narrow && error > std::max(kDirectionError, tolerance));
+        plan.choices.push_back({narrow ? kMaxOrder : chosen, narrow, error <= tolerance});
+    }
+    return plan;
+}
+
+EnvironmentShading::Choice EnvironmentShading::choose(const Plan& plan, double cos_theta_o) {
+    if (plan.choices.size() == 1) {
+        return plan.choices[0];
+    }
+    const double position = std::acos(cos_theta_o) * (kViewNodes - 1) * 2 / std::numbers::pi;
+    const auto low = static_cast<std::size_t>(std::clamp(static_cast<int>(position), 0, kViewNodes - 2));
+    const Choice& a = plan.choices[low];
+    const Choice& b = plan.choices[low + 1];
+    return {std::max(a.order, b.order), a.directions || b.directions, a.met && b.met};
+}
+
+/// One point under a picture.
+class EnvironmentShading::Point {
+  public:
+    Point(const EnvironmentMap& map, const ShadingFrame& frame, double cos_theta_o)
+        : map_(&map),
+          to_map_(map.to_map(frame.x), map.to_map(frame.y), map.to_map(frame.z)),
+          view_(std::sqrt(1 - cos_theta_o * cos_theta_o), 0, cos_theta_o),
+          turned_(to_map_) {}
+
+    /// Without the spots.
+    Rgb by_harmonics(const ClampedLobe& lobe, int order) {
+        const float* turned = turned_.coefficients(lobe, static_cast<float>(view_.z), order);
+        return TurnedLobe::reflected(map_->coefficients.channels, turned, order);
+    }
+
+    Rgb spots(const LobeShape& shape) const {
+        Rgb sum(0);
+        for (const BrightSpot& spot : map_->spots) {
+            const Vec3d direction = spot.direction * to_map_;
+            if (direction.z > 0) {
+                sum += static_cast<float>(lobe_value(shape, direction, view_)) * spot.irradiance;
+            }
+        }
+        return sum;
+    }
+
+    /// The mean of what the directions show of the remainder, weighed with f·cos over their density.
+    Rgb by_directions(const GgxShape& shape, bool with_spots) const {
+        const RadiancePyramid& remainder = with_spots ? map_->whole_remainder : map_->remainder;
+        const LobeSampler sampler(shape.alpha, view_);
+        Vec3d sum(0);
+        double weights = 0;
+        for (int i = 0; i < kDirections * kDirections; ++i) {
+            const int row = i / kDirections;
+            const glm::dvec2 point = glm::dvec2(i % kDirections + 0.5, row + 0.5) / double{kDirections};
+            const Vec3d direction = sampler.sample(point);
+            if (direction.z > 0) {
+                const double density = sampler.density(direction);
+                const double weight = lobe_value(shape, direction, view_) / density;
+                const double solid_angle = 1 / (density * kDirections * kDirections);
+                sum += weight * Vec3d(remainder.radiance(to_map_ * direction, solid_angle));
+                weights += weight;
+            }
+        }
+        return weights > 0 ? Rgb(sum / weights) : Rgb(0);
+    }
+
+    Rgb mirrored() const { return map_->picture.radiance(to_map_ * Vec3d(-view_.x, 0, view_.z)); }
+
+  private:
+    const EnvironmentMap* map_;
+    glm::dmat3 to_map_;  // from the shading frame
+    Vec3d view_;
+    TurnedLobe turned_;
+};
+
+void EnvironmentShading::shade(const ShadingPoints& points, std::vector<UnshadowedParts>& values,
+                               RenderReport& report) const {
+    values.assign(lobe_stride_ * points.size(), {});
+    if (environment_->map() == nullptr) {
+        shade_constant(points, values, report);
+    } else {
+        shade_map(points, values, report);
+    }
+}
+
+void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<UnshadowedParts> values,
+                                        RenderReport& report) const {
+    for (std::size_t point = 0; point < points.size(); ++point) {
+        const auto lobes = materials_[points.material[point]].lobes();
+        for (std::size_t i = 0; i < lobes.size(); ++i) {
+            // A constant is one harmonic, and a lobe's own first coefficient its albedo.
+            const auto albedo = static_cast<float>(lobes[i].albedo(points.cos_theta_o[point]));
+            values[i * points.size() + point].smooth = albedo * environment_->radiance(points.frame[point].z);
+            (is_mirror(lobes[i].shape) ? report.mirror_count : report.order_counts[1]) += points.hit_count(point);
+        }
+    }
+}
+
+void EnvironmentShading::shade_map(const ShadingPoints& points, std::span<UnshadowedParts> values,
+                                   RenderReport& report) const {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::uint32_t material = points.material[i];
+        const double cosine = points.cos_theta_o[i];
+        Point point(*environment_->map(), points.frame[i], cosine);
+        const auto lobes = materials_[material].lobes();
+        for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
+            const LobeShape& shape = lobes[lobe].shape;
+            const Plan& plan = plans_[material][lobe];
+            UnshadowedParts& value = values[lobe * points.size() + i];
+            if (is_mirror(shape)) {
+                value.smooth = static_cast<float>(lobes[lobe].albedo(cosine)) * point.mirrored();
+                report.mirror_count += points.hit_count(i);
+                continue;
+            }
+            const Choice choice = choose(plan, cosine);
+            value.smooth = point.by_harmonics(*plan.lobe, choice.order);
+            if (!plan.sees_texels) {
+                value.spots = point.spots(shape);
+            }
+            if (choice.directions) {
+                value.smooth += static_cast<float>(lobes[lobe].albedo(cosine)) *
+                                point.by_directions(std::get<GgxShape>(shape), plan.sees_texels);
+            }
+            value.smooth = glm::max(value.smooth, Rgb(0));
+            (choice.directions ? report.cubature_count : report.order_counts[static_cast<std::size_t>(choice.order)]) +=
+                points.hit_count(i);
+            report.over_tolerance += choice.met ? 0 : points.hit_count(i);
+        }
+    }
+}
+
+}  // namespace shlight

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+//
+// Outgoing radiance per lobe under an environment that nothing blocks.
+//
+// One radiance from everywhere: the lobe's albedo times it. A picture: its harmonics times the lobe's, turned to its
+// frame, of the smallest order that meets the tolerance, and its bright spots one by one. For a lobe too narrow for 64
+// bands, what they leave of the picture is summed over directions that the lobe reflects, blurred as far as these are
+// apart. A mirror shows the picture.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "lobes/material_lobes.h"
+#include "lobes/sh_projection.h"
+#include "shading/shading_points.h"
+#include "shlight/environment.h"
+#include "shlight/render_report.h"
+
+namespace shlight {
+
+/// What a lobe reflects, in parts that have shadows of their own: a sun is hidden or not, whatever the sky is.
+struct UnshadowedParts {
+    Rgb smooth{0}, spots{0};
+};
+
+/// Immutable; any number of threads may read it.
+class EnvironmentShading {
+  public:
+    /// order, tolerance: of RenderSettings.
+    EnvironmentShading(const Environment& environment, std::span<const MaterialLobes> materials,
+                       std::size_t lobe_stride, int order, double tolerance);
+
+    /// values: lobe_stride × points; adds to the report what the points' hits take.
+    void shade(const ShadingPoints& points, std::vector<UnshadowedParts>& values, RenderReport& report) const;
+    /// Whether spots are a part of their own for a lobe.
+    bool splits(std::size_t material, std::size_t lobe) const {
+        return !plans_.empty() && plans_[material][lobe].lobe != nullptr && !plans_[material][lobe].sees_texels;
+    }
+
+  private:
+    struct Choice {
+        int order;
+        bool directions;  // for what this order leaves
+        bool met;         // the tolerance, by the order alone
+    };
+    /// How a lobe is shaded under a picture.
+    struct Plan {
+        std::shared_ptr<const ClampedLobe> lobe;  // null: a mirror
+        bool sees_texels;                         // spots too have an extent
+        std::vector<Choice> choices;              // of each tabulated view
+    };
+    class Point;
+
+    Plan plan(const LobeShape& shape, int order, double tolerance) const;
+    void shade_constant(const ShadingPoints& points, std::span<UnshadowedParts> values, RenderReport& report) const;
+    void shade_map(const ShadingPoints& points, std::span<UnshadowedParts> values, RenderReport& report) const;
+    static Choice choose(const Plan& plan, double cos_theta_o);
+
+    const Environment* environment_;
+    std::span<const MaterialLobes> materials_;
+    std::size_t lobe_stride_;
+    std::vector<std::vector<Plan>> plans_;  // of each material's lobes; empty without a picture
+};
+
+}  // namespace shlight

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+//
+// Directions to a light from a hit, spread over what of it lies above the horizon.
+//
+// Samplers turn a point of the unit square into a direction and a weight: the mean of weight · g(direction) over evenly
+// spread points is the integral of g over the solid angle of the light above the horizon. They also meet a light with a
+// ray in a given direction.
+#pragma once
+
+#include <optional>
+
+#include <glm/vec2.hpp>
+
+#include "lights/cap_sampling.h"
+#include "lights/ellipse_sampling.h"
+#include "lights/mesh_sampling.h"
+#include "lights/polygon_sampling.h"
+#include "lights/seen_light.h"
+#include "math/light_sample.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// Any of them. Precondition: the light is seen, and not a source without extent.
+class LightSampler {
+    enum class Kind { cap, ellipse, polygon, mesh };
+
+    /// What `ask` returns of the sampler in use.
+    template <class Ask>
+    auto with(const Ask& ask) const {
+        switch (kind_) {
+            case Kind::cap:
+                return ask(*cap_);
+            case Kind::ellipse:
+                return ask(*ellipse_);
+            case Kind::mesh:
+                return ask(mesh_);
+            case Kind::polygon:
+                break;
+        }
+        return ask(polygon_);
+    }
+
+  public:
+    /// Of a rectangle or disk, the part that shines on the hit: see lit_rectangle and lit_part.
+    void reset(const Light& light, const ShadingFrame& frame);
+    /// As reset, but from a hit near the one before a mesh may be seen as it was there. The same light as before.
+    void move(const Light& light, const ShadingFrame& frame);
+    LightSample sample(const glm::dvec2& point) const {
+        return with([&](const auto& sampler) { return sampler.sample(point); });
+    }
+    /// As PolygonSampler's; not of a mesh.
+    std::size_t patch_count() const {
+        return kind_ == Kind::polygon ? polygon_.patch_count() : kind_ == Kind::ellipse ? EllipseSampler::kPatches : 1;
+    }
+    LightSample sample_patch(std::size_t patch, const glm::dvec2& point) const {
+        return kind_ == Kind::polygon   ? polygon_.sample_patch(patch, point)
+               : kind_ == Kind::ellipse ? ellipse_->sample_patch(patch, point)
+                                        : sample(point);
+    }
+    double solid_angle() const {
+        return with([](const auto& sampler) { return sampler.solid_angle(); });
+    }
+    std::optional<double> meets(const Vec3d& direction) const {
+        return with([&](const auto& sampler) { return sampler.meets(direction); });
+    }
+
+    int layers(const Vec3d& direction) const { return kind_ == Kind::mesh ? mesh_.layers(direction) : 1; }
+
+  private:
+    Kind kind_ = Kind::polygon;
+    std::optional<CapSampler> cap_;
+    std::optional<EllipseSampler> ellipse_;
+    PolygonSampler polygon_;
+    MeshSampler mesh_;
+};
+
+}  // namespace shlight

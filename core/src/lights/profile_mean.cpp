@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "lights/profile_mean.h"
+
+#include <array>
+#include <cmath>
+
+#include "math/gauss_legendre.h"
+
+namespace shlight {
+namespace {
+
+/// Along each axis.
+constexpr std::array kPoints = {4, 6, 9, 13, 19, 28, 42, kMaxGaussPoints};
+/// Steps that change nothing. Where a rim of the profile may lie across a patch it may fool two rules alike.
+constexpr int kAgreements = 2;
+constexpr int kAgreementsOfRings = 1;
+/// A lobe takes nodes of its own where it may be denser than this many times the light's.
+constexpr double kNarrowLobe = 8;
+
+/// Nodes of a rule at t² for each coordinate: samplers take roots, at the middle of a cap and in a corner of a
+/// triangle.
+template <class Visit>
+void for_nodes(const GaussRule& rule, const Visit& visit) {
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+        for (std::size_t j = 0; j < rule.nodes.size(); ++j) {
+            const double x = rule.nodes[i];
+            const double y = rule.nodes[j];
+            visit(glm::dvec2(x * x, y * y), 4 * x * y * rule.weights[i] * rule.weights[j]);
+        }
+    }
+}
+
+}  // namespace
+
+void ProfileMean::reset(const Light& light, const ShadingFrame& frame) {
+    profile_.emplace(light, frame);
+    if (range().high > range().low) {
+        sampler_.reset(light, frame);
+        has_rings_ = rings_.reset(light, frame);
+    }
+}
+
+template <class Visit>
+void ProfileMean::for_light_nodes(int points, const Visit& visit) {
+    if (has_rings_) {
+        rings_.for_nodes(
+            points, [&](const Vec3d& direction) { return profile_->factor(direction); }, visit);
+        return;
+    }
+    const GaussRule& rule = gauss_rule(points);
+    for (std::size_t patch = 0; patch < sampler_.patch_count(); ++patch) {
+        for_nodes(rule, [&](const glm::dvec2& point, double share) {
+            const LightSample sample = sampler_.sample_patch(patch, point);
+            visit(sample.direction, share * sample.weight, profile_->factor(sample.direction));
+        });
+    }
+}
+
+void ProfileMean::add(const Reflection& reflection, const Vec3d& direction, double weight, double factor,
+                      Sums& sums) const {
+    double value = weight * lobe_value(*reflection.shape, direction, reflection.view);
+    if (reflection.sampler) {
+        // The light's density is taken as even: one over its solid angle.
+        value /= 1 + sampler_.solid_angle() * reflection.sampler->density(direction);
+    }
+    sums.even += value;
+    sums.lit += value * factor;
+}
+
+ProfileMean::Sums ProfileMean::sums(const Reflection& reflection, int points) {
+    Sums sums;
+    for_light_nodes(points, [&](const Vec3d& direction, double weight, double factor) {
+        add(reflection, direction, weight, factor, sums);
+    });
+    if (reflection.sampler) {
+        for_nodes(gauss_rule(points), [&](const glm::dvec2& point, double share) {
+            const Vec3d direction = reflection.sampler->sample(point);
+            if (direction.z > 0 && sampler_.meets(direction)) {
+                add(reflection, direction, share * sampler_.solid_angle(), profile_->factor(direction), sums);
+            }
+        });
+    }
+    return sums;
+}
+
+double ProfileMean::mean(const LobeShape& lobe, double cos_theta_o, double tolerance) {
+    if (!(range().high - range().low > tolerance)) {
+        return (range().low + range().high) / 2;
+    }
+    const Vec3d view(std::sqrt(1 - cos_theta_o * cos_theta_o), 0, cos_theta_o);
+    if (is_mirror(lobe)) {
+        return profile_->factor({-view.x, 0, view.z});
+    }
+    Reflection reflection{&lobe, view, std::nullopt};
+    if (const auto* ggx = std::get_if<GgxShape>(&lobe)) {
+        const LobeSampler sampler(ggx->alpha, view);
+        if (sampler_.solid_angle() * sampler.largest_density() > kNarrowLobe) {
+            reflection.sampler = sampler;
+        }
+    }
+    double mean = range().low;
+    int agreements = -1;  // the first is compared with nothing
+    for (const int points : kPoints) {
+        const Sums sums = this->sums(reflection, points);
+        const double before = mean;
+        mean = sums.even > 0 ? sums.lit / sums.even : range().low;
+        agreements = agreements < 0 || !(std::abs(mean - before) <= tolerance) ? 0 : agreements + 1;
+        if (agreements == (has_rings_ && !reflection.sampler ? kAgreementsOfRings : kAgreements)) {
+            break;
+        }
+    }
+    return mean;
+}
+
+}  // namespace shlight

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: MIT
+#include "lights/profile_rings.h"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <variant>
+
+#include "base/perpendicular.h"
+#include "lights/seen_light.h"
+
+namespace shlight {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kRound = 1e-6;       // by which a map, or a disk, may fail to be round
+constexpr double kLeastSine = 1e-4;   // of a cap's half angle; of smaller ones cosines say too little
+constexpr double kSlack = 1e-9;       // of points that lie on a side
+constexpr double kLeastPiece = 1e-9;  // [rad]
+constexpr std::size_t kMostCorners = 12;
+constexpr int kScan = 32;      // steps around an ellipse in search of its turns
+constexpr double kFlat = 0.4;  // slope of an outline's distance that is nearly a turn
+constexpr int kMostSteps = 60;
+constexpr double kRootError = 1e-12;
+
+/// A root between two arguments at which the function has different signs: regula falsi that halves the value of an end
+/// which stays (Illinois).
+template <class Function>
+double root_between(double from, double to, const Function& f) {
+    double at_from = f(from);
+    double at_to = f(to);
+    double middle = from;
+    for (int i = 0; i < kMostSteps && std::abs(to - from) > kRootError; ++i) {
+        middle = at_to == at_from ? (from + to) / 2 : to - at_to * (to - from) / (at_to - at_from);
+        const double value = f(middle);
+        if (std::abs(value) < kRootError * kRootError) {
+            break;
+        }
+        if ((value > 0) != (at_to > 0)) {
+            from = to;
+            at_from = at_to;
+        } else {
+            at_from /= 2;
+        }
+        to = middle;
+        at_to = value;
+    }
+    return middle;
+}
+
+double angle_to_axis(const Vec3d& direction) {
+    return std::atan2(std::hypot(direction.x, direction.y), direction.z);
+}
+
+/// Direction from the hit along which a lamp of the profile is seen head-on, in the world, and the angles at which the
+/// profile has kinks. No direction: its rings are no circles.
+struct Axis {
+    std::optional<Vec3d> direction;
+    std::array<double, 2> kinks{};
+};
+
+Axis axis_of(const EmissionProfile& profile) {
+    if (const auto* spot = std::get_if<SpotProfile>(&profile); spot != nullptr && spot->stretch < 1 + kRound) {
+        const double inner = spot->cosine + (1 - spot->cosine) * spot->blend;
+        // The third row of the map takes the height along the cone.
+        const Vec3d along(spot->to_local[0].z, spot->to_local[1].z, spot->to_local[2].z);
+        return {-glm::normalize(along), {std::acos(spot->cosine), std::acos(std::min(1.0, inner))}};
+    }
+    if (const auto* spread = std::get_if<SpreadProfile>(&profile)) {
+        return {-spread->normal, {spread->half_angle, spread->half_angle}};
+    }
+    return {};
+}
+
+}  // namespace
+
+bool ProfileRings::Disk::holds(const glm::dvec2& point) const {
+    const glm::dvec2 p = point - center;
+    const double area = u.x * v.y - u.y * v.x;
+    const double a = (p.x * v.y - p.y * v.x) / area;
+    const double b = (u.x * p.y - u.y * p.x) / area;
+    return a * a + b * b <= 1 + kSlack;
+}
+
+void ProfileRings::Disk::find_turns() {
+    turns.clear();
+    near_turns.clear();
+    if (radius > 0) {
+        const double far = std::atan2(glm::dot(center, v), glm::dot(center, u));
+        turns = {far, far + pi};
+        return;
+    }
+    // Half of that of the squared distance, and its own.
+    const auto slope = [&](double t) { return glm::dot(at(t), v * std::cos(t) - u * std::sin(t)); };
+    const auto bend = [&](double t) {
+        const glm::dvec2 along = v * std::cos(t) - u * std::sin(t);
+        return glm::dot(along, along) - glm::dot(at(t), at(t) - center);
+    };
+    const double flat = kFlat * (glm::dot(u, u) + glm::dot(v, v));
+    for (int i = 0; i < kScan; ++i) {
+        const double from = 2 * pi / kScan * i;
+        const double to = 2 * pi / kScan * (i + 1);
+        if ((slope(from) > 0) != (slope(to) > 0)) {
+            turns.push_back(root_between(from, to, slope));
+        } else if ((bend(from) > 0) != (bend(to) > 0)) {
+            if (const double t = root_between(from, to, bend); std::abs(slope(t)) < flat) {
+                near_turns.push_back(t);
+            }
+        }
+    }
+}
+
+void ProfileRings::Disk::add_cuts(double circle, std::vector<double>& cuts) const {
+    if (radius > 0) {
+        const double away = glm::length(center);
+        const double cosine = (circle * circle + (away - radius) * (away + radius)) / (2 * circle * away);
+        if (std::abs(cosine) < 1) {
+            const double middle = std::atan2(center.y, center.x);
+            const double half = std::acos(cosine);
+            cuts.push_back(middle + half);
+            cuts.push_back(middle - half);
+        }
+        return;
+    }
+    const auto beyond = [&](double t) {
+        const glm::dvec2 p = at(t);
+        return glm::dot(p, p) / (circle * circle) - 1;
+    };
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+        const double from = turns[i];
+        const double to = i + 1 < turns.size() ? turns[i + 1] : turns[0] + 2 * pi;
+        if ((beyond(from) > 0) != (beyond(to) > 0)) {
+            const glm::dvec2 point = at(root_between(from, to, beyond));
+            cuts.push_back(std::atan2(point.y, point.x));
+        }
+    }
+}
+
+bool ProfileRings::reset(const Light& light, const ShadingFrame& frame) {
+    sides_.clear();
+    disk_.reset();
+    events_.clear();
+    const Axis axis = axis_of(traits_of(light).profile);
+    if (!axis.direction) {
+        return false;
+    }
+    const Vec3d z = frame.to_local(*axis.direction);
+    const Vec3d x = perpendicular(z);
+    to_shading_ = {x, glm::cross(z, x), z};
+    if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
+        std::vector<Vec3d> corners;
+        for_lit_corners(*polygon, frame, [&](const Vec3d& corner) { corners.push_back(corner); });
+        if (!add_polygon(corners)) {
+            return false;
+        }
+    } else if (const auto* disk = std::get_if<DiskLight>(&light)) {
+        const LitDisk lit = lit_part(*disk, frame);
+        if (lit.corners.empty()) {
+            add_disk(lit.ellipse);
+        } else if (!add_polygon(lit.corners)) {
+            return false;
+        }
+    } else if (!add_cap(light, frame)) {
+        return false;
+    }
+    find_events(axis.kinks);
+    return true;
+}
+
+void ProfileRings::add_side(const Vec3d& normal, double offset) {
+    sides_.push_back({normal, offset, std::hypot(normal.x, normal.y), std::atan2(normal.y, normal.x)});
+}
+
+bool ProfileRings::add_cap(const Light& light, const ShadingFrame& frame) {
+    const std::optional<CapView> cap = cap_view(light, frame);
+    if (!cap || (cap->kind != CapView::Kind::sphere && cap->kind != CapView::Kind::facing_disk)) {
+        return false;
+    }
+    const Circle circle = circle_of(*cap);
+    if (!(circle.sine >= kLeastSine)) {
+        return false;
+    }
+    add_side(to_rings(circle.axis), circle.cosine);
+    if (circle.axis.z < circle.sine) {
+        add_horizon();
+    }
+    return true;
+}
+
+bool ProfileRings::add_polygon(std::span<const Vec3d> corners) {
+    if (corners.size() > kMostCorners) {
+        return false;
+    }
+    std::vector<Vec3d> directions;
+    for (const Vec3d& corner : corners) {
+        directions.push_back(to_rings(glm::normalize(corner)));
+    }
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        const Vec3d normal = glm::cross(directions[i], directions[(i + 1) % directions.size()]);
+        if (const double length = glm::length(normal); length > kSlack) {
+            add_side(normal / length, 0);
+        }
+    }
+    const auto on = [&](double sign) {
+        return std::all_of(directions.begin(), directions.end(), [&](const Vec3d& direction) {
+            return std::all_of(sides_.begin(), sides_.end(),
+                               [&](const Side& side) { return sign * glm::dot(side.normal, direction) >= -kSlack; });
+        });
+    };
+    if (!on(1)) {
+        if (!on(-1)) {
+            return false;  // it is not convex
+        }
+        for (Side& side : sides_) {
+            side.normal = -side.normal;
+            side.azimuth += pi;
+        }
+    }
+    if (std::any_of(corners.begin(), corners.end(), [](const Vec3d& corner) { return corner.z < 0; })) {
+        add_horizon();
+    }
+    return sides_.size() >= 3;
+}
+
+void ProfileRings::add_disk(const Ellipse<double>& ellipse) {
+    const Vec3d center = to_rings(ellipse.center);
+    const Vec3d u = to_rings(ellipse.half_axis_u);
+    const Vec3d v = to_rings(ellipse.half_axis_v);
+    const double square = glm::dot(u, u);
+    const bool round =
+        std::abs(glm::dot(v, v) - square) <= kRound * square && std::abs(glm::dot(u, v)) <= kRound * square;
+    disk_ = {center.z, {center.x, center.y}, {u.x, u.y}, {v.x, v.y}, round ? std::sqrt(square) : 0.0, {}, {}};
+    disk_->find_turns();
+    if (ellipse.center.z < std::hypot(ellipse.half_axis_u.z, ellipse.half_axis_v.z)) {
+        add_horizon();
+    }
+}
+
+bool ProfileRings::holds(const Vec3d& direction) const {
+    const bool within = std::all_of(sides_.begin(), sides_.end(), [&](const Side& side) {
+        return glm::dot(side.normal, direction) >= side.offset - kSlack;
+    });
+    if (!within || !disk_) {
+        return within;
+    }
+    return direction.z > 0 && disk_->holds(glm::dvec2(direction.x, direction.y) * (disk_->height / direction.z));
+}
+
+void ProfileRings::add_event(const Vec3d& direction) {
+    if (holds(direction)) {
+        events_.push_back(angle_to_axis(direction));
+    }
+}
+
+/// The points of a side's circle that are nearest to the axis and farthest from it.
+void ProfileRings::add_touching(const Side& side) {
+    const Vec3d inwards = side.across > 0 ? Vec3d(-side.normal.z * side.normal.x, -side.normal.z * side.normal.y,
+                                                  side.across * side.across) /
+                                                side.across
+                                          : Vec3d(1, 0, 0);
+    const double reach = std::sqrt(std::max(0.0, (1 - side.offset) * (1 + side.offset)));
+    add_event(side.offset * side.normal + reach * inwards);
+    add_event(side.offset * side.normal - reach * inwards);
+}
+
+/// The two points in which the circles of two sides cross.
+void ProfileRings::add_crossings(const Side& a, const Side& b) {
+    const Vec3d along = glm::cross(a.normal, b.normal);
+    const double square = glm::dot(along, along);
+    if (!(square > kSlack * kSlack)) {
+        return;
+    }
+    const double c = glm::dot(a.normal, b.normal);
+    const Vec3d foot = ((a.offset - b.offset * c) * a.normal + (b.offset - a.offset * c) * b.normal) / square;
+    const double rest = 1 - glm::dot(foot, foot);
+    if (rest >= 0) {
+        const Vec3d way = std::sqrt(rest / square) * along;
+        add_event(foot + way);
+        add_event(foot - way);
+    }
+}
+
+void ProfileRings::add_disk_events() {
+    const auto add = [&](double t) {
+        const glm::dvec2 point = disk_->at(t);
+        add_event(glm::normalize(Vec3d(point.x, point.y, disk_->height)));
+    };
+    add(0);  // of a disk about the axis, whose outline has no turns
+    for (const std::vector<double>* turns : {&disk_->turns, &disk_->near_turns}) {
+        std::for_each(turns->begin(), turns->end(), add);
+    }
+    for (const Side& side : sides_) {
+        // n · (c + u cos t + v sin t) = 0
+        const double a = side.normal.x * disk_->u.x + side.normal.y * disk_->u.y;
+        const double b = side.normal.x * disk_->v.x + side.normal.y * disk_->v.y;
+        const double c =
+            side.normal.x * disk_->center.x + side.normal.y * disk_->center.y + side.normal.z * disk_->height;
+        const double size = std::hypot(a, b);
+        if (std::abs(c) <= size) {
+            const double middle = std::atan2(b, a);
+            const double half = std::acos(std::clamp(-c / size, -1.0, 1.0));
+            add(middle + half);
+            add(middle - half);
+        }
+    }
+}
+
+void ProfileRings::find_events(std::span<const double> kinks) {
+    add_event({0, 0, 1});
+    add_event({0, 0, -1});
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+        add_touching(sides_[i]);
+        for (std::size_t j = 0; j < i; ++j) {
+            add_crossings(sides_[i], sides_[j]);
+        }
+    }
+    if (disk_) {
+        add_disk_events();
+    }
+    if (events_.empty()) {
+        return;
+    }
+    const auto [nearest, farthest] = std::minmax_element(events_.begin(), events_.end());
+    const double from = *nearest;
+    const double to = *farthest;
+    for (const double kink : kinks) {
+        if (from < kink && kink < to) {
+            events_.push_back(kink);
+        }
+    }
+    std::sort(events_.begin(), events_.end());
+    const auto near = [](double a, double b) { return b - a < kLeastPiece; };
+    events_.erase(std::unique(events_.begin(), events_.end(), near), events_.end());
+}
+
+void ProfileRings::add_cuts(double cosine, double sine) {
+    cuts_.clear();
+    for (const Side& side : sides_) {
+        const double height = side.offset - side.normal.z * cosine;
+        const double swing = side.across * sine;
+        if (std::abs(height) < swing) {
+            const double half = std::acos(height / swing);
+            cuts_.push_back(side.azimuth + half);
+            cuts_.push_back(side.azimuth - half);
+        }
+    }
+    if (disk_) {
+        disk_->add_cuts(disk_->height * sine / cosine, cuts_);
+    }
+    for (double& cut : cuts_) {
+        cut -= 2 * pi * std::floor(cut / (2 * pi));
+    }
+    std::sort(cuts_.begin(), cuts_.end());
+}
+
+void ProfileRings::find_arcs(double cosine, double sine) {
+    arcs_.clear();
+    add_cuts(cosine, sine);
+    const auto is_lit = [&](double azimuth) {
+        return holds({sine * std::cos(azimuth), sine * std::sin(azimuth), cosine});
+    };
+    if (cuts_.empty()) {
+        if (is_lit(0)) {
+            // In parts, over which a lobe differs less.
+            for (int i = 0; i < 3; ++i) {
+                arcs_.push_back({2 * pi / 3 * i, 2 * pi / 3});
+            }
+        }
+        return;
+    }
+    for (std::size_t i = 0; i < cuts_.size(); ++i) {
+        const double end = i + 1 < cuts_.size() ? cuts_[i + 1] : cuts_[0] + 2 * pi;
+        const Arc arc{cuts_[i], end - cuts_[i]};
+        if (arc.length > 0 && is_lit(arc.begin + arc.length / 2)) {
+            arcs_.push_back(arc);
+        }
+    }
+}
+
+}  // namespace shlight

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: MIT
+#include "lights/seen_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "emitters/emitter_levels.h"
+
+namespace shlight {
+namespace {
+
+/// Of an edge: less of a light than this is not worth its rounding.
+constexpr double kThinnestPart = 1e-9;
+
+/// What a light looks like from a point: a cap of directions that holds it, in the world.
+struct Bounds {
+    Vec3d towards;  ///< unit
+    double half_angle;
+};
+
+/// All directions: what is known from within the light.
+constexpr Bounds kEverywhere = {{0, 0, 1}, std::numbers::pi};
+
+Bounds sphere_bounds(const Vec3d& center, double radius, const Vec3d& position) {
+    const Vec3d way = center - position;
+    const double distance = glm::length(way);
+    return distance > radius ? Bounds{way / distance, std::asin(radius / distance)} : kEverywhere;
+}
+
+struct BoundsFrom {
+    const Vec3d& position;
+
+    Bounds operator()(const SphereLight& light) const {
+        if (!light.facing_disk) {
+            return sphere_bounds(light.center, light.radius, position);
+        }
+        const Vec3d way = light.center - position;
+        const double distance = glm::length(way);
+        return distance > 0 ? Bounds{way / distance, std::atan(light.radius / distance)} : kEverywhere;
+    }
+    Bounds operator()(const PolygonLight& light) const { return sphere_bounds(light.center, light.radius, position); }
+    Bounds operator()(const DiskLight& light) const { return sphere_bounds(light.center, light.radius, position); }
+    Bounds operator()(const MeshLight& light) const {
+        return sphere_bounds(light.shape->center, light.shape->radius, position);
+    }
+    Bounds operator()(const SunLight& light) const { return {light.direction, light.half_angle}; }
+    Bounds operator()(const PointSource& light) const { return sphere_bounds(light.position, 0, position); }
+    Bounds operator()(const ParallelSource& light) const { return {light.direction, 0}; }
+};
+
+Bounds bounds_from(const Light& light, const Vec3d& position) {
+    return std::visit(BoundsFrom{position}, light);
+}
+
+bool surrounds(const Light& light, const Vec3d& position) {
+    const auto* sphere = std::get_if<SphereLight>(&light);
+    return sphere != nullptr && glm::length(sphere->center - position) <= (sphere->facing_disk ? 0.0 : sphere->radius);
+}
+
+/// Of a rectangle with a spread: the part of its two edges from the first vertex, each 0 … 1, beyond which nothing
+/// shines on a point.
+struct LitEdges {
+    std::array<double, 2> from, to;
+    bool empty() const { return !(to[0] - from[0] > kThinnestPart && to[1] - from[1] > kThinnestPart); }
+    bool whole() const { return from[0] == 0 && from[1] == 0 && to[0] == 1 && to[1] == 1; }
+};
+
+std::optional<LitEdges> lit_edges(const PolygonLight& light, const Vec3d& position) {
+    const auto* spread = std::get_if<SpreadProfile>(&light.traits.profile);
+    if (spread == nullptr || !light.rectangle) {
+        return std::nullopt;
+    }
+    const Vec3d way = position - light.vertices[0];
+    const double reach = std::max(0.0, glm::dot(way, light.normal)) * spread->tangent;
+    LitEdges edges{};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Vec3d edge = light.vertices[i == 0 ? 1 : 3] - light.vertices[0];
+        const double square = glm::dot(edge, edge);
+        const double middle = glm::dot(way, edge) / square;
+        const double share = reach / std::sqrt(square);
+        edges.from[i] = std::clamp(middle - share, 0.0, 1.0);
+        edges.to[i] = std::clamp(middle + share, 0.0, 1.0);
+    }
+    return edges;
+}
+
+/// Sides of the polygon that stands for a disk of which a small part is lit: 1e-6 of it lies between them.
+constexpr int kSidesOfDisk = 256;
+/// Of a disk's short half axis: a lit circle with a smaller radius is singled out.
+constexpr double kSmallPart = 0.5;
+
+/// Keeps what of a convex polygon has dot(normal, v) ≤ limit.
+void clip(std::vector<Vec3d>& corners, const Vec3d& normal, double limit) {
+    std::vector<Vec3d> kept;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Vec3d& from = corners[i];
+        const Vec3d& to = corners[(i + 1) % corners.size()];
+        const double a = limit - glm::dot(normal, from);
+        const double b = limit - glm::dot(normal, to);
+        if (a >= 0) {
+            kept.push_back(from);
+        }
+        if ((a >= 0) != (b >= 0)) {
+            kept.push_back(from + a / (a - b) * (to - from));
+        }
+    }
+    corners = std::move(kept);
+}
+
+/// To what of the disk lies in the circle of radius `reach` about a point of its plane, or a little more.
+void restrict(const DiskLight& light, const Vec3d& middle, double reach, LitDisk& lit) {
+    const Vec3d way = middle - light.center;
+    const double area = glm::length(glm::cross(light.half_axis_u, light.half_axis_v));
+    const double short_half_axis = area / light.radius;
+    if (!(reach < kSmallPart * short_half_axis)) {
+        return;
+    }
+    const Vec3d along = glm::normalize(light.half_axis_u);
+    const Vec3d across = glm::cross(light.normal, along);
+    // In the disk's own units, in which it has the radius 1.
+    const double a = glm::dot(glm::cross(way, light.half_axis_v), light.normal) / area;
+    const double b = glm::dot(glm::cross(light.half_axis_u, way), light.normal) / area;
+    if (std::hypot(a, b) + reach / short_half_axis < 1) {
+        lit.ellipse = {middle, reach * along, reach * across};
+        return;
+    }
+    // Of equal area.
+    const double step = 2 * std::numbers::pi / kSidesOfDisk;
+    const double scale = std::sqrt(step / std::sin(step));
+    for (int i = 0; i < kSidesOfDisk; ++i) {
+        lit.corners.push_back(
+            light.center + scale * (std::cos(i * step) * light.half_axis_u + std::sin(i * step) * light.half_axis_v));
+    }
+    for (const Vec3d& side : {along, -along, across, -across}) {
+        clip(lit.corners, side, glm::dot(side, middle) + reach);
+    }
+    if (lit.corners.size() < 3) {
+        lit.corners.assign(3, middle);  // without area
+    }
+}
+
+/// Whether a hit lies off the plane of a light that is planar, on a side that the light shines to.
+template <class PlanarLight>
+bool is_lit_side(const PlanarLight& light, double height, double error) {
+    return (light.two_sided ? std::abs(height) : height) > 2 * (error + light.error);
+}
+
+}  // namespace
+
+std::optional<CapView> view(const SphereLight& light, const ShadingFrame& frame) {
+    const Vec3d center = frame.point_to_local(light.center);
+    const double distance = glm::length(center);
+    if (light.facing_disk) {
+        // The disk's upper rim: the centre's height plus the radius along the disk's steepest line.
+        const double rim = center.z * distance + light.radius * std::hypot(center.x, center.y);
+        if (distance > 0 && !(rim > 0)) {
+            return std::nullopt;
+        }
+        return CapView{distance > 0 ? CapView::Kind::facing_disk : CapView::Kind::inside, center, light.radius};
+    }
+    if (distance <= light.radius) {
+        return CapView{CapView::Kind::inside, center, light.radius};
+    }
+    if (!(center.z + light.radius > 0)) {
+        return std::nullopt;
+    }
+    return CapView{CapView::Kind::sphere, center, light.radius};
+}
+
+std::optional<CapView> view(const SunLight& light, const ShadingFrame& frame) {
+    const Vec3d direction = frame.to_local(light.direction);
+    const double sine = std::sin(light.half_angle);
+    if (!(direction.z + sine > 0)) {
+        return std::nullopt;
+    }
+    return CapView{CapView::Kind::infinite, direction, sine};
+}
+
+std::optional<CapView> cap_view(const Light& light, const ShadingFrame& frame) {
+    if (const auto* sphere = std::get_if<SphereLight>(&light)) {
+        return view(*sphere, frame);
+    }
+    const auto* sun = std::get_if<SunLight>(&light);
+    return sun != nullptr ? view(*sun, frame) : std::nullopt;
+}
+
+std::optional<DeltaView> delta_view(const Light& light, const ShadingFrame& frame, double error) {
+    DeltaView seen{};
+    if (const auto* parallel = std::get_if<ParallelSource>(&light)) {
+        seen = {frame.to_local(parallel->direction), std::numeric_limits<double>::infinity(), 1.0};
+    } else {
+        const Vec3d way = std::get<PointSource>(light).position - frame.origin;
+        seen.distance = glm::length(way);
+        if (!(seen.distance > 2 * error)) {
+            return std::nullopt;
+        }
+        seen.direction = frame.to_local(way / seen.distance);
+        seen.irradiance = 1 / (seen.distance * seen.distance);
+    }
+    if (!(seen.direction.z > 0)) {
+        return std::nullopt;
+    }
+    // Scenes may have thousands of even ones, whose direction in the world is of no use.
+    const EmissionProfile& profile = traits_of(light).profile;
+    if (!std::holds_alternative<EvenProfile>(profile)) {
+        seen.irradiance *= profile_factor(profile, -frame.to_world(seen.direction));
+    }
+    return seen.irradiance > 0 ? std::optional(seen) : std::nullopt;
+}
+
+ProfileView::ProfileView(const Light& light, const ShadingFrame& frame) {
+    const EmissionProfile& profile = traits_of(light).profile;
+    // Within a sphere its surface shines inwards, in all directions.
+    if (std::holds_alternative<EvenProfile>(profile) || surrounds(light, frame.origin)) {
+        return;
+    }
+    profile_ = &profile;
+    to_world_ = glm::dmat3(frame.x, frame.y, frame.z);
+    const Bounds bounds = bounds_from(light, frame.origin);
+    range_ = profile_range(profile, -bounds.towards, bounds.half_angle);
+}
+
+std::optional<std::array<Vec3d, 4>> lit_rectangle(const PolygonLight& light, const Vec3d& position) {
+    const std::optional<LitEdges> edges = lit_edges(light, position);
+    if (!edges || edges->whole()) {
+        return std::nullopt;
+    }
+    const Vec3d& corner = light.vertices[0];
+    const Vec3d along = light.vertices[1] - corner;
+    const Vec3d across = light.vertices[3] - corner;
+    const auto at = [&](double a, double b) { return corner + a * along + b * across; };
+    return std::array{at(edges->from[0], edges->from[1]), at(edges->to[0], edges->from[1]),
+                      at(edges->to[0], edges->to[1]), at(edges->from[0], edges->to[1])};
+}
+
+LitDisk lit_part(const DiskLight& light, const ShadingFrame& frame) {
+    LitDisk lit = {{light.center, light.half_axis_u, light.half_axis_v}, {}};
+    const auto* spread = std::get_if<SpreadProfile>(&light.traits.profile);
+    const double height = glm::dot(frame.origin - light.center, light.normal);
+    if (spread != nullptr && height > 0) {
+        restrict(light, frame.origin - height * light.normal, height * spread->tangent, lit);
+    }
+    Ellipse<double>& e = lit.ellipse;
+    e = {frame.point_to_local(e.center), frame.to_local(e.half_axis_u), frame.to_local(e.half_axis_v)};
+    for (Vec3d& corner : lit.corners) {
+        corner = frame.point_to_local(corner);
+    }
+    return lit;
+}
+
+bool is_seen(const DiskLight& light, const ShadingFrame& frame, double error) {
+    if (!is_lit_side(light, glm::dot(light.normal, frame.origin - light.center), error)) {
+        return false;
+    }
+    const double rise = std::hypot(glm::dot(frame.z, light.half_axis_u), glm::dot(frame.z, light.half_axis_v));
+    return glm::dot(frame.z, light.center - frame.origin) + rise > 0;
+}
+
+bool is_seen(const PolygonLight& light, const ShadingFrame& frame, double error) {
+    if (!is_lit_side(light, glm::dot(light.normal, frame.origin - light.vertices[0]), error)) {
+        return false;
+    }
+    return std::any_of(light.vertices.begin(), light.vertices.end(),
+                       [&](const Vec3d& v) { return glm::dot(frame.z, v - frame.origin) > 0; });
+}
+
+bool is_seen(const Light& light, const ShadingFrame& frame, double error) {
+    if (is_delta(light)) {
+        return delta_view(light, frame, error).has_value();
+    }
+    if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
+        const std::optional<LitEdges> edges = lit_edges(*polygon, frame.origin);
+        if ((edges && edges->empty()) || !is_seen(*polygon, frame, error)) {
+            return false;
+        }
+    } else if (const auto* disk = std::get_if<DiskLight>(&light)) {
+        if (!is_seen(*disk, frame, error)) {
+            return false;
+        }
+    } else if (const auto* mesh = std::get_if<MeshLight>(&light)) {
+        return glm::dot(frame.z, mesh->shape->center - frame.origin) > -mesh->shape->radius;
+    } else if (!cap_view(light, frame)) {
+        return false;
+    }
+    return ProfileView(light, frame).range().high > 0;
+}
+
+double least_distance(const Light& light, const Vec3d& position) {
+    if (const auto* sphere = std::get_if<SphereLight>(&light)) {
+        return std::max(0.0, glm::length(sphere->center - position) - sphere->radius);
+    }
+    if (const auto* point = std::get_if<PointSource>(&light)) {
+        return glm::length(point->position - position);
+    }
+    if (const auto* mesh = std::get_if<MeshLight>(&light)) {
+        return std::max(0.0, glm::length(mesh->shape->center - position) - mesh->shape->radius);
+    }
+    const auto of_planar = [&](const auto& planar) {
+        return std::max(std::abs(glm::dot(planar.normal, position - planar.center)),
+                        glm::length(planar.center - position) - planar.radius);
+    };
+    if (const auto* disk = std::get_if<DiskLight>(&light)) {
+        return of_planar(*disk);
+    }
+    const auto* polygon = std::get_if<PolygonLight>(&light);
+    return polygon != nullptr ? of_planar(*polygon) : std::numeric_limits<double>::infinity();
+}
+
+double changing_distance(const Light& light, const Vec3d& position) {
+    const EmissionProfile& profile = traits_of(light).profile;
+    const double distance = least_distance(light, position);
+    if (std::holds_alternative<EvenProfile>(profile) || !std::isfinite(distance)) {
+        return distance;
+    }
+    return distance * profile_scale(profile, -bounds_from(light, position).towards);
+}
+
+Circle circle_of(const CapView& cap) {
+    switch (cap.kind) {
+        case CapView::Kind::sphere:
+            return circle_of_sphere(cap.center, cap.radius);
+        case CapView::Kind::facing_disk:
+            return circle_of_facing_disk(cap.center, cap.radius);
+        case CapView::Kind::infinite:
+            return {cap.center, std::sqrt(std::max(0.0, (1 - cap.radius) * (1 + cap.radius))), cap.radius};
+        case CapView::Kind::inside:
+            break;
+    }
+    return {{0, 0, 1}, 0, 1};
+}
+
+}  // namespace shlight

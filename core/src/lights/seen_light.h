@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+//
+// Lights as a hit sees them: in its shading frame, with what lies on their dark side or below the horizon sorted out.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "shlight/disk.h"
+#include "shlight/light.h"
+#include "shlight/types.h"
+#include "shlight/warp.h"
+#include "tracing/hits.h"
+
+namespace shlight {
+
+/// A sphere light. Within the sphere the whole hemisphere is lit: the limit of a point that touches it.
+/// infinite: a sun; center is then a unit vector, and radius the sine of its half angle.
+struct CapView {
+    enum class Kind { sphere, facing_disk, inside, infinite };
+
+    Kind kind;
+    Vec3d center;
+    double radius;
+};
+
+/// Nothing for a cap that lies below the horizon.
+std::optional<CapView> view(const SphereLight& light, const ShadingFrame& frame);
+std::optional<CapView> view(const SunLight& light, const ShadingFrame& frame);
+/// The same of lights that are one of these, and nothing for others.
+std::optional<CapView> cap_view(const Light& light, const ShadingFrame& frame);
+
+/// A source without extent.
+struct DeltaView {
+    Vec3d direction;    ///< unit, in the shading frame
+    double distance;    ///< may be infinite
+    double irradiance;  ///< on a surface at right angles, of a source of strength 1
+};
+
+/// Nothing for a source below the horizon, one that does not shine this way, or one within `error` of the hit.
+/// Precondition: is_delta(light).
+std::optional<DeltaView> delta_view(const Light& light, const ShadingFrame& frame, double error);
+
+/// A light's emission profile as a hit sees it. Refers to the light.
+class ProfileView {
+  public:
+    ProfileView(const Light& light, const ShadingFrame& frame);
+
+    /// Bounds of the factor over the light.
+    const ProfileRange& range() const { return range_; }
+    /// Of a unit direction towards the light, in the shading frame.
+    double factor(const Vec3d& direction) const {
+        return profile_ == nullptr ? 1.0 : profile_factor(*profile_, -(to_world_ * direction));
+    }
+
+  private:
+    const EmissionProfile* profile_ = nullptr;  // null: 1
+    glm::dmat3 to_world_{1};
+    ProfileRange range_ = {1, 1};
+};
+
+/// The corners of the smallest rectangle, with edges along the light's own, of what of a rectangle shines on a point
+/// through its spread. Nothing where that is all of it, and for lights of other shapes and profiles.
+std::optional<std::array<Vec3d, 4>> lit_rectangle(const PolygonLight& light, const Vec3d& position);
+
+/// visit(corner) for the corners of that rectangle, or else of all of the polygon, in the shading frame.
+template <class Visit>
+void for_lit_corners(const PolygonLight& light, const ShadingFrame& frame, const Visit& visit) {
+    const auto part = lit_rectangle(light, frame.origin);
+    for (const Vec3d& v : part ? std::span<const Vec3d>(*part) : std::span<const Vec3d>(light.vertices)) {
+        visit(frame.point_to_local(v));
+    }
+}
+
+/// A part of a disk.
+struct LitDisk {
+    Ellipse<double> ellipse;
+    std::vector<Vec3d> corners;  ///< if there are any, the part is this convex polygon
+};
+/// What of a disk shines on a point through its spread, or more, in the shading frame; all of it if the spread lights
+/// a good part.
+LitDisk lit_part(const DiskLight& light, const ShadingFrame& frame);
+
+/// Whether the light's bright side is seen at all, its profile left aside: the hit lies off the polygon's plane, on a
+/// side that it shines to, and some vertex is above the horizon. A hit in the plane, within rounding, gets nothing: a
+/// polygon is dark edge-on, and a surface on which a light lies flat is not lit at random.
+bool is_seen(const PolygonLight& light, const ShadingFrame& frame, double error);
+/// The same of a disk.
+bool is_seen(const DiskLight& light, const ShadingFrame& frame, double error);
+/// The same for any light, its profile considered.
+bool is_seen(const Light& light, const ShadingFrame& frame, double error);
+
+/// At least this far away lies every point of the light; 0 where that is not known.
+double least_distance(const Light& light, const Vec3d& position);
+/// A distance over which the light of the hit changes as little as it does over the least distance for an even light.
+double changing_distance(const Light& light, const Vec3d& position);
+
+/// The directions to the light.
+Circle circle_of(const CapView& cap);
+
+}  // namespace shlight

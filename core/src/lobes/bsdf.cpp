@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/bsdf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "base/checks.h"
+#include "lobes/view_grid.h"
+
+namespace shlight {
+namespace {
+
+void check_color(const char* name, const Rgb& color) {
+    for (int i = 0; i < 3; ++i) {
+        if (!(std::isfinite(color[i]) && color[i] >= 0)) {
+            reject(std::string(name) + " must be finite and not negative");
+        }
+    }
+}
+
+float largest(const Rgb& c) {
+    return std::max({c.x, c.y, c.z});
+}
+
+bool is_black(const Rgb& c) {
+    return c == Rgb(0);
+}
+
+Lobe make_lobe(const LobeShape& shape, const Rgb& color) {
+    return {shape, is_mirror(shape) ? nullptr : warped_fit(shape), color, nullptr};
+}
+
+}  // namespace
+
+double Lobe::albedo(double cos_theta_o) const {
+    return fit ? fit->albedo(cos_theta_o) : fresnel_factor(std::get<GgxShape>(shape), cos_theta_o);
+}
+
+float ViewWeight::operator()(float cos_theta_o) const {
+    const ViewStencil s(cos_theta_o);
+    float sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        sum += s.even[i] * nodes_[s.nodes[i]];
+    }
+    return sum;
+}
+
+Bsdf Bsdf::lambert(const Rgb& albedo) {
+    check_color("albedo", albedo);
+    Bsdf b;
+    b.lobes_.push_back(make_lobe(LambertShape{}, albedo));
+    return b;
+}
+
+Bsdf Bsdf::ggx(float roughness, const Rgb& f0, float ior) {
+    if (!(roughness >= 0 && roughness <= 1)) {
+        reject("roughness must lie in [0, 1]");
+    }
+    check_color("f0", f0);
+    if (ior != 0 && !(std::isfinite(ior) && ior > 1)) {
+        reject("ior must be greater than 1");
+    }
+    const double alpha = roughness < kLeastRoughness ? 0 : static_cast<double>(roughness) * roughness;
+    Bsdf b;
+    if (!is_black(f0)) {
+        b.lobes_.push_back(make_lobe(GgxShape{alpha, Fresnel::one}, f0));
+    }
+    const Rgb rest = Rgb(1) - glm::min(f0, Rgb(1));
+    if (!is_black(rest)) {
+        const GgxShape edge = ior != 0 ? GgxShape{alpha, Fresnel::dielectric, ior} : GgxShape{alpha, Fresnel::schlick};
+        b.lobes_.push_back(make_lobe(edge, rest));
+    }
+    return b;
+}
+
+Bsdf Bsdf::layer(const Bsdf& top, const Bsdf& base) {
+    std::vector<float> passed(kViewNodes);
+    for (int i = 0; i < kViewNodes; ++i) {
+        const float reflected = largest(top.albedo(std::cos(view_angle(i))));
+        passed[i] = std::max(0.0F, 1 - reflected);
+    }
+    Bsdf result = top;
+    for (Lobe lobe : base.lobes_) {
+        std::vector<float> weight = passed;
+        if (lobe.weight) {
+            std::transform(weight.begin(), weight.end(), lobe.weight->nodes().begin(), weight.begin(),
+                           std::multiplies<>());
+        }
+        lobe.weight = std::make_shared<const ViewWeight>(std::move(weight));
+        result.lobes_.push_back(std::move(lobe));
+    }
+    return result;
+}
+
+Bsdf Bsdf::operator+(const Bsdf& other) const {
+    Bsdf sum = *this;
+    sum.lobes_.insert(sum.lobes_.end(), other.lobes_.begin(), other.lobes_.end());
+    return sum;
+}
+
+Bsdf Bsdf::scaled(const Rgb& factor) const {
+    check_color("factor", factor);
+    Bsdf result = *this;
+    for (Lobe& lobe : result.lobes_) {
+        lobe.color *= factor;
+    }
+    return result;
+}
+
+Rgb Bsdf::evaluate(const Vec3d& wi, const Vec3d& wo) const {
+    Rgb sum(0);
+    for (const Lobe& lobe : lobes_) {
+        sum += lobe.scale(static_cast<float>(wo.z)) * static_cast<float>(lobe_value(lobe.shape, wi, wo));
+    }
+    return sum;
+}
+
+Rgb Bsdf::albedo(double cos_theta_o) const {
+    Rgb sum(0);
+    for (const Lobe& lobe : lobes_) {
+        sum += lobe.scale(static_cast<float>(cos_theta_o)) * static_cast<float>(lobe.albedo(cos_theta_o));
+    }
+    return sum;
+}
+
+}  // namespace shlight

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "lobes/contour_kernel.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lobes/contour_kernel.cpp"
+#include <hwy/foreach_target.h>
+// Highway's vocabulary, and what is compiled once per instruction set, come after it.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <hwy/contrib/math/math-inl.h>
+
+#include "lobes/ggx-inl.h"
+#include "simd/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace shlight::HWY_NAMESPACE {
+namespace {
+
+template <class D, Fresnel kFresnel>
+class BellLanes {
+  public:
+    explicit BellLanes(const OutlineBell& bell)
+        : alpha_(bell.shape.alpha),
+          alpha2_(alpha_ * alpha_),
+          ior_(bell.shape.ior),
+          cos_o_(bell.cos_o),
+          sin_o_(std::sqrt((1 - cos_o_) * (1 + cos_o_))),
+          masking_o_(std::sqrt(alpha2_ + (1 - alpha2_) * cos_o_ * cos_o_)),
+          rule_(*bell.rule) {}
+
+    /// The angle about the bell's middle times ∫ f·cos over a radius from there to the outline.
+    HWY_INLINE V<D> density(const OutlinePath& path, V<D> parameter) const {
+        const D d;
+        const auto f = all(d, path.flatness);
+        const auto s = hn::Sin(d, parameter);
+        const auto c = hn::Cos(d, parameter);
+        const auto fc = hn::Mul(f, c);
+        const auto r = hn::Sqrt(hn::MulAdd(fc, fc, hn::Mul(s, s)));
+        const auto slope = hn::Div(hn::Mul(all(d, 1 - path.flatness * path.flatness), hn::Mul(s, c)), r);
+        const auto fs = hn::Mul(f, s);
+        const auto half = [&](int i) HWY_ATTR {
+            return hn::MulAdd(r, all(d, path.middle[i]),
+                              hn::MulAdd(fc, all(d, path.cosine[i]), hn::Mul(s, all(d, path.sine[i]))));
+        };
+        const auto step = [&](int i) HWY_ATTR {
+            return hn::MulAdd(slope, all(d, path.middle[i]),
+                              hn::NegMulAdd(fs, all(d, path.cosine[i]), hn::Mul(c, all(d, path.sine[i]))));
+        };
+        const auto x = half(0);
+        const auto y = half(1);
+        const auto z = half(2);
+        const auto square = hn::MulAdd(x, x, hn::Mul(y, y));
+        const auto across = hn::Sqrt(square);
+        const auto inverse = hn::Div(all(d, 1), across);
+        const auto turn = hn::Mul(hn::MulSub(x, step(1), hn::Mul(y, step(0))), hn::Mul(inverse, inverse));
+        const auto value = hn::Mul(turn, radial_integral(hn::Mul(x, inverse), hn::Div(across, z)));
+        const auto valid = hn::And(hn::Gt(square, hn::Zero(d)), hn::Gt(z, hn::Zero(d)));
+        return hn::IfThenElseZero(valid, value);
+    }
+
+  private:
+    /// ∫ over tan θ' = 0 … radius at one azimuth about the bell. In t = tan ½θ' the bell is rational and the range
+    /// short.
+    HWY_INLINE V<D> radial_integral(V<D> cos_azimuth, V<D> radius) const {
+        const D d;
+        const auto one = all(d, 1);
+        const auto end = hn::Div(radius, hn::Add(one, hn::Sqrt(hn::MulAdd(radius, radius, one))));
+        // Crowded towards the outline, because a lobe that is cut by the horizon ends steeply there; the shortest rule
+        // is better off without.
+        const double crowding = rule_.nodes.size() > 4 ? 1 : 0;
+        auto sum = hn::Zero(d);
+        for (std::size_t i = 0; i < rule_.nodes.size(); ++i) {
+            const double x = rule_.nodes[i];
+            const auto t = hn::Mul(end, all(d, x * (1 + crowding * (1 - x))));
+            const auto weight = all(d, rule_.weights[i] * (1 + crowding * (1 - 2 * x)));
+            const auto scale = hn::Div(one, hn::MulAdd(t, t, one));
+            const auto sine = hn::Mul(hn::Add(t, t), scale);
+            const auto cosine = hn::Mul(hn::Mul(hn::Sub(one, t), hn::Add(one, t)), scale);
+            sum = hn::MulAdd(hn::Mul(hn::Mul(weight, scale), sine), factors(cos_azimuth, sine, cosine), sum);
+        }
+        return hn::Mul(hn::Mul(all(d, 2 / std::numbers::pi), end), sum);
+    }
+
+    /// f·cos dω over the bell's own density cosθ' dω' / π and its cosine: F G₂ (ω_o·h) / cosθ_o with the length of h
+    /// divided out.
+    HWY_INLINE V<D> factors(V<D> cos_azimuth, V<D> sine, V<D> cosine) const {
+        const D d;
+        const auto cos_o = all(d, cos_o_);
+        const auto x = hn::Mul(all(d, alpha_), sine);
+        const auto square = hn::MulAdd(x, x, hn::Mul(cosine, cosine));
+        // (ω_o·h) √square
+        const auto towards = hn::MulAdd(cos_o, cosine, hn::Mul(hn::Mul(all(d, sin_o_), x), cos_azimuth));
+        const auto cos_i = hn::Sub(hn::Div(hn::Mul(hn::Add(towards, towards), cosine), square), cos_o);
+        const auto masking_i = hn::Sqrt(hn::MulAdd(hn::Mul(all(d, 1 - alpha2_), cos_i), cos_i, all(d, alpha2_)));
+        // G₂ / cosθ_o
+        const auto visibility =
+            hn::Div(hn::Add(cos_i, cos_i), hn::MulAdd(cos_o, masking_i, hn::Mul(cos_i, all(d, masking_o_))));
+        auto value = hn::Mul(visibility, towards);
+        if constexpr (kFresnel != Fresnel::one) {
+            value = hn::Mul(value, fresnel_in_lanes<kFresnel>(d, ior_, hn::Div(towards, hn::Sqrt(square))));
+        }
+        return hn::IfThenElseZero(hn::Gt(cos_i, hn::Zero(d)), value);
+    }
+
+    double alpha_, alpha2_, ior_, cos_o_, sin_o_, masking_o_;
+    const GaussRule& rule_;
+};
+
+template <class T, Fresnel kFresnel>
+void densities(const OutlineBell& bell, const OutlinePath& path, std::span<const double> parameters,
+               std::span<double> values) {
+    using D = hn::CappedTag<T, kOutlinePoints>;
+    const D d;
+    const BellLanes<D, kFresnel> lanes(bell);
+    alignas(64) std::array<T, kOutlinePoints> buffer;
+    std::transform(parameters.begin(), parameters.end(), buffer.begin(), [](double x) { return static_cast<T>(x); });
+    std::fill(buffer.begin() + parameters.size(), buffer.end(), buffer[0]);
+    for (std::size_t i = 0; i < parameters.size(); i += kLaneCount<D>) {
+        hn::Store(lanes.density(path, hn::Load(d, buffer.data() + i)), d, buffer.data() + i);
+    }
+    std::transform(buffer.begin(), buffer.begin() + values.size(), values.begin(),
+                   [](T x) { return static_cast<double>(x); });
+}
+
+template <Fresnel kFresnel>
+void densities_of(const OutlineBell& bell, const OutlinePath& path, bool single, std::span<const double> parameters,
+                  std::span<double> values) {
+    if (single) {
+        densities<float, kFresnel>(bell, path, parameters, values);
+    } else {
+        densities<double, kFresnel>(bell, path, parameters, values);
+    }
+}
+
+void outline_densities_in_lanes(const OutlineBell& bell, const OutlinePath& path, bool single,
+                                std::span<const double> parameters, std::span<double> values) {
+    switch (bell.shape.fresnel) {
+        case Fresnel::one:
+            return densities_of<Fresnel::one>(bell, path, single, parameters, values);
+        case Fresnel::schlick:
+            return densities_of<Fresnel::schlick>(bell, path, single, parameters, values);
+        case Fresnel::dielectric:
+            return densities_of<Fresnel::dielectric>(bell, path, single, parameters, values);
+    }
+}
+
+}  // namespace
+}  // namespace shlight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace shlight {
+
+HWY_EXPORT(outline_densities_in_lanes);
+
+void outline_densities(const OutlineBell& bell, const OutlinePath& path, bool single,
+                       std::span<const double> parameters, std::span<double> values) {
+    HWY_DYNAMIC_DISPATCH(outline_densities_in_lanes)(bell, path, single, parameters, values);
+}
+
+}  // namespace shlight
+#endif

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include "lobes/material_lobes.h"
+
+#include <algorithm>
+
+namespace shlight {
+
+double narrowest(const LobeShape& lobe, double cos_theta_o) {
+    const auto* ggx = std::get_if<GgxShape>(&lobe);
+    // At its peak a lobe is 2α wide across the plane of incidence's normal, and cosθ_o times that along it.
+    return ggx != nullptr ? std::min(1.0, 2 * ggx->alpha * std::max(cos_theta_o, kLeastFittedCosine)) : 1.0;
+}
+
+MaterialLobes::MaterialLobes(std::span<const Lobe> lobes, int order, double tolerance)
+    : auto_order_(order == 0), tolerance_(tolerance) {
+    for (const Lobe& lobe : lobes) {
+        if (lobe.color == Rgb(0)) {
+            continue;
+        }
+        lobes_.push_back(lobe);
+        if (!auto_order_) {
+            fits_.push_back(is_mirror(lobe.shape) ? nullptr : warped_fit(lobe.shape, order));
+        }
+    }
+}
+
+double MaterialLobes::narrowest(double cos_theta_o) const {
+    double least = 1;
+    for (const Lobe& lobe : lobes_) {
+        least = std::min(least, shlight::narrowest(lobe.shape, cos_theta_o));
+    }
+    return least;
+}
+
+}  // namespace shlight

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "lobes/material_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "lobes/view_kernel.h"
+#include "lobes/view_table.h"
+
+namespace shlight {
+
+void ViewPositions::assign(std::span<const double> cos_theta_o, bool tabulated) {
+    size_ = cos_theta_o.size();
+    if (const std::size_t room = padded_views(size_); cosine_.size() < room) {
+        for (std::vector<double>* array : {&cosine_, &sine_, &fitted_sine_, &fitted_cosine_}) {
+            array->resize(room);
+        }
+        log_cosine_.resize(room);
+        row_.resize(room);
+        weights_.resize(4 * room);
+        all_.resize(room);
+        std::iota(all_.begin(), all_.end(), 0U);
+    }
+    std::copy(cos_theta_o.begin(), cos_theta_o.end(), cosine_.begin());
+    if (tabulated) {
+        find_views(cosine_.data(), size_, arrays());
+    }
+}
+
+ViewOutput ViewPositions::arrays() {
+    return {sine_.data(), fitted_sine_.data(), fitted_cosine_.data(), log_cosine_.data(), row_.data(), weights_.data()};
+}
+
+void ViewPositions::interpolate(const float* table, std::size_t width, std::span<const std::uint32_t> views, float* out,
+                                std::size_t stride) const {
+    interpolate_views(table, width, row_.data(), weights_.data(), views, out, stride);
+}
+
+void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPositions& positions, bool judged) {
+    lobe_ = &material.lobes()[lobe];
+    fit_ = material.fit(lobe);
+    positions_ = &positions;
+    chooses_ = material.auto_order() && std::holds_alternative<GgxShape>(lobe_->shape) && !is_mirror(lobe_->shape);
+    judged_ = judged;
+    has_warps_ = false;
+    stride_ = 0;
+    find_scales();
+    if (judged_) {
+        find_albedos();
+    }
+}
+
+void LobeViews::find_scales() {
+    if (!lobe_->weight) {
+        scale_.assign(1, lobe_->color);
+        return;
+    }
+    scale_.resize(positions_->size());
+    std::transform(positions_->cosine().begin(), positions_->cosine().end(), scale_.begin(),
+                   [&](double cosine) { return lobe_->scale(static_cast<float>(cosine)); });
+}
+
+void LobeViews::find_albedos() {
+    const std::size_t count = positions_->size();
+    albedo_.resize(count);
+    const ViewTable* table = fit_ == nullptr ? nullptr : fit_->table();
+    if (table == nullptr) {
+        std::transform(positions_->cosine().begin(), positions_->cosine().end(), albedo_.begin(),
+                       [&](double cosine) { return static_cast<float>(lobe_->albedo(cosine)); });
+        return;
+    }
+    heads_.grow(count * ViewTable::kHeadWidth);
+    positions_->interpolate(table->heads(), ViewTable::kHeadWidth, positions_->all(), heads_.data(),
+                            ViewTable::kHeadWidth);
+    for (std::size_t view = 0; view < count; ++view) {
+        albedo_[view] = heads_.data()[view * ViewTable::kHeadWidth + ViewTable::kAlbedo];
+    }
+}
+
+/// allowances: how much of the material's albedo there is for each of the lobe's; infinite where it has none itself.
+void LobeViews::choose_orders(double tolerance, std::span<const float> allowances) {
+    const std::size_t count = positions_->size();
+    const ViewTable* table = fit_ == nullptr ? nullptr : fit_->table();
+    const int only = fit_ == nullptr ? 0 : table == nullptr || !chooses_ ? fit_->orders().front() : -1;
+    black_.assign(count, 0);
+    met_.assign(count, 1);
+    order_.assign(count, static_cast<std::uint8_t>(std::max(only, 0)));
+    any_black_ = false;
+    if (!judged_) {
+        for (std::size_t view = 0; view < count && has_weight(); ++view) {
+            black_[view] = scale(view) == Rgb(0) ? 1 : 0;
+            any_black_ = any_black_ || black_[view] != 0;
+        }
+        return;
+    }
+    tolerance_.resize(count);
+    for (std::size_t view = 0; view < count; ++view) {
+        black_[view] = std::isinf(allowances[view]) ? 1 : 0;
+        any_black_ = any_black_ || black_[view] != 0;
+        tolerance_[view] = static_cast<float>(tolerance * allowances[view]);
+        if (table == nullptr) {
+            met_[view] = only != 1 || 0.5F <= tolerance_[view] ? 1 : 0;
+            continue;
+        }
+        const float* errors = heads_.data() + view * ViewTable::kHeadWidth + ViewTable::kShadingErrors;
+        if (only >= 0) {
+            met_[view] = errors[0] <= tolerance_[view] ? 1 : 0;
+        } else if (positions_->cosine()[view] >= kLeastFittedCosine) {
+            std::size_t i = 0;
+            while (i < table->orders().size() && !(errors[i] <= tolerance_[view])) {
+                ++i;
+            }
+            order_[view] = static_cast<std::uint8_t>(i < table->orders().size() ? table->orders()[i] : 0);
+        }
+    }
+}
+
+WarpArrays LobeViews::warp_arrays() {
+    const std::size_t room = padded_views(positions_->size());
+    const ViewOutput views = positions_->arrays();
+    if (!has_warps_) {
+        warps_.resize(std::max(warps_.size(), 7 * room));
+    }
+    double* w = warps_.data();
+    if (!has_warps_) {
+        warp_views(ggx().alpha, views, positions_->size(),
+                   {w, w + room, w + 2 * room, w + 3 * room, w + 4 * room, w + 5 * room, w + 6 * room});
+        has_warps_ = true;
+    }
+    return {views.fitted_sine, views.fitted_cosine, w,           w + room, w + 2 * room, w + 3 * room,
+            w + 4 * room,      w + 5 * room,        w + 6 * room};
+}
+
+void LobeViews::interpolate_terms(std::size_t which, std::span<const std::uint32_t> used) {
+    const ViewTable& table = *fit_->table();
+    if (stride_ == 0) {
+        // Wide enough for any of the orders.
+        for (std::size_t i = 0; i < table.orders().size(); ++i) {
+            stride_ = std::max(stride_, table.width(i));
+        }
+        terms_.grow(positions_->size() * stride_);
+        has_terms_.assign(positions_->size(), 0);
+    }
+    missing_.clear();
+    for (const std::uint32_t view : used) {
+        if (has_terms_[view] == 0) {
+            has_terms_[view] = 1;
+            missing_.push_back(view);
+        }
+    }
+    positions_->interpolate(table.terms(which), table.width(which), missing_, terms_.data(), stride_);
+}
+
+LobeArrays LobeViews::arrays(int order, std::span<const std::uint32_t> used) {
+    const ViewTable* table = fit_->table();
+    if (table != nullptr) {
+        interpolate_terms(table->which(order), used);
+        return {true, warp_arrays(), terms_.data(), positions_->size() == 1 ? 0 : stride_, order};
+    }
+    if (stride_ == 0) {
+        stride_ = AlignedFloats::padded(static_cast<std::size_t>(cosine_count(order)));
+        terms_.grow(stride_);
+        fit_->coefficients(1, order, terms_.data());
+    }
+    return {false, {}, terms_.data(), 0, order};
+}
+
+void MaterialViews::assign(const MaterialLobes& material, std::span<const double> cos_theta_o, bool judged) {
+    const bool weighed = judged || material.auto_order();
+    lobe_count_ = material.lobes().size();
+    const bool tabulated = std::any_of(material.lobes().begin(), material.lobes().end(),
+                                       [](const Lobe& lobe) { return std::holds_alternative<GgxShape>(lobe.shape); });
+    positions_.assign(cos_theta_o, tabulated);
+    if (lobes_.size() < lobe_count_) {
+        lobes_.resize(lobe_count_);
+    }
+    for (std::size_t i = 0; i < lobe_count_; ++i) {
+        lobes_[i].look_up(material, i, positions_, weighed);
+    }
+    if (weighed && lobe_count_ > 1) {
+        whole_.assign(positions_.size(), Rgb(0));
+        for (std::size_t i = 0; i < lobe_count_; ++i) {
+            for (std::size_t view = 0; view < positions_.size(); ++view) {
+                whole_[view] += lobes_[i].scale(view) * lobes_[i].albedo_[view];
+            }
+        }
+    }
+    for (std::size_t i = 0; i < lobe_count_; ++i) {
+        if (weighed) {
+            find_allowances(i);
+        }
+        lobes_[i].choose_orders(material.tolerance(), allowances_);
+    }
+}
+
+void MaterialViews::find_allowances(std::size_t lobe) {
+    const LobeViews& own = lobes_[lobe];
+    allowances_.resize(positions_.size());
+    for (std::size_t view = 0; view < positions_.size(); ++view) {
+        const Rgb light = own.scale(view) * own.albedo_[view];
+        float allowance = std::numeric_limits<float>::infinity();
+        for (int channel = 0; channel < 3; ++channel) {
+            if (light[channel] > 0) {
+                allowance = std::min(allowance, lobe_count_ == 1 ? 1.0F : whole_[view][channel] / light[channel]);
+            }
+        }
+        allowances_[view] = allowance;
+    }
+}
+
+}  // namespace shlight

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+//
+// A material at many views: everything that all lights at a hit share.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/aligned_floats.h"
+#include "lobes/material_lobes.h"
+#include "lobes/view_kernel.h"
+#include "shlight/types.h"
+#include "simd/lobe_arrays.h"
+
+namespace shlight {
+
+/// Cosines of views, and where their lobes' tables are read.
+class ViewPositions {
+  public:
+    /// tabulated: whether any lobe needs more than the cosines.
+    void assign(std::span<const double> cos_theta_o, bool tabulated);
+
+    std::size_t size() const { return size_; }
+    std::span<const double> cosine() const { return std::span(cosine_).first(size_); }
+    /// ω_o of each.
+    ViewArrays directions() const { return {sine_.data(), cosine_.data(), size_ == 1}; }
+    Vec3d direction(std::size_t view) const { return {sine_[view], 0, cosine_[view]}; }
+    /// As view_kernel.h reads them.
+    ViewOutput arrays();
+    /// Rows `views` of a table of view_table.h.
+    void interpolate(const float* table, std::size_t width, std::span<const std::uint32_t> views, float* out,
+                     std::size_t stride) const;
+    /// 0, 1, 2 …
+    std::span<const std::uint32_t> all() const { return std::span(all_).first(size_); }
+
+  private:
+    std::size_t size_ = 0;
+    // Longer than size_, as view_kernel.h wants it.
+    std::vector<double> cosine_, sine_, fitted_sine_, fitted_cosine_;
+    std::vector<float> log_cosine_;
+    std::vector<std::uint32_t> row_, all_;
+    std::vector<float> weights_;
+};
+
+/// One lobe at these views. Keeps its memory from one assignment to the next.
+class LobeViews {
+  public:
+    const LobeShape& shape() const { return lobe_->shape; }
+    const GgxShape& ggx() const { return std::get<GgxShape>(lobe_->shape); }
+    const ViewPositions& positions() const { return *positions_; }
+
+    /// Whether each light is integrated in the way that is cheapest for it, or else all by harmonics of one order.
+    bool chooses() const { return chooses_; }
+    /// Whether the scale depends on the view.
+    bool has_weight() const { return lobe_->weight != nullptr; }
+    /// What values of the lobe are multiplied by.
+    const Rgb& scale(std::size_t view) const { return scale_[has_weight() ? view : 0]; }
+    /// Reflects nothing at all.
+    bool is_black(std::size_t view) const { return black_[view] != 0; }
+    bool any_black() const { return any_black_; }
+    /// For lights that are not small; 0: their outline is integrated, or the lobe is a mirror.
+    int order(std::size_t view) const { return order_[view]; }
+    /// Whether the order keeps within the tolerance; only if that was to be judged.
+    bool met(std::size_t view) const { return met_[view] != 0; }
+    /// Of the radiance ÷ albedo; only if the lobe chooses.
+    const float* tolerances() const { return tolerance_.data(); }
+    /// Of the radiance.
+    double absolute_tolerance(std::size_t view) const { return double{tolerance_[view]} * albedo_[view]; }
+
+    /// As the kernels read it. order: of those views that `used` lists.
+    LobeArrays arrays(int order, std::span<const std::uint32_t> used);
+    Warp warp(std::size_t view) const { return fit_->warp(positions_->cosine()[view]); }
+
+  private:
+    friend class MaterialViews;
+
+    void look_up(const MaterialLobes& material, std::size_t lobe, ViewPositions& positions, bool judged);
+    void find_scales();
+    void find_albedos();
+    void choose_orders(double tolerance, std::span<const float> allowances);
+    WarpArrays warp_arrays();
+    void interpolate_terms(std::size_t which, std::span<const std::uint32_t> used);
+
+    const Lobe* lobe_ = nullptr;
+    const WarpedFit* fit_ = nullptr;
+    ViewPositions* positions_ = nullptr;
+    bool chooses_ = false, judged_ = false, any_black_ = false;
+    std::vector<Rgb> scale_;  // one for all where the lobe has no weight
+    std::vector<float> albedo_, tolerance_;
+    std::vector<std::uint8_t> black_, order_, met_;
+    AlignedFloats heads_;
+
+    bool has_warps_ = false;
+    std::vector<double> warps_;  // the arrays of WarpOutput
+    std::size_t stride_ = 0;     // of terms_
+    AlignedFloats terms_;
+    std::vector<std::uint8_t> has_terms_;  // of each view
+    std::vector<std::uint32_t> missing_;
+};
+
+class MaterialViews {
+  public:
+    /// judged: whether each lobe's met() will be asked for. material and cos_theta_o are kept by reference.
+    void assign(const MaterialLobes& material, std::span<const double> cos_theta_o, bool judged);
+
+    std::size_t lobe_count() const { return lobe_count_; }
+    LobeViews& lobe(std::size_t index) { return lobes_[index]; }
+    const ViewPositions& positions() const { return positions_; }
+
+  private:
+    void find_allowances(std::size_t lobe);
+
+    ViewPositions positions_;
+    std::size_t lobe_count_ = 0;
+    std::vector<LobeViews> lobes_;
+    std::vector<Rgb> whole_;  // albedo of all lobes
+    std::vector<float> allowances_;
+};
+
+}  // namespace shlight

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// A lobe's harmonics in the frame of the light: it is the lobe that is turned, once for three colour channels.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include <glm/mat3x3.hpp>
+
+#include "lobes/sh_projection.h"
+#include "math/band_rotation.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// Harmonics of a light in three colour channels.
+using ColorHarmonics = std::array<std::vector<float>, 3>;
+
+/// At one shading point.
+class TurnedLobe {
+  public:
+    /// frame: a rotation, whose columns are the axes of the shading frame in the frame of the light.
+    explicit TurnedLobe(const glm::dmat3& frame) : frame_(frame) {}
+
+    /// order² coefficients of f·cos, until the next call.
+    const float* coefficients(const ClampedLobe& lobe, float cos_theta_o, int order);
+    /// What a lobe of such coefficients reflects of a light with as many or more.
+    static Rgb reflected(const ColorHarmonics& light, const float* lobe, int order);
+
+  private:
+    void set_zonal(int order);
+    void set_turned(int order);
+
+    glm::dmat3 frame_;
+    std::optional<BandRotation> rotation_;
+    std::array<float, cosine_count(kMaxOrder)> terms_;
+    std::array<float, coefficient_count(kMaxOrder)> coefficients_;
+};
+
+}  // namespace shlight

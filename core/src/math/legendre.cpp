@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "math/legendre.h"
+
+#include <memory>
+#include <numbers>
+
+namespace shlight {
+namespace {
+
+/// Worked out in extended precision: products of 63 square roots would bring their rounding into every light.
+using Real = long double;
+
+struct Exact {
+    std::array<Real, kMaxOrder> diagonal{};
+    std::array<Real, kCosineMax> step{}, back{}, ladder{}, at_pole{}, climb{}, fall{};
+};
+
+void fill_recurrence(Exact& c) {
+    c.diagonal[0] = std::sqrt(1 / (4 * std::numbers::pi_v<Real>));
+    for (std::size_t m = 1; m < kMaxOrder; ++m) {
+        const auto d = static_cast<Real>(m);
+        c.diagonal[m] = c.diagonal[m - 1] * std::sqrt((2 * d + 1) / (2 * d));
+    }
+    for (int l = 0; l < kMaxOrder; ++l) {
+        for (int m = 0; m <= l; ++m) {
+            c.ladder[at(l, m)] = std::sqrt(static_cast<Real>((l - m) * (l + m + 1)));
+            if (m == l) {
+                continue;
+            }
+            const Real a = std::sqrt((Real(4) * l * l - 1) / (l * l - m * m));
+            const Real k = l - 1;
+            c.step[at(l, m)] = a;
+            c.back[at(l, m)] = l - 1 > m ? a * std::sqrt((k * k - m * m) / (4 * k * k - 1)) : Real(0);
+        }
+    }
+}
+
+void fill_pole(Exact& c) {
+    for (int m = 0; m < kMaxOrder; ++m) {
+        c.at_pole[at(m, m)] = c.diagonal[m];
+        for (int l = m + 1; l < kMaxOrder; ++l) {
+            const Real before = l > m + 1 ? c.at_pole[at(l - 2, m)] : Real(0);
+            c.at_pole[at(l, m)] = c.step[at(l, m)] * c.at_pole[at(l - 1, m)] - c.back[at(l, m)] * before;
+        }
+    }
+}
+
+void fill_degrees(Exact& c) {
+    for (int l = 0; l < kMaxOrder; ++l) {
+        for (int m = 1; m < l; ++m) {
+            c.climb[at(l, m)] = 2 * static_cast<Real>(m) / c.ladder[at(l, m)];
+            c.fall[at(l, m)] = c.ladder[at(l, m - 1)] / c.ladder[at(l, m)];
+        }
+    }
+}
+
+template <class T, std::size_t N>
+std::array<T, N> rounded(const std::array<Real, N>& values) {
+    std::array<T, N> out{};
+    for (std::size_t i = 0; i < N; ++i) {
+        out[i] = static_cast<T>(values[i]);
+    }
+    return out;
+}
+
+template <class T>
+std::unique_ptr<const LegendreConstants<T>> make_constants() {
+    auto exact = std::make_unique<Exact>();
+    fill_recurrence(*exact);
+    fill_pole(*exact);
+    fill_degrees(*exact);
+    auto c = std::make_unique<LegendreConstants<T>>();
+    c->diagonal = rounded<T>(exact->diagonal);
+    c->step = rounded<T>(exact->step);
+    c->back = rounded<T>(exact->back);
+    c->ladder = rounded<T>(exact->ladder);
+    c->at_pole = rounded<T>(exact->at_pole);
+    c->climb = rounded<T>(exact->climb);
+    c->fall = rounded<T>(exact->fall);
+    return c;
+}
+
+}  // namespace
+
+template <class T>
+const LegendreConstants<T>& LegendreConstants<T>::get() {
+    static const std::unique_ptr<const LegendreConstants<T>> constants = make_constants<T>();
+    return *constants;
+}
+
+template struct LegendreConstants<float>;
+template struct LegendreConstants<double>;
+
+}  // namespace shlight

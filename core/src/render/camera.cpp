@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/camera.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "base/transforms.h"
+
+namespace shlight {
+namespace {
+
+void check_window(const Window& window) {
+    for (const double edge : {window.left, window.right, window.bottom, window.top}) {
+        if (!std::isfinite(edge)) {
+            reject("window contains a number that is not finite");
+        }
+    }
+    if (!(window.left < window.right)) {
+        reject("window: left must be smaller than right");
+    }
+    if (!(window.bottom < window.top)) {
+        reject("window: bottom must be smaller than top");
+    }
+}
+
+}  // namespace
+
+Camera::Camera(const glm::dmat4& to_world, double fov_x) : to_world_(to_world) {
+    check_transform("to_world", to_world);
+    if (!(fov_x > 0 && fov_x < std::numbers::pi)) {
+        reject("fov_x must lie between 0 and π");
+    }
+    half_width_ = std::tan(fov_x / 2);
+}
+
+Camera::Camera(const glm::dmat4& to_world, const Window& window, Projection projection, const ClipRange& clip)
+    : to_world_(to_world), window_(window), projection_(projection), clip_(clip) {
+    check_transform("to_world", to_world);
+    check_window(window);
+    if (!(std::isfinite(clip.start) && clip.start >= 0)) {
+        reject("clip_start must be finite and not negative");
+    }
+    if (!(clip.end > clip.start)) {
+        reject("clip_end must be greater than clip_start");
+    }
+}
+
+Window Camera::window(int width, int height) const {
+    if (window_) {
+        return *window_;
+    }
+    const double half_height = half_width_ * height / width;
+    return {-half_width_, half_width_, -half_height, half_height};
+}
+
+Ray Camera::ray(double x, double y) const {
+    const bool perspective = projection_ == Projection::perspective;
+    // Per unit of depth, so that the clip range is measured along the view axis and not along the ray, as Blender does.
+    const Vec3d per_depth = transform_vector(to_world_, perspective ? Vec3d(x, y, -1) : Vec3d(0, 0, -1));
+    const double length = glm::length(per_depth);
+    const Vec3d origin = transform_point(to_world_, perspective ? Vec3d(0) : Vec3d(x, y, 0));
+    return {Vec3f(origin), static_cast<float>(clip_.start * length), Vec3f(per_depth / length),
+            static_cast<float>(clip_.end * length)};
+}
+
+}  // namespace shlight

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "render/camera_visible_lamps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+namespace shlight {
+namespace {
+
+/// The part of a camera ray on which lamps are seen.
+struct View {
+    Vec3d start;
+    Vec3d direction;  // unit
+    double length;
+    bool reaches_suns;
+
+    bool covers(double distance) const { return distance > 0 && distance < length; }
+};
+
+bool meets_sphere(const SphereLight& light, const View& view) {
+    const Vec3d to_center = light.center - view.start;
+    const double along = glm::dot(to_center, view.direction);
+    const Vec3d across = to_center - along * view.direction;
+    const double half_chord_squared = light.radius * light.radius - glm::dot(across, across);
+    if (half_chord_squared < 0) {
+        return false;
+    }
+    const bool inside = glm::dot(to_center, to_center) < light.radius * light.radius;
+    return view.covers(along - std::copysign(std::sqrt(half_chord_squared), inside ? -1.0 : 1.0));
+}
+
+/// The disk faces the ray's start.
+bool meets_disk(const SphereLight& light, const View& view) {
+    const Vec3d to_center = light.center - view.start;
+    const double along = glm::dot(to_center, view.direction);
+    if (along <= 0) {
+        return false;
+    }
+    const double distance = glm::dot(to_center, to_center) / along;
+    return view.covers(distance) && glm::length(distance * view.direction - to_center) <= light.radius;
+}
+
+bool meets(const SphereLight& light, const View& view) {
+    return light.facing_disk ? meets_disk(light, view) : meets_sphere(light, view);
+}
+
+/// Where a ray meets a plane from a side that the light in it shines to; 0 where it does not.
+template <class PlanarLight>
+double distance_to_plane(const PlanarLight& light, const Vec3d& in_plane, const View& view) {
+    const double approach = -glm::dot(view.direction, light.normal);
+    if (approach == 0 || (approach < 0 && !light.two_sided)) {
+        return 0;
+    }
+    return glm::dot(view.start - in_plane, light.normal) / approach;
+}
+
+bool meets(const PolygonLight& light, const View& view) {
+    const double distance = distance_to_plane(light, light.vertices[0], view);
+    if (!view.covers(distance)) {
+        return false;
+    }
+    const Vec3d point = view.start + distance * view.direction;
+    const auto left_of = [&](std::uint32_t from, std::uint32_t to) {
+        const Vec3d& a = light.vertices[from];
+        return glm::dot(light.normal, glm::cross(light.vertices[to] - a, point - a)) >= 0;
+    };
+    return std::any_of(light.triangles.begin(), light.triangles.end(),
+                       [&](const Triangle& t) { return left_of(t.x, t.y) && left_of(t.y, t.z) && left_of(t.z, t.x); });
+}
+
+bool meets(const DiskLight& light, const View& view) {
+    const double distance = distance_to_plane(light, light.center, view);
+    if (!view.covers(distance)) {
+        return false;
+    }
+    const Vec3d way = view.start + distance * view.direction - light.center;
+    const double area = glm::dot(glm::cross(light.half_axis_u, light.half_axis_v), light.normal);
+    const double a = glm::dot(glm::cross(way, light.half_axis_v), light.normal);
+    const double b = glm::dot(glm::cross(light.half_axis_u, way), light.normal);
+    return std::hypot(a, b) <= area;
+}
+
+bool meets(const SunLight& light, const View& view) {
+    // A chord, which does not cancel at small angles as a cosine does.
+    return view.reaches_suns && glm::length(view.direction - light.direction) <= 2 * std::sin(light.half_angle / 2);
+}
+
+/// The camera sees the faces of a mesh as surfaces.
+bool meets(const MeshLight&, const View&) {
+    return false;
+}
+
+bool meets(const PointSource&, const View&) {
+    return false;
+}
+
+bool meets(const ParallelSource&, const View&) {
+    return false;
+}
+
+}  // namespace
+
+SeenLamps::SeenLamps(std::span<const Light> lights) {
+    for (const Light& light : lights) {
+        if (traits_of(light).seen_by_camera && !is_delta(light)) {
+            lamps_.push_back(&light);
+        }
+    }
+}
+
+Rgb SeenLamps::radiance(const Ray& ray, const std::optional<double>& surface) const {
+    const Vec3d direction = glm::normalize(Vec3d(ray.direction));
+    const double end = std::min<double>(ray.t_max, surface.value_or(ray.t_max));
+    const View view = {Vec3d(ray.origin) + double{ray.t_min} * direction, direction, end - ray.t_min, !surface};
+    Rgb sum(0);
+    for (const Light* lamp : lamps_) {
+        if (std::visit([&](const auto& light) { return meets(light, view); }, *lamp)) {
+            sum += strength_of(*lamp) * static_cast<float>(profile_factor(traits_of(*lamp).profile, -direction));
+        }
+    }
+    return sum;
+}
+
+}  // namespace shlight

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+#include "render/pixel_batch.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "shlight/sampling.h"
+
+namespace shlight {
+namespace {
+
+/// Unshadowed values that are held at a time, as many as fit the cache, but those of some lights at least.
+constexpr std::size_t kValues = std::size_t{1} << 21;
+constexpr std::size_t kLeastLights = 8;
+/// Camera rays of a batch: enough for long batches, few enough for the cache.
+constexpr std::size_t kMostBatchSamples = 4096;
+constexpr std::size_t kLeastSamples = 256;
+/// In the place of a light's number.
+constexpr std::uint32_t kEnvironmentSeed = 0xFFFFFFFFU;
+constexpr std::uint32_t kDeltaSeed = 0xFFFFFFFEU;
+constexpr std::uint32_t kLumpSeed = 0xFFFFFFFDU;
+
+/// Times stages that follow each other.
+class StageClock {
+  public:
+    explicit StageClock(RenderReport& report) : report_(&report), since_(std::chrono::steady_clock::now()) {}
+
+    /// What passed since the stage before was this one.
+    void end(RenderStage stage) {
+        const auto now = std::chrono::steady_clock::now();
+        report_->stage_seconds[static_cast<std::size_t>(stage)] += std::chrono::duration<double>(now - since_).count();
+        since_ = now;
+    }
+
+  private:
+    RenderReport* report_;
+    std::chrono::steady_clock::time_point since_;
+};
+
+}  // namespace
+
+Vec3d PixelSums::variance() const {
+    const double count = rays;
+    const Vec3d mean = radiance / count;
+    // The variance of a coordinate over its unit interval is 1/12.
+    const Vec3d linear = 12.0 * (along_x * along_x + along_y * along_y) / (count * count);
+    return glm::max(squares / count - mean * mean - linear, Vec3d(0));
+}
+
+void PixelSums::add(const Vec3d& ray_radiance, const Vec3d& noise, const glm::dvec2& from_center, bool is_opaque) {
+    opaque += is_opaque ? 1 : 0;
+    radiance += ray_radiance;
+    squares += ray_radiance * ray_radiance - noise;
+    along_x += from_center.x * ray_radiance;
+    along_y += from_center.y * ray_radiance;
+}
+
+Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const RenderSettings& r,
+                 std::vector<glm::dvec2> points)
+    : scene(&s),
+      camera(&c),
+      settings(r),
+      width(w),
+      height(h),
+      window(c.window(w, h)),
+      pixel_points(std::move(points)),
+      lights(s.lights().first(s.extended_light_count())),
+      extended(pointers_to(lights)),
+      deltas(pointers_to(s.lights().subspan(s.extended_light_count()))) {
+    for (const Material& material : s.materials()) {
+        materials.emplace_back(material.bsdf.lobes(), r.order, r.tolerance);
+        lobe_stride = std::max(lobe_stride, materials.back().lobes().size());
+    }
+    far = FarLights(s.lights(), materials, r.order);
+    if (!s.environment().is_black()) {
+        environment.emplace(s.environment(), materials, lobe_stride, r.order, r.tolerance);
+    }
+}
+
+std::uint32_t Picture::batch_samples() const {
+    const std::size_t values = std::max<std::size_t>(lights.size() * lobe_stride, 1);
+    return static_cast<std::uint32_t>(std::clamp(kValues / values, kLeastSamples, kMostBatchSamples));
+}
+
+PixelBatch::PixelBatch(const Picture& picture)
+    : picture_(&picture),
+      lumps_(picture.far, picture.materials, picture.settings.tolerance),
+      shadowed_lumps_(picture.scene->rays(), picture.materials, picture.lobe_stride, picture.scene->lights()),
+      shadowed_deltas_(picture.scene->rays(), picture.materials, picture.lobe_stride),
+      unshadowed_(picture.lobe_stride),
+      shadowed_(picture.scene->rays(), static_cast<std::uint32_t>(picture.settings.shadow_rays), picture.materials,
+                picture.lobe_stride),
+      shadowed_environment_(picture.scene->rays(), picture.scene->environment(),
+                            static_cast<std::uint32_t>(picture.settings.shadow_rays), picture.materials) {}
+
+void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums) {
+    StageClock clock(report_);
+    trace_camera_rays(pixels, samples);
+    clock.end(RenderStage::camera_rays);
+    points_.assign(hits_, picture_->materials, picture_->lights, picture_->deltas, picture_->settings.tolerance);
+    clock.end(RenderStage::views);
+    sort_lights();
+    add_deltas(pixels, samples);
+    add_lights(pixels, samples);
+    add_lumps(pixels, samples);
+    if (picture_->environment) {
+        add_environment(pixels, samples);
+    }
+    StageClock last(report_);
+    add_up(samples, sums);
+    last.end(RenderStage::pixels);
+}
+
+RenderReport PixelBatch::report() const {
+    RenderReport report = report_;
+    report.shadow_rays = shadowed_lumps_.rays_traced() + shadowed_deltas_.rays_traced() + shadowed_.rays_traced() +
+                         shadowed_environment_.rays_traced();
+    return report;
+}
+
+void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples) {
+    const Picture& p = *picture_;
+    rays_.clear();
+    for (const Pixel& pixel : pixels) {
+        for (std::uint32_t i = 0; i < samples.count; ++i) {
+            const double x = (pixel.column + p.pixel_points[samples.first + i].x) / p.width;
+            const double y = (pixel.row + p.pixel_points[samples.first + i].y) / p.height;
+            rays_.push_back(p.camera->ray(p.window.left + x * (p.window.right - p.window.left),
+                                          p.window.top + y * (p.window.bottom - p.window.top)));
+        }
+    }
+    ray_hits_.resize(rays_.size());
+    p.scene->rays().intersect(rays_, ray_hits_);
+    hits_.clear();
+    misses_.clear();
+    for (std::size_t first = 0; first < rays_.size(); first += samples.count) {
+        for (std::uint32_t i = 0; i < samples.count; ++i) {
+            if (ray_hits_[first + i].missed()) {
+                add_miss(rays_[first + i], static_cast<std::uint32_t>(first / samples.count), samples.first + i);
+            } else {
+                add_hit(rays_[first + i], ray_hits_[first + i], samples.first + i);
+            }
+        }
+        hits_.end_pixel();
+    }
+    report_.hits += hits_.size();
+}
+
+void PixelBatch::add_hit(const Ray& ray, const RayHit& hit, std::uint32_t sample) {
+    const CompiledScene& scene = *picture_->scene;
+    const SurfacePoint surface = scene.surface(hit, ray.direction);
+    const Vec3d direction = glm::normalize(Vec3d(ray.direction));
+    const double distance = glm::dot(surface.position - Vec3d(ray.origin), direction);
+    hits_.add(surface, -direction, scene.materials()[surface.material].emission + scene.lamps_along(ray, distance),
+              sample);
+}
+
+void PixelBatch::add_miss(const Ray& ray, std::uint32_t pixel, std::uint32_t sample) {
+    const Environment* background = picture_->scene->background();
+    Rgb radiance = picture_->scene->lamps_along(ray, std::nullopt);
+    if (background != nullptr) {
+        radiance += background->radiance(glm::normalize(Vec3d(ray.direction)));
+    }
+    if (background != nullptr || radiance != Rgb(0)) {
+        misses_.push_back({pixel, sample, radiance});
+    }
+}
+
+void PixelBatch::sort_lights() {
+    StageClock clock(report_);
+    lumps_.choose(points_);
+    lights_.clear();
+    delta_list_.clear();
+    deltas_.reset();
+    if (!lumps_.empty()) {
+        const std::span<const Light> all = picture_->scene->lights();
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (!lumps_.holds(i)) {
+                (i < picture_->lights.size() ? lights_ : delta_list_).push_back(&all[i]);
+            }
+        }
+        deltas_.emplace(delta_list_);
+    }
+    brightness_.assign(hits_.pixel_count(), 0.0F);
+    for (std::size_t pixel = 0; pixel < hits_.pixel_count() && !lumps_.empty(); ++pixel) {
+        brightness_[pixel] = lumps_.brightness(pixel);
+    }
+    clock.end(RenderStage::light);
+}
+
+void PixelBatch::add_deltas(std::span<const Pixel> pixels, const SampleRange& samples) {
+    StageClock clock(report_);
+    const DeltaLights& deltas = deltas_ ? *deltas_ : picture_->deltas;
+    if (deltas.padded_size() > 0) {
+        seed_pixels(pixels, hash(kDeltaSeed, samples.first));
+        shadowed_deltas_.add(deltas, points_, samples.shadow_rays > 0, pixel_seeds_, hits_, brightness_, report_);
+    }
+    clock.end(RenderStage::shadows);
+}
+
+void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& samples) {
+    const std::span<const Light* const> lights(lumps_.empty() ? picture_->extended : lights_);
+    if (lights.empty() && lumps_.empty()) {
+        return;
+    }
+    StageClock clock(report_);
+    shadowed_.start(points_, brightness_);
+    const std::size_t values = std::max<std::size_t>(points_.size() * picture_->lobe_stride, 1);
+    const std::size_t most = std::max(kValues / values, kLeastLights);
+    for (std::size_t first = 0; first < lights.size(); first += most) {
+        const auto block = lights.subspan(first, std::min(most, lights.size() - first));
+        unshadowed_.compute(points_, picture_->materials, block, report_);
+        clock.end(RenderStage::light);
+        shadowed_.expect(block, unshadowed_);
+        for (std::size_t i = 0; i < block.size(); ++i) {
+            seed_pixels(pixels, static_cast<std::uint32_t>(first + i));
+            shadowed_.add(*block[i], i, samples, unshadowed_.light(i), pixel_seeds_, hits_);
+        }
+        clock.end(RenderStage::shadows);
+    }
+    shadowed_.finish(hits_);
+}
+
+void PixelBatch::add_lumps(std::span<const Pixel> pixels, const SampleRange& samples) {
+    if (lumps_.empty()) {
+        return;
+    }
+    StageClock clock(report_);
+    seed_pixels(pixels, hash(kLumpSeed, samples.first));
+    shadowed_lumps_.add(lumps_, points_, samples.shadow_rays > 0, pixel_seeds_, shadowed_.brightness(), hits_);
+    report_.summed_count += lumps_.size() * hits_.size();
+    clock.end(RenderStage::shadows);
+}
+
+void PixelBatch::add_environment(std::span<const Pixel> pixels, const SampleRange& samples) {
+    StageClock clock(report_);
+    picture_->environment->shade(points_, environment_, report_);
+    clock.end(RenderStage::light);
+    seed_pixels(pixels, kEnvironmentSeed);
+    shadowed_environment_.add(*picture_->environment, samples, environment_, points_.size(), points_.of_hit,
+                              pixel_seeds_, hits_);
+    clock.end(RenderStage::shadows);
+}
+
+void PixelBatch::seed_pixels(std::span<const Pixel> pixels, std::uint32_t light) {
+    pixel_seeds_.clear();
+    for (const Pixel& pixel : pixels) {
+        const std::uint32_t seed =
+            hash(static_cast<std::uint32_t>(pixel.column), static_cast<std::uint32_t>(pixel.row));
+        pixel_seeds_.push_back(hash(seed, light));
+    }
+}
+
+void PixelBatch::add_up(const SampleRange& samples, std::span<PixelSums> sums) const {
+    const auto from_center = [&](std::uint32_t sample) { return picture_->pixel_points[sample] - 0.5; };
+    for (std::size_t pixel = 0; pixel < hits_.pixel_count(); ++pixel) {
+        PixelSums& sum = sums[pixel];
+        sum.rays += samples.count;
+        for (std::size_t hit = hits_.pixel_begin[pixel]; hit < hits_.pixel_begin[pixel + 1]; ++hit) {
+            sum.add(Vec3d(hits_.radiance[hit]), Vec3d(hits_.noise[hit]), from_center(hits_.sample[hit]));
+        }
+    }
+    for (const Miss& miss : misses_) {
+        sums[miss.pixel].add(Vec3d(miss.radiance), Vec3d(0), from_center(miss.sample),
+                             picture_->scene->background() != nullptr);
+    }
+}
+
+}  // namespace shlight

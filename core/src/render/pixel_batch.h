@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+//
+// Camera rays of a group of pixels, shaded: sums from which a pixel's mean is made, and how far it may be wrong.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "environment/environment_shading.h"
+#include "lights/delta_lights.h"
+#include "lobes/material_lobes.h"
+#include "shading/direct_light.h"
+#include "shading/far_light_sum.h"
+#include "shading/far_lights.h"
+#include "shading/shading_points.h"
+#include "shadows/shadowed_deltas.h"
+#include "shadows/shadowed_environment.h"
+#include "shadows/shadowed_far_lights.h"
+#include "shadows/shadowed_light.h"
+#include "shlight/camera.h"
+#include "shlight/render.h"
+#include "shlight/scene.h"
+#include "tracing/hits.h"
+
+namespace shlight {
+
+struct Pixel {
+    int column, row;
+};
+
+/// Sums over the camera rays of one pixel. A ray that met no surface is transparent, unless there is a
+/// background, and black but for lamps.
+struct PixelSums {
+    std::uint32_t rays = 0;
+    std::uint32_t opaque = 0;  ///< rays that met a surface or the background
+    Vec3d radiance{0};
+    Vec3d squares{0};              ///< of radiance, without the part that is noise of shadow rays
+    Vec3d along_x{0}, along_y{0};  ///< of radiance times the ray's distance from the pixel's centre
+
+    /// Variance over the pixel of what is not linear in the place: rays in even number, spread evenly, average that
+    /// out.
+    Vec3d variance() const;
+    /// The part of one ray; from_center: its distance from the pixel's centre.
+    void add(const Vec3d& ray_radiance, const Vec3d& noise, const glm::dvec2& from_center, bool is_opaque = true);
+};
+
+/// Everything that the batches of one picture share and only read.
+struct Picture {
+    Picture(const CompiledScene& s, const Camera& c, int w, int h, const RenderSettings& r,
+            std::vector<glm::dvec2> points);
+
+    /// Camera rays that a batch should hold. Under many lights fewer: what each light adds is kept until all are known.
+    std::uint32_t batch_samples() const;
+
+    const CompiledScene* scene;
+    const Camera* camera;
+    RenderSettings settings;
+    int width, height;
+    Window window;
+    std::vector<glm::dvec2> pixel_points;  ///< where each camera ray of a pixel goes through its unit square
+    std::vector<MaterialLobes> materials;
+    std::size_t lobe_stride = 1;
+    std::span<const Light> lights;       ///< with extent
+    std::vector<const Light*> extended;  ///< the same
+    DeltaLights deltas;
+    FarLights far;
+    std::optional<EnvironmentShading> environment;  ///< none: black
+};
+
+/// Renders one batch after another; one per thread.
+class PixelBatch {
+  public:
+    explicit PixelBatch(const Picture& picture);
+
+    /// Adds these rays of each pixel to its sums.
+    void add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums);
+    RenderReport report() const;
+
+  private:
+    void trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples);
+    void add_hit(const Ray& ray, const RayHit& hit, std::uint32_t sample);
+    void add_miss(const Ray& ray, std::uint32_t pixel, std::uint32_t sample);
+    /// Sums the dimmest lights up; the others are shaded one by one.
+    void sort_lights();
+    void add_deltas(std::span<const Pixel> pixels, const SampleRange& samples);
+    void add_lights(std::span<const Pixel> pixels, const SampleRange& samples);
+    void add_lumps(std::span<const Pixel> pixels, const SampleRange& samples);
+    void add_environment(std::span<const Pixel> pixels, const SampleRange& samples);
+    /// One for each pixel and light.
+    void seed_pixels(std::span<const Pixel> pixels, std::uint32_t light);
+    void add_up(const SampleRange& samples, std::span<PixelSums> sums) const;
+
+    /// A camera ray that met no surface, but the background or a lamp.
+    struct Miss {
+        std::uint32_t pixel, sample;
+        Rgb radiance;
+    };
+
+    const Picture* picture_;
+    RenderReport report_;
+    std::vector<Ray> rays_;
+    std::vector<RayHit> ray_hits_;
+    Hits hits_;
+    std::vector<Miss> misses_;  // in the order of pixels
+    ShadingPoints points_;
+    LightLumps lumps_;
+    std::vector<const Light*> lights_;      // with extent, that are not summed up
+    std::vector<const Light*> delta_list_;  // likewise, without
+    std::optional<DeltaLights> deltas_;     // of these; none: all
+    ShadowedLumps shadowed_lumps_;
+    ShadowedDeltas shadowed_deltas_;
+    Unshadowed unshadowed_;
+    ShadowedLight shadowed_;
+    std::vector<UnshadowedParts> environment_;
+    ShadowedEnvironment shadowed_environment_;
+    std::vector<std::uint32_t> pixel_seeds_;
+    std::vector<float> brightness_;  // of each pixel by sums and sources without extent, if nothing blocks
+};
+
+}  // namespace shlight

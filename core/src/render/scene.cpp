@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <tbb/task_arena.h>
+
+#include "base/ray_rounding.h"
+#include "base/transforms.h"
+#include "emitters/emitter_levels.h"
+#include "render/camera_visible_lamps.h"
+#include "shlight/mesh_light.h"
+#include "shlight/parallel.h"
+
+namespace shlight {
+namespace {
+
+/// Emissive triangles of a mesh that are lights one by one, or in pairs; more of them are one light.
+constexpr std::size_t kMostSingleFaces = 16;
+/// Of the coarsest level of detail: below, outlines lose their shape.
+constexpr std::size_t kLeastLevelFaces = 64;
+
+/// A mesh as it is traced. A mesh placed once has its vertices moved to the world; others are instanced.
+struct TracedMesh {
+    std::shared_ptr<const Mesh> mesh;
+    std::vector<Vec3f> world_vertices;  // empty: instanced
+    std::uint32_t first_material;
+
+    std::span<const Vec3f> vertices() const {
+        return world_vertices.empty() ? std::span<const Vec3f>(mesh->vertices) : world_vertices;
+    }
+};
+
+struct Placement {
+    std::uint32_t mesh;
+    bool baked;  // vertices are in the world frame
+    glm::dmat4 to_world;
+    glm::dmat3 normal_to_world;  // inverse transpose
+    double condition;            // how much a ray's rounding grows on its way through the instance's frame
+    double origin;               // largest component of the translation
+};
+
+double inf_norm(const glm::dmat3& m) {
+    double norm = 0;
+    for (int row = 0; row < 3; ++row) {
+        norm = std::max(norm, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
+    }
+    return norm;
+}
+
+Placement place(std::uint32_t mesh, const glm::dmat4& to_world, bool baked) {
+    const glm::dmat3 linear(to_world);
+    const glm::dmat3 inverse = glm::inverse(linear);
+    return {mesh,
+            baked,
+            to_world,
+            glm::transpose(inverse),
+            baked ? 1.0 : inf_norm(linear) * inf_norm(inverse),
+            baked ? 0.0 : largest_component(Vec3d(to_world[3]))};
+}
+
+std::vector<Vec3f> moved(const std::vector<Vec3f>& vertices, const glm::dmat4& to_world) {
+    std::vector<Vec3f> result;
+    result.reserve(vertices.size());
+    for (const Vec3f& v : vertices) {
+        result.emplace_back(transform_point(to_world, Vec3d(v)));
+    }
+    return result;
+}
+
+Vec3d normalized_or(const Vec3d& v, const Vec3d& fallback) {
+    const double length = glm::length(v);
+    return length > 0 && std::isfinite(length) ? v / length : fallback;
+}
+
+}  // namespace
+
+class CompiledScene::Impl {
+  public:
+    Impl(std::vector<Light> lamps, Environment all_around, bool environment_visible)
+        : lights(std::move(lamps)), environment(std::move(all_around)), has_background(environment_visible) {}
+
+    void add(const std::shared_ptr<const Mesh>& mesh) {
+        const auto index = static_cast<std::uint32_t>(meshes.size());
+        const bool baked = mesh->transforms.size() == 1;
+        meshes.push_back({mesh, baked ? moved(mesh->vertices, mesh->transforms[0]) : std::vector<Vec3f>(),
+                          static_cast<std::uint32_t>(materials.size())});
+        for (std::size_t i = 0; i < mesh->material_count(); ++i) {
+            materials.push_back({mesh->bsdf(i), mesh->emitted(i)});
+        }
+        const auto first_placement = static_cast<std::uint32_t>(placements.size());
+        for (const glm::dmat4& to_world : mesh->transforms) {
+            placements.push_back(place(index, to_world, baked));
+        }
+        add_emissive_faces(mesh, first_placement);
+    }
+
+    void build() {
+        const auto first_delta =
+            std::stable_partition(lights.begin(), lights.end(), [](const Light& light) { return !is_delta(light); });
+        extended_light_count = static_cast<std::size_t>(first_delta - lights.begin());
+        std::vector<TracedGeometry> geometries;
+        for (const TracedMesh& traced : meshes) {
+            geometries.push_back({traced.vertices(), traced.mesh->triangles});
+        }
+        std::vector<TracedInstance> instances;
+        for (const Placement& placement : placements) {
+            instances.push_back({placement.mesh, placement.baked, placement.to_world});
+        }
+        rays = std::make_unique<const RayTracer>(geometries, instances);
+        seen_lamps = SeenLamps(lights);
+    }
+
+    SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
+
+    std::vector<TracedMesh> meshes;
+    std::vector<Placement> placements;
+    std::vector<Material> materials;
+    std::vector<Light> lights;
+    std::size_t extended_light_count = 0;
+    Environment environment;
+    bool has_background;
+    std::unique_ptr<const RayTracer> rays;
+    SeenLamps seen_lamps;
+
+  private:
+    void add_emissive_faces(const std::shared_ptr<const Mesh>& mesh, std::uint32_t first_placement);
+    void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<const Triangle> triangles);
+};
+
+void CompiledScene::Impl::add_emissive_faces(const std::shared_ptr<const Mesh>& mesh, std::uint32_t first_placement) {
+    const TracedMesh& traced = meshes.back();
+    for (std::size_t material = 0; material < mesh->material_count(); ++material) {
+        const Rgb emission = mesh->emitted(material);
+        std::vector<Triangle> emissive;
+        for (std::size_t i = 0; emission != Rgb(0) && i < mesh->triangles.size(); ++i) {
+            if (mesh->material_index(i) == material) {
+                emissive.push_back(mesh->triangles[i]);
+            }
+        }
+        for (std::uint32_t k = 0; k < mesh->transforms.size() && !emissive.empty(); ++k) {
+            const bool baked = !traced.world_vertices.empty();
+            std::vector<Vec3d> vertices;
+            for (const Vec3f& v : traced.vertices()) {
+                vertices.push_back(baked ? Vec3d(v) : transform_point(mesh->transforms[k], Vec3d(v)));
+            }
+            if (emissive.size() > kMostSingleFaces) {
+                add_mesh_light({nullptr, emission, first_placement + k, mesh, material}, vertices, emissive);
+                continue;
+            }
+            for (FaceOutline& outline : merge_faces(vertices, emissive)) {
+                lights.emplace_back(make_polygon_light(std::move(outline), emission, true));
+            }
+        }
+    }
+}
+
+void CompiledScene::Impl::add_mesh_light(MeshLight light, std::span<const Vec3d> vertices,
+                                         std::span<const Triangle> triangles) {
+    EmitterLevels levels = make_emitter_levels(vertices, triangles, kLeastLevelFaces);
+    if (!levels.levels.empty()) {
+        light.shape = std::make_shared<const EmitterLevels>(std::move(levels));
+        lights.emplace_back(std::move(light));
+    }
+}
+
+SurfacePoint CompiledScene::Impl::surface(const RayHit& hit, const Vec3f& direction) const {
+    const Placement& placement = placements[hit.instance];
+    const TracedMesh& traced = meshes[placement.mesh];
+    const Mesh& mesh = *traced.mesh;
+    const Triangle& triangle = mesh.triangles[hit.triangle];
+    const std::array<double, 3> weights = {1.0 - hit.u - hit.v, hit.u, hit.v};
+    std::array<Vec3d, 3> corners{};
+    Vec3d position(0);
+    for (int i = 0; i < 3; ++i) {
+        const Vec3d local(traced.vertices()[triangle[i]]);
+        corners[static_cast<std::size_t>(i)] = placement.baked ? local : transform_point(placement.to_world, local);
+        position += weights[static_cast<std::size_t>(i)] * corners[static_cast<std::size_t>(i)];
+    }
+    // From the corners in double, and not along the ray, the point lies in the triangle's plane to double precision.
+    const Vec3d towards_viewer = -Vec3d(direction);
+    Vec3d geometric =
+        normalized_or(glm::cross(corners[1] - corners[0], corners[2] - corners[0]), glm::normalize(towards_viewer));
+    if (glm::dot(geometric, towards_viewer) < 0) {
+        geometric = -geometric;
+    }
+    Vec3d shading = geometric;
+    if (!mesh.vertex_normals.empty() || !mesh.corner_normals.empty()) {
+        Vec3d local(0);
+        for (int i = 0; i < 3; ++i) {
+            const Vec3f& normal =
+                mesh.corner_normals.empty()
+                    ? mesh.vertex_normals[triangle[i]]
+                    : mesh.corner_normals[3 * std::size_t{hit.triangle} + static_cast<std::size_t>(i)];
+            local += weights[static_cast<std::size_t>(i)] * Vec3d(normal);
+        }
+        shading = normalized_or(placement.normal_to_world * local, geometric);
+        // By side and not by winding: mirrored instances and faces wound the wrong way come out right.
+        if (glm::dot(shading, geometric) < 0) {
+            shading = -shading;
+        }
+    }
+    double extent = 0;
+    for (const Vec3d& corner : corners) {
+        extent = std::max(extent, largest_component(corner - position));
+    }
+    const double scale = placement.condition * (largest_component(position) + placement.origin) + extent;
+    return {position, geometric, shading, kRayRounding * scale,
+            traced.first_material + mesh.material_index(hit.triangle)};
+}
+
+CompiledScene::CompiledScene(std::unique_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+CompiledScene::~CompiledScene() = default;
+
+std::span<const Material> CompiledScene::materials() const {
+    return impl_->materials;
+}
+std::span<const Light> CompiledScene::lights() const {
+    return impl_->lights;
+}
+std::size_t CompiledScene::extended_light_count() const {
+    return impl_->extended_light_count;
+}
+const Environment& CompiledScene::environment() const {
+    return impl_->environment;
+}
+const Environment* CompiledScene::background() const {
+    return impl_->has_background ? &impl_->environment : nullptr;
+}
+Rgb CompiledScene::lamps_along(const Ray& ray, const std::optional<double>& surface) const {
+    return impl_->seen_lamps.empty() ? Rgb(0) : impl_->seen_lamps.radiance(ray, surface);
+}
+const RayTracer& CompiledScene::rays() const {
+    return *impl_->rays;
+}
+
+SurfacePoint CompiledScene::surface(const RayHit& hit, const Vec3f& direction) const {
+    return impl_->surface(hit, direction);
+}
+
+void Scene::add_mesh(Mesh mesh) {
+    check_mesh(mesh);
+    meshes_.push_back(std::make_shared<const Mesh>(std::move(mesh)));
+}
+
+void Scene::add_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk,
+                             const LightTraits& traits) {
+    lamps_.emplace_back(make_sphere_light(center, radius, radiance, facing_disk, traits));
+}
+
+void Scene::add_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance, double spread,
+                              const LightTraits& traits) {
+    PolygonLight light = make_polygon_light(std::move(vertices), radiance, false, traits);
+    light.traits.profile = make_spread_profile(light.normal, spread);
+    lamps_.emplace_back(std::move(light));
+}
+
+void Scene::add_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const Vec3d& half_axis_v, const Rgb& radiance,
+                           double spread, const LightTraits& traits) {
+    DiskLight light = make_disk_light(center, half_axis_u, half_axis_v, radiance, false, traits);
+    light.traits.profile = make_spread_profile(light.normal, spread);
+    lamps_.emplace_back(light);
+}
+
+void Scene::add_point_light(const Vec3d& position, const Rgb& intensity, const LightTraits& traits) {
+    lamps_.emplace_back(make_point_source(position, intensity, traits));
+}
+
+void Scene::add_spot_light(const Vec3d& position, const SpotProfile& profile, const Rgb& intensity, double radius,
+                           bool facing_disk, const LightTraits& traits) {
+    lamps_.push_back(make_spot_light(position, profile, intensity, radius, facing_disk, traits));
+}
+
+void Scene::add_sun_light(const Vec3d& direction, double angle, const Rgb& irradiance, bool tangent,
+                          const LightTraits& traits) {
+    lamps_.push_back(make_sun_light(direction, angle, irradiance, tangent, traits));
+}
+
+void Scene::set_environment(Environment environment, bool visible) {
+    environment_ = std::move(environment);
+    environment_visible_ = visible;
+}
+
+std::shared_ptr<const CompiledScene> Scene::compile(int threads) const {
+    auto impl = std::make_unique<CompiledScene::Impl>(lamps_, environment_, environment_visible_);
+    for (const auto& mesh : meshes_) {
+        if (!mesh->triangles.empty() && !mesh->transforms.empty()) {
+            impl->add(mesh);
+        }
+    }
+    run_in_arena(threads, [&] { impl->build(); });
+    return std::shared_ptr<const CompiledScene>(new CompiledScene(std::move(impl)));
+}
+
+}  // namespace shlight

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// Lights that are small beside a lobe: which rule of cubature they take, and caps' integrals by it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "caps/cap_shading.h"
+#include "polygons/polygon_views.h"
+#include "shlight/lobe_shape.h"
+
+namespace shlight {
+
+/// What becomes of a light, if not the number of a rule: it is large, or a cap that the horizon cuts; or nothing of it
+/// is above the horizon.
+inline constexpr std::uint8_t kNoRule = 0;
+inline constexpr std::uint8_t kHidden = 255;
+
+/// The smallest rule for each light that keeps within its view's tolerance, absolute in units of the lobe's albedo and
+/// relative to the light's own value. Light i is seen by view view_of[i].
+/// Rules of caps: 1, 4, 7, 24 points; of polygons: 3, 7, 16, 25 points a triangle. Precondition: shape.alpha > 0.
+void choose_cap_rules(const GgxShape& shape, const CircleArrays& circles, const ViewArrays& views,
+                      const float* tolerances, std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules);
+void choose_polygon_rules(const GgxShape& shape, const PolygonArrays& polygons, const ViewArrays& views,
+                          const float* tolerances, std::span<const std::uint32_t> view_of,
+                          std::span<std::uint8_t> rules);
+
+/// values[i] = ∫ f·cos over circle circle_of[i], above the horizon, seen by view view_of[i], by one rule.
+void integrate_caps(const GgxShape& shape, const CircleArrays& circles, std::span<const std::uint32_t> circle_of,
+                    const ViewArrays& views, std::span<const std::uint32_t> view_of, int rule, std::span<float> values);
+
+/// Points of a rule of caps.
+int cap_rule_points(int rule);
+
+}  // namespace shlight

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+//
+// How bright lights with extent make shading points and pixels if nothing blocks them: what tells major from minor
+// lights.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "lobes/material_lobes.h"
+#include "shading/direct_light.h"
+#include "shading/shading_points.h"
+#include "shlight/light.h"
+
+namespace shlight {
+
+/// Brightness is the sum of the colours' absolute values, over all hits. Keeps its memory; one per thread.
+class LightBrightness {
+  public:
+    LightBrightness(std::span<const MaterialLobes> materials, std::size_t lobe_stride)
+        : materials_(materials), lobe_stride_(lobe_stride) {}
+
+    /// Forgets all lights. points: stay as they are until the next call; others: brightness of each pixel by lights
+    /// that are not expected.
+    void start(const ShadingPoints& points, std::span<const float> others);
+    /// Counts lights in. They are referred to by their index among those of the last call.
+    void expect(std::span<const Light* const> lights, const Unshadowed& unshadowed);
+
+    float of_pixel(std::size_t light_index, std::size_t pixel) const { return own_[light_index * all_.size() + pixel]; }
+    /// By all lights that were counted in, and by the others.
+    float all(std::size_t pixel) const { return all_[pixel]; }
+    std::span<const float> all() const { return all_; }
+    /// Under a light of that strength. unshadowed: see Unshadowed::light.
+    float of_point(const Rgb& strength, std::span<const float> unshadowed, std::size_t point) const {
+        const Rgb magnitude = glm::abs(strength);
+        float sum = 0;
+        for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+            const std::size_t i = lobe * points_->size() + point;
+            sum += unshadowed[i] * glm::dot(magnitude, weights_[i]);
+        }
+        return sum;
+    }
+    /// Lobe::scale at the point.
+    const Rgb& scale(std::size_t lobe, std::size_t point) const { return scales_[lobe * points_->size() + point]; }
+
+  private:
+    std::span<const MaterialLobes> materials_;
+    std::size_t lobe_stride_;
+    const ShadingPoints* points_ = nullptr;
+    std::vector<Rgb> scales_;   // lobe_stride × points
+    std::vector<Rgb> weights_;  // their absolute values times the points' hits
+    std::vector<float> all_;    // by pixel
+    std::vector<float> own_;    // lights × pixels
+};
+
+}  // namespace shlight

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/light_shading.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "base/checks.h"
+#include "caps/cap_checks.h"
+#include "caps/circle_batch.h"
+#include "disks/disk_checks.h"
+#include "lobes/material_views.h"
+#include "polygons/polygon_batch.h"
+#include "polygons/polygon_checks.h"
+#include "shading/disk_polygons.h"
+#include "shading/lobe_batch.h"
+
+namespace shlight {
+namespace {
+
+/// Of the polygons that stand for disks, at most.
+constexpr double kDiskTolerance = 1e-4;
+
+/// Lights that are prepared and sorted at a time: enough for long lists of each kind, few enough for the cache.
+constexpr std::size_t kLightsPerChunk = 1024;
+
+void check_settings(const ShadeSettings& settings) {
+    if (settings.order < 0 || settings.order > kMaxOrder) {
+        reject("order must be 0 … " + std::to_string(kMaxOrder));
+    }
+    if (!(std::isfinite(settings.tolerance) && settings.tolerance > 0)) {
+        reject("tolerance must be positive and finite");
+    }
+}
+
+const ShadeSettings& checked(const ShadeSettings& settings) {
+    check_settings(settings);
+    return settings;
+}
+
+template <class T>
+void check_views(std::span<const T> cos_theta_o, std::size_t count) {
+    if (cos_theta_o.size() != 1) {
+        check_size("cos_theta_o", cos_theta_o.size(), count);
+    }
+    // A number instead of a bool lets the loop run in lanes.
+    int invalid = 0;
+    for (const T c : cos_theta_o) {
+        invalid |= c >= 0 && c <= 1 ? 0 : 1;
+    }
+    if (invalid != 0) {
+        reject("cos_theta_o must lie in [0, 1]");
+    }
+}
+
+}  // namespace
+
+class LightShaderWork {
+  public:
+    LightShaderWork(const Bsdf& bsdf, const ShadeSettings& settings)
+        : material_(bsdf.lobes(), settings.order, settings.tolerance) {}
+    ~LightShaderWork() = default;
+    // The parts refer to each other.
+    LightShaderWork(const LightShaderWork&) = delete;
+    LightShaderWork& operator=(const LightShaderWork&) = delete;
+
+    /// shade_chunk(first, count) for each chunk, after its views were found.
+    template <class U, class Shade>
+    void in_chunks(std::span<const U> cos_theta_o, std::size_t count, const Shade& shade_chunk) {
+        for (std::size_t first = 0; first < count; first += kLightsPerChunk) {
+            const std::size_t size = std::min(kLightsPerChunk, count - first);
+            find_views(cos_theta_o, first, size);
+            shade_chunk(first, size);
+        }
+    }
+
+    template <class T, class U>
+    void shade_spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, std::span<const U> cos_theta_o,
+                       std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+        for (std::size_t first = 0; first < centers.size(); first += kLightsPerChunk) {
+            const std::size_t size = std::min(kLightsPerChunk, centers.size() - first);
+            const auto own_centers = centers.subspan(first, size);
+            const auto own_radii = radii.subspan(first, size);
+            const auto own_radiance = radiance.subspan(first, size);
+            const auto own_effort = effort.empty() ? effort : effort.subspan(first, size);
+            check_spheres(own_centers, own_radii, std::numeric_limits<float>::epsilon());
+            find_views(cos_theta_o, first, size);
+            circles_.resize(size);
+            circles_of_spheres(own_centers, own_radii.data(), circles_.output());
+            shade_lobes(own_radiance, own_effort,
+                        [&](LobeViews& lobe) { batch_.shade(lobe, circles_.arrays(), view_of_, !effort.empty()); });
+        }
+    }
+
+    template <class T>
+    void shade_polygons(const Vec3<T>* vertices, std::size_t vertex_count, std::span<Rgb> radiance,
+                        std::span<std::int32_t> effort) {
+        polygons_.clear(vertex_count);
+        polygons_.append(vertices, radiance.size());
+        polygons_.check(vertices);
+        shade_lobes(radiance, effort,
+                    [&](LobeViews& lobe) { batch_.shade(lobe, polygons_, view_of_, !effort.empty()); });
+    }
+
+    /// disk(i): in the wider type.
+    template <class Disk>
+    void shade_disks(const Disk& disk, std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+        disks_.clear();
+        for (std::uint32_t i = 0; i < radiance.size(); ++i) {
+            disks_.add(disk(i), view_of_[i], i);
+        }
+        std::fill(radiance.begin(), radiance.end(), Rgb(0));
+        std::fill(effort.begin(), effort.end(), 0);
+        const double tolerance = std::min(material_.tolerance(), kDiskTolerance);
+        for (std::size_t l = 0; l < views_.lobe_count(); ++l) {
+            LobeViews& lobe = views_.lobe(l);
+            disks_.for_each_size(lobe, tolerance, [&] {
+                batch_.shade(lobe, disks_.polygons(), disks_.views(), !effort.empty());
+                for (std::size_t k = 0; k < disks_.numbers().size(); ++k) {
+                    const std::uint32_t i = disks_.numbers()[k];
+                    radiance[i] += lobe.scale(view_of_[i]) * batch_.values()[k];
+                    if (!effort.empty()) {
+                        effort[i] = std::max(effort[i], batch_.efforts()[k]);
+                    }
+                }
+            });
+        }
+    }
+
+  private:
+    /// Each change from light to light is a new view.
+    template <class U>
+    void find_views(std::span<const U> cos_theta_o, std::size_t first, std::size_t count) {
+        cosines_.clear();
+        view_of_.assign(count, 0);
+        if (cos_theta_o.size() == 1) {
+            cosines_.push_back(static_cast<double>(cos_theta_o[0]));
+        } else {
+            cosines_.resize(count);
+            std::uint32_t view = 0;
+            cosines_[0] = static_cast<double>(cos_theta_o[first]);
+            for (std::size_t i = 1; i < count; ++i) {
+                view += cos_theta_o[first + i] != cos_theta_o[first + i - 1] ? 1 : 0;
+                cosines_[view] = static_cast<double>(cos_theta_o[first + i]);
+                view_of_[i] = view;
+            }
+            cosines_.resize(view + std::size_t{1});
+        }
+        views_.assign(material_, cosines_, false);
+    }
+
+    /// shade(lobe) puts what one lobe does into batch_.
+    template <class Shade>
+    void shade_lobes(std::span<Rgb> radiance, std::span<std::int32_t> effort, const Shade& shade) {
+        if (views_.lobe_count() == 0) {
+            std::fill(radiance.begin(), radiance.end(), Rgb(0));
+            std::fill(effort.begin(), effort.end(), 0);
+        }
+        for (std::size_t i = 0; i < views_.lobe_count(); ++i) {
+            LobeViews& lobe = views_.lobe(i);
+            shade(lobe);
+            add(lobe, i == 0, radiance);
+            const auto efforts = batch_.efforts();
+            for (std::size_t k = 0; k < effort.size(); ++k) {
+                effort[k] = i == 0 ? efforts[k] : std::max(effort[k], efforts[k]);
+            }
+        }
+    }
+
+    /// Adds what the batch found of a lobe, or sets the radiance to it.
+    void add(const LobeViews& lobe, bool first, std::span<Rgb> radiance) const {
+        const auto values = batch_.values();
+        const auto add_scaled = [&](const auto& scale_of) {
+            for (std::size_t k = 0; k < radiance.size(); ++k) {
+                const Rgb reflected = scale_of(k) * values[k];
+                radiance[k] = first ? reflected : radiance[k] + reflected;
+            }
+        };
+        if (lobe.has_weight()) {
+            add_scaled([&](std::size_t k) { return lobe.scale(view_of_[k]); });
+        } else {
+            add_scaled([color = lobe.scale(0)](std::size_t /*k*/) { return color; });
+        }
+    }
+
+    MaterialLobes material_;
+    MaterialViews views_;
+    LobeBatch batch_;
+    std::vector<double> cosines_;
+    std::vector<std::uint32_t> view_of_;
+    CircleBatch circles_;
+    PolygonBatch polygons_;
+    DiskPolygons disks_;
+};
+
+LightShader::LightShader(const Bsdf& bsdf, const ShadeSettings& settings)
+    : work_(std::make_unique<LightShaderWork>(bsdf, checked(settings))) {}
+LightShader::~LightShader() = default;
+LightShader::LightShader(LightShader&&) noexcept = default;
+LightShader& LightShader::operator=(LightShader&&) noexcept = default;
+
+template <class T, class U>
+void LightShader::spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, std::span<const U> cos_theta_o,
+                          std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+    const std::size_t count = centers.size();
+    check_size("radii", radii.size(), count);
+    check_views(cos_theta_o, count);
+    check_size("radiance", radiance.size(), count);
+    check_size("effort", effort.size(), effort.empty() ? 0 : count);
+    work_->shade_spheres(centers, radii, cos_theta_o, radiance, effort);
+}
+
+template <class T, class U>
+void LightShader::polygons(std::span<const Vec3<T>> vertices, int vertex_count, std::span<const U> cos_theta_o,
+                           std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+    check_vertex_count(vertex_count);
+    const auto k = static_cast<std::size_t>(vertex_count);
+    const std::size_t count = vertices.size() / k;
+    check_size("vertices", vertices.size(), count * k);
+    check_views(cos_theta_o, count);
+    check_size("radiance", radiance.size(), count);
+    check_size("effort", effort.size(), effort.empty() ? 0 : count);
+    work_->in_chunks(cos_theta_o, count, [&](std::size_t first, std::size_t size) {
+        work_->shade_polygons(&vertices[first * k], k, radiance.subspan(first, size),
+                              effort.empty() ? effort : effort.subspan(first, size));
+    });
+}
+
+template <class T, class U>
+void LightShader::disks(std::span<const Vec3<T>> centers, std::span<const Vec3<T>> half_axes_u,
+                        std::span<const Vec3<T>> half_axes_v, std::span<const U> cos_theta_o, std::span<Rgb> radiance,
+                        std::span<std::int32_t> effort) {
+    const std::size_t count = centers.size();
+    check_size("half_axes_u", half_axes_u.size(), count);
+    check_size("half_axes_v", half_axes_v.size(), count);
+    check_views(cos_theta_o, count);
+    check_size("radiance", radiance.size(), count);
+    check_size("effort", effort.size(), effort.empty() ? 0 : count);
+    for (std::size_t i = 0; i < count; ++i) {
+        using Wide = Vec3<Wider<T>>;
+        check_disk<T>({Wide(centers[i]), Wide(half_axes_u[i]), Wide(half_axes_v[i])});
+    }
+    work_->in_chunks(cos_theta_o, count, [&](std::size_t first, std::size_t size) {
+        const auto disk = [&](std::size_t i) {
+            return Ellipse<double>{Vec3d(centers[first + i]), Vec3d(half_axes_u[first + i]),
+                                   Vec3d(half_axes_v[first + i])};
+        };
+        work_->shade_disks(disk, radiance.subspan(first, size), effort.empty() ? effort : effort.subspan(first, size));
+    });
+}
+
+void shade_spheres(std::span<const Vec3d> centers, std::span<const double> radii, const Bsdf& bsdf,
+                   std::span<const double> cos_theta_o, const ShadeSettings& settings, std::span<Rgb> radiance,
+                   std::span<std::int32_t> effort) {
+    LightShader(bsdf, settings).spheres(centers, radii, cos_theta_o, radiance, effort);
+}
+
+void shade_polygons(std::span<const Vec3d> vertices, int vertex_count, const Bsdf& bsdf,
+                    std::span<const double> cos_theta_o, const ShadeSettings& settings, std::span<Rgb> radiance,
+                    std::span<std::int32_t> effort) {
+    LightShader(bsdf, settings).polygons(vertices, vertex_count, cos_theta_o, radiance, effort);
+}
+
+namespace {
+template <class T>
+using In = std::span<const T>;
+using Radiance = std::span<Rgb>;
+using Effort = std::span<std::int32_t>;
+}  // namespace
+template void LightShader::spheres(In<Vec3<float>>, In<float>, In<float>, Radiance, Effort);
+template void LightShader::spheres(In<Vec3<float>>, In<float>, In<double>, Radiance, Effort);
+template void LightShader::spheres(In<Vec3<double>>, In<double>, In<float>, Radiance, Effort);
+template void LightShader::spheres(In<Vec3<double>>, In<double>, In<double>, Radiance, Effort);
+template void LightShader::polygons(In<Vec3<float>>, int, In<float>, Radiance, Effort);
+template void LightShader::polygons(In<Vec3<float>>, int, In<double>, Radiance, Effort);
+template void LightShader::polygons(In<Vec3<double>>, int, In<float>, Radiance, Effort);
+template void LightShader::polygons(In<Vec3<double>>, int, In<double>, Radiance, Effort);
+template void LightShader::disks(In<Vec3<float>>, In<Vec3<float>>, In<Vec3<float>>, In<float>, Radiance, Effort);
+template void LightShader::disks(In<Vec3<float>>, In<Vec3<float>>, In<Vec3<float>>, In<double>, Radiance, Effort);
+template void LightShader::disks(In<Vec3<double>>, In<Vec3<double>>, In<Vec3<double>>, In<float>, Radiance, Effort);
+template void LightShader::disks(In<Vec3<double>>, In<Vec3<double>>, In<Vec3<double>>, In<double>, Radiance, Effort);
+
+}  // namespace shlight

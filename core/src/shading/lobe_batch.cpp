@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: MIT
+#include "shading/lobe_batch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "lobes/contour_integral.h"
+#include "polygons/polygon_shading_kernel.h"
+#include "polygons/spherical_polygon.h"
+#include "shading/cubature_kernel.h"
+#include "shading/light_cubature.h"
+
+namespace shlight {
+namespace {
+
+/// Rules up to these are cheaper than harmonics of the orders that glossy lobes take.
+constexpr int kCheapCapRule = 3;
+constexpr int kCheapPolygonRule = 2;
+/// Of polygons with more vertices a rule, which has its points in each of the triangles between them, costs more.
+constexpr int kMostCheapVertices = 8;
+
+Vec3d axis_of(const CircleArrays& circles, std::size_t i) {
+    return {circles.x[i], circles.y[i], circles.z[i]};
+}
+
+Vec3d mirrored(const Vec3d& view) {
+    return {-view.x, 0, view.z};
+}
+
+/// The largest rule that is cheaper than harmonics of the orders that glossy lobes take.
+int cheap_rule(const CircleArrays&) {
+    return kCheapCapRule;
+}
+int cheap_rule(const PolygonBatch& polygons) {
+    return polygons.vertex_count() <= kMostCheapVertices ? kCheapPolygonRule : kNoRule;
+}
+
+/// What rings below zero is no light.
+void without_ringing(std::span<float> values) {
+    std::transform(values.begin(), values.end(), values.begin(), [](float value) { return std::max(0.0F, value); });
+}
+
+/// By harmonics of one order, all of them.
+bool shades_alike(const LobeViews& lobe) {
+    return !lobe.chooses() && !is_mirror(lobe.shape()) && !lobe.any_black();
+}
+
+}  // namespace
+
+void LobeBatch::shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of,
+                      bool counted) {
+    shade_any(lobe, circles, view_of, counted);
+}
+
+void LobeBatch::shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of, bool counted) {
+    shade_any(lobe, polygons, view_of, counted);
+}
+
+template <class Lights>
+void LobeBatch::shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool counted) {
+    values_.resize(view_of.size());
+    efforts_.resize(view_of.size());
+    alike_ = shades_alike(lobe);
+    if (view_of.empty()) {
+        return;
+    }
+    if (alike_) {
+        shade_alike(lobe, lights, view_of, counted);
+    } else {
+        shade_sorted(lobe, lights, view_of);
+    }
+}
+
+template <class Lights>
+void LobeBatch::shade_alike(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool counted) {
+    const std::size_t count = view_of.size();
+    if (const std::size_t known = all_.size(); known < count) {
+        all_.resize(count);
+        std::iota(all_.begin(), all_.end(), 0U);
+    }
+    items_ = std::span(all_).first(count);
+    item_views_ = view_of;
+    item_values_ = values_;
+    const int order = lobe.order(0);
+    by_harmonics(lobe, lights, order);
+    without_ringing(values_);
+    for (std::size_t i = 0; counted && i < count; ++i) {
+        efforts_[i] = lies_below(lights, i) ? 0 : order;
+    }
+}
+
+template <class Lights>
+void LobeBatch::shade_sorted(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of) {
+    std::fill(values_.begin(), values_.end(), 0.0F);
+    std::fill(efforts_.begin(), efforts_.end(), 0);
+    find_keys(lobe, lights, view_of);
+    sort();
+    gathered_views_.resize(view_of.size());
+    gathered_values_.resize(view_of.size());
+    for (std::size_t key = kNothing + 1; key < kKeys; ++key) {
+        const std::size_t count = begin_[key + 1] - begin_[key];
+        if (count == 0) {
+            continue;
+        }
+        items_ = std::span(sorted_).subspan(begin_[key], count);
+        std::transform(items_.begin(), items_.end(), gathered_views_.begin(),
+                       [&](std::uint32_t light) { return view_of[light]; });
+        item_views_ = std::span(gathered_views_).first(count);
+        item_values_ = std::span(gathered_values_).first(count);
+        integrate(lobe, lights, static_cast<Key>(key));
+        for (std::size_t k = 0; k < count; ++k) {
+            // What rings below zero is no light.
+            values_[items_[k]] = std::max(0.0F, item_values_[k]);
+        }
+    }
+}
+
+Way LobeBatch::way(std::size_t light) const {
+    if (alike_) {
+        return efforts_[light] > 0 ? Way::harmonics : Way::nothing;
+    }
+    const Key key = keys_[light];
+    return key == kNothing    ? Way::nothing
+           : key == kMirror   ? Way::mirror
+           : key > kHarmonics ? Way::harmonics
+                              : Way::cubature;
+}
+
+bool LobeBatch::met(const LobeViews& lobe, std::size_t light, std::size_t view) const {
+    switch (way(light)) {
+        case Way::nothing:
+        case Way::mirror:
+            return true;
+        case Way::harmonics:
+            return lobe.met(view);
+        case Way::cubature:
+            return keys_[light] != kOutline || missed_[light] == 0;
+    }
+    return true;
+}
+
+bool LobeBatch::lies_below(const CircleArrays& circles, std::size_t light) {
+    return circles.z[light] <= -circles.sine[light];
+}
+
+bool LobeBatch::lies_below(const PolygonBatch& polygons, std::size_t light) {
+    return polygons.lies_below(light);
+}
+
+bool LobeBatch::shows_mirrored(const CircleArrays& circles, std::size_t light, const Vec3d& direction) {
+    return glm::dot(direction, axis_of(circles, light)) >= circles.cosine[light];
+}
+
+bool LobeBatch::shows_mirrored(const PolygonBatch& polygons, std::size_t light, const Vec3d& direction) {
+    // The winding of the outline about the direction, as angles between neighbouring vertices.
+    const SphericalPolygon<double> polygon(polygons.polygon(light), true);
+    const std::vector<Vec3d>& v = polygon.directions();
+    double winding = 0;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        const Vec3d a = glm::cross(direction, v[i]);
+        const Vec3d b = glm::cross(direction, v[(i + 1) % v.size()]);
+        winding += std::atan2(glm::dot(direction, glm::cross(a, b)), glm::dot(a, b));
+    }
+    return winding > 1 && std::any_of(v.begin(), v.end(), [&](const Vec3d& d) { return glm::dot(d, direction) > 0; });
+}
+
+void LobeBatch::choose_rules(const LobeViews& lobe, const CircleArrays& circles,
+                             std::span<const std::uint32_t> view_of) {
+    choose_cap_rules(lobe.ggx(), circles, lobe.positions().directions(), lobe.tolerances(), view_of, rules_);
+}
+
+void LobeBatch::choose_rules(const LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of) {
+    choose_polygon_rules(lobe.ggx(), polygons.views(), lobe.positions().directions(), lobe.tolerances(), view_of,
+                         rules_);
+}
+
+template <class Lights>
+void LobeBatch::find_keys(const LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of) {
+    keys_.resize(view_of.size());
+    if (!lobe.chooses()) {
+        const auto key = is_mirror(lobe.shape()) ? kMirror : static_cast<Key>(kHarmonics + lobe.order(0));
+        for (std::size_t i = 0; i < view_of.size(); ++i) {
+            keys_[i] = lies_below(lights, i) || lobe.is_black(view_of[i]) ? kNothing : key;
+        }
+        return;
+    }
+    rules_.resize(view_of.size());
+    choose_rules(lobe, lights, view_of);
+    const int cheap = cheap_rule(lights);
+    for (std::size_t i = 0; i < view_of.size(); ++i) {
+        const std::uint32_t view = view_of[i];
+        const int order = lobe.order(view);
+        const Key otherwise = order > 0 ? static_cast<Key>(kHarmonics + order) : kOutline;
+        const bool by_rule = rules_[i] != kNoRule && (rules_[i] <= cheap || order == 0);
+        const Key key = by_rule ? rules_[i] : otherwise;
+        keys_[i] = rules_[i] == kHidden || lobe.is_black(view) ? kNothing : key;
+    }
+}
+
+void LobeBatch::sort() {
+    begin_.fill(0);
+    for (const Key key : keys_) {
+        ++begin_[key + std::size_t{1}];
+    }
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    sorted_.resize(keys_.size());
+    std::array<std::uint32_t, kKeys + 1> next = begin_;
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+        sorted_[next[keys_[i]]++] = static_cast<std::uint32_t>(i);
+    }
+}
+
+template <class Lights>
+void LobeBatch::integrate(LobeViews& lobe, Lights& lights, Key key) {
+    if (key == kMirror) {
+        mirror(lobe, lights);
+    } else if (key == kOutline) {
+        missed_.resize(values_.size());
+        by_outline(lobe, lights);
+    } else if (key > kHarmonics) {
+        by_harmonics(lobe, lights, key - kHarmonics);
+        for (const std::uint32_t light : items_) {
+            efforts_[light] = key - kHarmonics;
+        }
+    } else {
+        by_rule(lobe, lights, key);
+    }
+}
+
+template <class Lights>
+void LobeBatch::mirror(const LobeViews& lobe, Lights& lights) {
+    for (std::size_t k = 0; k < items_.size(); ++k) {
+        const Vec3d direction = mirrored(lobe.positions().direction(item_views_[k]));
+        item_values_[k] = shows_mirrored(lights, items_[k], direction)
+                              ? static_cast<float>(fresnel_factor(lobe.ggx(), direction.z))
+                              : 0.0F;
+    }
+}
+
+void LobeBatch::by_harmonics(LobeViews& lobe, const CircleArrays& circles, int order) {
+    shade_caps(circles, items_, lobe.arrays(order, item_views_), item_views_, item_values_);
+}
+
+void LobeBatch::by_harmonics(LobeViews& lobe, const PolygonBatch& polygons, int order) {
+    shade_polygons(polygons.vertices(), polygons.vertex_count(), items_, lobe.arrays(order, item_views_), item_views_,
+                   item_values_);
+}
+
+void LobeBatch::by_rule(const LobeViews& lobe, const CircleArrays& circles, int rule) {
+    integrate_caps(lobe.ggx(), circles, items_, lobe.positions().directions(), item_views_, rule, item_values_);
+    const int points = cap_rule_points(rule);
+    for (const std::uint32_t light : items_) {
+        efforts_[light] = points;
+    }
+}
+
+void LobeBatch::by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule) {
+    for (std::size_t k = 0; k < items_.size(); ++k) {
+        const CubatureSum sum = polygon_cubature(lobe.ggx(), lobe.positions().direction(item_views_[k]),
+                                                 SphericalPolygon<double>(polygons.polygon(items_[k]), true), rule);
+        item_values_[k] = static_cast<float>(sum.value);
+        efforts_[items_[k]] = sum.points;
+    }
+}
+
+void LobeBatch::by_outline(const LobeViews& lobe, const CircleArrays& circles) {
+    for (std::size_t k = 0; k < items_.size(); ++k) {
+        const std::uint32_t i = items_[k];
+        integrate_outline(lobe, k, CapOutline({axis_of(circles, i), circles.cosine[i], circles.sine[i]}).arcs());
+    }
+}
+
+void LobeBatch::by_outline(const LobeViews& lobe, const PolygonBatch& polygons) {
+    for (std::size_t k = 0; k < items_.size(); ++k) {
+        integrate_outline(lobe, k, polygon_outline(SphericalPolygon<double>(polygons.polygon(items_[k]), true)));
+    }
+}
+
+void LobeBatch::integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const OutlineArc> arcs) {
+    const std::uint32_t view = item_views_[item];
+    const double tolerance = lobe.absolute_tolerance(view);
+    const OutlineIntegral integral = outline_integral(lobe.ggx(), lobe.positions().cosine()[view], arcs, tolerance);
+    item_values_[item] = static_cast<float>(integral.value);
+    efforts_[items_[item]] = integral.points;
+    missed_[items_[item]] = integral.error <= tolerance ? 0 : 1;
+}
+
+}  // namespace shlight

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+//
+// Many lights under one lobe: each integrated in the cheapest way that meets the tolerance. As a mirror image, by a few
+// values of f·cos where it is small beside the lobe, by spherical harmonics in the lobe's warp, or along its outline.
+// Lights that take the same way are sorted together, so that each way is one call.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "caps/cap_shading.h"
+#include "lobes/material_views.h"
+#include "polygons/polygon_batch.h"
+#include "shading/light_outline.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// How a light's radiance was found; nothing: the light is hidden, or the lobe black.
+enum class Way { nothing, mirror, harmonics, cubature };
+
+/// Keeps its memory from call to call; one per thread.
+class LobeBatch {
+  public:
+    /// Circle i, clipped by the horizon, is seen by view view_of[i]. counted: whether anything but values() will be
+    /// asked for.
+    void shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of, bool counted);
+    void shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of, bool counted);
+
+    // Of the last call:
+    /// The reflected radiance of each light of unit radiance, without the lobe's scale, ≥ 0.
+    std::span<const float> values() const { return values_; }
+    /// The order, or number of values of f·cos, that each took; 0 where it is hidden or mirrored, or the lobe black.
+    std::span<const std::int32_t> efforts() const { return efforts_; }
+    Way way(std::size_t light) const;
+    /// Whether a light kept within the tolerance, by what its way estimates; only if the lobe, as given, was judged.
+    bool met(const LobeViews& lobe, std::size_t light, std::size_t view) const;
+
+  private:
+    /// What becomes of a light: nothing, a rule of cubature (1 …), something else, or harmonics of order
+    /// key - kHarmonics.
+    using Key = std::uint8_t;
+    static constexpr Key kNothing = 0, kOutline = 5, kMirror = 6, kHarmonics = 7;
+    static constexpr std::size_t kKeys = kHarmonics + kMaxOrder + 1;
+
+    template <class Lights>
+    void shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool counted);
+    /// All by harmonics of the only order.
+    template <class Lights>
+    void shade_alike(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool counted);
+    template <class Lights>
+    void shade_sorted(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of);
+
+    static bool lies_below(const CircleArrays& circles, std::size_t light);
+    static bool lies_below(const PolygonBatch& polygons, std::size_t light);
+    static bool shows_mirrored(const CircleArrays& circles, std::size_t light, const Vec3d& direction);
+    static bool shows_mirrored(const PolygonBatch& polygons, std::size_t light, const Vec3d& direction);
+    /// The rule of cubature of each light, as choose_cap_rules.
+    void choose_rules(const LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of);
+    void choose_rules(const LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of);
+
+    template <class Lights>
+    void find_keys(const LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of);
+    void sort();
+    template <class Lights>
+    void integrate(LobeViews& lobe, Lights& lights, Key key);
+
+    template <class Lights>
+    void mirror(const LobeViews& lobe, Lights& lights);
+    void by_harmonics(LobeViews& lobe, const CircleArrays& circles, int order);
+    void by_harmonics(LobeViews& lobe, const PolygonBatch& polygons, int order);
+    void by_rule(const LobeViews& lobe, const CircleArrays& circles, int rule);
+    void by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule);
+    void by_outline(const LobeViews& lobe, const CircleArrays& circles);
+    void by_outline(const LobeViews& lobe, const PolygonBatch& polygons);
+    /// Of an item.
+    void integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const OutlineArc> arcs);
+
+    std::vector<float> values_;
+    std::vector<std::int32_t> efforts_;
+
+    bool alike_ = false;
+    std::vector<std::uint8_t> rules_, missed_;  // missed_: the tolerance
+    std::vector<Key> keys_;
+    std::vector<std::uint32_t> sorted_;             // lights by key
+    std::array<std::uint32_t, kKeys + 1> begin_{};  // of each key in sorted_
+
+    std::span<const std::uint32_t> items_;       // lights of the key at hand
+    std::span<const std::uint32_t> item_views_;  // and their views
+    std::span<float> item_values_;
+    std::vector<std::uint32_t> all_, gathered_views_;
+    std::vector<float> gathered_values_;
+};
+
+}  // namespace shlight

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "shading/shading_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lights/seen_light.h"
+
+namespace shlight {
+namespace {
+
+/// For materials without a narrow lobe: of cosθ and the horizon.
+constexpr double kWidestSpread = 1.3;
+
+Vec3d towards_viewer(const Hits& hits, std::size_t hit) {
+    const double cosine = hits.cos_theta_o[hit];
+    return std::sqrt(1 - cosine * cosine) * hits.frame[hit].x + cosine * hits.frame[hit].z;
+}
+
+double nearest(std::span<const Light> lights, const DeltaLights& deltas, const Vec3d& position) {
+    double distance = deltas.changing_distance(position);
+    for (const Light& light : lights) {
+        distance = std::min(distance, changing_distance(light, position));
+    }
+    return distance;
+}
+
+}  // namespace
+
+void ShadingPoints::clear() {
+    frame.clear();
+    cos_theta_o.clear();
+    error.clear();
+    material.clear();
+    of_hit.clear();
+    pixel_begin.assign(1, 0);
+    members_.clear();
+}
+
+bool ShadingPoints::joins(const Hits& hits, std::size_t hit, std::size_t point) const {
+    if (material[point] != hits.material[hit]) {
+        return false;
+    }
+    // The point's frame is that of its first hit until all are known.
+    const Members& members = members_[point];
+    const double difference = glm::length(hits.frame[hit].z - frame[point].z) +
+                              glm::length(towards_viewer(hits, hit) - members.first_towards_viewer) +
+                              glm::length(hits.frame[hit].origin - frame[point].origin) / members.nearest_light;
+    return difference <= members.spread;
+}
+
+void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, double nearest_light,
+                          double tolerance) {
+    frame.push_back(hits.frame[hit]);
+    cos_theta_o.push_back(hits.cos_theta_o[hit]);
+    error.push_back(hits.error[hit]);
+    material.push_back(hits.material[hit]);
+    const double spread = std::sqrt(3 * tolerance) * std::min(kWidestSpread, lobes.narrowest(hits.cos_theta_o[hit]));
+    members_.push_back({towards_viewer(hits, hit), spread, nearest_light, Vec3d(0), Vec3d(0), Vec3d(0), 0, 0});
+}
+
+void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t point) {
+    Members& members = members_[point];
+    members.position += hits.frame[hit].origin;
+    members.normal += hits.frame[hit].z;
+    members.towards_viewer += towards_viewer(hits, hit);
+    ++members.count;
+    of_hit.push_back(static_cast<std::uint32_t>(point));
+}
+
+void ShadingPoints::finish(std::size_t point) {
+    const Members& members = members_[point];
+    if (members.count > 1) {
+        const Vec3d viewer = glm::normalize(members.towards_viewer);
+        frame[point] = shading_frame(members.position / static_cast<double>(members.count),
+                                     glm::normalize(members.normal), viewer);
+        cos_theta_o[point] = view_cosine(frame[point], viewer);
+    }
+}
+
+void ShadingPoints::assign(const Hits& hits, std::span<const MaterialLobes> materials, std::span<const Light> lights,
+                           const DeltaLights& deltas, double tolerance) {
+    clear();
+    for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
+        const std::size_t first_point = size();
+        for (std::size_t hit = hits.pixel_begin[pixel]; hit < hits.pixel_begin[pixel + 1]; ++hit) {
+            std::size_t point = first_point;
+            while (point < size() && !joins(hits, hit, point)) {
+                ++point;
+            }
+            if (point == size()) {
+                start(hits, hit, materials[hits.material[hit]], nearest(lights, deltas, hits.frame[hit].origin),
+                      tolerance);
+            }
+            add_member(hits, hit, point);
+        }
+        for (std::size_t point = first_point; point < size(); ++point) {
+            finish(point);
+        }
+        pixel_begin.push_back(size());
+    }
+    sort_hits();
+}
+
+void ShadingPoints::sort_hits() {
+    std::size_t end = 0;
+    for (Members& members : members_) {
+        members.first_hit = end;
+        end += members.count;
+        members.count = 0;
+    }
+    hits_by_point_.resize(end);
+    for (std::size_t hit = 0; hit < of_hit.size(); ++hit) {
+        Members& members = members_[of_hit[hit]];
+        hits_by_point_[members.first_hit + members.count++] = hit;
+    }
+}
+
+}  // namespace shlight

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+//
+// Where light is integrated: hits of a pixel that would be shaded alike share one point.
+//
+// Antialiasing wants many hits in a pixel; Eq. 5 without shadows varies so little over most pixels that one evaluation
+// at the mean of the hits does for all. Shadow rays still start from each hit.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lights/delta_lights.h"
+#include "lobes/material_lobes.h"
+#include "shlight/light.h"
+#include "tracing/hits.h"
+
+namespace shlight {
+
+class ShadingPoints {
+  public:
+    /// One point for hits of a pixel with the same material whose normal, direction to the viewer and directions to
+    /// lights differ in sum by less than √(3 tolerance) times the least distance over which the material's f·cos
+    /// changes. The mean of a lobe over so small a spread is its value at the mean up to a fraction of the tolerance:
+    /// what is left is the second difference.
+    void assign(const Hits& hits, std::span<const MaterialLobes> materials, std::span<const Light> lights,
+                const DeltaLights& deltas, double tolerance);
+
+    std::size_t size() const { return frame.size(); }
+    /// Hits that share a point.
+    std::uint32_t hit_count(std::size_t point) const { return members_[point].count; }
+    std::span<const std::size_t> hits_of(std::size_t point) const {
+        return std::span(hits_by_point_).subspan(members_[point].first_hit, members_[point].count);
+    }
+
+    std::vector<ShadingFrame> frame;
+    std::vector<float> cos_theta_o;
+    std::vector<double> error;  ///< see SurfacePoint
+    std::vector<std::uint32_t> material;
+    std::vector<std::uint32_t> of_hit;     ///< the point of each hit
+    std::vector<std::size_t> pixel_begin;  ///< pixel p has the points pixel_begin[p] … pixel_begin[p + 1] - 1
+
+  private:
+    /// The hits of a point: what the first one demands of the others, and their sum.
+    struct Members {
+        Vec3d first_towards_viewer;
+        double spread;         // allowed difference from the first
+        double nearest_light;  // distance
+        Vec3d position, normal, towards_viewer;
+        std::uint32_t count;
+        std::size_t first_hit;  // in hits_by_point_
+    };
+
+    void clear();
+    bool joins(const Hits& hits, std::size_t hit, std::size_t point) const;
+    void start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, double nearest_light, double tolerance);
+    void add_member(const Hits& hits, std::size_t hit, std::size_t point);
+    void finish(std::size_t point);
+    void sort_hits();
+
+    std::vector<Members> members_;
+    std::vector<std::size_t> hits_by_point_;  // numbers of hits, in the order of their points
+};
+
+}  // namespace shlight

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include "shadows/dim_lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/even_steps.h"
+#include "lights/seen_light.h"
+#include "shlight/sampling.h"
+
+namespace shlight {
+namespace {
+
+/// Beside the seed of a pixel and light.
+constexpr std::uint32_t kStartSeed = 0xFFFFFFFFU;
+
+/// Rays of a hit where one ray each has met nothing that a lobe reflects: of a light that the horizon cuts, or that a
+/// narrow lobe reflects a part of.
+constexpr std::uint32_t kMoreRays = 16;
+
+}  // namespace
+
+void MinorLights::start(const ShadingPoints& points) {
+    points_ = &points;
+    radiance_.assign(points.size(), Rgb(0));
+}
+
+void MinorLights::finish(Hits& hits) const {
+    for (std::size_t hit = 0; hit < hits.size(); ++hit) {
+        hits.radiance[hit] += radiance_[points_->of_hit[hit]];
+    }
+}
+
+void MinorLights::add(const Light& light, std::span<const float> unshadowed, std::size_t pixel, float brightness,
+                      const RayPhase& phase, std::size_t questions, std::uint32_t seed, const Hits& hits,
+                      ShadowRays& rays) {
+    const std::size_t begin = points_->pixel_begin[pixel];
+    const std::size_t end = points_->pixel_begin[pixel + 1];
+    for (std::size_t first = begin; first < end; ++first) {
+        const auto material = points_->material.begin();
+        const auto here = material + static_cast<std::ptrdiff_t>(first);
+        if (std::find(material + static_cast<std::ptrdiff_t>(begin), here, *here) != here) {
+            continue;
+        }
+        const float own = gather(light, unshadowed, first, end);
+        if (own > 0) {
+            const float part = std::max(std::ceil(own / brightness * static_cast<float>(questions)), 1.0F);
+            draw(light, unshadowed, own, static_cast<std::size_t>(part), seed, hits);
+            for (const std::uint32_t count : {1U, kMoreRays}) {
+                rays.trace(light, hits, asked_, {true, phase.first_point, phase.first_sample, count}, seed);
+                if (find_shares(hits, rays)) {
+                    break;
+                }
+            }
+            shade(light, unshadowed);
+        }
+    }
+}
+
+float MinorLights::gather(const Light& light, std::span<const float> unshadowed, std::size_t first, std::size_t last) {
+    members_.clear();
+    float sum = 0;
+    for (std::size_t point = first; point < last; ++point) {
+        if (points_->material[point] == points_->material[first]) {
+            members_.push_back({point, brightness_->of_point(strength_of(light), unshadowed, point)});
+            sum += members_.back().brightness;
+        }
+    }
+    return sum;
+}
+
+void MinorLights::draw(const Light& light, std::span<const float> unshadowed, float brightness, std::size_t questions,
+                       std::uint32_t seed, const Hits& hits) {
+    asked_.hit.clear();
+    asked_.shines.clear();
+    density_.clear();
+    EvenSteps steps(brightness, questions, hash(seed, kStartSeed));
+    for (const Member& member : members_) {
+        const std::span<const std::size_t> own_hits = points_->hits_of(member.point);
+        steps.within(member.brightness, own_hits.size(), [&](std::size_t k) {
+            const std::size_t hit = own_hits[k];
+            // The hit itself may see less of the light than the point that it shares.
+            if (!is_seen(light, hits.frame[hit], hits.error[hit])) {
+                return;
+            }
+            asked_.hit.push_back(hit);
+            density_.push_back(double{member.brightness} / static_cast<double>(own_hits.size()));
+            for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+                asked_.shines.push_back(unshadowed[lobe * points_->size() + member.point] > 0 ? 1 : 0);
+            }
+        });
+    }
+}
+
+bool MinorLights::find_shares(const Hits& hits, const ShadowRays& rays) {
+    shares_.assign(lobe_stride_, 0.0F);
+    bool complete = true;
+    for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+        double seen = 0;
+        double all = 0;
+        bool any = false;
+        for (std::size_t i = 0; i < asked_.hit.size(); ++i) {
+            if (asked_.shines[i * lobe_stride_ + lobe] != 0) {
+                const RaySums sums = rays.sum(hits, asked_, i, lobe);
+                seen += sums.seen / density_[i];
+                all += sums.all / density_[i];
+                any = true;
+            }
+        }
+        complete = complete && (all > 0 || !any);
+        shares_[lobe] = static_cast<float>(all > 0 ? seen / all : 0.0);
+    }
+    return complete;
+}
+
+void MinorLights::shade(const Light& light, std::span<const float> unshadowed) {
+    for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+        const Rgb part = shares_[lobe] * strength_of(light);
+        for (const Member& member : members_) {
+            radiance_[member.point] +=
+                part * brightness_->scale(lobe, member.point) * unshadowed[lobe * points_->size() + member.point];
+        }
+    }
+}
+
+}  // namespace shlight

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "shadows/environment_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "environment/environment_map.h"
+#include "lobes/lobe_sampling.h"
+#include "shadows/ray_start.h"
+#include "shlight/sampling.h"
+
+namespace shlight {
+namespace {
+
+/// As Lambert reflects: density cosθ/π.
+Vec3d diffuse_direction(const glm::dvec2& point) {
+    const double sine = std::sqrt(point.x);
+    const double azimuth = 2 * std::numbers::pi * point.y;
+    return {sine * std::cos(azimuth), sine * std::sin(azimuth), std::sqrt(1 - point.x)};
+}
+
+}  // namespace
+
+RadianceSums& RadianceSums::operator+=(const RadianceSums& other) {
+    all += other.all;
+    seen += other.seen;
+    squares += other.squares;
+    seen_squares += other.seen_squares;
+    return *this;
+}
+
+RadianceSums& RadianceSums::operator*=(const Vec3d& factor) {
+    all *= factor;
+    seen *= factor;
+    squares *= factor * factor;
+    seen_squares *= factor * factor;
+    return *this;
+}
+
+/// Directions from one hit, and how densely all sets together draw them.
+class EnvironmentRays::Directions {
+  public:
+    Directions(const Sets& sets, const Vec3d& view, const EnvironmentMap* map, const ShadingFrame& frame)
+        : diffuse_(sets.diffuse), map_(sets.diffuse || !sets.alphas.empty() ? map : nullptr) {
+        for (const double alpha : sets.alphas) {
+            lobes_.emplace_back(alpha, view);
+        }
+        if (map_ != nullptr) {
+            to_map_ = glm::dmat3(map->to_map(frame.x), map->to_map(frame.y), map->to_map(frame.z));
+        }
+    }
+
+    std::size_t set_count() const { return lobes_.size() + (diffuse_ ? 1 : 0) + (map_ != nullptr ? 1 : 0); }
+    /// May lie below the horizon.
+    Vec3d sample(std::size_t set, const glm::dvec2& point) const {
+        if (set < lobes_.size()) {
+            return lobes_[set].sample(point);
+        }
+        return diffuse_ && set == lobes_.size() ? diffuse_direction(point) : map_->sampler.sample(point) * to_map_;
+    }
+    double density(const Vec3d& direction) const {
+        double sum = diffuse_ ? direction.z / std::numbers::pi : 0.0;
+        sum += map_ != nullptr ? map_->sampler.density(to_map_ * direction) : 0.0;
+        for (const LobeSampler& lobe : lobes_) {
+            sum += lobe.density(direction);
+        }
+        return sum;
+    }
+
+  private:
+    bool diffuse_;
+    const EnvironmentMap* map_;
+    glm::dmat3 to_map_{1};  // from the shading frame
+    std::vector<LobeSampler> lobes_;
+};
+
+EnvironmentRays::EnvironmentRays(const RayTracer& tracer, const Environment& environment,
+                                 std::span<const MaterialLobes> materials)
+    : tracer_(&tracer), environment_(&environment), lobes_(materials) {
+    for (const MaterialLobes& material : materials) {
+        Sets& sets = materials_.emplace_back();
+        for (const Lobe& lobe : material.lobes()) {
+            const auto* ggx = std::get_if<GgxShape>(&lobe.shape);
+            if (ggx == nullptr) {
+                sets.diffuse = true;
+            } else if (is_mirror(lobe.shape)) {
+                sets.mirror = true;
+            } else if (std::find(sets.alphas.begin(), sets.alphas.end(), ggx->alpha) == sets.alphas.end()) {
+                sets.alphas.push_back(ggx->alpha);
+            }
+        }
+    }
+}
+
+void EnvironmentRays::trace(const Hits& hits, std::span<const std::size_t> lit, const RayPhase& phase,
+                            std::uint32_t seed) {
+    if (phase.first) {
+        directions_.clear();
+        weights_.clear();
+        spot_weights_.clear();
+        blocked_.clear();
+        runs_.clear();
+    }
+    rays_.clear();
+    const std::size_t before = blocked_.size();
+    for (const std::size_t hit : lit) {
+        runs_.push_back(draw(hits, hit, phase, seed));
+    }
+    blocked_.resize(directions_.size());
+    tracer_->occluded(rays_, std::span(blocked_).subspan(before));
+    rays_traced_ += rays_.size();
+}
+
+EnvironmentRays::Run EnvironmentRays::draw(const Hits& hits, std::size_t hit, const RayPhase& phase,
+                                           std::uint32_t seed) {
+    const Sets& sets = materials_[hits.material[hit]];
+    const Vec3d view = hits.view(hit);
+    const Directions directions(sets, view, environment_->map(), hits.frame[hit]);
+    const RayStart start(hits.frame[hit], hits.shadow_origin[hit], Vec3d(0));
+    const auto push = [&](const Vec3d& direction, double density) {
+        directions_.emplace_back(direction);
+        const Vec3d world = hits.frame[hit].to_world(direction);
+        const Rgb smooth = environment_->smooth_radiance(world);
+        weights_.push_back(smooth / static_cast<float>(density));
+        spot_weights_.push_back((environment_->radiance(world) - smooth) / static_cast<float>(density));
+        rays_.push_back(start.along(direction));
+    };
+    Run run = {directions_.size(), 0, {}};
+    const std::uint32_t first = phase.first_point + (hits.sample[hit] - phase.first_sample) * phase.rays_per_hit;
+    for (std::size_t set = 0; set < directions.set_count(); ++set) {
+        const std::uint32_t own_seed = hash(seed, static_cast<std::uint32_t>(set));
+        for (std::uint32_t ray = 0; ray < phase.rays_per_hit; ++ray) {
+            const Vec3d direction = directions.sample(set, sobol(shuffled(first + ray, own_seed), own_seed));
+            if (direction.z > 0) {
+                push(direction, directions.density(direction));
+            }
+        }
+    }
+    run.end = directions_.size();
+    if (sets.mirror && phase.first) {
+        run.mirror = directions_.size();
+        push({-view.x, 0, view.z}, 1);
+    }
+    return run;
+}
+
+bool EnvironmentRays::all_free() const {
+    return std::find(blocked_.begin(), blocked_.end(), 1) == blocked_.end();
+}
+
+EnvironmentRays::Sums EnvironmentRays::sum(const Hits& hits, std::span<const std::size_t> lit, std::size_t lit_index,
+                                           std::size_t lobe, bool split) const {
+    const std::size_t hit = lit[lit_index];
+    const LobeShape& shape = lobes_[hits.material[hit]].lobes()[lobe].shape;
+    const bool mirror = is_mirror(shape);
+    const Vec3d view = hits.view(hit);
+    Sums result;
+    const auto add_to = [&](RadianceSums& sums, std::size_t ray, const Vec3d& weighted) {
+        sums.all += weighted;
+        sums.squares += weighted * weighted;
+        if (blocked_[ray] == 0) {
+            sums.seen += weighted;
+            sums.seen_squares += weighted * weighted;
+        }
+    };
+    const auto add = [&](std::size_t ray, double value) {
+        if (split) {
+            add_to(result.smooth, ray, value * Vec3d(weights_[ray]));
+            add_to(result.spots, ray, value * Vec3d(spot_weights_[ray]));
+        } else {
+            add_to(result.smooth, ray, value * Vec3d(weights_[ray] + spot_weights_[ray]));
+        }
+    };
+    for (std::size_t i = lit_index; i < runs_.size(); i += lit.size()) {
+        if (mirror && runs_[i].mirror) {
+            add(*runs_[i].mirror, 1);
+        }
+        for (std::size_t ray = runs_[i].begin; ray < runs_[i].end && !mirror; ++ray) {
+            add(ray, lobe_value(shape, Vec3d(directions_[ray]), view));
+        }
+    }
+    return result;
+}
+
+}  // namespace shlight

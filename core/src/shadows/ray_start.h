@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+//
+// Shadow rays from a hit, in float, so that neither the hit's own surface nor the light's blocks them.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "base/ray_rounding.h"
+#include "shlight/light.h"
+#include "shlight/ray_tracer.h"
+#include "shlight/types.h"
+#include "tracing/hits.h"
+
+namespace shlight {
+
+/// Where on the light a shadow ray ends, relative to the point sampled: a polygon may lie in a mesh's face, its own or
+/// one that it is mounted on, and must not be blocked by it. A float ray strays in proportion to its length too.
+Vec3d clearance(const Light& light, const ShadingFrame& frame);
+
+/// Shadow rays of one hit, in float but for the way from the rounded origin.
+class RayStart {
+  public:
+    /// origin: off the surface; target_offset: of the rays' ends, see clearance().
+    RayStart(const ShadingFrame& frame, const Vec3d& origin, const Vec3d& target_offset)
+        : origin_(origin),
+          x_(frame.x),
+          y_(frame.y),
+          z_(frame.z),
+          offset_(frame.to_local(frame.origin - Vec3d(origin_) + target_offset)) {}
+
+    /// To a point in the shading frame, given by a unit direction and a distance.
+    /// Infinitely far: without an end.
+    Ray towards(const Vec3d& local_direction, double distance) const {
+        if (std::isinf(distance)) {
+            return along(local_direction);
+        }
+        const Vec3f way(distance * local_direction + offset_);
+        return {origin_, 0.0F, way.x * x_ + way.y * y_ + way.z * z_, kRayEnd};
+    }
+
+    /// Without an end.
+    Ray along(const Vec3d& local_direction) const {
+        const Vec3f way(local_direction);
+        return {origin_, 0.0F, way.x * x_ + way.y * y_ + way.z * z_, std::numeric_limits<float>::infinity()};
+    }
+
+  private:
+    Vec3f origin_, x_, y_, z_;
+    Vec3d offset_;
+};
+
+}  // namespace shlight

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include "shadows/shadow_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "lobes/lobe_sampling.h"
+#include "shadows/ray_start.h"
+#include "shlight/sampling.h"
+
+namespace shlight {
+namespace {
+
+constexpr std::uint32_t kLightOnly = std::numeric_limits<std::uint32_t>::max();
+
+/// A lobe takes rays of its own only where more than this share of them could meet the light.
+constexpr double kLeastShare = 0.1;
+
+}  // namespace
+
+/// What the rays of one hit have in common.
+class ShadowRays::Drawing {
+  public:
+    Drawing(const Light& light, const Hits& hits, std::size_t hit, const RayPhase& phase, std::uint32_t seed)
+        : hit_material(hits.material[hit]),
+          view(hits.view(hit)),
+          profile(light, hits.frame[hit]),
+          start(hits.frame[hit], hits.shadow_origin[hit], clearance(light, hits.frame[hit])),
+          rays(phase.rays_per_hit),
+          mirror_rays(phase.first ? 1 : 0),
+          first_point_(phase.first_point + (hits.sample[hit] - phase.first_sample) * phase.rays_per_hit),
+          seed_(seed) {}
+
+    /// Of one set of rays; each has a sequence of its own.
+    glm::dvec2 point(std::size_t set, std::uint32_t ray) const {
+        const std::uint32_t seed = set == 0 ? seed_ : hash(seed_, 2 + static_cast<std::uint32_t>(set));
+        return sobol(shuffled(first_point_ + ray, seed), seed);
+    }
+
+    std::uint32_t hit_material;
+    Vec3d view;
+    ProfileView profile;
+    RayStart start;
+    std::uint32_t rays;         // of each set, but …
+    std::uint32_t mirror_rays;  // … for mirrors
+
+  private:
+    std::uint32_t first_point_, seed_;
+};
+
+ShadowRays::ShadowRays(const RayTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride)
+    : tracer_(&tracer), lobe_stride_(lobe_stride), lobes_(materials) {
+    for (const MaterialLobes& material : materials) {
+        Material& sets = materials_.emplace_back();
+        for (const Lobe& lobe : material.lobes()) {
+            const auto* ggx = std::get_if<GgxShape>(&lobe.shape);
+            if (ggx == nullptr) {
+                sets.set_of_lobe.push_back(kLightOnly);
+                continue;
+            }
+            const auto known = std::find(sets.alphas.begin(), sets.alphas.end(), ggx->alpha);
+            sets.set_of_lobe.push_back(static_cast<std::uint32_t>(known - sets.alphas.begin()));
+            if (known == sets.alphas.end()) {
+                sets.alphas.push_back(ggx->alpha);
+            }
+        }
+        set_stride_ = std::max(set_stride_, 1 + sets.alphas.size());
+    }
+}
+
+void ShadowRays::trace(const Light& light, const Hits& hits, const LitHits& lit, const RayPhase& phase,
+                       std::uint32_t seed) {
+    if (phase.first) {
+        directions_.clear();
+        weights_.clear();
+        hidden_layers_.clear();
+        blocked_.clear();
+        runs_.clear();
+        solid_angles_.assign(lit.hit.size() * set_stride_, 0.0);
+    }
+    rays_.clear();
+    const std::size_t before = blocked_.size();
+    for (std::size_t i = 0; i < lit.hit.size(); ++i) {
+        const std::size_t hit = lit.hit[i];
+        const Drawing drawing(light, hits, hit, phase, seed);
+        if (i == 0) {
+            light_sampler_.reset(light, hits.frame[hit]);
+        } else {
+            light_sampler_.move(light, hits.frame[hit]);
+        }
+        draw(drawing, lit, i);
+    }
+    blocked_.resize(directions_.size());
+    if (const auto* mesh = std::get_if<MeshLight>(&light)) {
+        follow(*mesh, before);
+    } else {
+        tracer_->occluded(rays_, std::span(blocked_).subspan(before));
+    }
+    rays_traced_ += rays_.size();
+}
+
+/// What a ray meets first is the light, or in its way; what lies behind that is hidden. A ray that passes by a mesh
+/// whose outline is known no better was not stopped.
+void ShadowRays::follow(const MeshLight& light, std::size_t before) {
+    met_.resize(rays_.size());
+    tracer_->intersect(rays_, met_);
+    for (std::size_t i = 0; i < met_.size(); ++i) {
+        const bool seen = hidden_layers_[before + i] == 0 && (met_[i].missed() || light.holds(met_[i]));
+        blocked_[before + i] = seen ? 0 : 1;
+    }
+}
+
+bool ShadowRays::shines(const LitHits& lit, std::size_t lit_index, const Material& material, std::uint32_t set) const {
+    for (std::size_t lobe = 0; lobe < material.set_of_lobe.size(); ++lobe) {
+        if (material.set_of_lobe[lobe] == set && lit.shines[lit_index * lobe_stride_ + lobe] != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void ShadowRays::draw(const Drawing& drawing, const LitHits& lit, std::size_t lit_index) {
+    const Material& material = materials_[drawing.hit_material];
+    bool mirrors_only = !shines(lit, lit_index, material, kLightOnly);
+    for (std::uint32_t set = 0; set < material.alphas.size(); ++set) {
+        mirrors_only = mirrors_only && !(material.alphas[set] > 0 && shines(lit, lit_index, material, set));
+    }
+    std::size_t begin = directions_.size();
+    const auto end_run = [&] {
+        runs_.push_back({begin, directions_.size()});
+        begin = directions_.size();
+    };
+    if (!mirrors_only) {
+        for (std::uint32_t ray = 0; ray < drawing.rays; ++ray) {
+            const LightSample sample = light_sampler_.sample(drawing.point(0, ray));
+            push(drawing, sample.direction, sample.distance, sample.weight, light_sampler_.layers(sample.direction));
+        }
+    }
+    end_run();
+    for (std::uint32_t set = 0; set + 1 < set_stride_; ++set) {
+        if (set < material.alphas.size() && shines(lit, lit_index, material, set)) {
+            draw_lobes(drawing, lit_index, set);
+        }
+        end_run();
+    }
+}
+
+void ShadowRays::draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set) {
+    const double alpha = materials_[drawing.hit_material].alphas[set];
+    const LobeSampler sampler(alpha, drawing.view);
+    const double solid_angle = light_sampler_.solid_angle();
+    if (alpha > 0 && !(solid_angle * sampler.largest_density() > kLeastShare)) {
+        return;
+    }
+    solid_angles_[lit_index * set_stride_ + 1 + set] = solid_angle;
+    const std::uint32_t rays = alpha > 0 ? drawing.rays : drawing.mirror_rays;
+    for (std::uint32_t ray = 0; ray < rays; ++ray) {
+        const Vec3d direction = sampler.sample(drawing.point(1 + set, ray));
+        const std::optional<double> distance = direction.z > 0 ? light_sampler_.meets(direction) : std::nullopt;
+        if (distance) {
+            push(drawing, direction, *distance, solid_angle, alpha > 0 ? light_sampler_.layers(direction) : 1);
+        }
+    }
+}
+
+void ShadowRays::push(const Drawing& drawing, const Vec3d& direction, double distance, double weight, int layers) {
+    const double factor = drawing.profile.factor(direction);
+    for (int layer = 0; weight * factor > 0 && layer < layers; ++layer) {
+        directions_.emplace_back(direction);
+        weights_.push_back(static_cast<float>(weight * factor));
+        hidden_layers_.push_back(layer > 0 ? 1 : 0);
+        rays_.push_back(drawing.start.towards(direction, distance));
+    }
+}
+
+std::size_t ShadowRays::blocked_count() const {
+    return static_cast<std::size_t>(std::count(blocked_.begin(), blocked_.end(), 1));
+}
+
+RaySums ShadowRays::sum(const Hits& hits, const LitHits& lit, std::size_t lit_index, std::size_t lobe) const {
+    const std::size_t hit = lit.hit[lit_index];
+    const LobeShape& shape = lobes_[hits.material[hit]].lobes()[lobe].shape;
+    const Material& material = materials_[hits.material[hit]];
+    const std::uint32_t set = material.set_of_lobe[lobe];
+    const Vec3d view = hits.view(hit);
+    const bool mirror = is_mirror(shape);
+    const double solid_angle = set == kLightOnly ? 0.0 : solid_angles_[lit_index * set_stride_ + 1 + set];
+    const LobeSampler sampler(set == kLightOnly ? 1.0 : material.alphas[set], view);
+    RaySums sums;
+    const auto add = [&](const Run& run) {
+        for (std::size_t i = run.begin; i < run.end; ++i) {
+            const Vec3d direction(directions_[i]);
+            double value = mirror ? 1.0 : weights_[i] * lobe_value(shape, direction, view);
+            if (!mirror && solid_angle > 0) {
+                // The weights are those of points even in solid angle; so p_light is one over that.
+                value /= 1 + solid_angle * sampler.density(direction);
+            }
+            sums.all += value;
+            sums.squares += value * value;
+            sums.seen += blocked_[i] == 0 ? value : 0;
+        }
+    };
+    for (std::size_t base = lit_index * set_stride_; base < runs_.size(); base += solid_angles_.size()) {
+        if (!mirror) {
+            add(runs_[base]);
+        }
+        if (set != kLightOnly) {
+            add(runs_[base + 1 + set]);
+        }
+    }
+    return sums;
+}
+
+}  // namespace shlight

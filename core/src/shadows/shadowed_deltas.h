@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+//
+// What hits reflect of sources without extent, with their shadows. A scene may have thousands of them: they are seen in
+// lanes, and one that adds little to a pixel is asked for by few rays.
+//
+// A source is wholly seen from a hit or not at all. So one ray from each hit leaves no noise, and a pixel from which
+// all rays reach the source, or none, needs no more than a factor for it. The few rays of a minor source start from
+// hits drawn in proportion to what these reflect of it: the share of rays that reach it is then right on average.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lights/delta_lights.h"
+#include "lobes/material_lobes.h"
+#include "shading/shading_points.h"
+#include "shlight/ray_tracer.h"
+#include "shlight/render_report.h"
+#include "tracing/hits.h"
+
+namespace shlight {
+
+/// Keeps its memory from call to call; one per thread.
+class ShadowedDeltas {
+  public:
+    ShadowedDeltas(const RayTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride);
+
+    /// Adds all sources to the hits' radiance, and what the hits take to the report. shadows: whether any are cast;
+    /// pixel_seeds: one per pixel. brightness: of each pixel by other lights, to which that by the sources is added, if
+    /// nothing blocks. No noise is added: what the few rays of minor sources are off by is the same at all hits of a
+    /// pixel.
+    void add(const DeltaLights& lights, const ShadingPoints& points, bool shadows,
+             std::span<const std::uint32_t> pixel_seeds, Hits& hits, std::span<float> brightness, RenderReport& report);
+    std::uint64_t rays_traced() const { return rays_traced_; }
+
+  private:
+    /// Of a pixel: its points are those numbered first … last - 1.
+    struct PixelRange {
+        std::size_t hit_count;
+        std::size_t first_point, last_point;
+        std::uint32_t seed;
+
+        std::size_t point_count() const { return last_point - first_point; }
+    };
+    /// A hit that asks for a source.
+    struct Question {
+        std::size_t hit;
+        std::uint32_t ray;  // its number; kAbove or kBelow: none is needed
+    };
+    /// A source, and the questions before which its own end.
+    struct Asked {
+        std::size_t light;
+        std::size_t end;
+        bool each_hit;
+    };
+
+    /// others: brightness by other lights; returns that by all.
+    float add_pixel(const ShadingPoints& points, const PixelRange& pixel, float others, Hits& hits,
+                    RenderReport& report);
+    /// Values of a range of sources at each point of the pixel, and the sources' brightness.
+    void find_values(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range);
+    void ask(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, float all,
+             const Hits& hits);
+    /// Every hit that the source lights, or some in proportion to how much.
+    void ask_each(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, std::size_t light,
+                  const Hits& hits);
+    void ask_some(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, std::size_t light,
+                  std::size_t rays, const Hits& hits);
+    void question(const DeltaRange& range, std::size_t light, std::size_t hit, const Hits& hits);
+    void trace();
+    /// Of each source that all hits of the pixel see alike, the share that is seen; the others are added.
+    void find_shares(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, Hits& hits);
+    void add_shares(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, Hits& hits);
+    std::uint64_t count_values(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range) const;
+
+    float* values(std::size_t point_in_pixel, std::size_t lobe, const DeltaRange& range) {
+        return &values_[(point_in_pixel * lobe_stride_ + lobe) * range.count];
+    }
+    const float* values(std::size_t point_in_pixel, std::size_t lobe, const DeltaRange& range) const {
+        return &values_[(point_in_pixel * lobe_stride_ + lobe) * range.count];
+    }
+
+    const RayTracer* tracer_;
+    std::span<const MaterialLobes> materials_;
+    std::size_t lobe_stride_;
+    const DeltaLights* lights_ = nullptr;  // of the call of add()
+    bool shadows_ = false;
+    std::uint64_t rays_traced_ = 0;
+
+    // Of a pixel and a range of sources:
+    DeltaViews views_;
+    std::vector<float> values_;            // points × lobe_stride × sources
+    std::vector<float> point_brightness_;  // points × sources, of the hits of a point together
+    std::vector<float> brightness_;        // by source
+    std::vector<Asked> asked_;
+    std::vector<Question> questions_;
+    std::vector<Ray> rays_;
+    std::vector<std::uint8_t> blocked_;
+    std::vector<float> seen_r_, seen_g_, seen_b_;  // by source: its strength times the share that is seen
+};
+
+}  // namespace shlight

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+//
+// Shadows under the environment: the unshadowed radiance of each lobe, known without noise, corrected by what rays see
+// of it, in each colour channel, and for a picture's bright spots apart from the rest. docs/algorithms.md says how.
+//
+// A quarter of the rays goes first; where none of a pixel's meets anything, the rest is spared.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "environment/environment_shading.h"
+#include "lobes/material_lobes.h"
+#include "shadows/environment_rays.h"
+#include "shlight/environment.h"
+#include "shlight/ray_tracer.h"
+#include "tracing/hits.h"
+
+namespace shlight {
+
+/// Keeps its memory from pixel to pixel; one per thread.
+class ShadowedEnvironment {
+  public:
+    /// most_rays: per camera ray, of any call of add().
+    ShadowedEnvironment(const RayTracer& tracer, const Environment& environment, std::uint32_t most_rays,
+                        std::span<const MaterialLobes> materials);
+
+    /// Adds the environment to the hits' radiance and noise. samples: what the hits are of; unshadowed: see
+    /// EnvironmentShading; point_of_hit: the shading point of each hit, none shared by pixels; pixel_seeds: one per
+    /// pixel. A hit's radiance counts as part of the sum over the hits of its pixel.
+    void add(const EnvironmentShading& shading, const SampleRange& samples, std::span<const UnshadowedParts> unshadowed,
+             std::size_t point_count, std::span<const std::uint32_t> point_of_hit,
+             std::span<const std::uint32_t> pixel_seeds, Hits& hits);
+    std::uint64_t rays_traced() const { return rays_.rays_traced(); }
+
+  private:
+    /// Rays of all hits of a pixel that have a material.
+    struct MaterialSums {
+        std::size_t material;
+        EnvironmentRays::Sums sums;
+        Vec3d kept_smooth, kept_spots;  // see kept_share
+    };
+
+    void add_pixel(std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits);
+    bool find_obstacles(std::uint32_t seed, const Hits& hits);
+    const Lobe& lobe_of(std::size_t hit, std::size_t lobe, const Hits& hits) const {
+        return materials_[hits.material[hit]].lobes()[lobe];
+    }
+    /// The values of one lobe at a hit.
+    UnshadowedParts unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const;
+    void shade_lobe(std::size_t lobe, Hits& hits);
+    MaterialSums& sums_of(std::size_t material);
+    void shade_hit(std::size_t lit_index, std::size_t lobe, const MaterialSums& of_material, Hits& hits);
+    Rgb seen_part(const Rgb& unblocked, const RadianceSums& of_hit, const Vec3d& kept) const;
+
+    std::span<const MaterialLobes> materials_;
+    std::uint32_t most_rays_;
+    EnvironmentRays rays_;
+
+    SampleRange samples_{};  // of the call of add()
+    const EnvironmentShading* shading_ = nullptr;
+    std::span<const UnshadowedParts> unshadowed_;
+    std::size_t point_count_ = 0;
+    std::span<const std::uint32_t> point_of_hit_;
+    std::vector<std::size_t> lit_;                 // hits of the pixel
+    std::vector<EnvironmentRays::Sums> hit_sums_;  // of one lobe, by lit hit
+    std::vector<MaterialSums> material_sums_;      // likewise
+    std::vector<Rgb> deviation_;                   // by lit hit, from its few rays
+};
+
+}  // namespace shlight

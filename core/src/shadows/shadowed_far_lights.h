@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+//
+// Shadows of lights that are summed up (LightLumps): some are drawn, in proportion to how bright they are, and a pixel
+// gets the share of the sum that its hits see of these.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lobes/material_lobes.h"
+#include "shading/far_light_sum.h"
+#include "shading/shading_points.h"
+#include "shlight/ray_tracer.h"
+#include "tracing/hits.h"
+
+namespace shlight {
+
+/// Keeps its memory; one per thread.
+class ShadowedLumps {
+  public:
+    /// lights: of the picture.
+    ShadowedLumps(const RayTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride,
+                  std::span<const Light> lights);
+
+    /// Adds the sum to the hits' radiance. shadows: whether any are cast; pixel_seeds: one per pixel;
+    /// brightness: of each pixel by these and all other lights, if nothing blocks. No noise is added: what few rays are
+    /// off by is the same at all hits of a pixel.
+    void add(const LightLumps& lumps, const ShadingPoints& points, bool shadows,
+             std::span<const std::uint32_t> pixel_seeds, std::span<const float> brightness, Hits& hits);
+    std::uint64_t rays_traced() const { return rays_traced_; }
+
+  private:
+    /// The share that is seen from a pixel's hits.
+    float find_share(const LightLumps& lumps, std::size_t questions, std::uint32_t seed, std::size_t pixel,
+                     const Hits& hits);
+    void find_scales(std::size_t first, std::size_t last, const Hits& hits);
+    /// What a hit, the one numbered first + hit, reflects of a light, as one number.
+    float value(const FarLight& light, const Hits& hits, std::size_t first, std::size_t hit) const;
+    Ray ray(const FarLight& light, const Hits& hits, std::size_t hit) const;
+
+    const RayTracer* tracer_;
+    std::span<const MaterialLobes> materials_;
+    std::size_t lobe_stride_;
+    std::span<const Light> lights_;
+    std::uint64_t rays_traced_ = 0;
+    std::vector<Rgb> scales_;  // hits of the pixel × lobe_stride: absolute values of Lobe::scale
+    std::vector<Ray> rays_;
+    std::vector<float> values_;  // of the rays
+    std::vector<std::uint8_t> blocked_;
+};
+
+}  // namespace shlight

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "shadows/shadowed_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shadows/dim_share.h"
+
+namespace shlight {
+
+ShadowedLight::ShadowedLight(const RayTracer& tracer, std::uint32_t most_rays, std::span<const MaterialLobes> materials,
+                             std::size_t lobe_stride)
+    : materials_(materials),
+      lobe_stride_(lobe_stride),
+      most_rays_(most_rays),
+      rays_(tracer, materials, lobe_stride),
+      brightness_(materials, lobe_stride),
+      minor_(brightness_, lobe_stride) {}
+
+void ShadowedLight::start(const ShadingPoints& points, std::span<const float> brightness) {
+    points_ = &points;
+    brightness_.start(points, brightness);
+    minor_.start(points);
+}
+
+void ShadowedLight::add(const Light& light, std::size_t index, const SampleRange& samples,
+                        std::span<const float> unshadowed, std::span<const std::uint32_t> pixel_seeds, Hits& hits) {
+    samples_ = samples;
+    first_ray_count_ = samples.first_shadow_rays();
+    unshadowed_ = unshadowed;
+    shadows_ = samples.shadow_rays > 0 && traits_of(light).casts_shadows;
+    for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
+        const float own = brightness_.of_pixel(index, pixel);
+        if (!(own > 0)) {
+            continue;
+        }
+        const std::size_t begin = hits.pixel_begin[pixel];
+        const std::size_t end = hits.pixel_begin[pixel + 1];
+        const std::size_t asked = hits_to_ask(own, brightness_.all(pixel), end - begin);
+        if (shadows_ && asked < end - begin) {
+            const RayPhase phase = {true, samples.first * most_rays_, samples.first, 1};
+            minor_.add(light, unshadowed, pixel, own, phase, asked, pixel_seeds[pixel], hits, rays_);
+        } else {
+            add_pixel(light, pixel_seeds[pixel], begin, end, hits);
+        }
+    }
+}
+
+void ShadowedLight::find_lit(const Light& light, const Hits& hits, std::size_t begin, std::size_t end) {
+    lit_.hit.clear();
+    lit_.shines.clear();
+    for (std::size_t hit = begin; hit < end; ++hit) {
+        bool any = false;
+        for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+            any = any || unshadowed(hit, lobe) > 0;
+        }
+        // The hit itself may see less of the light than the point that it shares.
+        if (any && is_seen(light, hits.frame[hit], hits.error[hit])) {
+            lit_.hit.push_back(hit);
+            for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+                lit_.shines.push_back(unshadowed(hit, lobe) > 0 ? 1 : 0);
+            }
+        }
+    }
+}
+
+bool ShadowedLight::is_glossy(std::uint32_t material) const {
+    const auto lobes = materials_[material].lobes();
+    return std::any_of(lobes.begin(), lobes.end(),
+                       [](const Lobe& lobe) { return std::holds_alternative<GgxShape>(lobe.shape); });
+}
+
+void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits) {
+    find_lit(light, hits, begin, end);
+    if (lit_.hit.empty()) {
+        return;
+    }
+    if (shadows_) {
+        // No two ranges of samples share a point.
+        const std::uint32_t first_point = samples_.first * most_rays_;
+        rays_.trace(light, hits, lit_, {true, first_point, samples_.first, first_ray_count_}, seed);
+        const std::size_t blocked = rays_.blocked_count();
+        // Few rays may miss the part of a light that is seen, and a glossy lobe may have its peak there.
+        if (blocked > 0 && blocked == rays_.count() && !is_glossy(hits.material[lit_.hit[0]])) {
+            return;
+        }
+        if (blocked > 0) {
+            rays_.trace(light, hits, lit_,
+                        {false, first_point + samples_.count * first_ray_count_, samples_.first,
+                         samples_.shadow_rays - first_ray_count_},
+                        seed);
+            shade(light, hits);
+            return;
+        }
+    }
+    shade_unblocked(light, hits);
+}
+
+Rgb ShadowedLight::scaled_radiance(const Light& light, const Hits& hits, std::size_t hit, std::size_t lobe) const {
+    return materials_[hits.material[hit]].lobes()[lobe].scale(hits.cos_theta_o[hit]) * strength_of(light) *
+           unshadowed(hit, lobe);
+}
+
+void ShadowedLight::shade_unblocked(const Light& light, Hits& hits) const {
+    for (std::size_t i = 0; i < lit_.hit.size(); ++i) {
+        for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+            if (shines(i, lobe)) {
+                hits.radiance[lit_.hit[i]] += scaled_radiance(light, hits, lit_.hit[i], lobe);
+            }
+        }
+    }
+}
+
+void ShadowedLight::shade(const Light& light, Hits& hits) {
+    deviation_.assign(lit_.hit.size(), Rgb(0));
+    for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+        shade_lobe(light, lobe, hits);
+    }
+    for (std::size_t i = 0; i < lit_.hit.size(); ++i) {
+        hits.noise[lit_.hit[i]] += deviation_[i] * deviation_[i];
+    }
+}
+
+void ShadowedLight::shade_lobe(const Light& light, std::size_t lobe, Hits& hits) {
+    const auto [first, last] = std::minmax_element(lit_.hit.begin(), lit_.hit.end(), [&](std::size_t a, std::size_t b) {
+        return points_->of_hit[a] < points_->of_hit[b];
+    });
+    const std::uint32_t first_point = points_->of_hit[*first];
+    hit_sums_.assign(lit_.hit.size(), {});
+    point_sums_.assign(points_->of_hit[*last] - first_point + 1, {});
+    for (std::size_t i = 0; i < lit_.hit.size(); ++i) {
+        if (!shines(i, lobe)) continue;
+        hit_sums_[i] = rays_.sum(hits, lit_, i, lobe);
+        PointSums& of_point = point_sums_[points_->of_hit[lit_.hit[i]] - first_point];
+        of_point.all += hit_sums_[i].all;
+        ++of_point.hits;
+    }
+    for (std::size_t i = 0; i < lit_.hit.size(); ++i) {
+        if (!shines(i, lobe)) continue;
+        const std::size_t hit = lit_.hit[i];
+        const RaySums& sums = hit_sums_[i];
+        const PointSums& of_point = point_sums_[points_->of_hit[hit] - first_point];
+        const double share = of_point.all > 0 ? of_point.hits * sums.seen / of_point.all : 0.0;
+        const Rgb unblocked = scaled_radiance(light, hits, hit, lobe);
+        hits.radiance[hit] += unblocked * static_cast<float>(share);
+        if (sums.all > 0) {
+            // As of so many rays of equal weight; the lobes of a hit share its rays.
+            const double own_share = sums.seen / sums.all;
+            const double rays = sums.all * sums.all / sums.squares;
+            deviation_[i] += unblocked * static_cast<float>(std::sqrt(own_share * (1 - own_share) / rays));
+        }
+    }
+}
+
+}  // namespace shlight

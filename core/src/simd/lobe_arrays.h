@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+//
+// One lobe at many views, as the batch kernels read it: what all lights at a view share.
+#pragma once
+
+#include <cstddef>
+
+namespace shlight {
+
+/// ω_o = (x, 0, z) for each view.
+struct ViewArrays {
+    const double *x, *z;
+    bool shared;  ///< there is one
+};
+
+/// A warp for each view: what Warp holds, one array for each member.
+struct WarpArrays {
+    const double *sin_tilt, *cos_tilt;
+    const double *speed, *one_minus_speed, *gamma;
+    const double *horizon_x, *horizon_z;          ///< the warped horizon's middle in the boost's frame
+    const double *horizon_height, *horizon_sine;  ///< z_0 and √(1 - z_0²)
+};
+
+struct LobeArrays {
+    bool warped;  ///< false: no view is warped, and `warps` is not read
+    WarpArrays warps;
+    /// The cosine terms of view v are at terms + v · stride: cosine_count(order) numbers, and those up to the next
+    /// multiple of 16 may be read.
+    const float* terms;
+    std::size_t stride;  ///< 0: the views share their terms
+    int order;
+};
+
+}  // namespace shlight

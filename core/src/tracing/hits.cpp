@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "tracing/hits.h"
+
+#include <algorithm>
+
+namespace shlight {
+namespace {
+
+/// Points on a light that the first shadow rays of a pixel get together, at least.
+constexpr std::uint32_t kLeastFirstPoints = 16;
+
+}  // namespace
+
+std::uint32_t SampleRange::first_shadow_rays() const {
+    const std::uint32_t least = (kLeastFirstPoints + count - 1) / count;
+    return std::min(shadow_rays, std::max((shadow_rays + 3) / 4, least));
+}
+
+void Hits::clear() {
+    frame.clear();
+    cos_theta_o.clear();
+    shadow_origin.clear();
+    error.clear();
+    material.clear();
+    sample.clear();
+    radiance.clear();
+    noise.clear();
+    pixel_begin.assign(1, 0);
+}
+
+void Hits::add(const SurfacePoint& surface, const Vec3d& towards_viewer, const Rgb& emission,
+               std::uint32_t sample_index) {
+    frame.push_back(shading_frame(surface.position, surface.shading_normal, towards_viewer));
+    cos_theta_o.push_back(view_cosine(frame.back(), towards_viewer));
+    shadow_origin.push_back(surface.position + surface.error * surface.geometric_normal);
+    error.push_back(surface.error);
+    material.push_back(surface.material);
+    sample.push_back(sample_index);
+    radiance.push_back(emission);
+    noise.emplace_back(0);
+}
+
+}  // namespace shlight

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+//
+// What the camera rays of a group of pixels have met: one array per property.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "base/shading_frame.h"
+#include "shlight/surface_point.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// Which of its camera rays each pixel of a group takes: those numbered first … first + count - 1.
+struct SampleRange {
+    std::uint32_t first, count;
+    std::uint32_t shadow_rays;  ///< per camera ray and light, at most
+
+    /// Those of each camera ray that go first: a quarter, but more where a pixel would get so few that they miss too
+    /// much of a penumbra's rim, or of what stands in the way.
+    std::uint32_t first_shadow_rays() const;
+};
+
+/// Hits in the order of pixels, and of samples within each.
+struct Hits {
+    std::vector<ShadingFrame> frame;
+    std::vector<float> cos_theta_o;
+    std::vector<Vec3d> shadow_origin;  ///< off the surface, on the viewer's side
+    std::vector<double> error;         ///< see SurfacePoint
+    std::vector<std::uint32_t> material;
+    std::vector<std::uint32_t> sample;           ///< number of the camera ray within its pixel
+    std::vector<Rgb> radiance;                   ///< towards the camera, summed up
+    std::vector<Rgb> noise;                      ///< the part of its variance that comes from shadow rays
+    std::vector<std::size_t> pixel_begin = {0};  ///< pixel p has the hits pixel_begin[p] … pixel_begin[p + 1] - 1
+
+    std::size_t size() const { return frame.size(); }
+    /// ω_o of a hit, in its shading frame.
+    Vec3d view(std::size_t hit) const {
+        const double cosine = cos_theta_o[hit];
+        return {std::sqrt(1.0 - cosine * cosine), 0, cosine};
+    }
+    std::size_t pixel_count() const { return pixel_begin.size() - 1; }
+    void clear();
+    void add(const SurfacePoint& surface, const Vec3d& towards_viewer, const Rgb& emission, std::uint32_t sample_index);
+    /// The hits added since the last call are those of one pixel.
+    void end_pixel() { pixel_begin.push_back(size()); }
+};
+
+}  // namespace shlight
