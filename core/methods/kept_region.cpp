@@ -14,7 +14,7 @@ using std::numbers::pi;
 /// Edges are cut into pieces of at most this angle.
 constexpr double kLongestEdge = 1;
 
-double one_minus_cosine(const Circle& cap) {
+double one_minus_cos(const Circle& cap) {
     return cap.cosine > 0 ? cap.sine * cap.sine / (1 + cap.cosine) : 1 - cap.cosine;
 }
 
@@ -45,7 +45,7 @@ void cut(double from, double to, double longest, const Add& add) {
 
 void add_rim(const Circle& cap, const Vec3d& base, double half_turn, std::vector<Edge>& edges) {
     const RimFrame frame(cap.axis);
-    const Vec3d offset = (cap.axis - base) - one_minus_cosine(cap) * cap.axis;
+    const Vec3d offset = (cap.axis - base) - one_minus_cos(cap) * cap.axis;
     cut(-half_turn, half_turn, pi / 2, [&](double from, double to) {
         edges.push_back({false, offset, cap.sine * frame.up, cap.sine * frame.level, from, to});
     });
@@ -157,7 +157,7 @@ void KeptRegion::add_cut_cap(const Circle& cap, double sign) {
     add_rim(cap, base_, half_turn, edges_);
     // Back along the horizon by way of its middle, in two arcs of at most a quarter turn.
     const RimFrame frame(cap.axis);
-    const Vec3d center = (cap.axis - base_) - one_minus_cosine(cap) * cap.axis;
+    const Vec3d center = (cap.axis - base_) - one_minus_cos(cap) * cap.axis;
     const Vec3d lift = cap.sine * std::cos(half_turn) * frame.up;
     const Vec3d aside = cap.sine * std::sin(half_turn) * frame.level;
     Vec3d first = center + lift + aside;

@@ -17,7 +17,7 @@ using std::numbers::pi;
 /// of one with unit corners varies by about the solid angle itself.
 constexpr double kSmallestSpherical = 0.01;
 
-double one_minus_cosine(const Circle& cap) {
+double one_minus_cos(const Circle& cap) {
     return cap.cosine > 0 ? cap.sine * cap.sine / (1 + cap.cosine) : 1 - cap.cosine;
 }
 
@@ -27,7 +27,7 @@ ConeSampler::ConeSampler(const Circle& cap)
     : cap_(cap),
       across_(perpendicular(cap.axis)),
       up_(glm::cross(cap.axis, across_)),
-      height_(one_minus_cosine(cap)),
+      height_(one_minus_cos(cap)),
       density_(1 / (2 * pi * height_)) {}
 
 RandomDirection ConeSampler::sample(const glm::dvec2& point) const {

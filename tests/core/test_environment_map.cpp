@@ -215,9 +215,9 @@ TEST(BandRotation, MovesAFunctionAsItsArgument) {
 
 // --- lobes
 
-TEST(ClampedLobe, IsTheLobesMoments) {
+TEST(ShProjection, IsTheLobesMoments) {
     for (const LobeShape& shape : {LobeShape(LambertShape{}), LobeShape(GgxShape{0.25}), LobeShape(GgxShape{0.02})}) {
-        const auto lobe = clamped_lobe(shape);
+        const auto lobe = sh_projection(shape);
         for (const double tilt : {0.1234, 0.9, 1.4}) {
             const LobeMoments expected = lobe_moments(shape, tilt);
             std::vector<float> terms(2080);

@@ -26,7 +26,7 @@ Vec3d near_mirror(RandomInput& random, double cos_theta_o, double spread) {
     return glm::normalize(Vec3d(-v.x, 0, v.z) + spread * random.uniform(0, 1) * random.direction());
 }
 
-TEST(LobeOutline, WholeCapsMatchDenseCubature) {
+TEST(ContourIntegral, WholeCapsMatchDenseCubature) {
     RandomInput random(11);
     int compared = 0;
     for (int i = 0; i < 120; ++i) {
@@ -53,7 +53,7 @@ TEST(LobeOutline, WholeCapsMatchDenseCubature) {
     EXPECT_GT(compared, 30);
 }
 
-TEST(LobeOutline, TheWholeHorizonGivesTheAlbedo) {
+TEST(ContourIntegral, TheWholeHorizonGivesTheAlbedo) {
     const OutlineArc horizon{{{0, 0, 1}, 0, 1}, {1, 0, 0}, {1, 0, 0}, true};
     for (const double alpha : {0.01, 0.2, 1.0}) {
         for (const double cosine : {0.02, 0.3, 1.0}) {
@@ -64,7 +64,7 @@ TEST(LobeOutline, TheWholeHorizonGivesTheAlbedo) {
     }
 }
 
-TEST(LobeOutline, OppositeArcsCancel) {
+TEST(ContourIntegral, OppositeArcsCancel) {
     // A cap cut in two along a great circle through its middle: the halves add up to the whole.
     RandomInput random(12);
     for (int i = 0; i < 50; ++i) {
@@ -89,7 +89,7 @@ TEST(LobeOutline, OppositeArcsCancel) {
     }
 }
 
-TEST(LobeOutline, AVeryNarrowLobeIsAMirror) {
+TEST(ContourIntegral, AVeryNarrowLobeIsAMirror) {
     for (const double cosine : {0.1, 0.6, 0.99}) {
         const Vec3d v = view_direction(cosine);
         const Vec3d mirror(-v.x, 0, v.z);

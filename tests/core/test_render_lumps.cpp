@@ -113,7 +113,7 @@ Difference difference_between(const Image& image, const Image& truth) {
 
 /// The tolerance of a sum is ten times that of a light, as root mean square over all turns of the sum; a pixel in its
 /// unluckiest turn may err by some times that.
-TEST(RenderLumps, KeepWithinTheTolerance) {
+TEST(RenderFarLights, KeepWithinTheTolerance) {
     const RenderSettings settings = plain_settings(0);
     for (const Bsdf& bsdf : {Bsdf::lambert(Rgb(0.5F, 0.6F, 0.7F)), Bsdf::ggx(0.8F, Rgb(0.9F)),
                              Bsdf::lambert(Rgb(0.4F)) + Bsdf::ggx(0.8F, Rgb(0.04F), 1.45F)}) {
@@ -125,7 +125,7 @@ TEST(RenderLumps, KeepWithinTheTolerance) {
     }
 }
 
-TEST(RenderLumps, EndWhereTheToleranceDoes) {
+TEST(RenderFarLights, EndWhereTheToleranceDoes) {
     RenderSettings settings = plain_settings(0);
     const Bsdf bsdf = Bsdf::lambert(Rgb(0.5F));
     std::uint64_t before = std::uint64_t{kLights} * kSize * kSize * 16;
@@ -140,7 +140,7 @@ TEST(RenderLumps, EndWhereTheToleranceDoes) {
     }
 }
 
-TEST(RenderLumps, HaveTheirShadows) {
+TEST(RenderFarLights, HaveTheirShadows) {
     const RenderSettings settings = plain_settings(16);
     for (const Bsdf& bsdf : {Bsdf::lambert(Rgb(0.5F, 0.6F, 0.7F)), Bsdf::ggx(0.8F, Rgb(0.9F))}) {
         const Image image = all_of_them(bsdf, settings);
@@ -157,7 +157,7 @@ TEST(RenderLumps, HaveTheirShadows) {
 }
 
 /// Near enough for their light to change over a group of pixels, and from one side.
-TEST(RenderLumps, ChangeWithThePlace) {
+TEST(RenderFarLights, ChangeWithThePlace) {
     const auto floor_under = [](int first, int last) {
         Scene scene;
         scene.add_mesh(floor_mesh(1));
@@ -179,7 +179,7 @@ TEST(RenderLumps, ChangeWithThePlace) {
 }
 
 /// A wall hides the brighter half.
-TEST(RenderLumps, CountInShadowsAsBrightAsTheyAre) {
+TEST(RenderFarLights, CountInShadowsAsBrightAsTheyAre) {
     const auto half_hidden = [](float hidden) {
         Scene scene;
         scene.add_mesh(floor_mesh(1));
@@ -203,7 +203,7 @@ TEST(RenderLumps, CountInShadowsAsBrightAsTheyAre) {
     EXPECT_LE(std::sqrt(difference.relative_mse), 0.2);  // a tenth of the light, by some hundred rays
 }
 
-TEST(RenderLumps, LightsWithoutShadowsHaveNone) {
+TEST(RenderFarLights, LightsWithoutShadowsHaveNone) {
     LightTraits traits;
     traits.casts_shadows = false;
     const Bsdf bsdf = Bsdf::lambert(Rgb(0.5F));
@@ -213,7 +213,7 @@ TEST(RenderLumps, LightsWithoutShadowsHaveNone) {
     EXPECT_EQ(image.values, all_of_them(bsdf, plain_settings(0)).values);
 }
 
-TEST(RenderLumps, NarrowLobesAndGivenOrdersHaveEachLight) {
+TEST(RenderFarLights, NarrowLobesAndGivenOrdersHaveEachLight) {
     EXPECT_EQ(all_of_them(Bsdf::ggx(0.2F, Rgb(0.9F)), plain_settings(0)).report.summed_count, 0U);
     EXPECT_EQ(all_of_them(Bsdf::ggx(0, Rgb(0.9F)), plain_settings(0)).report.summed_count, 0U);
     RenderSettings settings = plain_settings(0);
@@ -221,7 +221,7 @@ TEST(RenderLumps, NarrowLobesAndGivenOrdersHaveEachLight) {
     EXPECT_EQ(all_of_them(Bsdf::lambert(Rgb(0.5F)), settings).report.summed_count, 0U);
 }
 
-TEST(RenderLumps, AsWithOneThreadSoWithThree) {
+TEST(RenderFarLights, AsWithOneThreadSoWithThree) {
     RenderSettings settings = plain_settings(4);
     const Bsdf bsdf = Bsdf::lambert(Rgb(0.5F));
     settings.threads = 1;

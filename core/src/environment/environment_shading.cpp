@@ -66,7 +66,7 @@ EnvironmentShading::Plan EnvironmentShading::plan(const LobeShape& shape, int or
     const EnvironmentMap& map = *environment_->map();
     const auto* ggx = std::get_if<GgxShape>(&shape);
     const bool may_be_narrow = order == 0 && ggx != nullptr;
-    Plan plan = {clamped_lobe(shape), may_be_narrow && ggx->alpha < kTexelsPerAlpha * map.texel, {}};
+    Plan plan = {sh_projection(shape), may_be_narrow && ggx->alpha < kTexelsPerAlpha * map.texel, {}};
     for (std::size_t node = 0; node < plan.lobe->node_count(); ++node) {
         const auto errors = relative_errors(plan.lobe->powers(node), plan.lobe->tail(node), map.coefficients);
         int chosen = order;
@@ -103,9 +103,9 @@ class EnvironmentShading::Point {
           turned_(to_map_) {}
 
     /// Without the spots.
-    Rgb by_harmonics(const ClampedLobe& lobe, int order) {
+    Rgb by_harmonics(const ShProjection& lobe, int order) {
         const float* turned = turned_.coefficients(lobe, static_cast<float>(view_.z), order);
-        return TurnedLobe::reflected(map_->coefficients.channels, turned, order);
+        return RotatedLobe::reflected(map_->coefficients.channels, turned, order);
     }
 
     Rgb spots(const LobeShape& shape) const {
@@ -146,10 +146,10 @@ class EnvironmentShading::Point {
     const EnvironmentMap* map_;
     glm::dmat3 to_map_;  // from the shading frame
     Vec3d view_;
-    TurnedLobe turned_;
+    RotatedLobe turned_;
 };
 
-void EnvironmentShading::shade(const ShadingPoints& points, std::vector<UnshadowedParts>& values,
+void EnvironmentShading::shade(const ShadingPoints& points, std::vector<DirectLightParts>& values,
                                RenderReport& report) const {
     values.assign(lobe_stride_ * points.size(), {});
     if (environment_->map() == nullptr) {
@@ -159,7 +159,7 @@ void EnvironmentShading::shade(const ShadingPoints& points, std::vector<Unshadow
     }
 }
 
-void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<UnshadowedParts> values,
+void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<DirectLightParts> values,
                                         RenderReport& report) const {
     for (std::size_t point = 0; point < points.size(); ++point) {
         const auto lobes = materials_[points.material[point]].lobes();
@@ -172,7 +172,7 @@ void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<U
     }
 }
 
-void EnvironmentShading::shade_map(const ShadingPoints& points, std::span<UnshadowedParts> values,
+void EnvironmentShading::shade_map(const ShadingPoints& points, std::span<DirectLightParts> values,
                                    RenderReport& report) const {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const std::uint32_t material = points.material[i];
@@ -182,7 +182,7 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, std::span<Unshad
         for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
             const LobeShape& shape = lobes[lobe].shape;
             const Plan& plan = plans_[material][lobe];
-            UnshadowedParts& value = values[lobe * points.size() + i];
+            DirectLightParts& value = values[lobe * points.size() + i];
             if (is_mirror(shape)) {
                 value.smooth = static_cast<float>(lobes[lobe].albedo(cosine)) * point.mirrored();
                 report.mirror_count += points.hit_count(i);

@@ -23,7 +23,7 @@
 namespace shlight {
 
 /// What a lobe reflects, in parts that have shadows of their own: a sun is hidden or not, whatever the sky is.
-struct UnshadowedParts {
+struct DirectLightParts {
     Rgb smooth{0}, spots{0};
 };
 
@@ -35,7 +35,7 @@ class EnvironmentShading {
                        std::size_t lobe_stride, int order, double tolerance);
 
     /// values: lobe_stride × points; adds to the report what the points' hits take.
-    void shade(const ShadingPoints& points, std::vector<UnshadowedParts>& values, RenderReport& report) const;
+    void shade(const ShadingPoints& points, std::vector<DirectLightParts>& values, RenderReport& report) const;
     /// Whether spots are a part of their own for a lobe.
     bool splits(std::size_t material, std::size_t lobe) const {
         return !plans_.empty() && plans_[material][lobe].lobe != nullptr && !plans_[material][lobe].sees_texels;
@@ -49,15 +49,15 @@ class EnvironmentShading {
     };
     /// How a lobe is shaded under a picture.
     struct Plan {
-        std::shared_ptr<const ClampedLobe> lobe;  // null: a mirror
-        bool sees_texels;                         // spots too have an extent
-        std::vector<Choice> choices;              // of each tabulated view
+        std::shared_ptr<const ShProjection> lobe;  // null: a mirror
+        bool sees_texels;                          // spots too have an extent
+        std::vector<Choice> choices;               // of each tabulated view
     };
     class Point;
 
     Plan plan(const LobeShape& shape, int order, double tolerance) const;
-    void shade_constant(const ShadingPoints& points, std::span<UnshadowedParts> values, RenderReport& report) const;
-    void shade_map(const ShadingPoints& points, std::span<UnshadowedParts> values, RenderReport& report) const;
+    void shade_constant(const ShadingPoints& points, std::span<DirectLightParts> values, RenderReport& report) const;
+    void shade_map(const ShadingPoints& points, std::span<DirectLightParts> values, RenderReport& report) const;
     static Choice choose(const Plan& plan, double cos_theta_o);
 
     const Environment* environment_;

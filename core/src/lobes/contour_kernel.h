@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What points of a light's outline add to the integral of a GGX lobe over it (lobe_outline.h), many at once.
+// What points of a light's outline add to the integral of a GGX lobe over it (contour_integral.h), many at once.
 #pragma once
 
 #include <array>

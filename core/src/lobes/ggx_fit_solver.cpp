@@ -232,7 +232,7 @@ double integral(const WarpedDensity& d, std::span<const double> fourier) {
 
 }  // namespace
 
-void fit_warped_node(const GgxShape& shape, double cos_theta_o, const NodeLayout& layout, std::span<float> out) {
+void fit_ggx_node(const GgxShape& shape, double cos_theta_o, const NodeLayout& layout, std::span<float> out) {
     const int highest = *std::max_element(layout.orders().begin(), layout.orders().end());
     const WarpedDensity d = warped_density(shape, cos_theta_o, highest);
     const auto waves = static_cast<std::size_t>(d.waves);

@@ -36,15 +36,15 @@ CubicStencil::CubicStencil(double position, int least, int count)
                t * (t - 1) * (t - 2) / 6};
 }
 
-WarpedRow::WarpedRow(NodeLayout layout, std::vector<float> nodes)
+GgxFitTable::GgxFitTable(NodeLayout layout, std::vector<float> nodes)
     : layout_(std::move(layout)), nodes_(std::move(nodes)) {}
 
-WarpedRow fit_warped_row(const GgxShape& shape, std::span<const int> orders) {
+GgxFitTable fit_ggx_table(const GgxShape& shape, std::span<const int> orders) {
     const NodeLayout layout(orders);
     std::vector<float> nodes(kWarpedViews * layout.size());
     const auto fit = [&](int node) {
         const auto out = std::span(nodes).subspan(static_cast<std::size_t>(node) * layout.size(), layout.size());
-        fit_warped_node(shape, warped_view_cosine(node), layout, out);
+        fit_ggx_node(shape, warped_view_cosine(node), layout, out);
     };
     // Isolated: a thread that waits here must not pick up unrelated work that may ask for this very fit.
     tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, kWarpedViews, fit); });

@@ -38,7 +38,7 @@ class NodeLayout {
 };
 
 /// Fits one lobe at one view; out: layout.size() values.
-void fit_warped_node(const GgxShape& shape, double cos_theta_o, const NodeLayout& layout, std::span<float> out);
+void fit_ggx_node(const GgxShape& shape, double cos_theta_o, const NodeLayout& layout, std::span<float> out);
 
 /// Cubic interpolation weights over four neighbours of equally spaced nodes, at `position` in units of their distance.
 struct CubicStencil {
@@ -49,9 +49,9 @@ struct CubicStencil {
     CubicStencil(double position, int least, int count);
 };
 
-class WarpedRow {
+class GgxFitTable {
   public:
-    WarpedRow(NodeLayout layout, std::vector<float> nodes);
+    GgxFitTable(NodeLayout layout, std::vector<float> nodes);
 
     const NodeLayout& layout() const { return layout_; }
     std::span<const float> nodes() const { return nodes_; }
@@ -66,6 +66,6 @@ class WarpedRow {
 };
 
 /// Fits all views of one shape.
-WarpedRow fit_warped_row(const GgxShape& shape, std::span<const int> orders);
+GgxFitTable fit_ggx_table(const GgxShape& shape, std::span<const int> orders);
 
 }  // namespace shlight

@@ -85,7 +85,7 @@ void LobeViews::choose_orders(double tolerance, std::span<const float> allowance
     const ViewTable* table = fit_ == nullptr ? nullptr : fit_->table();
     const int only = fit_ == nullptr ? 0 : table == nullptr || !chooses_ ? fit_->orders().front() : -1;
     black_.assign(count, 0);
-    met_.assign(count, 1);
+    within_tolerance_.assign(count, 1);
     order_.assign(count, static_cast<std::uint8_t>(std::max(only, 0)));
     any_black_ = false;
     if (!judged_) {
@@ -101,12 +101,12 @@ void LobeViews::choose_orders(double tolerance, std::span<const float> allowance
         any_black_ = any_black_ || black_[view] != 0;
         tolerance_[view] = static_cast<float>(tolerance * allowances[view]);
         if (table == nullptr) {
-            met_[view] = only != 1 || 0.5F <= tolerance_[view] ? 1 : 0;
+            within_tolerance_[view] = only != 1 || 0.5F <= tolerance_[view] ? 1 : 0;
             continue;
         }
         const float* errors = heads_.data() + view * ViewTable::kHeadWidth + ViewTable::kShadingErrors;
         if (only >= 0) {
-            met_[view] = errors[0] <= tolerance_[view] ? 1 : 0;
+            within_tolerance_[view] = errors[0] <= tolerance_[view] ? 1 : 0;
         } else if (positions_->cosine()[view] >= kLeastFittedCosine) {
             std::size_t i = 0;
             while (i < table->orders().size() && !(errors[i] <= tolerance_[view])) {

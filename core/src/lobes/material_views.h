@@ -62,7 +62,7 @@ class LobeViews {
     /// For lights that are not small; 0: their outline is integrated, or the lobe is a mirror.
     int order(std::size_t view) const { return order_[view]; }
     /// Whether the order keeps within the tolerance; only if that was to be judged.
-    bool met(std::size_t view) const { return met_[view] != 0; }
+    bool within_tolerance(std::size_t view) const { return within_tolerance_[view] != 0; }
     /// Of the radiance ÷ albedo; only if the lobe chooses.
     const float* tolerances() const { return tolerance_.data(); }
     /// Of the radiance.
@@ -88,7 +88,7 @@ class LobeViews {
     bool chooses_ = false, judged_ = false, any_black_ = false;
     std::vector<Rgb> scale_;  // one for all where the lobe has no weight
     std::vector<float> albedo_, tolerance_;
-    std::vector<std::uint8_t> black_, order_, met_;
+    std::vector<std::uint8_t> black_, order_, within_tolerance_;
     AlignedFloats heads_;
 
     bool has_warps_ = false;
@@ -101,7 +101,8 @@ class LobeViews {
 
 class MaterialViews {
   public:
-    /// judged: whether each lobe's met() will be asked for. material and cos_theta_o are kept by reference.
+    /// judged: whether each lobe's within_tolerance() will be asked for. material and cos_theta_o are kept by
+    /// reference.
     void assign(const MaterialLobes& material, std::span<const double> cos_theta_o, bool judged);
 
     std::size_t lobe_count() const { return lobe_count_; }

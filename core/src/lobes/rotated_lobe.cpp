@@ -9,7 +9,7 @@
 
 namespace shlight {
 
-const float* TurnedLobe::coefficients(const ClampedLobe& lobe, float cos_theta_o, int order) {
+const float* RotatedLobe::coefficients(const ShProjection& lobe, float cos_theta_o, int order) {
     lobe.coefficients(cos_theta_o, order, terms_.data());
     if (lobe.is_zonal()) {
         set_zonal(order);
@@ -19,7 +19,7 @@ const float* TurnedLobe::coefficients(const ClampedLobe& lobe, float cos_theta_o
     return coefficients_.data();
 }
 
-Rgb TurnedLobe::reflected(const ColorHarmonics& light, const float* lobe, int order) {
+Rgb RotatedLobe::reflected(const ColorHarmonics& light, const float* lobe, int order) {
     Rgb sum;
     for (int c = 0; c < 3; ++c) {
         dot_products(light[static_cast<std::size_t>(c)].data(), lobe,
@@ -28,7 +28,7 @@ Rgb TurnedLobe::reflected(const ColorHarmonics& light, const float* lobe, int or
     return sum;
 }
 
-void TurnedLobe::set_zonal(int order) {
+void RotatedLobe::set_zonal(int order) {
     // An expansion about an axis is the sum of P_l(ω·axis) = 4π/(2l+1) Σ_m Y_lm(axis) Y_lm(ω).
     sh_basis(Vec3f(frame_[2]), order, coefficients_.data());
     for (int l = 0; l < order; ++l) {
@@ -40,7 +40,7 @@ void TurnedLobe::set_zonal(int order) {
     }
 }
 
-void TurnedLobe::set_turned(int order) {
+void RotatedLobe::set_turned(int order) {
     for (int l = 0; l < order; ++l) {
         float* center = &coefficients_[static_cast<std::size_t>(coefficient_index(l, 0))];
         const float* band = &terms_[static_cast<std::size_t>(cosine_index(l, 0))];

@@ -19,13 +19,13 @@ namespace shlight {
 using ColorHarmonics = std::array<std::vector<float>, 3>;
 
 /// At one shading point.
-class TurnedLobe {
+class RotatedLobe {
   public:
     /// frame: a rotation, whose columns are the axes of the shading frame in the frame of the light.
-    explicit TurnedLobe(const glm::dmat3& frame) : frame_(frame) {}
+    explicit RotatedLobe(const glm::dmat3& frame) : frame_(frame) {}
 
     /// order² coefficients of f·cos, until the next call.
-    const float* coefficients(const ClampedLobe& lobe, float cos_theta_o, int order);
+    const float* coefficients(const ShProjection& lobe, float cos_theta_o, int order);
     /// What a lobe of such coefficients reflects of a light with as many or more.
     static Rgb reflected(const ColorHarmonics& light, const float* lobe, int order);
 

@@ -37,7 +37,7 @@ std::vector<double> lambert_terms() {
 
 }  // namespace
 
-ClampedLobe::ClampedLobe(const LobeShape& shape) {
+ShProjection::ShProjection(const LobeShape& shape) {
     if (std::holds_alternative<LambertShape>(shape)) {
         add_node(lambert_terms().data(), 2 / (3 * std::numbers::pi));
         return;
@@ -56,7 +56,7 @@ ClampedLobe::ClampedLobe(const LobeShape& shape) {
     }
 }
 
-void ClampedLobe::add_node(const double* cosine_terms, double norm_squared) {
+void ShProjection::add_node(const double* cosine_terms, double norm_squared) {
     std::transform(cosine_terms, cosine_terms + kCosineMax, std::back_inserter(terms_),
                    [](double term) { return static_cast<float>(term); });
     double left = norm_squared;
@@ -71,7 +71,7 @@ void ClampedLobe::add_node(const double* cosine_terms, double norm_squared) {
     tails_.push_back(static_cast<float>(std::max(left, 0.0)));
 }
 
-void ClampedLobe::coefficients(float cos_theta_o, int order, float* cosine_terms) const {
+void ShProjection::coefficients(float cos_theta_o, int order, float* cosine_terms) const {
     const auto count = static_cast<std::size_t>(cosine_count(order));
     if (is_zonal()) {
         std::copy_n(terms_.begin(), count, cosine_terms);
@@ -91,13 +91,13 @@ void ClampedLobe::coefficients(float cos_theta_o, int order, float* cosine_terms
     }
 }
 
-std::shared_ptr<const ClampedLobe> clamped_lobe(const LobeShape& shape) {
+std::shared_ptr<const ShProjection> sh_projection(const LobeShape& shape) {
     static std::mutex mutex;
-    static std::deque<std::pair<LobeShape, std::shared_ptr<const ClampedLobe>>> recent;  // the last one in front
+    static std::deque<std::pair<LobeShape, std::shared_ptr<const ShProjection>>> recent;  // the last one in front
     const std::scoped_lock lock(mutex);
     const auto known =
         std::find_if(recent.begin(), recent.end(), [&](const auto& entry) { return entry.first == shape; });
-    auto lobe = known != recent.end() ? known->second : std::make_shared<const ClampedLobe>(shape);
+    auto lobe = known != recent.end() ? known->second : std::make_shared<const ShProjection>(shape);
     if (known != recent.end()) {
         recent.erase(known);
     }

@@ -12,10 +12,10 @@
 namespace shlight {
 
 /// One shape at all view angles, ω_o = (sinθ_o, 0, cosθ_o): only cosine terms are not 0.
-class ClampedLobe {
+class ShProjection {
   public:
     /// Precondition: not a mirror.
-    explicit ClampedLobe(const LobeShape& shape);
+    explicit ShProjection(const LobeShape& shape);
 
     /// Whether only degree 0 is there, at all views alike.
     bool is_zonal() const { return node_count() == 1; }
@@ -37,6 +37,6 @@ class ClampedLobe {
 };
 
 /// The lobe of a shape, shared by everyone who asks for the same one; the last ones asked for are kept. Thread-safe.
-std::shared_ptr<const ClampedLobe> clamped_lobe(const LobeShape& shape);
+std::shared_ptr<const ShProjection> sh_projection(const LobeShape& shape);
 
 }  // namespace shlight

@@ -16,7 +16,7 @@ namespace shlight {
 /// order. Their first row is the view beyond the normal, where terms of odd degree change sign.
 class ViewTable {
   public:
-    explicit ViewTable(const WarpedRow& row);
+    explicit ViewTable(const GgxFitTable& row);
 
     std::span<const int> orders() const { return orders_; }
     /// Index of an order; precondition: it is one of orders().

@@ -38,8 +38,8 @@ class GgxTable {
   public:
     GgxTable() {
         for (int row = 0; row < kAlphaRows; ++row) {
-            one_.push_back(fit_warped_row({row_alpha(row), Fresnel::one}, kWarpedOrders));
-            schlick_.push_back(fit_warped_row({row_alpha(row), Fresnel::schlick}, kWarpedOrders));
+            one_.push_back(fit_ggx_table({row_alpha(row), Fresnel::one}, kWarpedOrders));
+            schlick_.push_back(fit_ggx_table({row_alpha(row), Fresnel::schlick}, kWarpedOrders));
         }
     }
 
@@ -48,8 +48,8 @@ class GgxTable {
         return table;
     }
 
-    WarpedRow row(const GgxShape& shape) const {
-        const std::vector<WarpedRow>& rows = shape.fresnel == Fresnel::one ? one_ : schlick_;
+    GgxFitTable row(const GgxShape& shape) const {
+        const std::vector<GgxFitTable>& rows = shape.fresnel == Fresnel::one ? one_ : schlick_;
         const CubicStencil s(alpha_position(shape.alpha), 0, kAlphaRows);
         std::vector<float> nodes(rows[0].nodes().size(), 0.0F);
         for (int k = 0; k < 4; ++k) {
@@ -63,14 +63,14 @@ class GgxTable {
     std::size_t size() const { return 2 * one_.size() * one_[0].nodes().size_bytes(); }
 
   private:
-    std::vector<WarpedRow> one_, schlick_;
+    std::vector<GgxFitTable> one_, schlick_;
 };
 
-WarpedRow make_row(const GgxShape& shape, int order) {
+GgxFitTable make_row(const GgxShape& shape, int order) {
     if (order != 0) {
-        return fit_warped_row(shape, std::array{order});
+        return fit_ggx_table(shape, std::array{order});
     }
-    return shape.fresnel == Fresnel::dielectric ? fit_warped_row(shape, kWarpedOrders) : GgxTable::get().row(shape);
+    return shape.fresnel == Fresnel::dielectric ? fit_ggx_table(shape, kWarpedOrders) : GgxTable::get().row(shape);
 }
 
 /// Of the clipped cosine only the horizon is beyond bands 0 and 1, and the light is clipped there.

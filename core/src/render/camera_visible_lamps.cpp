@@ -101,7 +101,7 @@ bool meets(const ParallelSource&, const View&) {
 
 }  // namespace
 
-SeenLamps::SeenLamps(std::span<const Light> lights) {
+CameraVisibleLamps::CameraVisibleLamps(std::span<const Light> lights) {
     for (const Light& light : lights) {
         if (traits_of(light).seen_by_camera && !is_delta(light)) {
             lamps_.push_back(&light);
@@ -109,7 +109,7 @@ SeenLamps::SeenLamps(std::span<const Light> lights) {
     }
 }
 
-Rgb SeenLamps::radiance(const Ray& ray, const std::optional<double>& surface) const {
+Rgb CameraVisibleLamps::radiance(const Ray& ray, const std::optional<double>& surface) const {
     const Vec3d direction = glm::normalize(Vec3d(ray.direction));
     const double end = std::min<double>(ray.t_max, surface.value_or(ray.t_max));
     const View view = {Vec3d(ray.origin) + double{ray.t_min} * direction, direction, end - ray.t_min, !surface};

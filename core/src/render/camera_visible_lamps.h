@@ -14,11 +14,11 @@
 namespace shlight {
 
 /// Those lights that the camera sees (LightTraits::seen_by_camera).
-class SeenLamps {
+class CameraVisibleLamps {
   public:
-    SeenLamps() = default;
+    CameraVisibleLamps() = default;
     /// The lights must outlive this.
-    explicit SeenLamps(std::span<const Light> lights);
+    explicit CameraVisibleLamps(std::span<const Light> lights);
 
     bool empty() const { return lamps_.empty(); }
     /// What they add to the radiance that comes back along a ray from its start to a surface at distance `surface`;

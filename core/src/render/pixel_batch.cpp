@@ -10,7 +10,7 @@
 namespace shlight {
 namespace {
 
-/// Unshadowed values that are held at a time, as many as fit the cache, but those of some lights at least.
+/// DirectLight values that are held at a time, as many as fit the cache, but those of some lights at least.
 constexpr std::size_t kValues = std::size_t{1} << 21;
 constexpr std::size_t kLeastLights = 8;
 /// Camera rays of a batch: enough for long batches, few enough for the cache.
@@ -19,7 +19,7 @@ constexpr std::size_t kLeastSamples = 256;
 /// In the place of a light's number.
 constexpr std::uint32_t kEnvironmentSeed = 0xFFFFFFFFU;
 constexpr std::uint32_t kDeltaSeed = 0xFFFFFFFEU;
-constexpr std::uint32_t kLumpSeed = 0xFFFFFFFDU;
+constexpr std::uint32_t kFarLightSeed = 0xFFFFFFFDU;
 
 /// Times stages that follow each other.
 class StageClock {
@@ -85,8 +85,8 @@ std::uint32_t Picture::batch_samples() const {
 
 PixelBatch::PixelBatch(const Picture& picture)
     : picture_(&picture),
-      lumps_(picture.far, picture.materials, picture.settings.tolerance),
-      shadowed_lumps_(picture.scene->rays(), picture.materials, picture.lobe_stride, picture.scene->lights()),
+      far_light_sum_(picture.far, picture.materials, picture.settings.tolerance),
+      shadowed_far_lights_(picture.scene->rays(), picture.materials, picture.lobe_stride, picture.scene->lights()),
       shadowed_deltas_(picture.scene->rays(), picture.materials, picture.lobe_stride),
       unshadowed_(picture.lobe_stride),
       shadowed_(picture.scene->rays(), static_cast<std::uint32_t>(picture.settings.shadow_rays), picture.materials,
@@ -103,7 +103,7 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
     sort_lights();
     add_deltas(pixels, samples);
     add_lights(pixels, samples);
-    add_lumps(pixels, samples);
+    add_far_lights(pixels, samples);
     if (picture_->environment) {
         add_environment(pixels, samples);
     }
@@ -114,7 +114,7 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
 
 RenderReport PixelBatch::report() const {
     RenderReport report = report_;
-    report.shadow_rays = shadowed_lumps_.rays_traced() + shadowed_deltas_.rays_traced() + shadowed_.rays_traced() +
+    report.shadow_rays = shadowed_far_lights_.rays_traced() + shadowed_deltas_.rays_traced() + shadowed_.rays_traced() +
                          shadowed_environment_.rays_traced();
     return report;
 }
@@ -169,22 +169,22 @@ void PixelBatch::add_miss(const Ray& ray, std::uint32_t pixel, std::uint32_t sam
 
 void PixelBatch::sort_lights() {
     StageClock clock(report_);
-    lumps_.choose(points_);
+    far_light_sum_.choose(points_);
     lights_.clear();
     delta_list_.clear();
     deltas_.reset();
-    if (!lumps_.empty()) {
+    if (!far_light_sum_.empty()) {
         const std::span<const Light> all = picture_->scene->lights();
         for (std::size_t i = 0; i < all.size(); ++i) {
-            if (!lumps_.holds(i)) {
+            if (!far_light_sum_.holds(i)) {
                 (i < picture_->lights.size() ? lights_ : delta_list_).push_back(&all[i]);
             }
         }
         deltas_.emplace(delta_list_);
     }
     brightness_.assign(hits_.pixel_count(), 0.0F);
-    for (std::size_t pixel = 0; pixel < hits_.pixel_count() && !lumps_.empty(); ++pixel) {
-        brightness_[pixel] = lumps_.brightness(pixel);
+    for (std::size_t pixel = 0; pixel < hits_.pixel_count() && !far_light_sum_.empty(); ++pixel) {
+        brightness_[pixel] = far_light_sum_.brightness(pixel);
     }
     clock.end(RenderStage::light);
 }
@@ -200,8 +200,8 @@ void PixelBatch::add_deltas(std::span<const Pixel> pixels, const SampleRange& sa
 }
 
 void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& samples) {
-    const std::span<const Light* const> lights(lumps_.empty() ? picture_->extended : lights_);
-    if (lights.empty() && lumps_.empty()) {
+    const std::span<const Light* const> lights(far_light_sum_.empty() ? picture_->extended : lights_);
+    if (lights.empty() && far_light_sum_.empty()) {
         return;
     }
     StageClock clock(report_);
@@ -222,14 +222,15 @@ void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& sa
     shadowed_.finish(hits_);
 }
 
-void PixelBatch::add_lumps(std::span<const Pixel> pixels, const SampleRange& samples) {
-    if (lumps_.empty()) {
+void PixelBatch::add_far_lights(std::span<const Pixel> pixels, const SampleRange& samples) {
+    if (far_light_sum_.empty()) {
         return;
     }
     StageClock clock(report_);
-    seed_pixels(pixels, hash(kLumpSeed, samples.first));
-    shadowed_lumps_.add(lumps_, points_, samples.shadow_rays > 0, pixel_seeds_, shadowed_.brightness(), hits_);
-    report_.summed_count += lumps_.size() * hits_.size();
+    seed_pixels(pixels, hash(kFarLightSeed, samples.first));
+    shadowed_far_lights_.add(far_light_sum_, points_, samples.shadow_rays > 0, pixel_seeds_, shadowed_.brightness(),
+                             hits_);
+    report_.summed_count += far_light_sum_.size() * hits_.size();
     clock.end(RenderStage::shadows);
 }
 

@@ -86,7 +86,7 @@ class PixelBatch {
     void sort_lights();
     void add_deltas(std::span<const Pixel> pixels, const SampleRange& samples);
     void add_lights(std::span<const Pixel> pixels, const SampleRange& samples);
-    void add_lumps(std::span<const Pixel> pixels, const SampleRange& samples);
+    void add_far_lights(std::span<const Pixel> pixels, const SampleRange& samples);
     void add_environment(std::span<const Pixel> pixels, const SampleRange& samples);
     /// One for each pixel and light.
     void seed_pixels(std::span<const Pixel> pixels, std::uint32_t light);
@@ -105,15 +105,15 @@ class PixelBatch {
     Hits hits_;
     std::vector<Miss> misses_;  // in the order of pixels
     ShadingPoints points_;
-    LightLumps lumps_;
+    FarLightSum far_light_sum_;
     std::vector<const Light*> lights_;      // with extent, that are not summed up
     std::vector<const Light*> delta_list_;  // likewise, without
     std::optional<DeltaLights> deltas_;     // of these; none: all
-    ShadowedLumps shadowed_lumps_;
+    ShadowedFarLights shadowed_far_lights_;
     ShadowedDeltas shadowed_deltas_;
-    Unshadowed unshadowed_;
+    DirectLight unshadowed_;
     ShadowedLight shadowed_;
-    std::vector<UnshadowedParts> environment_;
+    std::vector<DirectLightParts> environment_;
     ShadowedEnvironment shadowed_environment_;
     std::vector<std::uint32_t> pixel_seeds_;
     std::vector<float> brightness_;  // of each pixel by sums and sources without extent, if nothing blocks

@@ -111,7 +111,7 @@ class CompiledScene::Impl {
             instances.push_back({placement.mesh, placement.baked, placement.to_world});
         }
         rays = std::make_unique<const RayTracer>(geometries, instances);
-        seen_lamps = SeenLamps(lights);
+        seen_lamps = CameraVisibleLamps(lights);
     }
 
     SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
@@ -124,7 +124,7 @@ class CompiledScene::Impl {
     Environment environment;
     bool has_background;
     std::unique_ptr<const RayTracer> rays;
-    SeenLamps seen_lamps;
+    CameraVisibleLamps seen_lamps;
 
   private:
     void add_emissive_faces(const std::shared_ptr<const Mesh>& mesh, std::uint32_t first_placement);

@@ -17,17 +17,17 @@ constexpr std::size_t kPointsPerChunk = 1024;
 /// Error of a profile's mean ÷ the tolerance of a light's radiance, at most.
 constexpr double kProfileTolerance = 10;
 
-void count(Way way, int order, std::uint32_t hits, RenderReport& report) {
+void count(LobeMethod way, int order, std::uint32_t hits, RenderReport& report) {
     switch (way) {
-        case Way::nothing:
+        case LobeMethod::nothing:
             break;
-        case Way::mirror:
+        case LobeMethod::mirror:
             report.mirror_count += hits;
             break;
-        case Way::harmonics:
+        case LobeMethod::harmonics:
             report.order_counts[static_cast<std::size_t>(order)] += hits;
             break;
-        case Way::cubature:
+        case LobeMethod::cubature:
             report.cubature_count += hits;
             break;
     }
@@ -39,8 +39,8 @@ bool reflects(const LightTraits& traits, const LobeShape& shape) {
 
 }  // namespace
 
-void Unshadowed::compute(const ShadingPoints& points, std::span<const MaterialLobes> materials,
-                         std::span<const Light* const> lights, RenderReport& report) {
+void DirectLight::compute(const ShadingPoints& points, std::span<const MaterialLobes> materials,
+                          std::span<const Light* const> lights, RenderReport& report) {
     point_count_ = points.size();
     values_.assign(lights.size() * lobe_stride_ * point_count_, 0.0F);
     by_material_.resize(point_count_);
@@ -59,8 +59,8 @@ void Unshadowed::compute(const ShadingPoints& points, std::span<const MaterialLo
     }
 }
 
-void Unshadowed::shade(const ShadingPoints& points, std::span<const std::uint32_t> some, const MaterialLobes& material,
-                       std::span<const Light* const> lights, RenderReport& report) {
+void DirectLight::shade(const ShadingPoints& points, std::span<const std::uint32_t> some, const MaterialLobes& material,
+                        std::span<const Light* const> lights, RenderReport& report) {
     cosines_.resize(some.size());
     std::transform(some.begin(), some.end(), cosines_.begin(),
                    [&](std::uint32_t point) { return double{points.cos_theta_o[point]}; });
@@ -74,7 +74,7 @@ void Unshadowed::shade(const ShadingPoints& points, std::span<const std::uint32_
     }
 }
 
-void Unshadowed::see(const Light& light, const ShadingPoints& points, std::span<const std::uint32_t> some) {
+void DirectLight::see(const Light& light, const ShadingPoints& points, std::span<const std::uint32_t> some) {
     const auto* polygon = std::get_if<PolygonLight>(&light);
     if (polygon != nullptr) {
         polygons_.clear(polygon->vertices.size());
@@ -102,7 +102,7 @@ void Unshadowed::see(const Light& light, const ShadingPoints& points, std::span<
     }
 }
 
-void Unshadowed::find_circles() {
+void DirectLight::find_circles() {
     circles_.resize(caps_.size());
     centers_.resize(caps_.size());
     radii_.resize(caps_.size());
@@ -119,8 +119,8 @@ void Unshadowed::find_circles() {
     }
 }
 
-void Unshadowed::integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
-                           std::size_t light_index, RenderReport& report) {
+void DirectLight::integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
+                            std::size_t light_index, RenderReport& report) {
     if (const auto* mesh = std::get_if<MeshLight>(&light)) {
         integrate_mesh(points, some, *mesh, light_index, report);
         return;
@@ -138,8 +138,8 @@ void Unshadowed::integrate(const ShadingPoints& points, std::span<const std::uin
     }
 }
 
-void Unshadowed::integrate_mesh(const ShadingPoints& points, std::span<const std::uint32_t> some,
-                                const MeshLight& light, std::size_t light_index, RenderReport& report) {
+void DirectLight::integrate_mesh(const ShadingPoints& points, std::span<const std::uint32_t> some,
+                                 const MeshLight& light, std::size_t light_index, RenderReport& report) {
     outlines_.clear();
     for (std::size_t i = 0; i < some.size(); ++i) {
         outlines_.look(*light.shape, points.frame[some[i]], tolerance_, static_cast<std::uint32_t>(i));
@@ -154,8 +154,8 @@ void Unshadowed::integrate_mesh(const ShadingPoints& points, std::span<const std
     shade_seen(points, some, light, light_index, circles_.arrays(), report);
 }
 
-void Unshadowed::integrate_disk(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
-                                std::size_t light_index, RenderReport& report) {
+void DirectLight::integrate_disk(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
+                                 std::size_t light_index, RenderReport& report) {
     disks_.clear();
     for (std::uint32_t i = 0; i < some.size(); ++i) {
         const ShadingFrame& frame = points.frame[some[i]];
@@ -177,16 +177,16 @@ void Unshadowed::integrate_disk(const ShadingPoints& points, std::span<const std
 }
 
 template <class Lights>
-void Unshadowed::shade_seen(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
-                            std::size_t light_index, Lights&& lights, RenderReport& report) {
+void DirectLight::shade_seen(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
+                             std::size_t light_index, Lights&& lights, RenderReport& report) {
     for (std::size_t lobe = 0; lobe < views_.lobe_count() && !seen_by_.empty(); ++lobe) {
         shade_seen(points, some, light, light_index, lobe, lights, report);
     }
 }
 
 template <class Lights>
-void Unshadowed::shade_seen(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
-                            std::size_t light_index, std::size_t lobe, Lights& lights, RenderReport& report) {
+void DirectLight::shade_seen(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
+                             std::size_t light_index, std::size_t lobe, Lights& lights, RenderReport& report) {
     const LightTraits& traits = traits_of(light);
     if (!reflects(traits, views_.lobe(lobe).shape())) {
         return;
@@ -199,16 +199,17 @@ void Unshadowed::shade_seen(const ShadingPoints& points, std::span<const std::ui
         if (k > 0 && seen_by_[k] == seen_by_[k - 1]) {
             continue;  // another face of the same mesh
         }
-        count(batch_.way(k), batch_.efforts()[k], points.hit_count(point), report);
-        report.over_tolerance += batch_.met(views_.lobe(lobe), k, seen_by_[k]) ? 0 : points.hit_count(point);
+        count(batch_.method(k), batch_.efforts()[k], points.hit_count(point), report);
+        report.over_tolerance +=
+            batch_.within_tolerance(views_.lobe(lobe), k, seen_by_[k]) ? 0 : points.hit_count(point);
         if (!std::holds_alternative<EvenProfile>(traits.profile) && values[point] > 0) {
             apply_profile(lobe, k, points, point, light, values[point]);
         }
     }
 }
 
-void Unshadowed::apply_profile(std::size_t lobe, std::size_t k, const ShadingPoints& points, std::uint32_t point,
-                               const Light& light, float& value) {
+void DirectLight::apply_profile(std::size_t lobe, std::size_t k, const ShadingPoints& points, std::uint32_t point,
+                                const Light& light, float& value) {
     const LobeViews& views = views_.lobe(lobe);
     profile_.reset(light, points.frame[point]);
     const std::size_t view = seen_by_[k];

@@ -25,9 +25,9 @@
 namespace shlight {
 
 /// Radiance per light, lobe and shading point: value (light · lobe_stride + lobe) · points + point.
-class Unshadowed {
+class DirectLight {
   public:
-    explicit Unshadowed(std::size_t lobe_stride) : lobe_stride_(lobe_stride) {}
+    explicit DirectLight(std::size_t lobe_stride) : lobe_stride_(lobe_stride) {}
 
     /// Adds to the report what the points' hits take. Precondition: no light is_delta().
     void compute(const ShadingPoints& points, std::span<const MaterialLobes> materials,

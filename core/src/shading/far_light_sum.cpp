@@ -21,7 +21,7 @@ constexpr int kEstimateOrder = 4;
 /// A point darker than this share of the mean may be off as one of this share.
 constexpr double kLeastShare = 0.1;
 /// From here on the power of a sum's bands is taken to stay as it is: lights without extent have no last band.
-constexpr int kFirstOfLastBands = kLumpOrder - 4;
+constexpr int kFirstOfLastBands = kFarLightOrder - 4;
 /// Of a side of a box, lest points in a plane divide by 0 [m].
 constexpr double kLeastSize = 1e-30;
 /// Of the tolerance of a light: as a picture, a sum is of many.
@@ -40,18 +40,18 @@ double largest(const Rgb& color) {
 
 }  // namespace
 
-LightLumps::LightLumps(const FarLights& far, std::span<const MaterialLobes> materials, double tolerance)
+FarLightSum::FarLightSum(const FarLights& far, std::span<const MaterialLobes> materials, double tolerance)
     : far_(&far), materials_(materials), tolerance_(kToleranceScale * tolerance) {}
 
-std::size_t LightLumps::find(double random) const {
-    const auto found = std::upper_bound(lumped_.begin(), lumped_.end(), random * lumped_.back().brightness_up_to,
-                                        [](double place, const Lumped& l) { return place < l.brightness_up_to; });
-    return static_cast<std::size_t>(std::min(found, lumped_.end() - 1) - lumped_.begin());
+std::size_t FarLightSum::find(double random) const {
+    const auto found = std::upper_bound(summed_.begin(), summed_.end(), random * summed_.back().brightness_up_to,
+                                        [](double place, const SummedLight& l) { return place < l.brightness_up_to; });
+    return static_cast<std::size_t>(std::min(found, summed_.end() - 1) - summed_.begin());
 }
 
-void LightLumps::choose(const ShadingPoints& points) {
+void FarLightSum::choose(const ShadingPoints& points) {
     points_ = &points;
-    lumped_.clear();
+    summed_.clear();
     if (far_->lights().empty() || !set_box()) {
         return;
     }
@@ -61,7 +61,7 @@ void LightLumps::choose(const ShadingPoints& points) {
     }
     const Limits limits = find_limits();
     for (std::size_t count = count_within(limits); count >= kFewestInSum; count /= 2) {
-        add_up(low_, count, kLumpOrder, corners_[0]);
+        add_up(low_, count, kFarLightOrder, corners_[0]);
         if (limits.left * last_power(corners_[0]) <= tolerance_) {
             take(count);
             return;
@@ -70,7 +70,7 @@ void LightLumps::choose(const ShadingPoints& points) {
 }
 
 /// False if a lobe is too narrow for sums.
-bool LightLumps::set_box() {
+bool FarLightSum::set_box() {
     Vec3d high(-std::numeric_limits<double>::infinity());
     low_ = -high;
     for (std::size_t point = 0; point < points_->size(); ++point) {
@@ -87,7 +87,7 @@ bool LightLumps::set_box() {
     return points_->size() > 0;
 }
 
-void LightLumps::find_candidates() {
+void FarLightSum::find_candidates() {
     candidates_.clear();
     const Vec3d middle = low_ + 0.5 * size_;
     const double diagonal = glm::length(size_);
@@ -108,23 +108,23 @@ void LightLumps::find_candidates() {
 }
 
 /// In the order 4 the sum is blurred, but not far from as bright.
-void LightLumps::estimate_brightness() {
+void FarLightSum::estimate_brightness() {
     add_up(low_ + 0.5 * size_, candidates_.size(), kEstimateOrder, corners_[0]);
     brightness_.assign(points_->size(), 0.0);
     for (std::size_t point = 0; point < points_->size(); ++point) {
         const std::uint32_t material = points_->material[point];
         const float cosine = points_->cos_theta_o[point];
-        TurnedLobe turned(frame_of(point));
+        RotatedLobe turned(frame_of(point));
         for (std::size_t lobe = 0; lobe < materials_[material].lobes().size(); ++lobe) {
             const float* coefficients = turned.coefficients(*far_->lobe(material, lobe).lobe, cosine, kEstimateOrder);
             const Rgb reflected = materials_[material].lobes()[lobe].scale(cosine) *
-                                  TurnedLobe::reflected(corners_[0], coefficients, kEstimateOrder);
+                                  RotatedLobe::reflected(corners_[0], coefficients, kEstimateOrder);
             brightness_[point] += std::max(double{reflected.x} + double{reflected.y} + double{reflected.z}, 0.0);
         }
     }
 }
 
-LightLumps::Limits LightLumps::find_limits() {
+FarLightSum::Limits FarLightSum::find_limits() {
     estimate_brightness();
     const double sum = std::accumulate(brightness_.begin(), brightness_.end(), 0.0);
     if (!(sum > 0)) {
@@ -151,7 +151,7 @@ LightLumps::Limits LightLumps::find_limits() {
 
 /// Puts the dimmest first. How many of them keep within the tolerance if they lie at random; for lights that lie
 /// together it is fewer.
-std::size_t LightLumps::count_within(const Limits& limits) {
+std::size_t FarLightSum::count_within(const Limits& limits) {
     std::sort(candidates_.begin(), candidates_.end(), [&](const Candidate& a, const Candidate& b) {
         return a.brightness * (limits.left + limits.curved * a.curvature) <
                b.brightness * (limits.left + limits.curved * b.curvature);
@@ -171,7 +171,7 @@ std::size_t LightLumps::count_within(const Limits& limits) {
     return count;
 }
 
-void LightLumps::add_up(const Vec3d& place, std::size_t count, int order, ColorHarmonics& sum) {
+void FarLightSum::add_up(const Vec3d& place, std::size_t count, int order, ColorHarmonics& sum) {
     const auto size = static_cast<std::size_t>(coefficient_count(order));
     for (std::vector<float>& channel : sum) {
         channel.assign(size, 0.0F);
@@ -199,51 +199,51 @@ void LightLumps::add_up(const Vec3d& place, std::size_t count, int order, ColorH
 }
 
 /// The root of a band's mean power per degree, among the last ones that there are; of all channels together.
-double LightLumps::last_power(const ColorHarmonics& sum) {
+double FarLightSum::last_power(const ColorHarmonics& sum) {
     double all = 0;
     for (const std::vector<float>& channel : sum) {
         double power = 0;
         for (auto k = static_cast<std::size_t>(coefficient_count(kFirstOfLastBands)); k < channel.size(); ++k) {
             power += double{channel[k]} * double{channel[k]};
         }
-        all += std::sqrt(power / (coefficient_count(kLumpOrder) - coefficient_count(kFirstOfLastBands)));
+        all += std::sqrt(power / (coefficient_count(kFarLightOrder) - coefficient_count(kFirstOfLastBands)));
     }
     return all;
 }
 
 /// The first so many candidates; the first corner's sum is there.
-void LightLumps::take(std::size_t count) {
+void FarLightSum::take(std::size_t count) {
     for (std::size_t i = 1; i < corners_.size(); ++i) {
         const Vec3d corner(i & 1U ? size_.x : 0, i & 2U ? size_.y : 0, i & 4U ? size_.z : 0);
-        add_up(low_ + corner, count, kLumpOrder, corners_[i]);
+        add_up(low_ + corner, count, kFarLightOrder, corners_[i]);
     }
     std::size_t index_end = 0;
     double all = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const FarLight& light = far_->lights()[candidates_[i].light];
         all += sum_of_magnitudes(light.intensity) * light.irradiance(light.position - low_ - 0.5 * size_);
-        lumped_.push_back({candidates_[i].light, all});
+        summed_.push_back({candidates_[i].light, all});
         index_end = std::max(index_end, light.index + 1);
     }
-    is_lumped_.assign(index_end, 0);
-    for (const Lumped& lumped : lumped_) {
-        is_lumped_[far_->lights()[lumped.light].index] = 1;
+    is_summed_.assign(index_end, 0);
+    for (const SummedLight& lumped : summed_) {
+        is_summed_[far_->lights()[lumped.light].index] = 1;
     }
     reflect();
 }
 
-void LightLumps::reflect() {
+void FarLightSum::reflect() {
     radiance_.assign(points_->size(), Rgb(0));
     for (std::size_t point = 0; point < points_->size(); ++point) {
         const std::uint32_t material = points_->material[point];
         const float cosine = points_->cos_theta_o[point];
         const std::array<float, 8> weights = corner_weights(point);
-        TurnedLobe turned(frame_of(point));
+        RotatedLobe turned(frame_of(point));
         for (std::size_t lobe = 0; lobe < materials_[material].lobes().size(); ++lobe) {
-            const float* coefficients = turned.coefficients(*far_->lobe(material, lobe).lobe, cosine, kLumpOrder);
+            const float* coefficients = turned.coefficients(*far_->lobe(material, lobe).lobe, cosine, kFarLightOrder);
             Rgb sum(0);
             for (std::size_t i = 0; i < corners_.size(); ++i) {
-                sum += weights[i] * TurnedLobe::reflected(corners_[i], coefficients, kLumpOrder);
+                sum += weights[i] * RotatedLobe::reflected(corners_[i], coefficients, kFarLightOrder);
             }
             if (far_->all_positive()) {
                 sum = glm::max(sum, Rgb(0));
@@ -253,7 +253,7 @@ void LightLumps::reflect() {
     }
 }
 
-float LightLumps::brightness(std::size_t pixel) const {
+float FarLightSum::brightness(std::size_t pixel) const {
     float sum = 0;
     for (std::size_t point = points_->pixel_begin[pixel]; point < points_->pixel_begin[pixel + 1]; ++point) {
         const Rgb magnitude = glm::abs(radiance_[point]);
@@ -262,12 +262,12 @@ float LightLumps::brightness(std::size_t pixel) const {
     return sum;
 }
 
-glm::dmat3 LightLumps::frame_of(std::size_t point) const {
+glm::dmat3 FarLightSum::frame_of(std::size_t point) const {
     const ShadingFrame& frame = points_->frame[point];
     return {frame.x, frame.y, frame.z};
 }
 
-std::array<float, 8> LightLumps::corner_weights(std::size_t point) const {
+std::array<float, 8> FarLightSum::corner_weights(std::size_t point) const {
     const Vec3d place = (points_->frame[point].origin - low_) / glm::max(size_, Vec3d(kLeastSize));
     std::array<float, 8> weights;
     for (std::size_t i = 0; i < weights.size(); ++i) {

@@ -25,26 +25,26 @@
 namespace shlight {
 
 /// Keeps its memory; one per thread.
-class LightLumps {
+class FarLightSum {
   public:
     /// tolerance: of RenderSettings.
-    LightLumps(const FarLights& far, std::span<const MaterialLobes> materials, double tolerance);
+    FarLightSum(const FarLights& far, std::span<const MaterialLobes> materials, double tolerance);
 
     /// Chooses the lights, perhaps none, and sums them up. points: stay as they are until the next call.
     void choose(const ShadingPoints& points);
-    bool empty() const { return lumped_.empty(); }
+    bool empty() const { return summed_.empty(); }
     /// Whether a light, by FarLight::index, is in the sum.
     bool holds(std::size_t index) const {
-        return !lumped_.empty() && index < is_lumped_.size() && is_lumped_[index] != 0;
+        return !summed_.empty() && index < is_summed_.size() && is_summed_[index] != 0;
     }
 
-    std::size_t size() const { return lumped_.size(); }
-    const FarLight& light(std::size_t i) const { return far_->lights()[lumped_[i].light]; }
+    std::size_t size() const { return summed_.size(); }
+    const FarLight& light(std::size_t i) const { return far_->lights()[summed_[i].light]; }
     /// A light in proportion to how bright it is from the middle of the box. random: 0 … 1.
     std::size_t find(double random) const;
     /// Up to a factor, how probable that one is.
     double density(std::size_t i) const {
-        return lumped_[i].brightness_up_to - (i > 0 ? lumped_[i - 1].brightness_up_to : 0.0);
+        return summed_[i].brightness_up_to - (i > 0 ? summed_[i - 1].brightness_up_to : 0.0);
     }
     /// What a point reflects of the sum if nothing blocks it.
     const Rgb& radiance(std::size_t point) const { return radiance_[point]; }
@@ -57,7 +57,7 @@ class LightLumps {
         double brightness;  // no point gets more, facing it
         double curvature;   // of the box, and of what the light's extent blurs: (size ÷ distance)²
     };
-    struct Lumped {
+    struct SummedLight {
         std::size_t light;
         double brightness_up_to;
     };
@@ -88,8 +88,8 @@ class LightLumps {
     std::vector<Candidate> candidates_;
     std::vector<double> brightness_;  // by point, of the candidates together
     std::array<ColorHarmonics, 8> corners_;
-    std::vector<Lumped> lumped_;
-    std::vector<std::uint8_t> is_lumped_;  // by FarLight::index
+    std::vector<SummedLight> summed_;
+    std::vector<std::uint8_t> is_summed_;  // by FarLight::index
     std::vector<Rgb> radiance_;            // by point
     std::vector<Vec3f> directions_;
     std::vector<float> basis_;

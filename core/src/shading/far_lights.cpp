@@ -76,17 +76,17 @@ FarLobe::FarLobe(const LobeShape& shape) {
     if (ggx != nullptr && ggx->alpha < kLeastAlpha) {
         return;
     }
-    lobe = clamped_lobe(shape);
+    lobe = sh_projection(shape);
     for (std::size_t node = 0; node < lobe->node_count(); ++node) {
         const float* powers = lobe->powers(node);
         double left = lobe->tail(node);
-        for (int l = kMaxOrder - 1; l >= kLumpOrder; --l) {
+        for (int l = kMaxOrder - 1; l >= kFarLightOrder; --l) {
             left += powers[l];
         }
         // The Laplacian of Y_l / d² is (2 - l (l + 1)) Y_l / d⁴; of the second differences along the edges a, a third
         // of the diagonal's square each, it is a² / 8 times that.
         double squares = 0;
-        for (int l = 0; l < kLumpOrder; ++l) {
+        for (int l = 0; l < kFarLightOrder; ++l) {
             const double laplacian = std::max(2.0, l * (l + 1.0) - 2);
             squares += powers[l] * laplacian * laplacian;
         }

@@ -15,8 +15,8 @@
 
 namespace shlight {
 
-/// Bands of a sum of lights: 0 … kLumpOrder - 1.
-inline constexpr int kLumpOrder = 16;
+/// Bands of a sum of lights: 0 … kFarLightOrder - 1.
+inline constexpr int kFarLightOrder = 16;
 
 /// A light as if it had no extent.
 struct FarLight {
@@ -38,7 +38,7 @@ class FarLobe {
     FarLobe() = default;
     explicit FarLobe(const LobeShape& shape);
 
-    std::shared_ptr<const ClampedLobe> lobe;  ///< null: too narrow
+    std::shared_ptr<const ShProjection> lobe;  ///< null: too narrow
     /// By view, see view_grid.h: the root of Σ f_lm² of the bands that a sum does without.
     std::vector<float> tails;
     /// Likewise: the root mean square, over all turns, of the second difference of f·cos / d² at the middle of a cube

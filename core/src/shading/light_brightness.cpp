@@ -18,7 +18,7 @@ void LightBrightness::start(const ShadingPoints& points, std::span<const float> 
     }
 }
 
-void LightBrightness::expect(std::span<const Light* const> lights, const Unshadowed& unshadowed) {
+void LightBrightness::expect(std::span<const Light* const> lights, const DirectLight& unshadowed) {
     const std::size_t pixels = all_.size();
     own_.assign(lights.size() * pixels, 0.0F);
     for (std::size_t light = 0; light < lights.size(); ++light) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How bright lights with extent make shading points and pixels if nothing blocks them: what tells major from minor
+// How bright lights with extent make shading points and pixels if nothing blocks them: what tells bright from dim
 // lights.
 #pragma once
 
@@ -25,13 +25,13 @@ class LightBrightness {
     /// that are not expected.
     void start(const ShadingPoints& points, std::span<const float> others);
     /// Counts lights in. They are referred to by their index among those of the last call.
-    void expect(std::span<const Light* const> lights, const Unshadowed& unshadowed);
+    void expect(std::span<const Light* const> lights, const DirectLight& unshadowed);
 
     float of_pixel(std::size_t light_index, std::size_t pixel) const { return own_[light_index * all_.size() + pixel]; }
     /// By all lights that were counted in, and by the others.
     float all(std::size_t pixel) const { return all_[pixel]; }
     std::span<const float> all() const { return all_; }
-    /// Under a light of that strength. unshadowed: see Unshadowed::light.
+    /// Under a light of that strength. unshadowed: see DirectLight::light.
     float of_point(const Rgb& strength, std::span<const float> unshadowed, std::size_t point) const {
         const Rgb magnitude = glm::abs(strength);
         float sum = 0;

@@ -49,31 +49,34 @@ bool shades_alike(const LobeViews& lobe) {
 }  // namespace
 
 void LobeBatch::shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of,
-                      bool counted) {
-    shade_any(lobe, circles, view_of, counted);
+                      bool with_statistics) {
+    shade_any(lobe, circles, view_of, with_statistics);
 }
 
-void LobeBatch::shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of, bool counted) {
-    shade_any(lobe, polygons, view_of, counted);
+void LobeBatch::shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of,
+                      bool with_statistics) {
+    shade_any(lobe, polygons, view_of, with_statistics);
 }
 
 template <class Lights>
-void LobeBatch::shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool counted) {
+void LobeBatch::shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of,
+                          bool with_statistics) {
     values_.resize(view_of.size());
     efforts_.resize(view_of.size());
-    alike_ = shades_alike(lobe);
+    same_lobe_ = shades_alike(lobe);
     if (view_of.empty()) {
         return;
     }
-    if (alike_) {
-        shade_alike(lobe, lights, view_of, counted);
+    if (same_lobe_) {
+        shade_alike(lobe, lights, view_of, with_statistics);
     } else {
         shade_sorted(lobe, lights, view_of);
     }
 }
 
 template <class Lights>
-void LobeBatch::shade_alike(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool counted) {
+void LobeBatch::shade_alike(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of,
+                            bool with_statistics) {
     const std::size_t count = view_of.size();
     if (const std::size_t known = all_.size(); known < count) {
         all_.resize(count);
@@ -85,7 +88,7 @@ void LobeBatch::shade_alike(LobeViews& lobe, Lights& lights, std::span<const std
     const int order = lobe.order(0);
     by_harmonics(lobe, lights, order);
     without_ringing(values_);
-    for (std::size_t i = 0; counted && i < count; ++i) {
+    for (std::size_t i = 0; with_statistics && i < count; ++i) {
         efforts_[i] = lies_below(lights, i) ? 0 : order;
     }
 }
@@ -116,25 +119,25 @@ void LobeBatch::shade_sorted(LobeViews& lobe, Lights& lights, std::span<const st
     }
 }
 
-Way LobeBatch::way(std::size_t light) const {
-    if (alike_) {
-        return efforts_[light] > 0 ? Way::harmonics : Way::nothing;
+LobeMethod LobeBatch::method(std::size_t light) const {
+    if (same_lobe_) {
+        return efforts_[light] > 0 ? LobeMethod::harmonics : LobeMethod::nothing;
     }
     const Key key = keys_[light];
-    return key == kNothing    ? Way::nothing
-           : key == kMirror   ? Way::mirror
-           : key > kHarmonics ? Way::harmonics
-                              : Way::cubature;
+    return key == kNothing    ? LobeMethod::nothing
+           : key == kMirror   ? LobeMethod::mirror
+           : key > kHarmonics ? LobeMethod::harmonics
+                              : LobeMethod::cubature;
 }
 
-bool LobeBatch::met(const LobeViews& lobe, std::size_t light, std::size_t view) const {
-    switch (way(light)) {
-        case Way::nothing:
-        case Way::mirror:
+bool LobeBatch::within_tolerance(const LobeViews& lobe, std::size_t light, std::size_t view) const {
+    switch (method(light)) {
+        case LobeMethod::nothing:
+        case LobeMethod::mirror:
             return true;
-        case Way::harmonics:
-            return lobe.met(view);
-        case Way::cubature:
+        case LobeMethod::harmonics:
+            return lobe.within_tolerance(view);
+        case LobeMethod::cubature:
             return keys_[light] != kOutline || missed_[light] == 0;
     }
     return true;

@@ -19,24 +19,25 @@
 namespace shlight {
 
 /// How a light's radiance was found; nothing: the light is hidden, or the lobe black.
-enum class Way { nothing, mirror, harmonics, cubature };
+enum class LobeMethod { nothing, mirror, harmonics, cubature };
 
 /// Keeps its memory from call to call; one per thread.
 class LobeBatch {
   public:
-    /// Circle i, clipped by the horizon, is seen by view view_of[i]. counted: whether anything but values() will be
-    /// asked for.
-    void shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of, bool counted);
-    void shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of, bool counted);
+    /// Circle i, clipped by the horizon, is seen by view view_of[i]. with_statistics: whether anything but values()
+    /// will be asked for.
+    void shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of,
+               bool with_statistics);
+    void shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of, bool with_statistics);
 
     // Of the last call:
     /// The reflected radiance of each light of unit radiance, without the lobe's scale, ≥ 0.
     std::span<const float> values() const { return values_; }
     /// The order, or number of values of f·cos, that each took; 0 where it is hidden or mirrored, or the lobe black.
     std::span<const std::int32_t> efforts() const { return efforts_; }
-    Way way(std::size_t light) const;
+    LobeMethod method(std::size_t light) const;
     /// Whether a light kept within the tolerance, by what its way estimates; only if the lobe, as given, was judged.
-    bool met(const LobeViews& lobe, std::size_t light, std::size_t view) const;
+    bool within_tolerance(const LobeViews& lobe, std::size_t light, std::size_t view) const;
 
   private:
     /// What becomes of a light: nothing, a rule of cubature (1 …), something else, or harmonics of order
@@ -46,10 +47,10 @@ class LobeBatch {
     static constexpr std::size_t kKeys = kHarmonics + kMaxOrder + 1;
 
     template <class Lights>
-    void shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool counted);
+    void shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool with_statistics);
     /// All by harmonics of the only order.
     template <class Lights>
-    void shade_alike(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool counted);
+    void shade_alike(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool with_statistics);
     template <class Lights>
     void shade_sorted(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of);
 
@@ -81,7 +82,7 @@ class LobeBatch {
     std::vector<float> values_;
     std::vector<std::int32_t> efforts_;
 
-    bool alike_ = false;
+    bool same_lobe_ = false;
     std::vector<std::uint8_t> rules_, missed_;  // missed_: the tolerance
     std::vector<Key> keys_;
     std::vector<std::uint32_t> sorted_;             // lights by key

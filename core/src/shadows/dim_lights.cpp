@@ -20,20 +20,20 @@ constexpr std::uint32_t kMoreRays = 16;
 
 }  // namespace
 
-void MinorLights::start(const ShadingPoints& points) {
+void DimLights::start(const ShadingPoints& points) {
     points_ = &points;
     radiance_.assign(points.size(), Rgb(0));
 }
 
-void MinorLights::finish(Hits& hits) const {
+void DimLights::finish(Hits& hits) const {
     for (std::size_t hit = 0; hit < hits.size(); ++hit) {
         hits.radiance[hit] += radiance_[points_->of_hit[hit]];
     }
 }
 
-void MinorLights::add(const Light& light, std::span<const float> unshadowed, std::size_t pixel, float brightness,
-                      const RayPhase& phase, std::size_t questions, std::uint32_t seed, const Hits& hits,
-                      ShadowRays& rays) {
+void DimLights::add(const Light& light, std::span<const float> unshadowed, std::size_t pixel, float brightness,
+                    const RayPhase& phase, std::size_t questions, std::uint32_t seed, const Hits& hits,
+                    ShadowRays& rays) {
     const std::size_t begin = points_->pixel_begin[pixel];
     const std::size_t end = points_->pixel_begin[pixel + 1];
     for (std::size_t first = begin; first < end; ++first) {
@@ -57,7 +57,7 @@ void MinorLights::add(const Light& light, std::span<const float> unshadowed, std
     }
 }
 
-float MinorLights::gather(const Light& light, std::span<const float> unshadowed, std::size_t first, std::size_t last) {
+float DimLights::gather(const Light& light, std::span<const float> unshadowed, std::size_t first, std::size_t last) {
     members_.clear();
     float sum = 0;
     for (std::size_t point = first; point < last; ++point) {
@@ -69,8 +69,8 @@ float MinorLights::gather(const Light& light, std::span<const float> unshadowed,
     return sum;
 }
 
-void MinorLights::draw(const Light& light, std::span<const float> unshadowed, float brightness, std::size_t questions,
-                       std::uint32_t seed, const Hits& hits) {
+void DimLights::draw(const Light& light, std::span<const float> unshadowed, float brightness, std::size_t questions,
+                     std::uint32_t seed, const Hits& hits) {
     asked_.hit.clear();
     asked_.shines.clear();
     density_.clear();
@@ -92,7 +92,7 @@ void MinorLights::draw(const Light& light, std::span<const float> unshadowed, fl
     }
 }
 
-bool MinorLights::find_shares(const Hits& hits, const ShadowRays& rays) {
+bool DimLights::find_shares(const Hits& hits, const ShadowRays& rays) {
     shares_.assign(lobe_stride_, 0.0F);
     bool complete = true;
     for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
@@ -113,7 +113,7 @@ bool MinorLights::find_shares(const Hits& hits, const ShadowRays& rays) {
     return complete;
 }
 
-void MinorLights::shade(const Light& light, std::span<const float> unshadowed) {
+void DimLights::shade(const Light& light, std::span<const float> unshadowed) {
     for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
         const Rgb part = shares_[lobe] * strength_of(light);
         for (const Member& member : members_) {

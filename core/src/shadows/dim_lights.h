@@ -19,16 +19,17 @@
 namespace shlight {
 
 /// Keeps its memory from light to light; one per thread.
-class MinorLights {
+class DimLights {
   public:
     /// Refers to the brightness, which knows the same points.
-    MinorLights(const LightBrightness& brightness, std::size_t lobe_stride)
+    DimLights(const LightBrightness& brightness, std::size_t lobe_stride)
         : brightness_(&brightness), lobe_stride_(lobe_stride) {}
 
     /// To be called before the first light of other points, which stay as they are until finish().
     void start(const ShadingPoints& points);
-    /// Adds a light to the hits of a pixel. unshadowed: see Unshadowed::light; brightness: of the light over the pixel;
-    /// phase: the batch's, of any number of rays; questions: about how many hits to ask; seed: of the pixel and light.
+    /// Adds a light to the hits of a pixel. unshadowed: see DirectLight::light; brightness: of the light over the
+    /// pixel; phase: the batch's, of any number of rays; questions: about how many hits to ask; seed: of the pixel and
+    /// light.
     void add(const Light& light, std::span<const float> unshadowed, std::size_t pixel, float brightness,
              const RayPhase& phase, std::size_t questions, std::uint32_t seed, const Hits& hits, ShadowRays& rays);
     /// Adds all that was added to the hits' radiance.

@@ -4,7 +4,7 @@
 // lanes, and one that adds little to a pixel is asked for by few rays.
 //
 // A source is wholly seen from a hit or not at all. So one ray from each hit leaves no noise, and a pixel from which
-// all rays reach the source, or none, needs no more than a factor for it. The few rays of a minor source start from
+// all rays reach the source, or none, needs no more than a factor for it. The few rays of a dim source start from
 // hits drawn in proportion to what these reflect of it: the share of rays that reach it is then right on average.
 #pragma once
 
@@ -28,7 +28,7 @@ class ShadowedDeltas {
 
     /// Adds all sources to the hits' radiance, and what the hits take to the report. shadows: whether any are cast;
     /// pixel_seeds: one per pixel. brightness: of each pixel by other lights, to which that by the sources is added, if
-    /// nothing blocks. No noise is added: what the few rays of minor sources are off by is the same at all hits of a
+    /// nothing blocks. No noise is added: what the few rays of dim sources are off by is the same at all hits of a
     /// pixel.
     void add(const DeltaLights& lights, const ShadingPoints& points, bool shadows,
              std::span<const std::uint32_t> pixel_seeds, Hits& hits, std::span<float> brightness, RenderReport& report);

@@ -33,7 +33,7 @@ ShadowedEnvironment::ShadowedEnvironment(const RayTracer& tracer, const Environm
     : materials_(materials), most_rays_(most_rays), rays_(tracer, environment, materials) {}
 
 void ShadowedEnvironment::add(const EnvironmentShading& shading, const SampleRange& samples,
-                              std::span<const UnshadowedParts> unshadowed, std::size_t point_count,
+                              std::span<const DirectLightParts> unshadowed, std::size_t point_count,
                               std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds,
                               Hits& hits) {
     shading_ = &shading;
@@ -46,9 +46,9 @@ void ShadowedEnvironment::add(const EnvironmentShading& shading, const SampleRan
     }
 }
 
-UnshadowedParts ShadowedEnvironment::unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const {
+DirectLightParts ShadowedEnvironment::unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const {
     const Rgb scale = lobe_of(hit, lobe, hits).scale(hits.cos_theta_o[hit]);
-    const UnshadowedParts& parts = unshadowed_[lobe * point_count_ + point_of_hit_[hit]];
+    const DirectLightParts& parts = unshadowed_[lobe * point_count_ + point_of_hit_[hit]];
     return {scale * parts.smooth, scale * parts.spots};
 }
 
@@ -77,7 +77,7 @@ void ShadowedEnvironment::add_pixel(std::uint32_t seed, std::size_t begin, std::
     }
     for (const std::size_t hit : lit_) {
         for (std::size_t lobe = 0; lobe < materials_[hits.material[hit]].lobes().size(); ++lobe) {
-            const UnshadowedParts whole = unblocked(hits, hit, lobe);
+            const DirectLightParts whole = unblocked(hits, hit, lobe);
             hits.radiance[hit] += whole.smooth + whole.spots;
         }
     }
@@ -136,7 +136,7 @@ ShadowedEnvironment::MaterialSums& ShadowedEnvironment::sums_of(std::size_t mate
 void ShadowedEnvironment::shade_hit(std::size_t lit_index, std::size_t lobe, const MaterialSums& of_material,
                                     Hits& hits) {
     const std::size_t hit = lit_[lit_index];
-    const UnshadowedParts whole = unblocked(hits, hit, lobe);
+    const DirectLightParts whole = unblocked(hits, hit, lobe);
     const EnvironmentRays::Sums& of_hit = hit_sums_[lit_index];
     if (is_mirror(lobe_of(hit, lobe, hits).shape)) {
         // One ray, that is all of its light.

@@ -29,9 +29,9 @@ class ShadowedEnvironment {
     /// Adds the environment to the hits' radiance and noise. samples: what the hits are of; unshadowed: see
     /// EnvironmentShading; point_of_hit: the shading point of each hit, none shared by pixels; pixel_seeds: one per
     /// pixel. A hit's radiance counts as part of the sum over the hits of its pixel.
-    void add(const EnvironmentShading& shading, const SampleRange& samples, std::span<const UnshadowedParts> unshadowed,
-             std::size_t point_count, std::span<const std::uint32_t> point_of_hit,
-             std::span<const std::uint32_t> pixel_seeds, Hits& hits);
+    void add(const EnvironmentShading& shading, const SampleRange& samples,
+             std::span<const DirectLightParts> unshadowed, std::size_t point_count,
+             std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds, Hits& hits);
     std::uint64_t rays_traced() const { return rays_.rays_traced(); }
 
   private:
@@ -48,7 +48,7 @@ class ShadowedEnvironment {
         return materials_[hits.material[hit]].lobes()[lobe];
     }
     /// The values of one lobe at a hit.
-    UnshadowedParts unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const;
+    DirectLightParts unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const;
     void shade_lobe(std::size_t lobe, Hits& hits);
     MaterialSums& sums_of(std::size_t material);
     void shade_hit(std::size_t lit_index, std::size_t lobe, const MaterialSums& of_material, Hits& hits);
@@ -60,7 +60,7 @@ class ShadowedEnvironment {
 
     SampleRange samples_{};  // of the call of add()
     const EnvironmentShading* shading_ = nullptr;
-    std::span<const UnshadowedParts> unshadowed_;
+    std::span<const DirectLightParts> unshadowed_;
     std::size_t point_count_ = 0;
     std::span<const std::uint32_t> point_of_hit_;
     std::vector<std::size_t> lit_;                 // hits of the pixel

@@ -25,39 +25,39 @@ double unit(std::uint32_t random) {
     return random * 0x1p-32;
 }
 
-/// The variance of their sum, over that of all light, is then a quarter of what minor_share.h allows, as long as it is
+/// The variance of their sum, over that of all light, is then a quarter of what dim_share.h allows, as long as it is
 /// less than half of that light.
 std::size_t lights_to_ask(float share, std::size_t hits, std::size_t lights) {
-    const auto wanted = static_cast<std::size_t>(std::ceil(4 * share * share / kMinorShare * static_cast<float>(hits)));
+    const auto wanted = static_cast<std::size_t>(std::ceil(4 * share * share / kDimShare * static_cast<float>(hits)));
     return std::clamp(wanted, kLeastQuestions, std::clamp(lights, kLeastQuestions, kMostQuestions));
 }
 
 }  // namespace
 
-ShadowedLumps::ShadowedLumps(const RayTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride,
-                             std::span<const Light> lights)
+ShadowedFarLights::ShadowedFarLights(const RayTracer& tracer, std::span<const MaterialLobes> materials,
+                                     std::size_t lobe_stride, std::span<const Light> lights)
     : tracer_(&tracer), materials_(materials), lobe_stride_(lobe_stride), lights_(lights) {}
 
-void ShadowedLumps::add(const LightLumps& lumps, const ShadingPoints& points, bool shadows,
-                        std::span<const std::uint32_t> pixel_seeds, std::span<const float> brightness, Hits& hits) {
+void ShadowedFarLights::add(const FarLightSum& far_light_sum, const ShadingPoints& points, bool shadows,
+                            std::span<const std::uint32_t> pixel_seeds, std::span<const float> brightness, Hits& hits) {
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
         const std::size_t hit_count = hits.pixel_begin[pixel + 1] - hits.pixel_begin[pixel];
-        const float own = lumps.brightness(pixel);
+        const float own = far_light_sum.brightness(pixel);
         if (!(own > 0)) {
             continue;
         }
-        const std::size_t questions = lights_to_ask(own / brightness[pixel], hit_count, lumps.size());
-        const float seen = shadows ? find_share(lumps, questions, pixel_seeds[pixel], pixel, hits) : 1.0F;
+        const std::size_t questions = lights_to_ask(own / brightness[pixel], hit_count, far_light_sum.size());
+        const float seen = shadows ? find_share(far_light_sum, questions, pixel_seeds[pixel], pixel, hits) : 1.0F;
         for (std::size_t point = points.pixel_begin[pixel]; point < points.pixel_begin[pixel + 1]; ++point) {
             for (const std::size_t hit : points.hits_of(point)) {
-                hits.radiance[hit] += seen * lumps.radiance(point);
+                hits.radiance[hit] += seen * far_light_sum.radiance(point);
             }
         }
     }
 }
 
-float ShadowedLumps::find_share(const LightLumps& lumps, std::size_t questions, std::uint32_t seed, std::size_t pixel,
-                                const Hits& hits) {
+float ShadowedFarLights::find_share(const FarLightSum& far_light_sum, std::size_t questions, std::uint32_t seed,
+                                    std::size_t pixel, const Hits& hits) {
     const std::size_t first = hits.pixel_begin[pixel];
     const auto count = static_cast<double>(hits.pixel_begin[pixel + 1] - first);
     find_scales(first, hits.pixel_begin[pixel + 1], hits);
@@ -71,10 +71,10 @@ float ShadowedLumps::find_share(const LightLumps& lumps, std::size_t questions, 
         const auto number = static_cast<double>(i);
         const glm::dvec2 place((number + shift.x) / static_cast<double>(questions),
                                glm::fract(number * kLatticeStep + shift.y));
-        const std::size_t drawn = lumps.find(place.x);
-        const FarLight& light = lumps.light(drawn);
+        const std::size_t drawn = far_light_sum.find(place.x);
+        const FarLight& light = far_light_sum.light(drawn);
         const auto hit = static_cast<std::size_t>(place.y * count);
-        const float own = value(light, hits, first, hit) / static_cast<float>(lumps.density(drawn));
+        const float own = value(light, hits, first, hit) / static_cast<float>(far_light_sum.density(drawn));
         if (!(own > 0)) {
             continue;
         }
@@ -95,7 +95,7 @@ float ShadowedLumps::find_share(const LightLumps& lumps, std::size_t questions, 
     return all > 0 ? seen / all : 0.0F;
 }
 
-void ShadowedLumps::find_scales(std::size_t first, std::size_t last, const Hits& hits) {
+void ShadowedFarLights::find_scales(std::size_t first, std::size_t last, const Hits& hits) {
     scales_.assign((last - first) * lobe_stride_, Rgb(0));
     for (std::size_t hit = first; hit < last; ++hit) {
         const std::span<const Lobe> lobes = materials_[hits.material[hit]].lobes();
@@ -105,7 +105,7 @@ void ShadowedLumps::find_scales(std::size_t first, std::size_t last, const Hits&
     }
 }
 
-float ShadowedLumps::value(const FarLight& light, const Hits& hits, std::size_t first, std::size_t hit) const {
+float ShadowedFarLights::value(const FarLight& light, const Hits& hits, std::size_t first, std::size_t hit) const {
     const ShadingFrame& frame = hits.frame[first + hit];
     const Vec3d way = light.position - frame.origin;
     if (!(glm::dot(frame.z, way) > 0)) {
@@ -123,7 +123,7 @@ float ShadowedLumps::value(const FarLight& light, const Hits& hits, std::size_t 
 }
 
 /// To the light's middle.
-Ray ShadowedLumps::ray(const FarLight& light, const Hits& hits, std::size_t hit) const {
+Ray ShadowedFarLights::ray(const FarLight& light, const Hits& hits, std::size_t hit) const {
     const Vec3f start(hits.shadow_origin[hit]);
     const Vec3d end = light.position + clearance(lights_[light.index], hits.frame[hit]);
     return {start, 0.0F, Vec3f(end - Vec3d(start)), kRayEnd};

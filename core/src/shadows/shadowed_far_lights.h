@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Shadows of lights that are summed up (LightLumps): some are drawn, in proportion to how bright they are, and a pixel
+// Shadows of lights that are summed up (FarLightSum): some are drawn, in proportion to how bright they are, and a pixel
 // gets the share of the sum that its hits see of these.
 #pragma once
 
@@ -17,22 +17,22 @@
 namespace shlight {
 
 /// Keeps its memory; one per thread.
-class ShadowedLumps {
+class ShadowedFarLights {
   public:
     /// lights: of the picture.
-    ShadowedLumps(const RayTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride,
-                  std::span<const Light> lights);
+    ShadowedFarLights(const RayTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride,
+                      std::span<const Light> lights);
 
     /// Adds the sum to the hits' radiance. shadows: whether any are cast; pixel_seeds: one per pixel;
     /// brightness: of each pixel by these and all other lights, if nothing blocks. No noise is added: what few rays are
     /// off by is the same at all hits of a pixel.
-    void add(const LightLumps& lumps, const ShadingPoints& points, bool shadows,
+    void add(const FarLightSum& far_light_sum, const ShadingPoints& points, bool shadows,
              std::span<const std::uint32_t> pixel_seeds, std::span<const float> brightness, Hits& hits);
     std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
     /// The share that is seen from a pixel's hits.
-    float find_share(const LightLumps& lumps, std::size_t questions, std::uint32_t seed, std::size_t pixel,
+    float find_share(const FarLightSum& far_light_sum, std::size_t questions, std::uint32_t seed, std::size_t pixel,
                      const Hits& hits);
     void find_scales(std::size_t first, std::size_t last, const Hits& hits);
     /// What a hit, the one numbered first + hit, reflects of a light, as one number.

@@ -15,12 +15,12 @@ ShadowedLight::ShadowedLight(const RayTracer& tracer, std::uint32_t most_rays, s
       most_rays_(most_rays),
       rays_(tracer, materials, lobe_stride),
       brightness_(materials, lobe_stride),
-      minor_(brightness_, lobe_stride) {}
+      dim_(brightness_, lobe_stride) {}
 
 void ShadowedLight::start(const ShadingPoints& points, std::span<const float> brightness) {
     points_ = &points;
     brightness_.start(points, brightness);
-    minor_.start(points);
+    dim_.start(points);
 }
 
 void ShadowedLight::add(const Light& light, std::size_t index, const SampleRange& samples,
@@ -39,7 +39,7 @@ void ShadowedLight::add(const Light& light, std::size_t index, const SampleRange
         const std::size_t asked = hits_to_ask(own, brightness_.all(pixel), end - begin);
         if (shadows_ && asked < end - begin) {
             const RayPhase phase = {true, samples.first * most_rays_, samples.first, 1};
-            minor_.add(light, unshadowed, pixel, own, phase, asked, pixel_seeds[pixel], hits, rays_);
+            dim_.add(light, unshadowed, pixel, own, phase, asked, pixel_seeds[pixel], hits, rays_);
         } else {
             add_pixel(light, pixel_seeds[pixel], begin, end, hits);
         }

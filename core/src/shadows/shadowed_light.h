@@ -38,19 +38,19 @@ class ShadowedLight {
     /// To be called before the first light of other hits. points: theirs, which stay as they are until finish();
     /// brightness: of each pixel by other lights, if nothing blocks.
     void start(const ShadingPoints& points, std::span<const float> brightness);
-    /// Lights that are to be added: those are major or minor beside all that are known so far.
-    void expect(std::span<const Light* const> lights, const Unshadowed& unshadowed) {
+    /// Lights that are to be added: those are bright or dim beside all that are known so far.
+    void expect(std::span<const Light* const> lights, const DirectLight& unshadowed) {
         brightness_.expect(lights, unshadowed);
     }
     /// Of the pixels, by all lights that were expected and those that were not, see start().
     std::span<const float> brightness() const { return brightness_.all(); }
     /// Adds one light to the hits' radiance and noise. index: its place among those expected last; samples: what the
-    /// hits are of; unshadowed: see Unshadowed::light; pixel_seeds: one per pixel, other for each light. A hit's
+    /// hits are of; unshadowed: see DirectLight::light; pixel_seeds: one per pixel, other for each light. A hit's
     /// radiance counts as part of the sum over the hits of its shading point.
     void add(const Light& light, std::size_t index, const SampleRange& samples, std::span<const float> unshadowed,
              std::span<const std::uint32_t> pixel_seeds, Hits& hits);
     /// To be called after the last light.
-    void finish(Hits& hits) const { minor_.finish(hits); }
+    void finish(Hits& hits) const { dim_.finish(hits); }
     std::uint64_t rays_traced() const { return rays_.rays_traced(); }
 
   private:
@@ -86,7 +86,7 @@ class ShadowedLight {
     std::span<const float> unshadowed_;  // of the light being added
     const ShadingPoints* points_ = nullptr;
     LightBrightness brightness_;
-    MinorLights minor_;
+    DimLights dim_;
     LitHits lit_;                        // of the pixel
     std::vector<RaySums> hit_sums_;      // of one lobe, by lit hit
     std::vector<PointSums> point_sums_;  // likewise, by shading point
