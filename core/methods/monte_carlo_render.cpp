@@ -121,7 +121,7 @@ class Worker {
     std::vector<Ray> rays_;
     std::vector<std::size_t> pixel_of_camera_ray_;
     std::vector<RayHit> ray_hits_;
-    Hits hits_;
+    Hits hits_{0};  // weights are those of reflection_
     std::vector<std::size_t> pixel_of_hit_;
     SurfaceReflection reflection_;
     LightInView light_;
@@ -194,7 +194,7 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
             const SurfacePoint surface = p.scene.surface(ray_hits_[i], rays_[i].direction);
             const Vec3d direction = glm::normalize(Vec3d(rays_[i].direction));
             const double distance = glm::dot(surface.position - Vec3d(rays_[i].origin), direction);
-            hits_.add(surface, -direction,
+            hits_.add(surface, {}, -direction,
                       p.scene.materials()[surface.material].emission + p.scene.lamps_along(rays_[i], distance), 0);
             pixel_of_hit_.push_back(pixel);
             continue;

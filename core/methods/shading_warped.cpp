@@ -13,7 +13,8 @@ class WarpedHarmonics : public HarmonicLobe {
     WarpedHarmonics(const LobeShape& shape, double cos_theta_o, int order)
         : material_(std::array{Lobe{shape, nullptr, Rgb(1), nullptr}}, order, 1) {
         constexpr std::uint32_t kOnly = 0;
-        views_.assign(material_, {&cos_theta_o, 1}, false);
+        std::vector<Rgb> weights;
+        views_.assign(material_, {&cos_theta_o, 1}, material_.weights({&cos_theta_o, 1}, weights), false);
         set(views_.lobe(0).arrays(order, {&kOnly, 1}));
         warp_ = views_.lobe(0).warp(kOnly);
     }

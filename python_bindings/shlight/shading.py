@@ -235,7 +235,7 @@ def _given_type(*arrays: ArrayLike) -> type[np.floating[Any]]:
 
 
 def _checked_views(cos_theta_o: ArrayLike) -> Floats:
-    return checked_array("cos_theta_o", cos_theta_o, _given_type(cos_theta_o))
+    return checked_array("cos_theta_o", cos_theta_o, np.float64)
 
 
 def _views(cosines: Floats, shape: tuple[int, ...]) -> Floats:

@@ -24,14 +24,13 @@ void shade_parts(std::size_t total, const Bsdf& bsdf, const ShadeSettings& setti
 }
 
 /// The views of a part of the lights: those of each, or the one of all.
-template <class U>
-std::span<const U> part_of(std::span<const U> views, std::size_t first, std::size_t count) {
+std::span<const double> part_of(std::span<const double> views, std::size_t first, std::size_t count) {
     return views.size() == 1 ? views : views.subspan(first, count);
 }
 
 /// cos_theta_o: one for each light, or one for all.
-template <class T, class U>
-py::tuple spheres(const Array<T>& centers, const Array<T>& radii, const Bsdf& bsdf, const Array<U>& cos_theta_o,
+template <class T>
+py::tuple spheres(const Array<T>& centers, const Array<T>& radii, const Bsdf& bsdf, const Array<double>& cos_theta_o,
                   int order, double tolerance, int threads, bool with_effort) {
     const auto c = vectors("centers", centers);
     const auto r = values(radii);
@@ -45,9 +44,9 @@ py::tuple spheres(const Array<T>& centers, const Array<T>& radii, const Bsdf& bs
     return out.result();
 }
 
-template <class T, class U>
-py::tuple polygons(const Array<T>& vertices, const Bsdf& bsdf, const Array<U>& cos_theta_o, int order, double tolerance,
-                   int threads, bool with_effort) {
+template <class T>
+py::tuple polygons(const Array<T>& vertices, const Bsdf& bsdf, const Array<double>& cos_theta_o, int order,
+                   double tolerance, int threads, bool with_effort) {
     const auto v = vectors("vertices", vertices);
     const auto k = static_cast<std::size_t>(vertices.shape(1));
     const auto views = values(cos_theta_o);
@@ -60,9 +59,9 @@ py::tuple polygons(const Array<T>& vertices, const Bsdf& bsdf, const Array<U>& c
     return out.result();
 }
 
-template <class T, class U>
+template <class T>
 py::tuple disks(const Array<T>& centers, const Array<T>& half_axes_u, const Array<T>& half_axes_v, const Bsdf& bsdf,
-                const Array<U>& cos_theta_o, int order, double tolerance, int threads, bool with_effort) {
+                const Array<double>& cos_theta_o, int order, double tolerance, int threads, bool with_effort) {
     const auto c = vectors("centers", centers);
     const auto u = vectors("half_axes_u", half_axes_u);
     const auto v = vectors("half_axes_v", half_axes_v);
@@ -76,15 +75,15 @@ py::tuple disks(const Array<T>& centers, const Array<T>& half_axes_u, const Arra
     return out.result();
 }
 
-template <class T, class U>
+template <class T>
 void bind(py::module_& m) {
-    m.def("shade_spheres", &spheres<T, U>, py::arg("centers").noconvert(), py::arg("radii").noconvert(),
-          py::arg("bsdf"), py::arg("cos_theta_o").noconvert(), py::arg("order"), py::arg("tolerance"),
-          py::arg("threads"), py::arg("with_effort"));
-    m.def("shade_polygons", &polygons<T, U>, py::arg("vertices").noconvert(), py::arg("bsdf"),
+    m.def("shade_spheres", &spheres<T>, py::arg("centers").noconvert(), py::arg("radii").noconvert(), py::arg("bsdf"),
           py::arg("cos_theta_o").noconvert(), py::arg("order"), py::arg("tolerance"), py::arg("threads"),
           py::arg("with_effort"));
-    m.def("shade_disks", &disks<T, U>, py::arg("centers").noconvert(), py::arg("half_axes_u").noconvert(),
+    m.def("shade_polygons", &polygons<T>, py::arg("vertices").noconvert(), py::arg("bsdf"),
+          py::arg("cos_theta_o").noconvert(), py::arg("order"), py::arg("tolerance"), py::arg("threads"),
+          py::arg("with_effort"));
+    m.def("shade_disks", &disks<T>, py::arg("centers").noconvert(), py::arg("half_axes_u").noconvert(),
           py::arg("half_axes_v").noconvert(), py::arg("bsdf"), py::arg("cos_theta_o").noconvert(), py::arg("order"),
           py::arg("tolerance"), py::arg("threads"), py::arg("with_effort"));
 }
@@ -92,10 +91,8 @@ void bind(py::module_& m) {
 }  // namespace
 
 void bind_shading(py::module_& m) {
-    bind<float, float>(m);
-    bind<float, double>(m);
-    bind<double, float>(m);
-    bind<double, double>(m);
+    bind<float>(m);
+    bind<double>(m);
 }
 
 }  // namespace shlight::python

@@ -63,7 +63,8 @@ TEST(LobeKernels, WarpsOfManyViewsAreThoseOfOne) {
             cosines.push_back(random.uniform(0, 1));
         }
         MaterialViews views;
-        views.assign(material, cosines, false);
+        std::vector<Rgb> weights;
+        views.assign(material, cosines, material.weights(cosines, weights), false);
         const LobeArrays lobe = views.lobe(0).arrays(8, views.positions().all());
         for (std::size_t i = 0; i < cosines.size(); ++i) {
             const Warp warp = lobe_warp(bsdf.lobes()[0].shape, cosines[i]);

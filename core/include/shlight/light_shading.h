@@ -24,7 +24,7 @@ struct ShadeSettings {
 /// cheaper as neighbours.
 /// radiance: reflected towards ω_o, of lights of unit radiance. effort: empty, or per light the largest order or number
 /// of values of f·cos that a lobe took; 0 where the light is hidden or mirrored.
-/// T, U: float or double. Results depend on nothing but a light and its view.
+/// T: float or double. Results depend on nothing but a light and its view.
 class LightShader {
   public:
     /// Throws std::invalid_argument naming the argument: an order outside 0 … 64, a tolerance ≤ 0 or not finite.
@@ -37,21 +37,21 @@ class LightShader {
 
     /// Sphere lights, from centre and radius in the shading frame. Throws std::invalid_argument naming the argument:
     /// sizes that do not fit, cos_theta_o outside [0, 1], and as sphere_coefficients does.
-    template <class T, class U>
-    void spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, std::span<const U> cos_theta_o,
+    template <class T>
+    void spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, std::span<const double> cos_theta_o,
                  std::span<Rgb> radiance, std::span<std::int32_t> effort = {});
 
     /// Planar polygons of vertex_count vertices each, in either winding; throws as polygon_coefficients does, too.
-    template <class T, class U>
-    void polygons(std::span<const Vec3<T>> vertices, int vertex_count, std::span<const U> cos_theta_o,
+    template <class T>
+    void polygons(std::span<const Vec3<T>> vertices, int vertex_count, std::span<const double> cos_theta_o,
                   std::span<Rgb> radiance, std::span<std::int32_t> effort = {});
 
     /// Disks and ellipses as disk_coefficients takes them; throws as that does, too. A lobe reflects what it reflects
     /// of a polygon within about 1e-4 of the disk's L_00, or tolerance if that is less (docs/algorithms.md, "Lit by
     /// disks"); of harmonics of a given order, of 1e-4.
-    template <class T, class U>
+    template <class T>
     void disks(std::span<const Vec3<T>> centers, std::span<const Vec3<T>> half_axes_u,
-               std::span<const Vec3<T>> half_axes_v, std::span<const U> cos_theta_o, std::span<Rgb> radiance,
+               std::span<const Vec3<T>> half_axes_v, std::span<const double> cos_theta_o, std::span<Rgb> radiance,
                std::span<std::int32_t> effort = {});
 
   private:

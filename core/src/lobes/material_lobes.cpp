@@ -24,6 +24,18 @@ MaterialLobes::MaterialLobes(std::span<const Lobe> lobes, int order, double tole
     }
 }
 
+LobeWeights MaterialLobes::weights(std::span<const double> cos_theta_o, std::vector<Rgb>& values) const {
+    const bool vary =
+        std::any_of(lobes_.begin(), lobes_.end(), [](const Lobe& lobe) { return lobe.weight != nullptr; });
+    values.clear();
+    for (const double cosine : vary ? cos_theta_o : cos_theta_o.first(1)) {
+        for (const Lobe& lobe : lobes_) {
+            values.push_back(lobe.scale(static_cast<float>(cosine)));
+        }
+    }
+    return {values, vary ? lobes_.size() : 0};
+}
+
 double MaterialLobes::narrowest(double cos_theta_o) const {
     double least = 1;
     for (const Lobe& lobe : lobes_) {

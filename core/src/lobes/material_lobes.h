@@ -15,6 +15,12 @@ namespace shlight {
 /// The least distance [rad] over which f·cos of a lobe changes at this view; 0 for a mirror.
 double narrowest(const LobeShape& lobe, double cos_theta_o);
 
+/// Weights of a material's lobes: of lobe i at view v, values[v · stride + i].
+struct LobeWeights {
+    std::span<const Rgb> values;
+    std::size_t stride;  ///< 0: the views share their weights
+};
+
 class MaterialLobes {
   public:
     /// order: the only one, 1 … 64, or 0 to meet the tolerance: of the radiance ÷ albedo of the whole material, in each
@@ -28,6 +34,8 @@ class MaterialLobes {
     /// Whether each view and light may have an order of its own; otherwise a fit has only one.
     bool auto_order() const { return auto_order_; }
     double tolerance() const { return tolerance_; }
+    /// The lobes' weights at these views, in `values`, which is to outlive the result.
+    LobeWeights weights(std::span<const double> cos_theta_o, std::vector<Rgb>& values) const;
     /// The least distance [rad] over which f·cos changes at this view: of its narrowest lobe; 0 for a mirror.
     double narrowest(double cos_theta_o) const;
 

@@ -38,28 +38,20 @@ void ViewPositions::interpolate(const float* table, std::size_t width, std::span
     interpolate_views(table, width, row_.data(), weights_.data(), views, out, stride);
 }
 
-void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPositions& positions, bool judged) {
+void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPositions& positions,
+                        const LobeWeights& weights, bool judged) {
     lobe_ = &material.lobes()[lobe];
+    weights_ = weights;
+    index_ = lobe;
     fit_ = material.fit(lobe);
     positions_ = &positions;
     chooses_ = material.auto_order() && std::holds_alternative<GgxShape>(lobe_->shape) && !is_mirror(lobe_->shape);
     judged_ = judged;
     has_warps_ = false;
     stride_ = 0;
-    find_scales();
     if (judged_) {
         find_albedos();
     }
-}
-
-void LobeViews::find_scales() {
-    if (!lobe_->weight) {
-        scale_.assign(1, lobe_->color);
-        return;
-    }
-    scale_.resize(positions_->size());
-    std::transform(positions_->cosine().begin(), positions_->cosine().end(), scale_.begin(),
-                   [&](double cosine) { return lobe_->scale(static_cast<float>(cosine)); });
 }
 
 void LobeViews::find_albedos() {
@@ -89,8 +81,8 @@ void LobeViews::choose_orders(double tolerance, std::span<const float> allowance
     order_.assign(count, static_cast<std::uint8_t>(std::max(only, 0)));
     any_black_ = false;
     if (!judged_) {
-        for (std::size_t view = 0; view < count && has_weight(); ++view) {
-            black_[view] = scale(view) == Rgb(0) ? 1 : 0;
+        for (std::size_t view = 0; view < count && !has_one_weight(); ++view) {
+            black_[view] = weight(view) == Rgb(0) ? 1 : 0;
             any_black_ = any_black_ || black_[view] != 0;
         }
         return;
@@ -167,7 +159,8 @@ LobeArrays LobeViews::arrays(int order, std::span<const std::uint32_t> used) {
     return {false, {}, terms_.data(), 0, order};
 }
 
-void MaterialViews::assign(const MaterialLobes& material, std::span<const double> cos_theta_o, bool judged) {
+void MaterialViews::assign(const MaterialLobes& material, std::span<const double> cos_theta_o,
+                           const LobeWeights& weights, bool judged) {
     const bool weighed = judged || material.auto_order();
     lobe_count_ = material.lobes().size();
     const bool tabulated = std::any_of(material.lobes().begin(), material.lobes().end(),
@@ -177,13 +170,13 @@ void MaterialViews::assign(const MaterialLobes& material, std::span<const double
         lobes_.resize(lobe_count_);
     }
     for (std::size_t i = 0; i < lobe_count_; ++i) {
-        lobes_[i].look_up(material, i, positions_, weighed);
+        lobes_[i].look_up(material, i, positions_, weights, weighed);
     }
     if (weighed && lobe_count_ > 1) {
         whole_.assign(positions_.size(), Rgb(0));
         for (std::size_t i = 0; i < lobe_count_; ++i) {
             for (std::size_t view = 0; view < positions_.size(); ++view) {
-                whole_[view] += lobes_[i].scale(view) * lobes_[i].albedo_[view];
+                whole_[view] += lobes_[i].weight(view) * lobes_[i].albedo_[view];
             }
         }
     }
@@ -199,7 +192,7 @@ void MaterialViews::find_allowances(std::size_t lobe) {
     const LobeViews& own = lobes_[lobe];
     allowances_.resize(positions_.size());
     for (std::size_t view = 0; view < positions_.size(); ++view) {
-        const Rgb light = own.scale(view) * own.albedo_[view];
+        const Rgb light = own.weight(view) * own.albedo_[view];
         float allowance = std::numeric_limits<float>::infinity();
         for (int channel = 0; channel < 3; ++channel) {
             if (light[channel] > 0) {

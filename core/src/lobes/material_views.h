@@ -52,10 +52,10 @@ class LobeViews {
 
     /// Whether each light is integrated in the way that is cheapest for it, or else all by harmonics of one order.
     bool chooses() const { return chooses_; }
-    /// Whether the scale depends on the view.
-    bool has_weight() const { return lobe_->weight != nullptr; }
+    /// Whether the views share the lobe's weight.
+    bool has_one_weight() const { return weights_.stride == 0; }
     /// What values of the lobe are multiplied by.
-    const Rgb& scale(std::size_t view) const { return scale_[has_weight() ? view : 0]; }
+    const Rgb& weight(std::size_t view) const { return weights_.values[view * weights_.stride + index_]; }
     /// Reflects nothing at all.
     bool is_black(std::size_t view) const { return black_[view] != 0; }
     bool any_black() const { return any_black_; }
@@ -75,8 +75,8 @@ class LobeViews {
   private:
     friend class MaterialViews;
 
-    void look_up(const MaterialLobes& material, std::size_t lobe, ViewPositions& positions, bool judged);
-    void find_scales();
+    void look_up(const MaterialLobes& material, std::size_t lobe, ViewPositions& positions, const LobeWeights& weights,
+                 bool judged);
     void find_albedos();
     void choose_orders(double tolerance, std::span<const float> allowances);
     WarpArrays warp_arrays();
@@ -86,7 +86,8 @@ class LobeViews {
     const WarpedFit* fit_ = nullptr;
     ViewPositions* positions_ = nullptr;
     bool chooses_ = false, judged_ = false, any_black_ = false;
-    std::vector<Rgb> scale_;  // one for all where the lobe has no weight
+    LobeWeights weights_{};
+    std::size_t index_ = 0;  // of the lobe in its material
     std::vector<float> albedo_, tolerance_;
     std::vector<std::uint8_t> black_, order_, within_tolerance_;
     AlignedFloats heads_;
@@ -101,9 +102,10 @@ class LobeViews {
 
 class MaterialViews {
   public:
-    /// judged: whether each lobe's within_tolerance() will be asked for. material and cos_theta_o are kept by
+    /// judged: whether each lobe's within_tolerance() will be asked for. material and weights are kept by
     /// reference.
-    void assign(const MaterialLobes& material, std::span<const double> cos_theta_o, bool judged);
+    void assign(const MaterialLobes& material, std::span<const double> cos_theta_o, const LobeWeights& weights,
+                bool judged);
 
     std::size_t lobe_count() const { return lobe_count_; }
     LobeViews& lobe(std::size_t index) { return lobes_[index]; }

@@ -85,8 +85,9 @@ std::uint32_t Picture::batch_samples() const {
 
 PixelBatch::PixelBatch(const Picture& picture)
     : picture_(&picture),
+      hits_(picture.lobe_stride),
       far_light_sum_(picture.far, picture.materials, picture.settings.tolerance),
-      shadowed_far_lights_(picture.scene->rays(), picture.materials, picture.lobe_stride, picture.scene->lights()),
+      shadowed_far_lights_(picture.scene->rays(), picture.materials, picture.scene->lights()),
       shadowed_deltas_(picture.scene->rays(), picture.materials, picture.lobe_stride),
       unshadowed_(picture.lobe_stride),
       shadowed_(picture.scene->rays(), static_cast<std::uint32_t>(picture.settings.shadow_rays), picture.materials,
@@ -152,8 +153,8 @@ void PixelBatch::add_hit(const Ray& ray, const RayHit& hit, std::uint32_t sample
     const SurfacePoint surface = scene.surface(hit, ray.direction);
     const Vec3d direction = glm::normalize(Vec3d(ray.direction));
     const double distance = glm::dot(surface.position - Vec3d(ray.origin), direction);
-    hits_.add(surface, -direction, scene.materials()[surface.material].emission + scene.lamps_along(ray, distance),
-              sample);
+    hits_.add(surface, picture_->materials[surface.material].lobes(), -direction,
+              scene.materials()[surface.material].emission + scene.lamps_along(ray, distance), sample);
 }
 
 void PixelBatch::add_miss(const Ray& ray, std::uint32_t pixel, std::uint32_t sample) {

@@ -64,7 +64,12 @@ void DirectLight::shade(const ShadingPoints& points, std::span<const std::uint32
     cosines_.resize(some.size());
     std::transform(some.begin(), some.end(), cosines_.begin(),
                    [&](std::uint32_t point) { return double{points.cos_theta_o[point]}; });
-    views_.assign(material, cosines_, true);
+    weights_.clear();
+    for (const std::uint32_t point : some) {
+        const std::span<const Rgb> own = points.weights(point);
+        weights_.insert(weights_.end(), own.begin(), own.end());
+    }
+    views_.assign(material, cosines_, {weights_, lobe_stride_}, true);
     tolerance_ = material.tolerance();
     if (views_.lobe_count() == 0) {
         return;

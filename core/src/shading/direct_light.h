@@ -74,6 +74,7 @@ class DirectLight {
 
     std::vector<std::uint32_t> by_material_;
     std::vector<double> cosines_;
+    std::vector<Rgb> weights_;
     MaterialViews views_;  // of some points
     LobeBatch batch_;
     std::vector<std::uint32_t> seen_by_;  // indices of these points

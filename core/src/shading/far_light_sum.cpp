@@ -117,8 +117,8 @@ void FarLightSum::estimate_brightness() {
         RotatedLobe turned(frame_of(point));
         for (std::size_t lobe = 0; lobe < materials_[material].lobes().size(); ++lobe) {
             const float* coefficients = turned.coefficients(*far_->lobe(material, lobe).lobe, cosine, kEstimateOrder);
-            const Rgb reflected = materials_[material].lobes()[lobe].scale(cosine) *
-                                  RotatedLobe::reflected(corners_[0], coefficients, kEstimateOrder);
+            const Rgb reflected =
+                points_->weight(point, lobe) * RotatedLobe::reflected(corners_[0], coefficients, kEstimateOrder);
             brightness_[point] += std::max(double{reflected.x} + double{reflected.y} + double{reflected.z}, 0.0);
         }
     }
@@ -138,7 +138,7 @@ FarLightSum::Limits FarLightSum::find_limits() {
         const std::span<const Lobe> lobes = materials_[material].lobes();
         const float cosine = points_->cos_theta_o[point];
         for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
-            const double scale = largest(glm::abs(lobes[lobe].scale(cosine)));
+            const double scale = largest(glm::abs(points_->weight(point, lobe)));
             own.curved += scale * double{far_->lobe(material, lobe).curvature(cosine)};
             own.left += scale * double{far_->lobe(material, lobe).tail(cosine)};
         }
@@ -248,7 +248,7 @@ void FarLightSum::reflect() {
             if (far_->all_positive()) {
                 sum = glm::max(sum, Rgb(0));
             }
-            radiance_[point] += materials_[material].lobes()[lobe].scale(cosine) * sum;
+            radiance_[point] += points_->weight(point, lobe) * sum;
         }
     }
 }

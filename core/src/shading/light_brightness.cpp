@@ -6,16 +6,6 @@ namespace shlight {
 void LightBrightness::start(const ShadingPoints& points, std::span<const float> others) {
     points_ = &points;
     all_.assign(others.begin(), others.end());
-    scales_.assign(lobe_stride_ * points.size(), Rgb(0));
-    weights_.assign(lobe_stride_ * points.size(), Rgb(0));
-    for (std::size_t point = 0; point < points.size(); ++point) {
-        const std::span<const Lobe> lobes = materials_[points.material[point]].lobes();
-        for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
-            const std::size_t i = lobe * points.size() + point;
-            scales_[i] = lobes[lobe].scale(points.cos_theta_o[point]);
-            weights_[i] = static_cast<float>(points.hit_count(point)) * glm::abs(scales_[i]);
-        }
-    }
 }
 
 void LightBrightness::expect(std::span<const Light* const> lights, const DirectLight& unshadowed) {

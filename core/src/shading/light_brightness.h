@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "lobes/material_lobes.h"
 #include "shading/direct_light.h"
 #include "shading/shading_points.h"
 #include "shlight/light.h"
@@ -18,8 +17,7 @@ namespace shlight {
 /// Brightness is the sum of the colours' absolute values, over all hits. Keeps its memory; one per thread.
 class LightBrightness {
   public:
-    LightBrightness(std::span<const MaterialLobes> materials, std::size_t lobe_stride)
-        : materials_(materials), lobe_stride_(lobe_stride) {}
+    explicit LightBrightness(std::size_t lobe_stride) : lobe_stride_(lobe_stride) {}
 
     /// Forgets all lights. points: stay as they are until the next call; others: brightness of each pixel by lights
     /// that are not expected.
@@ -36,22 +34,17 @@ class LightBrightness {
         const Rgb magnitude = glm::abs(strength);
         float sum = 0;
         for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-            const std::size_t i = lobe * points_->size() + point;
-            sum += unshadowed[i] * glm::dot(magnitude, weights_[i]);
+            sum += unshadowed[lobe * points_->size() + point] *
+                   glm::dot(magnitude, glm::abs(points_->weight(point, lobe)));
         }
-        return sum;
+        return sum * static_cast<float>(points_->hit_count(point));
     }
-    /// Lobe::scale at the point.
-    const Rgb& scale(std::size_t lobe, std::size_t point) const { return scales_[lobe * points_->size() + point]; }
 
   private:
-    std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
     const ShadingPoints* points_ = nullptr;
-    std::vector<Rgb> scales_;   // lobe_stride × points
-    std::vector<Rgb> weights_;  // their absolute values times the points' hits
-    std::vector<float> all_;    // by pixel
-    std::vector<float> own_;    // lights × pixels
+    std::vector<float> all_;  // by pixel
+    std::vector<float> own_;  // lights × pixels
 };
 
 }  // namespace shlight

@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -43,14 +41,13 @@ const ShadeSettings& checked(const ShadeSettings& settings) {
     return settings;
 }
 
-template <class T>
-void check_views(std::span<const T> cos_theta_o, std::size_t count) {
+void check_views(std::span<const double> cos_theta_o, std::size_t count) {
     if (cos_theta_o.size() != 1) {
         check_size("cos_theta_o", cos_theta_o.size(), count);
     }
     // A number instead of a bool lets the loop run in lanes.
     int invalid = 0;
-    for (const T c : cos_theta_o) {
+    for (const double c : cos_theta_o) {
         invalid |= c >= 0 && c <= 1 ? 0 : 1;
     }
     if (invalid != 0) {
@@ -70,8 +67,8 @@ class LightShaderWork {
     LightShaderWork& operator=(const LightShaderWork&) = delete;
 
     /// shade_chunk(first, count) for each chunk, after its views were found.
-    template <class U, class Shade>
-    void in_chunks(std::span<const U> cos_theta_o, std::size_t count, const Shade& shade_chunk) {
+    template <class Shade>
+    void in_chunks(std::span<const double> cos_theta_o, std::size_t count, const Shade& shade_chunk) {
         for (std::size_t first = 0; first < count; first += kLightsPerChunk) {
             const std::size_t size = std::min(kLightsPerChunk, count - first);
             find_views(cos_theta_o, first, size);
@@ -79,8 +76,8 @@ class LightShaderWork {
         }
     }
 
-    template <class T, class U>
-    void shade_spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, std::span<const U> cos_theta_o,
+    template <class T>
+    void shade_spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, std::span<const double> cos_theta_o,
                        std::span<Rgb> radiance, std::span<std::int32_t> effort) {
         for (std::size_t first = 0; first < centers.size(); first += kLightsPerChunk) {
             const std::size_t size = std::min(kLightsPerChunk, centers.size() - first);
@@ -123,7 +120,7 @@ class LightShaderWork {
                 batch_.shade(lobe, disks_.polygons(), disks_.views(), !effort.empty());
                 for (std::size_t k = 0; k < disks_.numbers().size(); ++k) {
                     const std::uint32_t i = disks_.numbers()[k];
-                    radiance[i] += lobe.scale(view_of_[i]) * batch_.values()[k];
+                    radiance[i] += lobe.weight(view_of_[i]) * batch_.values()[k];
                     if (!effort.empty()) {
                         effort[i] = std::max(effort[i], batch_.efforts()[k]);
                     }
@@ -134,24 +131,23 @@ class LightShaderWork {
 
   private:
     /// Each change from light to light is a new view.
-    template <class U>
-    void find_views(std::span<const U> cos_theta_o, std::size_t first, std::size_t count) {
+    void find_views(std::span<const double> cos_theta_o, std::size_t first, std::size_t count) {
         cosines_.clear();
         view_of_.assign(count, 0);
         if (cos_theta_o.size() == 1) {
-            cosines_.push_back(static_cast<double>(cos_theta_o[0]));
+            cosines_.push_back(cos_theta_o[0]);
         } else {
             cosines_.resize(count);
             std::uint32_t view = 0;
-            cosines_[0] = static_cast<double>(cos_theta_o[first]);
+            cosines_[0] = cos_theta_o[first];
             for (std::size_t i = 1; i < count; ++i) {
                 view += cos_theta_o[first + i] != cos_theta_o[first + i - 1] ? 1 : 0;
-                cosines_[view] = static_cast<double>(cos_theta_o[first + i]);
+                cosines_[view] = cos_theta_o[first + i];
                 view_of_[i] = view;
             }
             cosines_.resize(view + std::size_t{1});
         }
-        views_.assign(material_, cosines_, false);
+        views_.assign(material_, cosines_, material_.weights(cosines_, weights_), false);
     }
 
     /// shade(lobe) puts what one lobe does into batch_.
@@ -181,10 +177,10 @@ class LightShaderWork {
                 radiance[k] = first ? reflected : radiance[k] + reflected;
             }
         };
-        if (lobe.has_weight()) {
-            add_scaled([&](std::size_t k) { return lobe.scale(view_of_[k]); });
+        if (lobe.has_one_weight()) {
+            add_scaled([color = lobe.weight(0)](std::size_t /*k*/) { return color; });
         } else {
-            add_scaled([color = lobe.scale(0)](std::size_t /*k*/) { return color; });
+            add_scaled([&](std::size_t k) { return lobe.weight(view_of_[k]); });
         }
     }
 
@@ -192,6 +188,7 @@ class LightShaderWork {
     MaterialViews views_;
     LobeBatch batch_;
     std::vector<double> cosines_;
+    std::vector<Rgb> weights_;  // of the lobes at each view, or at all
     std::vector<std::uint32_t> view_of_;
     CircleBatch circles_;
     PolygonBatch polygons_;
@@ -204,9 +201,10 @@ LightShader::~LightShader() = default;
 LightShader::LightShader(LightShader&&) noexcept = default;
 LightShader& LightShader::operator=(LightShader&&) noexcept = default;
 
-template <class T, class U>
-void LightShader::spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, std::span<const U> cos_theta_o,
-                          std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+template <class T>
+void LightShader::spheres(std::span<const Vec3<T>> centers, std::span<const T> radii,
+                          std::span<const double> cos_theta_o, std::span<Rgb> radiance,
+                          std::span<std::int32_t> effort) {
     const std::size_t count = centers.size();
     check_size("radii", radii.size(), count);
     check_views(cos_theta_o, count);
@@ -215,8 +213,8 @@ void LightShader::spheres(std::span<const Vec3<T>> centers, std::span<const T> r
     work_->shade_spheres(centers, radii, cos_theta_o, radiance, effort);
 }
 
-template <class T, class U>
-void LightShader::polygons(std::span<const Vec3<T>> vertices, int vertex_count, std::span<const U> cos_theta_o,
+template <class T>
+void LightShader::polygons(std::span<const Vec3<T>> vertices, int vertex_count, std::span<const double> cos_theta_o,
                            std::span<Rgb> radiance, std::span<std::int32_t> effort) {
     check_vertex_count(vertex_count);
     const auto k = static_cast<std::size_t>(vertex_count);
@@ -231,10 +229,10 @@ void LightShader::polygons(std::span<const Vec3<T>> vertices, int vertex_count, 
     });
 }
 
-template <class T, class U>
+template <class T>
 void LightShader::disks(std::span<const Vec3<T>> centers, std::span<const Vec3<T>> half_axes_u,
-                        std::span<const Vec3<T>> half_axes_v, std::span<const U> cos_theta_o, std::span<Rgb> radiance,
-                        std::span<std::int32_t> effort) {
+                        std::span<const Vec3<T>> half_axes_v, std::span<const double> cos_theta_o,
+                        std::span<Rgb> radiance, std::span<std::int32_t> effort) {
     const std::size_t count = centers.size();
     check_size("half_axes_u", half_axes_u.size(), count);
     check_size("half_axes_v", half_axes_v.size(), count);
@@ -272,17 +270,11 @@ using In = std::span<const T>;
 using Radiance = std::span<Rgb>;
 using Effort = std::span<std::int32_t>;
 }  // namespace
-template void LightShader::spheres(In<Vec3<float>>, In<float>, In<float>, Radiance, Effort);
 template void LightShader::spheres(In<Vec3<float>>, In<float>, In<double>, Radiance, Effort);
-template void LightShader::spheres(In<Vec3<double>>, In<double>, In<float>, Radiance, Effort);
 template void LightShader::spheres(In<Vec3<double>>, In<double>, In<double>, Radiance, Effort);
-template void LightShader::polygons(In<Vec3<float>>, int, In<float>, Radiance, Effort);
 template void LightShader::polygons(In<Vec3<float>>, int, In<double>, Radiance, Effort);
-template void LightShader::polygons(In<Vec3<double>>, int, In<float>, Radiance, Effort);
 template void LightShader::polygons(In<Vec3<double>>, int, In<double>, Radiance, Effort);
-template void LightShader::disks(In<Vec3<float>>, In<Vec3<float>>, In<Vec3<float>>, In<float>, Radiance, Effort);
 template void LightShader::disks(In<Vec3<float>>, In<Vec3<float>>, In<Vec3<float>>, In<double>, Radiance, Effort);
-template void LightShader::disks(In<Vec3<double>>, In<Vec3<double>>, In<Vec3<double>>, In<float>, Radiance, Effort);
 template void LightShader::disks(In<Vec3<double>>, In<Vec3<double>>, In<Vec3<double>>, In<double>, Radiance, Effort);
 
 }  // namespace shlight

@@ -32,6 +32,7 @@ void ShadingPoints::clear() {
     cos_theta_o.clear();
     error.clear();
     material.clear();
+    lobe_weight.clear();
     of_hit.clear();
     pixel_begin.assign(1, 0);
     members_.clear();
@@ -55,6 +56,7 @@ void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes
     cos_theta_o.push_back(hits.cos_theta_o[hit]);
     error.push_back(hits.error[hit]);
     material.push_back(hits.material[hit]);
+    lobe_weight.resize(lobe_weight.size() + lobe_stride_, Rgb(0));
     const double spread = std::sqrt(3 * tolerance) * std::min(kWidestSpread, lobes.narrowest(hits.cos_theta_o[hit]));
     members_.push_back({towards_viewer(hits, hit), spread, nearest_light, Vec3d(0), Vec3d(0), Vec3d(0), 0, 0});
 }
@@ -64,6 +66,9 @@ void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t po
     members.position += hits.frame[hit].origin;
     members.normal += hits.frame[hit].z;
     members.towards_viewer += towards_viewer(hits, hit);
+    for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+        lobe_weight[point * lobe_stride_ + lobe] += hits.weight(hit, lobe);
+    }
     ++members.count;
     of_hit.push_back(static_cast<std::uint32_t>(point));
 }
@@ -75,12 +80,16 @@ void ShadingPoints::finish(std::size_t point) {
         frame[point] = shading_frame(members.position / static_cast<double>(members.count),
                                      glm::normalize(members.normal), viewer);
         cos_theta_o[point] = view_cosine(frame[point], viewer);
+        for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+            lobe_weight[point * lobe_stride_ + lobe] /= static_cast<float>(members.count);
+        }
     }
 }
 
 void ShadingPoints::assign(const Hits& hits, std::span<const MaterialLobes> materials, std::span<const Light> lights,
                            const DeltaLights& deltas, double tolerance) {
     clear();
+    lobe_stride_ = hits.lobe_stride;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
         const std::size_t first_point = size();
         for (std::size_t hit = hits.pixel_begin[pixel]; hit < hits.pixel_begin[pixel + 1]; ++hit) {

@@ -29,6 +29,10 @@ class ShadingPoints {
     std::size_t size() const { return frame.size(); }
     /// Hits that share a point.
     std::uint32_t hit_count(std::size_t point) const { return members_[point].count; }
+    const Rgb& weight(std::size_t point, std::size_t lobe) const { return lobe_weight[point * lobe_stride_ + lobe]; }
+    std::span<const Rgb> weights(std::size_t point) const {
+        return std::span(lobe_weight).subspan(point * lobe_stride_, lobe_stride_);
+    }
     std::span<const std::size_t> hits_of(std::size_t point) const {
         return std::span(hits_by_point_).subspan(members_[point].first_hit, members_[point].count);
     }
@@ -37,7 +41,8 @@ class ShadingPoints {
     std::vector<float> cos_theta_o;
     std::vector<double> error;  ///< see SurfacePoint
     std::vector<std::uint32_t> material;
-    std::vector<std::uint32_t> of_hit;     ///< the point of each hit
+    std::vector<Rgb> lobe_weight;       ///< the mean over the point's hits of Hits::lobe_weight, lobe_stride × points
+    std::vector<std::uint32_t> of_hit;  ///< the point of each hit
     std::vector<std::size_t> pixel_begin;  ///< pixel p has the points pixel_begin[p] … pixel_begin[p + 1] - 1
 
   private:
@@ -58,6 +63,7 @@ class ShadingPoints {
     void finish(std::size_t point);
     void sort_hits();
 
+    std::size_t lobe_stride_ = 1;
     std::vector<Members> members_;
     std::vector<std::size_t> hits_by_point_;  // numbers of hits, in the order of their points
 };

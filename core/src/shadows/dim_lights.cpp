@@ -118,7 +118,7 @@ void DimLights::shade(const Light& light, std::span<const float> unshadowed) {
         const Rgb part = shares_[lobe] * strength_of(light);
         for (const Member& member : members_) {
             radiance_[member.point] +=
-                part * brightness_->scale(lobe, member.point) * unshadowed[lobe * points_->size() + member.point];
+                part * points_->weight(member.point, lobe) * unshadowed[lobe * points_->size() + member.point];
         }
     }
 }

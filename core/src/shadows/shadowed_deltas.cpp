@@ -82,7 +82,7 @@ void ShadowedDeltas::find_values(const ShadingPoints& points, const PixelRange& 
         for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
             float* of_lobe = values(p, lobe, range);
             lights_->reflect(range, views_, lobes[lobe].shape, cosine, of_lobe);
-            const Rgb weight = static_cast<float>(points.hit_count(point)) * glm::abs(lobes[lobe].scale(cosine));
+            const Rgb weight = static_cast<float>(points.hit_count(point)) * glm::abs(points.weight(point, lobe));
             add_weighted(of_lobe, lights_->magnitudes(range.begin), weight, range.count, own);
         }
         for (std::size_t i = 0; i < range.count; ++i) {
@@ -173,7 +173,7 @@ void ShadowedDeltas::find_shares(const ShadingPoints& points, const PixelRange& 
             const auto lobes = materials_[hits.material[q.hit]].lobes();
             for (std::size_t lobe = 0; lobe < lobes.size() && is_seen(q); ++lobe) {
                 const float value = values(points.of_hit[q.hit] - pixel.first_point, lobe, range)[asked.light];
-                hits.radiance[q.hit] += lobes[lobe].scale(hits.cos_theta_o[q.hit]) * strength * value;
+                hits.radiance[q.hit] += hits.weight(q.hit, lobe) * strength * value;
             }
         }
     }
@@ -187,7 +187,7 @@ void ShadowedDeltas::add_shares(const ShadingPoints& points, const PixelRange& p
         for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
             const Rgb sum = weighted_sum(values(p, lobe, range), seen, range.count);
             for (const std::size_t hit : points.hits_of(pixel.first_point + p)) {
-                hits.radiance[hit] += lobes[lobe].scale(hits.cos_theta_o[hit]) * sum;
+                hits.radiance[hit] += hits.weight(hit, lobe) * sum;
             }
         }
     }

@@ -47,9 +47,9 @@ void ShadowedEnvironment::add(const EnvironmentShading& shading, const SampleRan
 }
 
 DirectLightParts ShadowedEnvironment::unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const {
-    const Rgb scale = lobe_of(hit, lobe, hits).scale(hits.cos_theta_o[hit]);
+    const Rgb& weight = hits.weight(hit, lobe);
     const DirectLightParts& parts = unshadowed_[lobe * point_count_ + point_of_hit_[hit]];
-    return {scale * parts.smooth, scale * parts.spots};
+    return {weight * parts.smooth, weight * parts.spots};
 }
 
 void ShadowedEnvironment::add_pixel(std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits) {
@@ -107,9 +107,9 @@ void ShadowedEnvironment::shade_lobe(std::size_t lobe, Hits& hits) {
     for (std::size_t i = 0; i < lit_.size(); ++i) {
         if (has_lobe(i)) {
             hit_sums_[i] = rays_.sum(hits, lit_, i, lobe, shading_->splits(material_of(i), lobe));
-            const Vec3d scale(lobe_of(lit_[i], lobe, hits).scale(hits.cos_theta_o[lit_[i]]));
-            hit_sums_[i].smooth *= scale;
-            hit_sums_[i].spots *= scale;
+            const Vec3d weight(hits.weight(lit_[i], lobe));
+            hit_sums_[i].smooth *= weight;
+            hit_sums_[i].spots *= weight;
             EnvironmentRays::Sums& sums = sums_of(material_of(i)).sums;
             sums.smooth += hit_sums_[i].smooth;
             sums.spots += hit_sums_[i].spots;

@@ -35,8 +35,8 @@ std::size_t lights_to_ask(float share, std::size_t hits, std::size_t lights) {
 }  // namespace
 
 ShadowedFarLights::ShadowedFarLights(const RayTracer& tracer, std::span<const MaterialLobes> materials,
-                                     std::size_t lobe_stride, std::span<const Light> lights)
-    : tracer_(&tracer), materials_(materials), lobe_stride_(lobe_stride), lights_(lights) {}
+                                     std::span<const Light> lights)
+    : tracer_(&tracer), materials_(materials), lights_(lights) {}
 
 void ShadowedFarLights::add(const FarLightSum& far_light_sum, const ShadingPoints& points, bool shadows,
                             std::span<const std::uint32_t> pixel_seeds, std::span<const float> brightness, Hits& hits) {
@@ -60,7 +60,6 @@ float ShadowedFarLights::find_share(const FarLightSum& far_light_sum, std::size_
                                     std::size_t pixel, const Hits& hits) {
     const std::size_t first = hits.pixel_begin[pixel];
     const auto count = static_cast<double>(hits.pixel_begin[pixel + 1] - first);
-    find_scales(first, hits.pixel_begin[pixel + 1], hits);
     rays_.clear();
     values_.clear();
     float all = 0;
@@ -95,16 +94,6 @@ float ShadowedFarLights::find_share(const FarLightSum& far_light_sum, std::size_
     return all > 0 ? seen / all : 0.0F;
 }
 
-void ShadowedFarLights::find_scales(std::size_t first, std::size_t last, const Hits& hits) {
-    scales_.assign((last - first) * lobe_stride_, Rgb(0));
-    for (std::size_t hit = first; hit < last; ++hit) {
-        const std::span<const Lobe> lobes = materials_[hits.material[hit]].lobes();
-        for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
-            scales_[(hit - first) * lobe_stride_ + lobe] = glm::abs(lobes[lobe].scale(hits.cos_theta_o[hit]));
-        }
-    }
-}
-
 float ShadowedFarLights::value(const FarLight& light, const Hits& hits, std::size_t first, std::size_t hit) const {
     const ShadingFrame& frame = hits.frame[first + hit];
     const Vec3d way = light.position - frame.origin;
@@ -116,7 +105,7 @@ float ShadowedFarLights::value(const FarLight& light, const Hits& hits, std::siz
     const std::span<const Lobe> lobes = materials_[hits.material[first + hit]].lobes();
     float sum = 0;
     for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
-        sum += glm::dot(scales_[hit * lobe_stride_ + lobe], irradiance) *
+        sum += glm::dot(glm::abs(hits.weight(first + hit, lobe)), irradiance) *
                static_cast<float>(lobe_value(lobes[lobe].shape, direction, hits.view(first + hit)));
     }
     return sum;

@@ -20,8 +20,7 @@ namespace shlight {
 class ShadowedFarLights {
   public:
     /// lights: of the picture.
-    ShadowedFarLights(const RayTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride,
-                      std::span<const Light> lights);
+    ShadowedFarLights(const RayTracer& tracer, std::span<const MaterialLobes> materials, std::span<const Light> lights);
 
     /// Adds the sum to the hits' radiance. shadows: whether any are cast; pixel_seeds: one per pixel;
     /// brightness: of each pixel by these and all other lights, if nothing blocks. No noise is added: what few rays are
@@ -34,17 +33,14 @@ class ShadowedFarLights {
     /// The share that is seen from a pixel's hits.
     float find_share(const FarLightSum& far_light_sum, std::size_t questions, std::uint32_t seed, std::size_t pixel,
                      const Hits& hits);
-    void find_scales(std::size_t first, std::size_t last, const Hits& hits);
     /// What a hit, the one numbered first + hit, reflects of a light, as one number.
     float value(const FarLight& light, const Hits& hits, std::size_t first, std::size_t hit) const;
     Ray ray(const FarLight& light, const Hits& hits, std::size_t hit) const;
 
     const RayTracer* tracer_;
     std::span<const MaterialLobes> materials_;
-    std::size_t lobe_stride_;
     std::span<const Light> lights_;
     std::uint64_t rays_traced_ = 0;
-    std::vector<Rgb> scales_;  // hits of the pixel × lobe_stride: absolute values of Lobe::scale
     std::vector<Ray> rays_;
     std::vector<float> values_;  // of the rays
     std::vector<std::uint8_t> blocked_;

@@ -14,7 +14,7 @@ ShadowedLight::ShadowedLight(const RayTracer& tracer, std::uint32_t most_rays, s
       lobe_stride_(lobe_stride),
       most_rays_(most_rays),
       rays_(tracer, materials, lobe_stride),
-      brightness_(materials, lobe_stride),
+      brightness_(lobe_stride),
       dim_(brightness_, lobe_stride) {}
 
 void ShadowedLight::start(const ShadingPoints& points, std::span<const float> brightness) {
@@ -97,8 +97,7 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
 }
 
 Rgb ShadowedLight::scaled_radiance(const Light& light, const Hits& hits, std::size_t hit, std::size_t lobe) const {
-    return materials_[hits.material[hit]].lobes()[lobe].scale(hits.cos_theta_o[hit]) * strength_of(light) *
-           unshadowed(hit, lobe);
+    return hits.weight(hit, lobe) * strength_of(light) * unshadowed(hit, lobe);
 }
 
 void ShadowedLight::shade_unblocked(const Light& light, Hits& hits) const {

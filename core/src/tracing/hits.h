@@ -5,9 +5,11 @@
 
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/shading_frame.h"
+#include "shlight/bsdf.h"
 #include "shlight/surface_point.h"
 #include "shlight/types.h"
 
@@ -25,17 +27,25 @@ struct SampleRange {
 
 /// Hits in the order of pixels, and of samples within each.
 struct Hits {
+    /// stride: lobes of any material, at most.
+    explicit Hits(std::size_t stride) : lobe_stride(stride) {}
+
+    std::size_t lobe_stride;
     std::vector<ShadingFrame> frame;
     std::vector<float> cos_theta_o;
     std::vector<Vec3d> shadow_origin;  ///< off the surface, on the viewer's side
     std::vector<double> error;         ///< see SurfacePoint
     std::vector<std::uint32_t> material;
+    /// Weight of lobe i of hit h at h · lobe_stride + i: its colour as the viewer sees it. 0 for lobes that the
+    /// material does not have.
+    std::vector<Rgb> lobe_weight;
     std::vector<std::uint32_t> sample;           ///< number of the camera ray within its pixel
     std::vector<Rgb> radiance;                   ///< towards the camera, summed up
     std::vector<Rgb> noise;                      ///< the part of its variance that comes from shadow rays
     std::vector<std::size_t> pixel_begin = {0};  ///< pixel p has the hits pixel_begin[p] … pixel_begin[p + 1] - 1
 
     std::size_t size() const { return frame.size(); }
+    const Rgb& weight(std::size_t hit, std::size_t lobe) const { return lobe_weight[hit * lobe_stride + lobe]; }
     /// ω_o of a hit, in its shading frame.
     Vec3d view(std::size_t hit) const {
         const double cosine = cos_theta_o[hit];
@@ -43,7 +53,9 @@ struct Hits {
     }
     std::size_t pixel_count() const { return pixel_begin.size() - 1; }
     void clear();
-    void add(const SurfacePoint& surface, const Vec3d& towards_viewer, const Rgb& emission, std::uint32_t sample_index);
+    /// lobes: of the material. Their weights, which later steps only read, are written here.
+    void add(const SurfacePoint& surface, std::span<const Lobe> lobes, const Vec3d& towards_viewer, const Rgb& emission,
+             std::uint32_t sample_index);
     /// The hits added since the last call are those of one pixel.
     void end_pixel() { pixel_begin.push_back(size()); }
 };
