@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
-
-#include "lights/seen_light.h"
 
 namespace shlight {
 namespace {
@@ -79,145 +76,46 @@ void DirectLight::shade(const ShadingPoints& points, std::span<const std::uint32
     }
 }
 
-void DirectLight::see(const Light& light, const ShadingPoints& points, std::span<const std::uint32_t> some) {
-    const auto* polygon = std::get_if<PolygonLight>(&light);
-    if (polygon != nullptr) {
-        polygons_.clear(polygon->vertices.size());
-    } else {
-        caps_.clear();
-    }
-    for (std::size_t i = 0; i < some.size(); ++i) {
-        const ShadingFrame& frame = points.frame[some[i]];
-        if (polygon != nullptr) {
-            if (!is_seen(light, frame, points.error[some[i]])) {
-                continue;
-            }
-            for_lit_corners(*polygon, frame, [&](const Vec3d& corner) { polygons_.push_back(corner); });
-        } else {
-            const std::optional<CapView> cap = cap_view(light, frame);
-            if (!cap || !(ProfileView(light, frame).range().high > 0)) {
-                continue;
-            }
-            caps_.push_back(*cap);
-        }
-        seen_by_.push_back(static_cast<std::uint32_t>(i));
-    }
-    if (polygon == nullptr) {
-        find_circles();
-    }
-}
-
-void DirectLight::find_circles() {
-    circles_.resize(caps_.size());
-    centers_.resize(caps_.size());
-    radii_.resize(caps_.size());
-    for (std::size_t k = 0; k < caps_.size(); ++k) {
-        const bool sphere = caps_[k].kind == CapView::Kind::sphere;
-        centers_[k] = sphere ? caps_[k].center : Vec3d(0, 0, 1);
-        radii_[k] = sphere ? caps_[k].radius : 1;
-    }
-    circles_of_spheres(std::span<const Vec3d>(centers_), radii_.data(), circles_.output());
-    for (std::size_t k = 0; k < caps_.size(); ++k) {
-        if (caps_[k].kind != CapView::Kind::sphere) {
-            circles_.set(k, circle_of(caps_[k]));
-        }
-    }
-}
-
 void DirectLight::integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
                             std::size_t light_index, RenderReport& report) {
-    if (const auto* mesh = std::get_if<MeshLight>(&light)) {
-        integrate_mesh(points, some, *mesh, light_index, report);
-        return;
-    }
-    if (std::holds_alternative<DiskLight>(light)) {
-        integrate_disk(points, some, light, light_index, report);
-        return;
-    }
-    seen_by_.clear();
-    see(light, points, some);
-    if (std::holds_alternative<PolygonLight>(light)) {
-        shade_seen(points, some, light, light_index, polygons_, report);
-    } else {
-        shade_seen(points, some, light, light_index, circles_.arrays(), report);
-    }
-}
-
-void DirectLight::integrate_mesh(const ShadingPoints& points, std::span<const std::uint32_t> some,
-                                 const MeshLight& light, std::size_t light_index, RenderReport& report) {
-    outlines_.clear();
-    for (std::size_t i = 0; i < some.size(); ++i) {
-        outlines_.look(*light.shape, points.frame[some[i]], tolerance_, static_cast<std::uint32_t>(i));
-    }
-    outlines_.for_each_size(polygons_, seen_by_,
-                            [&] { shade_seen(points, some, light, light_index, polygons_, report); });
-    seen_by_.assign(outlines_.inside().begin(), outlines_.inside().end());
-    circles_.resize(seen_by_.size());
-    for (std::size_t k = 0; k < seen_by_.size(); ++k) {
-        circles_.set(k, circle_of(CapView{CapView::Kind::inside, Vec3d(0, 0, 1), 1}));
-    }
-    shade_seen(points, some, light, light_index, circles_.arrays(), report);
-}
-
-void DirectLight::integrate_disk(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
-                                 std::size_t light_index, RenderReport& report) {
-    disks_.clear();
+    seen_.clear();
     for (std::uint32_t i = 0; i < some.size(); ++i) {
-        const ShadingFrame& frame = points.frame[some[i]];
-        if (is_seen(light, frame, points.error[some[i]])) {
-            const LitDisk lit = lit_part(std::get<DiskLight>(light), frame);
-            if (lit.corners.empty()) {
-                disks_.add(lit.ellipse, i, i);
-            } else {
-                disks_.add(lit.corners, i, i);
-            }
-        }
+        seen_.look(light, points.frame[some[i]], points.error[some[i]], tolerance_, i);
     }
     for (std::size_t lobe = 0; lobe < views_.lobe_count(); ++lobe) {
-        disks_.for_each_size(views_.lobe(lobe), tolerance_, [&] {
-            seen_by_.assign(disks_.views().begin(), disks_.views().end());
-            shade_seen(points, some, light, light_index, lobe, disks_.polygons(), report);
-        });
+        if (reflects(traits_of(light), views_.lobe(lobe).shape())) {
+            seen_.shade(views_.lobe(lobe), views_.positions().all(), tolerance_, true, batch_,
+                        [&](std::span<const std::uint32_t> numbers) {
+                            add(points, some, numbers, light, light_index, lobe, report);
+                        });
+        }
     }
 }
 
-template <class Lights>
-void DirectLight::shade_seen(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
-                             std::size_t light_index, Lights&& lights, RenderReport& report) {
-    for (std::size_t lobe = 0; lobe < views_.lobe_count() && !seen_by_.empty(); ++lobe) {
-        shade_seen(points, some, light, light_index, lobe, lights, report);
-    }
-}
-
-template <class Lights>
-void DirectLight::shade_seen(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
-                             std::size_t light_index, std::size_t lobe, Lights& lights, RenderReport& report) {
-    const LightTraits& traits = traits_of(light);
-    if (!reflects(traits, views_.lobe(lobe).shape())) {
-        return;
-    }
-    batch_.shade(views_.lobe(lobe), lights, seen_by_, true);
+void DirectLight::add(const ShadingPoints& points, std::span<const std::uint32_t> some,
+                      std::span<const std::uint32_t> numbers, const Light& light, std::size_t light_index,
+                      std::size_t lobe, RenderReport& report) {
     float* values = values_of(light_index, lobe);
-    for (std::size_t k = 0; k < seen_by_.size(); ++k) {
-        const std::uint32_t point = some[seen_by_[k]];
+    const bool even = std::holds_alternative<EvenProfile>(traits_of(light).profile);
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+        const std::uint32_t point = some[numbers[k]];
         values[point] += batch_.values()[k];
-        if (k > 0 && seen_by_[k] == seen_by_[k - 1]) {
+        if (k > 0 && numbers[k] == numbers[k - 1]) {
             continue;  // another face of the same mesh
         }
-        count(batch_.method(k), batch_.efforts()[k], points.hit_count(point), report);
-        report.over_tolerance +=
-            batch_.within_tolerance(views_.lobe(lobe), k, seen_by_[k]) ? 0 : points.hit_count(point);
-        if (!std::holds_alternative<EvenProfile>(traits.profile) && values[point] > 0) {
-            apply_profile(lobe, k, points, point, light, values[point]);
+        const std::uint32_t hits = points.hit_count(point);
+        count(batch_.method(k), batch_.efforts()[k], hits, report);
+        report.over_tolerance += batch_.within_tolerance(views_.lobe(lobe), k, numbers[k]) ? 0 : hits;
+        if (!even && values[point] > 0) {
+            apply_profile(lobe, numbers[k], points, point, light, values[point]);
         }
     }
 }
 
-void DirectLight::apply_profile(std::size_t lobe, std::size_t k, const ShadingPoints& points, std::uint32_t point,
+void DirectLight::apply_profile(std::size_t lobe, std::size_t view, const ShadingPoints& points, std::uint32_t point,
                                 const Light& light, float& value) {
     const LobeViews& views = views_.lobe(lobe);
     profile_.reset(light, points.frame[point]);
-    const std::size_t view = seen_by_[k];
     // A small light's radiance keeps within the tolerance whatever its profile, but a spot's rim should look right.
     const double tolerance =
         std::min(views.absolute_tolerance(view) / double{value}, kProfileTolerance * double{views.tolerances()[view]});

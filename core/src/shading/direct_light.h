@@ -9,15 +9,11 @@
 #include <span>
 #include <vector>
 
-#include "caps/circle_batch.h"
-#include "emitters/mesh_outlines.h"
 #include "lights/profile_mean.h"
-#include "lights/seen_light.h"
 #include "lobes/material_lobes.h"
 #include "lobes/material_views.h"
-#include "polygons/polygon_batch.h"
-#include "shading/disk_polygons.h"
 #include "shading/lobe_batch.h"
+#include "shading/seen_lights.h"
 #include "shading/shading_points.h"
 #include "shlight/light.h"
 #include "shlight/render_report.h"
@@ -41,28 +37,13 @@ class DirectLight {
     /// Some points of one material, under all lights.
     void shade(const ShadingPoints& points, std::span<const std::uint32_t> some, const MaterialLobes& material,
                std::span<const Light* const> lights, RenderReport& report);
-    /// Finds which of the points a light shines on, and how they see it.
-    void see(const Light& light, const ShadingPoints& points, std::span<const std::uint32_t> some);
-    /// Circles of caps_: those of spheres in lanes.
-    void find_circles();
     void integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
                    std::size_t light_index, RenderReport& report);
-    /// The same of a mesh.
-    void integrate_mesh(const ShadingPoints& points, std::span<const std::uint32_t> some, const MeshLight& light,
-                        std::size_t light_index, RenderReport& report);
-    /// The same of a disk.
-    void integrate_disk(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
-                        std::size_t light_index, RenderReport& report);
-    /// Adds what the points seen_by_ get of lights, one each.
-    template <class Lights>
-    void shade_seen(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
-                    std::size_t light_index, Lights&& lights, RenderReport& report);
-    /// By one lobe.
-    template <class Lights>
-    void shade_seen(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
-                    std::size_t light_index, std::size_t lobe, Lights& lights, RenderReport& report);
-    /// Multiplies the value of a lobe, of seen_by_[k], with the mean of the light's profile.
-    void apply_profile(std::size_t lobe, std::size_t k, const ShadingPoints& points, std::uint32_t point,
+    /// Adds what the batch found of one lobe at some[numbers[k]].
+    void add(const ShadingPoints& points, std::span<const std::uint32_t> some, std::span<const std::uint32_t> numbers,
+             const Light& light, std::size_t light_index, std::size_t lobe, RenderReport& report);
+    /// Multiplies the value of a lobe at a view with the mean of the light's profile.
+    void apply_profile(std::size_t lobe, std::size_t view, const ShadingPoints& points, std::uint32_t point,
                        const Light& light, float& value);
     float* values_of(std::size_t light_index, std::size_t lobe) {
         return &values_[(light_index * lobe_stride_ + lobe) * point_count_];
@@ -77,14 +58,7 @@ class DirectLight {
     std::vector<Rgb> weights_;
     MaterialViews views_;  // of some points
     LobeBatch batch_;
-    std::vector<std::uint32_t> seen_by_;  // indices of these points
-    std::vector<CapView> caps_;
-    std::vector<Vec3d> centers_;
-    std::vector<double> radii_;
-    CircleBatch circles_;
-    PolygonBatch polygons_;
-    DiskPolygons disks_;
-    MeshOutlines outlines_;
+    SeenLights seen_;
     double tolerance_ = 0;
     ProfileMean profile_;
 };

@@ -10,13 +10,11 @@
 
 #include "base/checks.h"
 #include "caps/cap_checks.h"
-#include "caps/circle_batch.h"
 #include "disks/disk_checks.h"
 #include "lobes/material_views.h"
-#include "polygons/polygon_batch.h"
 #include "polygons/polygon_checks.h"
-#include "shading/disk_polygons.h"
 #include "shading/lobe_batch.h"
+#include "shading/seen_lights.h"
 
 namespace shlight {
 namespace {
@@ -77,56 +75,28 @@ class LightShaderWork {
     }
 
     template <class T>
-    void shade_spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, std::span<const double> cos_theta_o,
-                       std::span<Rgb> radiance, std::span<std::int32_t> effort) {
-        for (std::size_t first = 0; first < centers.size(); first += kLightsPerChunk) {
-            const std::size_t size = std::min(kLightsPerChunk, centers.size() - first);
-            const auto own_centers = centers.subspan(first, size);
-            const auto own_radii = radii.subspan(first, size);
-            const auto own_radiance = radiance.subspan(first, size);
-            const auto own_effort = effort.empty() ? effort : effort.subspan(first, size);
-            check_spheres(own_centers, own_radii, std::numeric_limits<float>::epsilon());
-            find_views(cos_theta_o, first, size);
-            circles_.resize(size);
-            circles_of_spheres(own_centers, own_radii.data(), circles_.output());
-            shade_lobes(own_radiance, own_effort,
-                        [&](LobeViews& lobe) { batch_.shade(lobe, circles_.arrays(), view_of_, !effort.empty()); });
-        }
+    void shade_spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, std::span<Rgb> radiance,
+                       std::span<std::int32_t> effort) {
+        check_spheres(centers, radii, std::numeric_limits<float>::epsilon());
+        seen_.set_spheres(centers, radii.data());
+        shade(radiance, effort);
     }
 
     template <class T>
-    void shade_polygons(const Vec3<T>* vertices, std::size_t vertex_count, std::span<Rgb> radiance,
+    void shade_polygons(std::span<const Vec3<T>> vertices, std::size_t vertex_count, std::span<Rgb> radiance,
                         std::span<std::int32_t> effort) {
-        polygons_.clear(vertex_count);
-        polygons_.append(vertices, radiance.size());
-        polygons_.check(vertices);
-        shade_lobes(radiance, effort,
-                    [&](LobeViews& lobe) { batch_.shade(lobe, polygons_, view_of_, !effort.empty()); });
+        seen_.set_polygons(vertices, vertex_count);
+        shade(radiance, effort);
     }
 
-    /// disk(i): in the wider type.
+    /// disk(i): of those that find_views was called for.
     template <class Disk>
     void shade_disks(const Disk& disk, std::span<Rgb> radiance, std::span<std::int32_t> effort) {
-        disks_.clear();
+        seen_.clear();
         for (std::uint32_t i = 0; i < radiance.size(); ++i) {
-            disks_.add(disk(i), view_of_[i], i);
+            seen_.add_disk(disk(i), i);
         }
-        std::fill(radiance.begin(), radiance.end(), Rgb(0));
-        std::fill(effort.begin(), effort.end(), 0);
-        const double tolerance = std::min(material_.tolerance(), kDiskTolerance);
-        for (std::size_t l = 0; l < views_.lobe_count(); ++l) {
-            LobeViews& lobe = views_.lobe(l);
-            disks_.for_each_size(lobe, tolerance, [&] {
-                batch_.shade(lobe, disks_.polygons(), disks_.views(), !effort.empty());
-                for (std::size_t k = 0; k < disks_.numbers().size(); ++k) {
-                    const std::uint32_t i = disks_.numbers()[k];
-                    radiance[i] += lobe.weight(view_of_[i]) * batch_.values()[k];
-                    if (!effort.empty()) {
-                        effort[i] = std::max(effort[i], batch_.efforts()[k]);
-                    }
-                }
-            });
-        }
+        shade(radiance, effort);
     }
 
   private:
@@ -150,37 +120,23 @@ class LightShaderWork {
         views_.assign(material_, cosines_, material_.weights(cosines_, weights_), false);
     }
 
-    /// shade(lobe) puts what one lobe does into batch_.
-    template <class Shade>
-    void shade_lobes(std::span<Rgb> radiance, std::span<std::int32_t> effort, const Shade& shade) {
-        if (views_.lobe_count() == 0) {
-            std::fill(radiance.begin(), radiance.end(), Rgb(0));
-            std::fill(effort.begin(), effort.end(), 0);
-        }
-        for (std::size_t i = 0; i < views_.lobe_count(); ++i) {
-            LobeViews& lobe = views_.lobe(i);
-            shade(lobe);
-            add(lobe, i == 0, radiance);
-            const auto efforts = batch_.efforts();
-            for (std::size_t k = 0; k < effort.size(); ++k) {
-                effort[k] = i == 0 ? efforts[k] : std::max(effort[k], efforts[k]);
-            }
-        }
-    }
-
-    /// Adds what the batch found of a lobe, or sets the radiance to it.
-    void add(const LobeViews& lobe, bool first, std::span<Rgb> radiance) const {
-        const auto values = batch_.values();
-        const auto add_scaled = [&](const auto& scale_of) {
-            for (std::size_t k = 0; k < radiance.size(); ++k) {
-                const Rgb reflected = scale_of(k) * values[k];
-                radiance[k] = first ? reflected : radiance[k] + reflected;
-            }
-        };
-        if (lobe.has_one_weight()) {
-            add_scaled([color = lobe.weight(0)](std::size_t /*k*/) { return color; });
-        } else {
-            add_scaled([&](std::size_t k) { return lobe.weight(view_of_[k]); });
+    /// What seen_ holds.
+    void shade(std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+        std::fill(radiance.begin(), radiance.end(), Rgb(0));
+        std::fill(effort.begin(), effort.end(), 0);
+        const double tolerance = std::min(material_.tolerance(), kDiskTolerance);
+        for (std::size_t l = 0; l < views_.lobe_count(); ++l) {
+            LobeViews& lobe = views_.lobe(l);
+            seen_.shade(lobe, view_of_, tolerance, !effort.empty(), batch_,
+                        [&](std::span<const std::uint32_t> numbers) {
+                            const std::span<const float> values = batch_.values();
+                            for (std::size_t k = 0; k < numbers.size(); ++k) {
+                                radiance[numbers[k]] += lobe.weight(view_of_[numbers[k]]) * values[k];
+                            }
+                            for (std::size_t k = 0; k < numbers.size() && !effort.empty(); ++k) {
+                                effort[numbers[k]] = std::max(effort[numbers[k]], batch_.efforts()[k]);
+                            }
+                        });
         }
     }
 
@@ -190,9 +146,7 @@ class LightShaderWork {
     std::vector<double> cosines_;
     std::vector<Rgb> weights_;  // of the lobes at each view, or at all
     std::vector<std::uint32_t> view_of_;
-    CircleBatch circles_;
-    PolygonBatch polygons_;
-    DiskPolygons disks_;
+    SeenLights seen_;
 };
 
 LightShader::LightShader(const Bsdf& bsdf, const ShadeSettings& settings)
@@ -210,7 +164,10 @@ void LightShader::spheres(std::span<const Vec3<T>> centers, std::span<const T> r
     check_views(cos_theta_o, count);
     check_size("radiance", radiance.size(), count);
     check_size("effort", effort.size(), effort.empty() ? 0 : count);
-    work_->shade_spheres(centers, radii, cos_theta_o, radiance, effort);
+    work_->in_chunks(cos_theta_o, count, [&](std::size_t first, std::size_t size) {
+        work_->shade_spheres(centers.subspan(first, size), radii.subspan(first, size), radiance.subspan(first, size),
+                             effort.empty() ? effort : effort.subspan(first, size));
+    });
 }
 
 template <class T>
@@ -224,7 +181,7 @@ void LightShader::polygons(std::span<const Vec3<T>> vertices, int vertex_count, 
     check_size("radiance", radiance.size(), count);
     check_size("effort", effort.size(), effort.empty() ? 0 : count);
     work_->in_chunks(cos_theta_o, count, [&](std::size_t first, std::size_t size) {
-        work_->shade_polygons(&vertices[first * k], k, radiance.subspan(first, size),
+        work_->shade_polygons(vertices.subspan(first * k, size * k), k, radiance.subspan(first, size),
                               effort.empty() ? effort : effort.subspan(first, size));
     });
 }

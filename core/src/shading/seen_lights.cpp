@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+#include "shading/seen_lights.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "disks/disk_polygon.h"
+#include "emitters/flat_outline.h"
+#include "lobes/material_lobes.h"
+
+namespace shlight {
+namespace {
+
+/// Polygons of any size are filled up to a multiple of this many vertices.
+constexpr std::size_t kSizeStep = kDiskPolygonStep;
+
+}  // namespace
+
+void SeenLights::clear() {
+    caps_.clear();
+    cap_numbers_.clear();
+    vertices_.clear();
+    polygons_.clear();
+    numbers_.clear();
+}
+
+void SeenLights::look(const Light& light, const ShadingFrame& frame, double error, double tolerance,
+                      std::uint32_t number) {
+    if (const auto* mesh = std::get_if<MeshLight>(&light)) {
+        look_at(*mesh, frame, tolerance, number);
+    } else if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
+        if (is_seen(light, frame, error)) {
+            look_at(*polygon, frame, number);
+        }
+    } else if (const auto* disk = std::get_if<DiskLight>(&light)) {
+        if (is_seen(light, frame, error)) {
+            look_at(*disk, frame, number);
+        }
+    } else if (const auto cap = cap_view(light, frame); cap && ProfileView(light, frame).range().high > 0) {
+        caps_.push_back(*cap);
+        cap_numbers_.push_back(number);
+    }
+}
+
+void SeenLights::look_at(const PolygonLight& light, const ShadingFrame& frame, std::uint32_t number) {
+    const std::size_t first = vertices_.size();
+    for_lit_corners(light, frame, [&](const Vec3d& corner) { vertices_.push_back(corner); });
+    add_polygon(first, number, false);
+}
+
+void SeenLights::look_at(const DiskLight& light, const ShadingFrame& frame, std::uint32_t number) {
+    const LitDisk lit = lit_part(light, frame);
+    if (lit.corners.empty()) {
+        add_disk(lit.ellipse, number);
+        return;
+    }
+    const std::size_t first = vertices_.size();
+    vertices_.insert(vertices_.end(), lit.corners.begin(), lit.corners.end());
+    add_polygon(first, number, true);
+}
+
+void SeenLights::look_at(const MeshLight& light, const ShadingFrame& frame, double tolerance, std::uint32_t number) {
+    const std::size_t first = vertices_.size();
+    switch (mesh_view_.look(*light.shape, frame, tolerance)) {
+        case MeshView::Kind::hidden:
+            break;
+        case MeshView::Kind::outline:
+            for (const FlatOutline::Vertex& v : mesh_view_.outline().line(0)) {
+                vertices_.push_back(mesh_view_.outline().direction(v.at));
+            }
+            add_polygon(first, number, true);
+            break;
+        case MeshView::Kind::faces:
+            for (std::size_t i = 0; i + 2 < mesh_view_.faces().size(); i += 3) {
+                const std::span<const Vec3d> face = mesh_view_.faces().subspan(i, 3);
+                vertices_.insert(vertices_.end(), face.begin(), face.end());
+                add_polygon(first + i, number, false);
+            }
+            break;
+        case MeshView::Kind::inside:
+            caps_.push_back({CapView::Kind::inside, Vec3d(0, 0, 1), 1});
+            cap_numbers_.push_back(number);
+            break;
+    }
+}
+
+void SeenLights::add_polygon(std::size_t first, std::uint32_t number, bool filled_up) {
+    const std::size_t count = vertices_.size() - first;
+    const std::size_t size = filled_up ? (count + kSizeStep - 1) / kSizeStep * kSizeStep : count;
+    polygons_.push_back({std::nullopt, first, count, static_cast<std::uint32_t>(size), number});
+}
+
+void SeenLights::add_disk(const Ellipse<double>& disk, std::uint32_t number) {
+    const SphericalEllipse<double> ellipse(disk, true);
+    if (!ellipse.empty()) {
+        polygons_.push_back({ellipse, 0, 0, 0, number});
+    }
+}
+
+template <class T>
+void SeenLights::set_spheres(std::span<const Vec3<T>> centers, const T* radii) {
+    clear();
+    cap_numbers_.resize(centers.size());
+    std::iota(cap_numbers_.begin(), cap_numbers_.end(), 0U);
+    circles_.resize(centers.size());
+    circles_of_spheres(centers, radii, circles_.output());
+}
+
+template <class T>
+void SeenLights::set_polygons(std::span<const Vec3<T>> vertices, std::size_t vertex_count) {
+    clear();
+    gathered_.clear(vertex_count);
+    gathered_.append(vertices.data(), vertices.size() / vertex_count);
+    gathered_.check(vertices.data());
+    numbers_.resize(gathered_.size());
+    std::iota(numbers_.begin(), numbers_.end(), 0U);
+}
+
+/// Those of spheres in lanes.
+void SeenLights::find_circles() {
+    if (caps_.empty()) {
+        return;
+    }
+    circles_.resize(caps_.size());
+    centers_.resize(caps_.size());
+    radii_.resize(caps_.size());
+    for (std::size_t k = 0; k < caps_.size(); ++k) {
+        const bool sphere = caps_[k].kind == CapView::Kind::sphere;
+        centers_[k] = sphere ? caps_[k].center : Vec3d(0, 0, 1);
+        radii_[k] = sphere ? caps_[k].radius : 1;
+    }
+    circles_of_spheres(std::span<const Vec3d>(centers_), radii_.data(), circles_.output());
+    for (std::size_t k = 0; k < caps_.size(); ++k) {
+        if (caps_[k].kind != CapView::Kind::sphere) {
+            circles_.set(k, circle_of(caps_[k]));
+        }
+    }
+    caps_.clear();  // the circles stand for them from now on
+}
+
+std::uint32_t SeenLights::size_of(const Polygon& polygon, const LobeViews& lobe, std::span<const std::uint32_t> view_of,
+                                  double tolerance) const {
+    if (!polygon.disk) {
+        return polygon.size;
+    }
+    const double width = narrowest(lobe.shape(), lobe.positions().cosine()[view_of[polygon.number]]);
+    return static_cast<std::uint32_t>(disk_polygon_size(*polygon.disk, width, tolerance));
+}
+
+void SeenLights::sort(const LobeViews& lobe, std::span<const std::uint32_t> view_of, double tolerance) {
+    sizes_.clear();
+    for (const Polygon& polygon : polygons_) {
+        sizes_.push_back(size_of(polygon, lobe, view_of, tolerance));
+    }
+    order_.resize(polygons_.size());
+    std::iota(order_.begin(), order_.end(), 0U);
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return sizes_[a] < sizes_[b]; });
+}
+
+std::size_t SeenLights::gather(std::size_t first) {
+    const std::uint32_t size = sizes_[order_[first]];
+    gathered_.clear(size);
+    numbers_.clear();
+    for (; first < order_.size() && sizes_[order_[first]] == size; ++first) {
+        const Polygon& polygon = polygons_[order_[first]];
+        corners_.clear();
+        if (polygon.disk) {
+            append_disk_polygon(*polygon.disk, static_cast<int>(size), corners_);
+        } else {
+            const auto from = vertices_.begin() + static_cast<std::ptrdiff_t>(polygon.first);
+            corners_.assign(from, from + static_cast<std::ptrdiff_t>(polygon.count));
+            corners_.resize(size, corners_.back());
+        }
+        gathered_.append(corners_.data(), 1);
+        numbers_.push_back(polygon.number);
+    }
+    return first;
+}
+
+std::span<const std::uint32_t> SeenLights::views(std::span<const std::uint32_t> numbers,
+                                                 std::span<const std::uint32_t> view_of) {
+    views_.clear();
+    for (const std::uint32_t number : numbers) {
+        views_.push_back(view_of[number]);
+    }
+    return views_;
+}
+
+template void SeenLights::set_spheres(std::span<const Vec3<float>>, const float*);
+template void SeenLights::set_spheres(std::span<const Vec3<double>>, const double*);
+template void SeenLights::set_polygons(std::span<const Vec3<float>>, std::size_t);
+template void SeenLights::set_polygons(std::span<const Vec3<double>>, std::size_t);
+
+}  // namespace shlight

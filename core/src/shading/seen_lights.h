@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+//
+// Lights as views see them, each in the shading frame of its view, in the form that LobeBatch reads: caps as circles,
+// all else as polygons, those with equally many vertices together.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "caps/circle_batch.h"
+#include "disks/spherical_ellipse.h"
+#include "emitters/mesh_view.h"
+#include "lights/seen_light.h"
+#include "lobes/material_views.h"
+#include "polygons/polygon_batch.h"
+#include "shading/lobe_batch.h"
+#include "shlight/light.h"
+
+namespace shlight {
+
+/// Keeps its memory from call to call; one per thread.
+class SeenLights {
+  public:
+    void clear();
+    /// Adds what a hit sees of a light, which may be nothing, or several faces of a mesh. number: what the caller knows
+    /// the light by; tolerance: of a mesh's outline.
+    void look(const Light& light, const ShadingFrame& frame, double error, double tolerance, std::uint32_t number);
+    /// A disk in the shading frame; what lies below the horizon or is seen edge-on is left out.
+    void add_disk(const Ellipse<double>& disk, std::uint32_t number);
+    /// In the place of all others: spheres in the shading frame, numbered 0, 1, 2 …
+    template <class T>
+    void set_spheres(std::span<const Vec3<T>> centers, const T* radii);
+    /// Likewise, planar polygons of so many vertices each. Throws as check_polygon does.
+    template <class T>
+    void set_polygons(std::span<const Vec3<T>> vertices, std::size_t vertex_count);
+
+    /// Shades all with a lobe. Light `number` is seen by view view_of[number]. visit(numbers) after each call of the
+    /// batch, which holds values of the lights with these numbers; faces of a mesh follow each other.
+    /// tolerance: of the polygon that stands for a disk.
+    template <class Visit>
+    void shade(LobeViews& lobe, std::span<const std::uint32_t> view_of, double tolerance, bool with_statistics,
+               LobeBatch& batch, const Visit& visit) {
+        if (!cap_numbers_.empty()) {
+            find_circles();
+            batch.shade(lobe, circles_.arrays(), views(cap_numbers_, view_of), with_statistics);
+            visit(std::span<const std::uint32_t>(cap_numbers_));
+        }
+        const auto shade_gathered = [&] {
+            batch.shade(lobe, gathered_, views(numbers_, view_of), with_statistics);
+            visit(std::span<const std::uint32_t>(numbers_));
+        };
+        if (!polygons_.empty()) {
+            sort(lobe, view_of, tolerance);
+            for (std::size_t first = 0; first < polygons_.size();) {
+                first = gather(first);
+                shade_gathered();
+            }
+        } else if (!numbers_.empty()) {
+            shade_gathered();
+        }
+    }
+
+  private:
+    /// A polygon, or a disk for which one of a size that depends on the lobe will stand.
+    struct Polygon {
+        std::optional<SphericalEllipse<double>> disk;
+        std::size_t first, count;  // of vertices_, if it is none
+        std::uint32_t size;        // likewise: the last vertex is repeated up to this number
+        std::uint32_t number;
+    };
+
+    void look_at(const PolygonLight& light, const ShadingFrame& frame, std::uint32_t number);
+    void look_at(const DiskLight& light, const ShadingFrame& frame, std::uint32_t number);
+    void look_at(const MeshLight& light, const ShadingFrame& frame, double tolerance, std::uint32_t number);
+    /// The vertices from `first` on. filled_up: so that few sizes occur.
+    void add_polygon(std::size_t first, std::uint32_t number, bool filled_up);
+    void find_circles();
+    std::uint32_t size_of(const Polygon& polygon, const LobeViews& lobe, std::span<const std::uint32_t> view_of,
+                          double tolerance) const;
+    void sort(const LobeViews& lobe, std::span<const std::uint32_t> view_of, double tolerance);
+    /// Puts the polygons from this one in the order of sizes on, as far as they have as many vertices, into gathered_
+    /// and numbers_; returns the next one.
+    std::size_t gather(std::size_t first);
+    std::span<const std::uint32_t> views(std::span<const std::uint32_t> numbers,
+                                         std::span<const std::uint32_t> view_of);
+
+    std::vector<CapView> caps_;  // empty where set_spheres was called
+    std::vector<std::uint32_t> cap_numbers_;
+    std::vector<Vec3d> centers_;
+    std::vector<double> radii_;
+    CircleBatch circles_;
+
+    MeshView mesh_view_;
+    std::vector<Vec3d> vertices_;
+    std::vector<Polygon> polygons_;  // empty where set_polygons was called
+    std::vector<std::uint32_t> sizes_, order_;
+    PolygonBatch gathered_;
+    std::vector<std::uint32_t> numbers_;  // of gathered_
+
+    std::vector<std::uint32_t> views_;
+    std::vector<Vec3d> corners_;
+};
+
+}  // namespace shlight
