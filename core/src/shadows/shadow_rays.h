@@ -14,6 +14,7 @@
 
 #include "lights/light_sampling.h"
 #include "lobes/material_lobes.h"
+#include "shadows/shadow_policy.h"
 #include "shlight/light.h"
 #include "shlight/ray_tracer.h"
 #include "tracing/hits.h"
@@ -24,14 +25,6 @@ namespace shlight {
 struct LitHits {
     std::vector<std::size_t> hit;
     std::vector<std::uint8_t> shines;  ///< hit.size() × lobe_stride: whether the lobe reflects any of it
-};
-
-/// Part of the rays: which of the pixel's points they take.
-struct RayPhase {
-    bool first;                  ///< forgets the rays before it; a later one adds to them
-    std::uint32_t first_point;   ///< of the first camera ray of the batch
-    std::uint32_t first_sample;  ///< the number of that camera ray
-    std::uint32_t rays_per_hit;  ///< and set of rays
 };
 
 /// Sums over the rays of a hit: of their weights times a lobe's f·cos, and of its squares.

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/even_steps.h"
-#include "shadows/dim_share.h"
+#include "shadows/shadow_policy.h"
 #include "shlight/sampling.h"
 
 namespace shlight {

@@ -85,17 +85,13 @@ void ShadowedEnvironment::add_pixel(std::uint32_t seed, std::size_t begin, std::
 
 /// Traces the pixel's rays; false: nothing is in their way.
 bool ShadowedEnvironment::find_obstacles(std::uint32_t seed, const Hits& hits) {
-    const std::uint32_t first_rays = samples_.first_shadow_rays();
-    // No two ranges of samples share a point.
-    const std::uint32_t first_point = samples_.first * most_rays_;
-    rays_.trace(hits, lit_, {true, first_point, samples_.first, first_rays}, seed);
+    const RayPhase first = first_phase(samples_, most_rays_);
+    rays_.trace(hits, lit_, first, seed);
     if (rays_.all_free()) {
         return false;
     }
     // Where all were blocked too: a window may be smaller than any light is.
-    rays_.trace(hits, lit_,
-                {false, first_point + samples_.count * first_rays, samples_.first, samples_.shadow_rays - first_rays},
-                seed);
+    rays_.trace(hits, lit_, second_phase(samples_, first), seed);
     return true;
 }
 

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "base/ray_rounding.h"
-#include "shadows/dim_share.h"
 #include "shadows/ray_start.h"
+#include "shadows/shadow_policy.h"
 #include "shlight/sampling.h"
 
 namespace shlight {
@@ -25,8 +25,8 @@ double unit(std::uint32_t random) {
     return random * 0x1p-32;
 }
 
-/// The variance of their sum, over that of all light, is then a quarter of what dim_share.h allows, as long as it is
-/// less than half of that light.
+/// The variance of their sum, over that of all light, is then a quarter of what shadow_policy.h allows, as long as it
+/// is less than half of that light.
 std::size_t lights_to_ask(float share, std::size_t hits, std::size_t lights) {
     const auto wanted = static_cast<std::size_t>(std::ceil(4 * share * share / kDimShare * static_cast<float>(hits)));
     return std::clamp(wanted, kLeastQuestions, std::clamp(lights, kLeastQuestions, kMostQuestions));

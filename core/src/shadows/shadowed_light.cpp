@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shadows/dim_share.h"
-
 namespace shlight {
 
 ShadowedLight::ShadowedLight(const RayTracer& tracer, std::uint32_t most_rays, std::span<const MaterialLobes> materials,
@@ -26,7 +24,6 @@ void ShadowedLight::start(const ShadingPoints& points, std::span<const float> br
 void ShadowedLight::add(const Light& light, std::size_t index, const SampleRange& samples,
                         std::span<const float> unshadowed, std::span<const std::uint32_t> pixel_seeds, Hits& hits) {
     samples_ = samples;
-    first_ray_count_ = samples.first_shadow_rays();
     unshadowed_ = unshadowed;
     shadows_ = samples.shadow_rays > 0 && traits_of(light).casts_shadows;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
@@ -38,8 +35,8 @@ void ShadowedLight::add(const Light& light, std::size_t index, const SampleRange
         const std::size_t end = hits.pixel_begin[pixel + 1];
         const std::size_t asked = hits_to_ask(own, brightness_.all(pixel), end - begin);
         if (shadows_ && asked < end - begin) {
-            const RayPhase phase = {true, samples.first * most_rays_, samples.first, 1};
-            dim_.add(light, unshadowed, pixel, own, phase, asked, pixel_seeds[pixel], hits, rays_);
+            dim_.add(light, unshadowed, pixel, own, first_phase(samples, most_rays_), asked, pixel_seeds[pixel], hits,
+                     rays_);
         } else {
             add_pixel(light, pixel_seeds[pixel], begin, end, hits);
         }
@@ -76,19 +73,15 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
         return;
     }
     if (shadows_) {
-        // No two ranges of samples share a point.
-        const std::uint32_t first_point = samples_.first * most_rays_;
-        rays_.trace(light, hits, lit_, {true, first_point, samples_.first, first_ray_count_}, seed);
+        const RayPhase first = first_phase(samples_, most_rays_);
+        rays_.trace(light, hits, lit_, first, seed);
         const std::size_t blocked = rays_.blocked_count();
         // Few rays may miss the part of a light that is seen, and a glossy lobe may have its peak there.
         if (blocked > 0 && blocked == rays_.count() && !is_glossy(hits.material[lit_.hit[0]])) {
             return;
         }
         if (blocked > 0) {
-            rays_.trace(light, hits, lit_,
-                        {false, first_point + samples_.count * first_ray_count_, samples_.first,
-                         samples_.shadow_rays - first_ray_count_},
-                        seed);
+            rays_.trace(light, hits, lit_, second_phase(samples_, first), seed);
             shade(light, hits);
             return;
         }

@@ -81,7 +81,6 @@ class ShadowedLight {
     ShadowRays rays_;
 
     SampleRange samples_{};              // of the call of add()
-    std::uint32_t first_ray_count_ = 0;  // likewise, rays per hit of the first phase
     bool shadows_ = false;               // likewise, whether the light casts any
     std::span<const float> unshadowed_;  // of the light being added
     const ShadingPoints* points_ = nullptr;

@@ -1,20 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tracing/hits.h"
 
-#include <algorithm>
-
 namespace shlight {
-namespace {
-
-/// Points on a light that the first shadow rays of a pixel get together, at least.
-constexpr std::uint32_t kLeastFirstPoints = 16;
-
-}  // namespace
-
-std::uint32_t SampleRange::first_shadow_rays() const {
-    const std::uint32_t least = (kLeastFirstPoints + count - 1) / count;
-    return std::min(shadow_rays, std::max((shadow_rays + 3) / 4, least));
-}
 
 void Hits::clear() {
     frame.clear();

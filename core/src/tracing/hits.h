@@ -15,16 +15,6 @@
 
 namespace shlight {
 
-/// Which of its camera rays each pixel of a group takes: those numbered first … first + count - 1.
-struct SampleRange {
-    std::uint32_t first, count;
-    std::uint32_t shadow_rays;  ///< per camera ray and light, at most
-
-    /// Those of each camera ray that go first: a quarter, but more where a pixel would get so few that they miss too
-    /// much of a penumbra's rim, or of what stands in the way.
-    std::uint32_t first_shadow_rays() const;
-};
-
 /// Hits in the order of pixels, and of samples within each.
 struct Hits {
     /// stride: lobes of any material, at most.

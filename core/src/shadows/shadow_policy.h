@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+//
+// How many shadow rays a light gets, of whatever kind it is.
+//
+// A light that adds little to a pixel is never dropped, but asked for at few of the pixel's hits. All other rays go in
+// two phases, and where those of the first agree on a pixel, the second is spared.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace shlight {
+
+/// A light that adds less than this to a pixel is asked for at fewer of its hits: what its visibility is then off by is
+/// no more than that of a light of this share, and of many such lights the errors go both ways. The variance of their
+/// sum, over its square, is below this share / (4 · hits), however many they are: each adds its own share times this
+/// share / hits, times p (1 - p) ≤ 1/4 if it is seen from p of the pixel.
+inline constexpr float kDimShare = 0.01F;
+
+/// Hits at which to ask: 1 … hits. own: brightness of the light over the pixel; all: that of all lights.
+inline std::size_t hits_to_ask(float own, float all, std::size_t hits) {
+    const float least = kDimShare * all;
+    return own < least ? static_cast<std::size_t>(std::ceil(own / least * static_cast<float>(hits))) : hits;
+}
+
+/// Which of its camera rays each pixel of a group takes: those numbered first … first + count - 1.
+struct SampleRange {
+    std::uint32_t first, count;
+    std::uint32_t shadow_rays;  ///< per camera ray and light, at most
+};
+
+/// Part of a light's shadow rays: which of the pixel's points they take.
+struct RayPhase {
+    bool first;                  ///< forgets the rays before it; the second adds to them
+    std::uint32_t first_point;   ///< of the first camera ray of the batch
+    std::uint32_t first_sample;  ///< the number of that camera ray
+    std::uint32_t rays_per_hit;  ///< and set of rays
+};
+
+/// Points on a light that the first phase's rays of a pixel get together, at least: with fewer they would miss too much
+/// of a penumbra's rim, or of what stands in the way.
+inline constexpr std::uint32_t kLeastFirstPoints = 16;
+
+/// A quarter of the rays, or more where that would be too few. most_rays: the largest SampleRange::shadow_rays of the
+/// picture; no two ranges of samples share a point.
+inline RayPhase first_phase(const SampleRange& samples, std::uint32_t most_rays) {
+    const std::uint32_t least = (kLeastFirstPoints + samples.count - 1) / samples.count;
+    const std::uint32_t rays = std::min(samples.shadow_rays, std::max((samples.shadow_rays + 3) / 4, least));
+    return {true, samples.first * most_rays, samples.first, rays};
+}
+
+/// The rays that the first phase left.
+inline RayPhase second_phase(const SampleRange& samples, const RayPhase& first) {
+    return {false, first.first_point + samples.count * first.rays_per_hit, first.first_sample,
+            samples.shadow_rays - first.rays_per_hit};
+}
+
+}  // namespace shlight
