@@ -4,33 +4,41 @@
 #include <variant>
 
 namespace shlight {
+namespace {
 
-void LightSampler::reset(const Light& light, const ShadingFrame& frame) {
-    if (const auto* mesh = std::get_if<MeshLight>(&light)) {
+/// Of a planar light.
+const Vec3d& normal_of(const Light& light) {
+    const auto* polygon = std::get_if<PolygonLight>(&light);
+    return polygon != nullptr ? polygon->normal : std::get<DiskLight>(light).normal;
+}
+
+}  // namespace
+
+void LightSampler::reset(const SeenLight& seen) {
+    const ShadingFrame& frame = seen.frame();
+    if (const auto* mesh = std::get_if<MeshLight>(&seen.light())) {
         kind_ = Kind::mesh;
         mesh_.reset(*mesh, frame);
-    } else if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
+    } else if (const auto* polygon = std::get_if<PolygonLight>(&seen.light()); polygon && !seen.is_part()) {
         kind_ = Kind::polygon;
-        polygon_.reset(*polygon, frame);
-    } else if (const auto* disk = std::get_if<DiskLight>(&light)) {
-        const LitDisk lit = lit_part(*disk, frame);
-        kind_ = lit.corners.empty() ? Kind::ellipse : Kind::polygon;
-        if (lit.corners.empty()) {
-            ellipse_.emplace(lit.ellipse);
-        } else {
-            polygon_.reset(lit.corners, frame.to_local(disk->normal));
-        }
-    } else {
+        polygon_.reset(seen.corners(), polygon->triangles, frame.to_local(polygon->normal));
+    } else if (seen.is_part()) {
+        kind_ = Kind::polygon;
+        polygon_.reset(seen.corners(), frame.to_local(normal_of(seen.light())));
+    } else if (seen.cap()) {
         kind_ = Kind::cap;
-        cap_.emplace(*cap_view(light, frame));
+        cap_.emplace(*seen.cap());
+    } else {
+        kind_ = Kind::ellipse;
+        ellipse_.emplace(seen.ellipse());
     }
 }
 
-void LightSampler::move(const Light& light, const ShadingFrame& frame) {
-    if (const auto* mesh = std::get_if<MeshLight>(&light)) {
-        mesh_.move(*mesh, frame);
+void LightSampler::move(const SeenLight& seen) {
+    if (const auto* mesh = std::get_if<MeshLight>(&seen.light())) {
+        mesh_.move(*mesh, seen.frame());
     } else {
-        reset(light, frame);
+        reset(seen);
     }
 }
 

@@ -42,10 +42,9 @@ class LightSampler {
     }
 
   public:
-    /// Of a rectangle or disk, the part that shines on the hit: see lit_rectangle and lit_part.
-    void reset(const Light& light, const ShadingFrame& frame);
+    void reset(const SeenLight& seen);
     /// As reset, but from a hit near the one before a mesh may be seen as it was there. The same light as before.
-    void move(const Light& light, const ShadingFrame& frame);
+    void move(const SeenLight& seen);
     LightSample sample(const glm::dvec2& point) const {
         return with([&](const auto& sampler) { return sampler.sample(point); });
     }

@@ -55,21 +55,17 @@ Vec3d SphericalTriangle::sample(const glm::dvec2& point) const {
     return (1 - drop) * b_ + std::sqrt(std::max(0.0, drop * (2 - drop))) * orthogonal(corner, b_);
 }
 
-void PolygonSampler::reset(const PolygonLight& light, const ShadingFrame& frame) {
+void PolygonSampler::start(const Vec3d& normal, const Vec3d& corner) {
     pieces_.clear();
     total_ = 0;
-    normal_ = frame.to_local(light.normal);
-    height_ = glm::dot(light.normal, light.vertices[0] - frame.origin);
-    if (const auto part = lit_rectangle(light, frame.origin)) {
-        std::array<Vec3d, 4> corners{};
-        std::transform(part->begin(), part->end(), corners.begin(),
-                       [&](const Vec3d& corner) { return frame.point_to_local(corner); });
-        add_rectangle(corners);
-        return;
-    }
-    for (const Triangle& t : light.triangles) {
-        add_clipped(frame.point_to_local(light.vertices[t.x]), frame.point_to_local(light.vertices[t.y]),
-                    frame.point_to_local(light.vertices[t.z]));
+    normal_ = normal;
+    height_ = glm::dot(normal, corner);
+}
+
+void PolygonSampler::reset(std::span<const Vec3d> corners, std::span<const Triangle> triangles, const Vec3d& normal) {
+    start(normal, corners[0]);
+    for (const Triangle& t : triangles) {
+        add_clipped(corners[t.x], corners[t.y], corners[t.z]);
     }
 }
 
@@ -78,18 +74,10 @@ void PolygonSampler::reset(const std::array<Vec3d, 4>& corners) {
 }
 
 void PolygonSampler::reset(std::span<const Vec3d> corners, const Vec3d& normal) {
-    pieces_.clear();
-    total_ = 0;
-    normal_ = normal;
-    height_ = glm::dot(normal_, corners[0]);
+    start(normal, corners[0]);
     for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
         add_clipped(corners[0], corners[i], corners[i + 1]);
     }
-}
-
-void PolygonSampler::add_rectangle(const std::array<Vec3d, 4>& corners) {
-    add_clipped(corners[0], corners[1], corners[2]);
-    add_clipped(corners[0], corners[2], corners[3]);
 }
 
 void PolygonSampler::add_clipped(const Vec3d& a, const Vec3d& b, const Vec3d& c) {

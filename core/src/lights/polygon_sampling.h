@@ -10,8 +10,8 @@
 
 #include <glm/vec2.hpp>
 
-#include "lights/seen_light.h"
 #include "math/light_sample.h"
+#include "shlight/mesh.h"
 #include "shlight/types.h"
 
 namespace shlight {
@@ -41,8 +41,8 @@ inline bool line_meets(const Vec3d& direction, const Vec3d& a, const Vec3d& b, c
 /// Uniform in solid angle over each triangle; triangles that are about equally far everywhere are sampled by area.
 class PolygonSampler {
   public:
-    /// Sets the light and the hit; keeps its memory from one to the next.
-    void reset(const PolygonLight& light, const ShadingFrame& frame);
+    /// A planar polygon in the shading frame, with its triangles and its unit normal. Keeps its memory.
+    void reset(std::span<const Vec3d> corners, std::span<const Triangle> triangles, const Vec3d& normal);
     /// A planar quadrilateral in the shading frame.
     void reset(const std::array<Vec3d, 4>& corners);
     /// A convex planar polygon in the shading frame, with its unit normal.
@@ -65,7 +65,7 @@ class PolygonSampler {
         std::optional<SphericalTriangle> spherical;  // where it is not
     };
     LightSample sample(const Piece& piece, const glm::dvec2& point) const;
-    void add_rectangle(const std::array<Vec3d, 4>& corners);
+    void start(const Vec3d& normal, const Vec3d& corner);
     void add_clipped(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
     std::vector<Piece> pieces_;

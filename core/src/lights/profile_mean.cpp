@@ -35,7 +35,8 @@ void for_nodes(const GaussRule& rule, const Visit& visit) {
 void ProfileMean::reset(const Light& light, const ShadingFrame& frame) {
     profile_.emplace(light, frame);
     if (range().high > range().low) {
-        sampler_.reset(light, frame);
+        seen_.look(light, frame, 0);
+        sampler_.reset(seen_);
         has_rings_ = rings_.reset(light, frame);
     }
 }

@@ -48,6 +48,7 @@ class ProfileMean {
     void add(const Reflection& reflection, const Vec3d& direction, double weight, double factor, Sums& sums) const;
 
     std::optional<ProfileView> profile_;
+    SeenLight seen_;
     LightSampler sampler_;
     ProfileRings rings_;
     bool has_rings_ = false;

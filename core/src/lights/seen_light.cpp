@@ -250,41 +250,67 @@ LitDisk lit_part(const DiskLight& light, const ShadingFrame& frame) {
     return lit;
 }
 
-bool is_seen(const DiskLight& light, const ShadingFrame& frame, double error) {
-    if (!is_lit_side(light, glm::dot(light.normal, frame.origin - light.center), error)) {
+bool SeenLight::look_at(const PolygonLight& light) {
+    const std::optional<LitEdges> edges = lit_edges(light, frame_->origin);
+    if ((edges && edges->empty()) ||
+        !is_lit_side(light, glm::dot(light.normal, frame_->origin - light.vertices[0]), error_)) {
         return false;
     }
-    const double rise = std::hypot(glm::dot(frame.z, light.half_axis_u), glm::dot(frame.z, light.half_axis_v));
-    return glm::dot(frame.z, light.center - frame.origin) + rise > 0;
+    if (const auto part = lit_rectangle(light, frame_->origin)) {
+        corners_.assign(part->begin(), part->end());
+        is_part_ = true;
+    } else {
+        corners_ = light.vertices;
+    }
+    bool above = false;
+    for (Vec3d& corner : corners_) {
+        corner = frame_->point_to_local(corner);
+        above = above || corner.z > 0;
+    }
+    return above;
 }
 
-bool is_seen(const PolygonLight& light, const ShadingFrame& frame, double error) {
-    if (!is_lit_side(light, glm::dot(light.normal, frame.origin - light.vertices[0]), error)) {
+bool SeenLight::look_at(const DiskLight& light) {
+    if (!is_lit_side(light, glm::dot(light.normal, frame_->origin - light.center), error_)) {
         return false;
     }
-    return std::any_of(light.vertices.begin(), light.vertices.end(),
-                       [&](const Vec3d& v) { return glm::dot(frame.z, v - frame.origin) > 0; });
+    const double rise = std::hypot(glm::dot(frame_->z, light.half_axis_u), glm::dot(frame_->z, light.half_axis_v));
+    if (!(glm::dot(frame_->z, light.center - frame_->origin) + rise > 0)) {
+        return false;
+    }
+    const LitDisk lit = lit_part(light, *frame_);
+    ellipse_ = lit.ellipse;
+    corners_ = lit.corners;
+    is_part_ = !corners_.empty();
+    return true;
+}
+
+bool SeenLight::look(const Light& light, const ShadingFrame& frame, double error) {
+    light_ = &light;
+    frame_ = &frame;
+    error_ = error;
+    cap_.reset();
+    corners_.clear();
+    is_part_ = false;
+    bool seen = false;
+    if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
+        seen = look_at(*polygon);
+    } else if (const auto* disk = std::get_if<DiskLight>(&light)) {
+        seen = look_at(*disk);
+    } else if (const auto* mesh = std::get_if<MeshLight>(&light)) {
+        seen = glm::dot(frame.z, mesh->shape->center - frame.origin) > -mesh->shape->radius;
+    } else {
+        cap_ = cap_view(light, frame);
+        seen = cap_.has_value();
+    }
+    if (seen) {
+        profile_ = ProfileView(light, frame);
+    }
+    return seen && profile_.range().high > 0;
 }
 
 bool is_seen(const Light& light, const ShadingFrame& frame, double error) {
-    if (is_delta(light)) {
-        return delta_view(light, frame, error).has_value();
-    }
-    if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
-        const std::optional<LitEdges> edges = lit_edges(*polygon, frame.origin);
-        if ((edges && edges->empty()) || !is_seen(*polygon, frame, error)) {
-            return false;
-        }
-    } else if (const auto* disk = std::get_if<DiskLight>(&light)) {
-        if (!is_seen(*disk, frame, error)) {
-            return false;
-        }
-    } else if (const auto* mesh = std::get_if<MeshLight>(&light)) {
-        return glm::dot(frame.z, mesh->shape->center - frame.origin) > -mesh->shape->radius;
-    } else if (!cap_view(light, frame)) {
-        return false;
-    }
-    return ProfileView(light, frame).range().high > 0;
+    return is_delta(light) ? delta_view(light, frame, error).has_value() : SeenLight().look(light, frame, error);
 }
 
 double least_distance(const Light& light, const Vec3d& position) {

@@ -46,6 +46,7 @@ std::optional<DeltaView> delta_view(const Light& light, const ShadingFrame& fram
 /// A light's emission profile as a hit sees it. Refers to the light.
 class ProfileView {
   public:
+    ProfileView() = default;  ///< of an even light
     ProfileView(const Light& light, const ShadingFrame& frame);
 
     /// Bounds of the factor over the light.
@@ -83,13 +84,42 @@ struct LitDisk {
 /// a good part.
 LitDisk lit_part(const DiskLight& light, const ShadingFrame& frame);
 
-/// Whether the light's bright side is seen at all, its profile left aside: the hit lies off the polygon's plane, on a
-/// side that it shines to, and some vertex is above the horizon. A hit in the plane, within rounding, gets nothing: a
-/// polygon is dark edge-on, and a surface on which a light lies flat is not lit at random.
-bool is_seen(const PolygonLight& light, const ShadingFrame& frame, double error);
-/// The same of a disk.
-bool is_seen(const DiskLight& light, const ShadingFrame& frame, double error);
-/// The same for any light, its profile considered.
+/// A light with extent in a hit's frame: found once, then read by shading, by profiles and by shadow rays. Refers to
+/// the light and the frame. Keeps its memory from one to the next.
+class SeenLight {
+  public:
+    /// Whether the light's bright side is seen at all: the hit lies off a polygon's or disk's plane, on a side that it
+    /// shines to, some of it is above the horizon, and its profile shines this way. A hit in the plane, within its
+    /// error, gets nothing: a polygon is dark edge-on, and a surface on which a light lies flat is not lit at random.
+    bool look(const Light& light, const ShadingFrame& frame, double error);
+
+    const Light& light() const { return *light_; }
+    const ShadingFrame& frame() const { return *frame_; }
+    const ProfileView& profile() const { return profile_; }
+    /// Of a sphere or a sun.
+    const std::optional<CapView>& cap() const { return cap_; }
+    /// In the shading frame, of a polygon, or of a part of a light: see lit_rectangle and lit_part.
+    std::span<const Vec3d> corners() const { return corners_; }
+    /// Whether the corners are those of a part, which is convex.
+    bool is_part() const { return is_part_; }
+    /// Of a disk without corners, in the shading frame.
+    const Ellipse<double>& ellipse() const { return ellipse_; }
+
+  private:
+    bool look_at(const PolygonLight& light);
+    bool look_at(const DiskLight& light);
+
+    const Light* light_ = nullptr;
+    const ShadingFrame* frame_ = nullptr;
+    double error_ = 0;
+    ProfileView profile_;
+    std::optional<CapView> cap_;
+    std::vector<Vec3d> corners_;
+    bool is_part_ = false;
+    Ellipse<double> ellipse_{};
+};
+
+/// SeenLight::look, or delta_view, where nothing else is asked for.
 bool is_seen(const Light& light, const ShadingFrame& frame, double error);
 
 /// At least this far away lies every point of the light; 0 where that is not known.

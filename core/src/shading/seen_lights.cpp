@@ -28,35 +28,18 @@ void SeenLights::look(const Light& light, const ShadingFrame& frame, double erro
                       std::uint32_t number) {
     if (const auto* mesh = std::get_if<MeshLight>(&light)) {
         look_at(*mesh, frame, tolerance, number);
-    } else if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
-        if (is_seen(light, frame, error)) {
-            look_at(*polygon, frame, number);
-        }
-    } else if (const auto* disk = std::get_if<DiskLight>(&light)) {
-        if (is_seen(light, frame, error)) {
-            look_at(*disk, frame, number);
-        }
-    } else if (const auto cap = cap_view(light, frame); cap && ProfileView(light, frame).range().high > 0) {
-        caps_.push_back(*cap);
-        cap_numbers_.push_back(number);
-    }
-}
-
-void SeenLights::look_at(const PolygonLight& light, const ShadingFrame& frame, std::uint32_t number) {
-    const std::size_t first = vertices_.size();
-    for_lit_corners(light, frame, [&](const Vec3d& corner) { vertices_.push_back(corner); });
-    add_polygon(first, number, false);
-}
-
-void SeenLights::look_at(const DiskLight& light, const ShadingFrame& frame, std::uint32_t number) {
-    const LitDisk lit = lit_part(light, frame);
-    if (lit.corners.empty()) {
-        add_disk(lit.ellipse, number);
+    } else if (!seen_.look(light, frame, error)) {
         return;
+    } else if (seen_.cap()) {
+        caps_.push_back(*seen_.cap());
+        cap_numbers_.push_back(number);
+    } else if (seen_.corners().empty()) {
+        add_disk(seen_.ellipse(), number);
+    } else {
+        const std::size_t first = vertices_.size();
+        vertices_.insert(vertices_.end(), seen_.corners().begin(), seen_.corners().end());
+        add_polygon(first, number, std::holds_alternative<DiskLight>(light));
     }
-    const std::size_t first = vertices_.size();
-    vertices_.insert(vertices_.end(), lit.corners.begin(), lit.corners.end());
-    add_polygon(first, number, true);
 }
 
 void SeenLights::look_at(const MeshLight& light, const ShadingFrame& frame, double tolerance, std::uint32_t number) {

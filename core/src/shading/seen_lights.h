@@ -71,8 +71,6 @@ class SeenLights {
         std::uint32_t number;
     };
 
-    void look_at(const PolygonLight& light, const ShadingFrame& frame, std::uint32_t number);
-    void look_at(const DiskLight& light, const ShadingFrame& frame, std::uint32_t number);
     void look_at(const MeshLight& light, const ShadingFrame& frame, double tolerance, std::uint32_t number);
     /// The vertices from `first` on. filled_up: so that few sizes occur.
     void add_polygon(std::size_t first, std::uint32_t number, bool filled_up);
@@ -86,6 +84,7 @@ class SeenLights {
     std::span<const std::uint32_t> views(std::span<const std::uint32_t> numbers,
                                          std::span<const std::uint32_t> view_of);
 
+    SeenLight seen_;
     std::vector<CapView> caps_;  // empty where set_spheres was called
     std::vector<std::uint32_t> cap_numbers_;
     std::vector<Vec3d> centers_;

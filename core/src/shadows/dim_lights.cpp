@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/even_steps.h"
-#include "lights/seen_light.h"
 #include "shlight/sampling.h"
 
 namespace shlight {
@@ -71,19 +70,16 @@ float DimLights::gather(const Light& light, std::span<const float> unshadowed, s
 
 void DimLights::draw(const Light& light, std::span<const float> unshadowed, float brightness, std::size_t questions,
                      std::uint32_t seed, const Hits& hits) {
-    asked_.hit.clear();
-    asked_.shines.clear();
+    asked_.clear();
     density_.clear();
     EvenSteps steps(brightness, questions, hash(seed, kStartSeed));
     for (const Member& member : members_) {
         const std::span<const std::size_t> own_hits = points_->hits_of(member.point);
         steps.within(member.brightness, own_hits.size(), [&](std::size_t k) {
             const std::size_t hit = own_hits[k];
-            // The hit itself may see less of the light than the point that it shares.
-            if (!is_seen(light, hits.frame[hit], hits.error[hit])) {
+            if (!asked_.add(light, hits, hit)) {
                 return;
             }
-            asked_.hit.push_back(hit);
             density_.push_back(double{member.brightness} / static_cast<double>(own_hits.size()));
             for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
                 asked_.shines.push_back(unshadowed[lobe * points_->size() + member.point] > 0 ? 1 : 0);

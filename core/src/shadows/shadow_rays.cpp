@@ -23,11 +23,11 @@ constexpr double kLeastShare = 0.1;
 /// What the rays of one hit have in common.
 class ShadowRays::Drawing {
   public:
-    Drawing(const Light& light, const Hits& hits, std::size_t hit, const RayPhase& phase, std::uint32_t seed)
+    Drawing(const SeenLight& seen, const Hits& hits, std::size_t hit, const RayPhase& phase, std::uint32_t seed)
         : hit_material(hits.material[hit]),
           view(hits.view(hit)),
-          profile(light, hits.frame[hit]),
-          start(hits.frame[hit], hits.shadow_origin[hit], clearance(light, hits.frame[hit])),
+          profile(&seen.profile()),
+          start(hits.frame[hit], hits.shadow_origin[hit], clearance(seen.light(), hits.frame[hit])),
           rays(phase.rays_per_hit),
           mirror_rays(phase.first ? 1 : 0),
           first_point_(phase.first_point + (hits.sample[hit] - phase.first_sample) * phase.rays_per_hit),
@@ -41,7 +41,7 @@ class ShadowRays::Drawing {
 
     std::uint32_t hit_material;
     Vec3d view;
-    ProfileView profile;
+    const ProfileView* profile;
     RayStart start;
     std::uint32_t rays;         // of each set, but …
     std::uint32_t mirror_rays;  // … for mirrors
@@ -84,11 +84,11 @@ void ShadowRays::trace(const Light& light, const Hits& hits, const LitHits& lit,
     const std::size_t before = blocked_.size();
     for (std::size_t i = 0; i < lit.hit.size(); ++i) {
         const std::size_t hit = lit.hit[i];
-        const Drawing drawing(light, hits, hit, phase, seed);
+        const Drawing drawing(lit.seen[i], hits, hit, phase, seed);
         if (i == 0) {
-            light_sampler_.reset(light, hits.frame[hit]);
+            light_sampler_.reset(lit.seen[i]);
         } else {
-            light_sampler_.move(light, hits.frame[hit]);
+            light_sampler_.move(lit.seen[i]);
         }
         draw(drawing, lit, i);
     }
@@ -166,7 +166,7 @@ void ShadowRays::draw_lobes(const Drawing& drawing, std::size_t lit_index, std::
 }
 
 void ShadowRays::push(const Drawing& drawing, const Vec3d& direction, double distance, double weight, int layers) {
-    const double factor = drawing.profile.factor(direction);
+    const double factor = drawing.profile->factor(direction);
     for (int layer = 0; weight * factor > 0 && layer < layers; ++layer) {
         directions_.emplace_back(direction);
         weights_.push_back(static_cast<float>(weight * factor));

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "lights/light_sampling.h"
+#include "lights/seen_light.h"
 #include "lobes/material_lobes.h"
 #include "shadows/shadow_policy.h"
 #include "shlight/light.h"
@@ -23,7 +24,24 @@ namespace shlight {
 
 /// The hits of a pixel that a light reaches if nothing is between.
 struct LitHits {
+    void clear() {
+        hit.clear();
+        shines.clear();
+    }
+    /// Adds a hit, unless it does not see the light itself: it may see less of it than the point that it shares.
+    bool add(const Light& light, const Hits& hits, std::size_t which) {
+        if (seen.size() == hit.size()) {
+            seen.emplace_back();
+        }
+        if (!seen[hit.size()].look(light, hits.frame[which], hits.error[which])) {
+            return false;
+        }
+        hit.push_back(which);
+        return true;
+    }
+
     std::vector<std::size_t> hit;
+    std::vector<SeenLight> seen;       ///< by each of them; may be longer
     std::vector<std::uint8_t> shines;  ///< hit.size() × lobe_stride: whether the lobe reflects any of it
 };
 

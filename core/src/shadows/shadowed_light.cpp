@@ -44,16 +44,13 @@ void ShadowedLight::add(const Light& light, std::size_t index, const SampleRange
 }
 
 void ShadowedLight::find_lit(const Light& light, const Hits& hits, std::size_t begin, std::size_t end) {
-    lit_.hit.clear();
-    lit_.shines.clear();
+    lit_.clear();
     for (std::size_t hit = begin; hit < end; ++hit) {
         bool any = false;
         for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
             any = any || unshadowed(hit, lobe) > 0;
         }
-        // The hit itself may see less of the light than the point that it shares.
-        if (any && is_seen(light, hits.frame[hit], hits.error[hit])) {
-            lit_.hit.push_back(hit);
+        if (any && lit_.add(light, hits, hit)) {
             for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
                 lit_.shines.push_back(unshadowed(hit, lobe) > 0 ? 1 : 0);
             }
