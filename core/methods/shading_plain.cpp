@@ -4,7 +4,7 @@
 #include "base/aligned_floats.h"
 #include "harmonic_lobe.h"
 #include "polygons/polygon_shading.h"
-#include "shlight/lobe_fit.h"
+#include "shlight/plain_fit.h"
 
 namespace shlight::methods {
 namespace {
@@ -13,7 +13,7 @@ class PlainHarmonics : public HarmonicLobe {
   public:
     PlainHarmonics(const LobeShape& shape, double cos_theta_o, int order) {
         terms_.grow(static_cast<std::size_t>(cosine_count(order)));
-        fitted(shape)->table(order)->coefficients(static_cast<float>(cos_theta_o), terms_.data());
+        plain_fit(shape)->coefficients(cos_theta_o, order, terms_.data());
         set({false, {}, terms_.data(), 0, order});
     }
     using HarmonicLobe::radiance;

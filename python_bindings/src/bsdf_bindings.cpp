@@ -11,7 +11,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "shlight/bsdf.h"
-#include "shlight/lobe_fit.h"
+#include "shlight/plain_fit.h"
 
 namespace shlight::python {
 namespace {
@@ -31,22 +31,31 @@ void check_cosine(double cosine) {
     }
 }
 
-std::shared_ptr<const LobeFit> plain_fit(const Lobe& lobe) {
+std::shared_ptr<const PlainFit> fit_of(const Lobe& lobe) {
     if (is_mirror(lobe.shape)) {
         throw std::invalid_argument("a perfect mirror (roughness below 0.003) has no coefficients");
     }
-    return fitted(lobe.shape);
+    return plain_fit(lobe.shape);
+}
+
+using LobeFits = std::vector<std::pair<Lobe, std::shared_ptr<const PlainFit>>>;
+
+LobeFits fits_of(const Bsdf& bsdf) {
+    LobeFits fits;
+    for (const Lobe& lobe : bsdf.lobes()) {
+        fits.emplace_back(lobe, fit_of(lobe));
+    }
+    return fits;
 }
 
 /// f of one view angle: `channels` rows of order² coefficients, zero where m < 0.
-void write_coefficients(const std::vector<std::pair<Lobe, std::shared_ptr<const LobeTable>>>& lobes, double cosine,
-                        int order, int channels, float* out) {
+void write_coefficients(const LobeFits& lobes, double cosine, int order, int channels, float* out) {
     const int row = coefficient_count(order);
     std::fill_n(out, channels * row, 0.0F);
     std::vector<float> terms(static_cast<std::size_t>(cosine_count(order)));
-    for (const auto& [lobe, table] : lobes) {
+    for (const auto& [lobe, fit] : lobes) {
         const Rgb scale = lobe.scale(static_cast<float>(cosine));
-        table->coefficients(static_cast<float>(cosine), terms.data());
+        fit->coefficients(cosine, order, terms.data());
         for (int channel = 0; channel < channels; ++channel) {
             for (int l = 0; l < order; ++l) {
                 for (int m = 0; m <= l; ++m) {
@@ -66,10 +75,7 @@ Array<float> coefficients(const Bsdf& bsdf, const AnyArray<double>& cos_theta_o,
         added.insert(added.begin(), 3);
     }
     Array<float> out(shape_with(cos_theta_o, 0, added));
-    std::vector<std::pair<Lobe, std::shared_ptr<const LobeTable>>> lobes;
-    for (const Lobe& lobe : bsdf.lobes()) {
-        lobes.emplace_back(lobe, plain_fit(lobe)->table(order));
-    }
+    const LobeFits lobes = fits_of(bsdf);
     float* data = out.mutable_data();
     for (const double cosine : values(cos_theta_o)) {
         check_cosine(cosine);
@@ -80,13 +86,12 @@ Array<float> coefficients(const Bsdf& bsdf, const AnyArray<double>& cos_theta_o,
 }
 
 /// Lobes may err in the same direction: the sum of their errors bounds the error of their sum.
-double residual_at(const Bsdf& bsdf, double cosine, int order) {
+double residual_at(const LobeFits& lobes, double cosine, int order) {
     check_cosine(cosine);
     double error = 0;
     double squares = 0;  // of the norm from below: overlaps of the lobes, which are all positive, are left out
-    for (const Lobe& lobe : bsdf.lobes()) {
+    for (const auto& [lobe, fit] : lobes) {
         const Rgb scale = lobe.scale(static_cast<float>(cosine));
-        const auto fit = plain_fit(lobe);
         const double size = std::max({scale.x, scale.y, scale.z}) * fit->norm(cosine);
         error += size * fit->residual(cosine, order);
         squares += size * size;
@@ -96,9 +101,10 @@ double residual_at(const Bsdf& bsdf, double cosine, int order) {
 
 Array<double> residual(const Bsdf& bsdf, const AnyArray<double>& cos_theta_o, int order) {
     Array<double> out(shape_with(cos_theta_o, 0, {}));
+    const LobeFits lobes = fits_of(bsdf);
     double* data = out.mutable_data();
     for (const double cosine : values(cos_theta_o)) {
-        *data++ = residual_at(bsdf, cosine, order);
+        *data++ = residual_at(lobes, cosine, order);
     }
     return out;
 }

@@ -86,8 +86,7 @@ EnvironmentShading::Choice EnvironmentShading::choose(const Plan& plan, double c
     if (plan.choices.size() == 1) {
         return plan.choices[0];
     }
-    const double position = std::acos(cos_theta_o) * (kViewNodes - 1) * 2 / std::numbers::pi;
-    const auto low = static_cast<std::size_t>(std::clamp(static_cast<int>(position), 0, kViewNodes - 2));
+    const std::size_t low = ViewInterval(cos_theta_o).low;
     const Choice& a = plan.choices[low];
     const Choice& b = plan.choices[low + 1];
     return {std::max(a.order, b.order), a.directions || b.directions, a.met && b.met};

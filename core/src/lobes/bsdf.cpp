@@ -39,12 +39,7 @@ double Lobe::albedo(double cos_theta_o) const {
 }
 
 float ViewWeight::operator()(float cos_theta_o) const {
-    const ViewStencil s(cos_theta_o);
-    float sum = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-        sum += s.even[i] * nodes_[s.nodes[i]];
-    }
-    return sum;
+    return interpolate_even(nodes_, cos_theta_o);
 }
 
 Bsdf Bsdf::lambert(const Rgb& albedo) {

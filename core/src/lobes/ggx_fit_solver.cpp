@@ -3,6 +3,7 @@
 // One least-squares fit in the warped sphere. The norm is that of the warped sphere, so the cosine terms of different
 // degree m decouple: with a Fourier sum over the azimuth each m is a small fit in the height alone.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -10,16 +11,13 @@
 
 #include "lobes/contour_integral.h"
 #include "lobes/ggx_fit_table.h"
+#include "lobes/normal_equations.h"
 #include "math/gauss_legendre.h"
 #include "math/legendre.h"
 #include "shlight/warped_fit.h"
 
 namespace shlight {
 namespace {
-
-/// Tikhonov's λ against Gram eigenvalues of at most 1: keeps what the fit does below the horizon, where nothing asks
-/// for it, from growing. Its price is an error of about 1e-5 of the albedo.
-constexpr double kWarpedRidge = 1e-7;
 
 /// Squared L2 norms of a density: over the warped sphere and, with weight du/dω, over directions.
 struct Norms {
@@ -137,82 +135,37 @@ Norms norms(const WarpedDensity& d, std::span<const double> fourier) {
     return sum;
 }
 
-/// The basis of one degree m over the heights: √2-normalised terms P̄_l^m, l = m … , row by row of l.
-using HeightBasis = std::vector<std::vector<double>>;
-
-HeightBasis height_basis(const WarpedDensity& d, int order) {
-    HeightBasis basis(static_cast<std::size_t>(cosine_count(order)), std::vector<double>(d.heights.size()));
-    std::array<double, kMaxOrder> sines;
-    for (std::size_t i = 0; i < d.heights.size(); ++i) {
-        const double z = d.heights[i];
-        const double sine_squared = std::max(0.0, (1 - z) * (1 + z));
-        powers(std::sqrt(sine_squared), order, sines.data());
-        LegendreRows<double> legendre(z, sine_squared);
-        for (int l = 0; l < order; ++l) {
-            for (int m = 0; m <= l; ++m) {
-                basis[at(l, m)][i] = legendre[m] * sines[m] * (m == 0 ? 1.0 : std::numbers::sqrt2);
+/// ∫ of the density times each cosine term up to an order.
+std::vector<double> moments(const WarpedDensity& d, const HeightBasis& basis) {
+    std::vector<double> sums;
+    for (int l = 0; l < basis.order(); ++l) {
+        for (int m = 0; m <= l; ++m) {
+            const auto values = basis.values(l, m);
+            double sum = 0;
+            for (std::size_t i = 0; i < d.heights.size(); ++i) {
+                sum += d.weights[i] * values[i] * d.fourier[i * static_cast<std::size_t>(d.waves) + m];
             }
-            if (l + 1 < order) {
-                legendre.advance();
-            }
+            sums.push_back(sum * (m == 0 ? 2 : std::numbers::sqrt2) * std::numbers::pi);
         }
     }
-    return basis;
+    return sums;
 }
 
-/// The normal equations of one degree, factorised once for all orders: the leading blocks of a Cholesky factor are the
-/// factors of the leading blocks.
-class DegreeFit {
-  public:
-    DegreeFit(const WarpedDensity& d, const HeightBasis& basis, int m, int order) : size_(order - m) {
-        const double circle = (m == 0 ? 2 : 1) * std::numbers::pi;
-        factor_.assign(static_cast<std::size_t>(size_ * size_), 0.0);
-        reduced_.resize(static_cast<std::size_t>(size_));
-        std::vector<double> weighted(d.heights.size());
-        for (int row = 0; row < size_; ++row) {
-            const std::vector<double>& b = basis[at(m + row, m)];
-            double moment = 0;
-            for (std::size_t i = 0; i < weighted.size(); ++i) {
-                weighted[i] = circle * d.weights[i] * b[i];
-                moment += weighted[i] * d.fourier[i * static_cast<std::size_t>(d.waves) + static_cast<std::size_t>(m)];
-            }
-            for (int column = 0; column <= row; ++column) {
-                const std::vector<double>& other = basis[at(m + column, m)];
-                double sum = row == column ? kWarpedRidge : 0.0;
-                for (std::size_t i = 0; i < weighted.size(); ++i) {
-                    sum += weighted[i] * other[i];
-                }
-                for (int k = 0; k < column; ++k) {
-                    sum -= entry(row, k) * entry(column, k);
-                }
-                entry(row, column) = row == column ? std::sqrt(sum) : sum / entry(column, column);
-            }
-            for (int k = 0; k < row; ++k) {
-                moment -= entry(row, k) * reduced_[k];
-            }
-            reduced_[row] = moment / entry(row, row);
-        }
-    }
-
-    /// The coefficients of l = m … order-1.
-    std::vector<double> solve(int count) const {
-        std::vector<double> x(reduced_.begin(), reduced_.begin() + count);
-        for (int row = count - 1; row >= 0; --row) {
-            x[row] /= entry(row, row);
-            for (int k = 0; k < row; ++k) {
-                x[k] -= entry(row, k) * x[row];
+/// The density less an expansion.
+std::vector<double> missing(const WarpedDensity& d, const HeightBasis& basis, std::span<const double> terms,
+                            int order) {
+    std::vector<double> rest = d.fourier;
+    for (int l = 0; l < order; ++l) {
+        for (int m = 0; m <= l; ++m) {
+            const double term = terms[at(l, m)] * (m == 0 ? 1 : std::numbers::sqrt2);
+            const auto values = basis.values(l, m);
+            for (std::size_t i = 0; i < d.heights.size(); ++i) {
+                rest[i * static_cast<std::size_t>(d.waves) + m] -= term * values[i];
             }
         }
-        return x;
     }
-
-  private:
-    double& entry(int row, int column) { return factor_[row * size_ + column]; }
-    double entry(int row, int column) const { return factor_[row * size_ + column]; }
-
-    int size_;
-    std::vector<double> factor_, reduced_;
-};
+    return rest;
+}
 
 /// A cap's coefficients fall as λ_l ≤ √(8π/l³) (Funk–Hecke), and what the fit lacks lies in bands ≥ order, but for what
 /// λ takes from the low ones: that shows in the whole, missing light, which a large light receives undiminished.
@@ -235,7 +188,6 @@ double integral(const WarpedDensity& d, std::span<const double> fourier) {
 void fit_ggx_node(const GgxShape& shape, double cos_theta_o, const NodeLayout& layout, std::span<float> out) {
     const int highest = *std::max_element(layout.orders().begin(), layout.orders().end());
     const WarpedDensity d = warped_density(shape, cos_theta_o, highest);
-    const auto waves = static_cast<std::size_t>(d.waves);
     // The lobe's own cubature: the grid here is too coarse for lobes whose order is out of reach.
     const OutlineArc horizon{{{0, 0, 1}, 0, 1}, {1, 0, 0}, {1, 0, 0}, true};
     const double albedo = outline_integral(shape, cos_theta_o, {&horizon, 1}, 1e-5).value;
@@ -243,27 +195,20 @@ void fit_ggx_node(const GgxShape& shape, double cos_theta_o, const NodeLayout& l
     const Norms kept = norms(d, d.fourier);
     const Norms beyond = {std::max(0.0, d.norms.warped - kept.warped),
                           std::max(0.0, d.norms.direction - kept.direction)};
-    const HeightBasis basis = height_basis(d, highest);
-    std::vector<DegreeFit> fits;
-    fits.reserve(static_cast<std::size_t>(highest));
-    for (int m = 0; m < highest; ++m) {
-        fits.emplace_back(d, basis, m, highest);
-    }
+    const HeightBasis basis(d.heights, highest);
+    const NormalEquations equations(basis, d.weights);
+    std::vector<double> reduced = moments(d, basis);
+    equations.reduce(reduced);
+    std::array<double, kCosineMax> terms;
     for (std::size_t which = 0; which < layout.orders().size(); ++which) {
         const int order = layout.orders()[which];
-        std::vector<double> missing = d.fourier;
-        for (int m = 0; m < order; ++m) {
-            const std::vector<double> terms = fits[m].solve(order - m);
-            for (int l = m; l < order; ++l) {
-                out[layout.coefficients(which) + at(l, m)] = static_cast<float>(terms[l - m]);
-                for (std::size_t i = 0; i < d.heights.size(); ++i) {
-                    missing[i * waves + static_cast<std::size_t>(m)] -= terms[l - m] * basis[at(l, m)][i];
-                }
-            }
-        }
-        const Norms rest = norms(d, missing);
-        out[NodeLayout::shading_error(which)] = static_cast<float>(
-            shading_error(std::sqrt(rest.warped + beyond.warped), integral(d, missing), order, albedo));
+        equations.solve(reduced, order, terms);
+        std::transform(terms.begin(), terms.begin() + cosine_count(order), &out[layout.coefficients(which)],
+                       [](double term) { return static_cast<float>(term); });
+        const std::vector<double> left = missing(d, basis, terms, order);
+        const Norms rest = norms(d, left);
+        out[NodeLayout::shading_error(which)] =
+            static_cast<float>(shading_error(std::sqrt(rest.warped + beyond.warped), integral(d, left), order, albedo));
         out[NodeLayout::residual(which)] = static_cast<float>(
             d.norms.direction > 0 ? std::sqrt((rest.direction + beyond.direction) / d.norms.direction) : 0.0);
     }

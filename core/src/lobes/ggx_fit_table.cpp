@@ -29,13 +29,6 @@ NodeLayout::NodeLayout(std::span<const int> orders)
     }
 }
 
-CubicStencil::CubicStencil(double position, int least, int count)
-    : first(std::clamp(static_cast<int>(std::floor(position)) - 1, least, count - 4)) {
-    const auto t = static_cast<float>(position - first);  // 1 … 2 between the middle nodes
-    weights = {-(t - 1) * (t - 2) * (t - 3) / 6, t * (t - 2) * (t - 3) / 2, -t * (t - 1) * (t - 3) / 2,
-               t * (t - 1) * (t - 2) / 6};
-}
-
 GgxFitTable::GgxFitTable(NodeLayout layout, std::vector<float> nodes)
     : layout_(std::move(layout)), nodes_(std::move(nodes)) {}
 

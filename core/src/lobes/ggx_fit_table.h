@@ -40,15 +40,6 @@ class NodeLayout {
 /// Fits one lobe at one view; out: layout.size() values.
 void fit_ggx_node(const GgxShape& shape, double cos_theta_o, const NodeLayout& layout, std::span<float> out);
 
-/// Cubic interpolation weights over four neighbours of equally spaced nodes, at `position` in units of their distance.
-struct CubicStencil {
-    int first;
-    std::array<float, 4> weights;
-
-    /// least: index of the first node that may be used, count: nodes beyond index 0.
-    CubicStencil(double position, int least, int count);
-};
-
 class GgxFitTable {
   public:
     GgxFitTable(NodeLayout layout, std::vector<float> nodes);

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "lobes/lobe_moments.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "lobes/view_grid.h"
 #include "math/gauss_legendre.h"
 #include "math/legendre.h"
 
@@ -127,6 +131,18 @@ LobeMoments lobe_moments(const LobeShape& shape, double theta_o) {
         }
     }
     return result;
+}
+
+std::vector<LobeMoments> moments_of_all_views(const LobeShape& shape) {
+    std::vector<LobeMoments> views(kViewNodes);
+    // Isolated: a thread that waits here must not pick up unrelated work that may ask for this very lobe.
+    tbb::this_task_arena::isolate([&] {
+        tbb::parallel_for(0, kViewNodes, [&](int node) {
+            // At exactly grazing view a lobe is a limit; a view a microradian above it is the same to float.
+            views[node] = lobe_moments(shape, std::min(view_angle(node), std::numbers::pi / 2 - 1e-6));
+        });
+    });
+    return views;
 }
 
 }  // namespace shlight

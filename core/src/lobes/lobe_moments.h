@@ -16,5 +16,7 @@ struct LobeMoments {
 
 /// By a product rule in θ and φ whose panels shrink towards the lobe's peak and towards the horizon.
 LobeMoments lobe_moments(const LobeShape& shape, double theta_o);
+/// The same at the views of view_grid.h; in parallel.
+std::vector<LobeMoments> moments_of_all_views(const LobeShape& shape);
 
 }  // namespace shlight

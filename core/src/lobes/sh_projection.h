@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // f·cos as harmonics of the whole sphere, 0 below the horizon: what an expansion of light that is not clipped at the
-// horizon is multiplied with. (Least-squares fits as in lobe_fit.h may be anything down there.)
+// horizon is multiplied with. (Least-squares fits as in plain_fit.h may be anything down there.)
 #pragma once
 
 #include <memory>

@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
-#include <mutex>
-#include <numbers>
+#include <utility>
 
+#include "base/recent_values.h"
 #include "lobes/ggx_fit_table.h"
+#include "lobes/lambert.h"
 #include "lobes/view_table.h"
+#include "math/cubic_stencil.h"
 #include "math/legendre.h"
 
 namespace shlight {
@@ -73,9 +74,6 @@ GgxFitTable make_row(const GgxShape& shape, int order) {
     return shape.fresnel == Fresnel::dielectric ? fit_ggx_table(shape, kWarpedOrders) : GgxTable::get().row(shape);
 }
 
-/// Of the clipped cosine only the horizon is beyond bands 0 and 1, and the light is clipped there.
-constexpr int kLambertOrder = 2;
-
 }  // namespace
 
 Warp lobe_warp(const LobeShape& shape, double cos_theta_o) {
@@ -113,14 +111,14 @@ double WarpedFit::albedo(double cos_theta_o) const {
 
 double WarpedFit::shading_error(double cos_theta_o, int order) const {
     if (!table_) {
-        return order == 1 ? 0.5 : 0.0;
+        return lambert_error(order);
     }
     return std::max(0.0F, table_->head(cos_theta_o)[ViewTable::kShadingErrors + table_->which(order)]);
 }
 
 double WarpedFit::residual(double cos_theta_o, int order) const {
     if (!table_) {
-        return order == 1 ? 0.5 : 0.0;  // of cosθ the mean explains three quarters of the square
+        return lambert_error(order);
     }
     return std::max(0.0F, table_->head(cos_theta_o)[ViewTable::kResiduals + table_->which(order)]);
 }
@@ -146,33 +144,13 @@ void WarpedFit::coefficients(double cos_theta_o, int order, float* cosine_terms)
         table_->terms(cos_theta_o, table_->which(order), cosine_terms);
         return;
     }
-    // z/π is one harmonic, and order 1 can only be the mean 1/(2π).
-    std::fill_n(cosine_terms, cosine_count(order), 0.0F);
-    if (order == 1) {
-        cosine_terms[0] = static_cast<float>(std::sqrt(4 * std::numbers::pi) / (2 * std::numbers::pi));
-    } else {
-        cosine_terms[at(1, 0)] = static_cast<float>(std::sqrt(4 * std::numbers::pi / 3) / std::numbers::pi);
-    }
+    fit_lambert(order, cosine_terms);
 }
 
 std::shared_ptr<const WarpedFit> warped_fit(const LobeShape& shape, int order) {
     constexpr std::size_t kRecentFits = 64;
-    static std::mutex mutex;
-    static std::deque<std::pair<int, std::shared_ptr<const WarpedFit>>> recent;  // the last one asked for in front
-    const std::scoped_lock lock(mutex);
-    const auto found = std::find_if(recent.begin(), recent.end(), [&](const auto& entry) {
-        return entry.first == order && entry.second->shape() == shape;
-    });
-    std::shared_ptr<const WarpedFit> fit =
-        found != recent.end() ? found->second : std::make_shared<const WarpedFit>(shape, order);
-    if (found != recent.end()) {
-        recent.erase(found);
-    }
-    recent.emplace_front(order, fit);
-    if (recent.size() > kRecentFits) {
-        recent.pop_back();
-    }
-    return fit;
+    static RecentValues<std::pair<LobeShape, int>, WarpedFit> recent(kRecentFits);
+    return recent.get({shape, order}, [&] { return std::make_shared<const WarpedFit>(shape, order); });
 }
 
 std::size_t prepare_ggx_table() {

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace shlight {
+
+/// Cubic interpolation weights over four neighbours of equally spaced nodes, at `position` in units of their distance.
+struct CubicStencil {
+    int first;
+    std::array<float, 4> weights;
+
+    /// least: index of the first node that may be used, count: nodes beyond index 0.
+    CubicStencil(double position, int least, int count)
+        : first(std::clamp(static_cast<int>(std::floor(position)) - 1, least, count - 4)) {
+        const auto t = static_cast<float>(position - first);  // 1 … 2 between the middle nodes
+        weights = {-(t - 1) * (t - 2) * (t - 3) / 6, t * (t - 2) * (t - 3) / 2, -t * (t - 1) * (t - 3) / 2,
+                   t * (t - 1) * (t - 2) / 6};
+    }
+};
+
+}  // namespace shlight
