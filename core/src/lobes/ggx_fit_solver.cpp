@@ -7,7 +7,6 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
-#include <numeric>
 
 #include "lobes/contour_integral.h"
 #include "lobes/ggx_fit_table.h"
@@ -28,30 +27,32 @@ struct Norms {
 struct AzimuthTable {
     std::vector<double> cosines, sines;
 
-    AzimuthTable(int points, int waves) : waves_(waves) {
+    AzimuthTable(int points, int waves) : waves_(static_cast<std::size_t>(waves)) {
+        std::vector<double> cosine(waves_), sine(waves_);
         for (int j = 0; j < points; ++j) {
             const double phi = std::numbers::pi * (j + 0.5) / points;
             cosines.push_back(std::cos(phi));
             sines.push_back(std::sin(phi));
+            complex_powers(cosines.back(), sines.back(), waves, cosine.data(), sine.data());
+            std::transform(cosine.begin(), cosine.end(), std::back_inserter(transform_),
+                           [&](double c) { return 2 * c / points; });
+            transform_[transform_.size() - waves_] /= 2;
         }
-        for (int m = 0; m < waves; ++m) {
-            for (int j = 0; j < points; ++j) {
-                transform_.push_back(std::cos(m * std::numbers::pi * (j + 0.5) / points) * (m == 0 ? 1.0 : 2.0) /
-                                     points);
+    }
+
+    /// a_m of Σ a_m cos mφ, m = 0 … waves-1. Azimuth by azimuth: sums that do not wait for each other.
+    void append_fourier(const std::vector<double>& values, std::vector<double>& out) const {
+        out.resize(out.size() + waves_);
+        double* a = &out[out.size() - waves_];
+        for (std::size_t j = 0; j < values.size(); ++j) {
+            for (std::size_t m = 0; m < waves_; ++m) {
+                a[m] += values[j] * transform_[j * waves_ + m];
             }
         }
     }
 
-    /// a_m of Σ a_m cos mφ, m = 0 … waves-1.
-    void append_fourier(const std::vector<double>& values, std::vector<double>& out) const {
-        for (int m = 0; m < waves_; ++m) {
-            out.push_back(
-                std::inner_product(values.begin(), values.end(), transform_.begin() + m * std::ssize(values), 0.0));
-        }
-    }
-
   private:
-    int waves_;
+    std::size_t waves_;
     std::vector<double> transform_;
 };
 
