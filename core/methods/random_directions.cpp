@@ -183,25 +183,4 @@ double TriangleSampler::density(const Vec3d& direction) const {
     return winding != 0 ? sum / total_ : 0;
 }
 
-ReflectionSampler::ReflectionSampler(const LobeShape& shape, const Vec3d& view) {
-    if (const auto* ggx = std::get_if<GgxShape>(&shape)) {
-        glossy_.emplace(ggx->alpha, view);
-    }
-}
-
-Vec3d ReflectionSampler::sample(const glm::dvec2& point) const {
-    if (glossy_) {
-        return glossy_->sample(point);
-    }
-    const double radius = std::sqrt(point.x);
-    return {radius * std::cos(2 * pi * point.y), radius * std::sin(2 * pi * point.y), std::sqrt(1 - point.x)};
-}
-
-double ReflectionSampler::density(const Vec3d& direction) const {
-    if (!(direction.z > 0)) {
-        return 0;
-    }
-    return glossy_ ? glossy_->density(direction) : direction.z / pi;
-}
-
 }  // namespace shlight::methods

@@ -14,10 +14,8 @@
 
 #include <glm/vec2.hpp>
 
-#include "lobes/lobe_sampling.h"
 #include "polygons/spherical_polygon.h"
 #include "shlight/disk.h"
-#include "shlight/lobe_shape.h"
 #include "shlight/types.h"
 #include "shlight/warp.h"
 
@@ -121,20 +119,6 @@ class EllipseAreaSampler {
     Ellipse<double> ellipse_;
     Vec3d normal_;
     double area_, height_;
-};
-
-/// As a lobe that is no mirror reflects the view: microfacets as the viewer sees them, or by the cosine.
-class ReflectionSampler {
-  public:
-    /// view: unit, above the horizon, in the xz-plane.
-    ReflectionSampler(const LobeShape& shape, const Vec3d& view);
-    /// May lie below the horizon.
-    Vec3d sample(const glm::dvec2& point) const;
-    /// 0 below the horizon.
-    double density(const Vec3d& direction) const;
-
-  private:
-    std::optional<LobeSampler> glossy_;
 };
 
 }  // namespace shlight::methods

@@ -51,11 +51,10 @@ class CubatureLobe : public LobeIntegrator {
             return {0, 1};
         }
         const bool whole = cap.axis.z >= cap.sine;
-        const auto* ggx = std::get_if<GgxShape>(&shape_);
-        if (ggx != nullptr && whole && points_ <= kLibraryRules.back()) {
+        if (whole && points_ <= kLibraryRules.back()) {
             const auto rules = std::count_if(kLibraryRules.begin(), kLibraryRules.end(),
                                              [&](int points) { return points <= points_; });
-            const CubatureSum sum = cap_cubature(*ggx, view_, cap, static_cast<int>(rules));
+            const CubatureSum sum = cap_cubature(shape_, view_, cap, static_cast<int>(rules));
             return {sum.value, sum.points};
         }
         const double solid_angle = Cap<double>::inside(cap).solid_angle;

@@ -18,7 +18,6 @@ class MonteCarloLobe : public LobeIntegrator {
     MonteCarloLobe(const LobeShape& shape, double cos_theta_o, const Options& options)
         : shape_(shape),
           view_(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o),
-          reflection_(shape, view_),
           samples_(options.samples),
           sampling_(options.sampling) {}
 
@@ -63,7 +62,7 @@ class MonteCarloLobe : public LobeIntegrator {
         RandomNumbers random(seed);
         double sum = 0;
         const auto add = [&](const Vec3d& direction, double light_density) {
-            const double own = as_reflected > 0 ? as_reflected * reflection_.density(direction) : 0;
+            const double own = as_reflected > 0 ? as_reflected * lobe_density(shape_, view_, direction) : 0;
             const double all = to_light * light_density + own;
             sum += light_density > 0 && all > 0 ? reflected(direction) / all : 0;
         };
@@ -72,7 +71,7 @@ class MonteCarloLobe : public LobeIntegrator {
             add(at.direction, at.density);
         }
         for (int i = 0; i < as_reflected; ++i) {
-            const Vec3d direction = reflection_.sample(random.point());
+            const Vec3d direction = sample_lobe(shape_, view_, random.point());
             add(direction, direction.z > 0 ? light.density(direction) : 0);
         }
         return {sum, samples_};
@@ -80,7 +79,6 @@ class MonteCarloLobe : public LobeIntegrator {
 
     LobeShape shape_;
     Vec3d view_;
-    ReflectionSampler reflection_;
     int samples_;
     Sampling sampling_;
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // The true f·cos along the light's outline, in the plane of half vectors.
-#include "base/checks.h"
 #include "method.h"
 #include "shading/light_outline.h"
 
@@ -12,7 +11,7 @@ constexpr double kDefaultTolerance = 1e-7;
 
 class OutlineLobe : public LobeIntegrator {
   public:
-    OutlineLobe(const GgxShape& shape, double cos_theta_o, double tolerance)
+    OutlineLobe(const LobeShape& shape, double cos_theta_o, double tolerance)
         : shape_(shape), cos_theta_o_(cos_theta_o), tolerance_(tolerance) {}
     Reflected radiance(const Circle& cap, std::uint32_t /*seed*/) const override {
         return reflected(CapOutline(cap).arcs());
@@ -27,17 +26,13 @@ class OutlineLobe : public LobeIntegrator {
         return {integral.value, integral.points};
     }
 
-    GgxShape shape_;
+    LobeShape shape_;
     double cos_theta_o_, tolerance_;
 };
 
 std::unique_ptr<LobeIntegrator> make(const LobeShape& shape, double cos_theta_o, const Options& options) {
-    const auto* ggx = std::get_if<GgxShape>(&shape);
-    if (ggx == nullptr) {
-        reject("bsdf: method 'outline' knows GGX lobes only");
-    }
     const double tolerance = options.tolerance > 0 ? options.tolerance : kDefaultTolerance;
-    return std::make_unique<OutlineLobe>(*ggx, cos_theta_o, tolerance);
+    return std::make_unique<OutlineLobe>(shape, cos_theta_o, tolerance);
 }
 
 }  // namespace

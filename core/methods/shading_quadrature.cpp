@@ -34,12 +34,8 @@ class QuadratureLobe : public LobeIntegrator {
   public:
     QuadratureLobe(const LobeShape& shape, double cos_theta_o, double tolerance)
         : lobe_{shape, Vec3d(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o)},
-          mirrored_(-lobe_.view.x, 0, lobe_.view.z) {
-        if (const auto* ggx = std::get_if<GgxShape>(&shape)) {
-            magnification_ = std::max(1.0, 1 / (2 * ggx->alpha));
-        } else {
-            mirrored_ = Vec3d(0, 0, 1);
-        }
+          middle_(is_glossy(shape) ? mirrored(lobe_.view) : Vec3d(0, 0, 1)),
+          magnification_(std::max(1.0, 1 / (2 * lobe_width(shape)))) {
         const Circle hemisphere = {Vec3d(0, 0, 1), 0, 1};
         tolerance_ = kSmallestAlbedo;
         const double albedo = over(KeptRegion::of_cap(hemisphere, true)).value;
@@ -58,9 +54,9 @@ class QuadratureLobe : public LobeIntegrator {
         if (region.empty()) {
             return {0, 1};
         }
-        const double distance = std::acos(std::clamp(glm::dot(region.middle(), mirrored_), -1.0, 1.0));
+        const double distance = std::acos(std::clamp(glm::dot(region.middle(), middle_), -1.0, 1.0));
         const bool apart = distance > 2 * region.extent();
-        const std::vector<Patch> patches = apart ? region.patches() : region.patches_about(mirrored_, magnification_);
+        const std::vector<Patch> patches = apart ? region.patches() : region.patches_about(middle_, magnification_);
         const double rounding = 16 * std::numeric_limits<double>::epsilon();
         AdaptiveCubature<double, LobeValue> cubature(lobe_, 1,
                                                      {tolerance_, rounding, kSmallestSide, kLargestSide, kMostPoints});
@@ -70,8 +66,8 @@ class QuadratureLobe : public LobeIntegrator {
     }
 
     LobeValue lobe_;
-    Vec3d mirrored_;
-    double magnification_ = 1;
+    Vec3d middle_;
+    double magnification_;
     double tolerance_ = 0;  // absolute
 };
 

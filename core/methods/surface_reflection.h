@@ -7,7 +7,6 @@
 
 #include <glm/vec2.hpp>
 
-#include "lobes/lobe_sampling.h"
 #include "random_directions.h"
 #include "shlight/bsdf.h"
 #include "shlight/types.h"
@@ -30,23 +29,16 @@ class SurfaceReflection {
     const Rgb& mirrored() const { return mirrored_; }
 
   private:
-    /// Lobes that differ in colour and Fresnel factor only.
-    struct Glossy {
-        double alpha, albedo;
-        LobeSampler sampler;
-    };
-    struct Factor {
-        std::size_t glossy;
-        GgxShape shape;
+    struct Part {
+        LobeShape shape;
         Rgb scale;
+        double albedo;  // of the largest channel
     };
-    void add(const GgxShape& shape, const Rgb& scale, double albedo);
 
     Vec3d view_{0, 0, 1};
-    Rgb diffuse_{0}, mirrored_{0};
-    double diffuse_albedo_ = 0, albedo_ = 0;  // of the largest channel
-    std::vector<Glossy> glossy_;
-    std::vector<Factor> factors_;
+    Rgb mirrored_{0};
+    double albedo_ = 0;
+    std::vector<Part> parts_;
 };
 
 }  // namespace shlight::methods

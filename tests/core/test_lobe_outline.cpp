@@ -58,7 +58,7 @@ TEST(ContourIntegral, TheWholeHorizonGivesTheAlbedo) {
     for (const double alpha : {0.01, 0.2, 1.0}) {
         for (const double cosine : {0.02, 0.3, 1.0}) {
             const double truth = lobe_over_cap({alpha}, cosine, {0, 0, 1}, std::numbers::pi / 2);
-            EXPECT_NEAR(outline_integral({alpha}, cosine, {&horizon, 1}, 1e-7).value, truth, 1e-5)
+            EXPECT_NEAR(outline_integral(GgxShape{alpha}, cosine, {&horizon, 1}, 1e-7).value, truth, 1e-5)
                 << alpha << " " << cosine;
         }
     }
@@ -96,9 +96,9 @@ TEST(ContourIntegral, AVeryNarrowLobeIsAMirror) {
         const double half = std::min(0.3, std::asin(mirror.z) / 2);
         const OutlineArc around = whole_circle(mirror, half);
         // Tails of the bell: (α / ½ half cosθ_o)² and less.
-        EXPECT_NEAR(outline_integral({1e-6}, cosine, {&around, 1}, 1e-6).value, 1, 1e-5);
+        EXPECT_NEAR(outline_integral(GgxShape{1e-6}, cosine, {&around, 1}, 1e-6).value, 1, 1e-5);
         const OutlineArc beside = whole_circle(glm::normalize(mirror + Vec3d(0, 2.5 * half, 0)), half);
-        EXPECT_NEAR(outline_integral({1e-6}, cosine, {&beside, 1}, 1e-6).value, 0, 1e-5);
+        EXPECT_NEAR(outline_integral(GgxShape{1e-6}, cosine, {&beside, 1}, 1e-6).value, 0, 1e-5);
     }
 }
 

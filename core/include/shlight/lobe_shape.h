@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
 // Scalar lobe shapes f·cos: a BRDF times the cosine at the light's side, isotropic, without colour.
+//
+// A shape answers for itself through the members below, and through the functions that visit whichever it is; nobody
+// else asks which. f·cos and the density over directions are also known in lanes, see lobes/lobe_lanes-inl.h.
+// All is in the shading frame; wi, wo: unit vectors towards light and view.
 #pragma once
 
 #include <compare>
+#include <cstddef>
 #include <variant>
+
+#include <glm/vec2.hpp>
 
 #include "shlight/types.h"
 
@@ -12,6 +19,15 @@ namespace shlight {
 
 /// f·cos = cosθ_i / π.
 struct LambertShape {
+    static constexpr bool kGlossy = false;
+    double width() const { return 1; }
+    double value(const Vec3d& wi, const Vec3d& wo) const;
+    double albedo(double cos_theta_o) const;
+    Vec3d sample(const Vec3d& wo, const glm::dvec2& point) const;
+    double density(const Vec3d& wo, const Vec3d& wi) const;
+    double largest_density(const Vec3d& wo) const;
+    LambertShape sampled() const { return *this; }
+
     auto operator<=>(const LambertShape&) const = default;
 };
 
@@ -28,22 +44,51 @@ struct GgxShape {
     double alpha;                    ///< roughness² in Blender's terms, 0 … 1; 0 is a perfect mirror
     Fresnel fresnel = Fresnel::one;  ///< which factor is folded in
     double ior = 1.5;                ///< used by Fresnel::dielectric only
+
+    static constexpr bool kGlossy = true;
+    double width() const { return alpha; }
+    double value(const Vec3d& wi, const Vec3d& wo) const;
+    double albedo(double cos_theta_o) const;
+    /// Directions are spread as the microfacets that the viewer sees reflect: the normals' density is
+    /// G₁ ⟨ω_o·h⟩ D / cosθ_o (Heitz 2018, "Sampling the GGX distribution of visible normals"; by spherical caps,
+    /// Dupuy & Benyoub 2023). f·cos over the density is then F G₂/G₁, never large for any roughness and view.
+    Vec3d sample(const Vec3d& wo, const glm::dvec2& point) const;
+    double density(const Vec3d& wo, const Vec3d& wi) const;
+    double largest_density(const Vec3d& wo) const;
+    GgxShape sampled() const { return {alpha}; }
+
     // NOLINTNEXTLINE(modernize-use-nullptr): the linter misreads <=>
     auto operator<=>(const GgxShape&) const = default;
 };
 
-/// The factor at ω_i·h = cosine.
-double fresnel_factor(const GgxShape& shape, double cosine);
-
 using LobeShape = std::variant<LambertShape, GgxShape>;
 
-/// A perfect mirror: all of its light comes from one direction, and f·cos is 0 everywhere else.
-inline bool is_mirror(const LobeShape& shape) {
-    const auto* ggx = std::get_if<GgxShape>(&shape);
-    return ggx != nullptr && ggx->alpha == 0;
+/// Half width of the peak about the mirror direction [rad]; 1 where there is none.
+double lobe_width(const LobeShape& shape);
+/// Whether there is a peak: the lobe is shaded in a warp, and lights may spare it ("visible to glossy rays").
+bool is_glossy(const LobeShape& shape);
+/// All of its light comes from one direction, and f·cos is 0 everywhere else: the width is 0.
+bool is_mirror(const LobeShape& shape);
+/// Where that is, for a view in the xz-plane.
+inline Vec3d mirrored(const Vec3d& wo) {
+    return {-wo.x, 0, wo.z};
 }
 
-/// f·cos in the shading frame; wi, wo unit vectors; 0 where either lies below the horizon.
+/// f·cos; 0 where either direction lies below the horizon.
 double lobe_value(const LobeShape& shape, const Vec3d& wi, const Vec3d& wo);
+/// The same of many directions (x[i], y[i], z[i]); 0 for a mirror.
+void lobe_values(const LobeShape& shape, const double* x, const double* y, const double* z, std::size_t count,
+                 const Vec3d& wo, float* values);
+/// ∫ f·cos dω. By cubature for what is not known in closed form.
+double lobe_albedo(const LobeShape& shape, double cos_theta_o);
+
+/// A direction that the lobe reflects to ω_o, above the horizon and in the xz-plane: unit, may lie below the horizon,
+/// continuous in the point (0 … 1)² but for one line. Of a mirror the only one.
+Vec3d sample_lobe(const LobeShape& shape, const Vec3d& wo, const glm::dvec2& point);
+/// Per solid angle, 0 below the horizon; no density is greater than the largest. Precondition: no mirror.
+double lobe_density(const LobeShape& shape, const Vec3d& wo, const Vec3d& wi);
+double largest_lobe_density(const LobeShape& shape, const Vec3d& wo);
+/// The simplest shape of the same density: lobes for which it is the same can share their directions.
+LobeShape sampled_shape(const LobeShape& shape);
 
 }  // namespace shlight

@@ -56,7 +56,8 @@ class WarpedFit {
 /// The fit of a shape, shared by everyone who asks for the same one; the last ones asked for are kept. Thread-safe.
 std::shared_ptr<const WarpedFit> warped_fit(const LobeShape& shape, int order = 0);
 
-/// Builds the table that all GGX lobes interpolate in, unless it is there; returns its size in bytes.
+/// Completes the table that all GGX lobes interpolate in, of which each lobe has what it needs built; returns its size
+/// in bytes.
 std::size_t prepare_ggx_table();
 
 }  // namespace shlight

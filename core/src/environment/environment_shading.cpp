@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "environment/environment_map.h"
-#include "lobes/lobe_sampling.h"
 #include "lobes/rotated_lobe.h"
 #include "lobes/view_grid.h"
 
@@ -21,7 +20,7 @@ constexpr double kDirectionError = 5e-3;
 constexpr double kToleranceScale = 10;
 
 /// A lobe this many times as wide as a texel sees a spot as one direction.
-constexpr double kTexelsPerAlpha = 2;
+constexpr double kTexelsPerWidth = 2;
 /// From here on the spectrum of a picture is taken to go on as it is: what is brightest has the same power per degree
 /// in all bands.
 constexpr int kFirstOfLastBands = 48;
@@ -64,9 +63,8 @@ EnvironmentShading::Plan EnvironmentShading::plan(const LobeShape& shape, int or
         return {};
     }
     const EnvironmentMap& map = *environment_->map();
-    const auto* ggx = std::get_if<GgxShape>(&shape);
-    const bool may_be_narrow = order == 0 && ggx != nullptr;
-    Plan plan = {sh_projection(shape), may_be_narrow && ggx->alpha < kTexelsPerAlpha * map.texel, {}};
+    const bool may_be_narrow = order == 0 && is_glossy(shape);
+    Plan plan = {sh_projection(shape), may_be_narrow && lobe_width(shape) < kTexelsPerWidth * map.texel, {}};
     for (std::size_t node = 0; node < plan.lobe->node_count(); ++node) {
         const auto errors = relative_errors(plan.lobe->powers(node), plan.lobe->tail(node), map.coefficients);
         int chosen = order;
@@ -119,17 +117,16 @@ class EnvironmentShading::Point {
     }
 
     /// The mean of what the directions show of the remainder, weighed with f·cos over their density.
-    Rgb by_directions(const GgxShape& shape, bool with_spots) const {
+    Rgb by_directions(const LobeShape& shape, bool with_spots) const {
         const RadiancePyramid& remainder = with_spots ? map_->whole_remainder : map_->remainder;
-        const LobeSampler sampler(shape.alpha, view_);
         Vec3d sum(0);
         double weights = 0;
         for (int i = 0; i < kDirections * kDirections; ++i) {
             const int row = i / kDirections;
             const glm::dvec2 point = glm::dvec2(i % kDirections + 0.5, row + 0.5) / double{kDirections};
-            const Vec3d direction = sampler.sample(point);
+            const Vec3d direction = sample_lobe(shape, view_, point);
             if (direction.z > 0) {
-                const double density = sampler.density(direction);
+                const double density = lobe_density(shape, view_, direction);
                 const double weight = lobe_value(shape, direction, view_) / density;
                 const double solid_angle = 1 / (density * kDirections * kDirections);
                 sum += weight * Vec3d(remainder.radiance(to_map_ * direction, solid_angle));
@@ -139,7 +136,7 @@ class EnvironmentShading::Point {
         return weights > 0 ? Rgb(sum / weights) : Rgb(0);
     }
 
-    Rgb mirrored() const { return map_->picture.radiance(to_map_ * Vec3d(-view_.x, 0, view_.z)); }
+    Rgb mirrored() const { return map_->picture.radiance(to_map_ * shlight::mirrored(view_)); }
 
   private:
     const EnvironmentMap* map_;
@@ -193,8 +190,8 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, std::span<Direct
                 value.spots = point.spots(shape);
             }
             if (choice.directions) {
-                value.smooth += static_cast<float>(lobes[lobe].albedo(cosine)) *
-                                point.by_directions(std::get<GgxShape>(shape), plan.sees_texels);
+                value.smooth +=
+                    static_cast<float>(lobes[lobe].albedo(cosine)) * point.by_directions(shape, plan.sees_texels);
             }
             value.smooth = glm::max(value.smooth, Rgb(0));
             (choice.directions ? report.cubature_count : report.order_counts[static_cast<std::size_t>(choice.order)]) +=

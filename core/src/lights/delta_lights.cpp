@@ -89,20 +89,13 @@ bool DeltaLights::shines(std::size_t i, const ShadingFrame& frame, double error)
 
 void DeltaLights::reflect(const DeltaRange& range, const DeltaViews& views, const LobeShape& shape, float cos_theta_o,
                           float* values) const {
-    if (std::holds_alternative<LambertShape>(shape)) {
-        const float* lights_diffuse = &lights_diffuse_[range.begin];
-        for (std::size_t i = 0; i < range.count; ++i) {
-            values[i] = static_cast<float>(views.irradiance[i] * views.z[i] / std::numbers::pi) * lights_diffuse[i];
-        }
-        return;
-    }
     const double cosine = cos_theta_o;
     const Vec3d view(std::sqrt(1 - cosine * cosine), 0, cosine);
+    // A mirror shows a source without extent nowhere, or in no pixel's share.
+    lobe_values(shape, views.x.data(), views.y.data(), views.z.data(), range.count, view, values);
+    const float* lights = &(is_glossy(shape) ? lights_glossy_ : lights_diffuse_)[range.begin];
     for (std::size_t i = 0; i < range.count; ++i) {
-        // A mirror shows a source without extent nowhere, or in no pixel's share.
-        const bool any = views.irradiance[i] > 0 && lights_glossy_[range.begin + i] > 0 && !is_mirror(shape);
-        const Vec3d direction(views.x[i], views.y[i], views.z[i]);
-        values[i] = any ? static_cast<float>(views.irradiance[i] * lobe_value(shape, direction, view)) : 0;
+        values[i] = static_cast<float>(views.irradiance[i] * double{values[i]}) * lights[i];
     }
 }
 

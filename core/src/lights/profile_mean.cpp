@@ -60,9 +60,9 @@ void ProfileMean::for_light_nodes(int points, const Visit& visit) {
 void ProfileMean::add(const Reflection& reflection, const Vec3d& direction, double weight, double factor,
                       Sums& sums) const {
     double value = weight * lobe_value(*reflection.shape, direction, reflection.view);
-    if (reflection.sampler) {
+    if (reflection.narrow) {
         // The light's density is taken as even: one over its solid angle.
-        value /= 1 + sampler_.solid_angle() * reflection.sampler->density(direction);
+        value /= 1 + sampler_.solid_angle() * lobe_density(*reflection.shape, reflection.view, direction);
     }
     sums.even += value;
     sums.lit += value * factor;
@@ -73,9 +73,9 @@ ProfileMean::Sums ProfileMean::sums(const Reflection& reflection, int points) {
     for_light_nodes(points, [&](const Vec3d& direction, double weight, double factor) {
         add(reflection, direction, weight, factor, sums);
     });
-    if (reflection.sampler) {
+    if (reflection.narrow) {
         for_nodes(gauss_rule(points), [&](const glm::dvec2& point, double share) {
-            const Vec3d direction = reflection.sampler->sample(point);
+            const Vec3d direction = sample_lobe(*reflection.shape, reflection.view, point);
             if (direction.z > 0 && sampler_.meets(direction)) {
                 add(reflection, direction, share * sampler_.solid_angle(), profile_->factor(direction), sums);
             }
@@ -90,15 +90,10 @@ double ProfileMean::mean(const LobeShape& lobe, double cos_theta_o, double toler
     }
     const Vec3d view(std::sqrt(1 - cos_theta_o * cos_theta_o), 0, cos_theta_o);
     if (is_mirror(lobe)) {
-        return profile_->factor({-view.x, 0, view.z});
+        return profile_->factor(mirrored(view));
     }
-    Reflection reflection{&lobe, view, std::nullopt};
-    if (const auto* ggx = std::get_if<GgxShape>(&lobe)) {
-        const LobeSampler sampler(ggx->alpha, view);
-        if (sampler_.solid_angle() * sampler.largest_density() > kNarrowLobe) {
-            reflection.sampler = sampler;
-        }
-    }
+    const bool narrow = sampler_.solid_angle() * largest_lobe_density(lobe, view) > kNarrowLobe;
+    const Reflection reflection{&lobe, view, narrow};
     double mean = range().low;
     int agreements = -1;  // the first is compared with nothing
     for (const int points : kPoints) {
@@ -106,7 +101,7 @@ double ProfileMean::mean(const LobeShape& lobe, double cos_theta_o, double toler
         const double before = mean;
         mean = sums.even > 0 ? sums.lit / sums.even : range().low;
         agreements = agreements < 0 || !(std::abs(mean - before) <= tolerance) ? 0 : agreements + 1;
-        if (agreements == (has_rings_ && !reflection.sampler ? kAgreementsOfRings : kAgreements)) {
+        if (agreements == (has_rings_ && !reflection.narrow ? kAgreementsOfRings : kAgreements)) {
             break;
         }
     }

@@ -13,7 +13,6 @@
 #include "lights/light_sampling.h"
 #include "lights/profile_rings.h"
 #include "lights/seen_light.h"
-#include "lobes/lobe_sampling.h"
 #include "shlight/light.h"
 #include "shlight/lobe_shape.h"
 
@@ -35,11 +34,11 @@ class ProfileMean {
     struct Sums {
         double lit = 0, even = 0;
     };
-    /// A lobe at a view, with a sampler where it has nodes of its own.
+    /// A lobe at a view.
     struct Reflection {
         const LobeShape* shape;
         Vec3d view;
-        std::optional<LobeSampler> sampler;
+        bool narrow;  // has nodes of its own
     };
     Sums sums(const Reflection& reflection, int points);
     /// visit(direction, weight, factor of the profile) at nodes that fill the light.

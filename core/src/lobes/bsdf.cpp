@@ -35,7 +35,7 @@ Lobe make_lobe(const LobeShape& shape, const Rgb& color) {
 }  // namespace
 
 double Lobe::albedo(double cos_theta_o) const {
-    return fit ? fit->albedo(cos_theta_o) : fresnel_factor(std::get<GgxShape>(shape), cos_theta_o);
+    return fit ? fit->albedo(cos_theta_o) : lobe_albedo(shape, cos_theta_o);
 }
 
 float ViewWeight::operator()(float cos_theta_o) const {

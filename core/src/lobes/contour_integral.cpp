@@ -146,7 +146,7 @@ class Path {
 /// The outline of one region, piece by piece.
 class Outline {
   public:
-    Outline(const GgxShape& shape, double cos_theta_o, double tolerance)
+    Outline(const LobeShape& shape, double cos_theta_o, double tolerance)
         : bell_{shape, cos_theta_o, &gauss_rule(points_for(tolerance))},
           tolerance_(tolerance),
           single_(tolerance >= kLeastSingle) {}
@@ -270,12 +270,12 @@ class Outline {
 
 }  // namespace
 
-OutlineIntegral outline_integral(const GgxShape& shape, double cos_theta_o, std::span<const OutlineArc> arcs,
+OutlineIntegral outline_integral(const LobeShape& shape, double cos_theta_o, std::span<const OutlineArc> arcs,
                                  double tolerance) {
     const Vec3d view(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o);
     Outline outline(shape, cos_theta_o, tolerance);
     for (const OutlineArc& arc : arcs) {
-        outline.add(arc, view, shape.alpha, 1.0 / static_cast<double>(arcs.size()));
+        outline.add(arc, view, lobe_width(shape), 1.0 / static_cast<double>(arcs.size()));
     }
     outline.refine();
     return outline.sum();

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// A GGX lobe integrated over a light along the light's outline: cubature of the true f·cos, for lobes that few bands
-// do not describe. Seen from the half vector every GGX lobe is the same bell, whatever its roughness and the view:
+// A lobe integrated over a light along the light's outline: cubature of the true f·cos, for lobes that few bands do not
+// describe. Seen from the half vector every GGX lobe is the same bell, whatever its roughness and the view:
 // with s = (h_x, h_y) / (α h_z) it is 1/(π (1 + s²)²), times factors that vary slowly. Green's theorem turns the
 // integral over the light's image in that plane into one along its outline, of a radial integral from the bell's
-// middle. Small α makes neither narrow, grazing views only somewhat. docs/algorithms.md derives it.
+// middle. Small α makes neither narrow, grazing views only somewhat. A lobe without a peak is taken as a factor of the
+// bell of α = 1, which is even. docs/algorithms.md derives it.
 #pragma once
 
 #include <span>
@@ -30,8 +31,8 @@ struct OutlineIntegral {
 };
 
 /// arcs: the whole outline, in the shading frame. tolerance: of the value, absolute.
-/// Precondition: 0 < shape.alpha ≤ 1, 0 ≤ cos_theta_o ≤ 1.
-OutlineIntegral outline_integral(const GgxShape& shape, double cos_theta_o, std::span<const OutlineArc> arcs,
+/// Precondition: no mirror, 0 ≤ cos_theta_o ≤ 1.
+OutlineIntegral outline_integral(const LobeShape& shape, double cos_theta_o, std::span<const OutlineArc> arcs,
                                  double tolerance);
 
 }  // namespace shlight

@@ -13,23 +13,22 @@
 
 #include <hwy/contrib/math/math-inl.h>
 
-#include "lobes/ggx-inl.h"
+#include "lobes/lobe_lanes-inl.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 namespace {
 
-template <class D, Fresnel kFresnel>
+template <class D, class Lobe>
 class BellLanes {
   public:
-    explicit BellLanes(const OutlineBell& bell)
-        : alpha_(bell.shape.alpha),
-          alpha2_(alpha_ * alpha_),
-          ior_(bell.shape.ior),
+    BellLanes(const OutlineBell& bell, const Lobe& lobe)
+        : width_(lobe_width(bell.shape)),
           cos_o_(bell.cos_o),
           sin_o_(std::sqrt((1 - cos_o_) * (1 + cos_o_))),
-          masking_o_(std::sqrt(alpha2_ + (1 - alpha2_) * cos_o_ * cos_o_)),
+          lobe_(lobe),
+          view_(lobe.view(D(), all(D(), cos_o_))),
           rule_(*bell.rule) {}
 
     /// The angle about the bell's middle times ∫ f·cos over a radius from there to the outline.
@@ -85,38 +84,34 @@ class BellLanes {
         return hn::Mul(hn::Mul(all(d, 2 / std::numbers::pi), end), sum);
     }
 
-    /// f·cos dω over the bell's own density cosθ' dω' / π and its cosine: F G₂ (ω_o·h) / cosθ_o with the length of h
+    /// f·cos dω over the bell's own density cosθ' dω' / π and its cosine: 4 f·cos / D times ω_o·h with the length of h
     /// divided out.
     HWY_INLINE V<D> factors(V<D> cos_azimuth, V<D> sine, V<D> cosine) const {
         const D d;
         const auto cos_o = all(d, cos_o_);
-        const auto x = hn::Mul(all(d, alpha_), sine);
+        const auto x = hn::Mul(all(d, width_), sine);
         const auto square = hn::MulAdd(x, x, hn::Mul(cosine, cosine));
         // (ω_o·h) √square
         const auto towards = hn::MulAdd(cos_o, cosine, hn::Mul(hn::Mul(all(d, sin_o_), x), cos_azimuth));
         const auto cos_i = hn::Sub(hn::Div(hn::Mul(hn::Add(towards, towards), cosine), square), cos_o);
-        const auto masking_i = hn::Sqrt(hn::MulAdd(hn::Mul(all(d, 1 - alpha2_), cos_i), cos_i, all(d, alpha2_)));
-        // G₂ / cosθ_o
-        const auto visibility =
-            hn::Div(hn::Add(cos_i, cos_i), hn::MulAdd(cos_o, masking_i, hn::Mul(cos_i, all(d, masking_o_))));
-        auto value = hn::Mul(visibility, towards);
-        if constexpr (kFresnel != Fresnel::one) {
-            value = hn::Mul(value, fresnel_in_lanes<kFresnel>(d, ior_, hn::Div(towards, hn::Sqrt(square))));
-        }
+        const auto cos_half = hn::Div(towards, hn::Sqrt(square));
+        const auto value = hn::Mul(lobe_.over_bell(d, cos_i, cos_half, view_), towards);
         return hn::IfThenElseZero(hn::Gt(cos_i, hn::Zero(d)), value);
     }
 
-    double alpha_, alpha2_, ior_, cos_o_, sin_o_, masking_o_;
+    double width_, cos_o_, sin_o_;
+    Lobe lobe_;
+    typename Lobe::template View<D> view_;
     const GaussRule& rule_;
 };
 
-template <class T, Fresnel kFresnel>
-void densities(const OutlineBell& bell, const OutlinePath& path, std::span<const double> parameters,
+template <class T, class Lobe>
+void densities(const OutlineBell& bell, const Lobe& lobe, const OutlinePath& path, std::span<const double> parameters,
                std::span<double> values) {
     using D = hn::CappedTag<T, kOutlinePoints>;
     const D d;
-    const BellLanes<D, kFresnel> lanes(bell);
-    alignas(64) std::array<T, kOutlinePoints> buffer;
+    const BellLanes<D, Lobe> lanes(bell, lobe);
+    alignas(64) std::array<T, kOutlinePoints> buffer{};
     std::transform(parameters.begin(), parameters.end(), buffer.begin(), [](double x) { return static_cast<T>(x); });
     std::fill(buffer.begin() + parameters.size(), buffer.end(), buffer[0]);
     for (std::size_t i = 0; i < parameters.size(); i += kLaneCount<D>) {
@@ -126,26 +121,15 @@ void densities(const OutlineBell& bell, const OutlinePath& path, std::span<const
                    [](T x) { return static_cast<double>(x); });
 }
 
-template <Fresnel kFresnel>
-void densities_of(const OutlineBell& bell, const OutlinePath& path, bool single, std::span<const double> parameters,
-                  std::span<double> values) {
-    if (single) {
-        densities<float, kFresnel>(bell, path, parameters, values);
-    } else {
-        densities<double, kFresnel>(bell, path, parameters, values);
-    }
-}
-
 void outline_densities_in_lanes(const OutlineBell& bell, const OutlinePath& path, bool single,
                                 std::span<const double> parameters, std::span<double> values) {
-    switch (bell.shape.fresnel) {
-        case Fresnel::one:
-            return densities_of<Fresnel::one>(bell, path, single, parameters, values);
-        case Fresnel::schlick:
-            return densities_of<Fresnel::schlick>(bell, path, single, parameters, values);
-        case Fresnel::dielectric:
-            return densities_of<Fresnel::dielectric>(bell, path, single, parameters, values);
-    }
+    with_lobe_lanes(bell.shape, [&](const auto& lobe) {
+        if (single) {
+            densities<float>(bell, lobe, path, parameters, values);
+        } else {
+            densities<double>(bell, lobe, path, parameters, values);
+        }
+    });
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What points of a light's outline add to the integral of a GGX lobe over it (contour_integral.h), many at once.
+// What points of a light's outline add to the integral of a lobe over it (contour_integral.h), many at once.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace shlight {
 
 /// The lobe in the plane of half vectors, seen from there.
 struct OutlineBell {
-    GgxShape shape;
+    LobeShape shape;
     double cos_o;           ///< cosθ_o
     const GaussRule* rule;  ///< along a radius
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// f·cos of GGX lobes in lanes. Included once per instruction set.
+// GGX lobes in lanes (lobe_lanes-inl.h). Included once per instruction set.
 #if defined(SHLIGHT_KERNELS_GGX_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_GGX_INL_H_
 #undef SHLIGHT_KERNELS_GGX_INL_H_
@@ -12,19 +12,17 @@
 
 #include <numbers>
 
+#include "lobes/view_lanes-inl.h"
 #include "shlight/lobe_shape.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
-/// F at ω_i·h = cosine: fresnel_factor() in lanes.
+/// F at ω_i·h = cosine, of a shape whose F is not 1.
 template <Fresnel kFresnel, class D>
 HWY_INLINE V<D> fresnel_in_lanes(D d, double ior, V<D> cosine) {
     const auto one = all(d, 1);
-    if constexpr (kFresnel == Fresnel::one) {
-        return one;
-    }
     const auto edge = hn::Sub(one, hn::Min(cosine, one));
     if constexpr (kFresnel == Fresnel::schlick) {
         const auto square = hn::Mul(edge, edge);
@@ -45,48 +43,76 @@ HWY_INLINE V<D> fresnel_in_lanes(D d, double ior, V<D> cosine) {
     return hn::Mul(rise, all(d, 1 / (1 - head_on * head_on)));
 }
 
-/// Directions' sums ω_i + ω_o, from which all but the masking follows: near the mirror direction x and y are small
-/// differences, which the caller forms with care.
-struct HalfSum {
-    V<Floats> x, y, z;
-};
-
-/// One lobe; kFresnel as in its shape.
+/// kFresnel as in the shape. What changes from view to view is in View: so would be a roughness of each hit's own.
 template <Fresnel kFresnel>
 class GgxLanes {
   public:
-    explicit GgxLanes(const GgxShape& shape)
-        : alpha2_(static_cast<float>(shape.alpha * shape.alpha)), ior_(shape.ior) {}
+    template <class D>
+    struct View {
+        V<D> cosine, alpha2, masking;  // of ω_o
+    };
 
-    /// √(α² + (1-α²) cos²θ).
-    V<Floats> masking(V<Floats> cosine) const {
-        const Floats d;
-        return hn::Sqrt(hn::MulAdd(hn::Mul(all(d, 1 - double{alpha2_}), cosine), cosine, hn::Set(d, alpha2_)));
+    explicit GgxLanes(const GgxShape& shape) : alpha2_(shape.alpha * shape.alpha), ior_(shape.ior) {}
+
+    template <class D>
+    HWY_INLINE View<D> view(D d, V<D> cos_o) const {
+        const auto alpha2 = all(d, alpha2_);
+        return {cos_o, alpha2, masking(d, alpha2, cos_o)};
     }
 
-    /// f·cos, or 0 where a direction is not above the horizon. masking_o: of cos_o.
     /// The bell is α² h_z² + h_x² + h_y², all over |h|².
-    V<Floats> value(const HalfSum& sum, V<Floats> cos_i, V<Floats> cos_o, V<Floats> masking_o) const {
+    HWY_INLINE V<Floats> value(const HalfSum& sum, V<Floats> cos_i, const View<Floats>& view) const {
         const Floats d;
         const auto across = hn::MulAdd(sum.x, sum.x, hn::Mul(sum.y, sum.y));
         const auto up = hn::Mul(sum.z, sum.z);
         const auto square = hn::Add(across, up);
-        const auto sharpness = hn::Div(square, hn::MulAdd(hn::Set(d, alpha2_), up, across));
-        const auto visibility = hn::Div(cos_i, hn::MulAdd(cos_o, masking(cos_i), hn::Mul(cos_i, masking_o)));
-        // In this order nothing of a narrow lobe leaves a float's range.
-        auto result = hn::Mul(hn::Mul(hn::Mul(all(d, double{alpha2_} / (2 * std::numbers::pi)), sharpness), sharpness),
-                              visibility);
-        if constexpr (kFresnel != Fresnel::one) {
-            // |ω_i + ω_o| is twice the cosine of half the angle between them.
-            result = hn::Mul(result, fresnel_in_lanes<kFresnel>(d, ior_, hn::Mul(hn::Sqrt(square), all(d, 0.5))));
-        }
-        return hn::IfThenElseZero(hn::Gt(hn::Min(cos_i, cos_o), hn::Zero(d)), result);
+        const auto sharpness = hn::Div(square, hn::MulAdd(view.alpha2, up, across));
+        const auto visibility =
+            hn::Div(cos_i, hn::MulAdd(view.cosine, masking(d, view.alpha2, cos_i), hn::Mul(cos_i, view.masking)));
+        // In this order nothing of a narrow lobe leaves a float's range. |ω_i + ω_o| is twice ω_i·h.
+        const auto peak = hn::Mul(view.alpha2, all(d, 1 / (2 * std::numbers::pi)));
+        const auto bell = hn::Mul(hn::Mul(hn::Mul(peak, sharpness), sharpness), visibility);
+        return with_fresnel(d, bell, [&] HWY_ATTR { return hn::Mul(hn::Sqrt(square), all(d, 0.5)); });
+    }
+
+    /// F G₂ / cosθ_o.
+    template <class D>
+    HWY_INLINE V<D> over_bell(D d, V<D> cos_i, V<D> cos_half, const View<D>& view) const {
+        const auto visibility = hn::Div(hn::Add(cos_i, cos_i), hn::MulAdd(view.cosine, masking(d, view.alpha2, cos_i),
+                                                                          hn::Mul(cos_i, view.masking)));
+        return with_fresnel(d, visibility, [&] HWY_ATTR { return cos_half; });
     }
 
   private:
-    float alpha2_;
-    double ior_;
+    /// √(α² + (1-α²) cos²θ).
+    template <class D>
+    static HWY_INLINE V<D> masking(D d, V<D> alpha2, V<D> cosine) {
+        return hn::Sqrt(hn::MulAdd(hn::Mul(hn::Sub(all(d, 1), alpha2), cosine), cosine, alpha2));
+    }
+
+    template <class D, class CosineOfHalf>
+    HWY_INLINE V<D> with_fresnel(D d, V<D> value, const CosineOfHalf& cos_half) const {
+        if constexpr (kFresnel == Fresnel::one) {
+            return value;
+        } else {
+            return hn::Mul(value, fresnel_in_lanes<kFresnel>(d, ior_, cos_half()));
+        }
+    }
+
+    double alpha2_, ior_;
 };
+
+template <class Function>
+void with_lanes_of(const GgxShape& shape, const Function& function) {
+    switch (shape.fresnel) {
+        case Fresnel::one:
+            return function(GgxLanes<Fresnel::one>(shape));
+        case Fresnel::schlick:
+            return function(GgxLanes<Fresnel::schlick>(shape));
+        case Fresnel::dielectric:
+            return function(GgxLanes<Fresnel::dielectric>(shape));
+    }
+}
 
 }  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -6,10 +6,33 @@
 #include <numbers>
 
 #include "math/legendre.h"
+#include "shlight/lobe_shape.h"
 
 namespace shlight {
 
 using std::numbers::pi;
+
+double LambertShape::value(const Vec3d& wi, const Vec3d& /*wo*/) const {
+    return wi.z / pi;
+}
+
+double LambertShape::albedo(double /*cos_theta_o*/) const {
+    return 1;
+}
+
+Vec3d LambertShape::sample(const Vec3d& /*wo*/, const glm::dvec2& point) const {
+    const double sine = std::sqrt(point.x);
+    const double azimuth = 2 * pi * point.y;
+    return {sine * std::cos(azimuth), sine * std::sin(azimuth), std::sqrt(1 - point.x)};
+}
+
+double LambertShape::density(const Vec3d& /*wo*/, const Vec3d& wi) const {
+    return wi.z / pi;
+}
+
+double LambertShape::largest_density(const Vec3d& /*wo*/) const {
+    return 1 / pi;
+}
 
 void fit_lambert(int order, float* cosine_terms) {
     std::fill_n(cosine_terms, cosine_count(order), 0.0F);

@@ -58,12 +58,6 @@ Rule graded_rule(double from, double to, const std::vector<Feature>& features) {
     return rule;
 }
 
-/// Half width of the lobe [rad]; a lobe without a peak has that of the hemisphere.
-double width(const LobeShape& shape) {
-    const auto* ggx = std::get_if<GgxShape>(&shape);
-    return ggx != nullptr ? ggx->alpha : 1.0;
-}
-
 /// Azimuths 0 … π counted from the mirror direction of ω_o = (sinθ_o, 0, cosθ_o), which lies at φ = π.
 struct Azimuths {
     std::vector<double> weights;
@@ -99,7 +93,7 @@ double azimuth_moments(const LobeShape& shape, double sine, double cosine, const
 }  // namespace
 
 LobeMoments lobe_moments(const LobeShape& shape, double theta_o) {
-    const double alpha = width(shape);
+    const double alpha = lobe_width(shape);
     const double half_pi = std::numbers::pi / 2;
     const Vec3d wo(std::sin(theta_o), 0.0, std::cos(theta_o));
     // The lobe is α wide in the plane of incidence and α cosθ_o across; masking varies over α near the horizon.

@@ -6,9 +6,8 @@
 namespace shlight {
 
 double narrowest(const LobeShape& lobe, double cos_theta_o) {
-    const auto* ggx = std::get_if<GgxShape>(&lobe);
     // At its peak a lobe is 2α wide across the plane of incidence's normal, and cosθ_o times that along it.
-    return ggx != nullptr ? std::min(1.0, 2 * ggx->alpha * std::max(cos_theta_o, kLeastFittedCosine)) : 1.0;
+    return is_glossy(lobe) ? std::min(1.0, 2 * lobe_width(lobe) * std::max(cos_theta_o, kLeastFittedCosine)) : 1.0;
 }
 
 MaterialLobes::MaterialLobes(std::span<const Lobe> lobes, int order, double tolerance)

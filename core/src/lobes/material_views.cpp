@@ -45,7 +45,7 @@ void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPos
     index_ = lobe;
     fit_ = material.fit(lobe);
     positions_ = &positions;
-    chooses_ = material.auto_order() && std::holds_alternative<GgxShape>(lobe_->shape) && !is_mirror(lobe_->shape);
+    chooses_ = material.auto_order() && fit_ != nullptr && fit_->table() != nullptr;
     judged_ = judged;
     has_warps_ = false;
     stride_ = 0;
@@ -117,7 +117,7 @@ WarpArrays LobeViews::warp_arrays() {
     }
     double* w = warps_.data();
     if (!has_warps_) {
-        warp_views(ggx().alpha, views, positions_->size(),
+        warp_views(lobe_width(shape()), views, positions_->size(),
                    {w, w + room, w + 2 * room, w + 3 * room, w + 4 * room, w + 5 * room, w + 6 * room});
         has_warps_ = true;
     }
@@ -149,7 +149,9 @@ LobeArrays LobeViews::arrays(int order, std::span<const std::uint32_t> used) {
     const ViewTable* table = fit_->table();
     if (table != nullptr) {
         interpolate_terms(table->which(order), used);
-        return {true, warp_arrays(), terms_.data(), positions_->size() == 1 ? 0 : stride_, order};
+        const bool warped = is_glossy(shape());
+        return {warped, warped ? warp_arrays() : WarpArrays{}, terms_.data(), positions_->size() == 1 ? 0 : stride_,
+                order};
     }
     if (stride_ == 0) {
         stride_ = AlignedFloats::padded(static_cast<std::size_t>(cosine_count(order)));
@@ -163,8 +165,11 @@ void MaterialViews::assign(const MaterialLobes& material, std::span<const double
                            const LobeWeights& weights, bool judged) {
     const bool weighed = judged || material.auto_order();
     lobe_count_ = material.lobes().size();
-    const bool tabulated = std::any_of(material.lobes().begin(), material.lobes().end(),
-                                       [](const Lobe& lobe) { return std::holds_alternative<GgxShape>(lobe.shape); });
+    bool tabulated = false;
+    for (std::size_t i = 0; i < lobe_count_; ++i) {
+        const WarpedFit* fit = material.fit(i);
+        tabulated = tabulated || fit == nullptr || fit->table() != nullptr;
+    }
     positions_.assign(cos_theta_o, tabulated);
     if (lobes_.size() < lobe_count_) {
         lobes_.resize(lobe_count_);

@@ -47,7 +47,6 @@ class ViewPositions {
 class LobeViews {
   public:
     const LobeShape& shape() const { return lobe_->shape; }
-    const GgxShape& ggx() const { return std::get<GgxShape>(lobe_->shape); }
     const ViewPositions& positions() const { return *positions_; }
 
     /// Whether each light is integrated in the way that is cheapest for it, or else all by harmonics of one order.

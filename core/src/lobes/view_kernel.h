@@ -20,7 +20,7 @@ struct ViewOutput {
     double* sine;                         ///< sinθ_o
     double *fitted_sine, *fitted_cosine;  ///< of the view's neighbour that is fitted
     float* log_cosine;                    ///< of the same
-    /// Where it lies in a table of one row for each fitted view (warped_row.h), before which stands the row of the view
+    /// Where it lies in a table of one row for each fitted view (fit_table.h), before which stands the row of the view
     /// beyond the normal: the first of four rows, and four cubic weights.
     std::uint32_t* row;
     float* weights;

@@ -103,6 +103,12 @@ class Same {
     V<Floats> load(const float* values) const { return hn::Set(Floats(), *values); }
 };
 
+/// Directions' sums ω_i + ω_o: near the mirror direction x and y are small differences, which the caller forms with
+/// care.
+struct HalfSum {
+    V<Floats> x, y, z;
+};
+
 }  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

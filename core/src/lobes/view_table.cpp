@@ -28,7 +28,7 @@ void interpolate_one(double cos_theta_o, const float* table, std::size_t width, 
 
 }  // namespace
 
-ViewTable::ViewTable(const GgxFitTable& row) : orders_(row.layout().orders().begin(), row.layout().orders().end()) {
+ViewTable::ViewTable(const FitTable& row) : orders_(row.layout().orders().begin(), row.layout().orders().end()) {
     const NodeLayout& layout = row.layout();
     constexpr int kBeyond = -1;
     heads_.grow((kWarpedViews + 1) * kHeadWidth);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/aligned_floats.h"
-#include "lobes/ggx_fit_table.h"
+#include "lobes/fit_table.h"
 
 namespace shlight {
 
@@ -16,7 +16,7 @@ namespace shlight {
 /// order. Their first row is the view beyond the normal, where terms of odd degree change sign.
 class ViewTable {
   public:
-    explicit ViewTable(const GgxFitTable& row);
+    explicit ViewTable(const FitTable& row);
 
     std::span<const int> orders() const { return orders_; }
     /// Index of an order; precondition: it is one of orders().

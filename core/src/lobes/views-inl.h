@@ -19,7 +19,7 @@
 #include <hwy/contrib/math/math-inl.h>
 
 #include "caps/cap_lanes-inl.h"
-#include "lobes/ggx_fit_table.h"
+#include "lobes/fit_table.h"
 #include "lobes/view_lanes-inl.h"
 #include "shlight/warped_fit.h"
 #include "simd/lanes-inl.h"

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lobes/ggx-inl.h"
+#include "lobes/lobe_lanes-inl.h"
 #include "lobes/view_lanes-inl.h"
 #include "simd/lanes-inl.h"
 
@@ -92,10 +92,10 @@ HWY_INLINE SeenCircle seen(const CircleArrays& circles, const ViewArrays& views,
 /// One over the square of the least distance on which f·cos changes near a light's middle, given the sum of that and
 /// the view. On the sphere where the bell is round, (h_x/α, h_y/α, h_z) normalised, a step of the direction is at most
 /// 1/α long before normalising.
-HWY_INLINE V<Floats> squared_change(float alpha2, const HalfSum& half) {
+HWY_INLINE V<Floats> squared_change(float width2, const HalfSum& half) {
     const Floats d;
     const auto across = hn::MulAdd(half.x, half.x, hn::Mul(half.y, half.y));
-    return hn::Div(all(d, 1), hn::MulAdd(hn::Mul(hn::Set(d, alpha2), half.z), half.z, across));
+    return hn::Div(all(d, 1), hn::MulAdd(hn::Mul(hn::Set(d, width2), half.z), half.z, across));
 }
 
 /// The first rule whose error is at most the tolerance. square: of the light's size beside the lobe.
@@ -117,39 +117,39 @@ HWY_INLINE V<hn::RebindToUnsigned<Floats>> smallest_rule(const std::array<RuleEr
 }
 
 template <class Lights, class Views>
-HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(float alpha2, const CircleArrays& circles, const ViewArrays& views,
+HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(float width2, const CircleArrays& circles, const ViewArrays& views,
                                                    const Lights& light, const Views& view, V<Floats> tolerance) {
     const Floats d;
     const hn::RebindToUnsigned<Floats> du;
     const SeenCircle s = seen(circles, views, light, view);
     const auto angle = arctangent(d, s.sine, s.cosine);
-    auto rule = smallest_rule(kCapErrors, hn::Mul(hn::Mul(angle, angle), squared_change(alpha2, s.half)), tolerance);
+    auto rule = smallest_rule(kCapErrors, hn::Mul(hn::Mul(angle, angle), squared_change(width2, s.half)), tolerance);
     rule = hn::IfThenElseZero(hn::RebindMask(du, hn::Ge(s.z, s.sine)), rule);
     return hn::IfThenElse(hn::RebindMask(du, hn::Le(s.z, hn::Neg(s.sine))), hn::Set(du, kHidden), rule);
 }
 
 template <class Lights, class Views>
-HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(float alpha2, const PolygonArrays& polygons, const ViewArrays& views,
+HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(float width2, const PolygonArrays& polygons, const ViewArrays& views,
                                                    const Lights& light, const Views& view, V<Floats> tolerance) {
     const Floats d;
     const hn::RebindToUnsigned<Floats> du;
     const HalfSum half = {rounded_sum(light.pair(polygons.x), view.pair(views.x)), light.load(polygons.y),
                           rounded_sum(light.pair(polygons.z), view.pair(views.z))};
     const auto angle = light.load(polygons.half_angle);
-    const auto change = hn::Max(squared_change(alpha2, half), all(d, kFlatness * kFlatness));
+    const auto change = hn::Max(squared_change(width2, half), all(d, kFlatness * kFlatness));
     const auto rule = smallest_rule(kPolygonErrors, hn::Mul(hn::Mul(angle, angle), change), tolerance);
     return hn::IfThenElse(hn::RebindMask(du, hn::Lt(angle, hn::Zero(d))), hn::Set(du, kHidden), rule);
 }
 
 template <class Views, class Arrays>
-void choose_rules(float alpha2, const Arrays& lights, const ViewArrays& views, const float* tolerances,
+void choose_rules(float width2, const Arrays& lights, const ViewArrays& views, const float* tolerances,
                   std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
     const hn::Rebind<std::uint8_t, Floats> d8;
     constexpr std::size_t kLanes = kLaneCount<Floats>;
     std::size_t i = 0;
     for (; i + kLanes <= rules.size(); i += kLanes) {
         const Views view(view_of.data() + i, kLanes);
-        const auto rule = rule_of(alpha2, lights, views, Neighbours(i), view, view.load(tolerances));
+        const auto rule = rule_of(width2, lights, views, Neighbours(i), view, view.load(tolerances));
         hn::StoreU(hn::U8FromU32(rule), d8, rules.data() + i);
     }
     if (const std::size_t rest = rules.size() - i; rest > 0) {
@@ -158,32 +158,32 @@ void choose_rules(float alpha2, const Arrays& lights, const ViewArrays& views, c
             last[lane] = static_cast<std::uint32_t>(i + std::min(lane, rest - 1));
         }
         const Views view(view_of.data() + i, rest);
-        const auto rule = rule_of(alpha2, lights, views, Scattered(last.data(), kLanes), view, view.load(tolerances));
+        const auto rule = rule_of(width2, lights, views, Scattered(last.data(), kLanes), view, view.load(tolerances));
         store_some(d8, hn::U8FromU32(rule), rest, rules.data() + i);
     }
 }
 
 template <class Arrays>
-void choose_any_rules(const GgxShape& shape, const Arrays& lights, const ViewArrays& views, const float* tolerances,
+void choose_any_rules(double width, const Arrays& lights, const ViewArrays& views, const float* tolerances,
                       std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
-    const auto alpha2 = static_cast<float>(shape.alpha * shape.alpha);
+    const auto width2 = static_cast<float>(width * width);
     if (views.shared) {
-        choose_rules<Same>(alpha2, lights, views, tolerances, view_of, rules);
+        choose_rules<Same>(width2, lights, views, tolerances, view_of, rules);
     } else {
-        choose_rules<Scattered>(alpha2, lights, views, tolerances, view_of, rules);
+        choose_rules<Scattered>(width2, lights, views, tolerances, view_of, rules);
     }
 }
 
-void choose_cap_rules_in_lanes(const GgxShape& shape, const CircleArrays& circles, const ViewArrays& views,
+void choose_cap_rules_in_lanes(double width, const CircleArrays& circles, const ViewArrays& views,
                                const float* tolerances, std::span<const std::uint32_t> view_of,
                                std::span<std::uint8_t> rules) {
-    choose_any_rules(shape, circles, views, tolerances, view_of, rules);
+    choose_any_rules(width, circles, views, tolerances, view_of, rules);
 }
 
-void choose_polygon_rules_in_lanes(const GgxShape& shape, const PolygonArrays& polygons, const ViewArrays& views,
+void choose_polygon_rules_in_lanes(double width, const PolygonArrays& polygons, const ViewArrays& views,
                                    const float* tolerances, std::span<const std::uint32_t> view_of,
                                    std::span<std::uint8_t> rules) {
-    choose_any_rules(shape, polygons, views, tolerances, view_of, rules);
+    choose_any_rules(width, polygons, views, tolerances, view_of, rules);
 }
 
 /// Two vectors at right angles to a unit axis, as perpendicular() chooses them.
@@ -231,11 +231,11 @@ class CapRule {
         }
     }
 
-    template <Fresnel kFresnel>
-    HWY_INLINE V<Floats> integral(const GgxLanes<kFresnel>& lobe, const SeenCircle& s) const {
+    template <class Lobe>
+    HWY_INLINE V<Floats> integral(const Lobe& lobe, const SeenCircle& s) const {
         const Floats d;
         const auto height = hn::Div(hn::Mul(s.sine, s.sine), hn::Add(all(d, 1), s.cosine));  // 1 - cosσ
-        const auto masking_o = lobe.masking(s.cos_o);
+        const auto view = lobe.view(d, s.cos_o);
         const Tangents t = tangents(s);
         auto sum = hn::Zero(d);
         for (std::size_t i = 0; i < rings_.size(); ++i) {
@@ -252,7 +252,9 @@ class CapRule {
                 const auto rise = hn::MulAdd(a, t.u.z, hn::Mul(b, t.v.z));
                 const HalfSum half = {hn::MulAdd(a, t.u.x, hn::MulAdd(b, t.v.x, middle.x)),
                                       hn::MulAdd(a, t.u.y, hn::MulAdd(b, t.v.y, middle.y)), hn::Add(middle.z, rise)};
-                around = hn::Add(around, lobe.value(half, hn::Add(middle_cos_i, rise), s.cos_o, masking_o));
+                const auto cos_i = hn::Add(middle_cos_i, rise);
+                const auto above = hn::Gt(hn::Min(cos_i, s.cos_o), hn::Zero(d));
+                around = hn::Add(around, hn::IfThenElseZero(above, lobe.value(half, cos_i, view)));
             }
             sum = hn::MulAdd(around, all(d, ring.weight / ring.spokes), sum);
         }
@@ -264,12 +266,11 @@ class CapRule {
     std::array<Spokes, 3> spokes_ = {Spokes(0, 0), Spokes(0, 0), Spokes(0, 0)};
 };
 
-template <Fresnel kFresnel, class Views>
-void integrate(const GgxShape& shape, const CircleArrays& circles, std::span<const std::uint32_t> circle_of,
+template <class Views, class Lobe>
+void integrate(const Lobe& lobe, const CircleArrays& circles, std::span<const std::uint32_t> circle_of,
                const ViewArrays& views, std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     const Floats d;
     constexpr std::size_t kLanes = kLaneCount<Floats>;
-    const GgxLanes<kFresnel> lobe(shape);
     const CapRule cap_rule(rule);
     for (std::size_t i = 0; i < values.size(); i += kLanes) {
         const std::size_t count = std::min(kLanes, values.size() - i);
@@ -279,27 +280,16 @@ void integrate(const GgxShape& shape, const CircleArrays& circles, std::span<con
     }
 }
 
-template <Fresnel kFresnel>
-void integrate_any(const GgxShape& shape, const CircleArrays& circles, std::span<const std::uint32_t> circle_of,
-                   const ViewArrays& views, std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
-    if (views.shared) {
-        integrate<kFresnel, Same>(shape, circles, circle_of, views, view_of, rule, values);
-    } else {
-        integrate<kFresnel, Scattered>(shape, circles, circle_of, views, view_of, rule, values);
-    }
-}
-
-void integrate_caps_in_lanes(const GgxShape& shape, const CircleArrays& circles,
+void integrate_caps_in_lanes(const LobeShape& shape, const CircleArrays& circles,
                              std::span<const std::uint32_t> circle_of, const ViewArrays& views,
                              std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
-    switch (shape.fresnel) {
-        case Fresnel::one:
-            return integrate_any<Fresnel::one>(shape, circles, circle_of, views, view_of, rule, values);
-        case Fresnel::schlick:
-            return integrate_any<Fresnel::schlick>(shape, circles, circle_of, views, view_of, rule, values);
-        case Fresnel::dielectric:
-            return integrate_any<Fresnel::dielectric>(shape, circles, circle_of, views, view_of, rule, values);
-    }
+    with_lobe_lanes(shape, [&](const auto& lobe) {
+        if (views.shared) {
+            integrate<Same>(lobe, circles, circle_of, views, view_of, rule, values);
+        } else {
+            integrate<Scattered>(lobe, circles, circle_of, views, view_of, rule, values);
+        }
+    });
 }
 
 }  // namespace
@@ -313,18 +303,17 @@ HWY_EXPORT(choose_cap_rules_in_lanes);
 HWY_EXPORT(choose_polygon_rules_in_lanes);
 HWY_EXPORT(integrate_caps_in_lanes);
 
-void choose_cap_rules(const GgxShape& shape, const CircleArrays& circles, const ViewArrays& views,
-                      const float* tolerances, std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
-    HWY_DYNAMIC_DISPATCH(choose_cap_rules_in_lanes)(shape, circles, views, tolerances, view_of, rules);
+void choose_cap_rules(double width, const CircleArrays& circles, const ViewArrays& views, const float* tolerances,
+                      std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
+    HWY_DYNAMIC_DISPATCH(choose_cap_rules_in_lanes)(width, circles, views, tolerances, view_of, rules);
 }
 
-void choose_polygon_rules(const GgxShape& shape, const PolygonArrays& polygons, const ViewArrays& views,
-                          const float* tolerances, std::span<const std::uint32_t> view_of,
-                          std::span<std::uint8_t> rules) {
-    HWY_DYNAMIC_DISPATCH(choose_polygon_rules_in_lanes)(shape, polygons, views, tolerances, view_of, rules);
+void choose_polygon_rules(double width, const PolygonArrays& polygons, const ViewArrays& views, const float* tolerances,
+                          std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
+    HWY_DYNAMIC_DISPATCH(choose_polygon_rules_in_lanes)(width, polygons, views, tolerances, view_of, rules);
 }
 
-void integrate_caps(const GgxShape& shape, const CircleArrays& circles, std::span<const std::uint32_t> circle_of,
+void integrate_caps(const LobeShape& shape, const CircleArrays& circles, std::span<const std::uint32_t> circle_of,
                     const ViewArrays& views, std::span<const std::uint32_t> view_of, int rule,
                     std::span<float> values) {
     HWY_DYNAMIC_DISPATCH(integrate_caps_in_lanes)(shape, circles, circle_of, views, view_of, rule, values);

@@ -31,7 +31,7 @@ void count(LobeMethod way, int order, std::uint32_t hits, RenderReport& report) 
 }
 
 bool reflects(const LightTraits& traits, const LobeShape& shape) {
-    return std::holds_alternative<GgxShape>(shape) ? traits.lights_glossy : traits.lights_diffuse;
+    return is_glossy(shape) ? traits.lights_glossy : traits.lights_diffuse;
 }
 
 }  // namespace

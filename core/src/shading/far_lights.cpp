@@ -6,6 +6,8 @@
 #include <numbers>
 #include <optional>
 
+#include "lobes/view_grid.h"
+
 namespace shlight {
 namespace {
 
@@ -13,7 +15,7 @@ namespace {
 constexpr std::size_t kLeastLights = 256;
 
 /// GGX lobes narrower than this have too much in higher bands.
-constexpr double kLeastAlpha = 0.15;
+constexpr double kLeastWidth = 0.15;
 
 double area(const PolygonLight& light) {
     Vec3d sum(0);
@@ -72,8 +74,7 @@ double FarLight::irradiance(const Vec3d& way) const {
 }
 
 FarLobe::FarLobe(const LobeShape& shape) {
-    const auto* ggx = std::get_if<GgxShape>(&shape);
-    if (ggx != nullptr && ggx->alpha < kLeastAlpha) {
+    if (lobe_width(shape) < kLeastWidth) {
         return;
     }
     lobe = sh_projection(shape);
@@ -96,10 +97,8 @@ FarLobe::FarLobe(const LobeShape& shape) {
 }
 
 float FarLobe::largest_near(const std::vector<float>& by_view, double cos_theta_o) {
-    const std::size_t last = by_view.size() - 1;
-    const double position = std::acos(cos_theta_o) * static_cast<double>(last) * 2 / std::numbers::pi;
-    const auto low = std::min(static_cast<std::size_t>(position), last);
-    return std::max(by_view[low], by_view[std::min(low + 1, last)]);
+    const std::size_t low = by_view.size() == 1 ? 0 : ViewInterval(cos_theta_o).low;
+    return std::max(by_view[low], by_view[std::min(low + 1, by_view.size() - 1)]);
 }
 
 FarLights::FarLights(std::span<const Light> lights, std::span<const MaterialLobes> materials, int order) {

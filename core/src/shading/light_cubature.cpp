@@ -15,7 +15,7 @@ std::span<const TrianglePoint> polygon_rule(int number) {
 
 }  // namespace
 
-CubatureSum cap_cubature(const GgxShape& shape, const Vec3d& view, const Circle& cap, int rule_number) {
+CubatureSum cap_cubature(const LobeShape& shape, const Vec3d& view, const Circle& cap, int rule_number) {
     constexpr std::uint32_t kOnly = 0;
     float value = 0;
     integrate_caps(shape, {&cap.axis.x, &cap.axis.y, &cap.axis.z, &cap.cosine, &cap.sine}, {&kOnly, 1},
@@ -23,7 +23,7 @@ CubatureSum cap_cubature(const GgxShape& shape, const Vec3d& view, const Circle&
     return {value, cap_rule_points(rule_number)};
 }
 
-CubatureSum polygon_cubature(const GgxShape& shape, const Vec3d& view, const SphericalPolygon<double>& polygon,
+CubatureSum polygon_cubature(const LobeShape& shape, const Vec3d& view, const SphericalPolygon<double>& polygon,
                              int rule_number) {
     const std::vector<Vec3d>& v = polygon.directions();
     const auto rule = polygon_rule(rule_number);

@@ -24,10 +24,6 @@ Vec3d axis_of(const CircleArrays& circles, std::size_t i) {
     return {circles.x[i], circles.y[i], circles.z[i]};
 }
 
-Vec3d mirrored(const Vec3d& view) {
-    return {-view.x, 0, view.z};
-}
-
 /// The largest rule that is cheaper than harmonics of the orders that glossy lobes take.
 int cheap_rule(const CircleArrays&) {
     return kCheapCapRule;
@@ -170,12 +166,13 @@ bool LobeBatch::shows_mirrored(const PolygonBatch& polygons, std::size_t light, 
 
 void LobeBatch::choose_rules(const LobeViews& lobe, const CircleArrays& circles,
                              std::span<const std::uint32_t> view_of) {
-    choose_cap_rules(lobe.ggx(), circles, lobe.positions().directions(), lobe.tolerances(), view_of, rules_);
+    choose_cap_rules(lobe_width(lobe.shape()), circles, lobe.positions().directions(), lobe.tolerances(), view_of,
+                     rules_);
 }
 
 void LobeBatch::choose_rules(const LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of) {
-    choose_polygon_rules(lobe.ggx(), polygons.views(), lobe.positions().directions(), lobe.tolerances(), view_of,
-                         rules_);
+    choose_polygon_rules(lobe_width(lobe.shape()), polygons.views(), lobe.positions().directions(), lobe.tolerances(),
+                         view_of, rules_);
 }
 
 template <class Lights>
@@ -236,7 +233,7 @@ void LobeBatch::mirror(const LobeViews& lobe, Lights& lights) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
         const Vec3d direction = mirrored(lobe.positions().direction(item_views_[k]));
         item_values_[k] = shows_mirrored(lights, items_[k], direction)
-                              ? static_cast<float>(fresnel_factor(lobe.ggx(), direction.z))
+                              ? static_cast<float>(lobe_albedo(lobe.shape(), direction.z))
                               : 0.0F;
     }
 }
@@ -251,7 +248,7 @@ void LobeBatch::by_harmonics(LobeViews& lobe, const PolygonBatch& polygons, int 
 }
 
 void LobeBatch::by_rule(const LobeViews& lobe, const CircleArrays& circles, int rule) {
-    integrate_caps(lobe.ggx(), circles, items_, lobe.positions().directions(), item_views_, rule, item_values_);
+    integrate_caps(lobe.shape(), circles, items_, lobe.positions().directions(), item_views_, rule, item_values_);
     const int points = cap_rule_points(rule);
     for (const std::uint32_t light : items_) {
         efforts_[light] = points;
@@ -260,7 +257,7 @@ void LobeBatch::by_rule(const LobeViews& lobe, const CircleArrays& circles, int 
 
 void LobeBatch::by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
-        const CubatureSum sum = polygon_cubature(lobe.ggx(), lobe.positions().direction(item_views_[k]),
+        const CubatureSum sum = polygon_cubature(lobe.shape(), lobe.positions().direction(item_views_[k]),
                                                  SphericalPolygon<double>(polygons.polygon(items_[k]), true), rule);
         item_values_[k] = static_cast<float>(sum.value);
         efforts_[items_[k]] = sum.points;
@@ -283,7 +280,7 @@ void LobeBatch::by_outline(const LobeViews& lobe, const PolygonBatch& polygons) 
 void LobeBatch::integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const OutlineArc> arcs) {
     const std::uint32_t view = item_views_[item];
     const double tolerance = lobe.absolute_tolerance(view);
-    const OutlineIntegral integral = outline_integral(lobe.ggx(), lobe.positions().cosine()[view], arcs, tolerance);
+    const OutlineIntegral integral = outline_integral(lobe.shape(), lobe.positions().cosine()[view], arcs, tolerance);
     item_values_[item] = static_cast<float>(integral.value);
     efforts_[items_[item]] = integral.points;
     missed_[items_[item]] = integral.error <= tolerance ? 0 : 1;

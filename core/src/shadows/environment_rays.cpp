@@ -6,22 +6,10 @@
 #include <numbers>
 
 #include "environment/environment_map.h"
-#include "lobes/lobe_sampling.h"
 #include "shadows/ray_start.h"
 #include "shlight/sampling.h"
 
 namespace shlight {
-namespace {
-
-/// As Lambert reflects: density cosθ/π.
-Vec3d diffuse_direction(const glm::dvec2& point) {
-    const double sine = std::sqrt(point.x);
-    const double azimuth = 2 * std::numbers::pi * point.y;
-    return {sine * std::cos(azimuth), sine * std::sin(azimuth), std::sqrt(1 - point.x)};
-}
-
-}  // namespace
-
 RadianceSums& RadianceSums::operator+=(const RadianceSums& other) {
     all += other.all;
     seen += other.seen;
@@ -41,38 +29,32 @@ RadianceSums& RadianceSums::operator*=(const Vec3d& factor) {
 /// Directions from one hit, and how densely all sets together draw them.
 class EnvironmentRays::Directions {
   public:
-    Directions(const Sets& sets, const Vec3d& view, const EnvironmentMap* map, const ShadingFrame& frame)
-        : diffuse_(sets.diffuse), map_(sets.diffuse || !sets.alphas.empty() ? map : nullptr) {
-        for (const double alpha : sets.alphas) {
-            lobes_.emplace_back(alpha, view);
-        }
+    Directions(std::span<const LobeShape> lobes, const Vec3d& view, const EnvironmentMap* map,
+               const ShadingFrame& frame)
+        : lobes_(lobes), view_(view), map_(lobes.empty() ? nullptr : map) {
         if (map_ != nullptr) {
             to_map_ = glm::dmat3(map->to_map(frame.x), map->to_map(frame.y), map->to_map(frame.z));
         }
     }
 
-    std::size_t set_count() const { return lobes_.size() + (diffuse_ ? 1 : 0) + (map_ != nullptr ? 1 : 0); }
+    std::size_t set_count() const { return lobes_.size() + (map_ != nullptr ? 1 : 0); }
     /// May lie below the horizon.
     Vec3d sample(std::size_t set, const glm::dvec2& point) const {
-        if (set < lobes_.size()) {
-            return lobes_[set].sample(point);
-        }
-        return diffuse_ && set == lobes_.size() ? diffuse_direction(point) : map_->sampler.sample(point) * to_map_;
+        return set < lobes_.size() ? sample_lobe(lobes_[set], view_, point) : map_->sampler.sample(point) * to_map_;
     }
     double density(const Vec3d& direction) const {
-        double sum = diffuse_ ? direction.z / std::numbers::pi : 0.0;
-        sum += map_ != nullptr ? map_->sampler.density(to_map_ * direction) : 0.0;
-        for (const LobeSampler& lobe : lobes_) {
-            sum += lobe.density(direction);
+        double sum = map_ != nullptr ? map_->sampler.density(to_map_ * direction) : 0.0;
+        for (const LobeShape& lobe : lobes_) {
+            sum += lobe_density(lobe, view_, direction);
         }
         return sum;
     }
 
   private:
-    bool diffuse_;
+    std::span<const LobeShape> lobes_;
+    Vec3d view_;
     const EnvironmentMap* map_;
     glm::dmat3 to_map_{1};  // from the shading frame
-    std::vector<LobeSampler> lobes_;
 };
 
 EnvironmentRays::EnvironmentRays(const RayTracer& tracer, const Environment& environment,
@@ -81,13 +63,11 @@ EnvironmentRays::EnvironmentRays(const RayTracer& tracer, const Environment& env
     for (const MaterialLobes& material : materials) {
         Sets& sets = materials_.emplace_back();
         for (const Lobe& lobe : material.lobes()) {
-            const auto* ggx = std::get_if<GgxShape>(&lobe.shape);
-            if (ggx == nullptr) {
-                sets.diffuse = true;
-            } else if (is_mirror(lobe.shape)) {
+            const LobeShape shape = sampled_shape(lobe.shape);
+            if (is_mirror(shape)) {
                 sets.mirror = true;
-            } else if (std::find(sets.alphas.begin(), sets.alphas.end(), ggx->alpha) == sets.alphas.end()) {
-                sets.alphas.push_back(ggx->alpha);
+            } else if (std::find(sets.lobes.begin(), sets.lobes.end(), shape) == sets.lobes.end()) {
+                sets.lobes.push_back(shape);
             }
         }
     }
@@ -116,7 +96,7 @@ EnvironmentRays::Run EnvironmentRays::draw(const Hits& hits, std::size_t hit, co
                                            std::uint32_t seed) {
     const Sets& sets = materials_[hits.material[hit]];
     const Vec3d view = hits.view(hit);
-    const Directions directions(sets, view, environment_->map(), hits.frame[hit]);
+    const Directions directions(sets.lobes, view, environment_->map(), hits.frame[hit]);
     const RayStart start(hits.frame[hit], hits.shadow_origin[hit], Vec3d(0));
     const auto push = [&](const Vec3d& direction, double density) {
         directions_.emplace_back(direction);
@@ -140,7 +120,7 @@ EnvironmentRays::Run EnvironmentRays::draw(const Hits& hits, std::size_t hit, co
     run.end = directions_.size();
     if (sets.mirror && phase.first) {
         run.mirror = directions_.size();
-        push({-view.x, 0, view.z}, 1);
+        push(mirrored(view), 1);
     }
     return run;
 }

@@ -53,8 +53,8 @@ class EnvironmentRays {
   private:
     /// The sets of rays that a material takes.
     struct Sets {
-        bool diffuse = false, mirror = false;
-        std::vector<double> alphas;  // of glossy lobes
+        std::vector<LobeShape> lobes;  // whose directions they have
+        bool mirror = false;
     };
     /// The rays of a hit in one phase.
     struct Run {

@@ -6,7 +6,6 @@
 #include <limits>
 #include <optional>
 
-#include "lobes/lobe_sampling.h"
 #include "shadows/ray_start.h"
 #include "shlight/sampling.h"
 
@@ -55,18 +54,18 @@ ShadowRays::ShadowRays(const RayTracer& tracer, std::span<const MaterialLobes> m
     for (const MaterialLobes& material : materials) {
         Material& sets = materials_.emplace_back();
         for (const Lobe& lobe : material.lobes()) {
-            const auto* ggx = std::get_if<GgxShape>(&lobe.shape);
-            if (ggx == nullptr) {
+            if (!is_glossy(lobe.shape)) {
                 sets.set_of_lobe.push_back(kLightOnly);
                 continue;
             }
-            const auto known = std::find(sets.alphas.begin(), sets.alphas.end(), ggx->alpha);
-            sets.set_of_lobe.push_back(static_cast<std::uint32_t>(known - sets.alphas.begin()));
-            if (known == sets.alphas.end()) {
-                sets.alphas.push_back(ggx->alpha);
+            const LobeShape shape = sampled_shape(lobe.shape);
+            const auto known = std::find(sets.shapes.begin(), sets.shapes.end(), shape);
+            sets.set_of_lobe.push_back(static_cast<std::uint32_t>(known - sets.shapes.begin()));
+            if (known == sets.shapes.end()) {
+                sets.shapes.push_back(shape);
             }
         }
-        set_stride_ = std::max(set_stride_, 1 + sets.alphas.size());
+        set_stride_ = std::max(set_stride_, 1 + sets.shapes.size());
     }
 }
 
@@ -124,8 +123,8 @@ bool ShadowRays::shines(const LitHits& lit, std::size_t lit_index, const Materia
 void ShadowRays::draw(const Drawing& drawing, const LitHits& lit, std::size_t lit_index) {
     const Material& material = materials_[drawing.hit_material];
     bool mirrors_only = !shines(lit, lit_index, material, kLightOnly);
-    for (std::uint32_t set = 0; set < material.alphas.size(); ++set) {
-        mirrors_only = mirrors_only && !(material.alphas[set] > 0 && shines(lit, lit_index, material, set));
+    for (std::uint32_t set = 0; set < material.shapes.size(); ++set) {
+        mirrors_only = mirrors_only && !(!is_mirror(material.shapes[set]) && shines(lit, lit_index, material, set));
     }
     std::size_t begin = directions_.size();
     const auto end_run = [&] {
@@ -140,7 +139,7 @@ void ShadowRays::draw(const Drawing& drawing, const LitHits& lit, std::size_t li
     }
     end_run();
     for (std::uint32_t set = 0; set + 1 < set_stride_; ++set) {
-        if (set < material.alphas.size() && shines(lit, lit_index, material, set)) {
+        if (set < material.shapes.size() && shines(lit, lit_index, material, set)) {
             draw_lobes(drawing, lit_index, set);
         }
         end_run();
@@ -148,19 +147,19 @@ void ShadowRays::draw(const Drawing& drawing, const LitHits& lit, std::size_t li
 }
 
 void ShadowRays::draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set) {
-    const double alpha = materials_[drawing.hit_material].alphas[set];
-    const LobeSampler sampler(alpha, drawing.view);
+    const LobeShape& shape = materials_[drawing.hit_material].shapes[set];
+    const bool mirror = is_mirror(shape);
     const double solid_angle = light_sampler_.solid_angle();
-    if (alpha > 0 && !(solid_angle * sampler.largest_density() > kLeastShare)) {
+    if (!mirror && !(solid_angle * largest_lobe_density(shape, drawing.view) > kLeastShare)) {
         return;
     }
     solid_angles_[lit_index * set_stride_ + 1 + set] = solid_angle;
-    const std::uint32_t rays = alpha > 0 ? drawing.rays : drawing.mirror_rays;
+    const std::uint32_t rays = mirror ? drawing.mirror_rays : drawing.rays;
     for (std::uint32_t ray = 0; ray < rays; ++ray) {
-        const Vec3d direction = sampler.sample(drawing.point(1 + set, ray));
+        const Vec3d direction = sample_lobe(shape, drawing.view, drawing.point(1 + set, ray));
         const std::optional<double> distance = direction.z > 0 ? light_sampler_.meets(direction) : std::nullopt;
         if (distance) {
-            push(drawing, direction, *distance, solid_angle, alpha > 0 ? light_sampler_.layers(direction) : 1);
+            push(drawing, direction, *distance, solid_angle, mirror ? 1 : light_sampler_.layers(direction));
         }
     }
 }
@@ -187,7 +186,6 @@ RaySums ShadowRays::sum(const Hits& hits, const LitHits& lit, std::size_t lit_in
     const Vec3d view = hits.view(hit);
     const bool mirror = is_mirror(shape);
     const double solid_angle = set == kLightOnly ? 0.0 : solid_angles_[lit_index * set_stride_ + 1 + set];
-    const LobeSampler sampler(set == kLightOnly ? 1.0 : material.alphas[set], view);
     RaySums sums;
     const auto add = [&](const Run& run) {
         for (std::size_t i = run.begin; i < run.end; ++i) {
@@ -195,7 +193,7 @@ RaySums ShadowRays::sum(const Hits& hits, const LitHits& lit, std::size_t lit_in
             double value = mirror ? 1.0 : weights_[i] * lobe_value(shape, direction, view);
             if (!mirror && solid_angle > 0) {
                 // The weights are those of points even in solid angle; so p_light is one over that.
-                value /= 1 + solid_angle * sampler.density(direction);
+                value /= 1 + solid_angle * lobe_density(shape, view, direction);
             }
             sums.all += value;
             sums.squares += value * value;

@@ -66,10 +66,10 @@ class ShadowRays {
     std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
-    /// Lobes of a material that have the same roughness share their rays.
+    /// Lobes of a material whose directions are spread alike share their rays.
     struct Material {
-        std::vector<double> alphas;              // one per set of rays
-        std::vector<std::uint32_t> set_of_lobe;  // index of alphas, kLightOnly for diffuse lobes
+        std::vector<LobeShape> shapes;           // one per set of rays
+        std::vector<std::uint32_t> set_of_lobe;  // index of shapes, kLightOnly for diffuse lobes
     };
     /// The rays of one set of a hit.
     struct Run {
@@ -88,7 +88,7 @@ class ShadowRays {
     std::size_t lobe_stride_;
     std::vector<Material> materials_;
     std::span<const MaterialLobes> lobes_;
-    std::size_t set_stride_ = 1;  // sets of rays of any hit: the light's, then one per roughness
+    std::size_t set_stride_ = 1;  // sets of rays of any hit: the light's, then one per shape
     LightSampler light_sampler_;
     std::uint64_t rays_traced_ = 0;
 

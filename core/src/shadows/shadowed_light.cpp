@@ -60,8 +60,7 @@ void ShadowedLight::find_lit(const Light& light, const Hits& hits, std::size_t b
 
 bool ShadowedLight::is_glossy(std::uint32_t material) const {
     const auto lobes = materials_[material].lobes();
-    return std::any_of(lobes.begin(), lobes.end(),
-                       [](const Lobe& lobe) { return std::holds_alternative<GgxShape>(lobe.shape); });
+    return std::any_of(lobes.begin(), lobes.end(), [](const Lobe& lobe) { return shlight::is_glossy(lobe.shape); });
 }
 
 void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lobes/ggx_fit_table.h"
+#include "lobes/fit_table.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -29,15 +29,15 @@ NodeLayout::NodeLayout(std::span<const int> orders)
     }
 }
 
-GgxFitTable::GgxFitTable(NodeLayout layout, std::vector<float> nodes)
+FitTable::FitTable(NodeLayout layout, std::vector<float> nodes)
     : layout_(std::move(layout)), nodes_(std::move(nodes)) {}
 
-GgxFitTable fit_ggx_table(const GgxShape& shape, std::span<const int> orders) {
+FitTable fit_table(const LobeShape& shape, std::span<const int> orders) {
     const NodeLayout layout(orders);
     std::vector<float> nodes(kWarpedViews * layout.size());
     const auto fit = [&](int node) {
         const auto out = std::span(nodes).subspan(static_cast<std::size_t>(node) * layout.size(), layout.size());
-        fit_ggx_node(shape, warped_view_cosine(node), layout, out);
+        fit_node(shape, warped_view_cosine(node), layout, out);
     };
     // Isolated: a thread that waits here must not pick up unrelated work that may ask for this very fit.
     tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, kWarpedViews, fit); });

@@ -8,8 +8,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "lobes/contour_integral.h"
-#include "lobes/ggx_fit_table.h"
+#include "lobes/fit_table.h"
 #include "lobes/normal_equations.h"
 #include "math/gauss_legendre.h"
 #include "math/legendre.h"
@@ -74,7 +73,7 @@ int height_points(double cos_theta_o, int order) {
     return std::min(kMaxGaussPoints, std::max(cos_theta_o < 0.3 ? 64 : 40, order + 24));
 }
 
-WarpedDensity warped_density(const GgxShape& shape, double cos_theta_o, int order) {
+WarpedDensity warped_density(const LobeShape& shape, double cos_theta_o, int order) {
     const Warp warp = lobe_warp(shape, cos_theta_o);
     const Vec3d wo(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o);
     const int points = azimuth_points(cos_theta_o, order);
@@ -186,12 +185,11 @@ double integral(const WarpedDensity& d, std::span<const double> fourier) {
 
 }  // namespace
 
-void fit_ggx_node(const GgxShape& shape, double cos_theta_o, const NodeLayout& layout, std::span<float> out) {
+void fit_node(const LobeShape& shape, double cos_theta_o, const NodeLayout& layout, std::span<float> out) {
     const int highest = *std::max_element(layout.orders().begin(), layout.orders().end());
     const WarpedDensity d = warped_density(shape, cos_theta_o, highest);
     // The lobe's own cubature: the grid here is too coarse for lobes whose order is out of reach.
-    const OutlineArc horizon{{{0, 0, 1}, 0, 1}, {1, 0, 0}, {1, 0, 0}, true};
-    const double albedo = outline_integral(shape, cos_theta_o, {&horizon, 1}, 1e-5).value;
+    const double albedo = lobe_albedo(shape, cos_theta_o);
     out[NodeLayout::albedo()] = static_cast<float>(albedo);
     const Norms kept = norms(d, d.fourier);
     const Norms beyond = {std::max(0.0, d.norms.warped - kept.warped),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The fits of one GGX shape at all view angles.
+// The fits of one shape at all view angles.
 #pragma once
 
 #include <array>
@@ -38,11 +38,11 @@ class NodeLayout {
 };
 
 /// Fits one lobe at one view; out: layout.size() values.
-void fit_ggx_node(const GgxShape& shape, double cos_theta_o, const NodeLayout& layout, std::span<float> out);
+void fit_node(const LobeShape& shape, double cos_theta_o, const NodeLayout& layout, std::span<float> out);
 
-class GgxFitTable {
+class FitTable {
   public:
-    GgxFitTable(NodeLayout layout, std::vector<float> nodes);
+    FitTable(NodeLayout layout, std::vector<float> nodes);
 
     const NodeLayout& layout() const { return layout_; }
     std::span<const float> nodes() const { return nodes_; }
@@ -57,6 +57,6 @@ class GgxFitTable {
 };
 
 /// Fits all views of one shape.
-GgxFitTable fit_ggx_table(const GgxShape& shape, std::span<const int> orders);
+FitTable fit_table(const LobeShape& shape, std::span<const int> orders);
 
 }  // namespace shlight

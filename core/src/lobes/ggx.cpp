@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+//
+// GGX lobes, one direction at a time.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lobes/contour_integral.h"
+#include "shlight/lobe_shape.h"
+
+namespace shlight {
+namespace {
+
+using std::numbers::pi;
+
+/// Of what the hemisphere's outline gives.
+constexpr double kAlbedoTolerance = 1e-5;
+
+/// Unpolarised Fresnel reflectance at a dielectric of relative index ior ≥ 1, from outside.
+double fresnel_dielectric(double cosine, double ior) {
+    const double g = std::sqrt(ior * ior - 1 + cosine * cosine);
+    const double a = (g - cosine) / (g + cosine);
+    const double b = (cosine * (g + cosine) - 1) / (cosine * (g - cosine) + 1);
+    return 0.5 * a * a * (1 + b * b);
+}
+
+/// At ω_i·h = cosine.
+double fresnel_factor(const GgxShape& shape, double cosine) {
+    switch (shape.fresnel) {
+        case Fresnel::one:
+            return 1;
+        case Fresnel::schlick: {
+            const double edge = 1 - cosine;
+            return edge * edge * edge * edge * edge;
+        }
+        case Fresnel::dielectric: {
+            const double head_on = fresnel_dielectric(1, shape.ior);
+            return (fresnel_dielectric(cosine, shape.ior) - head_on) / (1 - head_on);
+        }
+    }
+    return 0;
+}
+
+/// √(α² + (1-α²) cos²θ).
+double masking(double a2, double cosine) {
+    return std::sqrt(a2 + (1 - a2) * cosine * cosine);
+}
+
+/// α² |s|² / (α² s_z² + s_x² + s_y²) of s = ω_i + ω_o: the root of π α² D, from sin²θ_h rather than 1 - cos²θ_h, on
+/// which the peak of a narrow lobe hangs.
+double sharpness(double a2, const Vec3d& sum) {
+    return a2 * glm::dot(sum, sum) / (a2 * sum.z * sum.z + (sum.x * sum.x + sum.y * sum.y));
+}
+
+/// G₁ / (4 cosθ_o), with G₁ = 2 cosθ_o / (cosθ_o + masking), finite at grazing angles once cosθ_o is gone.
+double visible_share(double a2, double cos_theta_o) {
+    return 0.5 / (cos_theta_o + masking(a2, cos_theta_o));
+}
+
+}  // namespace
+
+/// With D = α² / (π ((α²-1) cos²θ_h + 1)²) and G₂ / (4 cosθ_i cosθ_o)
+/// = ½ / (cosθ_o √(α² + (1-α²) cos²θ_i) + cosθ_i √(α² + (1-α²) cos²θ_o)), finite at grazing angles.
+double GgxShape::value(const Vec3d& wi, const Vec3d& wo) const {
+    const double a2 = alpha * alpha;
+    const Vec3d sum = wi + wo;
+    const double square = glm::dot(sum, sum);
+    if (!(square > 0)) {
+        return 0;
+    }
+    const double ratio = sharpness(a2, sum);
+    const double visibility = 0.5 / (wo.z * masking(a2, wi.z) + wi.z * masking(a2, wo.z));
+    const double cosine = std::min(1.0, std::sqrt(square) / 2);  // ω_i·h
+    return fresnel_factor(*this, cosine) * ratio * ratio / (pi * a2) * visibility * wi.z;
+}
+
+double GgxShape::albedo(double cos_theta_o) const {
+    if (alpha == 0) {
+        return fresnel_factor(*this, cos_theta_o);
+    }
+    const OutlineArc horizon{{{0, 0, 1}, 0, 1}, {1, 0, 0}, {1, 0, 0}, true};
+    return outline_integral(*this, cos_theta_o, {&horizon, 1}, kAlbedoTolerance).value;
+}
+
+Vec3d GgxShape::sample(const Vec3d& wo, const glm::dvec2& point) const {
+    // Where the microfacets are a hemisphere, it reflects the parallel rays that it sees evenly into the cap of
+    // z > -cosine of the view.
+    const Vec3d view = glm::normalize(Vec3d(alpha * wo.x, alpha * wo.y, wo.z));
+    const double z = (1 - point.y) * (1 + view.z) - view.z;
+    const double sine = std::sqrt(std::max(0.0, (1 - z) * (1 + z)));
+    const double azimuth = 2 * pi * point.x;
+    const Vec3d h = Vec3d(sine * std::cos(azimuth), sine * std::sin(azimuth), z) + view;
+    const Vec3d normal = glm::normalize(Vec3d(alpha * h.x, alpha * h.y, h.z));
+    return glm::normalize(2 * glm::dot(wo, normal) * normal - wo);
+}
+
+double GgxShape::density(const Vec3d& wo, const Vec3d& wi) const {
+    const double a2 = alpha * alpha;
+    const double ratio = sharpness(a2, wi + wo);
+    return visible_share(a2, wo.z) * ratio * ratio / (pi * a2);
+}
+
+double GgxShape::largest_density(const Vec3d& wo) const {
+    return visible_share(alpha * alpha, wo.z) / (pi * alpha * alpha);
+}
+
+}  // namespace shlight

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+//
+// Lambert's lobe in lanes (lobe_lanes-inl.h). Included once per instruction set.
+#if defined(SHLIGHT_KERNELS_LAMBERT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHLIGHT_KERNELS_LAMBERT_INL_H_
+#undef SHLIGHT_KERNELS_LAMBERT_INL_H_
+#else
+#define SHLIGHT_KERNELS_LAMBERT_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <numbers>
+
+#include "lobes/view_lanes-inl.h"
+#include "shlight/lobe_shape.h"
+#include "simd/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace shlight::HWY_NAMESPACE {
+
+class LambertLanes {
+  public:
+    template <class D>
+    struct View {};
+
+    template <class D>
+    HWY_INLINE View<D> view(D /*d*/, V<D> /*cos_o*/) const {
+        return {};
+    }
+    HWY_INLINE V<Floats> value(const HalfSum& /*sum*/, V<Floats> cos_i, const View<Floats>& /*view*/) const {
+        return hn::Mul(cos_i, all(Floats(), 1 / std::numbers::pi));
+    }
+    template <class D>
+    HWY_INLINE V<D> over_bell(D d, V<D> cos_i, V<D> /*cos_half*/, const View<D>& /*view*/) const {
+        return hn::Mul(cos_i, all(d, 4));
+    }
+};
+
+template <class Function>
+void with_lanes_of(const LambertShape& /*shape*/, const Function& function) {
+    function(LambertLanes());
+}
+
+}  // namespace shlight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
