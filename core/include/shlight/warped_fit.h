@@ -8,6 +8,7 @@
 // docs/algorithms.md shows how few bands are left. The view direction is ω_o = (sinθ_o, 0, cosθ_o): only cosine terms.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -37,19 +38,19 @@ class WarpedFit {
     double albedo(double cos_theta_o) const;
     /// The root mean square, over caps in all directions, of the error of a cap's radiance ÷ albedo, from above.
     double shading_error(double cos_theta_o, int order) const;
-    /// √∫ (fit - f·cos)² dω ÷ √∫ (f·cos)² dω, in direction space.
-    double residual(double cos_theta_o, int order) const;
     /// The smallest order whose shading error ≤ tolerance; 0 if none is.
     int order_for(double cos_theta_o, double tolerance) const;
     Warp warp(double cos_theta_o) const;
     /// Writes the cosine_count(order) cosine terms for one view angle; order: one of orders().
     void coefficients(double cos_theta_o, int order, float* cosine_terms) const;
     /// Where many views are looked up at once; null for Lambert, which is known in closed form.
-    const class ViewTable* table() const { return table_.get(); }
+    const class FitTable* table() const { return table_.get(); }
 
   private:
+    double number(double cos_theta_o, std::size_t column) const;
+
     LobeShape shape_;
-    std::shared_ptr<const ViewTable> table_;
+    std::shared_ptr<const FitTable> table_;
     int order_;  // of Lambert
 };
 

@@ -17,11 +17,6 @@
 namespace shlight {
 namespace {
 
-/// Squared L2 norms of a density: over the warped sphere and, with weight du/dω, over directions.
-struct Norms {
-    double warped = 0, direction = 0;
-};
-
 /// Azimuths in the middles of equal steps over half a turn: what is even in φ needs no more.
 struct AzimuthTable {
     std::vector<double> cosines, sines;
@@ -58,11 +53,8 @@ struct AzimuthTable {
 /// The lobe's density g over a grid in the warped frame, as Fourier coefficients over the azimuth.
 struct WarpedDensity {
     std::vector<double> heights, weights;  ///< Gauss points over u_z = z_0 … 1
-    int waves;                             ///< degrees m = 0 … waves-1
-    std::vector<double> fourier;           ///< heights × waves: g = Σ_m fourier cos mφ
-    /// γ (1 + b u·axis) = constant + cosine · cos φ at each height: 1/√(dω/du).
-    std::vector<double> shrink_constant, shrink_cosine;
-    Norms norms;  ///< of all waves, also those beyond
+    std::vector<double> fourier;           ///< heights × order: g = Σ_m fourier cos mφ + what is beyond the order
+    double square = 0;                     ///< ∫ g² du, of all degrees
 };
 
 /// Points over half a turn and over the heights. In its warp a lobe is still stretched by 1 : cosθ_o.
@@ -79,8 +71,7 @@ WarpedDensity warped_density(const LobeShape& shape, double cos_theta_o, int ord
     const int points = azimuth_points(cos_theta_o, order);
     const GaussRule& rule = gauss_rule(height_points(cos_theta_o, order));
     WarpedDensity d;
-    d.waves = std::max(24, order + 8);
-    const AzimuthTable azimuths(points, d.waves);
+    const AzimuthTable azimuths(points, order);
     std::vector<double> values(static_cast<std::size_t>(points));
     const double z0 = warp.horizon_height();
     for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
@@ -89,61 +80,26 @@ WarpedDensity warped_density(const LobeShape& shape, double cos_theta_o, int ord
         const double weight = (1 - z0) * rule.weights[i];
         for (int j = 0; j < points; ++j) {
             const Vec3d u(s * azimuths.cosines[j], s * azimuths.sines[j], z);
-            const double density = warp.density(u);
-            values[j] = lobe_value(shape, warp.direction(u), wo) * density;
-            const double square = 2 * std::numbers::pi / points * weight * values[j] * values[j];
-            d.norms.warped += square;
-            d.norms.direction += square / density;
+            values[j] = lobe_value(shape, warp.direction(u), wo) * warp.density(u);
+            d.square += 2 * std::numbers::pi / points * weight * values[j] * values[j];
         }
         d.heights.push_back(z);
         d.weights.push_back(weight);
         azimuths.append_fourier(values, d.fourier);
-        const double towards = 1 / std::sqrt(warp.density({s, 0, z}));
-        const double away = 1 / std::sqrt(warp.density({-s, 0, z}));
-        d.shrink_constant.push_back((towards + away) / 2);
-        d.shrink_cosine.push_back((towards - away) / 2);
     }
     return d;
 }
 
-/// ∫ (Σ_m a_m cos mφ)² dφ.
-double square_over_circle(std::span<const double> a) {
-    double sum = 2 * a[0] * a[0];
-    for (std::size_t m = 1; m < a.size(); ++m) {
-        sum += a[m] * a[m];
-    }
-    return std::numbers::pi * sum;
-}
-
-/// The same of a density given as Fourier coefficients.
-Norms norms(const WarpedDensity& d, std::span<const double> fourier) {
-    Norms sum;
-    const auto waves = static_cast<std::size_t>(d.waves);
-    std::vector<double> shrunk(waves + 1);
-    for (std::size_t i = 0; i < d.heights.size(); ++i) {
-        const auto a = fourier.subspan(i * waves, waves);
-        std::fill(shrunk.begin(), shrunk.end(), 0.0);
-        const double half = d.shrink_cosine[i] / 2;
-        for (std::size_t m = 0; m < waves; ++m) {
-            shrunk[m] += d.shrink_constant[i] * a[m];
-            shrunk[m + 1] += half * a[m];
-            shrunk[m == 0 ? 1 : m - 1] += half * a[m];  // cos φ · 1 = cos φ, in one piece
-        }
-        sum.warped += d.weights[i] * square_over_circle(a);
-        sum.direction += d.weights[i] * square_over_circle(shrunk);
-    }
-    return sum;
-}
-
-/// ∫ of the density times each cosine term up to an order.
+/// ∫ of the density times each cosine term.
 std::vector<double> moments(const WarpedDensity& d, const HeightBasis& basis) {
+    const auto order = static_cast<std::size_t>(basis.order());
     std::vector<double> sums;
     for (int l = 0; l < basis.order(); ++l) {
         for (int m = 0; m <= l; ++m) {
             const auto values = basis.values(l, m);
             double sum = 0;
             for (std::size_t i = 0; i < d.heights.size(); ++i) {
-                sum += d.weights[i] * values[i] * d.fourier[i * static_cast<std::size_t>(d.waves) + m];
+                sum += d.weights[i] * values[i] * d.fourier[i * order + static_cast<std::size_t>(m)];
             }
             sums.push_back(sum * (m == 0 ? 2 : std::numbers::sqrt2) * std::numbers::pi);
         }
@@ -151,65 +107,49 @@ std::vector<double> moments(const WarpedDensity& d, const HeightBasis& basis) {
     return sums;
 }
 
-/// The density less an expansion.
-std::vector<double> missing(const WarpedDensity& d, const HeightBasis& basis, std::span<const double> terms,
-                            int order) {
-    std::vector<double> rest = d.fourier;
-    for (int l = 0; l < order; ++l) {
-        for (int m = 0; m <= l; ++m) {
-            const double term = terms[at(l, m)] * (m == 0 ? 1 : std::numbers::sqrt2);
-            const auto values = basis.values(l, m);
-            for (std::size_t i = 0; i < d.heights.size(); ++i) {
-                rest[i * static_cast<std::size_t>(d.waves) + m] -= term * values[i];
-            }
-        }
-    }
-    return rest;
-}
-
-/// A cap's coefficients fall as λ_l ≤ √(8π/l³) (Funk–Hecke), and what the fit lacks lies in bands ≥ order, but for what
-/// λ takes from the low ones: that shows in the whole, missing light, which a large light receives undiminished.
-double shading_error(double warped_norm, double missing_light, int order, double albedo) {
-    return albedo > 0 ? (std::sqrt(2.0 / (order * order * order)) * warped_norm + std::abs(missing_light)) / albedo
-                      : 0.0;
-}
-
-/// ∫ of a density given as Fourier coefficients over the warped hemisphere.
-double integral(const WarpedDensity& d, std::span<const double> fourier) {
+/// ∫ of the density less that of an expansion, over the warped hemisphere.
+double missing_light(const WarpedDensity& d, const HeightBasis& basis, std::span<const double> terms, int order) {
     double sum = 0;
     for (std::size_t i = 0; i < d.heights.size(); ++i) {
-        sum += 2 * std::numbers::pi * d.weights[i] * fourier[i * static_cast<std::size_t>(d.waves)];
+        double rest = d.fourier[i * static_cast<std::size_t>(basis.order())];
+        for (int l = 0; l < order; ++l) {
+            rest -= terms[at(l, 0)] * basis.values(l, 0)[i];
+        }
+        sum += 2 * std::numbers::pi * d.weights[i] * rest;
     }
     return sum;
 }
 
+/// A cap's coefficients fall as λ_l ≤ √(8π/l³) (Funk–Hecke), and what the fit lacks lies in bands ≥ order, but for what
+/// λ takes from the low ones: that shows in the whole, missing light, which a large light receives undiminished.
+double shading_error(double squared_error, double missing_light, int order, double albedo) {
+    return albedo > 0 ? (std::sqrt(2 * squared_error / (order * order * order)) + std::abs(missing_light)) / albedo
+                      : 0.0;
+}
+
 }  // namespace
 
-void fit_node(const LobeShape& shape, double cos_theta_o, const NodeLayout& layout, std::span<float> out) {
-    const int highest = *std::max_element(layout.orders().begin(), layout.orders().end());
-    const WarpedDensity d = warped_density(shape, cos_theta_o, highest);
+void fit_row(const LobeShape& shape, int view, FitTable& table) {
+    const double cosine = warped_view_cosine(view);
+    const int highest = *std::max_element(table.orders().begin(), table.orders().end());
+    const WarpedDensity d = warped_density(shape, cosine, highest);
     // The lobe's own cubature: the grid here is too coarse for lobes whose order is out of reach.
-    const double albedo = lobe_albedo(shape, cos_theta_o);
-    out[NodeLayout::albedo()] = static_cast<float>(albedo);
-    const Norms kept = norms(d, d.fourier);
-    const Norms beyond = {std::max(0.0, d.norms.warped - kept.warped),
-                          std::max(0.0, d.norms.direction - kept.direction)};
+    const double albedo = lobe_albedo(shape, cosine);
+    const auto row = table.row(view);
+    row[FitTable::kAlbedo] = static_cast<float>(albedo);
     const HeightBasis basis(d.heights, highest);
     const NormalEquations equations(basis, d.weights);
     std::vector<double> reduced = moments(d, basis);
     equations.reduce(reduced);
     std::array<double, kCosineMax> terms;
-    for (std::size_t which = 0; which < layout.orders().size(); ++which) {
-        const int order = layout.orders()[which];
+    for (std::size_t i = 0; i < table.orders().size(); ++i) {
+        const int order = table.orders()[i];
         equations.solve(reduced, order, terms);
-        std::transform(terms.begin(), terms.begin() + cosine_count(order), &out[layout.coefficients(which)],
+        std::transform(terms.begin(), terms.begin() + cosine_count(order), &row[table.terms(i)],
                        [](double term) { return static_cast<float>(term); });
-        const std::vector<double> left = missing(d, basis, terms, order);
-        const Norms rest = norms(d, left);
-        out[NodeLayout::shading_error(which)] =
-            static_cast<float>(shading_error(std::sqrt(rest.warped + beyond.warped), integral(d, left), order, albedo));
-        out[NodeLayout::residual(which)] = static_cast<float>(
-            d.norms.direction > 0 ? std::sqrt((rest.direction + beyond.direction) / d.norms.direction) : 0.0);
+        const double squared_error = equations.squared_error(reduced, order, d.square);
+        row[FitTable::kShadingErrors + i] =
+            static_cast<float>(shading_error(squared_error, missing_light(d, basis, terms, order), order, albedo));
     }
 }
 

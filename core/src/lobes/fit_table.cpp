@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
+#include "lobes/view_kernel.h"
 #include "shlight/warped_fit.h"
 
 namespace shlight {
@@ -17,31 +19,55 @@ const double kFarthestView = std::acosh(1 / kLeastFittedCosine);
 
 }  // namespace
 
-double warped_view_cosine(int node) {
-    return 1 / std::cosh(kFarthestView * node / (kWarpedViews - 1));
+double warped_view_cosine(int view) {
+    return 1 / std::cosh(kFarthestView * view / (kWarpedViews - 1));
 }
 
-NodeLayout::NodeLayout(std::span<const int> orders)
-    : orders_(orders.begin(), orders.end()), size_(1 + 2 * orders.size()) {
+FitTable::FitTable(std::span<const int> orders)
+    : orders_(orders.begin(), orders.end()), row_size_(kShadingErrors + orders.size()) {
     for (const int order : orders_) {
-        first_.push_back(size_);
-        size_ += static_cast<std::size_t>(cosine_count(order));
+        first_.push_back(row_size_);
+        row_size_ += static_cast<std::size_t>(cosine_count(order));
     }
+    values_.resize((kWarpedViews + 1) * row_size_ + AlignedFloats::kLine);
 }
 
-FitTable::FitTable(NodeLayout layout, std::vector<float> nodes)
-    : layout_(std::move(layout)), nodes_(std::move(nodes)) {}
+std::size_t FitTable::which(int order) const {
+    return static_cast<std::size_t>(std::find(orders_.begin(), orders_.end(), order) - orders_.begin());
+}
+
+void FitTable::look_up(double cos_theta_o, std::size_t column, std::span<float> out) const {
+    std::array<double, kViewLanes> cosine;
+    cosine.fill(cos_theta_o);
+    std::array<double, kViewLanes> sine, fitted_sine, fitted_cosine;
+    std::array<float, kViewLanes> log_cosine;
+    std::array<std::uint32_t, kViewLanes> row;
+    std::array<float, 4 * kViewLanes> weights;
+    find_views(cosine.data(), 1,
+               {sine.data(), fitted_sine.data(), fitted_cosine.data(), log_cosine.data(), row.data(), weights.data()});
+    constexpr std::uint32_t kFirst = 0;
+    AlignedFloats padded;
+    padded.grow(out.size());
+    interpolate_views(values_.data() + column, row_size_, AlignedFloats::padded(out.size()), row.data(), weights.data(),
+                      {&kFirst, 1}, padded.data(), 0);
+    std::copy_n(padded.data(), out.size(), out.begin());
+}
 
 FitTable fit_table(const LobeShape& shape, std::span<const int> orders) {
-    const NodeLayout layout(orders);
-    std::vector<float> nodes(kWarpedViews * layout.size());
-    const auto fit = [&](int node) {
-        const auto out = std::span(nodes).subspan(static_cast<std::size_t>(node) * layout.size(), layout.size());
-        fit_node(shape, warped_view_cosine(node), layout, out);
-    };
+    FitTable table(orders);
     // Isolated: a thread that waits here must not pick up unrelated work that may ask for this very fit.
-    tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, kWarpedViews, fit); });
-    return {layout, std::move(nodes)};
+    tbb::this_task_arena::isolate(
+        [&] { tbb::parallel_for(0, kWarpedViews, [&](int view) { fit_row(shape, view, table); }); });
+    const auto beyond = table.row(-1);
+    std::copy_n(table.row(1).begin(), beyond.size(), beyond.begin());
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+        for (int l = 0; l < orders[i]; ++l) {
+            for (int m = 1; m <= l; m += 2) {
+                beyond[table.terms(i) + static_cast<std::size_t>(cosine_index(l, m))] *= -1;
+            }
+        }
+    }
+    return table;
 }
 
 }  // namespace shlight

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// The fits of one shape at all view angles.
+// The fits of one shape at all view angles, laid out for looking up many views at once.
 #pragma once
 
 #include <array>
 #include <span>
 #include <vector>
 
+#include "base/aligned_floats.h"
 #include "shlight/lobe_shape.h"
+#include "shlight/types.h"
 
 namespace shlight {
 
@@ -16,47 +18,52 @@ inline constexpr std::array<int, 6> kWarpedOrders = {3, 4, 6, 8, 12, 16};
 
 /// View angles are equally spaced in artanh(sinθ_o): fine towards grazing views, where lobes change with cosθ_o.
 inline constexpr int kWarpedViews = 49;
-double warped_view_cosine(int node);
+double warped_view_cosine(int view);
 
-/// What is known of one lobe at one view: albedo, per order two errors, then the coefficients of each order in turn.
-/// A plain row of numbers, because that is what is interpolated.
-class NodeLayout {
+/// A row for each view, for view_kernel.h: albedo, the shading error of each order, the cosine terms of each order. All
+/// of it is interpolated, between views and between tables.
+class FitTable {
   public:
-    explicit NodeLayout(std::span<const int> orders);
+    /// Of zeros.
+    explicit FitTable(std::span<const int> orders);
 
     std::span<const int> orders() const { return orders_; }
-    std::size_t size() const { return size_; }
-    static std::size_t albedo() { return 0; }
-    static std::size_t shading_error(std::size_t which) { return 1 + 2 * which; }
-    static std::size_t residual(std::size_t which) { return 2 + 2 * which; }
-    std::size_t coefficients(std::size_t which) const { return first_[which]; }
+    /// Index of an order; precondition: it is one of orders().
+    std::size_t which(int order) const;
+
+    /// Numbers from row to row, and of what is looked up at once: a head, or the terms of an order with padding.
+    std::size_t row_size() const { return row_size_; }
+    static constexpr std::size_t kHeadWidth = AlignedFloats::kLine;
+    std::size_t width(std::size_t which) const {
+        return AlignedFloats::padded(static_cast<std::size_t>(cosine_count(orders_[which])));
+    }
+    /// Columns.
+    static constexpr std::size_t kAlbedo = 0, kShadingErrors = 1;
+    std::size_t terms(std::size_t which) const { return first_[which]; }
+
+    /// Row -1 is the view beyond the normal, where terms of odd degree change sign.
+    std::span<float> row(int view) {
+        return std::span(values_).subspan(static_cast<std::size_t>(view + 1) * row_size_, row_size_);
+    }
+    /// All rows, from -1 on, and padding.
+    std::span<const float> values() const { return values_; }
+    std::span<float> values() { return values_; }
+
+    /// Of one view: `width` numbers from a column on.
+    void look_up(double cos_theta_o, std::size_t column, std::span<float> out) const;
 
   private:
     std::vector<int> orders_;
-    std::vector<std::size_t> first_;
-    std::size_t size_;
+    std::vector<std::size_t> first_;  // column of each order
+    std::size_t row_size_;
+    std::vector<float> values_;
 };
 
-/// Fits one lobe at one view; out: layout.size() values.
-void fit_node(const LobeShape& shape, double cos_theta_o, const NodeLayout& layout, std::span<float> out);
-
-class FitTable {
-  public:
-    FitTable(NodeLayout layout, std::vector<float> nodes);
-
-    const NodeLayout& layout() const { return layout_; }
-    std::span<const float> nodes() const { return nodes_; }
-    /// What is known at one view angle.
-    std::span<const float> node(int index) const {
-        return nodes().subspan(static_cast<std::size_t>(index) * layout_.size(), layout_.size());
-    }
-
-  private:
-    NodeLayout layout_;
-    std::vector<float> nodes_;  // kWarpedViews × layout.size()
-};
-
+/// Fits one lobe at one view, into a row.
+void fit_row(const LobeShape& shape, int view, FitTable& table);
 /// Fits all views of one shape.
 FitTable fit_table(const LobeShape& shape, std::span<const int> orders);
+/// The same of kWarpedOrders, interpolated over roughness. Precondition: no mirror, not Fresnel::dielectric.
+FitTable ggx_fit_table(const GgxShape& shape);
 
 }  // namespace shlight

@@ -6,8 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include "lobes/fit_table.h"
 #include "lobes/view_kernel.h"
-#include "lobes/view_table.h"
 
 namespace shlight {
 
@@ -33,9 +33,10 @@ ViewOutput ViewPositions::arrays() {
     return {sine_.data(), fitted_sine_.data(), fitted_cosine_.data(), log_cosine_.data(), row_.data(), weights_.data()};
 }
 
-void ViewPositions::interpolate(const float* table, std::size_t width, std::span<const std::uint32_t> views, float* out,
-                                std::size_t stride) const {
-    interpolate_views(table, width, row_.data(), weights_.data(), views, out, stride);
+void ViewPositions::interpolate(const FitTable& table, std::size_t column, std::size_t width,
+                                std::span<const std::uint32_t> views, float* out, std::size_t stride) const {
+    interpolate_views(table.values().data() + column, table.row_size(), width, row_.data(), weights_.data(), views, out,
+                      stride);
 }
 
 void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPositions& positions,
@@ -57,24 +58,23 @@ void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPos
 void LobeViews::find_albedos() {
     const std::size_t count = positions_->size();
     albedo_.resize(count);
-    const ViewTable* table = fit_ == nullptr ? nullptr : fit_->table();
+    const FitTable* table = fit_ == nullptr ? nullptr : fit_->table();
     if (table == nullptr) {
         std::transform(positions_->cosine().begin(), positions_->cosine().end(), albedo_.begin(),
                        [&](double cosine) { return static_cast<float>(lobe_->albedo(cosine)); });
         return;
     }
-    heads_.grow(count * ViewTable::kHeadWidth);
-    positions_->interpolate(table->heads(), ViewTable::kHeadWidth, positions_->all(), heads_.data(),
-                            ViewTable::kHeadWidth);
+    heads_.grow(count * FitTable::kHeadWidth);
+    positions_->interpolate(*table, 0, FitTable::kHeadWidth, positions_->all(), heads_.data(), FitTable::kHeadWidth);
     for (std::size_t view = 0; view < count; ++view) {
-        albedo_[view] = heads_.data()[view * ViewTable::kHeadWidth + ViewTable::kAlbedo];
+        albedo_[view] = heads_.data()[view * FitTable::kHeadWidth + FitTable::kAlbedo];
     }
 }
 
 /// allowances: how much of the material's albedo there is for each of the lobe's; infinite where it has none itself.
 void LobeViews::choose_orders(double tolerance, std::span<const float> allowances) {
     const std::size_t count = positions_->size();
-    const ViewTable* table = fit_ == nullptr ? nullptr : fit_->table();
+    const FitTable* table = fit_ == nullptr ? nullptr : fit_->table();
     const int only = fit_ == nullptr ? 0 : table == nullptr || !chooses_ ? fit_->orders().front() : -1;
     black_.assign(count, 0);
     within_tolerance_.assign(count, 1);
@@ -96,7 +96,7 @@ void LobeViews::choose_orders(double tolerance, std::span<const float> allowance
             within_tolerance_[view] = only != 1 || 0.5F <= tolerance_[view] ? 1 : 0;
             continue;
         }
-        const float* errors = heads_.data() + view * ViewTable::kHeadWidth + ViewTable::kShadingErrors;
+        const float* errors = heads_.data() + view * FitTable::kHeadWidth + FitTable::kShadingErrors;
         if (only >= 0) {
             within_tolerance_[view] = errors[0] <= tolerance_[view] ? 1 : 0;
         } else if (positions_->cosine()[view] >= kLeastFittedCosine) {
@@ -126,7 +126,7 @@ WarpArrays LobeViews::warp_arrays() {
 }
 
 void LobeViews::interpolate_terms(std::size_t which, std::span<const std::uint32_t> used) {
-    const ViewTable& table = *fit_->table();
+    const FitTable& table = *fit_->table();
     if (stride_ == 0) {
         // Wide enough for any of the orders.
         for (std::size_t i = 0; i < table.orders().size(); ++i) {
@@ -142,11 +142,11 @@ void LobeViews::interpolate_terms(std::size_t which, std::span<const std::uint32
             missing_.push_back(view);
         }
     }
-    positions_->interpolate(table.terms(which), table.width(which), missing_, terms_.data(), stride_);
+    positions_->interpolate(table, table.terms(which), table.width(which), missing_, terms_.data(), stride_);
 }
 
 LobeArrays LobeViews::arrays(int order, std::span<const std::uint32_t> used) {
-    const ViewTable* table = fit_->table();
+    const FitTable* table = fit_->table();
     if (table != nullptr) {
         interpolate_terms(table->which(order), used);
         const bool warped = is_glossy(shape());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/aligned_floats.h"
+#include "lobes/fit_table.h"
 #include "lobes/material_lobes.h"
 #include "lobes/view_kernel.h"
 #include "shlight/types.h"
@@ -28,9 +29,9 @@ class ViewPositions {
     Vec3d direction(std::size_t view) const { return {sine_[view], 0, cosine_[view]}; }
     /// As view_kernel.h reads them.
     ViewOutput arrays();
-    /// Rows `views` of a table of view_table.h.
-    void interpolate(const float* table, std::size_t width, std::span<const std::uint32_t> views, float* out,
-                     std::size_t stride) const;
+    /// `width` numbers from a column on of the rows `views`, as interpolate_views.
+    void interpolate(const FitTable& table, std::size_t column, std::size_t width, std::span<const std::uint32_t> views,
+                     float* out, std::size_t stride) const;
     /// 0, 1, 2 …
     std::span<const std::uint32_t> all() const { return std::span(all_).first(size_); }
 

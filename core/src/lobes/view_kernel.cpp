@@ -7,13 +7,133 @@
 // Highway's vocabulary, and what is compiled once per instruction set, come after it.
 #include <hwy/highway.h>
 
+#include <array>
+#include <cmath>
+
+#include <hwy/contrib/math/math-inl.h>
+
+#include "caps/cap_lanes-inl.h"
+#include "lobes/fit_table.h"
 #include "lobes/view_lanes-inl.h"
-#include "lobes/views-inl.h"
+#include "shlight/warped_fit.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 namespace {
+
+template <class Function>
+HWY_INLINE DoublePair each(const Function& function, const DoublePair& a) {
+    return {function(a.low), function(a.high)};
+}
+
+HWY_INLINE V<Doubles> sine_of_cosine(V<Doubles> cosine) {
+    const auto one = all(Doubles(), 1);
+    return hn::Sqrt(hn::Mul(hn::Sub(one, cosine), hn::Add(one, cosine)));
+}
+
+/// The view's neighbour that is fitted, and where it lies in a table of one row for each fitted view, before which
+/// stands the row of the view beyond the normal: the first of four rows, and four cubic weights.
+struct ViewLanes {
+    DoublePair cosine, sine;
+    V<Floats> log_cosine;
+    V<hn::RebindToSigned<Floats>> row;
+    std::array<V<Floats>, 4> weights;
+};
+
+HWY_INLINE ViewLanes view_in_lanes(const DoublePair& cos_theta_o) {
+    const Floats d;
+    const hn::RebindToSigned<Floats> di;
+    const auto step = static_cast<float>((kWarpedViews - 1) / std::acosh(1 / kLeastFittedCosine));
+    ViewLanes view;
+    view.cosine =
+        each([](V<Doubles> c)
+                 HWY_ATTR { return hn::Min(hn::Max(c, all(Doubles(), kLeastFittedCosine)), all(Doubles(), 1)); },
+             cos_theta_o);
+    view.sine = each([](V<Doubles> c) HWY_ATTR { return sine_of_cosine(c); }, view.cosine);
+    view.log_cosine = hn::Log(d, rounded(view.cosine));
+    // artanh(sinθ) = log((1 + sinθ) / cosθ).
+    const auto stretch = hn::Sub(hn::Log(d, hn::Add(rounded(view.sine), all(d, 1))), view.log_cosine);
+    const auto position = hn::Max(hn::Zero(d), hn::Mul(stretch, hn::Set(d, step)));
+    // Counted from the row beyond the normal; the stencil begins one row before the view.
+    view.row = hn::Min(hn::ConvertTo(di, position), hn::Set(di, kWarpedViews - 3));
+    const auto t = hn::Sub(position, hn::Sub(hn::ConvertTo(d, view.row), all(d, 1)));
+    const auto t1 = hn::Sub(t, all(d, 1));
+    const auto t2 = hn::Sub(t, all(d, 2));
+    const auto t3 = hn::Sub(t, all(d, 3));
+    const auto outer = hn::Mul(t1, t2);
+    const auto inner = hn::Mul(t, t3);
+    view.weights = {hn::Mul(hn::Mul(outer, t3), all(d, -1.0 / 6)), hn::Mul(hn::Mul(inner, t2), all(d, 0.5)),
+                    hn::Mul(hn::Mul(inner, t1), all(d, -0.5)), hn::Mul(hn::Mul(outer, t), all(d, 1.0 / 6))};
+    return view;
+}
+
+/// x^(-2/3) for 1 ≤ x < 1000 or so: Newton's method for r⁻³ = x², from a third of the exponent.
+HWY_INLINE V<Floats> power_minus_two_thirds(V<Floats> x) {
+    const Floats d;
+    const hn::RebindToSigned<Floats> di;
+    // The bits of a float are about its logarithm: those of r are k - ⅔ those of x, with k found by least error.
+    const auto bits = hn::ConvertTo(d, hn::BitCast(di, x));
+    auto r = hn::BitCast(d, hn::ConvertTo(di, hn::MulAdd(bits, all(d, -2.0 / 3), all(d, 1.77491e9))));
+    const auto square = hn::Mul(x, x);
+    for (int i = 0; i < 3; ++i) {
+        const auto cube = hn::Mul(hn::Mul(r, r), r);
+        r = hn::Mul(hn::Mul(r, all(d, 1.0 / 3)), hn::NegMulAdd(square, cube, all(d, 4)));
+    }
+    return r;
+}
+
+/// The narrowness w / (1 + w^1.5)^(2/3) of the width w = 5 α cos^0.4 θ_o, of which lobe_warp() makes its warp. A
+/// float's rounding of it is one of the warp, which all that is warped shares.
+HWY_INLINE V<Floats> narrowness_in_lanes(double alpha, V<Floats> log_cosine) {
+    const Floats d;
+    const auto width = hn::Mul(all(d, 5 * alpha), hn::Exp(d, hn::Mul(all(d, 0.4), log_cosine)));
+    return hn::Mul(width, power_minus_two_thirds(hn::MulAdd(width, hn::Sqrt(width), all(d, 1))));
+}
+
+/// As Warp's constructor, with one division for all quotients.
+HWY_INLINE WarpLanes<Doubles> warp_in_lanes(V<Doubles> sine, V<Doubles> cosine, V<Doubles> narrowness) {
+    const Doubles d;
+    const auto one = all(d, 1);
+    const auto r = hn::Sub(one, narrowness);
+    const auto scale = hn::MulAdd(r, r, one);
+    const auto reach = hn::Mul(narrowness, hn::Add(one, r));
+    // The horizon's middle times `reach`.
+    const auto tall = hn::Mul(scale, cosine);
+    const auto wide = hn::Mul(reach, sine);
+    const auto length = hn::Sqrt(hn::MulAdd(tall, tall, hn::Mul(wide, wide)));
+    const auto both = hn::Mul(scale, reach);
+    const auto inverse = hn::Div(one, hn::Mul(both, length));
+    const auto over_both = hn::Mul(inverse, length);
+    const auto over_scale = hn::Mul(over_both, reach);
+    const auto over_length = hn::Mul(inverse, both);
+    const auto speed = hn::Mul(hn::Add(r, r), over_scale);
+    const auto horizon_z = hn::Mul(tall, over_length);
+    return {sine,
+            cosine,
+            speed,
+            hn::Mul(hn::Mul(narrowness, narrowness), over_scale),
+            hn::Mul(hn::Mul(over_both, scale), scale),
+            hn::Mul(wide, over_length),
+            horizon_z,
+            hn::Neg(hn::Mul(speed, horizon_z)),
+            hn::Mul(reach, over_length)};
+}
+
+/// The warps of a vector's views.
+struct WarpPair {
+    WarpLanes<Doubles> low, high;
+};
+
+/// sine, cosine: of the fitted view.
+HWY_INLINE WarpPair warps_in_lanes(double alpha, V<Floats> log_cosine, const DoublePair& sine,
+                                   const DoublePair& cosine) {
+    const Doubles d;
+    const HalfFloats half;
+    const auto narrowness = narrowness_in_lanes(alpha, log_cosine);
+    return {warp_in_lanes(sine.low, cosine.low, hn::PromoteTo(d, hn::LowerHalf(half, narrowness))),
+            warp_in_lanes(sine.high, cosine.high, hn::PromoteTo(d, hn::UpperHalf(half, narrowness)))};
+}
 
 constexpr std::size_t kLanes = kLaneCount<Floats>;
 static_assert(kViewLanes % kLanes == 0);
@@ -60,14 +180,11 @@ void warp_views_in_lanes(double alpha, const ViewOutput& views, std::size_t coun
     }
 }
 
-/// kWidth: of the table, so that the loop over it unrolls; or 0.
-template <std::size_t kWidth>
-void interpolate(const float* table, std::size_t any_width, const std::uint32_t* rows, const float* weights,
-                 std::span<const std::uint32_t> views, float* out, std::size_t stride) {
+void interpolate_in_lanes(const float* table, std::size_t row_size, std::size_t width, const std::uint32_t* rows,
+                          const float* weights, std::span<const std::uint32_t> views, float* out, std::size_t stride) {
     const Floats d;
-    const std::size_t width = kWidth == 0 ? any_width : kWidth;
     for (const std::uint32_t view : views) {
-        const float* from = table + rows[view] * width;
+        const float* from = table + rows[view] * row_size;
         const float* w = weights + std::size_t{4} * view;
         float* to = out + view * stride;
         const auto w0 = hn::Set(d, w[0]);
@@ -75,29 +192,12 @@ void interpolate(const float* table, std::size_t any_width, const std::uint32_t*
         const auto w2 = hn::Set(d, w[2]);
         const auto w3 = hn::Set(d, w[3]);
         for (std::size_t i = 0; i < width; i += kLanes) {
-            auto sum = hn::Mul(w0, hn::Load(d, from + i));
-            sum = hn::MulAdd(w1, hn::Load(d, from + width + i), sum);
-            sum = hn::MulAdd(w2, hn::Load(d, from + 2 * width + i), sum);
-            sum = hn::MulAdd(w3, hn::Load(d, from + 3 * width + i), sum);
+            auto sum = hn::Mul(w0, hn::LoadU(d, from + i));
+            sum = hn::MulAdd(w1, hn::LoadU(d, from + row_size + i), sum);
+            sum = hn::MulAdd(w2, hn::LoadU(d, from + 2 * row_size + i), sum);
+            sum = hn::MulAdd(w3, hn::LoadU(d, from + 3 * row_size + i), sum);
             hn::Store(sum, d, to + i);
         }
-    }
-}
-
-void interpolate_in_lanes(const float* table, std::size_t width, const std::uint32_t* rows, const float* weights,
-                          std::span<const std::uint32_t> views, float* out, std::size_t stride) {
-    // Orders up to 4, 6, 8 and 16, and heads.
-    switch (width) {
-        case 16:
-            return interpolate<16>(table, width, rows, weights, views, out, stride);
-        case 32:
-            return interpolate<32>(table, width, rows, weights, views, out, stride);
-        case 48:
-            return interpolate<48>(table, width, rows, weights, views, out, stride);
-        case 144:
-            return interpolate<144>(table, width, rows, weights, views, out, stride);
-        default:
-            return interpolate<0>(table, width, rows, weights, views, out, stride);
     }
 }
 
@@ -120,9 +220,9 @@ void warp_views(double alpha, const ViewOutput& views, std::size_t count, const 
     HWY_DYNAMIC_DISPATCH(warp_views_in_lanes)(alpha, views, count, out);
 }
 
-void interpolate_views(const float* table, std::size_t width, const std::uint32_t* rows, const float* weights,
-                       std::span<const std::uint32_t> views, float* out, std::size_t stride) {
-    HWY_DYNAMIC_DISPATCH(interpolate_in_lanes)(table, width, rows, weights, views, out, stride);
+void interpolate_views(const float* table, std::size_t row_size, std::size_t width, const std::uint32_t* rows,
+                       const float* weights, std::span<const std::uint32_t> views, float* out, std::size_t stride) {
+    HWY_DYNAMIC_DISPATCH(interpolate_in_lanes)(table, row_size, width, rows, weights, views, out, stride);
 }
 
 }  // namespace shlight

@@ -40,9 +40,9 @@ struct WarpOutput {
 /// float here.
 void warp_views(double alpha, const ViewOutput& views, std::size_t count, const WarpOutput& out);
 
-/// Interpolated rows: for each i of `views` the weighted sum of four rows of a table of `width` columns, a multiple of
-/// 16, written to out + i · stride. table and out: aligned to 64 bytes, stride a multiple of 16.
-void interpolate_views(const float* table, std::size_t width, const std::uint32_t* rows, const float* weights,
-                       std::span<const std::uint32_t> views, float* out, std::size_t stride);
+/// Interpolated rows: for each i of `views` the weighted sum of the first `width` numbers, a multiple of 16, of four
+/// rows of a table, written to out + i · stride. out: aligned to 64 bytes, stride a multiple of 16.
+void interpolate_views(const float* table, std::size_t row_size, std::size_t width, const std::uint32_t* rows,
+                       const float* weights, std::span<const std::uint32_t> views, float* out, std::size_t stride);
 
 }  // namespace shlight

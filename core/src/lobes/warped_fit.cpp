@@ -8,9 +8,7 @@
 
 #include "base/recent_values.h"
 #include "lobes/fit_table.h"
-#include "lobes/ggx_table.h"
 #include "lobes/lambert.h"
-#include "lobes/view_table.h"
 #include "math/legendre.h"
 
 namespace shlight {
@@ -21,7 +19,7 @@ FitTable make_table(const LobeShape& shape, int order) {
         return fit_table(shape, std::array{order});
     }
     const auto* ggx = std::get_if<GgxShape>(&shape);
-    return ggx != nullptr && ggx->fresnel != Fresnel::dielectric ? GgxTable::get().fits(*ggx)
+    return ggx != nullptr && ggx->fresnel != Fresnel::dielectric ? ggx_fit_table(*ggx)
                                                                  : fit_table(shape, kWarpedOrders);
 }
 
@@ -44,7 +42,7 @@ WarpedFit::WarpedFit(const LobeShape& shape, int order)
         check_order(order);
     }
     if (!std::holds_alternative<LambertShape>(shape)) {
-        table_ = std::make_shared<const ViewTable>(make_table(shape, order));
+        table_ = std::make_shared<const FitTable>(make_table(shape, order));
     }
 }
 
@@ -56,21 +54,18 @@ std::vector<int> WarpedFit::orders() const {
 }
 
 double WarpedFit::albedo(double cos_theta_o) const {
-    return table_ ? table_->head(cos_theta_o)[ViewTable::kAlbedo] : 1.0;
+    return table_ ? number(cos_theta_o, FitTable::kAlbedo) : 1.0;
 }
 
 double WarpedFit::shading_error(double cos_theta_o, int order) const {
-    if (!table_) {
-        return lambert_error(order);
-    }
-    return std::max(0.0F, table_->head(cos_theta_o)[ViewTable::kShadingErrors + table_->which(order)]);
+    return table_ ? std::max(0.0, number(cos_theta_o, FitTable::kShadingErrors + table_->which(order)))
+                  : lambert_error(order);
 }
 
-double WarpedFit::residual(double cos_theta_o, int order) const {
-    if (!table_) {
-        return lambert_error(order);
-    }
-    return std::max(0.0F, table_->head(cos_theta_o)[ViewTable::kResiduals + table_->which(order)]);
+double WarpedFit::number(double cos_theta_o, std::size_t column) const {
+    float value;
+    table_->look_up(cos_theta_o, column, {&value, 1});
+    return value;
 }
 
 int WarpedFit::order_for(double cos_theta_o, double tolerance) const {
@@ -91,7 +86,8 @@ Warp WarpedFit::warp(double cos_theta_o) const {
 
 void WarpedFit::coefficients(double cos_theta_o, int order, float* cosine_terms) const {
     if (table_) {
-        table_->terms(cos_theta_o, table_->which(order), cosine_terms);
+        table_->look_up(cos_theta_o, table_->terms(table_->which(order)),
+                        {cosine_terms, static_cast<std::size_t>(cosine_count(order))});
         return;
     }
     fit_lambert(order, cosine_terms);
@@ -101,10 +97,6 @@ std::shared_ptr<const WarpedFit> warped_fit(const LobeShape& shape, int order) {
     constexpr std::size_t kRecentFits = 64;
     static RecentValues<std::pair<LobeShape, int>, WarpedFit> recent(kRecentFits);
     return recent.get({shape, order}, [&] { return std::make_shared<const WarpedFit>(shape, order); });
-}
-
-std::size_t prepare_ggx_table() {
-    return GgxTable::get().build();
 }
 
 }  // namespace shlight
