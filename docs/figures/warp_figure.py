@@ -89,7 +89,7 @@ def spheres(axes: list[Axes]) -> None:
     peak = broad.max()
     draw_sphere(axes[1], broad / peak, above, inside)
 
-    # A least-squares fit where the lobe lives, as in core/src/warped_node.cpp.
+    # A least-squares fit where the lobe lives, as in core/src/lobes/fit_solver.cpp.
     rng = np.random.default_rng(1)
     samples = rng.normal(size=(20000, 3))
     samples /= np.linalg.norm(samples, axis=-1, keepdims=True)

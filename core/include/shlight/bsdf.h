@@ -42,6 +42,8 @@ class Bsdf {
   public:
     Bsdf() = default;  ///< black
 
+    /// color · shape. Throws std::invalid_argument for a colour that is negative or not finite.
+    static Bsdf lobe(const LobeShape& shape, const Rgb& color);
     /// Throws std::invalid_argument for an albedo that is negative or not finite.
     static Bsdf lambert(const Rgb& albedo);
     /// GGX, height-correlated Smith, F = f0 + (1 - f0) s with s = (1 - cosθ_d)⁵, or with ior > 1 the exact dielectric

@@ -28,10 +28,6 @@ bool is_black(const Rgb& c) {
     return c == Rgb(0);
 }
 
-Lobe make_lobe(const LobeShape& shape, const Rgb& color) {
-    return {shape, is_mirror(shape) ? nullptr : warped_fit(shape), color, nullptr};
-}
-
 }  // namespace
 
 double Lobe::albedo(double cos_theta_o) const {
@@ -42,11 +38,16 @@ float ViewWeight::operator()(float cos_theta_o) const {
     return interpolate_even(nodes_, cos_theta_o);
 }
 
+Bsdf Bsdf::lobe(const LobeShape& shape, const Rgb& color) {
+    check_color("color", color);
+    Bsdf b;
+    b.lobes_.push_back({shape, is_mirror(shape) ? nullptr : warped_fit(shape), color, nullptr});
+    return b;
+}
+
 Bsdf Bsdf::lambert(const Rgb& albedo) {
     check_color("albedo", albedo);
-    Bsdf b;
-    b.lobes_.push_back(make_lobe(LambertShape{}, albedo));
-    return b;
+    return lobe(LambertShape{}, albedo);
 }
 
 Bsdf Bsdf::ggx(float roughness, const Rgb& f0, float ior) {
@@ -60,12 +61,12 @@ Bsdf Bsdf::ggx(float roughness, const Rgb& f0, float ior) {
     const double alpha = roughness < kLeastRoughness ? 0 : static_cast<double>(roughness) * roughness;
     Bsdf b;
     if (!is_black(f0)) {
-        b.lobes_.push_back(make_lobe(GgxShape{alpha, Fresnel::one}, f0));
+        b = lobe(GgxShape{alpha, Fresnel::one}, f0);
     }
     const Rgb rest = Rgb(1) - glm::min(f0, Rgb(1));
     if (!is_black(rest)) {
         const GgxShape edge = ior != 0 ? GgxShape{alpha, Fresnel::dielectric, ior} : GgxShape{alpha, Fresnel::schlick};
-        b.lobes_.push_back(make_lobe(edge, rest));
+        b = b + lobe(edge, rest);
     }
     return b;
 }
