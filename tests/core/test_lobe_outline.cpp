@@ -102,5 +102,19 @@ TEST(ContourIntegral, AVeryNarrowLobeIsAMirror) {
     }
 }
 
+TEST(ContourIntegral, ALobeWithoutAPeakIsAFactorOfTheEvenBell) {
+    // A cap above the horizon gets sin²σ cosθ from Lambert's surface, whatever the view.
+    for (const double tilt : {0.0, 0.5, 0.9}) {
+        for (const double half : {0.05, 0.6}) {
+            const OutlineArc around = whole_circle({std::sin(tilt), 0, std::cos(tilt)}, half);
+            const double truth = std::pow(std::sin(half), 2) * std::cos(tilt);
+            for (const double cosine : {0.1, 0.6, 1.0}) {
+                const double value = outline_integral(LambertShape{}, cosine, {&around, 1}, 1e-7).value;
+                EXPECT_LE(std::abs(value - truth), 1e-6) << tilt << " " << half << " " << cosine;
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace shlight
