@@ -250,7 +250,6 @@ def test_light_below_the_horizon_is_dark() -> None:
         ("samples", {"method": "cubature", "samples": 0}),
         ("sampling", {"method": "monte_carlo", "sampling": "everywhere"}),
         ("bsdf", {"method": "quadrature", "bsdf": Bsdf.ggx(0, 1)}),
-        ("bsdf", {"method": "outline", "bsdf": Bsdf.lambert(0.5)}),
     ],
 )
 def test_bad_shading_options(name: str, options: dict[str, Any]) -> None:
