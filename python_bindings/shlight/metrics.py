@@ -9,7 +9,15 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["mean_ratio", "reference_rel_mse", "rel_mse", "relative_difference", "share_within", "standard_error"]
+__all__ = [
+    "mean_ratio",
+    "reference_rel_mse",
+    "rel_mse",
+    "rel_mse_without_noise",
+    "relative_difference",
+    "share_within",
+    "standard_error",
+]
 
 
 def rel_mse(image: npt.ArrayLike, reference: npt.ArrayLike) -> float:
@@ -48,6 +56,35 @@ def reference_rel_mse(half_a: npt.ArrayLike, half_b: npt.ArrayLike) -> float:
     return float(np.mean((a - b) ** 2 / 4 / _scale2((a + b) / 2)))
 
 
+def rel_mse_without_noise(
+    image: npt.ArrayLike, half_a: npt.ArrayLike, half_b: npt.ArrayLike
+) -> tuple[float, float]:
+    """`rel_mse` against the truth of which a and b are independent renderings of equal variance; its standard error.
+
+    `rel_mse` against r = (a + b) / 2 also counts the noise of r. Here it is the mean over pixels and channels of
+
+        (x - a)(x - b) (1 / s(a) + 1 / s(b)) / 2,    s(v) = v² + 0.01 r̄².
+
+    With δ the error of x and e, f the noise of a and b, one of the two terms is (δ - e) / s(a) times δ - f, and these
+    are independent: its expectation is δ E[(δ - e) / s(a)]. It vanishes with δ, however the noise is distributed, and
+    is else δ² / s up to the relative variance of the noise. `rel_mse` less `reference_rel_mse` has the same numerator,
+    (x - r)² - (a - b)² / 4, but divides by s(r), which the noise of both factors moves: for a perfect image that
+    leaves E[ef / s(r)], which the square of the noise's variance and its skewness decide.
+
+    The value scatters around the true one and may be negative. For Gaussian noise of variance v in r the variance of
+    the numerator is 4δ²v + 4v², the expectation of (x - r)² (a - b)²; the standard error is the root of the sum of
+    that over pixels, each the mean of its channels, whose noise is one. A firefly of a half is not clamped: it counts
+    once, not squared, and makes the standard error larger.
+    """
+    x, a = _pair(image, half_a, ("image", "half_a"))
+    x, b = _pair(image, half_b, ("image", "half_b"))
+    r = (a + b) / 2
+    mean = float(r.mean())
+    weight = (1 / _scale2(a, mean) + 1 / _scale2(b, mean)) / 2
+    spread = np.mean((x - r) * (a - b) * weight, axis=-1)
+    return float(np.mean((x - a) * (x - b) * weight)), float(np.sqrt(np.sum(spread**2)) / spread.size)
+
+
 def share_within(image: npt.ArrayLike, reference: npt.ArrayLike, error: npt.ArrayLike, *, factor: float = 3.0) -> float:
     """Share of pixels whose every channel is within `factor` standard errors of the reference.
 
@@ -77,11 +114,11 @@ def _pair(
     return arrays[0], arrays[1]
 
 
-def _scale2(reference: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    mean2 = float(reference.mean()) ** 2
-    if not mean2 > 0:
+def _scale2(reference: npt.NDArray[np.float64], mean: float | None = None) -> npt.NDArray[np.float64]:
+    mean = float(reference.mean()) if mean is None else mean
+    if not mean**2 > 0:
         raise ValueError("reference is black: no relative error is defined")
-    return reference**2 + 0.01 * mean2
+    return reference**2 + 0.01 * mean**2
 
 
 def _box_mean(values: npt.NDArray[np.float64], radius: int) -> npt.NDArray[np.float64]:

@@ -52,6 +52,28 @@ def test_noise_of_the_reference_is_found(reference: np.ndarray) -> None:
     assert metrics.share_within(reference + 0.3, (a + b) / 2, error) < 0.01
 
 
+@pytest.mark.parametrize("error", [0.0, 0.02])
+def test_noise_is_taken_out(reference: np.ndarray, error: float) -> None:
+    # Skewed noise, one in all channels of a pixel, whose variance is ten to a hundred times the squared error.
+    rng = np.random.default_rng(5)
+    image = reference * (1 + error * rng.standard_normal(reference.shape))
+
+    def half() -> np.ndarray:
+        return reference * rng.gamma(25, 1 / 25, (*reference.shape[:2], 1))
+
+    halves = [(half(), half()) for _ in range(200)]
+    values, errors = np.transpose([metrics.rel_mse_without_noise(image, a, b) for a, b in halves])
+    # The spread of the values is what each tells of itself, and their mean is right within it.
+    assert np.sqrt(np.mean(errors**2)) == pytest.approx(np.std(values), rel=0.2)
+    truth = metrics.rel_mse(image, reference)
+    limit = 3 * np.std(values) / np.sqrt(len(values)) + 0.04 * 3 * truth
+    assert abs(np.mean(values) - truth) <= limit
+    differences = [
+        metrics.rel_mse(image, (a + b) / 2) - metrics.reference_rel_mse(a, b) for a, b in halves
+    ]
+    assert abs(np.mean(differences) - truth) > limit
+
+
 def test_standard_error_at_the_border_averages_existing_neighbours_only() -> None:
     a = np.zeros((4, 4, 3))
     b = np.full((4, 4, 3), 0.2)
