@@ -56,9 +56,7 @@ def reference_rel_mse(half_a: npt.ArrayLike, half_b: npt.ArrayLike) -> float:
     return float(np.mean((a - b) ** 2 / 4 / _scale2((a + b) / 2)))
 
 
-def rel_mse_without_noise(
-    image: npt.ArrayLike, half_a: npt.ArrayLike, half_b: npt.ArrayLike
-) -> tuple[float, float]:
+def rel_mse_without_noise(image: npt.ArrayLike, half_a: npt.ArrayLike, half_b: npt.ArrayLike) -> tuple[float, float]:
     """`rel_mse` against the truth of which a and b are independent renderings of equal variance; its standard error.
 
     `rel_mse` against r = (a + b) / 2 also counts the noise of r. Here it is the mean over pixels and channels of

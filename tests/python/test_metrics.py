@@ -68,9 +68,7 @@ def test_noise_is_taken_out(reference: np.ndarray, error: float) -> None:
     truth = metrics.rel_mse(image, reference)
     limit = 3 * np.std(values) / np.sqrt(len(values)) + 0.04 * 3 * truth
     assert abs(np.mean(values) - truth) <= limit
-    differences = [
-        metrics.rel_mse(image, (a + b) / 2) - metrics.reference_rel_mse(a, b) for a, b in halves
-    ]
+    differences = [metrics.rel_mse(image, (a + b) / 2) - metrics.reference_rel_mse(a, b) for a, b in halves]
     assert abs(np.mean(differences) - truth) > limit
 
 

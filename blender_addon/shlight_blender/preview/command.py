@@ -10,14 +10,16 @@ from pathlib import Path
 from typing import Any
 
 from shlight import images
-from shlight.commands import CommandError, check_folder, run_command, work_folder
+from shlight.commands import INTERRUPTED, CommandError, check_folder, run_command, work_folder
 
-from .figures import add_circumstances, add_measurements, table
+from .figures import Image, add_circumstances, add_measurements, table
 from .options import Options, parse
+from .picture import common_exposure, comparison
 from .progress import Progress
 from .supervision import run_worker
 
-RESULTS = ("shlight.exr", "cycles_same_time.exr", "reference.exr", "preview.png", "figures.json")
+FIRST_RESULTS = ("shlight.exr", "shlight.png")
+RESULTS = (*FIRST_RESULTS, "cycles_same_time.exr", "reference.exr", "preview.png", "figures.json")
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -31,10 +33,9 @@ def _work(arguments: list[str]) -> None:
     out = Path(options.out)
     _check(options, out)
     with work_folder(out) as folder:
-        figures = _run(options, folder)
-        _publish(folder, out)
+        figures = _Preview(options, folder, out).run()
     print(table(figures))
-    print(f"\nresults: {out}/{{{','.join(RESULTS)}}}")
+    print(f"\ncomparison: {out / 'preview.png'}\nall results: {out}/{{{','.join(RESULTS)}}}")
 
 
 def _check(options: Options, out: Path) -> None:
@@ -46,38 +47,65 @@ def _check(options: Options, out: Path) -> None:
         raise CommandError("the Python module bpy is missing: pip install 'shlight[blender]'", 1)
 
 
-def _run(options: Options, work: Path) -> dict[str, Any]:
-    """Renders and measures; leaves all results in `work`."""
-    progress = Progress()
-    try:
-        figures = run_worker(options, work, progress)
-        progress.stage("measuring")
-        _measure(options, work, figures)
-        progress.end()
-        return figures
-    except CommandError as error:
-        raise CommandError(f"{options.scene}: {error}", error.exit_code) from error
+class _Preview:
+    """One preview: what is rendered in the folder `work` goes to `out` as soon as it is complete."""
 
+    def __init__(self, options: Options, work: Path, out: Path) -> None:
+        self._options = options
+        self._work = work
+        self._out = out
+        self._progress = Progress()
+        self._shlight: Image | None = None  # once it is in place
 
-def _measure(options: Options, work: Path, figures: dict[str, Any]) -> None:
-    from .picture import comparison
+    def run(self) -> dict[str, Any]:
+        """Renders, measures, and puts all results in place; returns the figures."""
+        try:
+            figures = run_worker(self._options, self._work, self._progress, self._show_shlight)
+            self._progress.stage("measuring")
+            self._measure(figures)
+            self._publish(RESULTS[len(FIRST_RESULTS) :])
+            self._progress.end()
+            return figures
+        except CommandError as error:
+            raise CommandError(f"{self._options.scene}: {error}", error.exit_code) from error
+        except KeyboardInterrupt:
+            if self._shlight is None:
+                raise
+            raise CommandError(f"interrupted; shlight's picture stays: {self._picture_path}", INTERRUPTED) from None
 
-    ours, cycles, *halves = (
-        images.read_exr(work / name) for name in ("shlight.exr", "cycles_same_time.exr", "half_1.exr", "half_2.exr")
-    )
-    try:
-        reference = add_measurements(figures, ours, cycles, (halves[0], halves[1]))
-    except ValueError as error:  # black or not finite
-        raise CommandError(str(error), 1) from error
-    add_circumstances(figures, options)
-    picture = comparison(options.scene_name, figures, ours, cycles, reference)
-    for name, image in (("shlight.exr", ours), ("cycles_same_time.exr", cycles), ("reference.exr", reference)):
-        images.write_exr(work / name, image)
-    images.write_png(work / "preview.png", picture)
-    (work / "figures.json").write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
+    @property
+    def _picture_path(self) -> Path:
+        return self._out / "shlight.png"
 
+    def _show_shlight(self, seconds: float) -> None:
+        """shlight's picture in place of an earlier run's results, and its name on the terminal."""
+        image = images.read_exr(self._work / "shlight.exr")
+        images.write_exr(self._work / "shlight.exr", image)
+        shown = images.linear_to_srgb8(image[..., :3], common_exposure(image))
+        images.write_png(self._work / "shlight.png", shown)
+        self._out.mkdir(parents=True, exist_ok=True)
+        for name in RESULTS:
+            (self._out / name).unlink(missing_ok=True)
+        self._publish(FIRST_RESULTS)
+        self._shlight = image
+        self._progress.note(f"shlight's picture, rendered in {seconds:.2f} s: {self._picture_path} and shlight.exr")
 
-def _publish(work: Path, out: Path) -> None:
-    out.mkdir(parents=True, exist_ok=True)
-    for name in RESULTS:
-        (work / name).replace(out / name)
+    def _publish(self, names: tuple[str, ...]) -> None:
+        for name in names:
+            (self._work / name).replace(self._out / name)
+
+    def _measure(self, figures: dict[str, Any]) -> None:
+        cycles, *halves = (
+            images.read_exr(self._work / name) for name in ("cycles_same_time.exr", "half_1.exr", "half_2.exr")
+        )
+        assert self._shlight is not None
+        try:
+            reference = add_measurements(figures, self._shlight, cycles, (halves[0], halves[1]))
+        except ValueError as error:  # black or not finite
+            raise CommandError(str(error), 1) from error
+        add_circumstances(figures, self._options)
+        picture = comparison(self._options.scene_name, figures, self._shlight, cycles, reference)
+        images.write_exr(self._work / "cycles_same_time.exr", cycles)
+        images.write_exr(self._work / "reference.exr", reference)
+        images.write_png(self._work / "preview.png", picture)
+        (self._work / "figures.json").write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")

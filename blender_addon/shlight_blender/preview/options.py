@@ -24,7 +24,8 @@ class Options:
     lights: list[str] | None  # names of the lamps that shine
     size: tuple[int, int] | None
     frame: int | None
-    samples: int  # of the reference
+    samples: int  # of the reference, at most
+    reference_seconds: float  # for the reference; 0: as long as the samples take
     threads: int  # 0: all
     order: str | None
     tolerance: float | None
@@ -67,7 +68,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = Parser(
         prog="shlight preview",
         description="Renders a scene with shlight, with Cycles in about the same time, and with Cycles at many "
-        "samples as the reference; writes the pictures, a comparison and all figures.",
+        "samples as the reference; writes the pictures, a comparison and all figures. shlight's picture is in place, "
+        "and named, before Cycles starts.",
     )
     add = parser.add_argument
     add(
@@ -87,7 +89,20 @@ def _parser() -> argparse.ArgumentParser:
         help="a lamp that shines, the others do not; may be given several times (default: all shine)",
     )
     add("--frame", type=int, metavar="N", help="frame of the animation (default: the scene's current one)")
-    add("--samples", type=_whole(2), default=4096, metavar="N", help="samples of the reference (default: %(default)s)")
+    add(
+        "--samples",
+        type=_whole(2),
+        default=4096,
+        metavar="N",
+        help="samples of the reference, at most (default: %(default)s)",
+    )
+    add(
+        "--reference-seconds",
+        type=_seconds,
+        default=30.0,
+        metavar="S",
+        help="time for the reference, which then ends with the samples it has; 0: no limit (default: %(default)g)",
+    )
     add("--threads", type=_whole(0), default=0, metavar="N", help="threads of all renders (default: 0, all cores)")
     group = parser.add_argument_group("settings of shlight (default: the scene's)")
     add = group.add_argument
@@ -112,6 +127,12 @@ def _whole(least: int) -> Any:
         return int(text)
 
     return parse_whole
+
+
+def _seconds(text: str) -> float:
+    if not re.fullmatch(r"\d{1,9}(\.\d{1,9})?", text):
+        raise argparse.ArgumentTypeError(f"'{text}' is no number of seconds, 0 or more")
+    return float(text)
 
 
 def _order(text: str) -> str:

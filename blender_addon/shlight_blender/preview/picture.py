@@ -11,6 +11,8 @@ import numpy.typing as npt
 
 from shlight import images, metrics
 
+from .figures import error_text
+
 Image = npt.NDArray[np.float32]
 
 # Pixels of the picture.
@@ -44,11 +46,11 @@ def comparison(
     exposure = common_exposure(reference)
     ours, theirs, long = (figures[key] for key in ("shlight", "cycles_same_time", "reference"))
     panels = [
-        (shlight, f"{name}: shlight", f"{_seconds(ours)}, relMSE {ours['rel_mse']:.1e}"),
+        (shlight, f"{name}: shlight", f"{_seconds(ours)}, relMSE {error_text(ours)}"),
         (
             cycles,
             "Cycles, same time",
-            f"{_seconds(theirs)}, {theirs['samples']} samples, relMSE {theirs['rel_mse']:.1e}",
+            f"{_seconds(theirs)}, {theirs['samples']} samples, relMSE {error_text(theirs)}",
         ),
         (
             reference,

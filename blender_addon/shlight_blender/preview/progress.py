@@ -28,6 +28,11 @@ class Progress:
             about = f" (about {expected_seconds:.0f} s)" if expected_seconds >= 1.0 else ""
             print(f"{name}{about}", file=self._stream, flush=True)
 
+    def note(self, text: str) -> None:
+        """Ends the stage that is shown, and says what is to be read now."""
+        self.end()
+        print(text, file=self._stream, flush=True)
+
     def tick(self) -> None:
         """Moves the bar; to be called a few times a second."""
         if not self._moving or not self._name:

@@ -16,6 +16,7 @@ from ..report import ExportReport
 from .options import Options
 
 DEFAULT_LONGER_SIDE = 512
+FEW_PIXELS = 16
 # Rays that find an object in their way, other than the camera's.
 LIGHT_RAYS = ("visible_diffuse", "visible_glossy", "visible_shadow")
 
@@ -115,6 +116,17 @@ def use_shlight(scene: Any, options: Options) -> None:
     if options.shadow_rays is not None:
         settings.use_shadows = options.shadow_rays > 0
         settings.shadow_rays = max(options.shadow_rays, 1)
+
+
+@contextmanager
+def few_pixels(render: Any) -> Iterator[None]:
+    """Meanwhile renders are of FEW_PIXELS on the longer side."""
+    size = render.resolution_x, render.resolution_y
+    render.resolution_x, render.resolution_y = (max(1, FEW_PIXELS * side // max(size)) for side in size)
+    try:
+        yield
+    finally:
+        render.resolution_x, render.resolution_y = size
 
 
 @contextmanager

@@ -22,8 +22,13 @@ TICK_SECONDS = 0.2
 LOG = "blender.log"
 
 
-def run_worker(options: Options, folder: Path, progress: Progress) -> dict[str, Any]:
-    """Has the worker render into `folder` and returns its figures; CommandError with its reason if it fails."""
+def run_worker(
+    options: Options, folder: Path, progress: Progress, on_shlight: Callable[[float], None]
+) -> dict[str, Any]:
+    """Has the worker render into `folder` and returns its figures; CommandError with its reason if it fails.
+
+    on_shlight(seconds) is called as soon as shlight's picture is in the folder.
+    """
     (folder / "request.json").write_text(json.dumps(options.to_data()), encoding="utf-8")
     read_end, write_end = os.pipe()
     with (folder / LOG).open("wb") as log:
@@ -38,7 +43,7 @@ def run_worker(options: Options, folder: Path, progress: Progress) -> dict[str, 
         )
     os.close(write_end)
     try:
-        return _follow(read_end, progress)
+        return _follow(read_end, progress, on_shlight)
     except EOFError:
         raise CommandError(_last_words(process, folder), 1) from None
     finally:
@@ -57,10 +62,12 @@ def _environment(folder: Path) -> dict[str, str]:
     }
 
 
-def _follow(read_end: int, progress: Progress) -> dict[str, Any]:
+def _follow(read_end: int, progress: Progress, on_shlight: Callable[[float], None]) -> dict[str, Any]:
     for message in _messages(read_end, progress.tick):
         if message["kind"] == "stage":
             progress.stage(message["name"], message["expected_seconds"])
+        elif message["kind"] == "shlight":
+            on_shlight(message["seconds"])
         elif message["kind"] == "error":
             raise CommandError(message["text"], message["exit_code"])
         else:

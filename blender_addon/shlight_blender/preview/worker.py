@@ -5,6 +5,7 @@ usage: python -m shlight_blender.preview.worker <folder> <file descriptor for me
 
 The folder holds request.json, the options; the pictures are written there. A message is a line of JSON:
     {"kind": "stage", "name": ..., "expected_seconds": ...}
+    {"kind": "shlight", "seconds": ...}: shlight.exr is there
     {"kind": "error", "text": ..., "exit_code": ...}
     {"kind": "result", "figures": ...}
 """
@@ -22,18 +23,21 @@ from pathlib import Path
 from typing import Any
 
 import bpy
+import numpy as np
+import numpy.typing as npt
 
 import shlight_blender
+from shlight import images
 
 from .. import record
 from .options import Options
-from .scene import SceneError, open_scene, prepare, use_cycles, use_shlight, without_shadows
-from .timing import alternate, calibrate, middle, rounds_for
+from .reference import render_halves
+from .scene import SceneError, few_pixels, open_scene, prepare, use_cycles, use_shlight, without_shadows
+from .timing import SampleTime, alternate, calibrate, middle, rounds_for
 
 PR_SET_PDEATHSIG = 1  # from linux/prctl.h
 
-# Random seeds: no two of the three Cycles pictures may share one.
-SEED_SAME_TIME, SEED_FIRST_HALF, SEED_SECOND_HALF = 0, 1, 2
+SEED_SAME_TIME = 0  # the reference counts its seeds from 1: no two pictures of Cycles may share one
 
 
 class Worker:
@@ -66,28 +70,32 @@ class Worker:
             "size": [render.resolution_x, render.resolution_y],
             "threads": self._options.threads or len(os.sched_getaffinity(0)),
             "blender": bpy.app.version_string,
-            "shlight": self._first_render(),
+            "shlight": self._shlight(),
         }
-        figures["shlight"], figures["cycles_same_time"], per_sample = self._same_time(figures["shlight"])
-        figures["reference"] = self._reference(per_sample)
+        time_of = self._same_time(figures)
+        figures["reference"] = self._reference(time_of)
         return figures
 
-    def _first_render(self) -> dict[str, Any]:
-        """What shlight reports of its first render, which also fills its tables."""
-        self._stage("shlight, first render")
-        use_shlight(self._scene, self._options)
+    def _shlight(self) -> dict[str, Any]:
+        """shlight's picture, and what it reports of it. A render of few pixels fills its tables before."""
+        self._stage("shlight")
         try:
-            seconds = _render()
+            with few_pixels(self._scene.render):
+                warm_up_seconds = self._render_shlight()
+            seconds = self._render_shlight()
         except RuntimeError as error:
             if record.last.scene_error:
                 raise SceneError(record.last.scene_error) from error
             raise
-        first, statistics = record.last, record.last.statistics
+        self._save("shlight.exr")
+        self._send(kind="shlight", seconds=seconds)
+        made, statistics = record.last, record.last.statistics
         return {
-            "settings": first.settings,
-            "unsupported": first.messages,
-            "first_seconds": seconds,
-            "export_seconds": first.export_seconds,
+            "settings": made.settings,
+            "unsupported": made.messages,
+            "warm_up_seconds": warm_up_seconds,
+            "times": [seconds],
+            "export_seconds": made.export_seconds,
             "build_seconds": statistics.build_seconds,
             "render_seconds": statistics.render_seconds,
             "stage_seconds": statistics.stage_seconds,
@@ -100,34 +108,34 @@ class Worker:
             "shadow_rays": statistics.shadow_rays,
         }
 
-    def _same_time(self, shlight_figures: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any], float]:
-        self._stage("shlight, timing", shlight_figures["first_seconds"])
-        target = self._render_shlight()
-        self._stage("Cycles, finding the samples for the same time", 2 * target)
+    def _same_time(self, figures: dict[str, Any]) -> SampleTime:
+        """Cycles at the samples that take shlight's time; what takes little time is repeated in turns."""
+        ours = figures["shlight"]["times"]
+        target = ours[0]
+        self._stage("Cycles, finding the samples for the same time", target / 2)
         time_of = calibrate(lambda samples: self._render_cycles(samples, SEED_SAME_TIME), target, self._options.samples)
         samples = min(time_of.samples(target), self._options.samples)
         rounds = rounds_for(target)
-        self._stage(f"shlight and Cycles in turns, {rounds} times", rounds * (target + time_of.seconds(samples)))
-        ours, theirs = alternate(
-            self._saved(self._render_shlight, "shlight.exr"),
-            self._saved(lambda: self._render_cycles(samples, SEED_SAME_TIME), "cycles_same_time.exr"),
-            rounds,
-        )
-        return (
-            shlight_figures | {"seconds": middle(ours), "times": ours},
-            {"samples": samples, "seconds": middle(theirs), "times": theirs},
-            time_of.per_sample,
-        )
+        again = f", and in turns with shlight {rounds - 1} times more" if rounds > 1 else ""
+        self._stage(f"Cycles, same time: {samples} samples{again}", (2 * rounds - 1) * target)
+        theirs = [self._render_cycles(samples, SEED_SAME_TIME)]
+        self._save("cycles_same_time.exr")
+        more = alternate(self._render_shlight, lambda: self._render_cycles(samples, SEED_SAME_TIME), rounds - 1)
+        ours += more[0]
+        theirs += more[1]
+        time_of.add(samples, middle(theirs))
+        figures["shlight"]["seconds"] = middle(ours)
+        figures["cycles_same_time"] = {"samples": samples, "seconds": middle(theirs), "times": theirs}
+        return time_of
 
-    def _reference(self, per_sample: float) -> dict[str, Any]:
-        """Two independent halves; their average is the reference, their difference tells its noise."""
-        half = (self._options.samples + 1) // 2
-        seconds = 0.0
-        for number, seed in enumerate((SEED_FIRST_HALF, SEED_SECOND_HALF), start=1):
-            self._stage(f"reference, half {number} of 2, {half} samples", half * per_sample)
-            render = self._saved(lambda seed=seed: self._render_cycles(half, seed), f"half_{number}.exr")
-            seconds += render()
-        return {"samples": 2 * half, "seconds": seconds, "seeds": [SEED_FIRST_HALF, SEED_SECOND_HALF]}
+    def _reference(self, time_of: SampleTime) -> dict[str, Any]:
+        samples, budget = self._options.samples, self._options.reference_seconds
+        expected = 2 * time_of.seconds((samples + 1) // 2)
+        self._stage(f"reference, at most {samples} samples", min(expected, budget or expected))
+        halves, figures = render_halves(self._cycles_picture, time_of, samples, budget)
+        for number, half in enumerate(halves, start=1):
+            images.write_exr(self._folder / f"half_{number}.exr", half)
+        return figures
 
     def _render_shlight(self) -> float:
         use_shlight(self._scene, self._options)
@@ -138,15 +146,17 @@ class Worker:
         with nullcontext() if self._scene.shlight.use_shadows else without_shadows():
             return _render()
 
-    def _saved(self, render: Any, name: str) -> Any:
-        """`render`, its picture saved afterwards, outside of its time."""
+    def _cycles_picture(self, samples: int, seed: int) -> tuple[float, npt.NDArray[np.float32]]:
+        """A render of Cycles with its picture, which Blender hands out through a file only, and the time of both."""
+        start = time.perf_counter()
+        self._render_cycles(samples, seed)
+        image = images.read_exr(self._save("cycles.exr"))
+        return time.perf_counter() - start, image
 
-        def render_and_save() -> float:
-            seconds: float = render()
-            bpy.data.images["Render Result"].save_render(str(self._folder / name), scene=self._scene)
-            return seconds
-
-        return render_and_save
+    def _save(self, name: str) -> Path:
+        path = self._folder / name
+        bpy.data.images["Render Result"].save_render(str(path), scene=self._scene)
+        return path
 
     def _stage(self, name: str, expected_seconds: float = 0.0) -> None:
         self._send(kind="stage", name=name, expected_seconds=expected_seconds)

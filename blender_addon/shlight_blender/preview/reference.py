@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The reference: two independent halves, each the average of renders with seeds of their own, until the time is over.
+
+Their average is the reference, their difference tells its noise. A render cannot be stopped and keep its samples, so
+the halves grow by pairs of renders, chunks, whose time is foretold from those before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .timing import SampleTime
+
+Image = npt.NDArray[np.float32]
+# render(samples, seed): the wall time that it took, and its picture.
+Render = Callable[[int, int], tuple[float, Image]]
+
+LARGEST_SHARE = 1 / 4  # of the budget for one chunk: what a render that takes twice the foretold time overshoots
+SMALLEST_SHARE = 1 / 16  # of the budget: less is not worth another chunk
+FIXED_SHARE = 1 / 8  # of a chunk for what a render takes without samples, as far as the budget allows
+GROWTH = 4  # times the samples measured before: further the time cannot be foretold
+
+
+def render_halves(
+    render: Render, time: SampleTime, most_samples: int, budget: float
+) -> tuple[list[Image], dict[str, Any]]:
+    """Both halves, and how they came about; at most `most_samples` in all, in about `budget` seconds (0: no limit).
+
+    Each half gets a sample at least. Seeds are counted from 1. The times of the renders are added to `time`.
+    """
+    most = (most_samples + 1) // 2
+    chunks: list[int] = []
+    sums: list[Any] = [0.0, 0.0]
+    spent = 0.0
+    while samples := _next_chunk(time, most - sum(chunks), spent, budget):
+        for half in range(2):
+            seconds, image = render(samples, 2 * len(chunks) + half + 1)
+            sums[half] = sums[half] + samples * image.astype(np.float64)
+            time.add(samples, seconds)
+            spent += seconds
+        chunks.append(samples)
+    done = sum(chunks)
+    return [(total / done).astype(np.float32) for total in sums], {
+        "samples": 2 * done,
+        "seconds": spent,
+        "chunks": chunks,  # samples of each half
+        "stopped_by": "samples" if done == most else "seconds",
+    }
+
+
+def _next_chunk(time: SampleTime, left: int, spent: float, budget: float) -> int:
+    """Samples of the next two renders, 0 for none."""
+    rest = budget - spent
+    if budget == 0:
+        return left
+    if spent > 0 and rest < SMALLEST_SHARE * budget:
+        return 0
+    seconds = min(max(LARGEST_SHARE * budget, 2 * time.fixed / FIXED_SHARE), rest)
+    fitting = min(int(time.samples_in(seconds / 2)), GROWTH * time.largest)
+    return min(max(fitting, 0 if spent > 0 else 1), left)
