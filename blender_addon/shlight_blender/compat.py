@@ -178,6 +178,19 @@ def write_pass(render_pass: Any, pixels: NDArray[np.float32]) -> None:
     render_pass.rect.foreach_set(pixels.ravel() if IS_BLENDER_4 else pixels)
 
 
+def set_sample_range(cycles: Any, first: int, count: int, of: int) -> None:
+    """The next render of Cycles takes `count` samples from number `first` on of a sequence laid out for `of`.
+
+    Before Blender 4.5 the sequence is laid out for `count`: ranges of one sequence then are merely independent.
+    """
+    cycles.sample_offset = first
+    if hasattr(cycles, "use_sample_subset"):
+        cycles.use_sample_subset = True
+        cycles.samples, cycles.sample_subset_length = of, count
+    else:
+        cycles.samples = count
+
+
 def uses_nodes(owner: Any) -> bool:
     """True if a material, world or lamp is defined by its node tree.
 

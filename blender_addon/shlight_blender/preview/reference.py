@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The reference: two independent halves, each the average of renders with seeds of their own, until the time is over.
+"""The reference: two independent halves, each rendered on and on until the time is over.
 
-Their average is the reference, their difference tells its noise. A render cannot be stopped and keep its samples, so
-the halves grow by pairs of renders, chunks, whose time is foretold from those before.
+Their average is the reference, their difference tells its noise. A render that is stopped does not tell how many
+samples it had, so the halves grow by pairs of renders, chunks, whose time is foretold from those before. A half's
+chunks follow each other in one sequence of samples: its error falls faster than that of as many independent samples.
 """
 
 from __future__ import annotations
@@ -16,8 +17,8 @@ import numpy.typing as npt
 from .timing import SampleTime
 
 Image = npt.NDArray[np.float32]
-# render(samples, seed): the wall time that it took, and its picture.
-Render = Callable[[int, int], tuple[float, Image]]
+# render(half, first, samples): samples of half 0 or 1 from number `first` on; the wall time it took, and its picture.
+Render = Callable[[int, int, int], tuple[float, Image]]
 
 LARGEST_SHARE = 1 / 4  # of the budget for one chunk: what a render that takes twice the foretold time overshoots
 SMALLEST_SHARE = 1 / 16  # of the budget: less is not worth another chunk
@@ -30,20 +31,20 @@ def render_halves(
 ) -> tuple[list[Image], dict[str, Any]]:
     """Both halves, and how they came about; at most `most_samples` in all, in about `budget` seconds (0: no limit).
 
-    Each half gets a sample at least. Seeds are counted from 1. The times of the renders are added to `time`.
+    Each half gets a sample at least. The times of the renders are added to `time`.
     """
     most = (most_samples + 1) // 2
     chunks: list[int] = []
     sums: list[Any] = [0.0, 0.0]
-    spent = 0.0
-    while samples := _next_chunk(time, most - sum(chunks), spent, budget):
+    done, spent = 0, 0.0
+    while samples := _next_chunk(time, most - done, spent, budget):
         for half in range(2):
-            seconds, image = render(samples, 2 * len(chunks) + half + 1)
+            seconds, image = render(half, done, samples)
             sums[half] = sums[half] + samples * image.astype(np.float64)
             time.add(samples, seconds)
             spent += seconds
+        done += samples
         chunks.append(samples)
-    done = sum(chunks)
     return [(total / done).astype(np.float32) for total in sums], {
         "samples": 2 * done,
         "seconds": spent,

@@ -11,6 +11,7 @@ from typing import Any
 
 import bpy
 
+from ..compat import set_sample_range
 from ..export.materials import read_material
 from ..report import ExportReport
 from .options import Options
@@ -148,16 +149,18 @@ def _glows(seen: Any) -> bool:
     return any(read_material(material, ExportReport()).emits() for material in materials)
 
 
-def use_cycles(scene: Any, samples: int, seed: int) -> None:
-    """The next render is Cycles': direct light only, the same pixel filter, nothing that trades truth for calm."""
+def use_cycles(scene: Any, samples: int, seed: int, *, first: int = 0, of: int | None = None) -> None:
+    """The next render is Cycles': direct light only, the same pixel filter, nothing that trades truth for calm.
+
+    The samples are those from number `first` on of a sequence of `of` (by default of `samples`).
+    """
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
     cycles.device = "CPU"
-    cycles.samples = samples
+    set_sample_range(cycles, first, samples, of or samples)
     cycles.seed = seed
     cycles.use_animated_seed = False
     cycles.time_limit = 0.0
-    cycles.sample_offset = 0
     cycles.max_bounces = 0
     cycles.sample_clamp_direct = 0.0
     cycles.sample_clamp_indirect = 0.0

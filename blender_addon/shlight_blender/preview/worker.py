@@ -37,7 +37,8 @@ from .timing import SampleTime, alternate, calibrate, middle, rounds_for
 
 PR_SET_PDEATHSIG = 1  # from linux/prctl.h
 
-SEED_SAME_TIME = 0  # the reference counts its seeds from 1: no two pictures of Cycles may share one
+# Random seeds: no two of the pictures of Cycles may share one.
+SEED_SAME_TIME, SEEDS_OF_HALVES = 0, (1, 2)
 
 
 class Worker:
@@ -132,25 +133,25 @@ class Worker:
         samples, budget = self._options.samples, self._options.reference_seconds
         expected = 2 * time_of.seconds((samples + 1) // 2)
         self._stage(f"reference, at most {samples} samples", min(expected, budget or expected))
-        halves, figures = render_halves(self._cycles_picture, time_of, samples, budget)
+        halves, figures = render_halves(self._part_of_half, time_of, samples, budget)
         for number, half in enumerate(halves, start=1):
             images.write_exr(self._folder / f"half_{number}.exr", half)
-        return figures
+        return figures | {"seeds": SEEDS_OF_HALVES}
 
     def _render_shlight(self) -> float:
         use_shlight(self._scene, self._options)
         return _render()
 
-    def _render_cycles(self, samples: int, seed: int) -> float:
-        use_cycles(self._scene, samples, seed)
+    def _render_cycles(self, samples: int, seed: int, **part: int) -> float:
+        use_cycles(self._scene, samples, seed, **part)
         with nullcontext() if self._scene.shlight.use_shadows else without_shadows():
             return _render()
 
-    def _cycles_picture(self, samples: int, seed: int) -> tuple[float, npt.NDArray[np.float32]]:
-        """A render of Cycles with its picture, which Blender hands out through a file only, and the time of both."""
+    def _part_of_half(self, half: int, first: int, samples: int) -> tuple[float, npt.NDArray[np.float32]]:
+        """See reference.Render. Blender hands a picture out through a file only; its time counts too."""
         start = time.perf_counter()
-        self._render_cycles(samples, seed)
-        image = images.read_exr(self._save("cycles.exr"))
+        self._render_cycles(samples, SEEDS_OF_HALVES[half], first=first, of=(self._options.samples + 1) // 2)
+        image = images.read_exr(self._save("part.exr"))
         return time.perf_counter() - start, image
 
     def _save(self, name: str) -> Path:

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+"""The parts of `shlight preview` that need no Blender."""
+
+from __future__ import annotations
+
+import io
+from typing import Any
+
+import numpy as np
+import pytest
+
+from shlight_blender.preview import figures, picture, timing
+from shlight_blender.preview.progress import Progress
+from shlight_blender.preview.reference import render_halves
+
+
+def test_calibration_finds_the_samples_in_less_than_the_time() -> None:
+    calls = []
+
+    def render(samples: int) -> float:
+        calls.append(0.05 + 0.003 * samples)
+        return calls[-1]
+
+    found = timing.calibrate(render, 1.25, 100000)
+    assert found.samples(1.25) == 400
+    assert found.seconds(4096) == pytest.approx(0.05 + 0.003 * 4096)
+    assert sum(calls) <= 0.5 * 1.25
+    # A target shorter than one sample takes.
+    assert timing.calibrate(render, 0.01, 100000).samples(0.01) == 1
+
+
+def reference(most: int, budget: float, per_sample: float = 0.1) -> tuple[list[Any], dict[str, Any]]:
+    """Halves whose sample number i has the value i, 1000 more in the second; each takes twice the foretold time."""
+
+    def render(half: int, first: int, samples: int) -> tuple[float, Any]:
+        values = 1000 * half + np.arange(first, first + samples)
+        return 0.1 + 2 * per_sample * samples, np.full((1, 1, 3), values.mean(), np.float32)
+
+    return render_halves(render, timing.SampleTime({1: 0.1 + per_sample, 8: 0.1 + 8 * per_sample}), most, budget)
+
+
+def test_the_reference_keeps_to_its_time_and_its_samples() -> None:
+    halves, told = reference(10000, 30.0)
+    assert told["stopped_by"] == "seconds"
+    assert 0.8 * 30 <= told["seconds"] <= 1.25 * 30
+    assert told["samples"] >= 0.7 * 30 / 0.2
+    each = told["samples"] // 2
+    assert [half[0, 0, 0] for half in halves] == pytest.approx([(each - 1) / 2, 1000 + (each - 1) / 2], rel=1e-6)
+    for budget in (1e6, 0.0):
+        told = reference(101, budget)[1]
+        assert (told["samples"], told["stopped_by"]) == (102, "samples")
+    assert reference(101, 1.0, per_sample=100.0)[1]["samples"] == 2
+
+
+def test_an_error_that_noise_hides_is_given_as_a_bound() -> None:
+    assert figures.error_text({"rel_mse": 3.14e-5, "rel_mse_standard_error": 2e-6}) == "3.1e-05 ± 2e-06"
+    assert figures.error_text({"rel_mse": 3e-6, "rel_mse_standard_error": 2e-6}) == "≤ 7.0e-06"
+    assert figures.error_text({"rel_mse": -3e-6, "rel_mse_standard_error": 2e-6}) == "≤ 4.0e-06"
+
+
+def test_a_terminal_shows_a_bar_that_is_full_only_at_the_end() -> None:
+    stream = io.StringIO()
+    stream.isatty = lambda: True
+    progress = Progress(stream)
+    progress.stage("reference", expected_seconds=1e-6)
+    progress.tick()
+    progress.note("look")
+    assert "[#######################.]" in stream.getvalue()
+    assert stream.getvalue().endswith("s  reference\nlook\n")
+
+
+def test_the_picture_is_bright_enough_and_its_scale_round() -> None:
+    dim = np.full((10, 10, 3), 0.1, np.float32)
+    assert picture.common_exposure(dim) == pytest.approx(3)
+    assert picture.common_exposure(0 * dim) == 0
+    for share, limit in ((0.012, 2.0), (0.02, 2.0), (0.049, 5.0), (0.08, 10.0), (0.0, 0.1)):
+        assert picture.difference_limit(np.full((8, 8), -share)) == pytest.approx(limit)
