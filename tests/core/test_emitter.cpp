@@ -200,8 +200,8 @@ TEST(EmitterLevels, OfASphereShowTheSphere) {
 TEST(MeshSampler, WeightsAddUpToTheSolidAngle) {
     const Solid solid = icosphere(3);
     const MeshLight light{
-        std::make_shared<const EmitterLevels>(make_emitter_levels(solid.vertices, solid.triangles, 64)), Rgb(1), 0,
-        nullptr, 0};
+        std::make_shared<const EmitterLevels>(make_emitter_levels(solid.vertices, solid.triangles, 64)), Rgb(1),
+        nullptr, 0, nullptr};
     MeshSampler sampler;
     for (const double distance : {1.5, 4.0, 60.0}) {
         const ShadingFrame frame{{0, 0, -distance}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -221,7 +221,7 @@ TEST(MeshSampler, WeightsAddUpToTheSolidAngle) {
 TEST(MeshSampler, MovedItSeesWhatItWouldSeeFromThere) {
     const Solid solid = icosphere(4);
     const auto shape = std::make_shared<const EmitterLevels>(make_emitter_levels(solid.vertices, solid.triangles, 64));
-    const MeshLight light{shape, Rgb(1), 0, nullptr, 0};
+    const MeshLight light{shape, Rgb(1), nullptr, 0, nullptr};
     RandomInput random(13);
     for (int i = 0; i < 40; ++i) {
         const Vec3d last = random.uniform(1.5, 6) * random.direction();
@@ -261,7 +261,7 @@ TEST(MeshSampler, CountsTheFacesAroundItInEachDirection) {
     std::erase_if(solid.triangles, [&](const Triangle& t) { return solid.vertices[t.x].z > 0.3; });
     const auto shape =
         std::make_shared<const EmitterLevels>(make_emitter_levels(solid.vertices, solid.triangles, 1 << 20));
-    const MeshLight light{shape, Rgb(1), 0, nullptr, 0};
+    const MeshLight light{shape, Rgb(1), nullptr, 0, nullptr};
     RandomInput random(8);
     MeshSampler sampler;
     int met = 0;

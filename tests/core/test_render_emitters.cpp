@@ -97,6 +97,98 @@ TEST(RenderEmitters, NothingButWhatIsInTheWayShadows) {
     EXPECT_LE(mean_difference(shadowed, expected), 0.015);
 }
 
+/// A leaning screen of quadrilaterals beside the square that camera_above shows, and their radiance.
+struct Screen {
+    static constexpr std::uint32_t kSide = 20;
+
+    Vec3d corner(std::uint32_t i, std::uint32_t j) const {
+        return {3.0 * i / kSide - 1.5, 2.2 + 0.6 * j / kSide, 0.05 + 2.0 * j / kSide};
+    }
+    /// Smooth along the screen, with steps across it.
+    Rgb radiance(std::uint32_t i, std::uint32_t j) const {
+        const auto wave = static_cast<float>(1 + std::sin(9.0 * i / kSide));
+        return {wave, j % 5 < 2 ? 2.0F : 0.1F, 0.5F};
+    }
+    Mesh mesh() const {
+        Mesh mesh;
+        mesh.bsdfs = {Bsdf::lambert(Rgb(0))};
+        mesh.emission.clear();
+        for (std::uint32_t j = 0; j < kSide; ++j) {
+            for (std::uint32_t i = 0; i < kSide; ++i) {
+                const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+                for (const Vec3d& v : {corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)}) {
+                    mesh.vertices.emplace_back(v);
+                }
+                mesh.triangles.emplace_back(first, first + 1, first + 2);
+                mesh.triangles.emplace_back(first, first + 2, first + 3);
+                const auto material = static_cast<std::uint32_t>(mesh.emission.size());
+                mesh.material_indices.insert(mesh.material_indices.end(), 2, material);
+                mesh.emission.push_back(radiance(i, j));
+            }
+        }
+        return mesh;
+    }
+    void add_lamps(Scene& scene) const {
+        for (std::uint32_t j = 0; j < kSide; ++j) {
+            for (std::uint32_t i = 0; i < kSide; ++i) {
+                scene.add_polygon_light({corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)},
+                                        radiance(i, j));
+            }
+        }
+    }
+};
+
+TEST(RenderEmitters, FacesOfDifferentRadianceAreOneLightAndAddUp) {
+    RenderSettings exact = testing::analytic_settings();
+    exact.tolerance = 1e-5;
+    RenderSettings settings = testing::analytic_settings();
+    settings.tolerance = 1e-3;
+    for (const Bsdf& floor : {Bsdf::lambert(Rgb(0.5F)), Bsdf::ggx(0.5F, Rgb(0.9F))}) {
+        Scene lamps;
+        lamps.add_mesh(testing::floor_mesh(10, 0, floor));
+        Screen().add_lamps(lamps);
+        const Image truth = render_image(lamps, camera_above(kHalf), kSize, kSize, exact);
+        const Image image = of_mesh(Screen().mesh(), settings, floor, nullptr);
+        double squares = 0;
+        double whole = 0;
+        for (int row = 0; row < kSize; ++row) {
+            for (int column = 0; column < kSize; ++column) {
+                const Rgb difference = image.color(column, row) - truth.color(column, row);
+                squares += double{glm::dot(difference, difference)};
+                whole += double{glm::dot(truth.color(column, row), truth.color(column, row))};
+            }
+        }
+        // A few times what settings.tolerance allows each part of the sum.
+        EXPECT_LE(std::sqrt(squares), 0.01 * std::sqrt(whole));
+        std::uint64_t shaded = image.report.cubature_count;
+        for (const std::uint64_t of_order : image.report.order_counts) {
+            shaded += of_order;
+        }
+        EXPECT_LE(shaded, 2 * image.report.hits);  // GGX has two lobes
+    }
+}
+
+TEST(RenderEmitters, HalfAScreenInShadowKeepsItsColors) {
+    // Of two halves, red and green, a wall hides the red one from the middle of the floor: no red is left there.
+    Mesh mesh = Screen().mesh();
+    for (std::size_t i = 0; i < mesh.emission.size(); ++i) {
+        mesh.emission[i] = i % Screen::kSide < Screen::kSide / 2 ? Rgb(1, 0, 0) : Rgb(0, 1, 0);
+    }
+    Mesh wall;
+    wall.vertices = {{-3, 1.9F, 0}, {0, 1.9F, 0}, {0, 1.9F, 4}, {-3, 1.9F, 4}};
+    wall.triangles = {{0, 1, 2}, {0, 2, 3}};
+    wall.bsdfs = {Bsdf::lambert(Rgb(0))};
+    RenderSettings settings = testing::analytic_settings();
+    settings.shadow_rays = 64;
+    const Image image = of_mesh(mesh, settings, Bsdf::lambert(Rgb(0.5F)), &wall);
+    const Image open = of_mesh(mesh, testing::analytic_settings(), Bsdf::lambert(Rgb(0.5F)), nullptr);
+    for (int row = 0; row < kSize; ++row) {
+        const Rgb seen = image.color(kSize / 2 - 4, row);  // left of the wall's edge
+        EXPECT_LE(seen.x, 0.02F * open.color(kSize / 2 - 4, row).x) << row;
+        EXPECT_GE(image.color(kSize / 2, row).y, 0.9F * open.color(kSize / 2, row).y) << row;
+    }
+}
+
 TEST(RenderEmitters, LayersBehindEachOtherShineOnce) {
     // Two spheres, the smaller hidden in the other.
     RenderSettings settings = testing::analytic_settings();

@@ -82,19 +82,20 @@ struct ParallelSource {
 };
 
 struct EmitterLevels;
+class FaceRadiance;
 
 /// The emissive faces of a mesh, where they are many: to both sides.
 struct MeshLight {
     std::shared_ptr<const EmitterLevels> shape;
-    Rgb radiance;
+    Rgb radiance;                               ///< the mean by area
+    std::shared_ptr<const FaceRadiance> faces;  ///< null: all shine alike
     // Which of the faces that rays meet are the light's.
     std::uint32_t instance;  ///< RayHit::instance
     std::shared_ptr<const Mesh> mesh;
-    std::size_t material;  ///< of the mesh's
     LightTraits traits = {};
 
     bool holds(const RayHit& hit) const {
-        return hit.instance == instance && mesh->material_index(hit.triangle) == material;
+        return hit.instance == instance && mesh->emitted(mesh->material_index(hit.triangle)) != Rgb(0);
     }
 };
 

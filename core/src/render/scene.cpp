@@ -11,6 +11,7 @@
 #include "base/ray_rounding.h"
 #include "base/transforms.h"
 #include "emitters/emitter_levels.h"
+#include "emitters/face_radiance.h"
 #include "render/camera_visible_lamps.h"
 #include "shlight/mesh_light.h"
 #include "shlight/parallel.h"
@@ -128,43 +129,68 @@ class CompiledScene::Impl {
 
   private:
     void add_emissive_faces(const std::shared_ptr<const Mesh>& mesh, std::uint32_t first_placement);
-    void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<const Triangle> triangles);
+    void add_single_faces(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
+                          std::span<const Rgb> radiance);
+    void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
+                        const std::vector<Rgb>& radiance);
 };
 
 void CompiledScene::Impl::add_emissive_faces(const std::shared_ptr<const Mesh>& mesh, std::uint32_t first_placement) {
     const TracedMesh& traced = meshes.back();
-    for (std::size_t material = 0; material < mesh->material_count(); ++material) {
-        const Rgb emission = mesh->emitted(material);
-        std::vector<Triangle> emissive;
-        for (std::size_t i = 0; emission != Rgb(0) && i < mesh->triangles.size(); ++i) {
-            if (mesh->material_index(i) == material) {
-                emissive.push_back(mesh->triangles[i]);
-            }
+    std::vector<Triangle> emissive;
+    std::vector<Rgb> radiance;  // of each of them
+    for (std::size_t i = 0; i < mesh->triangles.size(); ++i) {
+        const Rgb& emitted = mesh->emitted(mesh->material_index(i));
+        if (emitted != Rgb(0)) {
+            emissive.push_back(mesh->triangles[i]);
+            radiance.push_back(emitted);
         }
-        for (std::uint32_t k = 0; k < mesh->transforms.size() && !emissive.empty(); ++k) {
-            const bool baked = !traced.world_vertices.empty();
-            std::vector<Vec3d> vertices;
-            for (const Vec3f& v : traced.vertices()) {
-                vertices.push_back(baked ? Vec3d(v) : transform_point(mesh->transforms[k], Vec3d(v)));
-            }
-            if (emissive.size() > kMostSingleFaces) {
-                add_mesh_light({nullptr, emission, first_placement + k, mesh, material}, vertices, emissive);
-                continue;
-            }
-            for (FaceOutline& outline : merge_faces(vertices, emissive)) {
-                lights.emplace_back(make_polygon_light(std::move(outline), emission, true));
-            }
+    }
+    for (std::uint32_t k = 0; k < mesh->transforms.size() && !emissive.empty(); ++k) {
+        const bool baked = !traced.world_vertices.empty();
+        std::vector<Vec3d> vertices;
+        for (const Vec3f& v : traced.vertices()) {
+            vertices.push_back(baked ? Vec3d(v) : transform_point(mesh->transforms[k], Vec3d(v)));
+        }
+        if (emissive.size() > kMostSingleFaces) {
+            add_mesh_light({nullptr, radiance.front(), nullptr, first_placement + k, mesh}, vertices, emissive,
+                           radiance);
+        } else {
+            add_single_faces(vertices, emissive, radiance);
         }
     }
 }
 
-void CompiledScene::Impl::add_mesh_light(MeshLight light, std::span<const Vec3d> vertices,
-                                         std::span<const Triangle> triangles) {
-    EmitterLevels levels = make_emitter_levels(vertices, triangles, kLeastLevelFaces);
-    if (!levels.levels.empty()) {
-        light.shape = std::make_shared<const EmitterLevels>(std::move(levels));
-        lights.emplace_back(std::move(light));
+void CompiledScene::Impl::add_single_faces(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
+                                           std::span<const Rgb> radiance) {
+    std::vector<Rgb> left(radiance.begin(), radiance.end());
+    while (!left.empty()) {
+        const Rgb color = left.front();
+        std::vector<Triangle> alike;
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            if (radiance[i] == color) {
+                alike.push_back(triangles[i]);
+            }
+        }
+        for (FaceOutline& outline : merge_faces(vertices, alike)) {
+            lights.emplace_back(make_polygon_light(std::move(outline), color, true));
+        }
+        std::erase(left, color);
     }
+}
+
+void CompiledScene::Impl::add_mesh_light(MeshLight light, std::span<const Vec3d> vertices,
+                                         std::span<const Triangle> triangles, const std::vector<Rgb>& radiance) {
+    EmitterLevels levels = make_emitter_levels(vertices, triangles, kLeastLevelFaces);
+    if (levels.levels.empty()) {
+        return;
+    }
+    if (std::any_of(radiance.begin(), radiance.end(), [&](const Rgb& color) { return color != radiance.front(); })) {
+        light.faces = std::make_shared<const FaceRadiance>(vertices, triangles, radiance, levels.closed);
+        light.radiance = light.faces->mean();
+    }
+    light.shape = std::make_shared<const EmitterLevels>(std::move(levels));
+    lights.emplace_back(std::move(light));
 }
 
 SurfacePoint CompiledScene::Impl::surface(const RayHit& hit, const Vec3f& direction) const {

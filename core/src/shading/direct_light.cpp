@@ -14,6 +14,10 @@ constexpr std::size_t kPointsPerChunk = 1024;
 /// Error of a profile's mean ÷ the tolerance of a light's radiance, at most.
 constexpr double kProfileTolerance = 10;
 
+/// Error of the mean radiance of faces that differ ÷ the tolerance. Each face is the mean of what shines there, and the
+/// mean over all of them is hardly ever as wrong as a part that is looked at alone.
+constexpr double kMeanTolerance = 3;
+
 void count(LobeMethod way, int order, std::uint32_t hits, RenderReport& report) {
     switch (way) {
         case LobeMethod::nothing:
@@ -40,6 +44,17 @@ void DirectLight::compute(const ShadingPoints& points, std::span<const MaterialL
                           std::span<const Light* const> lights, RenderReport& report) {
     point_count_ = points.size();
     values_.assign(lights.size() * lobe_stride_ * point_count_, 0.0F);
+    strengths_.clear();
+    own_begin_.clear();
+    std::size_t own_count = 0;
+    for (const Light* light : lights) {
+        const auto* mesh = std::get_if<MeshLight>(light);
+        const bool differs = mesh != nullptr && mesh->faces != nullptr;
+        strengths_.push_back(strength_of(*light));
+        own_begin_.push_back(differs ? own_count : kNone);
+        own_count += differs ? lobe_stride_ * point_count_ : 0;
+    }
+    own_strengths_.assign(own_count, Rgb(0));
     by_material_.resize(point_count_);
     std::iota(by_material_.begin(), by_material_.end(), 0U);
     std::stable_sort(by_material_.begin(), by_material_.end(),
@@ -88,6 +103,40 @@ void DirectLight::integrate(const ShadingPoints& points, std::span<const std::ui
                         [&](std::span<const std::uint32_t> numbers) {
                             add(points, some, numbers, light, light_index, lobe, report);
                         });
+            if (own_begin_[light_index] != kNone) {
+                find_strengths(points, some, *std::get<MeshLight>(light).faces, light_index, lobe);
+            }
+        }
+    }
+}
+
+LightRadiance DirectLight::light(std::size_t index) const {
+    const std::size_t size = lobe_stride_ * point_count_;
+    const std::size_t own = own_begin_[index];
+    return {std::span(values_).subspan(index * size, size), strengths_[index],
+            own == kNone ? std::span<const Rgb>() : std::span(own_strengths_).subspan(own, size)};
+}
+
+void DirectLight::find_strengths(const ShadingPoints& points, std::span<const std::uint32_t> some,
+                                 const FaceRadiance& faces, std::size_t light_index, std::size_t lobe) {
+    const LobeShape& shape = views_.lobe(lobe).shape();
+    const float* values = values_of(light_index, lobe);
+    for (std::uint32_t view = 0; view < some.size(); ++view) {
+        const std::uint32_t point = some[view];
+        if (!(values[point] > 0)) {
+            continue;
+        }
+        const ShadingFrame& frame = points.frame[point];
+        const Vec3d towards_viewer = views_.positions().direction(view);
+        Rgb& strength = own_strengths_[own_begin_[light_index] + lobe * point_count_ + point];
+        if (is_mirror(shape)) {
+            const Vec3d direction = frame.to_world(mirrored(towards_viewer));
+            const Ray ray = {Vec3f(frame.origin), 0, Vec3f(direction)};
+            met_.clear();
+            faces.along({&ray, 1}, met_);
+            strength = met_.front();
+        } else {
+            strength = face_mean_.of(faces, shape, towards_viewer, frame, values[point], kMeanTolerance * tolerance_);
         }
     }
 }

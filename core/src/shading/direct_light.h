@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "emitters/face_radiance.h"
 #include "lights/profile_mean.h"
 #include "lobes/material_lobes.h"
 #include "lobes/material_views.h"
@@ -20,7 +21,16 @@
 
 namespace shlight {
 
-/// Radiance per light, lobe and shading point: value (light · lobe_stride + lobe) · points + point.
+/// What one light brings to each lobe and shading point: at lobe · points + point.
+struct LightRadiance {
+    std::span<const float> values;  ///< for unit strength
+    Rgb strength;
+    std::span<const Rgb> strengths;  ///< in its place, of a light whose parts differ; otherwise empty
+
+    Rgb operator[](std::size_t i) const { return values[i] * (strengths.empty() ? strength : strengths[i]); }
+};
+
+/// Radiance per light, lobe and shading point.
 class DirectLight {
   public:
     explicit DirectLight(std::size_t lobe_stride) : lobe_stride_(lobe_stride) {}
@@ -28,10 +38,7 @@ class DirectLight {
     /// Adds to the report what the points' hits take. Precondition: no light is_delta().
     void compute(const ShadingPoints& points, std::span<const MaterialLobes> materials,
                  std::span<const Light* const> lights, RenderReport& report);
-    /// The values of one light, lobe_stride × points.
-    std::span<const float> light(std::size_t index) const {
-        return std::span(values_).subspan(index * lobe_stride_ * point_count_, lobe_stride_ * point_count_);
-    }
+    LightRadiance light(std::size_t index) const;
 
   private:
     /// Some points of one material, under all lights.
@@ -42,6 +49,9 @@ class DirectLight {
     /// Adds what the batch found of one lobe at some[numbers[k]].
     void add(const ShadingPoints& points, std::span<const std::uint32_t> some, std::span<const std::uint32_t> numbers,
              const Light& light, std::size_t light_index, std::size_t lobe, RenderReport& report);
+    /// Strengths of a mesh whose faces differ, as the lobe sees them from the points.
+    void find_strengths(const ShadingPoints& points, std::span<const std::uint32_t> some, const FaceRadiance& faces,
+                        std::size_t light_index, std::size_t lobe);
     /// Multiplies the value of a lobe at a view with the mean of the light's profile.
     void apply_profile(std::size_t lobe, std::size_t view, const ShadingPoints& points, std::uint32_t point,
                        const Light& light, float& value);
@@ -49,9 +59,13 @@ class DirectLight {
         return &values_[(light_index * lobe_stride_ + lobe) * point_count_];
     }
 
+    static constexpr std::size_t kNone = ~std::size_t{0};
+
     std::size_t lobe_stride_;
     std::size_t point_count_ = 0;
-    std::vector<float> values_;
+    std::vector<float> values_;                   // (light · lobe_stride + lobe) · points + point
+    std::vector<Rgb> strengths_, own_strengths_;  // of lights; and of those whose parts differ, as values_
+    std::vector<std::size_t> own_begin_;          // where a light's are; kNone: it has one strength
 
     std::vector<std::uint32_t> by_material_;
     std::vector<double> cosines_;
@@ -61,6 +75,8 @@ class DirectLight {
     SeenLights seen_;
     double tolerance_ = 0;
     ProfileMean profile_;
+    FaceMean face_mean_;
+    std::vector<Rgb> met_;
 };
 
 }  // namespace shlight

@@ -12,12 +12,11 @@ void LightBrightness::expect(std::span<const Light* const> lights, const DirectL
     const std::size_t pixels = all_.size();
     own_.assign(lights.size() * pixels, 0.0F);
     for (std::size_t light = 0; light < lights.size(); ++light) {
-        const Rgb& strength = strength_of(*lights[light]);
-        const std::span<const float> values = unshadowed.light(light);
+        const LightRadiance values = unshadowed.light(light);
         for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
             float& own = own_[light * pixels + pixel];
             for (std::size_t point = points_->pixel_begin[pixel]; point < points_->pixel_begin[pixel + 1]; ++point) {
-                own += of_point(strength, values, point);
+                own += of_point(values, point);
             }
             all_[pixel] += own;
         }

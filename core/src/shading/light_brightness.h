@@ -29,13 +29,12 @@ class LightBrightness {
     /// By all lights that were counted in, and by the others.
     float all(std::size_t pixel) const { return all_[pixel]; }
     std::span<const float> all() const { return all_; }
-    /// Under a light of that strength. unshadowed: see DirectLight::light.
-    float of_point(const Rgb& strength, std::span<const float> unshadowed, std::size_t point) const {
-        const Rgb magnitude = glm::abs(strength);
+    /// Under one light.
+    float of_point(const LightRadiance& unshadowed, std::size_t point) const {
         float sum = 0;
         for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-            sum += unshadowed[lobe * points_->size() + point] *
-                   glm::dot(magnitude, glm::abs(points_->weight(point, lobe)));
+            sum +=
+                glm::dot(glm::abs(unshadowed[lobe * points_->size() + point]), glm::abs(points_->weight(point, lobe)));
         }
         return sum * static_cast<float>(points_->hit_count(point));
     }

@@ -30,7 +30,7 @@ void DimLights::finish(Hits& hits) const {
     }
 }
 
-void DimLights::add(const Light& light, std::span<const float> unshadowed, std::size_t pixel, float brightness,
+void DimLights::add(const Light& light, const LightRadiance& unshadowed, std::size_t pixel, float brightness,
                     const RayPhase& phase, std::size_t questions, std::uint32_t seed, const Hits& hits,
                     ShadowRays& rays) {
     const std::size_t begin = points_->pixel_begin[pixel];
@@ -41,7 +41,7 @@ void DimLights::add(const Light& light, std::span<const float> unshadowed, std::
         if (std::find(material + static_cast<std::ptrdiff_t>(begin), here, *here) != here) {
             continue;
         }
-        const float own = gather(light, unshadowed, first, end);
+        const float own = gather(unshadowed, first, end);
         if (own > 0) {
             const float part = std::max(std::ceil(own / brightness * static_cast<float>(questions)), 1.0F);
             draw(light, unshadowed, own, static_cast<std::size_t>(part), seed, hits);
@@ -51,24 +51,24 @@ void DimLights::add(const Light& light, std::span<const float> unshadowed, std::
                     break;
                 }
             }
-            shade(light, unshadowed);
+            shade(unshadowed);
         }
     }
 }
 
-float DimLights::gather(const Light& light, std::span<const float> unshadowed, std::size_t first, std::size_t last) {
+float DimLights::gather(const LightRadiance& unshadowed, std::size_t first, std::size_t last) {
     members_.clear();
     float sum = 0;
     for (std::size_t point = first; point < last; ++point) {
         if (points_->material[point] == points_->material[first]) {
-            members_.push_back({point, brightness_->of_point(strength_of(light), unshadowed, point)});
+            members_.push_back({point, brightness_->of_point(unshadowed, point)});
             sum += members_.back().brightness;
         }
     }
     return sum;
 }
 
-void DimLights::draw(const Light& light, std::span<const float> unshadowed, float brightness, std::size_t questions,
+void DimLights::draw(const Light& light, const LightRadiance& unshadowed, float brightness, std::size_t questions,
                      std::uint32_t seed, const Hits& hits) {
     asked_.clear();
     density_.clear();
@@ -82,18 +82,18 @@ void DimLights::draw(const Light& light, std::span<const float> unshadowed, floa
             }
             density_.push_back(double{member.brightness} / static_cast<double>(own_hits.size()));
             for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-                asked_.shines.push_back(unshadowed[lobe * points_->size() + member.point] > 0 ? 1 : 0);
+                asked_.shines.push_back(unshadowed.values[lobe * points_->size() + member.point] > 0 ? 1 : 0);
             }
         });
     }
 }
 
 bool DimLights::find_shares(const Hits& hits, const ShadowRays& rays) {
-    shares_.assign(lobe_stride_, 0.0F);
+    shares_.assign(lobe_stride_, Rgb(0));
     bool complete = true;
     for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-        double seen = 0;
-        double all = 0;
+        Vec3d seen(0);
+        Vec3d all(0);
         bool any = false;
         for (std::size_t i = 0; i < asked_.hit.size(); ++i) {
             if (asked_.shines[i * lobe_stride_ + lobe] != 0) {
@@ -103,18 +103,17 @@ bool DimLights::find_shares(const Hits& hits, const ShadowRays& rays) {
                 any = true;
             }
         }
-        complete = complete && (all > 0 || !any);
-        shares_[lobe] = static_cast<float>(all > 0 ? seen / all : 0.0);
+        complete = complete && (all != Vec3d(0) || !any);
+        shares_[lobe] = Rgb(quotient(seen, all));
     }
     return complete;
 }
 
-void DimLights::shade(const Light& light, std::span<const float> unshadowed) {
+void DimLights::shade(const LightRadiance& unshadowed) {
     for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-        const Rgb part = shares_[lobe] * strength_of(light);
         for (const Member& member : members_) {
             radiance_[member.point] +=
-                part * points_->weight(member.point, lobe) * unshadowed[lobe * points_->size() + member.point];
+                shares_[lobe] * points_->weight(member.point, lobe) * unshadowed[lobe * points_->size() + member.point];
         }
     }
 }

@@ -30,7 +30,7 @@ class DimLights {
     /// Adds a light to the hits of a pixel. unshadowed: see DirectLight::light; brightness: of the light over the
     /// pixel; phase: the batch's, of any number of rays; questions: about how many hits to ask; seed: of the pixel and
     /// light.
-    void add(const Light& light, std::span<const float> unshadowed, std::size_t pixel, float brightness,
+    void add(const Light& light, const LightRadiance& unshadowed, std::size_t pixel, float brightness,
              const RayPhase& phase, std::size_t questions, std::uint32_t seed, const Hits& hits, ShadowRays& rays);
     /// Adds all that was added to the hits' radiance.
     void finish(Hits& hits) const;
@@ -42,13 +42,13 @@ class DimLights {
     };
 
     /// Points of a pixel from the first on that have its material: their brightness.
-    float gather(const Light& light, std::span<const float> unshadowed, std::size_t first, std::size_t last);
+    float gather(const LightRadiance& unshadowed, std::size_t first, std::size_t last);
     /// Draws hits of the members: asked_ are those that see the light.
-    void draw(const Light& light, std::span<const float> unshadowed, float brightness, std::size_t questions,
+    void draw(const Light& light, const LightRadiance& unshadowed, float brightness, std::size_t questions,
               std::uint32_t seed, const Hits& hits);
     /// Of the light that the asked hits see, by lobe; false if rays tell nothing of some lobe.
     bool find_shares(const Hits& hits, const ShadowRays& rays);
-    void shade(const Light& light, std::span<const float> unshadowed);
+    void shade(const LightRadiance& unshadowed);
 
     const LightBrightness* brightness_;
     std::size_t lobe_stride_;
@@ -57,7 +57,7 @@ class DimLights {
     // Of a light, a pixel and a material:
     std::vector<Member> members_;
     LitHits asked_;
-    std::vector<float> shares_;    // by lobe
+    std::vector<Rgb> shares_;      // by lobe
     std::vector<double> density_;  // of asked_: brightness of the hit
 };
 

@@ -10,22 +10,6 @@
 #include "shlight/sampling.h"
 
 namespace shlight {
-RadianceSums& RadianceSums::operator+=(const RadianceSums& other) {
-    all += other.all;
-    seen += other.seen;
-    squares += other.squares;
-    seen_squares += other.seen_squares;
-    return *this;
-}
-
-RadianceSums& RadianceSums::operator*=(const Vec3d& factor) {
-    all *= factor;
-    seen *= factor;
-    squares *= factor * factor;
-    seen_squares *= factor * factor;
-    return *this;
-}
-
 /// Directions from one hit, and how densely all sets together draw them.
 class EnvironmentRays::Directions {
   public:
@@ -136,13 +120,8 @@ EnvironmentRays::Sums EnvironmentRays::sum(const Hits& hits, std::span<const std
     const bool mirror = is_mirror(shape);
     const Vec3d view = hits.view(hit);
     Sums result;
-    const auto add_to = [&](RadianceSums& sums, std::size_t ray, const Vec3d& weighted) {
-        sums.all += weighted;
-        sums.squares += weighted * weighted;
-        if (blocked_[ray] == 0) {
-            sums.seen += weighted;
-            sums.seen_squares += weighted * weighted;
-        }
+    const auto add_to = [&](RaySums& sums, std::size_t ray, const Vec3d& weighted) {
+        sums.add(weighted, blocked_[ray] == 0);
     };
     const auto add = [&](std::size_t ray, double value) {
         if (split) {

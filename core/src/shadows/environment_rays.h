@@ -14,28 +14,20 @@
 #include <vector>
 
 #include "lobes/material_lobes.h"
-#include "shadows/shadow_rays.h"
+#include "shadows/ray_sums.h"
+#include "shadows/shadow_policy.h"
 #include "shlight/environment.h"
 #include "shlight/ray_tracer.h"
 #include "tracing/hits.h"
 
 namespace shlight {
 
-/// Sums over the rays of a hit: of their weights times a lobe's f·cos, and of its squares.
-struct RadianceSums {
-    Vec3d all{0}, seen{0}, squares{0}, seen_squares{0};
-
-    RadianceSums& operator+=(const RadianceSums& other);
-    /// As if each weight were multiplied.
-    RadianceSums& operator*=(const Vec3d& factor);
-};
-
 /// Keeps its memory from pixel to pixel; one per thread.
 class EnvironmentRays {
   public:
     /// Of the environment without a picture's bright spots, and of these.
     struct Sums {
-        RadianceSums smooth, spots;
+        RaySums smooth, spots;
     };
 
     EnvironmentRays(const RayTracer& tracer, const Environment& environment, std::span<const MaterialLobes> materials);

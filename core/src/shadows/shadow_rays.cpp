@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "emitters/face_radiance.h"
 #include "shadows/ray_start.h"
 #include "shlight/sampling.h"
 
@@ -74,6 +75,7 @@ void ShadowRays::trace(const Light& light, const Hits& hits, const LitHits& lit,
     if (phase.first) {
         directions_.clear();
         weights_.clear();
+        colors_.clear();
         hidden_layers_.clear();
         blocked_.clear();
         runs_.clear();
@@ -94,6 +96,9 @@ void ShadowRays::trace(const Light& light, const Hits& hits, const LitHits& lit,
     blocked_.resize(directions_.size());
     if (const auto* mesh = std::get_if<MeshLight>(&light)) {
         follow(*mesh, before);
+        if (mesh->faces != nullptr) {
+            find_colors(*mesh->faces);
+        }
     } else {
         tracer_->occluded(rays_, std::span(blocked_).subspan(before));
     }
@@ -108,6 +113,15 @@ void ShadowRays::follow(const MeshLight& light, std::size_t before) {
     for (std::size_t i = 0; i < met_.size(); ++i) {
         const bool seen = hidden_layers_[before + i] == 0 && (met_[i].missed() || light.holds(met_[i]));
         blocked_[before + i] = seen ? 0 : 1;
+    }
+}
+
+void ShadowRays::find_colors(const FaceRadiance& faces) {
+    const std::size_t before = colors_.size();
+    faces.along(rays_, colors_);
+    for (std::size_t i = before; i < colors_.size(); ++i) {
+        // What lies behind the first layer is not known.
+        colors_[i] = hidden_layers_[i] != 0 ? faces.mean() : colors_[i];
     }
 }
 
@@ -195,9 +209,8 @@ RaySums ShadowRays::sum(const Hits& hits, const LitHits& lit, std::size_t lit_in
                 // The weights are those of points even in solid angle; so p_light is one over that.
                 value /= 1 + solid_angle * lobe_density(shape, view, direction);
             }
-            sums.all += value;
-            sums.squares += value * value;
-            sums.seen += blocked_[i] == 0 ? value : 0;
+            const Vec3d color = colors_.empty() || mirror ? Vec3d(1) : Vec3d(colors_[i]);
+            sums.add(value * color, blocked_[i] == 0);
         }
     };
     for (std::size_t base = lit_index * set_stride_; base < runs_.size(); base += solid_angles_.size()) {

@@ -15,6 +15,7 @@
 #include "lights/light_sampling.h"
 #include "lights/seen_light.h"
 #include "lobes/material_lobes.h"
+#include "shadows/ray_sums.h"
 #include "shadows/shadow_policy.h"
 #include "shlight/light.h"
 #include "shlight/ray_tracer.h"
@@ -43,11 +44,6 @@ struct LitHits {
     std::vector<std::size_t> hit;
     std::vector<SeenLight> seen;       ///< by each of them; may be longer
     std::vector<std::uint8_t> shines;  ///< hit.size() × lobe_stride: whether the lobe reflects any of it
-};
-
-/// Sums over the rays of a hit: of their weights times a lobe's f·cos, and of its squares.
-struct RaySums {
-    double all = 0, seen = 0, squares = 0;
 };
 
 /// Keeps its memory from light to light; one per thread.
@@ -79,6 +75,8 @@ class ShadowRays {
 
     void draw(const Drawing& drawing, const LitHits& lit, std::size_t lit_index);
     void follow(const MeshLight& light, std::size_t before);
+    /// The radiance of the faces that the rays of the phase would meet if nothing else were there.
+    void find_colors(const FaceRadiance& faces);
     void draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set);
     /// layers: of the light, one behind the other, each of which the unshadowed radiance counts.
     void push(const Drawing& drawing, const Vec3d& direction, double distance, double weight, int layers);
@@ -97,6 +95,7 @@ class ShadowRays {
     std::vector<Ray> rays_;                    // of the phase
     std::vector<Vec3f> directions_;
     std::vector<float> weights_;
+    std::vector<Rgb> colors_;  // factors of the weights; empty: 1
     std::vector<std::uint8_t> blocked_;
     std::vector<Run> runs_;             // phases × lit hits × set_stride
     std::vector<double> solid_angles_;  // lit hits × set_stride: the light's where the set's rays are drawn, else 0

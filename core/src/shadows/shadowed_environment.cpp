@@ -7,23 +7,11 @@
 namespace shlight {
 namespace {
 
-/// a / b, 0 where b is not positive.
-Vec3d quotient(const Vec3d& a, const Vec3d& b) {
-    return {b.x > 0 ? a.x / b.x : 0, b.y > 0 ? a.y / b.y : 0, b.z > 0 ? a.z / b.z : 0};
-}
-
 /// How much of what is known of the light without obstacles is put in the place of what the rays make of it: the
 /// regression of what they see on it. Never so much that a sum could be negative.
-Vec3d kept_share(const RadianceSums& sums, const Vec3d& otherwise) {
+Vec3d kept_share(const RaySums& sums, const Vec3d& otherwise) {
     const Vec3d share = glm::min(quotient(sums.seen_squares, sums.squares), quotient(sums.seen, sums.all));
     return glm::mix(otherwise, share, Vec3d(glm::greaterThan(sums.all, Vec3d(0))));
-}
-
-/// As of so many rays of equal weight; the lobes of a hit share its rays.
-Rgb deviation(const Rgb& unblocked, const RadianceSums& sums) {
-    const Vec3d share = quotient(sums.seen, sums.all);
-    const Vec3d one_over_rays = quotient(sums.squares, sums.all * sums.all);
-    return unblocked * Rgb(glm::sqrt(glm::max(share * (1.0 - share), Vec3d(0)) * one_over_rays));
 }
 
 }  // namespace
@@ -144,7 +132,7 @@ void ShadowedEnvironment::shade_hit(std::size_t lit_index, std::size_t lobe, con
     deviation_[lit_index] += deviation(whole.smooth, of_hit.smooth) + deviation(whole.spots, of_hit.spots);
 }
 
-Rgb ShadowedEnvironment::seen_part(const Rgb& unblocked, const RadianceSums& of_hit, const Vec3d& kept) const {
+Rgb ShadowedEnvironment::seen_part(const Rgb& unblocked, const RaySums& of_hit, const Vec3d& kept) const {
     const double rays = samples_.shadow_rays;
     return Rgb(of_hit.seen / rays + kept * (Vec3d(unblocked) - of_hit.all / rays));
 }

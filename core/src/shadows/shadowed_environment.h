@@ -52,7 +52,7 @@ class ShadowedEnvironment {
     void shade_lobe(std::size_t lobe, Hits& hits);
     MaterialSums& sums_of(std::size_t material);
     void shade_hit(std::size_t lit_index, std::size_t lobe, const MaterialSums& of_material, Hits& hits);
-    Rgb seen_part(const Rgb& unblocked, const RadianceSums& of_hit, const Vec3d& kept) const;
+    Rgb seen_part(const Rgb& unblocked, const RaySums& of_hit, const Vec3d& kept) const;
 
     std::span<const MaterialLobes> materials_;
     std::uint32_t most_rays_;

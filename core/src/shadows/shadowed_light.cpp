@@ -2,7 +2,6 @@
 #include "shadows/shadowed_light.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace shlight {
 
@@ -22,7 +21,7 @@ void ShadowedLight::start(const ShadingPoints& points, std::span<const float> br
 }
 
 void ShadowedLight::add(const Light& light, std::size_t index, const SampleRange& samples,
-                        std::span<const float> unshadowed, std::span<const std::uint32_t> pixel_seeds, Hits& hits) {
+                        const LightRadiance& unshadowed, std::span<const std::uint32_t> pixel_seeds, Hits& hits) {
     samples_ = samples;
     unshadowed_ = unshadowed;
     shadows_ = samples.shadow_rays > 0 && traits_of(light).casts_shadows;
@@ -78,38 +77,38 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
         }
         if (blocked > 0) {
             rays_.trace(light, hits, lit_, second_phase(samples_, first), seed);
-            shade(light, hits);
+            shade(hits);
             return;
         }
     }
-    shade_unblocked(light, hits);
+    shade_unblocked(hits);
 }
 
-Rgb ShadowedLight::scaled_radiance(const Light& light, const Hits& hits, std::size_t hit, std::size_t lobe) const {
-    return hits.weight(hit, lobe) * strength_of(light) * unshadowed(hit, lobe);
+Rgb ShadowedLight::scaled_radiance(const Hits& hits, std::size_t hit, std::size_t lobe) const {
+    return hits.weight(hit, lobe) * unshadowed_[lobe * points_->size() + points_->of_hit[hit]];
 }
 
-void ShadowedLight::shade_unblocked(const Light& light, Hits& hits) const {
+void ShadowedLight::shade_unblocked(Hits& hits) const {
     for (std::size_t i = 0; i < lit_.hit.size(); ++i) {
         for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
             if (shines(i, lobe)) {
-                hits.radiance[lit_.hit[i]] += scaled_radiance(light, hits, lit_.hit[i], lobe);
+                hits.radiance[lit_.hit[i]] += scaled_radiance(hits, lit_.hit[i], lobe);
             }
         }
     }
 }
 
-void ShadowedLight::shade(const Light& light, Hits& hits) {
+void ShadowedLight::shade(Hits& hits) {
     deviation_.assign(lit_.hit.size(), Rgb(0));
     for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-        shade_lobe(light, lobe, hits);
+        shade_lobe(lobe, hits);
     }
     for (std::size_t i = 0; i < lit_.hit.size(); ++i) {
         hits.noise[lit_.hit[i]] += deviation_[i] * deviation_[i];
     }
 }
 
-void ShadowedLight::shade_lobe(const Light& light, std::size_t lobe, Hits& hits) {
+void ShadowedLight::shade_lobe(std::size_t lobe, Hits& hits) {
     const auto [first, last] = std::minmax_element(lit_.hit.begin(), lit_.hit.end(), [&](std::size_t a, std::size_t b) {
         return points_->of_hit[a] < points_->of_hit[b];
     });
@@ -128,15 +127,11 @@ void ShadowedLight::shade_lobe(const Light& light, std::size_t lobe, Hits& hits)
         const std::size_t hit = lit_.hit[i];
         const RaySums& sums = hit_sums_[i];
         const PointSums& of_point = point_sums_[points_->of_hit[hit] - first_point];
-        const double share = of_point.all > 0 ? of_point.hits * sums.seen / of_point.all : 0.0;
-        const Rgb unblocked = scaled_radiance(light, hits, hit, lobe);
-        hits.radiance[hit] += unblocked * static_cast<float>(share);
-        if (sums.all > 0) {
-            // As of so many rays of equal weight; the lobes of a hit share its rays.
-            const double own_share = sums.seen / sums.all;
-            const double rays = sums.all * sums.all / sums.squares;
-            deviation_[i] += unblocked * static_cast<float>(std::sqrt(own_share * (1 - own_share) / rays));
-        }
+        const Vec3d share = quotient(static_cast<double>(of_point.hits) * sums.seen, of_point.all);
+        const Rgb unblocked = scaled_radiance(hits, hit, lobe);
+        hits.radiance[hit] += unblocked * Rgb(share);
+        // The lobes of a hit share its rays.
+        deviation_[i] += deviation(unblocked, sums);
     }
 }
 

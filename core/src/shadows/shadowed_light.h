@@ -47,7 +47,7 @@ class ShadowedLight {
     /// Adds one light to the hits' radiance and noise. index: its place among those expected last; samples: what the
     /// hits are of; unshadowed: see DirectLight::light; pixel_seeds: one per pixel, other for each light. A hit's
     /// radiance counts as part of the sum over the hits of its shading point.
-    void add(const Light& light, std::size_t index, const SampleRange& samples, std::span<const float> unshadowed,
+    void add(const Light& light, std::size_t index, const SampleRange& samples, const LightRadiance& unshadowed,
              std::span<const std::uint32_t> pixel_seeds, Hits& hits);
     /// To be called after the last light.
     void finish(Hits& hits) const { dim_.finish(hits); }
@@ -59,19 +59,19 @@ class ShadowedLight {
     void find_lit(const Light& light, const Hits& hits, std::size_t begin, std::size_t end);
     /// The value of one lobe at a hit.
     float unshadowed(std::size_t hit, std::size_t lobe) const {
-        return unshadowed_[lobe * points_->size() + points_->of_hit[hit]];
+        return unshadowed_.values[lobe * points_->size() + points_->of_hit[hit]];
     }
     bool shines(std::size_t lit_index, std::size_t lobe) const {
         return lit_.shines[lit_index * lobe_stride_ + lobe] != 0;
     }
-    void shade_unblocked(const Light& light, Hits& hits) const;
-    void shade(const Light& light, Hits& hits);
-    void shade_lobe(const Light& light, std::size_t lobe, Hits& hits);
-    Rgb scaled_radiance(const Light& light, const Hits& hits, std::size_t hit, std::size_t lobe) const;
+    void shade_unblocked(Hits& hits) const;
+    void shade(Hits& hits);
+    void shade_lobe(std::size_t lobe, Hits& hits);
+    Rgb scaled_radiance(const Hits& hits, std::size_t hit, std::size_t lobe) const;
 
     /// Rays of all hits of a shading point.
     struct PointSums {
-        double all = 0;
+        Vec3d all{0};
         std::uint32_t hits = 0;
     };
 
@@ -80,9 +80,9 @@ class ShadowedLight {
     std::uint32_t most_rays_;
     ShadowRays rays_;
 
-    SampleRange samples_{};              // of the call of add()
-    bool shadows_ = false;               // likewise, whether the light casts any
-    std::span<const float> unshadowed_;  // of the light being added
+    SampleRange samples_{};       // of the call of add()
+    bool shadows_ = false;        // likewise, whether the light casts any
+    LightRadiance unshadowed_{};  // of the light being added
     const ShadingPoints* points_ = nullptr;
     LightBrightness brightness_;
     DimLights dim_;

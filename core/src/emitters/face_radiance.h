@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+//
+// Emitters whose faces differ in radiance: what textured meshes become.
+//
+// A hit sees such a surface as it sees one of even radiance, times the mean of the faces' radiance as the lobe weighs
+// them. The faces are the leaves of a tree, and a hit goes down only where what a node's mean leaves out would show.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/shading_frame.h"
+#include "shlight/lobe_shape.h"
+#include "shlight/ray_tracer.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// Some faces of an emitter.
+struct FacePart {
+    Vec3d center;  ///< of their area
+    double radius;
+    Vec3d area_vector;  ///< sum of area · normal
+    double area;
+    Rgb radiance;       ///< the mean by area
+    double deviation;   ///< root mean square of the faces' radiance about it
+    double difference;  ///< of it from the emitter's mean
+    double unlike;      ///< 0 … 1: 1 - |area_vector| ÷ area
+};
+
+/// Immutable; any number of threads may read it.
+class FaceRadiance {
+  public:
+    /// In the world frame; radiance: one for each triangle. closed: see EmitterLevels.
+    FaceRadiance(std::span<const Vec3d> vertices, std::span<const Triangle> triangles, std::vector<Rgb> radiance,
+                 bool closed);
+
+    /// By area.
+    const Rgb& mean() const { return nodes_.front().part.radiance; }
+    /// What each ray meets of the emitter if nothing else is in its way; mean() for rays that pass by.
+    void along(std::span<const Ray> rays, std::vector<Rgb>& radiance) const;
+
+  private:
+    friend class FaceMean;
+
+    static constexpr std::uint32_t kLeaf = 0xFFFFFFFFU;
+
+    struct Node {
+        FacePart part;
+        std::uint32_t first_child, face;  ///< children are neighbours; kLeaf: there is one face
+    };
+
+    struct Face {
+        Vec3d a, b, c;
+        Rgb radiance;
+    };
+
+    void build(std::uint32_t node, std::uint32_t first, std::uint32_t last);
+
+    std::vector<Face> faces_;
+    std::vector<Node> nodes_;
+    bool closed_;
+    std::vector<Rgb> of_triangle_;
+    std::unique_ptr<const RayTracer> rays_;
+};
+
+/// The mean radiance of what a hit sees of the faces. Keeps its memory; one per thread.
+class FaceMean {
+  public:
+    /// Weighed with f·cos of a lobe that is no mirror, for a viewer in the direction `view` of the frame. value: what
+    /// the lobe reflects of the emitter with unit radiance; tolerance: relative to the result.
+    Rgb of(const FaceRadiance& faces, const LobeShape& shape, const Vec3d& view, const ShadingFrame& frame,
+           double value, double tolerance);
+
+  private:
+    struct Weighed {
+        double weight;  // solid angle times f·cos
+        double error;   // of the light, if the part counts as a whole
+    };
+
+    Weighed weigh(const FacePart& part) const;
+    bool suffices(const Weighed& weighed, const Rgb& radiance) const;
+    void add(const Weighed& weighed, const Rgb& radiance);
+    /// A face or a part of one, quartered so many times more, at most.
+    void add_face(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Rgb& radiance, int quarterings);
+
+    const FaceRadiance* faces_ = nullptr;
+    const LobeShape* lobe_ = nullptr;
+    const ShadingFrame* frame_ = nullptr;
+    Vec3d view_{0}, brightest_{0};  // brightest: where f·cos is largest, about
+    double width_ = 1;
+    double light_ = 0, allowed_ = 0;
+    Vec3d sum_{0};
+    double weights_ = 0;
+    std::vector<std::uint32_t> open_;
+};
+
+}  // namespace shlight

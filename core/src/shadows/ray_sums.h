@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+//
+// What shadow rays tell, in each colour channel.
+#pragma once
+
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// Sums over the rays of a hit: of their weights times radiance times a lobe's f·cos, and of its squares; of all rays,
+/// and of those that nothing blocks.
+struct RaySums {
+    Vec3d all{0}, seen{0}, squares{0}, seen_squares{0};
+
+    void add(const Vec3d& value, bool is_seen) {
+        all += value;
+        squares += value * value;
+        if (is_seen) {
+            seen += value;
+            seen_squares += value * value;
+        }
+    }
+    RaySums& operator+=(const RaySums& other);
+    /// As if each weight were multiplied.
+    RaySums& operator*=(const Vec3d& factor);
+};
+
+/// a / b, 0 where b is not positive.
+Vec3d quotient(const Vec3d& a, const Vec3d& b);
+
+/// How far the share that a hit's rays see may be off, times `unblocked`: as of so many rays of equal weight.
+Rgb deviation(const Rgb& unblocked, const RaySums& sums);
+
+}  // namespace shlight
