@@ -16,7 +16,7 @@ void bind_kernels(py::module_& m) {
     m.def("kernel_target", &kernel_target);
     m.def("force_kernel_target", &force_kernel_target, py::arg("target"));
     m.def("multiply_adds", &multiply_adds, py::arg("rounds"), py::call_guard<py::gil_scoped_release>());
-    force_kernel_target_of_environment();
+    choose_kernel_target();
 }
 
 }  // namespace shlight::python

@@ -52,7 +52,7 @@ class TargetOfEnvironment : public ::testing::Environment {
         if (wanted != nullptr && targets.front() == wanted) {
             GTEST_SKIP() << "[  SKIPPED ] without SHLIGHT_KERNEL_TARGET all tests run on " << wanted;
         }
-        force_kernel_target_of_environment();
+        choose_kernel_target();
     }
 };
 
@@ -78,7 +78,7 @@ TEST(Targets, AForcedOneIsInUse) {
 
 TEST(Targets, AnUnknownOneIsNamed) {
     const std::string message = testing::error_message([] { force_kernel_target("MMX"); });
-    EXPECT_EQ(message.find("target: this machine has " + kernel_targets().front()), 0U) << message;
+    EXPECT_EQ(message.find("target: this build has " + kernel_targets().front()), 0U) << message;
     EXPECT_NE(message.find(", not MMX"), std::string::npos) << message;
 }
 

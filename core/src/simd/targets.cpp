@@ -3,8 +3,8 @@
 
 #include <hwy/highway.h>
 
-#include <algorithm>
 #include <cstdlib>
+#include <stdexcept>
 
 #include "base/checks.h"
 
@@ -14,6 +14,9 @@ namespace {
 /// As Highway's bits, best first: the better an instruction set, the lower its bit.
 std::vector<std::int64_t> supported() {
     static const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
+    if (targets.empty()) {
+        throw std::runtime_error("shlight needs a processor with SSE4.2, AES and PCLMUL instructions");
+    }
     return targets;
 }
 
@@ -27,6 +30,18 @@ void use(std::int64_t target) {
     hwy::SetSupportedTargetsForTest(target);
     hwy::GetChosenTarget().Update(target);
     forced() = target;
+}
+
+/// The bit of the target that is called `name`, which came as `argument`.
+std::int64_t target_of_name(const std::string& argument, const std::string& name) {
+    std::string known;
+    for (const std::int64_t target : supported()) {
+        if (name == hwy::TargetName(target)) {
+            return target;
+        }
+        known += (known.empty() ? "" : ", ") + std::string(hwy::TargetName(target));
+    }
+    reject(argument + ": this build has " + known + " for this machine, not " + name);
 }
 
 }  // namespace
@@ -44,17 +59,7 @@ std::string kernel_target() {
 }
 
 void force_kernel_target(const std::string& target) {
-    const auto targets = supported();
-    const auto found =
-        std::find_if(targets.begin(), targets.end(), [&](std::int64_t bit) { return target == hwy::TargetName(bit); });
-    if (found == targets.end()) {
-        std::string known;
-        for (const std::string& name : kernel_targets()) {
-            known += (known.empty() ? "" : ", ") + name;
-        }
-        reject("target: this machine has " + known + ", not " + target);
-    }
-    use(*found);
+    use(target_of_name("target", target));
 }
 
 ForcedKernelTarget::ForcedKernelTarget(const std::string& target) : before_(forced()) {
@@ -65,10 +70,10 @@ ForcedKernelTarget::~ForcedKernelTarget() {
     use(before_);
 }
 
-void force_kernel_target_of_environment() {
-    if (const char* target = std::getenv("SHLIGHT_KERNEL_TARGET")) {
-        force_kernel_target(target);
-    }
+void choose_kernel_target() {
+    constexpr const char* kVariable = "SHLIGHT_KERNEL_TARGET";
+    const char* name = std::getenv(kVariable);
+    use(name == nullptr ? supported().front() : target_of_name(kVariable, name));
 }
 
 }  // namespace shlight

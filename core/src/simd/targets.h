@@ -18,11 +18,12 @@ std::vector<std::string> kernel_targets();
 std::string kernel_target();
 
 /// Uses one of kernel_targets() from now on, in all threads; for tests and measurements, while no kernel runs.
-/// Throws std::invalid_argument naming `target` if the machine does not have it.
+/// Throws std::invalid_argument naming `target` if this is none of them.
 void force_kernel_target(const std::string& target);
 
-/// Forces the one that the environment variable SHLIGHT_KERNEL_TARGET names, if it is set.
-void force_kernel_target_of_environment();
+/// Uses the one that the environment variable SHLIGHT_KERNEL_TARGET names, or else the best. Throws
+/// std::invalid_argument naming the variable if that is none of them, std::runtime_error if this machine has none.
+void choose_kernel_target();
 
 /// Forces a target as long as it lives.
 class ForcedKernelTarget {
