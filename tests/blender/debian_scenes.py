@@ -21,7 +21,7 @@ def prepare():
     bpy.ops.preferences.addon_enable(module="cycles")
     scene = bpy.context.scene
     render, cycles = scene.render, scene.cycles
-    render.resolution_x, render.resolution_y = 96, 72
+    render.resolution_x, render.resolution_y = 64, 48
     settings = render.image_settings
     settings.file_format, settings.color_mode, settings.color_depth, settings.exr_codec = (
         "OPEN_EXR",
