@@ -12,9 +12,22 @@ import sys
 from pathlib import Path
 
 CORE = Path(__file__).resolve().parent
-ORDER = (
-    "base simd math caps polygons disks lobes tracing emitters lights shading environment shadows render".split()
-)
+ORDER = [
+    "base",
+    "simd",
+    "math",
+    "caps",
+    "polygons",
+    "disks",
+    "lobes",
+    "tracing",
+    "emitters",
+    "lights",
+    "shading",
+    "environment",
+    "shadows",
+    "render",
+]
 # Public headers that no source of the same name implements.
 WITHOUT_SOURCE = {"surface_point": "tracing", "render_report": "base"}
 
