@@ -30,7 +30,7 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
         name="Tolerance",
         description="Error that the automatic order may make: of a light's reflection, relative to the light's own "
         "radiance times the material's reflectance",
-        default=1e-5,
+        default=1e-3,  # shlight.DEFAULT_TOLERANCE
         min=1e-6,
         max=0.5,
         soft_min=1e-5,

@@ -11,7 +11,7 @@ from shlight._load import load_core
 load_core()
 
 from shlight import images, methods  # noqa: E402
-from shlight._core import Bsdf, RenderCancelled, RenderReport, Scene, render  # noqa: E402
+from shlight._core import DEFAULT_TOLERANCE, Bsdf, RenderCancelled, RenderReport, Scene, render  # noqa: E402
 from shlight.coefficients import (  # noqa: E402
     cap_coefficients,
     disk_coefficients,
@@ -26,6 +26,7 @@ from shlight.shading import shade_disks, shade_polygons, shade_spheres  # noqa: 
 __version__ = "0.1.0"
 
 __all__ = [
+    "DEFAULT_TOLERANCE",
     "Bsdf",
     "RenderCancelled",
     "RenderReport",

@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 _Floats = NDArray[Any]
+DEFAULT_TOLERANCE: float
+
 _Shaded = tuple[NDArray[np.float32], NDArray[np.int32]]  # radiance and effort
 
 def kernel_targets() -> list[str]: ...
@@ -267,7 +269,7 @@ def render(
     height: int,
     *,
     order: Literal["auto"] | int = "auto",
-    tolerance: float = 1e-4,
+    tolerance: float = DEFAULT_TOLERANCE,
     pixel_samples: int = 16,
     shadow_rays: int = 16,
     threads: int = 0,
@@ -282,7 +284,7 @@ def render(
     height: int,
     *,
     order: Literal["auto"] | int = "auto",
-    tolerance: float = 1e-4,
+    tolerance: float = DEFAULT_TOLERANCE,
     pixel_samples: int = 16,
     shadow_rays: int = 16,
     threads: int = 0,

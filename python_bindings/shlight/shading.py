@@ -24,6 +24,7 @@ from shlight._arrays import (
     checked_threads,
     rows,
 )
+from shlight._core import DEFAULT_TOLERANCE
 from shlight.methods import checked_tolerance, shading_options
 
 Radiance = NDArray[np.float32]
@@ -75,7 +76,7 @@ def shade_spheres(
     cos_theta_o: ArrayLike,
     *,
     order: int | Literal["auto"] = "auto",
-    tolerance: float = 1e-3,
+    tolerance: float = DEFAULT_TOLERANCE,
     threads: int = 0,
     method: str = "auto",
     samples: int | None = None,
@@ -139,7 +140,7 @@ def shade_polygons(
     cos_theta_o: ArrayLike,
     *,
     order: int | Literal["auto"] = "auto",
-    tolerance: float = 1e-3,
+    tolerance: float = DEFAULT_TOLERANCE,
     threads: int = 0,
     method: str = "auto",
     samples: int | None = None,
@@ -201,7 +202,7 @@ def shade_disks(
     cos_theta_o: ArrayLike,
     *,
     order: int | Literal["auto"] = "auto",
-    tolerance: float = 1e-3,
+    tolerance: float = DEFAULT_TOLERANCE,
     threads: int = 0,
     method: str = "auto",
     return_effort: bool = False,

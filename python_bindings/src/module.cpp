@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "bindings.h"
+#include "shlight/types.h"
 
 PYBIND11_MODULE(_core, m) {
     m.doc() = "The compiled core of shlight; use it through the package `shlight`.";
+    m.attr("DEFAULT_TOLERANCE") = shlight::kDefaultTolerance;
     shlight::python::bind_kernels(m);
     shlight::python::bind_contraction(m);
     shlight::python::bind_coefficients(m);

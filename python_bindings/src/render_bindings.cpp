@@ -149,7 +149,7 @@ void bind_render(py::module_& m) {
                                "light, without shadows; shadows; pixels, adding up.")
         .def("__repr__", &Report::repr);
     m.def("render", &render_scene, kRenderDoc, "scene"_a, "width"_a, "height"_a, py::kw_only(), "order"_a = "auto",
-          "tolerance"_a = 1e-4, "pixel_samples"_a = 16, "shadow_rays"_a = 16, "threads"_a = 0,
+          "tolerance"_a = kDefaultTolerance, "pixel_samples"_a = 16, "shadow_rays"_a = 16, "threads"_a = 0,
           "progress"_a = py::none(), "adaptive"_a = true, "return_report"_a = false);
 }
 

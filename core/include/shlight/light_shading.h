@@ -14,8 +14,9 @@
 namespace shlight {
 
 struct ShadeSettings {
-    int order = 0;            ///< 1 … 64: harmonics of this order for every light; 0: whatever meets the tolerance
-    double tolerance = 1e-3;  ///< of the radiance ÷ the material's albedo at the view, in each colour channel
+    int order = 0;  ///< 1 … 64: harmonics of this order for every light; 0: whatever meets the tolerance
+    double tolerance =
+        kDefaultTolerance;  ///< of the radiance ÷ the material's albedo at the view, in each colour channel
 };
 
 /// Shades batch after batch of lights of one material. Keeps its memory; one per thread.

@@ -9,13 +9,15 @@
 #include "shlight/parallel.h"
 #include "shlight/render_report.h"
 #include "shlight/scene.h"
+#include "shlight/types.h"
 
 namespace shlight {
 
 struct RenderSettings {
     int order = 0;  ///< 1 … 64: harmonics of this order for every light; 0: the cheapest that meets the tolerance
-    double tolerance = 1e-4;  ///< error of a light's reflected radiance ÷ (its own radiance × the material's albedo)
-    int pixel_samples = 16;   ///< camera rays per pixel, spread evenly over its square; see adaptive
+    double tolerance =
+        kDefaultTolerance;   ///< error of a light's reflected radiance ÷ (its own radiance × the material's albedo)
+    int pixel_samples = 16;  ///< camera rays per pixel, spread evenly over its square; see adaptive
     /// Per camera ray and light, at most, and again for each roughness of the glossy lobes; 0: no shadows.
     int shadow_rays = 16;
     int threads = 0;  ///< 0: all cores

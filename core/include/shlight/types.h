@@ -31,6 +31,9 @@ using Wider = std::conditional_t<std::is_same_v<T, float>, double, long double>;
 /// The highest order: bands 0 … 63.
 inline constexpr int kMaxOrder = 64;
 
+/// The default of shade_*, render() and the Blender add-on.
+inline constexpr double kDefaultTolerance = 1e-3;
+
 /// Number of coefficients of an order.
 constexpr int coefficient_count(int order) {
     return order * order;

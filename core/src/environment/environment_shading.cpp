@@ -16,8 +16,6 @@ namespace {
 constexpr int kDirections = 16;
 /// Relative to the lobe's albedo and the picture's mean: harmonics that err by more are not left alone.
 constexpr double kDirectionError = 5e-3;
-/// Of the tolerance of a light: a picture is the sum of many.
-constexpr double kToleranceScale = 10;
 
 /// A lobe this many times as wide as a texel sees a spot as one direction.
 constexpr double kTexelsPerWidth = 2;
@@ -53,7 +51,7 @@ EnvironmentShading::EnvironmentShading(const Environment& environment, std::span
     for (const MaterialLobes& material : materials) {
         auto& plans = plans_.emplace_back();
         for (const Lobe& lobe : material.lobes()) {
-            plans.push_back(plan(lobe.shape, order, kToleranceScale * tolerance));
+            plans.push_back(plan(lobe.shape, order, tolerance));
         }
     }
 }

@@ -11,9 +11,6 @@ namespace {
 /// Points that are shaded at a time, as many as fit the cache with what is known of their views.
 constexpr std::size_t kPointsPerChunk = 1024;
 
-/// Error of a profile's mean ÷ the tolerance of a light's radiance, at most.
-constexpr double kProfileTolerance = 10;
-
 /// Error of the mean radiance of faces that differ ÷ the tolerance. Each face is the mean of what shines there, and the
 /// mean over all of them is hardly ever as wrong as a part that is looked at alone.
 constexpr double kMeanTolerance = 3;
@@ -166,8 +163,7 @@ void DirectLight::apply_profile(std::size_t lobe, std::size_t view, const Shadin
     const LobeViews& views = views_.lobe(lobe);
     profile_.reset(light, points.frame[point]);
     // A small light's radiance keeps within the tolerance whatever its profile, but a spot's rim should look right.
-    const double tolerance =
-        std::min(views.absolute_tolerance(view) / double{value}, kProfileTolerance * double{views.tolerances()[view]});
+    const double tolerance = std::min(views.absolute_tolerance(view) / double{value}, double{views.tolerances()[view]});
     const double mean = profile_.mean(views.shape(), points.cos_theta_o[point], tolerance * profile_.range().high);
     value = static_cast<float>(value * mean);
 }

@@ -24,8 +24,6 @@ constexpr double kLeastShare = 0.1;
 constexpr int kFirstOfLastBands = kFarLightOrder - 4;
 /// Of a side of a box, lest points in a plane divide by 0 [m].
 constexpr double kLeastSize = 1e-30;
-/// Of the tolerance of a light: as a picture, a sum is of many.
-constexpr double kToleranceScale = 10;
 /// Directions whose harmonics are held at a time.
 constexpr std::size_t kBasisChunk = 64;
 
@@ -41,7 +39,7 @@ double largest(const Rgb& color) {
 }  // namespace
 
 FarLightSum::FarLightSum(const FarLights& far, std::span<const MaterialLobes> materials, double tolerance)
-    : far_(&far), materials_(materials), tolerance_(kToleranceScale * tolerance) {}
+    : far_(&far), materials_(materials), tolerance_(tolerance) {}
 
 std::size_t FarLightSum::find(double random) const {
     const auto found = std::upper_bound(summed_.begin(), summed_.end(), random * summed_.back().brightness_up_to,

@@ -62,6 +62,7 @@ Scene scene_of(int first, int last, const Bsdf& bsdf, const LightTraits& traits 
 
 RenderSettings plain_settings(int shadow_rays) {
     RenderSettings settings;
+    settings.tolerance = 3e-4;
     settings.adaptive = false;
     settings.shadow_rays = shadow_rays;
     return settings;
