@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "disks/disk_polygon.h"
+#include "emitters/emitter_levels.h"
 #include "emitters/flat_outline.h"
 #include "lobes/material_lobes.h"
 
@@ -44,7 +45,9 @@ void SeenLights::look(const Light& light, const ShadingFrame& frame, double erro
 
 void SeenLights::look_at(const MeshLight& light, const ShadingFrame& frame, double tolerance, std::uint32_t number) {
     const std::size_t first = vertices_.size();
-    switch (mesh_view_.look(*light.shape, frame, tolerance)) {
+    // Of what the emitter gives: from afar that is little of what a surface around the hit would.
+    const double share = shown_share(*light.shape, glm::length(light.shape->center - frame.origin));
+    switch (mesh_view_.look(*light.shape, frame, tolerance * std::min(share, 1.0))) {
         case MeshView::Kind::hidden:
             break;
         case MeshView::Kind::outline:

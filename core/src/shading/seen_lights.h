@@ -25,7 +25,7 @@ class SeenLights {
   public:
     void clear();
     /// Adds what a hit sees of a light, which may be nothing, or several faces of a mesh. number: what the caller knows
-    /// the light by; tolerance: of a mesh's outline.
+    /// the light by; tolerance: of what a mesh gives.
     void look(const Light& light, const ShadingFrame& frame, double error, double tolerance, std::uint32_t number);
     /// A disk in the shading frame; what lies below the horizon or is seen edge-on is left out.
     void add_disk(const Ellipse<double>& disk, std::uint32_t number);
