@@ -33,12 +33,12 @@ using testing::RandomInput;
 using testing::relative_error;
 
 template <class T>
-std::vector<T> coefficients(const EllipseInput& disk, int order, bool clip, DiskMethod method = DiskMethod::automatic) {
+std::vector<T> coefficients(const EllipseInput& disk, int order, bool clip) {
     std::vector<T> result(coefficient_count(order), std::numeric_limits<T>::quiet_NaN());
     const std::array centers = {Vec3<T>(disk.center)};
     const std::array half_axes_u = {Vec3<T>(disk.half_axis_u)};
     const std::array half_axes_v = {Vec3<T>(disk.half_axis_v)};
-    disk_coefficients<T>(centers, half_axes_u, half_axes_v, order, clip, std::span<T>(result), method);
+    disk_coefficients<T>(centers, half_axes_u, half_axes_v, order, clip, std::span<T>(result));
     return result;
 }
 
@@ -111,25 +111,6 @@ TEST(Disk, AgreesWithReferenceUpToOrder16) {
 }
 TEST(Disk, AgreesWithReferenceAtOrders33And64) {
     compare(1 * kMore, {33, 64}, 1600);
-}
-
-/// Both roads at what either can do.
-TEST(Disk, OutlineAndSweepAgree) {
-    RandomInput random(1700);
-    for (const EllipseClass& kind : kClasses) {
-        for (int i = 0; i < 20; ++i) {
-            const EllipseInput disk = kind.draw(random);
-            const bool clip = i % 4 != 0;
-            const auto swept = coefficients<double>(disk, 12, clip, DiskMethod::sweep);
-            const auto outlined = coefficients<double>(disk, 12, clip, DiskMethod::outline);
-            if (swept[0] > 0.02 || (!clip && swept[0] > 1e-3)) {
-                for (std::size_t k = 0; k < swept.size(); ++k) {
-                    EXPECT_LE(std::abs(swept[k] - outlined[k]), 1e-11 * swept[0])
-                        << kind.name << ": " << describe(vectors_of(disk), clip);
-                }
-            }
-        }
-    }
 }
 
 template <class T>

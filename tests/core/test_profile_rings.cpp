@@ -40,30 +40,19 @@ ShadingFrame random_frame(testing::RandomInput& random) {
 }
 
 /// Coefficients of what of the light shines on the hit, by the methods for even lights.
-std::vector<double> truth(const Light& light, const ShadingFrame& frame) {
+std::vector<double> truth(const SeenLight& light) {
     std::vector<double> l(kTerms);
-    std::vector<Vec3d> corners;
-    if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
-        for_lit_corners(*polygon, frame, [&](const Vec3d& corner) { corners.push_back(corner); });
-    } else if (const auto* disk = std::get_if<DiskLight>(&light)) {
-        const LitDisk lit = lit_part(*disk, frame);
-        if (lit.corners.empty()) {
-            disk_coefficients<double>(lit.ellipse, kOrder, true, l.data());
-            return l;
-        }
-        corners = lit.corners;
+    if (!light.corners().empty()) {
+        polygon_coefficients<double>(light.corners(), kOrder, true, l.data());
+    } else if (const std::optional<CapView>& cap = light.cap()) {
+        const bool sphere = cap->kind == CapView::Kind::sphere;
+        const double distance = glm::length(cap->center);
+        // A facing disk is the cap of a sphere with the same tangent cone.
+        const double radius = sphere ? cap->radius : cap->radius * distance / std::hypot(distance, cap->radius);
+        sphere_coefficients<double>(std::span(&cap->center, 1), std::span(&radius, 1), kOrder, true, l);
     } else {
-        const std::optional<CapView> cap = cap_view(light, frame);
-        if (cap) {
-            const bool sphere = cap->kind == CapView::Kind::sphere;
-            const double distance = glm::length(cap->center);
-            // A facing disk is the cap of a sphere with the same tangent cone.
-            const double radius = sphere ? cap->radius : cap->radius * distance / std::hypot(distance, cap->radius);
-            sphere_coefficients<double>(std::span(&cap->center, 1), std::span(&radius, 1), kOrder, true, l);
-        }
-        return l;
+        disk_coefficients<double>(light.ellipse(), kOrder, true, l.data());
     }
-    polygon_coefficients<double>(corners, kOrder, true, l.data());
     return l;
 }
 
@@ -71,8 +60,8 @@ struct Error {
     double largest, whole;  // of the integrals of the basis over the light; L_00
 };
 
-Error error_of(ProfileRings& rings, const Light& light, const ShadingFrame& frame) {
-    const std::vector<double> expected = truth(light, frame);
+Error error_of(ProfileRings& rings, const SeenLight& light) {
+    const std::vector<double> expected = truth(light);
     std::vector<double> sums(kTerms), basis(kTerms);
     rings.for_nodes(
         kPoints, [](const Vec3d&) { return 1.0; },
@@ -95,19 +84,20 @@ template <class Make>
 void compare(unsigned seed, double known, const Make& make) {
     testing::RandomInput random(seed);
     ProfileRings rings;
+    SeenLight seen_light;
     int seen = 0, covered = 0;
     for (int i = 0; i < kLights; ++i) {
         const ShadingFrame frame = random_frame(random);
         const Light light = make(random, frame);
-        if (!is_seen(light, frame, 0)) {
+        if (!seen_light.look(light, frame, 0)) {
             continue;
         }
         ++seen;
-        if (!rings.reset(light, frame)) {
+        if (!rings.reset(seen_light)) {
             continue;
         }
         ++covered;
-        const Error error = error_of(rings, light, frame);
+        const Error error = error_of(rings, seen_light);
         EXPECT_LE(error.largest, kTolerance * error.whole + kLeast) << i;
     }
     EXPECT_GE(seen, kLights / 4);
@@ -177,12 +167,17 @@ TEST(ProfileRings, CoverDisksUnderASpread) {
 TEST(ProfileRings, LeaveStretchedConesAndConcavePolygonsToOthers) {
     ProfileRings rings;
     const ShadingFrame frame = shading_frame({}, {0, 0, 1}, {0, 0, 1});
+    const auto knows = [&](const Light& light) {
+        SeenLight seen;
+        EXPECT_TRUE(seen.look(light, frame, 0));
+        return rings.reset(seen);
+    };
     const glm::dmat3 axes(glm::dvec3(1, 0, 0), glm::dvec3(0, 2, 0), glm::dvec3(0, 0, 1));
-    EXPECT_FALSE(rings.reset(make_spot_light({0, 0, 2}, make_spot_profile(axes, 1, 0.5), Rgb(1), 0.3, false), frame));
+    EXPECT_FALSE(knows(make_spot_light({0, 0, 2}, make_spot_profile(axes, 1, 0.5), Rgb(1), 0.3, false)));
     LightTraits traits;
     traits.profile = make_spread_profile({0, 0, -1}, 1);
     const std::vector<Vec3d> arrow = {{0, 1, 1}, {1, -1, 1}, {0, -0.5, 1}, {-1, -1, 1}};
-    EXPECT_FALSE(rings.reset(make_polygon_light(arrow, Rgb(1), false, traits), frame));
+    EXPECT_FALSE(knows(make_polygon_light(arrow, Rgb(1), false, traits)));
 }
 
 }  // namespace

@@ -21,22 +21,17 @@ struct Ellipse {
     Vec3<T> center, half_axis_u, half_axis_v;
 };
 
-/// How a disk is integrated; `automatic` is right except where the two are compared.
-enum class DiskMethod { automatic, outline, sweep };
-
 /// Coefficients of one disk, order² values. A disk seen edge-on has zero coefficients.
 /// clip: keep only what lies above the horizon.
 /// Precondition, not checked: as the batch function checks.
 template <class T>
-void disk_coefficients(const Ellipse<T>& disk, int order, bool clip, T* coefficients,
-                       DiskMethod method = DiskMethod::automatic);
+void disk_coefficients(const Ellipse<T>& disk, int order, bool clip, T* coefficients);
 
 /// Many disks. coefficients: count × order², row by row.
 /// Throws std::invalid_argument naming the argument: order outside 1 … 64, sizes that do not fit, a non-finite number,
 /// half axes that are dependent, a shading point inside a disk.
 template <class T>
 void disk_coefficients(std::span<const Vec3<T>> centers, std::span<const Vec3<T>> half_axes_u,
-                       std::span<const Vec3<T>> half_axes_v, int order, bool clip, std::span<T> coefficients,
-                       DiskMethod method = DiskMethod::automatic);
+                       std::span<const Vec3<T>> half_axes_v, int order, bool clip, std::span<T> coefficients);
 
 }  // namespace shlight

@@ -18,17 +18,14 @@ namespace {
 /// about 1e-15 of L_00 ÷ that ratio. Where the horizon cuts an outline, its ends are off by a rounding of unit vectors:
 /// below this solid angle that is too much.
 template <class T>
-constexpr double kNarrowestForOutline = std::is_same_v<T, float> ? 1e-7 : 2e-3;
+constexpr double kNarrowestForOutline = std::is_same_v<T, float> ? 1e-7 : 2e-4;
 template <class T>
 constexpr double kSmallestCut = std::is_same_v<T, float> ? 1e-8 : 1e-4;
 
 template <class T>
-bool takes_sweep(const SphericalEllipse<Wider<T>>& ellipse, DiskMethod method) {
-    if (method == DiskMethod::outline || !can_be_swept(ellipse)) {
-        return false;
-    }
-    return method == DiskMethod::sweep || ellipse.least_solid_angle() < kNarrowestForOutline<T> * ellipse.outline() ||
-           (ellipse.cut() && ellipse.least_solid_angle() < kSmallestCut<T>);
+bool takes_sweep(const SphericalEllipse<Wider<T>>& ellipse) {
+    return can_be_swept(ellipse) && (ellipse.least_solid_angle() < kNarrowestForOutline<T> * ellipse.outline() ||
+                                     (ellipse.cut() && ellipse.least_solid_angle() < kSmallestCut<T>));
 }
 
 /// Outlines that wait for the lanes, with sums in R, and where their results go.
@@ -69,7 +66,7 @@ class WaitingOutlines {
 
 /// disk(i): number i of `count`, in the wider type.
 template <class T, class Disk>
-void integrate(std::size_t count, int order, bool clip, T* coefficients, DiskMethod method, const Disk& disk) {
+void integrate(std::size_t count, int order, bool clip, T* coefficients, const Disk& disk) {
     constexpr std::size_t kChunk = 128;
     const auto row = static_cast<std::size_t>(coefficient_count(order));
     WaitingOutlines<double, T> outlines(std::min(count, kChunk), order);
@@ -80,7 +77,7 @@ void integrate(std::size_t count, int order, bool clip, T* coefficients, DiskMet
             const SphericalEllipse<Wider<T>> ellipse(disk(i), clip);
             if (ellipse.empty()) {
                 std::fill_n(result, row, T(0));
-            } else if (takes_sweep<T>(ellipse, method)) {
+            } else if (takes_sweep<T>(ellipse)) {
                 disk_by_sweep(ellipse, order, result);
             } else if (disk_outline_in_float<T>(ellipse, order)) {
                 if constexpr (std::is_same_v<T, float>) {
@@ -104,15 +101,14 @@ Ellipse<Wider<T>> widened(const Vec3<T>& center, const Vec3<T>& u, const Vec3<T>
 }  // namespace
 
 template <class T>
-void disk_coefficients(const Ellipse<T>& disk, int order, bool clip, T* coefficients, DiskMethod method) {
-    integrate(1, order, clip, coefficients, method,
+void disk_coefficients(const Ellipse<T>& disk, int order, bool clip, T* coefficients) {
+    integrate(1, order, clip, coefficients,
               [&](std::size_t) { return widened(disk.center, disk.half_axis_u, disk.half_axis_v); });
 }
 
 template <class T>
 void disk_coefficients(std::span<const Vec3<T>> centers, std::span<const Vec3<T>> half_axes_u,
-                       std::span<const Vec3<T>> half_axes_v, int order, bool clip, std::span<T> coefficients,
-                       DiskMethod method) {
+                       std::span<const Vec3<T>> half_axes_v, int order, bool clip, std::span<T> coefficients) {
     check_order(order);
     const std::size_t count = centers.size();
     check_size("half_axes_u", half_axes_u.size(), count);
@@ -122,14 +118,14 @@ void disk_coefficients(std::span<const Vec3<T>> centers, std::span<const Vec3<T>
     for (std::size_t i = 0; i < count; ++i) {
         check_disk<T>(disk(i));
     }
-    integrate(count, order, clip, coefficients.data(), method, disk);
+    integrate(count, order, clip, coefficients.data(), disk);
 }
 
-template void disk_coefficients(const Ellipse<float>&, int, bool, float*, DiskMethod);
-template void disk_coefficients(const Ellipse<double>&, int, bool, double*, DiskMethod);
+template void disk_coefficients(const Ellipse<float>&, int, bool, float*);
+template void disk_coefficients(const Ellipse<double>&, int, bool, double*);
 template void disk_coefficients(std::span<const Vec3f>, std::span<const Vec3f>, std::span<const Vec3f>, int, bool,
-                                std::span<float>, DiskMethod);
+                                std::span<float>);
 template void disk_coefficients(std::span<const Vec3d>, std::span<const Vec3d>, std::span<const Vec3d>, int, bool,
-                                std::span<double>, DiskMethod);
+                                std::span<double>);
 
 }  // namespace shlight

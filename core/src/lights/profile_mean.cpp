@@ -33,11 +33,10 @@ void for_nodes(const GaussRule& rule, const Visit& visit) {
 }  // namespace
 
 void ProfileMean::reset(const Light& light, const ShadingFrame& frame) {
-    profile_.emplace(light, frame);
+    seen_.look(light, frame, 0);
     if (range().high > range().low) {
-        seen_.look(light, frame, 0);
         sampler_.reset(seen_);
-        has_rings_ = rings_.reset(light, frame);
+        has_rings_ = rings_.reset(seen_);
     }
 }
 
@@ -45,14 +44,14 @@ template <class Visit>
 void ProfileMean::for_light_nodes(int points, const Visit& visit) {
     if (has_rings_) {
         rings_.for_nodes(
-            points, [&](const Vec3d& direction) { return profile_->factor(direction); }, visit);
+            points, [&](const Vec3d& direction) { return seen_.profile().factor(direction); }, visit);
         return;
     }
     const GaussRule& rule = gauss_rule(points);
     for (std::size_t patch = 0; patch < sampler_.patch_count(); ++patch) {
         for_nodes(rule, [&](const glm::dvec2& point, double share) {
             const LightSample sample = sampler_.sample_patch(patch, point);
-            visit(sample.direction, share * sample.weight, profile_->factor(sample.direction));
+            visit(sample.direction, share * sample.weight, seen_.profile().factor(sample.direction));
         });
     }
 }
@@ -77,7 +76,7 @@ ProfileMean::Sums ProfileMean::sums(const Reflection& reflection, int points) {
         for_nodes(gauss_rule(points), [&](const glm::dvec2& point, double share) {
             const Vec3d direction = sample_lobe(*reflection.shape, reflection.view, point);
             if (direction.z > 0 && sampler_.meets(direction)) {
-                add(reflection, direction, share * sampler_.solid_angle(), profile_->factor(direction), sums);
+                add(reflection, direction, share * sampler_.solid_angle(), seen_.profile().factor(direction), sums);
             }
         });
     }
@@ -90,7 +89,7 @@ double ProfileMean::mean(const LobeShape& lobe, double cos_theta_o, double toler
     }
     const Vec3d view(std::sqrt(1 - cos_theta_o * cos_theta_o), 0, cos_theta_o);
     if (is_mirror(lobe)) {
-        return profile_->factor(mirrored(view));
+        return seen_.profile().factor(mirrored(view));
     }
     const bool narrow = sampler_.solid_angle() * largest_lobe_density(lobe, view) > kNarrowLobe;
     const Reflection reflection{&lobe, view, narrow};

@@ -8,8 +8,6 @@
 // spread as the lobe reflects, and both count by the balance heuristic, as in shadow_rays.h. No chance is involved.
 #pragma once
 
-#include <optional>
-
 #include "lights/light_sampling.h"
 #include "lights/profile_rings.h"
 #include "lights/seen_light.h"
@@ -25,7 +23,7 @@ class ProfileMean {
     void reset(const Light& light, const ShadingFrame& frame);
 
     /// The bounds of what mean() returns.
-    const ProfileRange& range() const { return profile_->range(); }
+    const ProfileRange& range() const { return seen_.profile().range(); }
     /// Of the hit's lobe, by more and more nodes until half as many again along each axis change it by less than
     /// the tolerance twice, or they are too many.
     double mean(const LobeShape& lobe, double cos_theta_o, double tolerance);
@@ -46,7 +44,6 @@ class ProfileMean {
     void for_light_nodes(int points, const Visit& visit);
     void add(const Reflection& reflection, const Vec3d& direction, double weight, double factor, Sums& sums) const;
 
-    std::optional<ProfileView> profile_;
     SeenLight seen_;
     LightSampler sampler_;
     ProfileRings rings_;

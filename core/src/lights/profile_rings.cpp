@@ -7,7 +7,6 @@
 #include <variant>
 
 #include "base/perpendicular.h"
-#include "lights/seen_light.h"
 
 namespace shlight {
 namespace {
@@ -137,31 +136,24 @@ void ProfileRings::Disk::add_cuts(double circle, std::vector<double>& cuts) cons
     }
 }
 
-bool ProfileRings::reset(const Light& light, const ShadingFrame& frame) {
+bool ProfileRings::reset(const SeenLight& seen) {
     sides_.clear();
     disk_.reset();
     events_.clear();
-    const Axis axis = axis_of(traits_of(light).profile);
+    const Axis axis = axis_of(traits_of(seen.light()).profile);
     if (!axis.direction) {
         return false;
     }
-    const Vec3d z = frame.to_local(*axis.direction);
+    const Vec3d z = seen.frame().to_local(*axis.direction);
     const Vec3d x = perpendicular(z);
     to_shading_ = {x, glm::cross(z, x), z};
-    if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
-        std::vector<Vec3d> corners;
-        for_lit_corners(*polygon, frame, [&](const Vec3d& corner) { corners.push_back(corner); });
-        if (!add_polygon(corners)) {
+    if (!seen.corners().empty()) {
+        if (!add_polygon(seen.corners())) {
             return false;
         }
-    } else if (const auto* disk = std::get_if<DiskLight>(&light)) {
-        const LitDisk lit = lit_part(*disk, frame);
-        if (lit.corners.empty()) {
-            add_disk(lit.ellipse);
-        } else if (!add_polygon(lit.corners)) {
-            return false;
-        }
-    } else if (!add_cap(light, frame)) {
+    } else if (std::holds_alternative<DiskLight>(seen.light())) {
+        add_disk(seen.ellipse());
+    } else if (!seen.cap() || !add_cap(*seen.cap())) {
         return false;
     }
     find_events(axis.kinks);
@@ -172,12 +164,11 @@ void ProfileRings::add_side(const Vec3d& normal, double offset) {
     sides_.push_back({normal, offset, std::hypot(normal.x, normal.y), std::atan2(normal.y, normal.x)});
 }
 
-bool ProfileRings::add_cap(const Light& light, const ShadingFrame& frame) {
-    const std::optional<CapView> cap = cap_view(light, frame);
-    if (!cap || (cap->kind != CapView::Kind::sphere && cap->kind != CapView::Kind::facing_disk)) {
+bool ProfileRings::add_cap(const CapView& cap) {
+    if (cap.kind != CapView::Kind::sphere && cap.kind != CapView::Kind::facing_disk) {
         return false;
     }
-    const Circle circle = circle_of(*cap);
+    const Circle circle = circle_of(cap);
     if (!(circle.sine >= kLeastSine)) {
         return false;
     }

@@ -14,11 +14,10 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 
+#include "lights/seen_light.h"
 #include "math/gauss_legendre.h"
 #include "shlight/disk.h"
-#include "shlight/light.h"
 #include "shlight/types.h"
-#include "tracing/hits.h"
 
 namespace shlight {
 
@@ -27,8 +26,8 @@ class ProfileRings {
   public:
     /// False, and nothing is to be asked, for lights that this rule does not know: whose axis is none in the world
     /// (stretched cones), that are tiny, or neither caps, convex polygons nor disks.
-    /// Of a rectangle or disk under a spread, the part that shines on the hit: see lit_rectangle and lit_part.
-    bool reset(const Light& light, const ShadingFrame& frame);
+    /// Of a rectangle or disk under a spread, the part that shines on the hit.
+    bool reset(const SeenLight& seen);
 
     /// visit(direction, weight, factor): unit directions in the shading frame above the horizon; Σ weight ·
     /// g(direction) is the integral of g over the light. factor: factor_of(direction), asked once for each circle.
@@ -64,7 +63,7 @@ class ProfileRings {
     Vec3d to_rings(const Vec3d& direction) const { return direction * to_shading_; }
     void add_side(const Vec3d& normal, double offset);
     void add_horizon() { add_side(to_rings({0, 0, 1}), 0); }
-    bool add_cap(const Light& light, const ShadingFrame& frame);
+    bool add_cap(const CapView& cap);
     bool add_polygon(std::span<const Vec3d> corners);
     void add_disk(const Ellipse<double>& ellipse);
     bool holds(const Vec3d& direction) const;

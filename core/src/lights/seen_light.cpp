@@ -109,6 +109,12 @@ void clip(std::vector<Vec3d>& corners, const Vec3d& normal, double limit) {
     corners = std::move(kept);
 }
 
+/// A part of a disk.
+struct LitDisk {
+    Ellipse<double> ellipse;
+    std::vector<Vec3d> corners;  ///< if there are any, the part is this convex polygon
+};
+
 /// To what of the disk lies in the circle of radius `reach` about a point of its plane, or a little more.
 void restrict(const DiskLight& light, const Vec3d& middle, double reach, LitDisk& lit) {
     const Vec3d way = middle - light.center;
@@ -139,6 +145,33 @@ void restrict(const DiskLight& light, const Vec3d& middle, double reach, LitDisk
     if (lit.corners.size() < 3) {
         lit.corners.assign(3, middle);  // without area
     }
+}
+
+/// The corners of that part, in the world.
+std::array<Vec3d, 4> lit_rectangle(const PolygonLight& light, const LitEdges& edges) {
+    const Vec3d& corner = light.vertices[0];
+    const Vec3d along = light.vertices[1] - corner;
+    const Vec3d across = light.vertices[3] - corner;
+    const auto at = [&](double a, double b) { return corner + a * along + b * across; };
+    return {at(edges.from[0], edges.from[1]), at(edges.to[0], edges.from[1]), at(edges.to[0], edges.to[1]),
+            at(edges.from[0], edges.to[1])};
+}
+
+/// What of a disk shines on a point through its spread, or more, in the shading frame; all of it if the spread lights
+/// a good part.
+LitDisk lit_part(const DiskLight& light, const ShadingFrame& frame) {
+    LitDisk lit = {{light.center, light.half_axis_u, light.half_axis_v}, {}};
+    const auto* spread = std::get_if<SpreadProfile>(&light.traits.profile);
+    const double height = glm::dot(frame.origin - light.center, light.normal);
+    if (spread != nullptr && height > 0) {
+        restrict(light, frame.origin - height * light.normal, height * spread->tangent, lit);
+    }
+    Ellipse<double>& e = lit.ellipse;
+    e = {frame.point_to_local(e.center), frame.to_local(e.half_axis_u), frame.to_local(e.half_axis_v)};
+    for (Vec3d& corner : lit.corners) {
+        corner = frame.point_to_local(corner);
+    }
+    return lit;
 }
 
 /// Whether a hit lies off the plane of a light that is planar, on a side that the light shines to.
@@ -222,43 +255,16 @@ ProfileView::ProfileView(const Light& light, const ShadingFrame& frame) {
     range_ = profile_range(profile, -bounds.towards, bounds.half_angle);
 }
 
-std::optional<std::array<Vec3d, 4>> lit_rectangle(const PolygonLight& light, const Vec3d& position) {
-    const std::optional<LitEdges> edges = lit_edges(light, position);
-    if (!edges || edges->whole()) {
-        return std::nullopt;
-    }
-    const Vec3d& corner = light.vertices[0];
-    const Vec3d along = light.vertices[1] - corner;
-    const Vec3d across = light.vertices[3] - corner;
-    const auto at = [&](double a, double b) { return corner + a * along + b * across; };
-    return std::array{at(edges->from[0], edges->from[1]), at(edges->to[0], edges->from[1]),
-                      at(edges->to[0], edges->to[1]), at(edges->from[0], edges->to[1])};
-}
-
-LitDisk lit_part(const DiskLight& light, const ShadingFrame& frame) {
-    LitDisk lit = {{light.center, light.half_axis_u, light.half_axis_v}, {}};
-    const auto* spread = std::get_if<SpreadProfile>(&light.traits.profile);
-    const double height = glm::dot(frame.origin - light.center, light.normal);
-    if (spread != nullptr && height > 0) {
-        restrict(light, frame.origin - height * light.normal, height * spread->tangent, lit);
-    }
-    Ellipse<double>& e = lit.ellipse;
-    e = {frame.point_to_local(e.center), frame.to_local(e.half_axis_u), frame.to_local(e.half_axis_v)};
-    for (Vec3d& corner : lit.corners) {
-        corner = frame.point_to_local(corner);
-    }
-    return lit;
-}
-
 bool SeenLight::look_at(const PolygonLight& light) {
     const std::optional<LitEdges> edges = lit_edges(light, frame_->origin);
     if ((edges && edges->empty()) ||
         !is_lit_side(light, glm::dot(light.normal, frame_->origin - light.vertices[0]), error_)) {
         return false;
     }
-    if (const auto part = lit_rectangle(light, frame_->origin)) {
-        corners_.assign(part->begin(), part->end());
-        is_part_ = true;
+    is_part_ = edges && !edges->whole();
+    if (is_part_) {
+        const auto part = lit_rectangle(light, *edges);
+        corners_.assign(part.begin(), part.end());
     } else {
         corners_ = light.vertices;
     }
@@ -292,6 +298,7 @@ bool SeenLight::look(const Light& light, const ShadingFrame& frame, double error
     cap_.reset();
     corners_.clear();
     is_part_ = false;
+    profile_ = ProfileView();
     bool seen = false;
     if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
         seen = look_at(*polygon);

@@ -62,28 +62,6 @@ class ProfileView {
     ProfileRange range_ = {1, 1};
 };
 
-/// The corners of the smallest rectangle, with edges along the light's own, of what of a rectangle shines on a point
-/// through its spread. Nothing where that is all of it, and for lights of other shapes and profiles.
-std::optional<std::array<Vec3d, 4>> lit_rectangle(const PolygonLight& light, const Vec3d& position);
-
-/// visit(corner) for the corners of that rectangle, or else of all of the polygon, in the shading frame.
-template <class Visit>
-void for_lit_corners(const PolygonLight& light, const ShadingFrame& frame, const Visit& visit) {
-    const auto part = lit_rectangle(light, frame.origin);
-    for (const Vec3d& v : part ? std::span<const Vec3d>(*part) : std::span<const Vec3d>(light.vertices)) {
-        visit(frame.point_to_local(v));
-    }
-}
-
-/// A part of a disk.
-struct LitDisk {
-    Ellipse<double> ellipse;
-    std::vector<Vec3d> corners;  ///< if there are any, the part is this convex polygon
-};
-/// What of a disk shines on a point through its spread, or more, in the shading frame; all of it if the spread lights
-/// a good part.
-LitDisk lit_part(const DiskLight& light, const ShadingFrame& frame);
-
 /// A light with extent in a hit's frame: found once, then read by shading, by profiles and by shadow rays. Refers to
 /// the light and the frame. Keeps its memory from one to the next.
 class SeenLight {
@@ -98,7 +76,8 @@ class SeenLight {
     const ProfileView& profile() const { return profile_; }
     /// Of a sphere or a sun.
     const std::optional<CapView>& cap() const { return cap_; }
-    /// In the shading frame, of a polygon, or of a part of a light: see lit_rectangle and lit_part.
+    /// In the shading frame, of a polygon, or of what of a light's spread shines on the hit: the smallest
+    /// rectangle with edges along the light's own that holds it, or a convex polygon.
     std::span<const Vec3d> corners() const { return corners_; }
     /// Whether the corners are those of a part, which is convex.
     bool is_part() const { return is_part_; }
