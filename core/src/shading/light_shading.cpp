@@ -19,9 +19,6 @@
 namespace shlight {
 namespace {
 
-/// Of the polygons that stand for disks, at most.
-constexpr double kDiskTolerance = 1e-4;
-
 /// Lights that are prepared and sorted at a time: enough for long lists of each kind, few enough for the cache.
 constexpr std::size_t kLightsPerChunk = 1024;
 
@@ -124,10 +121,9 @@ class LightShaderWork {
     void shade(std::span<Rgb> radiance, std::span<std::int32_t> effort) {
         std::fill(radiance.begin(), radiance.end(), Rgb(0));
         std::fill(effort.begin(), effort.end(), 0);
-        const double tolerance = std::min(material_.tolerance(), kDiskTolerance);
         for (std::size_t l = 0; l < views_.lobe_count(); ++l) {
             LobeViews& lobe = views_.lobe(l);
-            seen_.shade(lobe, view_of_, tolerance, !effort.empty(), batch_,
+            seen_.shade(lobe, view_of_, material_.tolerance(), !effort.empty(), batch_,
                         [&](std::span<const std::uint32_t> numbers) {
                             const std::span<const float> values = batch_.values();
                             for (std::size_t k = 0; k < numbers.size(); ++k) {

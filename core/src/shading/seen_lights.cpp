@@ -15,6 +15,9 @@ namespace {
 /// Polygons of any size are filled up to a multiple of this many vertices.
 constexpr std::size_t kSizeStep = kDiskPolygonStep;
 
+/// Of the polygons that stand for disks, at most.
+constexpr double kDiskTolerance = 1e-4;
+
 }  // namespace
 
 void SeenLights::clear() {
@@ -130,7 +133,7 @@ std::uint32_t SeenLights::size_of(const Polygon& polygon, const LobeViews& lobe,
         return polygon.size;
     }
     const double width = narrowest(lobe.shape(), lobe.positions().cosine()[view_of[polygon.number]]);
-    return static_cast<std::uint32_t>(disk_polygon_size(*polygon.disk, width, tolerance));
+    return static_cast<std::uint32_t>(disk_polygon_size(*polygon.disk, width, std::min(tolerance, kDiskTolerance)));
 }
 
 void SeenLights::sort(const LobeViews& lobe, std::span<const std::uint32_t> view_of, double tolerance) {
