@@ -4,7 +4,6 @@
 PYBIND11_MODULE(_core, m) {
     m.doc() = "The compiled core of shlight; use it through the package `shlight`.";
     shlight::python::bind_kernels(m);
-    shlight::python::bind_contraction(m);
     shlight::python::bind_coefficients(m);
     shlight::python::bind_bsdf(m);
     shlight::python::bind_shading(m);
