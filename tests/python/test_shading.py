@@ -92,26 +92,6 @@ def test_polygons_match_dense_cubature(
     outcome.check(tolerance)
 
 
-def test_tighter_tolerances_cost_more() -> None:
-    rng = np.random.default_rng(4)
-    tolerances = (1e-1, 1e-2, 1e-3, 1e-4)
-    for roughness, cosine in ((0.1, 0.6), (0.3, 0.25)):
-        lights = [random_light(rng, k % 3, roughness**2, cosine) for k in range(600)]
-        centers, radii = np.array([axis for axis, _ in lights]), np.sin([half_angle for _, half_angle in lights])
-        quads = np.array([random_quad(rng, *light) for light in lights])
-        bsdf = Bsdf.ggx(roughness, 1)
-        for efforts in (
-            [
-                shlight.shade_spheres(centers, radii, bsdf, cosine, tolerance=t, return_effort=True)[1]
-                for t in tolerances
-            ],
-            [shlight.shade_polygons(quads, bsdf, cosine, tolerance=t, return_effort=True)[1] for t in tolerances],
-        ):
-            means = [float(effort.mean()) for effort in efforts]
-            assert means == sorted(means)
-            assert means[-1] > 2 * means[0]
-
-
 @pytest.mark.parametrize("cosine", [0.1, 0.2, 0.4])
 def test_tolerances_are_relative_to_the_albedo(cosine: float) -> None:
     """A lobe that is dark but at grazing angles, beside the same at a much smaller tolerance."""

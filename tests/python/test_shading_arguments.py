@@ -77,14 +77,6 @@ def test_any_real_type_will_do(dtype: type) -> None:
     np.testing.assert_array_equal(shlight.shade_polygons(triangle, BSDF, view), expected)
 
 
-def test_strided_arrays_are_read_right() -> None:
-    rng = np.random.default_rng(8)
-    wide = rng.normal(size=(3, 40)) + 3
-    centers = wide.T[::2]
-    expected = shlight.shade_spheres(centers.copy(), 0.5, BSDF, 0.5)
-    np.testing.assert_array_equal(shlight.shade_spheres(centers, 0.5, BSDF, 0.5), expected)
-
-
 @pytest.mark.parametrize("threads", [1, 2, 5])
 def test_threads_change_no_bit(threads: int) -> None:
     rng = np.random.default_rng(9)
