@@ -13,7 +13,7 @@ import re
 import sys
 from pathlib import Path
 
-from shlight.bench import against_peer, table
+from shlight.bench import sections, table
 from shlight.bench.row import Bench, read
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -39,13 +39,13 @@ def overview(bench: Bench) -> str:
     """Ratios to sphericart's basis, and times: a line for each kind of work, a column for each order."""
     lines: dict[str, dict[str, str]] = {}
     for row in bench.rows:
-        if row.unit == against_peer.UNIT and row.section != "targets":
+        if row.unit == sections.UNIT and not row.name.endswith(", auto"):
             kind, _, order = row.name.rpartition(", ")
             time = row.detail.partition(" ÷ ")[0]
             lines.setdefault(kind, {})[order] = f"{table.number(row.value)} ({time})"
     orders = list(dict.fromkeys(order for line in lines.values() for order in line))
     cells = [[kind, *(line.get(order, "") for order in orders)] for kind, line in lines.items()]
-    return table.aligned((f"time {against_peer.UNIT}", *orders), cells) + "\n" if cells else ""
+    return table.aligned((f"time {sections.UNIT}", *orders), cells) + "\n" if cells else ""
 
 
 def main() -> None:

@@ -7,7 +7,6 @@ namespace shlight::python {
 
 void bind_coefficients(pybind11::module_& m);
 void bind_kernels(pybind11::module_& m);
-void bind_contraction(pybind11::module_& m);
 void bind_bsdf(pybind11::module_& m);
 void bind_shading(pybind11::module_& m);
 void bind_methods(pybind11::module_& m);

@@ -4,7 +4,6 @@
 #include <pybind11/stl.h>
 
 #include "bindings.h"
-#include "simd/multiply_adds.h"
 #include "simd/targets.h"
 
 namespace shlight::python {
@@ -15,7 +14,6 @@ void bind_kernels(py::module_& m) {
     m.def("kernel_targets", &kernel_targets);
     m.def("kernel_target", &kernel_target);
     m.def("force_kernel_target", &force_kernel_target, py::arg("target"));
-    m.def("multiply_adds", &multiply_adds, py::arg("rounds"), py::call_guard<py::gil_scoped_release>());
     choose_kernel_target();
 }
 

@@ -88,42 +88,6 @@ TEST(Basis, AgreesWithLaplacesIntegral) {
     compare_with_laplace<float>(64, 30, 2e-3);
 }
 
-/// std::sph_legendre has the Condon–Shortley phase (-1)^m, which this basis does not.
-TEST(Basis, AgreesWithTheStandardLibrary) {
-    RandomInput random(11);
-    for (int i = 0; i < 50; ++i) {
-        const double tilt = random.uniform(0.05, 3.09);
-        const std::vector<double> computed = basis_in<double>({std::sin(tilt), 0, std::cos(tilt)}, 20);
-        for (unsigned l = 0; l < 20; ++l) {
-            for (unsigned m = 0; m <= l; ++m) {
-                const double expected =
-                    (m == 0 ? 1 : std::numbers::sqrt2) * (m % 2 == 0 ? 1 : -1) * std::sph_legendre(l, m, tilt);
-                EXPECT_NEAR(computed[l * l + l + m], expected, 1e-11);
-            }
-        }
-    }
-}
-
-/// Σ_m Y_lm(a) Y_lm(b) = (2l+1)/4π P_l(a·b).
-TEST(Basis, ObeysTheAdditionTheorem) {
-    RandomInput random(12);
-    for (int i = 0; i < 100; ++i) {
-        const Vec3d a = random.direction();
-        const Vec3d b = random.direction();
-        const std::vector<double> in_a = basis_in<double>(a, 64);
-        const std::vector<double> in_b = basis_in<double>(b, 64);
-        for (int l = 0; l < 64; ++l) {
-            double sum = 0;
-            for (int m = -l; m <= l; ++m) {
-                sum += in_a[coefficient_index(l, m)] * in_b[coefficient_index(l, m)];
-            }
-            const double expected = (2 * l + 1) / (4 * std::numbers::pi) *
-                                    std::legendre(static_cast<unsigned>(l), std::clamp(glm::dot(a, b), -1.0, 1.0));
-            EXPECT_NEAR(sum, expected, 1e-11);
-        }
-    }
-}
-
 /// ∫ Y_k Y_j dω by equally spaced longitudes and the Clenshaw–Curtis rule in z, both exact for these polynomials.
 TEST(Basis, IsOrthonormal) {
     const int order = 12;

@@ -116,14 +116,6 @@ TEST(Environment, WallsHideIt) {
     EXPECT_NEAR(image.red(2, 2), 0.5F * kSky.x, 2e-3);
 }
 
-TEST(Environment, AClosedBoxIsBlackInside) {
-    Scene scene = floor_under_sky(Bsdf::lambert(Rgb(1)));
-    Mesh shell = sphere_mesh({0, 0, 0}, 2, 16, false);
-    scene.add_mesh(shell);
-    const Camera inside(look_at({0, -1, 1}, {0, 0, 0}), 0.2);
-    EXPECT_EQ(render_image(scene, inside, 2, 2, {}).color(0, 0), Rgb(0));
-}
-
 /// What a narrow lobe reflects is hidden by what is in its direction, and only by that.
 TEST(Environment, GlossyLobesSeeOnlyTheirOwnObstacles) {
     const Camera camera(look_at({0, -10, 10}, {0, 0, 0}), 1e-3);

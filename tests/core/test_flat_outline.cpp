@@ -75,18 +75,6 @@ double moved_area(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
     return moved * (2 * kHalf / kGrid) * (2 * kHalf / kGrid);
 }
 
-TEST(FlatOutline, ThinnedOutKeepsItsAreaAndMostOfItsPlaces) {
-    RandomInput random(9);
-    for (int round = 0; round < 5; ++round) {
-        const FlatOutline outline = drawn({ring({0.05, 0, 1}, 0.3, 150, random)});
-        FlatOutline thin = outline;
-        thin.thin_out(kMost, kOneSided);
-        EXPECT_LE(thin.line(0).size(), outline.line(0).size() / 3);
-        EXPECT_LE(std::abs(thin.area() - outline.area()), 1e-14);
-        EXPECT_LE(moved_area(joined(thin), joined(outline)), kMost);
-    }
-}
-
 TEST(FlatOutline, EachLineIsThinnedOutByItself) {
     RandomInput random(10);
     const FlatOutline outline = drawn({ring({-0.3, 0, 1}, 0.2, 60, random), ring({0.3, 0.1, 1}, 0.15, 60, random),

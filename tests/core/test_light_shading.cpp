@@ -164,46 +164,6 @@ TEST(LightShading, PolygonsMatchBruteForce) {
     }
 }
 
-TEST(LightShading, ALambertSurfaceIsExact) {
-    // Lambert's own formula for a whole sphere: albedo sin²σ cosθ.
-    const Vec3d center(0.3, -0.4, 1.2);
-    const double radius = 0.5;
-    Rgb radiance;
-    const double cosine = 0.4;
-    shade_spheres({&center, 1}, {&radius, 1}, Bsdf::lambert(Rgb(0.5F, 1, 0)), {&cosine, 1}, {}, {&radiance, 1});
-    const double distance = glm::length(center);
-    const double expected = radius * radius / (distance * distance) * center.z / distance;
-    EXPECT_NEAR(radiance.x, 0.5 * expected, 1e-7);
-    EXPECT_NEAR(radiance.y, expected, 1e-7);
-    EXPECT_EQ(radiance.z, 0);
-}
-
-TEST(LightShading, AMirrorShowsTheLight) {
-    const double cosine = 0.6;
-    const Bsdf mirror = Bsdf::ggx(0, Rgb(0.5F));
-    const Vec3d v = view_direction(cosine);
-    const double edge = 1 - cosine;
-    const double fresnel = 0.5 + 0.5 * edge * edge * edge * edge * edge;
-    const std::vector<Vec3d> centers = {{-v.x, 0, v.z}, {-v.x, 0.2, v.z}, {-v.x, 0.4, v.z}, {-v.x, 0, -2}};
-    const std::vector<double> radii(4, 0.25);
-    std::vector<Rgb> radiance(4);
-    shade_spheres(centers, radii, mirror, std::vector<double>(4, cosine), {}, radiance);
-    EXPECT_NEAR(radiance[0].x, fresnel, 1e-6);
-    EXPECT_NEAR(radiance[1].x, fresnel, 1e-6);
-    EXPECT_EQ(radiance[2].x, 0);
-    EXPECT_EQ(radiance[3].x, 0);
-    for (const bool inside : {true, false}) {
-        const double shift = inside ? 0.05 : 0.3;
-        const std::vector<Vec3d> quad = {{-v.x + shift - 0.2, -0.2, v.z},
-                                         {-v.x + shift + 0.2, -0.2, v.z},
-                                         {-v.x + shift + 0.2, 0.2, v.z},
-                                         {-v.x + shift - 0.2, 0.2, v.z}};
-        std::vector<Rgb> out(1);
-        shade_polygons(quad, 4, mirror, std::vector<double>(1, cosine), {}, out);
-        EXPECT_NEAR(out[0].x, inside ? fresnel : 0, 1e-6);
-    }
-}
-
 TEST(LightShading, RoughnessHasNoSeams) {
     // From a mirror to the roughest surface in steps too small for the light to change much between them.
     const double cosine = 0.5;
@@ -292,23 +252,6 @@ TEST(LightShading, SpheresDependOnNoNeighbour) {
             EXPECT_EQ(alone, together[i]) << i;
         }
     }
-}
-
-TEST(LightShading, RejectsBadInput) {
-    const Bsdf bsdf = Bsdf::ggx(0.5F, Rgb(1));
-    const std::vector<Vec3d> center = {{0, 0, 2}};
-    const std::vector<double> radius = {1};
-    std::vector<Rgb> out(1);
-    const auto shade = [&](double cosine, double r, int order, double tolerance) {
-        shade_spheres(center, std::vector<double>{r}, bsdf, std::vector<double>{cosine}, {order, tolerance}, out);
-    };
-    EXPECT_NO_THROW(shade(0.5, 1, 0, 1e-3));
-    EXPECT_THROW(shade(-0.1, 1, 0, 1e-3), std::invalid_argument);
-    EXPECT_THROW(shade(NAN, 1, 0, 1e-3), std::invalid_argument);
-    EXPECT_THROW(shade(0.5, 3, 0, 1e-3), std::invalid_argument);
-    EXPECT_THROW(shade(0.5, 1, 65, 1e-3), std::invalid_argument);
-    EXPECT_THROW(shade(0.5, 1, 0, 0), std::invalid_argument);
-    EXPECT_THROW(shade(0.5, 1, 0, NAN), std::invalid_argument);
 }
 
 }  // namespace

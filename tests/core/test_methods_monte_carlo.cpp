@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "error_message.h"
 #include "mean.h"
 #include "method_calls.h"
 #include "quad_truth.h"
@@ -20,7 +19,6 @@ namespace {
 
 using methods::Options;
 using methods::Sampling;
-using testing::error_message;
 using testing::kFewSigma;
 using testing::Mean;
 using testing::of_cap;
@@ -85,31 +83,6 @@ TEST(NumericalMethods, MonteCarloCoefficientsAreUnbiased) {
             [&](const Options& o, std::size_t i) { return of_cap<double>("monte_carlo", axis, 2.5, 4, clip, o, i); },
             {}, "beyond a hemisphere");
     }
-}
-
-TEST(NumericalMethods, SeedAndNumberPickTheRandomNumbers) {
-    const Vec3d axis(0.5, -0.3, 0.6);
-    const auto compute = [&](std::uint32_t seed, std::size_t number) {
-        return of_cap<float>("monte_carlo", axis, 0.4, 3, true, {.samples = 8, .seed = seed}, number);
-    };
-    EXPECT_EQ(compute(1, 0), compute(1, 0));
-    EXPECT_NE(compute(1, 0), compute(2, 0));
-    EXPECT_NE(compute(1, 0), compute(1, 1));
-}
-
-TEST(NumericalMethods, OptionsThatDoNotFitAreNamed) {
-    const Vec3d axis(0, 0, 1);
-    const auto starts = [](const std::string& text, const std::string& with) { return text.rfind(with, 0) == 0; };
-    for (const Sampling sampling : {Sampling::bsdf, Sampling::mis}) {
-        EXPECT_TRUE(
-            starts(error_message([&] { of_cap<float>("monte_carlo", axis, 0.4, 3, true, {.sampling = sampling}); }),
-                   "sampling"));
-    }
-    EXPECT_TRUE(
-        starts(error_message([&] { of_cap<float>("monte_carlo", axis, 1.6, 3, true, {.sampling = Sampling::area}); }),
-               "half_angles"));
-    EXPECT_TRUE(
-        starts(error_message([&] { of_cap<float>("monte_carlo", axis, 0.4, 3, true, {.samples = 0}); }), "samples"));
 }
 
 }  // namespace

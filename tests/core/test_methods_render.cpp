@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "error_message.h"
 #include "monte_carlo_render.h"
 #include "render_scenes.h"
 
@@ -135,16 +134,6 @@ TEST(MonteCarloRender, TheMeanIsWhatTheLibraryRenders) {
     }
 }
 
-TEST(MonteCarloRender, DependsOnTheSeedAndNotOnThreads) {
-    const auto scene = room(Bsdf::ggx(0.5F, Rgb(0.8F)), "sp").compile();
-    const Camera camera = camera_above(2);
-    const Picture one = picture(*scene, camera, {.samples = 9, .seed = 4, .threads = 1});
-    for (const int threads : {2, 3, 0}) {
-        EXPECT_EQ(picture(*scene, camera, {.samples = 9, .seed = 4, .threads = threads}), one) << threads;
-    }
-    EXPECT_NE(picture(*scene, camera, {.samples = 9, .seed = 5, .threads = 1}), one);
-}
-
 TEST(MonteCarloRender, AMountedLampIsNotBlockedByItsMount) {
     // Tilted, so that neither the mesh's float vertices nor the rays lie in the lamp's plane exactly.
     const Vec3d along = glm::normalize(Vec3d(1, 0.3, 0.2));
@@ -205,36 +194,6 @@ TEST(MonteCarloRender, LongPixelsAreCutIntoBatches) {
     EXPECT_EQ(many[3], 1.0F);
     EXPECT_NE(few, many);
     EXPECT_NEAR(few[0], many[0], 0.1 * few[0]);
-}
-
-TEST(MonteCarloRender, BadArgumentsAreNamed) {
-    const auto scene = room(Bsdf::lambert(Rgb(0.5F)), "s").compile();
-    const Camera camera = camera_above(2);
-    const auto names = [&](const MonteCarloSettings& settings, int width, int height, std::size_t size) {
-        std::vector<float> image(size);
-        const std::string text =
-            testing::error_message([&] { render_monte_carlo(*scene, camera, width, height, settings, image); });
-        return text.substr(0, text.find(' '));
-    };
-    EXPECT_EQ(names({.samples = 0}, 2, 2, 16), "samples");
-    EXPECT_EQ(names({.samples = (1 << 20) + 1}, 2, 2, 16), "samples");
-    EXPECT_EQ(names({.threads = -1}, 2, 2, 16), "threads");
-    EXPECT_EQ(names({}, 0, 2, 16), "width");
-    EXPECT_EQ(names({}, 2, 0, 16), "height");
-    EXPECT_EQ(names({}, 2, 2, 15), "image");
-    EXPECT_EQ(names({}, 2, 2, 16), "");
-}
-
-TEST(MonteCarloRender, ProgressRisesAndCancels) {
-    const auto scene = room(Bsdf::lambert(Rgb(0.5F)), "s").compile();
-    double last = 0;
-    picture(*scene, camera_above(2), {.samples = 64}, [&](double share) {
-        EXPECT_GE(share, last);
-        last = share;
-        return true;
-    });
-    EXPECT_EQ(last, 1);
-    EXPECT_THROW(picture(*scene, camera_above(2), {.samples = 1 << 18}, [](double) { return false; }), RenderCancelled);
 }
 
 }  // namespace

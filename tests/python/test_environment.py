@@ -43,14 +43,6 @@ def test_the_last_one_counts_also_after_a_render() -> None:
         assert shlight.render(scene, 8, 8)[4, 4, 0] == pytest.approx(0.5 * radiance, rel=1e-6)
 
 
-def test_it_adds_to_lights() -> None:
-    scene = open_floor()
-    scene.add_sphere_light((0, 0, 3), 0.5, (5, 5, 5))
-    alone = shlight.render(scene, 8, 8)[4, 4, :3]
-    scene.set_environment((1, 1, 1))
-    np.testing.assert_allclose(shlight.render(scene, 8, 8)[4, 4, :3], alone + 0.5, rtol=1e-5)
-
-
 def random_picture(height: int = 16) -> NDArray[np.float32]:
     return np.random.default_rng(4).random((height, 2 * height, 3), dtype=np.float32)
 
@@ -70,17 +62,6 @@ def texels(picture: NDArray[np.float32]) -> tuple[NDArray[np.float64], NDArray[n
     )
     edges = np.cos(np.arange(height + 1) / height * np.pi)
     return np.stack([x, y, z], -1), np.outer(edges[:-1] - edges[1:], np.full(width, 2 * np.pi / width))
-
-
-def test_picture_over_lambert() -> None:
-    picture = random_picture(64)
-    scene = open_floor()
-    scene.set_environment(picture)
-    image, report = shlight.render(scene, 8, 8, return_report=True)
-    directions, solid_angles = texels(picture)
-    irradiance = np.einsum("ijc,ij,ij->c", picture, solid_angles, np.maximum(directions[..., 2], 0))
-    np.testing.assert_allclose(image[4, 4, :3], 0.5 * irradiance / np.pi, rtol=5e-3)
-    assert sum(report.order_shares.values()) == pytest.approx(1.0)
 
 
 def test_picture_is_seen_where_it_lies() -> None:
@@ -107,29 +88,6 @@ def test_a_turned_picture_is_its_columns_rolled() -> None:
     turned = shlight.render(scene, 8, 8)
     scene.set_environment(np.roll(picture, -8, axis=1), visible=False)  # columns go against the azimuth
     np.testing.assert_allclose(turned, shlight.render(scene, 8, 8), rtol=1e-4)
-
-
-@pytest.mark.parametrize("order", [1, 3, 64])
-def test_the_order_of_a_render_is_that_of_pictures_too(order: int) -> None:
-    scene = open_floor()
-    scene.set_environment(random_picture())
-    assert shlight.render(scene, 8, 8, order=order, return_report=True)[1].order_shares == {order: 1.0}
-
-
-def test_narrow_lobes_are_counted_as_cubature() -> None:
-    scene = shlight.Scene()
-    scene.add_mesh(FLOOR, QUAD, bsdf=shlight.Bsdf.ggx(0.1, (1, 1, 1)))
-    scene.set_camera_window([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 5], [0, 0, 0, 1]], -1, 1, -1, 1, orthographic=True)
-    scene.set_environment(random_picture())
-    assert shlight.render(scene, 4, 4, return_report=True)[1].cubature_share == 1.0
-
-
-def test_the_image_does_not_depend_on_threads() -> None:
-    scene = open_floor()
-    scene.add_mesh(FLOOR / 4 + np.float32([0, 0, 0.5]), QUAD, bsdf=shlight.Bsdf.ggx(0.4, (0.5, 0.6, 0.7)))
-    scene.set_environment(random_picture())
-    one, two = (shlight.render(scene, 16, 16, threads=threads) for threads in (1, 2))
-    np.testing.assert_array_equal(one, two)
 
 
 @pytest.mark.parametrize("to_world", [np.eye(4), 2 * np.eye(3), -np.eye(3), np.full((3, 3), np.nan), "north", 1.0])

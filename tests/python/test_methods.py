@@ -76,20 +76,6 @@ def test_every_method_knows_easy_lights(name: str, dtype: Any) -> None:
             assert (errors <= tolerance).all(), (name, errors)
 
 
-def test_spheres_are_caps() -> None:
-    for name in ("quadrature", "monte_carlo"):
-        options: dict[str, Any] = {"method": name, "dtype": np.float64}
-        spheres = shlight.sphere_coefficients(3 * AXES, 3 * RADII, 4, **options)
-        np.testing.assert_allclose(spheres, caps(**options), rtol=0, atol=1e-12)
-
-
-def test_methods_broadcast() -> None:
-    many = shlight.cap_coefficients(AXES[:, None], HALF_ANGLES, 3, method="quadrature", dtype=np.float64)
-    assert many.shape == (3, 3, 9)
-    one = shlight.cap_coefficients(AXES[1], HALF_ANGLES[2], 3, method="quadrature", dtype=np.float64)
-    np.testing.assert_array_equal(many[1, 2], one)
-
-
 def test_a_tolerance_is_kept() -> None:
     exact = caps(dtype=np.float64)
     errors = []
@@ -115,18 +101,6 @@ def test_random_coefficients_depend_on_the_seed_only(name: str, sampling: Any) -
     assert (compute(2, 1) != once).any(axis=-1).all()
     # Each light of a batch has random numbers of its own.
     assert len(np.unique(once[::3, 0] if sampling == "area" else once[::3, 1])) == 600
-
-
-def test_errors_fall_with_the_square_root_of_the_samples() -> None:
-    axes = np.tile(AXES, (200, 1))
-    half_angles = np.tile(HALF_ANGLES, 200)
-
-    def error(samples: int) -> float:
-        given: dict[str, Any] = {"method": "monte_carlo", "samples": samples, "dtype": np.float64}
-        difference = shlight.cap_coefficients(axes, half_angles, 4, **given) - np.tile(caps(dtype=np.float64), (200, 1))
-        return float(np.sqrt((difference**2).mean()))
-
-    assert 3.5 <= error(16) / error(256) <= 4.5
 
 
 @pytest.mark.parametrize(
@@ -229,13 +203,6 @@ def test_random_shading_is_right_and_depends_on_the_seed_only(sampling: Any) -> 
     )
 
 
-def test_light_below_the_horizon_is_dark() -> None:
-    for name in SHADING_METHODS:
-        options: dict[str, Any] = {"order": 4} if SHADING_METHODS[name].harmonic else {}
-        hidden = shlight.shade_spheres([0, 0.1, -1], 0.5, Bsdf.ggx(0.6, 0.8), 0.7, method=name, **options)
-        np.testing.assert_array_equal(hidden, 0)
-
-
 @pytest.mark.parametrize(
     ("name", "options"),
     [
@@ -283,14 +250,6 @@ def test_pictures_agree_with_the_library() -> None:
     off = np.abs(totals.mean(axis=0) - expected.astype(np.float64).sum(axis=(0, 1)))
     assert (off <= 5 * standard_error).all()
     assert (standard_error[:3] <= 0.01 * totals.mean(axis=0)[:3]).all()
-
-
-def test_noise_falls_with_the_square_root_of_the_samples() -> None:
-    def noise(samples: int) -> float:
-        a, b = (methods.render_monte_carlo(lit_floor(), 16, 16, samples=samples, seed=seed) for seed in (1, 2))
-        return float(np.sqrt(((a - b)[..., :3] ** 2).mean()))
-
-    assert 2.8 <= noise(16) / noise(256) <= 5.6
 
 
 def test_threads_do_not_change_a_bit() -> None:

@@ -105,25 +105,6 @@ def test_narrow_lobes_tend_to_mirrors() -> None:
 
 
 @reproducible
-@given(spheres(), polygons(), roughnesses, cosines)
-def test_mirroring_the_scene_changes_nothing(
-    sphere: tuple[Floats, float], vertices: Floats, roughness: float, cosine: float
-) -> None:
-    bsdf = Bsdf.ggx(roughness, 0.7)
-    mirror = np.array([1, -1, 1])
-    np.testing.assert_allclose(
-        shlight.shade_spheres(sphere[0] * mirror, sphere[1], bsdf, cosine),
-        shlight.shade_spheres(*sphere, bsdf, cosine),
-        atol=1e-5,
-    )
-    np.testing.assert_allclose(
-        shlight.shade_polygons(vertices * mirror, bsdf, cosine),
-        shlight.shade_polygons(vertices, bsdf, cosine),
-        atol=1e-5,
-    )
-
-
-@reproducible
 @given(spheres(), polygons(), roughnesses, cosines, st.integers(-100, 100))
 def test_scale_does_not_matter(
     sphere: tuple[Floats, float], vertices: Floats, roughness: float, cosine: float, exponent: int
@@ -147,52 +128,6 @@ def test_winding_and_first_vertex_do_not_matter(vertices: Floats, first: int, ro
     for same in (vertices[::-1], np.roll(vertices, first, axis=0)):
         # Cubature divides a polygon into a fan from its first vertex.
         assert np.all(np.abs(shlight.shade_polygons(same, bsdf, cosine) - expected) <= 2e-3 * scale)
-
-
-@reproducible
-@given(polygons(), st.floats(0.1, 0.9), roughnesses, cosines)
-def test_parts_sum_to_the_whole(vertices: Floats, share: float, roughness: float, cosine: float) -> None:
-    """A triangle, cut from one corner to the opposite side."""
-    a, b, c = vertices[:3]
-    cut = (1 - share) * b + share * c
-    bsdf = Bsdf.ggx(roughness, 1)
-    parts = shlight.shade_polygons([[a, b, cut], [a, cut, c]], bsdf, cosine).sum(axis=0)
-    whole = shlight.shade_polygons([a, b, c], bsdf, cosine)
-    assert np.all(np.abs(parts - whole) <= 4e-3 * albedo(bsdf, cosine))  # three errors
-
-
-@reproducible
-@given(spheres(), roughnesses, roughnesses, cosines)
-def test_sums_of_materials_are_sums_of_radiances(
-    sphere: tuple[Floats, float], roughness: float, other: float, cosine: float
-) -> None:
-    a, b = Bsdf.ggx(roughness, [0.9, 0.1, 0.5]), 0.5 * Bsdf.ggx(other, 0.04, ior=1.5)
-    both = shlight.shade_spheres(*sphere, a + b, cosine)
-    apart = shlight.shade_spheres(*sphere, a, cosine) + shlight.shade_spheres(*sphere, b, cosine)
-    assert np.all(np.abs(both - apart) <= 4e-3 * albedo(a + b, cosine))
-
-
-@reproducible
-@given(spheres(), st.floats(1, 2), roughnesses, cosines)
-def test_larger_spheres_are_no_darker(
-    sphere: tuple[Floats, float], growth: float, roughness: float, cosine: float
-) -> None:
-    center, radius = sphere
-    larger = min(growth * radius, float(np.linalg.norm(center)))
-    bsdf = Bsdf.ggx(roughness, 1)
-    less, more = shlight.shade_spheres(center, [radius, larger], bsdf, cosine)
-    assert np.all(less <= more + 3e-3 * albedo(bsdf, cosine))
-
-
-@reproducible
-@given(spheres(), polygons(), roughnesses, cosines)
-def test_nothing_reflects_more_than_it_receives(
-    sphere: tuple[Floats, float], vertices: Floats, roughness: float, cosine: float
-) -> None:
-    bsdf = Bsdf.ggx(roughness, 1)
-    for radiance in (shlight.shade_spheres(*sphere, bsdf, cosine), shlight.shade_polygons(vertices, bsdf, cosine)):
-        assert np.all(radiance >= 0)
-        assert np.all(radiance <= 1.002)
 
 
 def test_extremes_are_finite() -> None:

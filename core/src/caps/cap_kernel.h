@@ -21,10 +21,6 @@ void sphere_rows(const Vec3<float>* centers, const float* radii, std::size_t cou
 void sphere_rows(const Vec3<double>* centers, const double* radii, std::size_t count, int order, bool clip,
                  double* rows, Output output);
 
-/// values[i]: Σ f_lm L_lm of sphere i for one lobe's cosine terms without a warp, cosine_count(order) of them, clipped.
-void shade_spheres_on_plane(const Vec3<float>* centers, const float* radii, std::size_t count, const float* lobe_terms,
-                            int order, float* values);
-
 /// Coefficients of the caps inside circles.
 void circle_rows(const Circle* circles, std::size_t count, int order, bool clip, float* rows, Output output);
 void circle_rows(const Circle* circles, std::size_t count, int order, bool clip, double* rows, Output output);

@@ -144,8 +144,8 @@ class RowWriter {
     }
 
     /// The lines of one row after the other: lines of several rows in turn, at the same place in their pages, take
-    /// three times as long to stream (docs/performance.md). The first row is streamed at once; the others meanwhile go
-    /// into a copy in the first cache.
+    /// three times as long to stream. The first row is streamed at once; the others meanwhile go into a copy in the
+    /// first cache.
     void stage_lines(std::size_t lane, std::size_t lines) {
         const D d;
         constexpr std::size_t kPitch = kColumns + kLine;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""`shlight bench`: how long the library's kernels take, as ratios that hold from one machine to the next.
+"""`shlight bench`: how long the calls of the package take, as ratios that hold from one machine to the next.
 
-sections.py lists what can be measured: each section is a module with a function measure(run) that returns rows.
-rounds.py is the clock, inputs.py the lights, command.py the command.
+sections.py lists what is measured, calls.py and pictures.py make the calls, inputs.py and lamps.py their lights,
+rounds.py is the clock, builds.py times two builds in turns, command.py is the command.
 """

@@ -9,7 +9,7 @@ from pathlib import Path
 from shlight.commands import CommandError, check_folder, run_command, work_folder
 from shlight.progress import Progress
 
-from . import machine, peer, table
+from . import builds, machine, peer, table
 from .compare import comparison
 from .options import Options, parse
 from .row import Bench, Row, read
@@ -35,7 +35,9 @@ def _work(arguments: list[str]) -> None:
         if options.out.is_dir():
             raise CommandError(f"{options.out} is a folder; --out wants a file", 2)
         check_folder(options.out.parent)
-        if any(section.name in PEERED for section in options.sections):
+        if options.against is not None:
+            builds.check_package(options.against)
+        elif any(section.name in PEERED for section in options.sections):
             peer.check_installed()
     bench = _measured(options) if options.read is None else read(options.read)
     _tell(bench)
@@ -52,7 +54,8 @@ def _measured(options: Options) -> Bench:
     try:
         for section in options.sections:
             progress.begin(section.title)
-            rows += section.measure(Run(section.name, options.lights, options.rounds, progress.step))
+            run = Run(section.name, options.lights, options.rounds, progress.step)
+            rows += section.measure(run) if options.against is None else builds.measure(options.against, run)
             progress.end()
     except BaseException:
         progress.interrupt()

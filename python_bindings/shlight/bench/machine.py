@@ -18,7 +18,6 @@ def described() -> dict[str, str]:
         "processor": processor(),
         "cores": str(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()),
         "instruction set": _core.kernel_target(),
-        "instruction sets": ", ".join(_core.kernel_targets()),
         "system": f"{platform.system()} {platform.release()}, {platform.machine()}",
         "shlight": shlight.__version__,
         "sphericart": _version("sphericart"),
@@ -27,16 +26,13 @@ def described() -> dict[str, str]:
 
 
 def processor() -> str:
-    """Its name, with family and model where the name says little, as those of virtual machines do."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").split("\n\n", 1)[0].splitlines()
-    except OSError:
-        return platform.processor() or platform.machine()
+    """Its name, with family and model, as names of virtual machines say little."""
+    info = Path("/proc/cpuinfo")
+    lines = info.read_text(encoding="utf-8").split("\n\n", 1)[0].splitlines() if info.is_file() else []
     known = {key.strip(): value.strip() for key, _, value in (line.partition(":") for line in lines)}
-    if "model name" not in known:
-        return platform.processor() or platform.machine()
-    numbers = [f"{key} {known[of]}" for key, of in (("family", "cpu family"), ("model", "model")) if of in known]
-    return f"{known['model name']} ({', '.join(numbers)})" if numbers else known["model name"]
+    if "cpu family" not in known or "model name" not in known:
+        return known.get("model name") or platform.processor() or platform.machine()
+    return f"{known['model name']} (family {known['cpu family']}, model {known['model']})"
 
 
 def _version(package: str) -> str:

@@ -20,6 +20,7 @@ class Options:
     quick: bool
     out: Path
     compare: Path | None
+    against: Path | None
     read: Path | None
     list: bool
 
@@ -41,21 +42,28 @@ def parse(argv: list[str]) -> Options:
     if unknown:
         parser.error(f"there is no section '{unknown[0]}'; there are: {', '.join(known)}")
     sections = [section for section in SECTIONS if not given.names or section.name in given.names]
-    compare, read = (None if file is None else Path(file) for file in (given.compare, given.read))
-    return Options(sections, given.quick, Path(given.out), compare, read, given.list)
+    compare, against, read = (
+        None if file is None else Path(file) for file in (given.compare, given.against, given.read)
+    )
+    return Options(sections, given.quick, Path(given.out), compare, against, read, given.list)
 
 
 def _parser() -> Parser:
     parser = Parser(
         prog="shlight bench",
-        description="Measures how long the library's kernels take, as ratios of times that alternate in one run, and "
-        "what memory they need; prints tables and writes a JSON file.",
+        description="Measures how long the package's calls take, as ratios of times that alternate in one run; prints "
+        "tables and writes a JSON file.",
     )
     add = parser.add_argument
     add("names", nargs="*", metavar="NAME", help="sections to measure (default: all)")
-    add("--quick", action="store_true", help=f"{QUICK_LIGHTS} lights rather than {LIGHTS}: all within a minute")
+    add(
+        "--quick",
+        action="store_true",
+        help=f"{QUICK_LIGHTS} lights rather than {LIGHTS}, small pictures: half a minute",
+    )
     add("--out", metavar="FILE", default=DEFAULT_OUT, help="JSON file of the results (default: %(default)s)")
     add("--compare", metavar="FILE", help="show the change against this JSON file of an earlier run")
+    add("--against", metavar="FOLDER", help="time another build's package in this folder in turns with this build's")
     add("--read", metavar="FILE", help="take the results from this JSON file instead of measuring")
     add("--list", action="store_true", help="list the sections and do nothing else")
     return parser

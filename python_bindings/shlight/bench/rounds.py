@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,7 @@ WALL: Clock = time.perf_counter
 class Work:
     """A call of the library as a user makes it: its result is let go before the clock stops, as in a loop."""
 
-    call: Callable[[], object]
+    call: Callable[[], Any]
     count: int  # lights, or directions, that it takes
 
 

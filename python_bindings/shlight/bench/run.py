@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from shlight._arrays import Floats
 
@@ -26,13 +26,18 @@ class Run:
     rounds: int
     step: Callable[[float, str], None] = field(default=lambda share, text: None)
 
-    @property
-    def quick(self) -> bool:
-        return self.lights < LIGHTS
+    def count(self, order: int) -> int:
+        """As many lights as usual, or as their coefficients of this order fit into memory."""
+        return min(self.lights, int(RESULT_BYTES / (4 * order**2)))
 
-    def count(self, order: int, wanted: int | None = None) -> int:
-        """As many lights as wanted (None: as usual), or as their coefficients of this order fit into memory."""
-        return min(self.lights if wanted is None else wanted, int(RESULT_BYTES / result_bytes(order)))
+    def size(self, usual: tuple[int, int]) -> tuple[int, int]:
+        """Of a picture: half as wide and as high in a quick run."""
+        width, height = usual
+        return (width // 2, height // 2) if self.lights < LIGHTS else usual
+
+    def shorter(self) -> Run:
+        """Half as many rounds, for pictures: they take long, and vary little."""
+        return replace(self, rounds=(self.rounds + 1) // 2)
 
     def alternate(
         self, works: Mapping[str, Work], part: tuple[int, int] = (0, 1), clock: Clock = ONE_THREAD
@@ -57,11 +62,6 @@ class Section:
     name: str  # on the command line
     title: str
     measure: Callable[[Run], list[Row]]
-
-
-def result_bytes(order: int) -> int:
-    """Of one light's coefficients in float32."""
-    return 4 * order**2
 
 
 def duration(seconds: Floats) -> str:

@@ -1,49 +1,50 @@
 # SPDX-License-Identifier: MIT
-"""How a render's time grows with the number of faces of a mesh that shines."""
+"""Scenes whose lamps are many, or whose lamp is a mesh of many faces."""
 
 from __future__ import annotations
-
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 import shlight
-from shlight.charts.scenes import look_at
+from shlight.charts.scenes import add_quad, look_at
 
-from .rounds import Work
-from .row import Row
-from .run import Run
-
-FEW, MANY = 1, 7  # subdivisions of an icosahedron
-BOUND = 3.0
-SIZE, QUICK_SIZE = (64, 48), (32, 24)
-EYE, TARGET = (0.0, -6.0, 3.0), (0.0, 0.0, 0.5)
-CENTER, RADIUS, RADIANCE = (0.9, -0.6, 2.4), 0.4, (10.0, 10.0, 10.0)  # of the lamp
+SEED = 1
+HALF, STRENGTH = 4.0, 30.0  # of the floor; of all lights together
+OBSTACLES, EDGE = 6, 0.3
+CENTER, RADIUS, RADIANCE = (0.9, -0.6, 2.4), 0.4, (10.0, 10.0, 10.0)  # of the lamp that is a mesh
 
 Solid = tuple[NDArray[np.float64], NDArray[np.int64]]
 
 
-def measure(run: Run) -> list[Row]:
-    size = QUICK_SIZE if run.quick else SIZE
-    solids = [icosphere(FEW), icosphere(MANY)]
-    bsdfs = {"matt": shlight.Bsdf.lambert(0.8), "glossy": shlight.Bsdf.ggx(0.5, 0.9)}
-    rows = []
-    for part, (kind, bsdf) in enumerate(bsdfs.items()):
-        works = {
-            f"{len(solid[1])} faces over {kind} things": Work(
-                partial(shlight.render, scene_of(solid, bsdf), *size, threads=1), 1
-            )
-            for solid in solids
-        }
-        seconds = run.alternate(works, (part, len(bsdfs)))
-        few, many = works
-        rows.append(run.ratio(seconds, many, few, unit="×", bound=BOUND))
-    return rows
+def floored(bsdf: shlight.Bsdf) -> shlight.Scene:
+    scene = shlight.Scene()
+    add_quad(scene, [(-HALF, -HALF, 0), (HALF, -HALF, 0), (HALF, HALF, 0), (-HALF, HALF, 0)], bsdf)
+    return scene
 
 
-def scene_of(lamp: Solid, bsdf: shlight.Bsdf) -> shlight.Scene:
-    """A ball on a floor, under a mesh."""
+def many_lights(count: int, radius: float, angle: float) -> shlight.Scene:
+    """Tetrahedra on a floor under `count` lights; radius 0: sources without extent. angle: of the view."""
+    rng = np.random.default_rng(SEED)
+    scene = floored(shlight.Bsdf.lambert(0.8))
+    corners = EDGE * np.array([[1.0, 1, 1], [-1, -1, 1], [-1, 1, -1], [1, -1, -1]])
+    faces = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
+    for _ in range(OBSTACLES):
+        center = np.append(rng.uniform(-HALF / 2, HALF / 2, 2), EDGE)
+        scene.add_mesh(corners + center, faces, bsdf=shlight.Bsdf.lambert(0.6))
+    positions = rng.uniform((-3, -3, 1.5), (3, 3, 3), (count, 3))
+    for position, colour in zip(positions, rng.uniform(0.5, 1.5, (count, 3)), strict=True):
+        intensity = STRENGTH / count * colour
+        if radius == 0:
+            scene.add_point_light(position, tuple(intensity))
+        else:
+            scene.add_sphere_light(position, radius, tuple(intensity / (np.pi * radius**2)))
+    scene.set_camera(look_at((0.0, -6.0, 4.0), (0.0, 0.0, 0.2)), angle)
+    return scene
+
+
+def under_mesh(lamp: Solid, bsdf: shlight.Bsdf) -> shlight.Scene:
+    """A ball on a floor, under a mesh that shines."""
     scene = ball_on_floor(bsdf)
     vertices, faces = lamp
     scene.add_mesh(RADIUS * vertices + CENTER, faces, emission=RADIANCE)
@@ -52,12 +53,10 @@ def scene_of(lamp: Solid, bsdf: shlight.Bsdf) -> shlight.Scene:
 
 def ball_on_floor(bsdf: shlight.Bsdf) -> shlight.Scene:
     """With a camera, and without a lamp."""
-    scene = shlight.Scene()
-    floor = 4 * np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
-    scene.add_mesh(floor, np.array([[0, 1, 2], [0, 2, 3]]), bsdf=bsdf)
+    scene = floored(bsdf)
     normals, faces = icosphere(4)
     scene.add_mesh(0.8 * normals + (0, 0, 0.8), faces, bsdf=bsdf, normals=normals)
-    scene.set_camera(look_at(EYE, TARGET), 0.7)
+    scene.set_camera(look_at((0.0, -6.0, 3.0), (0.0, 0.0, 0.5)), 0.7)
     return scene
 
 
@@ -71,8 +70,7 @@ def icosphere(subdivisions: int) -> Solid:
     triples = np.array([(i, j, k) for i in range(12) for j in range(i) for k in range(j)])
     i, j, k = triples.T
     faces = triples[close[i, j] & close[j, k] & close[k, i]]
-    corners = vertices[faces]
-    inward = np.einsum("fi,fi->f", np.cross(corners[:, 0], corners[:, 1]), corners[:, 2]) < 0
+    inward = np.linalg.det(vertices[faces]) < 0
     faces[inward] = faces[inward, ::-1]
     for _ in range(subdivisions):
         vertices, faces = _quartered(vertices, faces)

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: MIT
+"""usage: python -P serve.py FOLDER SECTION LIGHTS
+
+Makes the calls of a section of this bench with the package shlight that is in FOLDER: prints their names, and then, for
+each name that it is given, the seconds that the call took.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import json
+import sys
+import time
+from importlib.machinery import PathFinder
+from pathlib import Path
+
+
+def main(folder: str, section: str, lights: int) -> None:
+    # Before what an editable installation redirects to its own place.
+    sys.meta_path.insert(0, PathFinder)
+    sys.path.insert(0, folder)
+    importlib.import_module("shlight")
+    spec = importlib.util.spec_from_file_location("shlight.bench", Path(__file__).with_name("__init__.py"))
+    assert spec is not None
+    sys.modules[spec.name] = importlib.util.module_from_spec(spec)
+    run = importlib.import_module("shlight.bench.run").Run(section, lights, 1)
+    works = importlib.import_module("shlight.bench.sections").works(run)
+    print(json.dumps(list(works)), flush=True)
+    for line in sys.stdin:
+        call = works[line.rstrip("\n")].call
+        start = time.process_time()
+        call()
+        print(time.process_time() - start, flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], sys.argv[2], int(sys.argv[3]))
