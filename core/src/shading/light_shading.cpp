@@ -20,7 +20,7 @@ namespace shlight {
 namespace {
 
 /// Lights that are prepared and sorted at a time: enough for long lists of each kind, few enough for the cache.
-constexpr std::size_t kLightsPerChunk = 1024;
+constexpr std::size_t kLightsPerChunk = 512;
 
 void check_settings(const ShadeSettings& settings) {
     if (settings.order < 0 || settings.order > kMaxOrder) {
@@ -125,14 +125,33 @@ class LightShaderWork {
             LobeViews& lobe = views_.lobe(l);
             seen_.shade(lobe, view_of_, material_.tolerance(), !effort.empty(), batch_,
                         [&](std::span<const std::uint32_t> numbers) {
-                            const std::span<const float> values = batch_.values();
-                            for (std::size_t k = 0; k < numbers.size(); ++k) {
-                                radiance[numbers[k]] += lobe.weight(view_of_[numbers[k]]) * values[k];
-                            }
-                            for (std::size_t k = 0; k < numbers.size() && !effort.empty(); ++k) {
-                                effort[numbers[k]] = std::max(effort[numbers[k]], batch_.efforts()[k]);
+                            if (numbers.empty()) {
+                                add(
+                                    lobe, [](std::size_t k) { return k; }, radiance, effort);
+                            } else {
+                                add(
+                                    lobe, [&](std::size_t k) { return numbers[k]; }, radiance, effort);
                             }
                         });
+        }
+    }
+
+    /// Adds what the batch found of a lobe. number(k): of the batch's light k.
+    template <class Number>
+    void add(const LobeViews& lobe, const Number& number, std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+        const std::span<const float> values = batch_.values();
+        if (lobe.has_one_weight()) {
+            const Rgb weight = lobe.weight(0);
+            for (std::size_t k = 0; k < values.size(); ++k) {
+                radiance[number(k)] += weight * values[k];
+            }
+        } else {
+            for (std::size_t k = 0; k < values.size(); ++k) {
+                radiance[number(k)] += lobe.weight(view_of_[number(k)]) * values[k];
+            }
+        }
+        for (std::size_t k = 0; k < values.size() && !effort.empty(); ++k) {
+            effort[number(k)] = std::max(effort[number(k)], batch_.efforts()[k]);
         }
     }
 

@@ -21,6 +21,7 @@ constexpr double kDiskTolerance = 1e-4;
 }  // namespace
 
 void SeenLights::clear() {
+    given_ = Given::none;
     caps_.clear();
     cap_numbers_.clear();
     vertices_.clear();
@@ -89,8 +90,7 @@ void SeenLights::add_disk(const Ellipse<double>& disk, std::uint32_t number) {
 template <class T>
 void SeenLights::set_spheres(std::span<const Vec3<T>> centers, const T* radii) {
     clear();
-    cap_numbers_.resize(centers.size());
-    std::iota(cap_numbers_.begin(), cap_numbers_.end(), 0U);
+    given_ = Given::spheres;
     circles_.resize(centers.size());
     circles_of_spheres(centers, radii, circles_.output());
 }
@@ -101,8 +101,7 @@ void SeenLights::set_polygons(std::span<const Vec3<T>> vertices, std::size_t ver
     gathered_.clear(vertex_count);
     gathered_.append(vertices.data(), vertices.size() / vertex_count);
     gathered_.check(vertices.data());
-    numbers_.resize(gathered_.size());
-    std::iota(numbers_.begin(), numbers_.end(), 0U);
+    given_ = Given::polygons;
 }
 
 /// Those of spheres in lanes.

@@ -37,28 +37,32 @@ class SeenLights {
     void set_polygons(std::span<const Vec3<T>> vertices, std::size_t vertex_count);
 
     /// Shades all with a lobe. Light `number` is seen by view view_of[number]. visit(numbers) after each call of the
-    /// batch, which holds values of the lights with these numbers; faces of a mesh follow each other.
+    /// batch, which holds values of the lights with these numbers, or, if there are none, of 0, 1, 2 …; faces of a mesh
+    /// follow each other.
     /// tolerance: of the polygon that stands for a disk.
     template <class Visit>
     void shade(LobeViews& lobe, std::span<const std::uint32_t> view_of, double tolerance, bool with_statistics,
                LobeBatch& batch, const Visit& visit) {
+        if (given_ == Given::spheres) {
+            batch.shade(lobe, circles_.arrays(), view_of, with_statistics);
+            visit(std::span<const std::uint32_t>());
+            return;
+        }
+        if (given_ == Given::polygons) {
+            batch.shade(lobe, gathered_, view_of, with_statistics);
+            visit(std::span<const std::uint32_t>());
+            return;
+        }
         if (!cap_numbers_.empty()) {
             find_circles();
             batch.shade(lobe, circles_.arrays(), views(cap_numbers_, view_of), with_statistics);
             visit(std::span<const std::uint32_t>(cap_numbers_));
         }
-        const auto shade_gathered = [&] {
+        sort(lobe, view_of, tolerance);
+        for (std::size_t first = 0; first < polygons_.size();) {
+            first = gather(first);
             batch.shade(lobe, gathered_, views(numbers_, view_of), with_statistics);
             visit(std::span<const std::uint32_t>(numbers_));
-        };
-        if (!polygons_.empty()) {
-            sort(lobe, view_of, tolerance);
-            for (std::size_t first = 0; first < polygons_.size();) {
-                first = gather(first);
-                shade_gathered();
-            }
-        } else if (!numbers_.empty()) {
-            shade_gathered();
         }
     }
 
@@ -70,6 +74,9 @@ class SeenLights {
         std::uint32_t size;        // likewise: the last vertex is repeated up to this number
         std::uint32_t number;
     };
+
+    /// All lights of one kind that came at once.
+    enum class Given { none, spheres, polygons };
 
     void look_at(const MeshLight& light, const ShadingFrame& frame, double tolerance, std::uint32_t number);
     /// The vertices from `first` on. filled_up: so that few sizes occur.
@@ -85,7 +92,8 @@ class SeenLights {
                                          std::span<const std::uint32_t> view_of);
 
     SeenLight seen_;
-    std::vector<CapView> caps_;  // empty where set_spheres was called
+    Given given_ = Given::none;
+    std::vector<CapView> caps_;
     std::vector<std::uint32_t> cap_numbers_;
     std::vector<Vec3d> centers_;
     std::vector<double> radii_;
@@ -93,7 +101,7 @@ class SeenLights {
 
     MeshView mesh_view_;
     std::vector<Vec3d> vertices_;
-    std::vector<Polygon> polygons_;  // empty where set_polygons was called
+    std::vector<Polygon> polygons_;
     std::vector<std::uint32_t> sizes_, order_;
     PolygonBatch gathered_;
     std::vector<std::uint32_t> numbers_;  // of gathered_
