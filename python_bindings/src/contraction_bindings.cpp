@@ -58,7 +58,7 @@ Array<float> contract_polygons(const Array<float>& vertices, const Array<float>&
         PolygonBatch polygons;
         polygons.clear(k);
         polygons.append(&v[first * k], count);
-        polygons.check(&v[first * k]);
+        polygons.check();
         std::vector<std::uint32_t> all(count);
         std::iota(all.begin(), all.end(), 0U);
         const std::vector<std::uint32_t> first_view(count, 0);
