@@ -48,12 +48,6 @@ void each_cap(const Method& method, std::size_t count, int order, bool clip, Opt
     }
 }
 
-/// A polygon that the horizon clips, and as it was given.
-struct SeenPolygon {
-    SphericalPolygon<double> kept;
-    std::span<const Vec3d> vertices;
-};
-
 void radiances_of(const LobeIntegrator& lobe, std::span<const Circle> caps, std::span<const std::uint32_t> seeds,
                   std::span<Reflected> results) {
     lobe.radiances(caps, seeds, results);
@@ -61,7 +55,7 @@ void radiances_of(const LobeIntegrator& lobe, std::span<const Circle> caps, std:
 void radiances_of(const LobeIntegrator& lobe, std::span<const SeenPolygon> polygons,
                   std::span<const std::uint32_t> seeds, std::span<Reflected> results) {
     for (std::size_t i = 0; i < polygons.size(); ++i) {
-        results[i] = lobe.radiance_of_plane(polygons[i].kept, polygons[i].vertices, seeds[i]);
+        results[i] = lobe.radiance(polygons[i], seeds[i]);
     }
 }
 
@@ -185,12 +179,9 @@ void polygon_coefficients(const Method& method, std::span<const Vec3<T>> vertice
     check_size("vertices", vertices.size(), count * k);
     check_size("coefficients", coefficients.size(), count * row);
     Options own = options;
-    std::vector<Vec3<Wider<T>>> exact(k);
     for (std::size_t i = 0; i < count; ++i) {
         const auto polygon = vertices.subspan(i * k, k);
-        std::transform(polygon.begin(), polygon.end(), exact.begin(),
-                       [](const Vec3<T>& v) { return Vec3<Wider<T>>(v); });
-        check_polygon<T>(exact);
+        check_polygons<T>(std::vector<Vec3d>(polygon.begin(), polygon.end()), vertex_count);
         own.seed = seed_of(options, first + i);
         function(polygon, order, clip, own, coefficients.data() + i * row);
     }
@@ -215,8 +206,8 @@ void shade_polygons(const ShadingMethod& method, std::span<const Vec3d> vertices
     check_size("vertices", vertices.size(), radiance.size() * k);
     shade_each(method, bsdf, cos_theta_o, options, first, radiance, effort, [&](std::size_t i) {
         const auto polygon = vertices.subspan(i * k, k);
-        check_polygon<float>(polygon);
-        return SeenPolygon{SphericalPolygon<double>(polygon, true), polygon};
+        check_polygons<float>(polygon, vertex_count);
+        return SeenPolygon(polygon);
     });
 }
 

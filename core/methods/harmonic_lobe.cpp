@@ -6,6 +6,7 @@
 
 #include "caps/cap_shading.h"
 #include "caps/circle_batch.h"
+#include "polygons/polygon_shading_kernel.h"
 
 namespace shlight::methods {
 
@@ -13,6 +14,14 @@ Reflected HarmonicLobe::radiance(const Circle& cap, std::uint32_t seed) const {
     Reflected result{};
     radiances({&cap, 1}, {&seed, 1}, {&result, 1});
     return result;
+}
+
+Reflected HarmonicLobe::radiance(const SeenPolygon& polygon, std::uint32_t /*seed*/) const {
+    constexpr std::uint32_t kOnly = 0;
+    float value = 0;
+    shade_polygons(polygon.vertices, static_cast<int>(polygon.vertices.size()), {&kOnly, 1}, lobe_, {&kOnly, 1},
+                   {&value, 1});
+    return {value, 0};
 }
 
 void HarmonicLobe::radiances(std::span<const Circle> caps, std::span<const std::uint32_t> /*seeds*/,

@@ -52,18 +52,17 @@ void add_rim(const Circle& cap, const Vec3d& base, double half_turn, std::vector
 }
 
 /// ∫ ω dω, half the sum of the edges' poles times their lengths (Lambert 1760).
-template <class Real>
-Vec3d mean_direction(const SphericalPolygon<Real>& polygon) {
+Vec3d mean_direction(const SphericalPolygon& polygon) {
     const auto& v = polygon.directions();
-    Vec3<Real> sum(0);
+    Vec3d sum(0);
     for (std::size_t i = 0; i < v.size(); ++i) {
-        const Real sine = glm::length(polygon.edge_cross(i));
+        const double sine = glm::length(polygon.edge_cross(i));
         if (sine > 0) {
             sum += polygon.edge_cross(i) * (std::atan2(sine, glm::dot(v[i], v[(i + 1) % v.size()])) / sine);
         }
     }
-    const Real length = glm::length(sum);
-    return Vec3d(length > 0 ? sum / length : v[0]);
+    const double length = glm::length(sum);
+    return length > 0 ? sum / length : v[0];
 }
 
 }  // namespace
@@ -169,30 +168,29 @@ void KeptRegion::add_cut_cap(const Circle& cap, double sign) {
     edges_.push_back({true, middle, last - middle, Vec3d(0), 0, 1});
 }
 
-template <class Real>
-KeptRegion KeptRegion::of_polygon(const SphericalPolygon<Real>& polygon) {
+KeptRegion KeptRegion::of_polygon(const SphericalPolygon& polygon) {
     KeptRegion region;
     if (polygon.empty()) {
         return region;
     }
     region.base_ = mean_direction(polygon);
-    const Vec3<Real> base(region.base_);
+    const Vec3d& base = region.base_;
     const auto& v = polygon.directions();
     for (std::size_t i = 0; i < v.size(); ++i) {
-        const Vec3<Real>& a = v[i];
-        const Vec3<Real>& b = v[(i + 1) % v.size()];
-        const Real sine = glm::length(polygon.edge_cross(i));
+        const Vec3d& a = v[i];
+        const Vec3d& b = v[(i + 1) % v.size()];
+        const double sine = glm::length(polygon.edge_cross(i));
         if (!(sine > 0)) {
             continue;
         }
-        const Vec3<Real> ahead = glm::cross(polygon.edge_cross(i) / sine, a);
-        const Real angle = std::atan2(sine, glm::dot(a, b));
-        const int count = static_cast<int>(std::ceil(static_cast<double>(angle) / kLongestEdge));
-        Vec3<Real> from = a;
+        const Vec3d ahead = glm::cross(polygon.edge_cross(i) / sine, a);
+        const double angle = std::atan2(sine, glm::dot(a, b));
+        const int count = static_cast<int>(std::ceil(angle / kLongestEdge));
+        Vec3d from = a;
         for (int k = 1; k <= count; ++k) {
-            const Real turn = angle * static_cast<Real>(k) / static_cast<Real>(count);
-            const Vec3<Real> to = k == count ? b : std::cos(turn) * a + std::sin(turn) * ahead;
-            region.edges_.push_back({true, Vec3d(from - base), Vec3d(to - from), Vec3d(0), 0, 1});
+            const double turn = angle * k / count;
+            const Vec3d to = k == count ? b : std::cos(turn) * a + std::sin(turn) * ahead;
+            region.edges_.push_back({true, from - base, to - from, Vec3d(0), 0, 1});
             from = to;
         }
     }
@@ -236,8 +234,5 @@ std::vector<Patch> KeptRegion::patches_about(const Vec3d& hub, double magnificat
     }
     return result;
 }
-
-template KeptRegion KeptRegion::of_polygon(const SphericalPolygon<double>&);
-template KeptRegion KeptRegion::of_polygon(const SphericalPolygon<long double>&);
 
 }  // namespace shlight::methods

@@ -63,8 +63,7 @@ class KeptRegion {
     /// A cap of any half angle; clip: keep z ≥ 0.
     static KeptRegion of_cap(const Circle& cap, bool clip);
     /// A polygon that was clipped before, or not.
-    template <class Real>
-    static KeptRegion of_polygon(const SphericalPolygon<Real>& polygon);
+    static KeptRegion of_polygon(const SphericalPolygon& polygon);
 
     bool empty() const { return edges_.empty() && caps_.empty(); }
     /// Inside, where the region is convex.

@@ -91,6 +91,13 @@ struct Reflected {
     int points;
 };
 
+/// A polygon in the shading frame, whole and what the horizon keeps of it.
+struct SeenPolygon {
+    std::span<const Vec3d> vertices;
+    SphericalPolygon kept;
+    explicit SeenPolygon(std::span<const Vec3d> whole) : vertices(whole), kept(whole, true) {}
+};
+
 /// One lobe at one view, made once for many lights.
 class LobeIntegrator {
   public:
@@ -108,13 +115,7 @@ class LobeIntegrator {
             results[i] = radiance(caps[i], seeds[i]);
         }
     }
-    /// A polygon that was clipped by the horizon.
-    virtual Reflected radiance(const SphericalPolygon<double>& polygon, std::uint32_t seed) const = 0;
-    /// The same; vertices: before clipping, for those whose random points lie in the polygon's plane.
-    virtual Reflected radiance_of_plane(const SphericalPolygon<double>& polygon, std::span<const Vec3d> /*vertices*/,
-                                        std::uint32_t seed) const {
-        return radiance(polygon, seed);
-    }
+    virtual Reflected radiance(const SeenPolygon& polygon, std::uint32_t seed) const = 0;
 };
 
 /// A way from light to reflected radiance. No mirrors: precondition alpha > 0 for GGX.

@@ -62,7 +62,7 @@ void polygon(std::span<const Vec3<T>> vertices, int order, bool clip, const Opti
     check_options(options);
     std::fill_n(coefficients, coefficient_count(order), T(0));
     const std::vector<Vec3d> given(vertices.begin(), vertices.end());
-    const SphericalPolygon<double> seen(given, clip);
+    const SphericalPolygon seen(given, clip);
     if (seen.empty()) {
         return;
     }

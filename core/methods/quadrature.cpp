@@ -67,8 +67,8 @@ void cap(const CapLight& light, int order, bool clip, const Options& options, T*
 
 template <class T>
 void polygon(std::span<const Vec3<T>> vertices, int order, bool clip, const Options& options, T* coefficients) {
-    const std::vector<Vec3<Wider<T>>> wide(vertices.begin(), vertices.end());
-    const SphericalPolygon<Wider<T>> seen(wide, clip);
+    const std::vector<Vec3d> exact(vertices.begin(), vertices.end());
+    const SphericalPolygon seen(exact, clip);
     integrate(KeptRegion::of_polygon(seen), order, options, coefficients);
 }
 

@@ -14,9 +14,6 @@
     METHOD(wang_ramamoorthi)    \
     METHOD(quadrature)          \
     METHOD(monte_carlo)         \
-    METHOD(polygon_boundary)    \
-    METHOD(polygon_edge_points) \
-    METHOD(polygon_cubature)    \
     METHOD(reference)
 
 #define SHLIGHT_SHADING_METHODS(METHOD) \

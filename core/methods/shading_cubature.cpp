@@ -69,11 +69,11 @@ class CubatureLobe : public LobeIntegrator {
         return sum.scaled_to(solid_angle);
     }
 
-    Reflected radiance(const SphericalPolygon<double>& polygon, std::uint32_t /*seed*/) const override {
-        if (polygon.empty()) {
+    Reflected radiance(const SeenPolygon& polygon, std::uint32_t /*seed*/) const override {
+        if (polygon.kept.empty()) {
             return {0, 1};
         }
-        return over_patches(KeptRegion::of_polygon(polygon), polygon.solid_angle());
+        return over_patches(KeptRegion::of_polygon(polygon.kept), polygon.kept.solid_angle());
     }
 
   private:

@@ -27,16 +27,12 @@ class MonteCarloLobe : public LobeIntegrator {
         }
         return combined(ConeSampler(cap), seed);
     }
-    Reflected radiance(const SphericalPolygon<double>& polygon, std::uint32_t seed) const override {
-        const TriangleSampler sampler(TriangleSampler::Uniform::in_solid_angle, polygon.directions());
-        return sampler.empty() ? Reflected{0, samples_} : combined(sampler, seed);
-    }
-    Reflected radiance_of_plane(const SphericalPolygon<double>& polygon, std::span<const Vec3d> vertices,
-                                std::uint32_t seed) const override {
-        if (sampling_ != Sampling::area || polygon.empty()) {
-            return radiance(polygon, seed);
+    Reflected radiance(const SeenPolygon& polygon, std::uint32_t seed) const override {
+        if (sampling_ == Sampling::area && !polygon.kept.empty()) {
+            return over_surface(TriangleSampler(TriangleSampler::Uniform::in_area, polygon.vertices), seed);
         }
-        return over_surface(TriangleSampler(TriangleSampler::Uniform::in_area, vertices), seed);
+        const TriangleSampler sampler(TriangleSampler::Uniform::in_solid_angle, polygon.kept.directions());
+        return sampler.empty() ? Reflected{0, samples_} : combined(sampler, seed);
     }
 
   private:

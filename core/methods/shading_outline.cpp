@@ -16,8 +16,8 @@ class OutlineLobe : public LobeIntegrator {
     Reflected radiance(const Circle& cap, std::uint32_t /*seed*/) const override {
         return reflected(CapOutline(cap).arcs());
     }
-    Reflected radiance(const SphericalPolygon<double>& polygon, std::uint32_t /*seed*/) const override {
-        return reflected(polygon_outline(polygon));
+    Reflected radiance(const SeenPolygon& polygon, std::uint32_t /*seed*/) const override {
+        return reflected(polygon_outline(polygon.kept));
     }
 
   private:

@@ -3,7 +3,6 @@
 // Harmonics without a warp: Eq. 5 of Zhou & Wei 2020 with the hemisphere fit of f·cos.
 #include "base/aligned_floats.h"
 #include "harmonic_lobe.h"
-#include "polygons/polygon_shading.h"
 #include "shlight/plain_fit.h"
 
 namespace shlight::methods {
@@ -15,10 +14,6 @@ class PlainHarmonics : public HarmonicLobe {
         terms_.grow(static_cast<std::size_t>(cosine_count(order)));
         plain_fit(shape)->coefficients(cos_theta_o, order, terms_.data());
         set({false, {}, terms_.data(), 0, order});
-    }
-    using HarmonicLobe::radiance;
-    Reflected radiance(const SphericalPolygon<double>& polygon, std::uint32_t /*seed*/) const override {
-        return {polygon.empty() ? 0.0F : shade_polygon(polygon, Warp(), lobe().terms, lobe().order), 0};
     }
 
   private:

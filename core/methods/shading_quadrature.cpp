@@ -45,8 +45,8 @@ class QuadratureLobe : public LobeIntegrator {
     Reflected radiance(const Circle& cap, std::uint32_t /*seed*/) const override {
         return over(KeptRegion::of_cap(cap, true));
     }
-    Reflected radiance(const SphericalPolygon<double>& polygon, std::uint32_t /*seed*/) const override {
-        return over(KeptRegion::of_polygon(polygon));
+    Reflected radiance(const SeenPolygon& polygon, std::uint32_t /*seed*/) const override {
+        return over(KeptRegion::of_polygon(polygon.kept));
     }
 
   private:

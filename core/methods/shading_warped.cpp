@@ -3,7 +3,6 @@
 // Harmonics of one order in the lobe's warp.
 #include "harmonic_lobe.h"
 #include "lobes/material_views.h"
-#include "polygons/polygon_shading.h"
 
 namespace shlight::methods {
 namespace {
@@ -16,20 +15,11 @@ class WarpedHarmonics : public HarmonicLobe {
         std::vector<Rgb> weights;
         views_.assign(material_, {&cos_theta_o, 1}, material_.weights({&cos_theta_o, 1}, weights), false);
         set(views_.lobe(0).arrays(order, {&kOnly, 1}));
-        warp_ = views_.lobe(0).warp(kOnly);
-    }
-    using HarmonicLobe::radiance;
-    Reflected radiance(const SphericalPolygon<double>& polygon, std::uint32_t /*seed*/) const override {
-        if (polygon.empty()) {
-            return {0, 0};
-        }
-        return {shade_polygon(polygon, lobe().warped ? warp_ : Warp(), lobe().terms, lobe().order), 0};
     }
 
   private:
     MaterialLobes material_;
     MaterialViews views_;
-    Warp warp_;
 };
 
 std::unique_ptr<LobeIntegrator> make(const LobeShape& shape, double cos_theta_o, const Options& options) {

@@ -31,7 +31,7 @@ from shlight._arrays import (
     rows,
     shaped,
 )
-from shlight.methods import coefficient_options
+from shlight.methods import PARTS_OF_EXACT, coefficient_options
 
 
 def sh_basis(directions: ArrayLike, order: int, dtype: DTypeLike = np.float32, *, threads: int = 0) -> Floats:
@@ -148,6 +148,7 @@ def polygon_coefficients(
     A polygon without area or seen edge-on gives zeros. clip: keep only what lies above the horizon z ≥ 0.
     Returns (..., order²).
     """
+    method = "exact" if method in PARTS_OF_EXACT else method
     options = coefficient_options(method, tolerance=tolerance, samples=samples, seed=seed, sampling=sampling)
     v = checked_array("vertices", vertices, dtype, core_axes=2)
     check_last("vertices", v, 3)

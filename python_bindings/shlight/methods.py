@@ -28,6 +28,8 @@ __all__ = ["coefficient_methods", "lobe_condition", "render_monte_carlo", "shadi
 _Method = TypeVar("_Method", _core.Method, _core.ShadingMethod)
 
 DEFAULT_SAMPLES = 256
+# What polygon_coefficients takes for "exact", beside that.
+PARTS_OF_EXACT = ("polygon_boundary", "polygon_edge_points", "polygon_cubature")
 
 
 def coefficient_methods() -> dict[str, _core.Method]:

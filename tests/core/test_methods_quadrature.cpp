@@ -192,7 +192,7 @@ TEST(NumericalMethods, PatchesCoverARegionFromAnyHub) {
         const Vec3d hub = random.at_tilt(random.uniform(0, 1.5));
         EXPECT_NEAR(area(kept.patches_about(hub, random.log_uniform(1, 30))), area(kept.patches()), 1e-9) << i;
 
-        const SphericalPolygon<double> polygon(testing::plain(random), true);
+        const SphericalPolygon polygon(testing::plain(random), true);
         if (!polygon.empty()) {
             const KeptRegion seen = KeptRegion::of_polygon(polygon);
             EXPECT_NEAR(area(seen.patches()), polygon.solid_angle(), 1e-11);

@@ -133,7 +133,7 @@ TEST(NumericalMethods, ConesSpheresAndDisksAreSampledAsTheySay) {
 }
 
 /// ∫ ω dω over a polygon (Lambert 1760).
-Vec3d first_moment(const SphericalPolygon<double>& polygon) {
+Vec3d first_moment(const SphericalPolygon& polygon) {
     Vec3d sum(0);
     for (std::size_t i = 0; i < polygon.directions().size(); ++i) {
         const Vec3d& cross = polygon.edge_cross(i);
@@ -183,7 +183,7 @@ TEST(NumericalMethods, PolygonsAreSampledAsTheySay) {
         for (std::uint64_t i = 0; i < 4; ++i) {
             RandomInput random(i);
             const Vertices vertices = kind.draw(random);
-            const SphericalPolygon<double> seen(vertices, false);
+            const SphericalPolygon seen(vertices, false);
             const std::string name = std::string(kind.name) + " " + std::to_string(i);
             const auto inside = [&](const Vec3d& direction) { return meets(vertices, direction); };
             const TriangleSampler by_angle(Uniform::in_solid_angle, seen.directions());

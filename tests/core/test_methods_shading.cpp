@@ -98,7 +98,7 @@ TEST(NumericalMethods, ShadingQuadratureOfPolygonsMatchesBruteForce) {
         const Vertices vertices = testing::plain(random);
         const auto method = find_shading_method("quadrature").make(lobe.shape, lobe.cosine, {});
         const double truth = testing::PolygonTruth(lobe.shape, lobe.cosine).integral(vertices);
-        record[i] = std::abs(method->radiance(SphericalPolygon<double>(vertices, true), 0).value - truth);
+        record[i] = std::abs(method->radiance(methods::SeenPolygon(vertices), 0).value - truth);
     });
     record.publish("shading quadrature of polygons");
     EXPECT_LE(record.largest(), 1e-8) << record.worst();
@@ -139,9 +139,9 @@ TEST(NumericalMethods, ShadingMonteCarloIsUnbiased) {
                 check("cap", truth->radiance(cap, 0).value, [&](auto seed) { return method->radiance(cap, seed); });
             }
             for (const Vertices& vertices : {quad, concave}) {
-                const SphericalPolygon<double> seen(vertices, true);
+                const methods::SeenPolygon seen(vertices);
                 check("polygon", truth->radiance(seen, 0).value,
-                      [&](auto seed) { return method->radiance_of_plane(seen, vertices, seed); });
+                      [&](auto seed) { return method->radiance(seen, seed); });
             }
         }
     }
@@ -172,7 +172,8 @@ TEST(NumericalMethods, CubatureConvergesAndTakesNoMorePointsThanAllowed) {
         const double half = random.uniform(0.05, 0.5);
         const Circle cap = circle_about_axis(across_horizon(random, half), half);
         const Circle above = circle_about_axis({random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 1}, half);
-        const SphericalPolygon<double> polygon(testing::facing(random, 4, 0.6, half), true);
+        const Vertices vertices = testing::facing(random, 4, 0.6, half);
+        const methods::SeenPolygon polygon(vertices);
         const auto truth = find_shading_method("quadrature").make(shape, cosine, {});
         for (const int points : {1, 3, 4, 7, 24, 40, 128, 600}) {
             const auto method = find_shading_method("cubature").make(shape, cosine, {.samples = points});
@@ -185,7 +186,7 @@ TEST(NumericalMethods, CubatureConvergesAndTakesNoMorePointsThanAllowed) {
             };
             check("cap above", above);
             check("cap cut", cap);
-            if (!polygon.empty()) {
+            if (!polygon.kept.empty()) {
                 check("polygon", polygon);
             }
         }

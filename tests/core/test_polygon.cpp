@@ -28,11 +28,10 @@ using testing::relative_error;
 using testing::Vertices;
 
 template <class T>
-std::vector<T> coefficients(const Vertices& vertices, int order, bool clip,
-                            PolygonMethod method = PolygonMethod::automatic) {
+std::vector<T> coefficients(const Vertices& vertices, int order, bool clip) {
     std::vector<T> result(coefficient_count(order), std::numeric_limits<T>::quiet_NaN());
     const std::vector<Vec3<T>> rounded(vertices.begin(), vertices.end());
-    polygon_coefficients<T>(rounded, static_cast<int>(vertices.size()), order, clip, std::span<T>(result), method);
+    polygon_coefficients<T>(rounded, static_cast<int>(vertices.size()), order, clip, std::span<T>(result));
     return result;
 }
 
@@ -83,8 +82,8 @@ void compare_class(const PolygonClass& kind, std::size_t count, const std::vecto
     for (const auto& [float64, float32] : errors) {
         const std::size_t worst64 = float64.worst();
         const std::size_t worst32 = float32.worst();
-        EXPECT_LE(float64.largest(), 1e-10) << kind.name << ": " << describe(polygons64[worst64], clipped(worst64));
-        EXPECT_LE(float32.largest(), 1e-3) << kind.name << ": " << describe(polygons32[worst32], clipped(worst32));
+        EXPECT_LE(float64.largest(), 2e-11) << kind.name << ": " << describe(polygons64[worst64], clipped(worst64));
+        EXPECT_LE(float32.largest(), 2e-5) << kind.name << ": " << describe(polygons32[worst32], clipped(worst32));
         EXPECT_LE(float32.median(), 1e-5) << kind.name;
     }
 }

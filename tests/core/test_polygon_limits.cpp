@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Polygons: symmetries that cost nothing to know, the hand-over between the two methods, no area, and bad input.
+// Polygons: symmetries that cost nothing to know, no area, and bad input.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "error_record.h"
 #include "random_polygon.h"
 #include "shlight/polygon.h"
 
@@ -24,11 +23,10 @@ using testing::RandomInput;
 using testing::Vertices;
 
 template <class T>
-std::vector<T> coefficients(const Vertices& vertices, int order, bool clip = true,
-                            PolygonMethod method = PolygonMethod::automatic) {
+std::vector<T> coefficients(const Vertices& vertices, int order, bool clip = true) {
     std::vector<T> result(coefficient_count(order), std::numeric_limits<T>::quiet_NaN());
     const std::vector<Vec3<T>> rounded(vertices.begin(), vertices.end());
-    polygon_coefficients<T>(rounded, static_cast<int>(vertices.size()), order, clip, std::span<T>(result), method);
+    polygon_coefficients<T>(rounded, static_cast<int>(vertices.size()), order, clip, std::span<T>(result));
     return result;
 }
 
@@ -41,39 +39,6 @@ double difference(const std::vector<T>& a, const std::vector<T>& b) {
         largest = error <= largest ? largest : error;
     }
     return largest;
-}
-
-/// What boundary and cubature give for polygons whose solid angle above the horizon is close to the hand-over: their
-/// difference ÷ L_00.
-template <class T>
-testing::ErrorRecord differences_at_solid_angle(double solid_angle, int order, std::size_t count) {
-    RandomInput random(40);
-    testing::ErrorRecord errors(count);
-    for (std::size_t found = 0; found < count;) {
-        const Vec3d center = random.at_tilt(random.uniform(0, 1.7));
-        const double half = std::sqrt(solid_angle) * random.uniform(0.4, 2);
-        const testing::Plane plane(random, center + 0.9 * random.direction());
-        const Vertices vertices = testing::star(random, center, plane, random.integer(3, 5), 0.6, half, half);
-        const std::vector<T> cubature = coefficients<T>(vertices, order, true, PolygonMethod::cubature);
-        const double kept = static_cast<double>(cubature[0]) * std::sqrt(4 * std::numbers::pi);
-        if (kept > 0.8 * solid_angle && kept < 1.25 * solid_angle) {
-            const std::vector<T> boundary = coefficients<T>(vertices, order, true, PolygonMethod::boundary);
-            errors[found++] = difference(boundary, cubature) / static_cast<double>(cubature[0]);
-        }
-    }
-    return errors;
-}
-
-/// Where one method hands over to the other, a picture must not show it.
-TEST(PolygonLimits, HandOverIsInvisible) {
-    for (const int order : {2, 8, 16, 33}) {
-        const testing::ErrorRecord errors32 = differences_at_solid_angle<float>(0.06, order, 400);
-        errors32.publish("hand-over, n = " + std::to_string(order) + ", float32");
-        EXPECT_LE(errors32.largest(), 1e-5);
-        const testing::ErrorRecord errors64 = differences_at_solid_angle<double>(1e-3, order, 400);
-        errors64.publish("hand-over, n = " + std::to_string(order) + ", float64");
-        EXPECT_LE(errors64.largest(), 1e-11);
-    }
 }
 
 template <class T>

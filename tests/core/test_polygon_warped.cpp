@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Polygons under a warp against the 113-bit reference, which maps points and knows no circles.
+// Polygons under a warp, as they are shaded, against the 113-bit reference, which maps points and knows no circles.
 #include <gtest/gtest.h>
 
 #include <glm/common.hpp>
@@ -8,18 +8,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "error_record.h"
-#include "polygons/polygon_shading.h"
+#include "polygons/polygon_shading_kernel.h"
 #include "quad_polygon.h"
 #include "random_polygon.h"
 #include "shlight/polygon.h"
-#include "shlight/shading.h"
+#include "shlight/warp.h"
 
 namespace shlight {
 namespace {
@@ -32,12 +34,60 @@ using truth::WarpInput;
 
 constexpr double kSphere = 4 * std::numbers::pi;
 
-template <class T>
-std::vector<T> warped_coefficients(const Vertices& vertices, const WarpInput& warp, int order) {
-    std::vector<T> result(coefficient_count(order), std::numeric_limits<T>::quiet_NaN());
-    const std::vector<Vec3<T>> rounded(vertices.begin(), vertices.end());
-    warped_polygon_coefficients<T>(rounded, Warp(warp.tilt, warp.narrowness), order, result.data());
-    return result;
+/// WarpArrays of `count` views that share a warp.
+class SharedWarp {
+  public:
+    SharedWarp(const WarpInput& warp, std::size_t count) {
+        const double r = 1 - warp.narrowness;
+        const double gamma = (1 + r * r) / (warp.narrowness * (1 + r));
+        const double speed = 2 * r / (1 + r * r);
+        const double across = std::sin(warp.tilt);
+        const double along = gamma * std::cos(warp.tilt);
+        const double length = std::hypot(across, along);
+        const std::array<double, 9> members = {
+            across,    std::cos(warp.tilt), speed,          warp.narrowness * warp.narrowness / (1 + r * r),
+            gamma,     across / length,     along / length, -speed * along / length,
+            1 / length};
+        for (std::size_t k = 0; k < members.size(); ++k) {
+            members_[k].assign(count, members[k]);
+        }
+    }
+    WarpArrays arrays() const {
+        const auto at = [this](std::size_t k) { return members_[k].data(); };
+        return {at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8)};
+    }
+
+  private:
+    std::array<std::vector<double>, 9> members_;
+};
+
+/// Of a polygon under lobes with one warp, each with its own terms: row after row, of cosine_count(order) numbers.
+std::vector<float> shaded(const Vertices& vertices, const WarpInput& warp, const std::vector<float>& terms, int order) {
+    const auto row = static_cast<std::size_t>(cosine_count(order));
+    const std::size_t count = terms.size() / row;
+    const std::size_t stride = (row + 15) / 16 * 16;
+    std::vector<float> padded(count * stride);
+    std::vector<std::uint32_t> views(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        std::copy_n(terms.data() + i * row, row, padded.data() + i * stride);
+        views[i] = static_cast<std::uint32_t>(i);
+    }
+    const SharedWarp shared(warp, count);
+    const std::vector<std::uint32_t> polygon(count, 0);
+    std::vector<float> values(count, std::numeric_limits<float>::quiet_NaN());
+    shade_polygons(vertices, static_cast<int>(vertices.size()), polygon,
+                   {true, shared.arrays(), padded.data(), stride, order}, views, values);
+    return values;
+}
+
+/// What the image of a polygon has at m ≥ 0: what it reflects of lobes that are one harmonic each.
+std::vector<float> warped_terms(const Vertices& vertices, const WarpInput& warp, int order) {
+    const auto row = static_cast<std::size_t>(cosine_count(order));
+    std::vector<float> terms(row * row);
+    for (std::size_t k = 0; k < row; ++k) {
+        terms[k * (row + 1)] = 1;
+    }
+    return shaded(vertices, warp, terms, order);
 }
 
 struct Input {
@@ -103,11 +153,18 @@ constexpr auto kClasses = std::to_array<PolygonClass>({
     {"contact at an edge", testing::contact_at_an_edge},
 });
 
-template <class T>
 double error_of(const Input& input, int order, const truth::Coefficients& reference) {
-    const double scale = std::max(reference.high[0], 1e-3 * kSphere);
-    return truth::largest_error(reference, order, warped_coefficients<T>(input.vertices, input.warp, order).data()) /
-           scale;
+    const std::vector<float> terms = warped_terms(input.vertices, input.warp, order);
+    double largest = 0;
+    for (int l = 0; l < order; ++l) {
+        for (int m = 0; m <= l; ++m) {
+            const auto k = static_cast<std::size_t>(coefficient_index(l, m));
+            const auto term = static_cast<double>(terms[static_cast<std::size_t>(cosine_index(l, m))]);
+            const double error = std::abs((reference.high[k] - term) + reference.low[k]);
+            largest = error <= largest ? largest : error;
+        }
+    }
+    return largest / std::max(reference.high[0], 1e-3 * kSphere);
 }
 
 void compare(std::size_t count, int order, std::uint64_t seed) {
@@ -115,21 +172,13 @@ void compare(std::size_t count, int order, std::uint64_t seed) {
         RandomInput random(seed++);
         std::vector<Input> inputs(count);
         std::generate(inputs.begin(), inputs.end(), [&] { return random_input(random, kind.draw); });
-        ErrorRecord errors64(count);
-        ErrorRecord errors32(count);
+        ErrorRecord errors(count);
         testing::on_two_threads(count, [&](std::size_t i) {
-            const truth::Coefficients reference = truth::warped_polygon(inputs[i].vertices, inputs[i].warp, order);
-            errors64[i] = error_of<double>(inputs[i], order, reference);
-            errors32[i] = error_of<float>(inputs[i], order, reference);
+            errors[i] = error_of(inputs[i], order, truth::warped_polygon(inputs[i].vertices, inputs[i].warp, order));
         });
         const std::string name = std::string(kind.name) + ", n = " + std::to_string(order);
-        errors64.publish(name + ", float64");
-        errors32.publish(name + ", float32");
-        // A direction's rounding is stretched up to 2000 times by the warp, and long double's up to 10⁷ times by
-        // contact; both count up to 300 times where the image is small.
-        EXPECT_LE(errors64.largest(), 1e-10) << name << ": " << describe(inputs[errors64.worst()]);
-        // Only the result is rounded to float, except where there is no warp and the polygon is wide.
-        EXPECT_LE(errors32.largest(), 5e-6) << name << ": " << describe(inputs[errors32.worst()]);
+        errors.publish(name);
+        EXPECT_LE(errors.largest(), 1e-5) << name << ": " << describe(inputs[errors.worst()]);
     }
 }
 
@@ -173,87 +222,71 @@ TEST(PolygonWarped, ReferenceIsRight) {
     EXPECT_LE(resolutions.largest(), 1e-20);
 }
 
-template <class T>
-class PolygonWarpedLimits : public ::testing::Test {
-  protected:
-    const double tolerance_ = sizeof(T) == 8 ? 1e-11 : 2e-5;
-};
-using Precisions = ::testing::Types<float, double>;
-TYPED_TEST_SUITE(PolygonWarpedLimits, Precisions);
+constexpr double kTolerance = 2e-5;
 
-/// shade_polygon is the dot product of what the other function gives, for one lobe after the other.
-TYPED_TEST(PolygonWarpedLimits, ShadingIsTheDotProduct) {
-    using T = TypeParam;
+/// One lobe of many terms, or many of one.
+TEST(PolygonWarpedLimits, ShadingIsTheDotProduct) {
     RandomInput random(761);
     for (int i = 0; i < 100; ++i) {
         const Input input = random_input(random, kClasses.at(static_cast<std::size_t>(i) % kClasses.size()).draw);
-        const Warp warp(input.warp.tilt, input.warp.narrowness);
         const int order = random.integer(1, 20);
-        std::vector<T> lobe(cosine_count(order));
-        std::generate(lobe.begin(), lobe.end(), [&] { return static_cast<T>(random.uniform(-1, 1)); });
-        const std::vector<T> light = warped_coefficients<T>(input.vertices, input.warp, order);
-        const double expected = shade_cosine(light.data(), lobe.data(), order);
-        const std::vector<Vec3<T>> vertices(input.vertices.begin(), input.vertices.end());
-        EXPECT_NEAR(shade_polygon<T>(vertices, warp, lobe.data(), order), expected, this->tolerance_)
-            << describe(input);
-        const std::vector<Vec3<Wider<T>>> exact(vertices.begin(), vertices.end());
-        const SphericalPolygon<Wider<T>> prepared(exact, true);
-        EXPECT_NEAR(shade_polygon<T>(prepared, warp, lobe.data(), order), expected, this->tolerance_);
-        EXPECT_NEAR(static_cast<double>(PolygonRegion<Wider<T>>(prepared, warp).solid_angle()),
-                    static_cast<double>(light[0]) * std::sqrt(kSphere), this->tolerance_);
+        std::vector<float> lobe(static_cast<std::size_t>(cosine_count(order)));
+        std::generate(lobe.begin(), lobe.end(), [&] { return static_cast<float>(random.uniform(-1, 1)); });
+        const std::vector<float> light = warped_terms(input.vertices, input.warp, order);
+        const double expected = std::inner_product(light.begin(), light.end(), lobe.begin(), 0.0);
+        EXPECT_NEAR(shaded(input.vertices, input.warp, lobe, order)[0], expected, kTolerance) << describe(input);
     }
 }
 
 /// No warp, and a warp so weak that it hardly moves anything, must meet.
-TYPED_TEST(PolygonWarpedLimits, NoWarpIsTheLimit) {
-    using T = TypeParam;
+TEST(PolygonWarpedLimits, NoWarpIsTheLimit) {
     RandomInput random(762);
     for (int i = 0; i < 50; ++i) {
         const Input input = random_input(random, i % 2 == 0 ? testing::plain : testing::concave);
-        const std::vector<Vec3<T>> vertices(input.vertices.begin(), input.vertices.end());
-        std::vector<T> expected(144);
-        polygon_coefficients<T>(vertices, 12, true, expected.data());
-        const std::vector<T> none = warped_coefficients<T>(input.vertices, {0.7, 1}, 12);
-        const std::vector<T> weak = warped_coefficients<T>(input.vertices, {0.7, 1 - 1e-13}, 12);
-        EXPECT_EQ(none, expected);
-        for (std::size_t k = 0; k < expected.size(); ++k) {
-            EXPECT_NEAR(weak[k], expected[k], this->tolerance_);
+        std::vector<double> expected(144);
+        polygon_coefficients<double>(input.vertices, 12, true, expected.data());
+        const std::vector<float> none = warped_terms(input.vertices, {0.7, 1}, 12);
+        const std::vector<float> weak = warped_terms(input.vertices, {0.7, 1 - 1e-13}, 12);
+        for (int l = 0; l < 12; ++l) {
+            for (int m = 0; m <= l; ++m) {
+                const double value = expected[static_cast<std::size_t>(coefficient_index(l, m))];
+                const auto k = static_cast<std::size_t>(cosine_index(l, m));
+                EXPECT_NEAR(none[k], value, kTolerance);
+                EXPECT_NEAR(weak[k], value, kTolerance);
+            }
         }
     }
 }
 
 /// A ceiling that fills the hemisphere becomes the cap inside the warped horizon, nearly everything if the warp is
 /// strong: L_00, the vector irradiance, and nothing that is not symmetric about z.
-TYPED_TEST(PolygonWarpedLimits, HugeCeilingIsTheHorizonsCap) {
-    using T = TypeParam;
+TEST(PolygonWarpedLimits, HugeCeilingIsTheHorizonsCap) {
     const double far = 1e9;
     for (const double narrowness : {0.9, 0.1, 1e-3}) {
         const Warp warp(0.3, narrowness);
-        const std::vector<T> c = warped_coefficients<T>(
-            {{-far, -far, 1}, {far, -far, 1}, {far, far, 1}, {-far, far, 1}}, {0.3, narrowness}, 6);
+        const std::vector<float> c =
+            warped_terms({{-far, -far, 1}, {far, -far, 1}, {far, far, 1}, {-far, far, 1}}, {0.3, narrowness}, 6);
         const double z = warp.horizon_height();
         const double pi = std::numbers::pi;
         EXPECT_NEAR(c[0], std::sqrt(pi) * (1 - z), 2e-6);
-        EXPECT_NEAR(c[2], std::sqrt(3 * pi) / 2 * (1 - z * z), 2e-6);
-        EXPECT_NEAR(c[6], std::sqrt(5 * pi) / 2 * z * (1 - z * z), 2e-6);
-        EXPECT_NEAR(c[3], 0, 2e-6);
-        EXPECT_NEAR(c[coefficient_index(5, 3)], 0, 2e-6);
+        EXPECT_NEAR(c[1], std::sqrt(3 * pi) / 2 * (1 - z * z), 2e-6);
+        EXPECT_NEAR(c[3], std::sqrt(5 * pi) / 2 * z * (1 - z * z), 2e-6);
+        EXPECT_NEAR(c[2], 0, 2e-6);
+        EXPECT_NEAR(c[cosine_index(5, 3)], 0, 2e-6);
     }
 }
 
-TYPED_TEST(PolygonWarpedLimits, NoAreaGivesZeros) {
-    using T = TypeParam;
-    const std::vector<T> zeros(64, T(0));
+TEST(PolygonWarpedLimits, NoAreaGivesZeros) {
+    const std::vector<float> zeros(36, 0.0F);
     const WarpInput warp{0.5, 0.1};
-    EXPECT_EQ(warped_coefficients<T>({{1, 0, 1}, {1, 0, 1}, {1, 0, 1}}, warp, 8), zeros);
-    EXPECT_EQ(warped_coefficients<T>({{1, 0, 1}, {2, 0, 2}, {3, 0, 1}}, warp, 8), zeros);
-    EXPECT_EQ(warped_coefficients<T>({{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}}, warp, 8), zeros);
-    EXPECT_EQ(warped_coefficients<T>({{-1, -1, -1}, {1, -1, -1}, {0, 2, -1}}, warp, 8), zeros);
+    EXPECT_EQ(warped_terms({{1, 0, 1}, {1, 0, 1}, {1, 0, 1}}, warp, 8), zeros);
+    EXPECT_EQ(warped_terms({{1, 0, 1}, {2, 0, 2}, {3, 0, 1}}, warp, 8), zeros);
+    EXPECT_EQ(warped_terms({{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}}, warp, 8), zeros);
+    EXPECT_EQ(warped_terms({{-1, -1, -1}, {1, -1, -1}, {0, 2, -1}}, warp, 8), zeros);
 }
 
 /// Vertices that coincide, exactly or by rounding, and a vertex or an edge at the warp's axis.
-TYPED_TEST(PolygonWarpedLimits, CoincidingVerticesDoNotMatter) {
-    using T = TypeParam;
+TEST(PolygonWarpedLimits, CoincidingVerticesDoNotMatter) {
     RandomInput random(763);
     for (int i = 0; i < 200; ++i) {
         const WarpInput warp{random.uniform(-1.2, 1.2), random.log_uniform(1e-3, 1)};
@@ -269,20 +302,19 @@ TYPED_TEST(PolygonWarpedLimits, CoincidingVerticesDoNotMatter) {
         for (Vec3d& v : vertices) {
             v = testing::as_float(v);
         }
-        const std::vector<T> expected = warped_coefficients<T>(vertices, warp, 12);
-        const double step = i % 2 == 0 ? 0 : std::numeric_limits<T>::epsilon();
+        const std::vector<float> expected = warped_terms(vertices, warp, 12);
+        const double step = i % 2 == 0 ? 0 : std::numeric_limits<float>::epsilon();
         vertices.insert(vertices.begin() + 1, vertices[1] + step * (vertices[0] - vertices[1]));
-        const std::vector<T> doubled = warped_coefficients<T>(vertices, warp, 12);
+        const std::vector<float> doubled = warped_terms(vertices, warp, 12);
         for (std::size_t k = 0; k < expected.size(); ++k) {
-            EXPECT_NEAR(doubled[k], expected[k], 10 * this->tolerance_) << describe({vertices, warp});
+            EXPECT_NEAR(doubled[k], expected[k], 10 * kTolerance) << describe({vertices, warp});
         }
     }
 }
 
 /// A shading point closer and closer to an edge: the edge becomes half a turn, of which the ends say nothing about the
 /// middle.
-TYPED_TEST(PolygonWarpedLimits, TouchedEdgeIsHalfATurn) {
-    using T = TypeParam;
+TEST(PolygonWarpedLimits, TouchedEdgeIsHalfATurn) {
     RandomInput random(765);
     for (int i = 0; i < 40; ++i) {
         // Few digits, so that the edge's ends are opposite to the last bit, until their lengths are divided out.
@@ -291,10 +323,10 @@ TYPED_TEST(PolygonWarpedLimits, TouchedEdgeIsHalfATurn) {
         const WarpInput warp{random.uniform(-1, 1), random.log_uniform(0.1, 1)};
         const auto touching = [&](double height) {
             const Vec3d above(0, 0, height);
-            return warped_coefficients<T>({above - 0.8125 * along, above + along, above + along + across}, warp, 8);
+            return warped_terms({above - 0.8125 * along, above + along, above + along + across}, warp, 8);
         };
-        const std::vector<T> near = touching(1e-8);
-        const std::vector<T> nearer = touching(1e-12);
+        const std::vector<float> near = touching(1e-8);
+        const std::vector<float> nearer = touching(1e-12);
         for (std::size_t k = 0; k < near.size(); ++k) {
             // The edge moves by 1e-8, its image twenty times that.
             EXPECT_NEAR(near[k], nearer[k], 2e-6);
@@ -302,8 +334,7 @@ TYPED_TEST(PolygonWarpedLimits, TouchedEdgeIsHalfATurn) {
     }
 }
 
-TYPED_TEST(PolygonWarpedLimits, EverythingIsFinite) {
-    using T = TypeParam;
+TEST(PolygonWarpedLimits, EverythingIsFinite) {
     RandomInput random(764);
     for (int i = 0; i < 2000; ++i) {
         Input input = random_input(
@@ -313,8 +344,8 @@ TYPED_TEST(PolygonWarpedLimits, EverythingIsFinite) {
                 vertex[k] = input.vertices.size() == 3 && random.chance(0.1) ? 0 : vertex[k];
             }
         }
-        const std::vector<T> result = warped_coefficients<T>(input.vertices, input.warp, 16);
-        EXPECT_TRUE(std::all_of(result.begin(), result.end(), [](T value) { return std::isfinite(value); }))
+        const std::vector<float> result = warped_terms(input.vertices, input.warp, 16);
+        EXPECT_TRUE(std::all_of(result.begin(), result.end(), [](float value) { return std::isfinite(value); }))
             << describe(input);
     }
 }

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "shlight/types.h"
+
 namespace shlight {
 
 /// A sum of products in doubled precision (Ogita, Rump & Oishi 2005, "Accurate sum and dot product", Dot2).
@@ -24,6 +26,27 @@ class CompensatedSum {
   private:
     double high_ = 0, low_ = 0;
 };
+
+/// a b - c d, right to two roundings however much of it cancels (Kahan).
+inline double difference_of_products(double a, double b, double c, double d) {
+    const double product = c * d;
+    return std::fma(a, b, -product) - std::fma(c, d, -product);
+}
+
+/// a·(b×c) with one rounding in effect, however flat the three lie.
+inline double triple_product(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    CompensatedSum sum;
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        const int k = (i + 2) % 3;
+        const double forwards = b[j] * c[k];
+        const double backwards = b[k] * c[j];
+        sum.add_product(a[i], forwards);
+        sum.add_product(-a[i], backwards);
+        sum.add_product(a[i], std::fma(b[j], c[k], -forwards) - std::fma(b[k], c[j], -backwards));
+    }
+    return sum.value();
+}
 
 /// |v|² - r² without the cancellation of |v| ≈ r: what plain arithmetic leaves to it is wrong by some 1e-15 of itself.
 inline double difference_of_squares(const std::array<double, 3>& v, double r) {

@@ -36,7 +36,7 @@ void start_disk_outline(const SphericalEllipse<Wider<T>>& ellipse, int order, st
 template <class R>
 void add_disk_outlines(const DiskOutlines<R>& outlines, int order, R* coefficients) {
     add_cone_coefficients(outlines.cones, order, coefficients);
-    add_arc_coefficients(outlines.horizon, true, order, coefficients);
+    add_arc_coefficients(outlines.horizon, order, coefficients);
 }
 
 /// Natural logarithm of what a harmonic's integral may err by, as a part of its largest value along the outline.

@@ -20,26 +20,26 @@ std::span<const TrianglePoint> product_rule(int side);
 std::span<const TrianglePoint> three_point_rule();
 std::span<const TrianglePoint> seven_point_rule();
 
-/// Calls visit(direction, weight) for the points of a rule on a small triangle of unit vectors, and returns the sum of
-/// the weights, negative for a triangle of the other winding. The triangle is projected onto the plane that touches the
+/// Calls visit(direction, weight) for the points of a rule on a small triangle of unit vectors, with weights below zero
+/// for a triangle of the other winding. triple: a·(b×c), of which a narrow triangle's corners know few digits. The
+/// triangle is projected onto the plane that touches the
 /// sphere at its middle, where the density is smooth however unevenly far away the light's own vertices are.
-template <class Real, class Visit>
-Real visit_triangle(const Vec3<Real>& first, const Vec3<Real>& second, const Vec3<Real>& third,
-                    std::span<const TrianglePoint> rule, const Visit& visit) {
-    const Vec3<Real> axis = glm::normalize(first + second + third);
-    const Vec3<Real> a = first / glm::dot(first, axis);
-    const Vec3<Real> ab = second / glm::dot(second, axis) - a;
-    const Vec3<Real> ac = third / glm::dot(third, axis) - a;
-    const Real area = glm::dot(axis, glm::cross(ab, ac)) / 2;
-    Real total = 0;
+template <class Visit>
+void visit_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c, double triple, std::span<const TrianglePoint> rule,
+                    const Visit& visit) {
+    const Vec3d axis = glm::normalize(a + b + c);
+    const double a_along = glm::dot(a, axis);
+    const double b_along = glm::dot(b, axis);
+    const double c_along = glm::dot(c, axis);
+    const Vec3d corner = a / a_along;
+    const Vec3d ab = b / b_along - corner;
+    const Vec3d ac = c / c_along - corner;
+    const double area = triple / (2 * a_along * b_along * c_along);
     for (const TrianglePoint& point : rule) {
-        const Vec3<Real> p = a + Real(point.first) * ab + Real(point.second) * ac;
-        const Real length = glm::length(p);
-        const Real weight = Real(point.weight) * area / (length * length * length);
-        total += weight;
-        visit(p / length, weight);
+        const Vec3d p = corner + point.first * ab + point.second * ac;
+        const double length = glm::length(p);
+        visit(p / length, point.weight * area / (length * length * length));
     }
-    return total;
 }
 
 }  // namespace shlight

@@ -9,12 +9,12 @@
 #define SHLIGHT_KERNELS_MOMENTS_INL_H_
 #endif
 
+#include <hwy/aligned_allocator.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <vector>
 
 #include "polygons/arc_points-inl.h"
 #include "polygons/moment_constants.h"
@@ -33,10 +33,12 @@ class ArcMoments {
 
   public:
     explicit ArcMoments(int order)
-        : order_(order), block_(static_cast<std::size_t>(coefficient_count(order)) * kWidth) {}
+        : order_(order), block_(hwy::AllocateAligned<R>(static_cast<std::size_t>(coefficient_count(order)) * kWidth)) {
+        put(0, 0, hn::Zero(D()));  // no arc adds to band 0
+    }
 
     /// Works out the coefficients of bands 2 … of the arcs, with so many Gauss points on each.
-    HWY_INLINE void integrate(const ArcLanes<R, kGreat>& arcs, const GaussRule& rule) {
+    HWY_INLINE void integrate(const ArcLanes<R, true>& arcs, const GaussRule& rule) {
         load(arcs, rule);
         for (int m = 1; m < order_; ++m) {
             add_degree(m);
@@ -111,7 +113,7 @@ class ArcMoments {
             std::array<std::array<V<D>, kSide>, kLine / kSide> squares;
             for (std::size_t s = 0; s < squares.size(); ++s) {
                 for (std::size_t j = 0; j < kSide; ++j) {
-                    squares[s][j] = hn::LoadU(D(), block_.data() + (c + s * kSide + j) * kWidth);
+                    squares[s][j] = hn::LoadU(D(), block_.get() + (c + s * kSide + j) * kWidth);
                 }
                 transpose_squares(D(), squares[s]);
             }
@@ -155,9 +157,7 @@ class ArcMoments {
         re = next;
     }
 
-    HWY_INLINE R* at(int l, int m) {
-        return block_.data() + static_cast<std::size_t>(coefficient_index(l, m)) * kWidth;
-    }
+    HWY_INLINE R* at(int l, int m) { return block_.get() + static_cast<std::size_t>(coefficient_index(l, m)) * kWidth; }
     HWY_INLINE void put(int l, int m, V<D> value) { hn::StoreU(value, D(), at(l, m)); }
     HWY_INLINE void add(int l, int m, V<D> value) { put(l, m, hn::Add(hn::LoadU(D(), at(l, m)), value)); }
 
@@ -170,7 +170,7 @@ class ArcMoments {
         points_[i].im = hn::Zero(D());
     }
 
-    HWY_INLINE void load(const ArcLanes<R, kGreat>& arcs, const GaussRule& rule) {
+    HWY_INLINE void load(const ArcLanes<R, true>& arcs, const GaussRule& rule) {
         const D d;
         count_ = rule.nodes.size();
         for (std::size_t i = 0; i < count_ / 2; ++i) {
@@ -261,20 +261,20 @@ class ArcMoments {
     }
 
     int order_;
-    std::vector<R> block_;
+    hwy::AlignedFreeUniquePtr<R[]> block_;
     std::array<Point, kMaxGaussPoints> points_;
     std::size_t count_ = 0;
 };
 
-/// Adds what a list's arcs have of bands 2 … to their regions' rows of order² numbers.
+/// Adds what a list's arcs, of great circles, have of bands 2 … to their regions' rows of order² numbers.
 /// row_of(region): where it is.
-template <bool kGreat, class R, class RowOf>
+template <class R, class RowOf>
 void add_moments(const ArcLists<R>& lists, int order, const RowOf& row_of) {
     constexpr std::size_t kWidth = kLaneCount<Lanes<R>>;
     if (order <= 2) {
         return;
     }
-    ArcMoments<R, kGreat> moments(order);
+    ArcMoments<R, true> moments(order);
     const auto add = [&](const auto& list, std::size_t first) HWY_ATTR {
         std::array<R*, kWidth> rows{};
         const std::size_t count = std::min(kWidth, list.size() - first);
@@ -287,7 +287,7 @@ void add_moments(const ArcLists<R>& lists, int order, const RowOf& row_of) {
         const auto& list = lists.arcs(points);
         const GaussRule& rule = gauss_rule(static_cast<int>(points));
         for (std::size_t first = 0; first < list.size(); first += kWidth) {
-            moments.integrate(ArcLanes<R, kGreat>(list.from(first)), rule);
+            moments.integrate(ArcLanes<R, true>(list.from(first)), rule);
             add(list, first);
         }
     }

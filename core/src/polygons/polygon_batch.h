@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #include "polygons/polygon_checks.h"
 #include "polygons/polygon_views.h"
-#include "polygons/spherical_polygon.h"
 #include "shlight/types.h"
 
 namespace shlight {
@@ -33,15 +31,7 @@ class PolygonBatch {
             std::copy_n(&vertices->x, 3 * count, &vertices_[first].x);
         }
     }
-    /// check_polygons; given: all that append() was given.
-    template <class T>
-    void check(const Vec3<T>* given) const {
-        if constexpr (std::is_same_v<T, float>) {
-            check_polygons(std::span(given, vertices_.size()), vertices_, vertex_count());
-        } else {
-            check_polygons(vertices_, vertex_count());
-        }
-    }
+    void check() const { check_polygons<float>(vertices_, vertex_count()); }
 
     int vertex_count() const { return static_cast<int>(vertex_count_); }
     std::size_t size() const { return vertices_.size() / vertex_count_; }

@@ -2,20 +2,84 @@
 #include "polygons/polygon_checks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
 #include "base/checks.h"
-#include "polygons/polygon_views.h"
-#include "polygons/spherical_polygon.h"
 
 namespace shlight {
 namespace {
 
-void check_each(std::span<const Vec3d> vertices, int vertex_count) {
-    const auto k = static_cast<std::size_t>(vertex_count);
-    for (std::size_t first = 0; first < vertices.size(); first += k) {
-        check_polygon<float>(vertices.subspan(first, k));
+/// What vertices may be off the mean plane, ÷ the polygon's extent.
+constexpr double kGranted = 1e-4;
+
+/// Squares: of the area, the extent, and the largest deviation from the mean plane × the area.
+struct Flatness {
+    double area, extent, deviation;
+
+    bool within(double granted) const { return deviation <= granted * granted * extent * area; }
+    /// Of finite vertices, whose squares neither overflow nor vanish: a NaN or an infinity reaches the area.
+    bool is_usual() const {
+        const double product = area * extent;
+        return product > std::numeric_limits<double>::min() && product < std::numeric_limits<double>::max();
+    }
+};
+
+/// Of what steps from the first vertex tell.
+template <class Step>
+Flatness flatness_of(std::size_t count, const Step& step) {
+    Vec3d area(0);
+    Vec3d before = step(1);
+    double extent = glm::dot(before, before);
+    for (std::size_t i = 2; i < count; ++i) {
+        const Vec3d next = step(i);
+        area += glm::cross(before, next);
+        extent = std::max(extent, glm::dot(next, next));
+        before = next;
+    }
+    double deviation = 0;
+    for (std::size_t i = 1; i < count; ++i) {
+        deviation = std::max(deviation, std::abs(glm::dot(area, step(i))));
+    }
+    return {glm::dot(area, area), extent, deviation * deviation};
+}
+
+/// The mean plane of four vertices is parallel to both diagonals. The extent is one of them at least.
+inline Flatness flatness_of_quad(const Vec3d* v) {
+    const Vec3d diagonal = v[2] - v[0];
+    const Vec3d area = glm::cross(diagonal, v[3] - v[1]);
+    const double deviation = glm::dot(area, v[1] - v[0]);
+    return {glm::dot(area, area), glm::dot(diagonal, diagonal), deviation * deviation};
+}
+
+/// True for nearly all polygons that are sound, and for no others.
+bool is_surely_sound(std::span<const Vec3d> v) {
+    const Flatness flatness =
+        v.size() == 4 ? flatness_of_quad(v.data()) : flatness_of(v.size(), [&](std::size_t i) { return v[i] - v[0]; });
+    return flatness.is_usual() && flatness.within(kGranted / 2);
+}
+
+void check_polygon(std::span<const Vec3d> vertices, double epsilon) {
+    double largest = 0;
+    double size = 0;
+    for (const Vec3d& v : vertices) {
+        check_finite("vertices", v);
+        for (int i = 0; i < 3; ++i) {
+            largest = std::max(largest, std::abs(v[i]));
+            size = std::max(size, std::abs(v[i] / 2 - vertices[0][i] / 2));
+        }
+    }
+    if (!(size > 0)) {
+        return;
+    }
+    // In units of the polygon, in which nothing overflows.
+    const Flatness flatness =
+        flatness_of(vertices.size(), [&](std::size_t i) { return (vertices[i] / 2.0 - vertices[0] / 2.0) / size; });
+    // A far polygon's vertices are off its plane by their own rounding.
+    const double far = largest / (2 * size * std::sqrt(flatness.extent));
+    if (!flatness.within(kGranted + 8 * epsilon * std::sqrt(3) * far)) {
+        reject("vertices: a polygon is not planar");
     }
 }
 
@@ -28,35 +92,17 @@ void check_vertex_count(int vertex_count) {
 }
 
 template <class T>
-void check_polygon(std::span<const Vec3<Wider<T>>> vertices) {
-    using Real = Wider<T>;
-    Real largest = 0;
-    Real extent = 0;
-    for (const Vec3<Real>& v : vertices) {
-        check_finite("vertices", v);
-        largest = std::max(largest, glm::length(v));
-        extent = std::max(extent, glm::length(v - vertices[0]));
-    }
-    // A far polygon's vertices are off its plane by their own rounding.
-    constexpr Real kEpsilon = std::numeric_limits<T>::epsilon();
-    if (extent > 0 && planarity_error(vertices) > Real(1e-4) + 8 * kEpsilon * largest / extent) {
-        reject("vertices: a polygon is not planar");
-    }
-}
-
 void check_polygons(std::span<const Vec3d> vertices, int vertex_count) {
-    if (!polygons_are_sound(vertices, vertex_count)) {
-        check_each(vertices, vertex_count);
+    const auto k = static_cast<std::size_t>(vertex_count);
+    for (std::size_t first = 0; first < vertices.size(); first += k) {
+        const auto polygon = vertices.subspan(first, k);
+        if (!is_surely_sound(polygon)) {
+            check_polygon(polygon, std::numeric_limits<T>::epsilon());
+        }
     }
 }
 
-void check_polygons(std::span<const Vec3f> given, std::span<const Vec3d> vertices, int vertex_count) {
-    if (!polygons_are_sound(given, vertices, vertex_count)) {
-        check_each(vertices, vertex_count);
-    }
-}
-
-template void check_polygon<float>(std::span<const Vec3d>);
-template void check_polygon<double>(std::span<const Vec3<long double>>);
+template void check_polygons<float>(std::span<const Vec3d>, int);
+template void check_polygons<double>(std::span<const Vec3d>, int);
 
 }  // namespace shlight

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "polygons/spherical_polygon.h"
+#include <span>
+
+#include "shlight/types.h"
 
 namespace shlight {
 
-/// order² coefficients by Gauss cubature on the polygon's triangles, to the precision of T for every size and shape.
+/// order² coefficients of a polygon by Gauss cubature on its triangles, to the precision of double for every size and
+/// shape. Slow where the polygon is large: for those whose edges would cancel (docs/algorithms.md, "Polygons").
+/// vertices: as polygon_coefficients has them, seen neither edge-on nor without area.
 template <class T>
-void polygon_by_cubature(const SphericalPolygon<Wider<T>>& polygon, int order, T* coefficients);
+void polygon_by_cubature(std::span<const Vec3d> vertices, int order, bool clip, T* coefficients);
 
 }  // namespace shlight

@@ -18,7 +18,7 @@
 #include <limits>
 #include <vector>
 
-#include "polygons/polygon_outline-inl.h"
+#include "polygons/clipped_edges-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
@@ -30,8 +30,13 @@ namespace shlight::HWY_NAMESPACE {
 HWY_INLINE double least_width_for_float(int order) {
     return order <= 2 ? std::numeric_limits<float>::max() : std::clamp(0.003 * order, 0.024, 0.05);
 }
-/// Below this Gauss points inside a polygon do better.
-constexpr double kNarrowestForEdges = 1e-9;
+/// Below this ratio of solid angle to length of edges Gauss points inside a polygon do better: those on the edges
+/// cancel to an error of about 2e-15 of L_00 ÷ that ratio. Arcs of the horizon lie between points that are rounded,
+/// which counts twice for a region that is narrow because it is small.
+template <class T, bool kClipped>
+constexpr double kNarrowestForEdges = std::is_same_v<T, float> ? 1e-9
+                                      : kClipped               ? 2e-3
+                                                               : 3e-4;
 
 /// A harmonic of degree l has waves of up to l cycles a turn about an axis; on a small circle of radius s those of more
 /// than ls + 7 are too weak to count.
@@ -101,10 +106,10 @@ HWY_INLINE void write_rows(const std::array<const LaneValues<R>*, kColumns>& col
     }
 }
 
-/// Takes a chunk of polygons apart, sorted by the horizon and by the precision that they need. Kind, a class of its
-/// own, tells by number in the chunk: polygon(i), vertex(i), view(i), and takes low_bands(solid angles, ∫ u du,
-/// numbers, count) of vectors, the last word for each number being the right one, 0 for what is not seen.
-template <class Kind, bool kWarped>
+/// Takes a chunk of polygons apart, sorted by the horizon and by the precision that they need for results in T. Kind,
+/// a class of its own, tells by number in the chunk: polygon(i), vertex(i), view(i), and takes low_bands(solid angles,
+/// ∫ u du, numbers, count) of vectors, the last word for each number being the right one, 0 for what is not seen.
+template <class Kind, class T, bool kWarped>
 class PolygonLists {
   protected:
     /// looseness: of the Gauss points' tolerance, 1 for that of coefficients.
@@ -113,7 +118,7 @@ class PolygonLists {
                  const GaussErrorGrowth& growth = kGaussErrorGrowth)
         : polygons_(polygons),
           order_(order),
-          least_width_(least_width_for_float(order)),
+          least_width_(kInDouble ? std::numeric_limits<float>::max() : least_width_for_float(order)),
           looseness_(looseness),
           growth_(growth) {}
 
@@ -124,7 +129,7 @@ class PolygonLists {
         float_arcs_.clear();
         double_arcs_.clear();
         sort_by_horizon(count, clip);
-        if constexpr (kWarped) {
+        if constexpr (kWarped || kInDouble) {
             take_apart<double, false>(whole_);
             take_apart<double, true>(cut_);
         } else {
@@ -142,6 +147,8 @@ class PolygonLists {
     ArcLists<double> double_arcs_;
 
   private:
+    static constexpr bool kInDouble = std::is_same_v<T, double>;
+
     Kind& self() { return static_cast<Kind&>(*this); }
 
     /// Those below have no light. Without branches, which would be foretold badly.
@@ -169,7 +176,7 @@ class PolygonLists {
     /// What decides about a vector of polygons.
     template <class R>
     struct Measured {
-        LaneValues<R> width;  ///< solid angle ÷ outline; 0 if edge-on or without area
+        LaneValues<R> width;  ///< solid angle ÷ length of the edges; 0 if edge-on or without area
         LaneValues<R> tolerance;
         std::vector<LaneValues<R>> points;  ///< on each edge; 0 for none, kMaxGaussPoints + 1 for too many
     };
@@ -177,7 +184,7 @@ class PolygonLists {
     template <class R, bool kClipped>
     void take_apart(const std::vector<std::uint32_t>& list) {
         constexpr std::size_t kWidth = kLaneCount<Lanes<R>>;
-        EdgePreparation<R> preparation(polygons_, kClipped);
+        EdgePreparation<R, T> preparation(polygons_, kClipped);
         PolygonLanes<R> lanes;
         lanes.edges.resize(polygons_.vertex_count);
         Measured<R> measured;
@@ -194,9 +201,10 @@ class PolygonLists {
             preparation.prepare(polygon.data(), lanes);
             if constexpr (kWarped) {
                 const PolygonWarps warp(self().warps(), views.data());
-                measure(lanes, Outline<R, kClipped, true>(lanes, &warp).region(), list.data() + start, count, measured);
+                measure(lanes, ClippedEdges<R, kClipped, true>(lanes, &warp).region(), list.data() + start, count,
+                        measured);
             } else {
-                measure(lanes, Outline<R, kClipped, false>(lanes, nullptr).region(), list.data() + start, count,
+                measure(lanes, ClippedEdges<R, kClipped, false>(lanes, nullptr).region(), list.data() + start, count,
                         measured);
             }
             keep<R, kClipped>(lanes, measured, list.data() + start, count);
@@ -210,9 +218,7 @@ class PolygonLists {
         const auto zero = hn::Zero(d);
         const auto seen = hn::And(hn::Ne(get<R>(lanes.side), zero), hn::Gt(region.solid_angle, zero));
         const auto solid_angle = hn::IfThenElseZero(seen, region.solid_angle);
-        // Near contact a triangle of the fan may have ends opposite to the reference, and an angle without digits.
-        const auto clear = hn::Gt(region.clearness, all(d, std::is_same_v<R, float> ? 1e-2 : 1e-18));
-        const auto width = hn::IfThenElseZero(hn::And(seen, clear), hn::Div(region.solid_angle, region.outline));
+        const auto width = hn::IfThenElseZero(seen, hn::Div(region.solid_angle, region.perimeter));
         put<R>(out.width, width);
         const Vectors3<R>& moment = region.first_moment;
         self().template low_bands<R>(solid_angle,
@@ -221,7 +227,7 @@ class PolygonLists {
                                      list, count);
         // Of a harmonic's integral over an arc. What it adds to a coefficient is divided by about the degree.
         const auto wide = hn::Gt(width, all(d, least_width_));
-        const double unit = order_ * static_cast<double>(std::numeric_limits<float>::epsilon());
+        const double unit = order_ * static_cast<double>(std::numeric_limits<T>::epsilon());
         const auto tolerance =
             hn::Mul(solid_angle, hn::IfThenElse(wide, all(d, looseness_ * unit), all(d, 0.25 * looseness_ * unit)));
         put<R>(out.tolerance, tolerance);
@@ -250,7 +256,7 @@ class PolygonLists {
                 continue;
             } else if (std::is_same_v<R, float>) {
                 (kClipped ? narrow_cut_ : narrow_whole_).push_back(list[lane]);
-            } else if (!kWarped && !(width > static_cast<R>(kNarrowestForEdges))) {
+            } else if (!kWarped && !(width > static_cast<R>(kNarrowestForEdges<T, kClipped>))) {
                 narrowest_.push_back(list[lane]);
             } else {
                 in_double[lane] = 1;
@@ -360,7 +366,7 @@ class PolygonLists {
         }
     }
 
-    /// More than float can resolve is not asked for.
+    /// More than double can resolve is not asked for.
     static constexpr double kFinest = 1e-20;
 
     double least_width_, looseness_;

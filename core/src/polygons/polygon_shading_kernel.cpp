@@ -15,9 +15,10 @@
 #include <numbers>
 #include <vector>
 
+#include "polygons/polygon_cubature.h"
 #include "polygons/polygon_lists-inl.h"
-#include "polygons/polygon_shading.h"
 #include "polygons/potential-inl.h"
+#include "shlight/shading.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
@@ -30,8 +31,8 @@ constexpr double kLoosenessOfLobe = 2;
 
 /// Work of one call of shade_polygons.
 template <bool kWarped>
-class PolygonShading : public PolygonLists<PolygonShading<kWarped>, kWarped> {
-    using Base = PolygonLists<PolygonShading<kWarped>, kWarped>;
+class PolygonShading : public PolygonLists<PolygonShading<kWarped>, float, kWarped> {
+    using Base = PolygonLists<PolygonShading<kWarped>, float, kWarped>;
     friend Base;
 
   public:
@@ -189,14 +190,11 @@ class PolygonShading : public PolygonLists<PolygonShading<kWarped>, kWarped> {
 
     void shade_narrowest() {
         std::vector<Vec3d> polygon(this->polygons_.vertex_count);
+        std::array<float, static_cast<std::size_t>(coefficient_count(kMaxOrder))> coefficients;
         for (const std::uint32_t i : this->narrowest_) {
-            const double* v = vertex(i);
-            for (Vec3d& corner : polygon) {
-                corner = {v[0], v[1], v[2]};
-                v += 3;
-            }
-            const SphericalPolygon<double> seen(polygon, true);
-            values_[first_ + i] = seen.empty() ? 0.0F : shade_polygon(seen, Warp(), terms(i), this->order_);
+            std::copy_n(vertex(i), 3 * polygon.size(), &polygon.data()->x);
+            polygon_by_cubature(polygon, this->order_, true, coefficients.data());
+            values_[first_ + i] = shade_cosine(coefficients.data(), terms(i), this->order_);
         }
     }
 

@@ -9,6 +9,7 @@
 #define SHLIGHT_KERNELS_POLYGON_VERTICES_INL_H_
 #endif
 
+#include <hwy/aligned_allocator.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -16,7 +17,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 #include "polygons/arc_points-inl.h"
 #include "polygons/polygon_array.h"
@@ -48,7 +48,7 @@ class VertexLanes {
     static constexpr std::size_t kWidth = kLaneCount<D>;
 
     explicit VertexLanes(const PolygonArray& polygons)
-        : polygons_(polygons), vertices_(3 * polygons.vertex_count * kWidth) {}
+        : polygons_(polygons), vertices_(hwy::AllocateAligned<double>(3 * polygons.vertex_count * kWidth)) {}
 
     std::size_t count() const { return polygons_.vertex_count; }
 
@@ -66,7 +66,7 @@ class VertexLanes {
             const auto columns = load_columns(d, rows.data(), column);
             for (std::size_t j = 0; j < kSquare<D>; ++j) {
                 largest = hn::Max(largest, hn::Abs(columns[j]));
-                hn::StoreU(columns[j], d, vertices_.data() + (column + j) * kWidth);
+                hn::StoreU(columns[j], d, vertices_.get() + (column + j) * kWidth);
             }
         }
         const auto usual = hn::And(hn::Gt(largest, all(d, 1e-6)), hn::Lt(largest, all(d, 1e6)));
@@ -76,12 +76,15 @@ class VertexLanes {
     }
 
     HWY_INLINE Vectors3<double> vertex(std::size_t i) const {
-        const double* at = vertices_.data() + 3 * i * kWidth;
+        const double* at = vertices_.get() + 3 * i * kWidth;
         return {hn::LoadU(D(), at), hn::LoadU(D(), at + kWidth), hn::LoadU(D(), at + 2 * kWidth)};
     }
 
-    /// The side of the polygon's plane that the origin is on; neither if the polygon is seen edge-on or has no area.
-    HWY_INLINE V<D> side() const {
+    struct Facing {
+        V<D> side;                ///< of the polygon's plane that the origin is on; 0 if edge-on or without area
+        Vectors3<double> normal;  ///< unit, to the polygon from the origin
+    };
+    HWY_INLINE Facing facing() const {
         const D d;
         const Vectors3<double> v0 = vertex(0);
         Vectors3<double> normal = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
@@ -101,7 +104,9 @@ class VertexLanes {
             hn::Mul(dot<double>(normal, sum), all(d, 1 / static_cast<double>(polygons_.vertex_count)));
         const auto least = hn::Mul(all(d, kEdgeOn * kEdgeOn), hn::Mul(farthest, dot<double>(normal, normal)));
         const auto seen = hn::Gt(hn::Mul(distance, distance), least);
-        return hn::IfThenElseZero(seen, hn::CopySign(all(d, 1), distance));
+        const auto side = hn::IfThenElseZero(seen, hn::CopySign(all(d, 1), distance));
+        const auto length = hn::Sqrt(hn::Max(dot<double>(normal, normal), all(d, std::numeric_limits<double>::min())));
+        return {side, scaled<double>(normal, hn::Div(side, length))};
     }
 
   private:
@@ -113,13 +118,13 @@ class VertexLanes {
         const auto power = hn::And(hn::BitCast(du, hn::Div(all(d, 1), largest)), hn::Set(du, 0x7FF0000000000000));
         const auto scale = hn::IfThenElse(hn::Gt(largest, all(d, 1e-300)), hn::BitCast(d, power), all(d, 1));
         for (std::size_t i = 0; i < 3 * polygons_.vertex_count; ++i) {
-            double* v = vertices_.data() + i * kWidth;
+            double* v = vertices_.get() + i * kWidth;
             hn::StoreU(hn::Mul(hn::LoadU(d, v), scale), d, v);
         }
     }
 
     PolygonArray polygons_;
-    std::vector<double> vertices_;
+    hwy::AlignedFreeUniquePtr<double[]> vertices_;
 };
 
 }  // namespace shlight::HWY_NAMESPACE

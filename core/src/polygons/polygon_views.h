@@ -9,14 +9,6 @@
 
 namespace shlight {
 
-/// Whether all polygons are finite and planar as check_polygon<float> has it; if not, that function tells which is not
-/// and why. Says no too for coordinates whose squares overflow: then each is worth a look.
-bool polygons_are_sound(std::span<const Vec3d> vertices, int vertex_count);
-
-/// The same of polygons that were given in float, in which most are told to be sound; vertices: their numbers in
-/// double.
-bool polygons_are_sound(std::span<const Vec3f> given, std::span<const Vec3d> vertices, int vertex_count);
-
 /// Polygons as directions, and their half angles: negative where nothing is seen.
 struct PolygonArrays {
     const double *x, *y, *z;

@@ -9,38 +9,27 @@ namespace shlight {
 namespace {
 
 /// Twice the vector area; from differences, so that a far polygon keeps its digits.
-template <class Real>
-Vec3<Real> vector_area(std::span<const Vec3<Real>> v) {
-    Vec3<Real> sum(0);
+Vec3d vector_area(std::span<const Vec3d> v) {
+    Vec3d sum(0);
     for (std::size_t i = 1; i + 1 < v.size(); ++i) {
         sum += glm::cross(v[i] - v[0], v[i + 1] - v[0]);
     }
     return sum;
 }
 
-template <class Real>
-Real extent(std::span<const Vec3<Real>> v) {
-    Real largest = 0;
-    for (const Vec3<Real>& p : v) {
-        largest = std::max(largest, glm::length(p - v[0]));
-    }
-    return largest;
-}
-
 /// Sutherland–Hodgman against z ≥ 0. Cut points get z = 0 exactly: their edge then lies *in* the horizon.
-template <class Real>
-std::vector<Vec3<Real>> clipped_by_horizon(std::span<const Vec3<Real>> v) {
-    std::vector<Vec3<Real>> kept;
+std::vector<Vec3d> clipped_by_horizon(std::span<const Vec3d> v) {
+    std::vector<Vec3d> kept;
     kept.reserve(2 * v.size());
     for (std::size_t i = 0; i < v.size(); ++i) {
-        const Vec3<Real>& a = v[i];
-        const Vec3<Real>& b = v[(i + 1) % v.size()];
+        const Vec3d& a = v[i];
+        const Vec3d& b = v[(i + 1) % v.size()];
         if (a.z >= 0) {
             kept.push_back(a);
         }
         if ((a.z >= 0) != (b.z >= 0) && a.z != 0 && b.z != 0) {
-            const Real t = a.z / (a.z - b.z);
-            kept.push_back({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), Real(0)});
+            const double t = a.z / (a.z - b.z);
+            kept.push_back({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), 0.0});
         }
     }
     return kept;
@@ -84,11 +73,10 @@ Real triangle_solid_angle(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<R
     return 2 * std::atan2(triple, product + ab + bc + ca);
 }
 
-template <class Real>
-SphericalPolygon<Real>::SphericalPolygon(std::span<const Vec3<Real>> vertices, bool clip) {
-    std::vector<Vec3<Real>> kept;
-    std::span<const Vec3<Real>> v = vertices;
-    if (clip && std::any_of(v.begin(), v.end(), [](const Vec3<Real>& p) { return !(p.z >= 0); })) {
+SphericalPolygon::SphericalPolygon(std::span<const Vec3d> vertices, bool clip) {
+    std::vector<Vec3d> kept;
+    std::span<const Vec3d> v = vertices;
+    if (clip && std::any_of(v.begin(), v.end(), [](const Vec3d& p) { return !(p.z >= 0); })) {
         kept = clipped_by_horizon(vertices);
         v = kept;
     }
@@ -96,21 +84,21 @@ SphericalPolygon<Real>::SphericalPolygon(std::span<const Vec3<Real>> vertices, b
         return;
     }
     // The plane and its distance from the origin come from the vertices as given: clipping would only add rounding.
-    const Vec3<Real> normal = vector_area(vertices);
-    Real farthest = 0;
-    Real distance = 0;
-    for (const Vec3<Real>& p : vertices) {
+    const Vec3d normal = vector_area(vertices);
+    double farthest = 0;
+    double distance = 0;
+    for (const Vec3d& p : vertices) {
         farthest = std::max(farthest, glm::dot(p, p));
         distance += glm::dot(normal, p);
     }
     farthest = std::sqrt(farthest);
-    distance /= static_cast<Real>(vertices.size());
-    constexpr Real kEdgeOn = 64 * std::numeric_limits<Real>::epsilon();
+    distance /= static_cast<double>(vertices.size());
+    constexpr double kEdgeOn = 64 * std::numeric_limits<double>::epsilon();
     if (!(std::abs(distance) > kEdgeOn * farthest * glm::length(normal))) {
         return;
     }
     const std::size_t count = v.size();
-    const auto vertex = [&](std::size_t i) -> const Vec3<Real>& { return v[distance < 0 ? count - 1 - i : i]; };
+    const auto vertex = [&](std::size_t i) -> const Vec3d& { return v[distance < 0 ? count - 1 - i : i]; };
     for (std::size_t i = 1; i + 1 < count; ++i) {
         solid_angle_ += triangle_solid_angle(vertex(0), vertex(i), vertex(i + 1));
     }
@@ -120,37 +108,18 @@ SphericalPolygon<Real>::SphericalPolygon(std::span<const Vec3<Real>> vertices, b
     }
     directions_.reserve(count);
     edge_crosses_.reserve(count);
-    Real over_length = 1 / glm::length(vertex(0));
+    double over_length = 1 / glm::length(vertex(0));
     for (std::size_t i = 0; i < count; ++i) {
-        const Vec3<Real>& a = vertex(i);
-        const Vec3<Real>& b = vertex(i + 1 < count ? i + 1 : 0);
-        const Real over_next = 1 / glm::length(b);
+        const Vec3d& a = vertex(i);
+        const Vec3d& b = vertex(i + 1 < count ? i + 1 : 0);
+        const double over_next = 1 / glm::length(b);
         directions_.push_back(a * over_length);
         edge_crosses_.push_back(glm::cross(a, b - a) * (over_length * over_next));
         over_length = over_next;
     }
 }
 
-template <class Real>
-Real planarity_error(std::span<const Vec3<Real>> vertices) {
-    const Vec3<Real> area = vector_area(vertices);
-    const Real size = extent(vertices);
-    const Real length = glm::length(area);
-    if (!(length > 0)) {
-        return 0;
-    }
-    Real largest = 0;
-    for (const Vec3<Real>& p : vertices) {
-        largest = std::max(largest, std::abs(glm::dot(area, p - vertices[0])) / length);
-    }
-    return largest / size;
-}
-
-template class SphericalPolygon<double>;
-template class SphericalPolygon<long double>;
 template double triangle_solid_angle(const Vec3<double>&, const Vec3<double>&, const Vec3<double>&);
 template long double triangle_solid_angle(const Vec3<long double>&, const Vec3<long double>&, const Vec3<long double>&);
-template double planarity_error(std::span<const Vec3<double>>);
-template long double planarity_error(std::span<const Vec3<long double>>);
 
 }  // namespace shlight

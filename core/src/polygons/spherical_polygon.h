@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A planar polygon as seen from the origin: clipped, turned into directions, measured. In a wider type than the
-// coefficients: an edge's pole, a small solid angle and the distance of a plane nearly through the origin are
-// differences of the vertices.
+// A planar polygon as seen from the origin: clipped, turned into directions, measured.
 #pragma once
 
 #include <span>
@@ -12,33 +10,28 @@
 
 namespace shlight {
 
-template <class Real>
 class SphericalPolygon {
   public:
     /// vertices: k ≥ 3, planar, in either winding. clip: keep only z ≥ 0.
-    SphericalPolygon(std::span<const Vec3<Real>> vertices, bool clip);
+    SphericalPolygon(std::span<const Vec3d> vertices, bool clip);
 
     /// Nothing is left: no area, edge-on, or below the horizon.
     bool empty() const { return directions_.empty(); }
     /// Unit vectors to the vertices, the interior on the left of each edge seen from outside the sphere.
-    const std::vector<Vec3<Real>>& directions() const { return directions_; }
+    const std::vector<Vec3d>& directions() const { return directions_; }
     /// a × b / (|a| |b|) of the edge from vertex i to the next: the edge's pole times the sine of its length.
-    const Vec3<Real>& edge_cross(std::size_t i) const { return edge_crosses_[i]; }
-    Real solid_angle() const { return solid_angle_; }
+    const Vec3d& edge_cross(std::size_t i) const { return edge_crosses_[i]; }
+    double solid_angle() const { return solid_angle_; }
 
   private:
-    std::vector<Vec3<Real>> directions_;
-    std::vector<Vec3<Real>> edge_crosses_;
-    Real solid_angle_ = 0;
+    std::vector<Vec3d> directions_;
+    std::vector<Vec3d> edge_crosses_;
+    double solid_angle_ = 0;
 };
 
 /// Solid angle of a triangle (Van Oosterom & Strackee 1983), signed by its winding. The triple product is taken of edge
 /// vectors, so that its error is relative to the triangle and not to the sphere.
 template <class Real>
 Real triangle_solid_angle(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c);
-
-/// The largest distance of a vertex from the polygon's mean plane ÷ the polygon's extent.
-template <class Real>
-Real planarity_error(std::span<const Vec3<Real>> vertices);
 
 }  // namespace shlight

@@ -23,15 +23,17 @@ CubatureSum cap_cubature(const LobeShape& shape, const Vec3d& view, const Circle
     return {value, cap_rule_points(rule_number)};
 }
 
-CubatureSum polygon_cubature(const LobeShape& shape, const Vec3d& view, const SphericalPolygon<double>& polygon,
+CubatureSum polygon_cubature(const LobeShape& shape, const Vec3d& view, const SphericalPolygon& polygon,
                              int rule_number) {
     const std::vector<Vec3d>& v = polygon.directions();
     const auto rule = polygon_rule(rule_number);
     double sum = 0;
     double weights = 0;
     for (std::size_t i = 1; i + 1 < v.size(); ++i) {
-        weights += visit_triangle(v[0], v[i], v[i + 1], rule, [&](const Vec3d& direction, double weight) {
+        const double triple = glm::dot(v[0], glm::cross(v[i] - v[0], v[i + 1] - v[0]));
+        visit_triangle(v[0], v[i], v[i + 1], triple, rule, [&](const Vec3d& direction, double weight) {
             sum += weight * lobe_value(shape, direction, view);
+            weights += weight;
         });
     }
     // As for coefficients: the area of a tiny polygon drowns in the rounding of unit vectors, its solid angle does not.

@@ -32,7 +32,7 @@ CapOutline::CapOutline(const Circle& cap) {
     count_ = 2;
 }
 
-std::vector<OutlineArc> polygon_outline(const SphericalPolygon<double>& polygon) {
+std::vector<OutlineArc> polygon_outline(const SphericalPolygon& polygon) {
     std::vector<OutlineArc> arcs;
     const std::vector<Vec3d>& v = polygon.directions();
     for (std::size_t i = 0; i < v.size(); ++i) {

@@ -25,6 +25,6 @@ class CapOutline {
 };
 
 /// The outline of a polygon that was clipped by the horizon.
-std::vector<OutlineArc> polygon_outline(const SphericalPolygon<double>& polygon);
+std::vector<OutlineArc> polygon_outline(const SphericalPolygon& polygon);
 
 }  // namespace shlight

@@ -153,7 +153,7 @@ bool LobeBatch::shows_mirrored(const CircleArrays& circles, std::size_t light, c
 
 bool LobeBatch::shows_mirrored(const PolygonBatch& polygons, std::size_t light, const Vec3d& direction) {
     // The winding of the outline about the direction, as angles between neighbouring vertices.
-    const SphericalPolygon<double> polygon(polygons.polygon(light), true);
+    const SphericalPolygon polygon(polygons.polygon(light), true);
     const std::vector<Vec3d>& v = polygon.directions();
     double winding = 0;
     for (std::size_t i = 0; i < v.size(); ++i) {
@@ -258,7 +258,7 @@ void LobeBatch::by_rule(const LobeViews& lobe, const CircleArrays& circles, int 
 void LobeBatch::by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
         const CubatureSum sum = polygon_cubature(lobe.shape(), lobe.positions().direction(item_views_[k]),
-                                                 SphericalPolygon<double>(polygons.polygon(items_[k]), true), rule);
+                                                 SphericalPolygon(polygons.polygon(items_[k]), true), rule);
         item_values_[k] = static_cast<float>(sum.value);
         efforts_[items_[k]] = sum.points;
     }
@@ -273,7 +273,7 @@ void LobeBatch::by_outline(const LobeViews& lobe, const CircleArrays& circles) {
 
 void LobeBatch::by_outline(const LobeViews& lobe, const PolygonBatch& polygons) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
-        integrate_outline(lobe, k, polygon_outline(SphericalPolygon<double>(polygons.polygon(items_[k]), true)));
+        integrate_outline(lobe, k, polygon_outline(SphericalPolygon(polygons.polygon(items_[k]), true)));
     }
 }
 

@@ -32,7 +32,7 @@ class SeenLights {
     /// In the place of all others: spheres in the shading frame, numbered 0, 1, 2 …
     template <class T>
     void set_spheres(std::span<const Vec3<T>> centers, const T* radii);
-    /// Likewise, planar polygons of so many vertices each. Throws as check_polygon does.
+    /// Likewise, planar polygons of so many vertices each. Throws as check_polygons does.
     template <class T>
     void set_polygons(std::span<const Vec3<T>> vertices, std::size_t vertex_count);
 

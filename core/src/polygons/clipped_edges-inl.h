@@ -2,11 +2,11 @@
 //
 // Polygons in lanes: warped, measured, and taken apart into arcs (docs/algorithms.md, "Polygons"). Included once per
 // instruction set.
-#if defined(SHLIGHT_KERNELS_POLYGON_OUTLINE_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef SHLIGHT_KERNELS_POLYGON_OUTLINE_INL_H_
-#undef SHLIGHT_KERNELS_POLYGON_OUTLINE_INL_H_
+#if defined(SHLIGHT_KERNELS_CLIPPED_EDGES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHLIGHT_KERNELS_CLIPPED_EDGES_INL_H_
+#undef SHLIGHT_KERNELS_CLIPPED_EDGES_INL_H_
 #else
-#define SHLIGHT_KERNELS_POLYGON_OUTLINE_INL_H_
+#define SHLIGHT_KERNELS_CLIPPED_EDGES_INL_H_
 #endif
 
 #include <hwy/highway.h>
@@ -32,8 +32,7 @@ namespace shlight::HWY_NAMESPACE {
 /// What a region is known by beside its arcs.
 template <class R>
 struct RegionLanes {
-    V<Lanes<R>> solid_angle, outline;
-    V<Lanes<R>> clearness;     ///< square of what the solid angle's angles are measured by: its rounding ÷ this counts
+    V<Lanes<R>> solid_angle, perimeter;
     Vectors3<R> first_moment;  ///< ∫ u du
 };
 
@@ -79,21 +78,22 @@ struct PolygonWarps {
     }
 };
 
-/// Takes a vector of polygons apart. kClipped: some edges cross the horizon; kWarped: the result is the warps' images.
+/// The edges of a vector of polygons above the horizon. kClipped: some edges cross the horizon; kWarped: the result is
+/// the warps' images.
 template <class R, bool kClipped, bool kWarped>
-class Outline {
+class ClippedEdges {
     using D = Lanes<R>;
     static_assert(!kWarped || std::is_same_v<R, double>);
 
   public:
-    Outline(PolygonLanes<R>& lanes, const PolygonWarps* warp) : lanes_(lanes), warp_(warp) {}
+    ClippedEdges(PolygonLanes<R>& lanes, const PolygonWarps* warp) : lanes_(lanes), warp_(warp) {}
 
     HWY_INLINE RegionLanes<R> region() {
         const D d;
         const auto zero = hn::Zero(d);
-        RegionLanes<R> region = {zero, zero, all(d, 1), {zero, zero, zero}};
+        RegionLanes<R> region = {zero, zero, {zero, zero, zero}};
         const End first = end(lanes_.edges.front());
-        reference_ = kClipped ? crossing(-1, zero) : first.u;
+        reference_ = {get<R>(lanes_.normal_x), get<R>(lanes_.normal_y), get<R>(lanes_.normal_z)};
         re_ = all(d, 1);
         im_ = zero;
         End from = first;
@@ -108,13 +108,13 @@ class Outline {
                 im_ = hn::Mul(im_, scale);
             }
         }
+        if constexpr (kClipped) {
+            add_horizon(region);
+        }
         // Half of what a region of at most half the sphere has: 0 … π.
         auto half = arctangent(d, im_, re_);
         half = hn::Add(half, hn::IfThenElseZero(hn::Lt(half, all(d, -1)), all(d, 2 * std::numbers::pi)));
         region.solid_angle = hn::MulAdd(all(d, 2), half, region.solid_angle);
-        if constexpr (kClipped) {
-            add_horizon(region);
-        }
         return region;
     }
 
@@ -163,7 +163,18 @@ class Outline {
 
     /// With M the middle, N the pole and h half the length, the triangle from a reference R to both ends has the solid
     /// angle 2 arg (cos h + R·M + i sin h R·N): Van Oosterom & Strackee 1983, divided by 2 cos h, which vanishes where
-    /// the ends are opposite.
+    /// the ends are opposite. R is the plane's normal: all of the polygon is less than a quarter turn away from it, so
+    /// no end is opposite to it, and of an edge of nearly half a turn M or N is near it.
+    HWY_INLINE void add_triangle(M<D> exists, const Vectors3<R>& middle, const Vectors3<R>& pole, V<D> sine,
+                                 V<D> cosine) {
+        const D d;
+        const auto re = hn::IfThenElse(exists, hn::Add(cosine, dot<R>(reference_, middle)), all(d, 1));
+        const auto im = hn::IfThenElseZero(exists, hn::Mul(sine, dot<R>(reference_, pole)));
+        const auto next = hn::MulSub(re_, re, hn::Mul(im_, im));
+        im_ = hn::MulAdd(re_, im, hn::Mul(im_, re));
+        re_ = next;
+    }
+
     HWY_INLINE void add_edge(EdgeLanes<R>& edge, End a, End b, RegionLanes<R>& region) {
         const D d;
         const auto zero = hn::Zero(d);
@@ -196,19 +207,14 @@ class Outline {
             middle = select(is_long, sided(cross<R>(b.u - a.u, pole)), middle);
         }
         middle = scaled<R>(middle, over);
-        const auto fan_re = hn::IfThenElse(kept, hn::Add(cosine, dot<R>(reference_, middle)), one);
-        const auto fan_im = hn::IfThenElseZero(kept, hn::Mul(sine, dot<R>(reference_, pole)));
-        region.clearness = hn::Min(region.clearness, hn::MulAdd(fan_re, fan_re, hn::Mul(fan_im, fan_im)));
-        const auto next = hn::MulSub(re_, fan_re, hn::Mul(im_, fan_im));
-        im_ = hn::MulAdd(re_, fan_im, hn::Mul(im_, fan_re));
-        re_ = next;
+        add_triangle(kept, middle, pole, sine, cosine);
         if constexpr (kWarped) {
             add_image(edge, pole, middle, sine, cosine, kept, region);
         } else {
             const auto half = hn::IfThenElseZero(kept, arctangent(d, sine, cosine));
             put_arc(edge, pole, middle, half);
             region.first_moment = region.first_moment + scaled<R>(pole, half);
-            region.outline = hn::MulAdd(all(d, 2), half, region.outline);
+            region.perimeter = hn::MulAdd(all(d, 2), half, region.perimeter);
         }
     }
 
@@ -248,7 +254,7 @@ class Outline {
         const auto twice = hn::Add(half, half);
         const auto turning = hn::IfThenElseZero(kept, hn::Mul(arc.cosine, twice));
         region.solid_angle = hn::Sub(region.solid_angle, turning);
-        region.outline = hn::Add(region.outline, hn::IfThenElseZero(kept, hn::Mul(arc_sine, twice)));
+        region.perimeter = hn::Add(region.perimeter, hn::IfThenElseZero(kept, hn::Mul(arc_sine, twice)));
         const auto sine_of_half = hn::Mul(rise, inverse_root(hn::MulAdd(rise, rise, hn::Mul(run, run))));
         const auto along = hn::IfThenElseZero(kept, hn::Mul(hn::Mul(arc_sine, arc_sine), half));
         const auto radial = hn::IfThenElseZero(kept, hn::Mul(hn::Mul(arc_sine, arc.cosine), sine_of_half));
@@ -257,7 +263,6 @@ class Outline {
 
     /// The arcs of the horizon between the crossings, any that leaves with any that enters: only the sum over all
     /// counts. The crossings of a planar polygon lie on one line, so they are less than half a turn from each other.
-    /// One as the fan's reference lets these arcs add nothing to it.
     HWY_INLINE void add_horizon(RegionLanes<R>& region) {
         const D d;
         const auto side = get<R>(lanes_.side);
@@ -283,13 +288,18 @@ class Outline {
         const auto sine = hn::MulSub(from.x, to.y, hn::Mul(from.y, to.x));
         const auto cosine = hn::MulAdd(from.x, to.x, hn::Mul(from.y, to.y));
         const auto half = all(d, 0.5);
+        const SineCosine<R> turn = halved(sine, cosine);
+        const auto zero = hn::Zero(d);
+        const Vectors3<R> middle = {hn::MulSub(from.x, turn.cosine, hn::Mul(from.y, turn.sine)),
+                                    hn::MulAdd(from.y, turn.cosine, hn::Mul(from.x, turn.sine)), zero};
+        add_triangle(exists, middle, {zero, zero, all(d, 1)}, turn.sine, turn.cosine);
         if constexpr (kWarped) {
-            const auto angle = hn::IfThenElseZero(exists, warped_angle(from, sine, cosine));
+            const auto angle = hn::IfThenElseZero(exists, warped_angle(from, turn));
             const Vectors3<R> warped_from = warped(from);
             const Vectors3<R> warped_to = warped(to);
             put_horizon(out, warped_from, warped_to, angle);
             region.solid_angle = hn::NegMulAdd(warp_->height, angle, region.solid_angle);
-            region.outline = hn::MulAdd(warp_->sine, angle, region.outline);
+            region.perimeter = hn::MulAdd(warp_->sine, angle, region.perimeter);
             const auto slant = hn::IfThenElseZero(exists, hn::Mul(half, hn::Mul(warp_->height, warp_->sine)));
             const Vectors3<R> step = warped_to - warped_from;
             region.first_moment.x = hn::NegMulAdd(slant, step.y, region.first_moment.x);
@@ -299,7 +309,7 @@ class Outline {
         } else {
             const auto angle = hn::IfThenElseZero(exists, arctangent(d, sine, cosine));
             put_horizon(out, from, to, angle);
-            region.outline = hn::Add(region.outline, angle);
+            region.perimeter = hn::Add(region.perimeter, angle);
             region.first_moment.z = hn::MulAdd(half, angle, region.first_moment.z);
         }
     }
@@ -333,11 +343,10 @@ class Outline {
         const auto over = hn::Div(all(d, 1), hn::MulAdd(aberration(), u.x, all(d, 1)));
         return {hn::Mul(hn::Add(u.x, aberration()), over), hn::Mul(hn::Mul(contraction(), u.y), over), hn::Zero(d)};
     }
-    /// Of the image of the arc that begins at `from` and has an angle, less than half a turn, of this sine and cosine.
-    HWY_INLINE V<D> warped_angle(const Vectors3<R>& from, V<D> sine, V<D> cosine) const {
+    /// Of the image of the arc that begins at `from`. turn: half of its angle, which is less than half a turn.
+    HWY_INLINE V<D> warped_angle(const Vectors3<R>& from, const SineCosine<R>& turn) const {
         const D d;
         const SineCosine<R> start = halved(from.y, from.x);
-        const SineCosine<R> turn = halved(sine, cosine);
         const auto end_cosine = hn::MulSub(start.cosine, turn.cosine, hn::Mul(start.sine, turn.sine));
         const auto end_sine = hn::MulAdd(start.sine, turn.cosine, hn::Mul(start.cosine, turn.sine));
         const auto narrowing = hn::Div(contraction(), hn::Add(all(d, 1), aberration()));
