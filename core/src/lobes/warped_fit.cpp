@@ -63,7 +63,7 @@ double WarpedFit::shading_error(double cos_theta_o, int order) const {
 }
 
 double WarpedFit::number(double cos_theta_o, std::size_t column) const {
-    float value;
+    float value = 0;
     table_->look_up(cos_theta_o, column, {&value, 1});
     return value;
 }

@@ -29,7 +29,7 @@ std::vector<Vec3d> clipped_by_horizon(std::span<const Vec3d> v) {
         }
         if ((a.z >= 0) != (b.z >= 0) && a.z != 0 && b.z != 0) {
             const double t = a.z / (a.z - b.z);
-            kept.push_back({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), 0.0});
+            kept.emplace_back(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), 0.0);
         }
     }
     return kept;
