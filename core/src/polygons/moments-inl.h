@@ -261,7 +261,7 @@ class ArcMoments {
     }
 
     int order_;
-    hwy::AlignedFreeUniquePtr<R[]> block_;
+    hwy::AlignedFreeUniquePtr<R[]> block_;  // NOLINT(modernize-avoid-c-arrays): as Highway names it
     std::array<Point, kMaxGaussPoints> points_;
     std::size_t count_ = 0;
 };

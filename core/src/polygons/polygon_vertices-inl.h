@@ -124,7 +124,7 @@ class VertexLanes {
     }
 
     PolygonArray polygons_;
-    hwy::AlignedFreeUniquePtr<double[]> vertices_;
+    hwy::AlignedFreeUniquePtr<double[]> vertices_;  // NOLINT(modernize-avoid-c-arrays): as Highway names it
 };
 
 }  // namespace shlight::HWY_NAMESPACE
