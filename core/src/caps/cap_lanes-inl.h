@@ -52,6 +52,11 @@ struct WarpLanes {
     V<D> horizon_height, horizon_sine;
 };
 
+/// Those of as many lobes as there are lanes for float.
+struct WarpPair {
+    WarpLanes<Doubles> low, high;
+};
+
 /// 1 - x for x = cos α, without cancellation.
 template <class D>
 HWY_INLINE V<D> one_minus(D d, V<D> cosine, V<D> sine) {

@@ -22,6 +22,18 @@
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
+/// Centres and radii.
+template <class D>
+struct SphereLanes {
+    V<D> x, y, z, r;
+};
+
+/// Whether spheres cross the plane z = 0, a bit for each; 16 bits higher, whether they are below it.
+template <class D>
+HWY_INLINE std::uint32_t sides_of(D d, const SphereLanes<D>& s) {
+    return bits_of(d, hn::Lt(hn::Abs(s.z), s.r)) | bits_of(d, hn::Le(s.z, hn::Neg(s.r))) << 16;
+}
+
 /// Spheres by index.
 template <class T>
 struct SphereSource {
@@ -30,50 +42,42 @@ struct SphereSource {
     const Vec3<T>* centers;
     const T* radii;
 
-    HWY_INLINE CircleLanes<Lanes<T>> load(const Chosen<T>& chosen) const {
+    HWY_INLINE SphereLanes<Lanes<T>> spheres(const Chosen<T>& chosen) const {
         const Lanes<T> d;
         constexpr std::size_t kLanes = kLaneCount<Lanes<T>>;
-        V<Lanes<T>> x, y, z, r;
+        SphereLanes<Lanes<T>> s;
         if (are_in_a_row(chosen)) {
-            hn::LoadInterleaved3(d, &centers[chosen.front()].x, x, y, z);
-            r = hn::LoadU(d, radii + chosen.front());
-        } else {
-            alignas(64) std::array<T, 3 * kLanes> c;
-            alignas(64) std::array<T, kLanes> own_radii;
-            for (std::size_t lane = 0; lane < kLanes; ++lane) {
-                const Vec3<T>& center = centers[chosen[lane]];
-                c[3 * lane] = center.x;
-                c[3 * lane + 1] = center.y;
-                c[3 * lane + 2] = center.z;
-                own_radii[lane] = radii[chosen[lane]];
-            }
-            hn::LoadInterleaved3(d, c.data(), x, y, z);
-            r = hn::Load(d, own_radii.data());
+            hn::LoadInterleaved3(d, &centers[chosen.front()].x, s.x, s.y, s.z);
+            s.r = hn::LoadU(d, radii + chosen.front());
+            return s;
         }
-        return circle_of_sphere_in_lanes(d, x, y, z, r);
+        alignas(64) std::array<T, 3 * kLanes> c;
+        alignas(64) std::array<T, kLanes> own_radii;
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const Vec3<T>& center = centers[chosen[lane]];
+            c[3 * lane] = center.x;
+            c[3 * lane + 1] = center.y;
+            c[3 * lane + 2] = center.z;
+            own_radii[lane] = radii[chosen[lane]];
+        }
+        hn::LoadInterleaved3(d, c.data(), s.x, s.y, s.z);
+        s.r = hn::Load(d, own_radii.data());
+        return s;
     }
 
-    /// Whether neighbouring spheres cross the plane z = 0, a bit for each; 16 bits higher, whether they are below it.
+    HWY_INLINE CircleLanes<Lanes<T>> load(const Chosen<T>& chosen) const {
+        const auto s = spheres(chosen);
+        return circle_of_sphere_in_lanes(Lanes<T>(), s.x, s.y, s.z, s.r);
+    }
+
+    /// Of neighbours, as sides_of.
     HWY_INLINE std::uint32_t sides(std::size_t first, std::size_t count) const {
-        const Lanes<T> d;
-        V<Lanes<T>> x, y, z, r;
-        if (count == kLaneCount<Lanes<T>>) {
-            hn::LoadInterleaved3(d, &centers[first].x, x, y, z);
-            r = hn::LoadU(d, radii + first);
-        } else {
-            std::array<T, kLaneCount<Lanes<T>>> heights, own_radii;
-            for (std::size_t lane = 0; lane < heights.size(); ++lane) {
-                const std::size_t i = first + std::min(lane, count - 1);
-                heights[lane] = centers[i].z;
-                own_radii[lane] = radii[i];
-            }
-            z = hn::LoadU(d, heights.data());
-            r = hn::LoadU(d, own_radii.data());
+        Chosen<T> chosen;
+        for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
+            chosen[lane] = static_cast<std::uint32_t>(first + std::min(lane, count - 1));
         }
-        const std::uint32_t crossing = bits_of(d, hn::Lt(hn::Abs(z), r));
-        const std::uint32_t hidden = bits_of(d, hn::Le(z, hn::Neg(r)));
         const std::uint32_t all_lanes = (1U << count) - 1;
-        return (crossing & all_lanes) | (hidden & all_lanes) << 16;
+        return sides_of(Lanes<T>(), spheres(chosen)) & (all_lanes | all_lanes << 16);
     }
 };
 

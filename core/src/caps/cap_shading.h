@@ -24,6 +24,12 @@ struct CircleOutput {
     double *cosine, *sine;
 };
 
+/// Spheres in the shading frame.
+struct SphereArrays {
+    const Vec3<float>* centers;
+    const float* radii;
+};
+
 /// circle_of_sphere of many spheres; precondition 0 < radius ≤ |center|, all finite.
 void circles_of_spheres(std::span<const Vec3<float>> centers, const float* radii, const CircleOutput& circles);
 void circles_of_spheres(std::span<const Vec3<double>> centers, const double* radii, const CircleOutput& circles);
@@ -32,5 +38,9 @@ void circles_of_spheres(std::span<const Vec3<double>> centers, const double* rad
 /// horizon and seen through the view's warp. Lights that need the same are put together: hidden, crossing, and others.
 void shade_caps(const CircleArrays& circles, std::span<const std::uint32_t> circle_of, const LobeArrays& lobe,
                 std::span<const std::uint32_t> view_of, std::span<float> values);
+
+/// The same for sphere i, whose circle no one else needs, at view view_of[i].
+void shade_caps(const SphereArrays& spheres, const LobeArrays& lobe, std::span<const std::uint32_t> view_of,
+                std::span<float> values);
 
 }  // namespace shlight

@@ -12,7 +12,7 @@
 
 #include <numbers>
 
-#include "lobes/view_lanes-inl.h"
+#include "simd/gather-inl.h"
 #include "shlight/lobe_shape.h"
 #include "simd/lanes-inl.h"
 

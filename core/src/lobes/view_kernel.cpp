@@ -14,7 +14,7 @@
 
 #include "caps/cap_lanes-inl.h"
 #include "lobes/fit_table.h"
-#include "lobes/view_lanes-inl.h"
+#include "simd/gather-inl.h"
 #include "shlight/warped_fit.h"
 #include "simd/lanes-inl.h"
 
@@ -119,11 +119,6 @@ HWY_INLINE WarpLanes<Doubles> warp_in_lanes(V<Doubles> sine, V<Doubles> cosine, 
             hn::Neg(hn::Mul(speed, horizon_z)),
             hn::Mul(reach, over_length)};
 }
-
-/// The warps of a vector's views.
-struct WarpPair {
-    WarpLanes<Doubles> low, high;
-};
 
 /// sine, cosine: of the fitted view.
 HWY_INLINE WarpPair warps_in_lanes(double alpha, V<Floats> log_cosine, const DoublePair& sine,

@@ -13,7 +13,7 @@
 #include <numbers>
 
 #include "lobes/lobe_lanes-inl.h"
-#include "lobes/view_lanes-inl.h"
+#include "simd/gather-inl.h"
 #include "simd/lanes-inl.h"
 
 #ifndef SHLIGHT_KERNELS_CAP_RULES

@@ -37,11 +37,6 @@ void without_ringing(std::span<float> values) {
     std::transform(values.begin(), values.end(), values.begin(), [](float value) { return std::max(0.0F, value); });
 }
 
-/// By harmonics of one order, all of them.
-bool shades_alike(const LobeViews& lobe) {
-    return !lobe.chooses() && !is_mirror(lobe.shape()) && !lobe.any_black();
-}
-
 }  // namespace
 
 void LobeBatch::shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of,
@@ -54,12 +49,26 @@ void LobeBatch::shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const s
     shade_any(lobe, polygons, view_of, with_statistics);
 }
 
+void LobeBatch::shade(LobeViews& lobe, const SphereArrays& spheres, std::span<const std::uint32_t> view_of,
+                      bool with_statistics) {
+    begin(lobe, view_of.size());
+    shade_alike(lobe, spheres, view_of, with_statistics);
+}
+
+bool LobeBatch::shades_alike(const LobeViews& lobe) {
+    return !lobe.chooses() && !is_mirror(lobe.shape()) && !lobe.any_black();
+}
+
+void LobeBatch::begin(const LobeViews& lobe, std::size_t count) {
+    values_.resize(count);
+    efforts_.resize(count);
+    same_lobe_ = shades_alike(lobe);
+}
+
 template <class Lights>
 void LobeBatch::shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of,
                           bool with_statistics) {
-    values_.resize(view_of.size());
-    efforts_.resize(view_of.size());
-    same_lobe_ = shades_alike(lobe);
+    begin(lobe, view_of.size());
     if (view_of.empty()) {
         return;
     }
@@ -71,7 +80,7 @@ void LobeBatch::shade_any(LobeViews& lobe, Lights& lights, std::span<const std::
 }
 
 template <class Lights>
-void LobeBatch::shade_alike(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of,
+void LobeBatch::shade_alike(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of,
                             bool with_statistics) {
     const std::size_t count = view_of.size();
     if (const std::size_t known = all_.size(); known < count) {
@@ -141,6 +150,10 @@ bool LobeBatch::within_tolerance(const LobeViews& lobe, std::size_t light, std::
 
 bool LobeBatch::lies_below(const CircleArrays& circles, std::size_t light) {
     return circles.z[light] <= -circles.sine[light];
+}
+
+bool LobeBatch::lies_below(const SphereArrays& spheres, std::size_t light) {
+    return spheres.centers[light].z <= -spheres.radii[light];
 }
 
 bool LobeBatch::lies_below(const PolygonBatch& polygons, std::size_t light) {
@@ -240,6 +253,10 @@ void LobeBatch::mirror(const LobeViews& lobe, Lights& lights) {
 
 void LobeBatch::by_harmonics(LobeViews& lobe, const CircleArrays& circles, int order) {
     shade_caps(circles, items_, lobe.arrays(order, item_views_), item_views_, item_values_);
+}
+
+void LobeBatch::by_harmonics(LobeViews& lobe, const SphereArrays& spheres, int order) {
+    shade_caps(spheres, lobe.arrays(order, item_views_), item_views_, item_values_);
 }
 
 void LobeBatch::by_harmonics(LobeViews& lobe, const PolygonBatch& polygons, int order) {

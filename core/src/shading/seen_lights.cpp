@@ -87,12 +87,33 @@ void SeenLights::add_disk(const Ellipse<double>& disk, std::uint32_t number) {
     }
 }
 
-template <class T>
-void SeenLights::set_spheres(std::span<const Vec3<T>> centers, const T* radii) {
+void SeenLights::set_spheres(std::span<const Vec3f> centers, const float* radii) {
     clear();
     given_ = Given::spheres;
+    float_centers_ = centers;
+    float_radii_ = radii;
+}
+
+void SeenLights::set_spheres(std::span<const Vec3d> centers, const double* radii) {
+    clear();
+    given_ = Given::spheres;
+    float_centers_ = {};
     circles_.resize(centers.size());
     circles_of_spheres(centers, radii, circles_.output());
+}
+
+void SeenLights::shade_spheres(LobeViews& lobe, std::span<const std::uint32_t> view_of, bool with_statistics,
+                               LobeBatch& batch) {
+    if (!float_centers_.empty() && LobeBatch::shades_alike(lobe)) {
+        batch.shade(lobe, SphereArrays{float_centers_.data(), float_radii_}, view_of, with_statistics);
+        return;
+    }
+    if (!float_centers_.empty()) {
+        circles_.resize(float_centers_.size());
+        circles_of_spheres(float_centers_, float_radii_, circles_.output());
+        float_centers_ = {};
+    }
+    batch.shade(lobe, circles_.arrays(), view_of, with_statistics);
 }
 
 template <class T>
@@ -175,8 +196,6 @@ std::span<const std::uint32_t> SeenLights::views(std::span<const std::uint32_t> 
     return views_;
 }
 
-template void SeenLights::set_spheres(std::span<const Vec3<float>>, const float*);
-template void SeenLights::set_spheres(std::span<const Vec3<double>>, const double*);
 template void SeenLights::set_polygons(std::span<const Vec3<float>>, std::size_t);
 template void SeenLights::set_polygons(std::span<const Vec3<double>>, std::size_t);
 

@@ -29,9 +29,10 @@ class SeenLights {
     void look(const Light& light, const ShadingFrame& frame, double error, double tolerance, std::uint32_t number);
     /// A disk in the shading frame; what lies below the horizon or is seen edge-on is left out.
     void add_disk(const Ellipse<double>& disk, std::uint32_t number);
-    /// In the place of all others: spheres in the shading frame, numbered 0, 1, 2 …
-    template <class T>
-    void set_spheres(std::span<const Vec3<T>> centers, const T* radii);
+    /// In the place of all others: spheres in the shading frame, numbered 0, 1, 2 … Those of floats are kept by
+    /// reference.
+    void set_spheres(std::span<const Vec3f> centers, const float* radii);
+    void set_spheres(std::span<const Vec3d> centers, const double* radii);
     /// Likewise, planar polygons of so many vertices each. Throws as check_polygons does.
     template <class T>
     void set_polygons(std::span<const Vec3<T>> vertices, std::size_t vertex_count);
@@ -44,7 +45,7 @@ class SeenLights {
     void shade(LobeViews& lobe, std::span<const std::uint32_t> view_of, double tolerance, bool with_statistics,
                LobeBatch& batch, const Visit& visit) {
         if (given_ == Given::spheres) {
-            batch.shade(lobe, circles_.arrays(), view_of, with_statistics);
+            shade_spheres(lobe, view_of, with_statistics, batch);
             visit(std::span<const std::uint32_t>());
             return;
         }
@@ -78,6 +79,7 @@ class SeenLights {
     /// All lights of one kind that came at once.
     enum class Given { none, spheres, polygons };
 
+    void shade_spheres(LobeViews& lobe, std::span<const std::uint32_t> view_of, bool with_statistics, LobeBatch& batch);
     void look_at(const MeshLight& light, const ShadingFrame& frame, double tolerance, std::uint32_t number);
     /// The vertices from `first` on. filled_up: so that few sizes occur.
     void add_polygon(std::size_t first, std::uint32_t number, bool filled_up);
@@ -98,6 +100,8 @@ class SeenLights {
     std::vector<Vec3d> centers_;
     std::vector<double> radii_;
     CircleBatch circles_;
+    std::span<const Vec3f> float_centers_;  // of spheres whose circles are not found
+    const float* float_radii_ = nullptr;
 
     MeshView mesh_view_;
     std::vector<Vec3d> vertices_;

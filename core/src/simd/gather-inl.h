@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
 // From arrays into lanes: neighbours, by index, or one value for all. Included once per instruction set.
-#if defined(SHLIGHT_KERNELS_VIEW_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef SHLIGHT_KERNELS_VIEW_LANES_INL_H_
-#undef SHLIGHT_KERNELS_VIEW_LANES_INL_H_
+#if defined(SHLIGHT_KERNELS_GATHER_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SHLIGHT_KERNELS_GATHER_INL_H_
+#undef SHLIGHT_KERNELS_GATHER_INL_H_
 #else
-#define SHLIGHT_KERNELS_VIEW_LANES_INL_H_
+#define SHLIGHT_KERNELS_GATHER_INL_H_
 #endif
 
 #include <hwy/highway.h>
