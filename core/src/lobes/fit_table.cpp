@@ -24,12 +24,12 @@ double warped_view_cosine(int view) {
 }
 
 FitTable::FitTable(std::span<const int> orders)
-    : orders_(orders.begin(), orders.end()), row_size_(kShadingErrors + orders.size()) {
-    for (const int order : orders_) {
+    : orders_(orders.begin(), orders.end()), row_size_(kHeadWidth) {
+    for (std::size_t i = 0; i < orders_.size(); ++i) {
         first_.push_back(row_size_);
-        row_size_ += static_cast<std::size_t>(cosine_count(order));
+        row_size_ += width(i);
     }
-    values_.resize((kWarpedViews + 1) * row_size_ + AlignedFloats::kLine);
+    values_.grow((kWarpedViews + 1) * row_size_);
 }
 
 std::size_t FitTable::which(int order) const {
@@ -48,7 +48,7 @@ void FitTable::look_up(double cos_theta_o, std::size_t column, std::span<float> 
     constexpr std::uint32_t kFirst = 0;
     AlignedFloats padded;
     padded.grow(out.size());
-    interpolate_views(values_.data() + column, row_size_, AlignedFloats::padded(out.size()), row.data(), weights.data(),
+    interpolate_views(values().data() + column, row_size_, AlignedFloats::padded(out.size()), row.data(), weights.data(),
                       {&kFirst, 1}, padded.data(), 0);
     std::copy_n(padded.data(), out.size(), out.begin());
 }

@@ -20,8 +20,8 @@ inline constexpr std::array<int, 6> kWarpedOrders = {3, 4, 6, 8, 12, 16};
 inline constexpr int kWarpedViews = 49;
 double warped_view_cosine(int view);
 
-/// A row for each view, for view_kernel.h: albedo, the shading error of each order, the cosine terms of each order. All
-/// of it is interpolated, between views and between tables.
+/// A row for each view, for view_kernel.h: albedo, the shading error of each order, the cosine terms of each order; the
+/// errors' head and each order's terms begin on a cache line. All of it is interpolated, between views and tables.
 class FitTable {
   public:
     /// Of zeros.
@@ -43,11 +43,11 @@ class FitTable {
 
     /// Row -1 is the view beyond the normal, where terms of odd degree change sign.
     std::span<float> row(int view) {
-        return std::span(values_).subspan(static_cast<std::size_t>(view + 1) * row_size_, row_size_);
+        return values().subspan(static_cast<std::size_t>(view + 1) * row_size_, row_size_);
     }
-    /// All rows, from -1 on, and padding.
-    std::span<const float> values() const { return values_; }
-    std::span<float> values() { return values_; }
+    /// All rows, from -1 on.
+    std::span<const float> values() const { return {values_.data(), (kWarpedViews + 1) * row_size_}; }
+    std::span<float> values() { return {values_.data(), (kWarpedViews + 1) * row_size_}; }
 
     /// Of one view: `width` numbers from a column on.
     void look_up(double cos_theta_o, std::size_t column, std::span<float> out) const;
@@ -56,7 +56,7 @@ class FitTable {
     std::vector<int> orders_;
     std::vector<std::size_t> first_;  // column of each order
     std::size_t row_size_;
-    std::vector<float> values_;
+    AlignedFloats values_;
 };
 
 /// Fits one lobe at one view, into a row.

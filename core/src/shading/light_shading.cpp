@@ -20,7 +20,7 @@ namespace shlight {
 namespace {
 
 /// Lights that are prepared and sorted at a time: enough for long lists of each kind, few enough for the cache.
-constexpr std::size_t kLightsPerChunk = 512;
+constexpr std::size_t kLightsPerChunk = 1024;
 
 void check_settings(const ShadeSettings& settings) {
     if (settings.order < 0 || settings.order > kMaxOrder) {
