@@ -73,8 +73,8 @@ HWY_INLINE WarpPair warps_of(const WarpArrays& warps, const Numbers& numbers) {
     const DoublePair sine = numbers.pair(warps.horizon_sine);
     return {{sin_tilt.low, cos_tilt.low, speed.low, one_minus_speed.low, gamma.low, horizon_x.low, horizon_z.low,
              height.low, sine.low},
-            {sin_tilt.high, cos_tilt.high, speed.high, one_minus_speed.high, gamma.high, horizon_x.high,
-             horizon_z.high, height.high, sine.high}};
+            {sin_tilt.high, cos_tilt.high, speed.high, one_minus_speed.high, gamma.high, horizon_x.high, horizon_z.high,
+             height.high, sine.high}};
 }
 
 /// Circles from memory, by number.
@@ -163,8 +163,7 @@ class SeenCaps {
     static HWY_INLINE std::uint32_t sides(const Loaded& loaded) { return Circles::sides(loaded); }
 
     template <bool kCrossing>
-    HWY_INLINE void prepare(const Loaded& loaded, const Lights& chosen, CapLanes<Floats>& cap,
-                            TermLanes& terms) const {
+    HWY_INLINE void prepare(const Loaded& loaded, const Lights& chosen, CapLanes<Floats>& cap, TermLanes& terms) const {
         if constexpr (kPlane) {
             const auto circle = Circles::narrow(loaded);
             cap = kCrossing ? cap_across_plane(Floats(), circle) : cap_off_plane(Floats(), circle);

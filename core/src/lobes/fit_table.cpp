@@ -23,8 +23,7 @@ double warped_view_cosine(int view) {
     return 1 / std::cosh(kFarthestView * view / (kWarpedViews - 1));
 }
 
-FitTable::FitTable(std::span<const int> orders)
-    : orders_(orders.begin(), orders.end()), row_size_(kHeadWidth) {
+FitTable::FitTable(std::span<const int> orders) : orders_(orders.begin(), orders.end()), row_size_(kHeadWidth) {
     for (std::size_t i = 0; i < orders_.size(); ++i) {
         first_.push_back(row_size_);
         row_size_ += width(i);
@@ -48,8 +47,8 @@ void FitTable::look_up(double cos_theta_o, std::size_t column, std::span<float> 
     constexpr std::uint32_t kFirst = 0;
     AlignedFloats padded;
     padded.grow(out.size());
-    interpolate_views(values().data() + column, row_size_, AlignedFloats::padded(out.size()), row.data(), weights.data(),
-                      {&kFirst, 1}, padded.data(), 0);
+    interpolate_views(values().data() + column, row_size_, AlignedFloats::padded(out.size()), row.data(),
+                      weights.data(), {&kFirst, 1}, padded.data(), 0);
     std::copy_n(padded.data(), out.size(), out.begin());
 }
 

@@ -12,8 +12,8 @@
 
 #include <numbers>
 
-#include "simd/gather-inl.h"
 #include "shlight/lobe_shape.h"
+#include "simd/gather-inl.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -14,8 +14,8 @@
 
 #include "caps/cap_lanes-inl.h"
 #include "lobes/fit_table.h"
-#include "simd/gather-inl.h"
 #include "shlight/warped_fit.h"
+#include "simd/gather-inl.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -56,7 +56,8 @@ class LobeBatch {
     void shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of, bool with_statistics);
     /// All by harmonics of the only order.
     template <class Lights>
-    void shade_alike(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of, bool with_statistics);
+    void shade_alike(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of,
+                     bool with_statistics);
     template <class Lights>
     void shade_sorted(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of);
 
