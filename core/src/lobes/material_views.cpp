@@ -10,6 +10,14 @@
 #include "lobes/view_kernel.h"
 
 namespace shlight {
+namespace {
+
+/// Tolerances of a light of unit strength ÷ albedo: below the least rounding counts, and beyond the most no method's
+/// estimate of its error holds.
+constexpr double kLeastTolerance = 1e-6;
+constexpr double kMostTolerance = 0.1;
+
+}  // namespace
 
 void ViewPositions::assign(std::span<const double> cos_theta_o, bool tabulated) {
     size_ = cos_theta_o.size();
@@ -137,8 +145,8 @@ void LobeViews::interpolate_terms(std::size_t which, std::span<const std::uint32
     }
     missing_.clear();
     for (const std::uint32_t view : used) {
-        if (has_terms_[view] == 0) {
-            has_terms_[view] = 1;
+        if (has_terms_[view] != which + 1) {
+            has_terms_[view] = static_cast<std::uint8_t>(which + 1);
             missing_.push_back(view);
         }
     }
@@ -205,6 +213,25 @@ void MaterialViews::find_allowances(std::size_t lobe) {
             }
         }
         allowances_[view] = allowance;
+    }
+}
+
+void MaterialViews::allow(double error, const Rgb& strength) {
+    for (std::size_t i = 0; i < lobe_count_; ++i) {
+        find_allowances(i, error, strength);
+        lobes_[i].choose_orders(1, allowances_);
+    }
+}
+
+void MaterialViews::find_allowances(std::size_t lobe, double error, const Rgb& strength) {
+    const LobeViews& own = lobes_[lobe];
+    const Rgb magnitude = glm::abs(strength);
+    for (std::size_t view = 0; view < positions_.size(); ++view) {
+        const Rgb light = magnitude * own.weight(view) * own.albedo_[view];
+        const double most = std::max({light.x, light.y, light.z});
+        allowances_[view] = own.weight(view) == Rgb(0)
+                                ? std::numeric_limits<float>::infinity()
+                                : static_cast<float>(std::clamp(error / most, kLeastTolerance, kMostTolerance));
     }
 }
 

@@ -63,7 +63,7 @@ class LobeViews {
     int order(std::size_t view) const { return order_[view]; }
     /// Whether the order keeps within the tolerance; only if that was to be judged.
     bool within_tolerance(std::size_t view) const { return within_tolerance_[view] != 0; }
-    /// Of the radiance ÷ albedo; only if the lobe chooses.
+    /// Of the radiance ÷ albedo of a light of unit strength; only if the lobe chooses.
     const float* tolerances() const { return tolerance_.data(); }
     /// Of the radiance.
     double absolute_tolerance(std::size_t view) const { return double{tolerance_[view]} * albedo_[view]; }
@@ -96,7 +96,7 @@ class LobeViews {
     std::vector<double> warps_;  // the arrays of WarpOutput
     std::size_t stride_ = 0;     // of terms_
     AlignedFloats terms_;
-    std::vector<std::uint8_t> has_terms_;  // of each view
+    std::vector<std::uint8_t> has_terms_;  // of each view: for which order, counted from 1
     std::vector<std::uint32_t> missing_;
 };
 
@@ -107,12 +107,18 @@ class MaterialViews {
     void assign(const MaterialLobes& material, std::span<const double> cos_theta_o, const LobeWeights& weights,
                 bool judged);
 
+    /// Chooses anew, so that each lobe's radiance under a light of this strength is wrong by no more than `error`.
+    /// Precondition: auto_order() of the material.
+    void allow(double error, const Rgb& strength);
+
     std::size_t lobe_count() const { return lobe_count_; }
     LobeViews& lobe(std::size_t index) { return lobes_[index]; }
     const ViewPositions& positions() const { return positions_; }
 
   private:
     void find_allowances(std::size_t lobe);
+    /// The same where an error is allowed whatever the albedo.
+    void find_allowances(std::size_t lobe, double error, const Rgb& strength);
 
     ViewPositions positions_;
     std::size_t lobe_count_ = 0;

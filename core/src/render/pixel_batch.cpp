@@ -99,6 +99,26 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
     StageClock clock(report_);
     trace_camera_rays(pixels, samples);
     clock.end(RenderStage::camera_rays);
+    add_reflected(pixels, samples);
+    StageClock last(report_);
+    add_up(samples, sums);
+    last.end(RenderStage::pixels);
+}
+
+double PixelBatch::reflected(std::span<const Pixel> pixels, std::uint32_t shadow_rays) {
+    const SampleRange first = {0, 1, shadow_rays};
+    trace_camera_rays(pixels, first);
+    std::fill(hits_.radiance.begin(), hits_.radiance.end(), Rgb(0));
+    add_reflected(pixels, first);
+    double sum = 0;
+    for (const Rgb& radiance : hits_.radiance) {
+        sum += glm::dot(glm::abs(radiance), Rgb(1.0F / 3));
+    }
+    return sum / static_cast<double>(pixels.size());
+}
+
+void PixelBatch::add_reflected(std::span<const Pixel> pixels, const SampleRange& samples) {
+    StageClock clock(report_);
     points_.assign(hits_, picture_->materials, picture_->lights, picture_->deltas, picture_->settings.tolerance);
     clock.end(RenderStage::views);
     sort_lights();
@@ -108,9 +128,6 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
     if (picture_->environment) {
         add_environment(pixels, samples);
     }
-    StageClock last(report_);
-    add_up(samples, sums);
-    last.end(RenderStage::pixels);
 }
 
 RenderReport PixelBatch::report() const {
@@ -211,7 +228,7 @@ void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& sa
     const std::size_t most = std::max(kValues / values, kLeastLights);
     for (std::size_t first = 0; first < lights.size(); first += most) {
         const auto block = lights.subspan(first, std::min(most, lights.size() - first));
-        unshadowed_.compute(points_, picture_->materials, block, report_);
+        unshadowed_.compute(points_, picture_->materials, block, picture_->light_error, report_);
         clock.end(RenderStage::light);
         shadowed_.expect(block, unshadowed_);
         for (std::size_t i = 0; i < block.size(); ++i) {

@@ -67,6 +67,7 @@ struct Picture {
     DeltaLights deltas;
     FarLights far;
     std::optional<EnvironmentShading> environment;  ///< none: black
+    double light_error = 0;                         ///< see DirectLight::compute
 };
 
 /// Renders one batch after another; one per thread.
@@ -76,12 +77,16 @@ class PixelBatch {
 
     /// Adds these rays of each pixel to its sums.
     void add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums);
+    /// Mean brightness of what surfaces reflect in these pixels, by their first camera ray.
+    double reflected(std::span<const Pixel> pixels, std::uint32_t shadow_rays);
     RenderReport report() const;
 
   private:
     void trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples);
     void add_hit(const Ray& ray, const RayHit& hit, std::uint32_t sample);
     void add_miss(const Ray& ray, std::uint32_t pixel, std::uint32_t sample);
+    /// To the radiance of the hits.
+    void add_reflected(std::span<const Pixel> pixels, const SampleRange& samples);
     /// Sums the dimmest lights up; the others are shaded one by one.
     void sort_lights();
     void add_deltas(std::span<const Pixel> pixels, const SampleRange& samples);

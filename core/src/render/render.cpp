@@ -39,6 +39,12 @@ constexpr int kMostRounds = 8;
 /// peak may then be among none of them, is far too large where the peak is hidden.
 constexpr std::uint32_t kLeastShadowRays = 8;
 
+/// The tolerance is of the light at a point, or of this share of the picture's mean. The mean is taken from one camera
+/// ray in every kPilotStep'th pixel of a row or column, or every so many that there are about kMostPilotPixels of them.
+constexpr double kShareOfMean = 0.3;
+constexpr int kPilotStep = 8;
+constexpr int kMostPilotPixels = 16;
+
 /// The share of progress that is left to all later passes.
 constexpr double kLaterShare = 0.4;
 
@@ -102,6 +108,21 @@ int most_level(const RenderSettings& settings) {
 std::vector<glm::dvec2> pixel_points(const RenderSettings& settings) {
     const std::uint32_t base = base_samples(settings);
     return is_adaptive(settings) ? nested_points(base << (2 * most_level(settings))) : hammersley(base);
+}
+
+/// How wrong a pixel may be by one light. The errors of many lights have no common sign, so that those of n add up to
+/// √n of them.
+double light_error(const Picture& picture, std::uint32_t shadow_rays) {
+    std::vector<Pixel> grid;
+    const int step = std::max({kPilotStep, picture.width / kMostPilotPixels, picture.height / kMostPilotPixels});
+    for (int row = std::min(step, picture.height) / 2; row < picture.height; row += step) {
+        for (int column = std::min(step, picture.width) / 2; column < picture.width; column += step) {
+            grid.push_back({column, row});
+        }
+    }
+    const double sum = kShareOfMean * PixelBatch(picture).reflected(grid, shadow_rays);
+    const double count = static_cast<double>(std::max<std::size_t>(picture.lights.size(), 1));
+    return picture.settings.tolerance * sum / std::sqrt(count);
 }
 
 /// One render: the first pass over all pixels, and passes over fewer of them.
@@ -238,7 +259,9 @@ RenderReport render(const CompiledScene& scene, const Camera& camera, int width,
     check_render(settings, width, height);
     check_size("image", image.size(), 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     const auto start = std::chrono::steady_clock::now();
-    const Picture picture(scene, camera, width, height, settings, pixel_points(settings));
+    Picture picture(scene, camera, width, height, settings, pixel_points(settings));
+    picture.light_error =
+        light_error(picture, std::min(static_cast<std::uint32_t>(settings.shadow_rays), kLeastShadowRays));
     Passes passes(picture, image, progress);
     passes.run();
     RenderReport report = passes.report();

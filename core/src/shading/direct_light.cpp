@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace shlight {
 namespace {
@@ -38,7 +39,8 @@ bool reflects(const LightTraits& traits, const LobeShape& shape) {
 }  // namespace
 
 void DirectLight::compute(const ShadingPoints& points, std::span<const MaterialLobes> materials,
-                          std::span<const Light* const> lights, RenderReport& report) {
+                          std::span<const Light* const> lights, double allowed_error, RenderReport& report) {
+    allowed_error_ = allowed_error;
     point_count_ = points.size();
     values_.assign(lights.size() * lobe_stride_ * point_count_, 0.0F);
     strengths_.clear();
@@ -83,7 +85,12 @@ void DirectLight::shade(const ShadingPoints& points, std::span<const std::uint32
     if (views_.lobe_count() == 0) {
         return;
     }
+    std::optional<Rgb> allowed_for;
     for (std::size_t i = 0; i < lights.size(); ++i) {
+        if (allowed_error_ > 0 && material.auto_order() && allowed_for != strengths_[i]) {
+            allowed_for = strengths_[i];
+            views_.allow(allowed_error_, strengths_[i]);
+        }
         integrate(points, some, *lights[i], i, report);
     }
 }
@@ -163,7 +170,7 @@ void DirectLight::apply_profile(std::size_t lobe, std::size_t view, const Shadin
     const LobeViews& views = views_.lobe(lobe);
     profile_.reset(light, points.frame[point]);
     // A small light's radiance keeps within the tolerance whatever its profile, but a spot's rim should look right.
-    const double tolerance = std::min(views.absolute_tolerance(view) / double{value}, double{views.tolerances()[view]});
+    const double tolerance = std::min(views.absolute_tolerance(view) / double{value}, tolerance_);
     const double mean = profile_.mean(views.shape(), points.cos_theta_o[point], tolerance * profile_.range().high);
     value = static_cast<float>(value * mean);
 }

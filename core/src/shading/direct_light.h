@@ -35,9 +35,10 @@ class DirectLight {
   public:
     explicit DirectLight(std::size_t lobe_stride) : lobe_stride_(lobe_stride) {}
 
-    /// Adds to the report what the points' hits take. Precondition: no light is_delta().
+    /// Adds to the report what the points' hits take. allowed_error: of the radiance of a lobe under one light; 0: the
+    /// materials' tolerance of that light's own radiance × albedo. Precondition: no light is_delta().
     void compute(const ShadingPoints& points, std::span<const MaterialLobes> materials,
-                 std::span<const Light* const> lights, RenderReport& report);
+                 std::span<const Light* const> lights, double allowed_error, RenderReport& report);
     LightRadiance light(std::size_t index) const;
 
   private:
@@ -73,7 +74,7 @@ class DirectLight {
     MaterialViews views_;  // of some points
     LobeBatch batch_;
     SeenLights seen_;
-    double tolerance_ = 0;
+    double tolerance_ = 0, allowed_error_ = 0;
     ProfileMean profile_;
     FaceMean face_mean_;
     std::vector<Rgb> met_;
