@@ -14,9 +14,9 @@ for page in ROOT.glob("docs/*.md"):
     for line in re.findall("^code: .*", page.read_text(encoding="utf-8"), re.MULTILINE):
         for part in line.removeprefix("code: ").split("; "):
             name, *things = re.findall("`([^`]+)`", part)
-            files = [f for f in (ROOT / "core" / "src" / name, ROOT / name) if f.is_file()]
-            text = files[0].read_text(encoding="utf-8") if files else ""
-            wrong += [] if files else [f"{page.name}: {name} is no file"]
-            wrong += [f"{page.name}: {t} is not in {name}" for t in things if files and not re.search(rf"\b{t}\b", text)]
+            file = next((f for f in (ROOT / "core" / "src" / name, ROOT / name) if f.is_file()), None)
+            text = file.read_text(encoding="utf-8") if file else ""
+            missing = [thing for thing in things if not re.search(rf"\b{thing}\b", text)]
+            wrong += [f"{page.name}: {name} has no {thing}, or is not there" for thing in missing]
 print(*wrong, sep="\n", end="\n" if wrong else "")
 sys.exit(1 if wrong else 0)
