@@ -24,7 +24,7 @@ void polygon(std::span<const Vec3<T>> vertices, int order, bool clip, const Opti
 
 Method exact() {
     return {"exact",
-            "docs/algorithms.md: ladder recurrences in the degree, O(n²)",
+            "docs/theory.md, 2 to 4: ladder recurrences in the degree, O(n²)",
             kMaxOrder,
             false,
             false,

@@ -34,7 +34,7 @@ void polygon(std::span<const Vec3<T>> vertices, int order, bool clip, const Opti
 
 Method reference() {
     return {"reference",
-            "docs/algorithms.md: quadrature over slices in 113 bits",
+            "docs/theory.md, 3.6: quadrature over slices in 113 bits",
             kMaxOrder,
             false,
             false,

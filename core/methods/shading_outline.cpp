@@ -38,7 +38,7 @@ std::unique_ptr<LobeIntegrator> make(const LobeShape& shape, double cos_theta_o,
 }  // namespace
 
 ShadingMethod outline() {
-    return {"outline", "docs/algorithms.md, Integrals along the outline", false, true, false, false, &make};
+    return {"outline", "docs/theory.md, 6.5", false, true, false, false, &make};
 }
 
 }  // namespace shlight::methods

@@ -29,7 +29,7 @@ std::unique_ptr<LobeIntegrator> make(const LobeShape& shape, double cos_theta_o,
 }  // namespace
 
 ShadingMethod warped_harmonics() {
-    return {"warped_harmonics", "docs/algorithms.md, Glossy lobes", true, false, false, false, &make};
+    return {"warped_harmonics", "docs/theory.md, 6", true, false, false, false, &make};
 }
 
 }  // namespace shlight::methods

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Measures shade_spheres: the tables of docs/algorithms.md.
+"""Measures shade_spheres: errors, times and points over roughness and view (docs/theory.md, 6).
 
 .venv/bin/python docs/figures/measure_shading.py        (a few minutes)
 

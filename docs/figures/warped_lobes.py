@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What docs/algorithms.md says of warped lobes, written down once more in numpy: the warp, and brute force.
+"""What docs/theory.md, 6, says of warped lobes, written down once more in numpy: the warp, and brute force.
 
 The formulas are those of core/src/warp.cpp in their plainest form, without care for rounding.
 """

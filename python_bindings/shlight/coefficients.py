@@ -80,7 +80,7 @@ def sphere_coefficients(
 
     centers: (..., 3), radii: (...), in the shading frame, any unit of length; 0 < radius ≤ |center|.
     clip: keep only what lies above the horizon z ≥ 0. Returns (..., order²).
-    Zhou & Wei 2020, Eq. 4 with unit radiance; the recurrence is derived in docs/algorithms.md.
+    Zhou & Wei 2020, Eq. 4 with unit radiance; docs/theory.md, 3, derives the recurrences.
     """
     options = coefficient_options(method, tolerance=tolerance, samples=samples, seed=seed, sampling=sampling)
     c = checked_array("centers", centers, dtype, core_axes=1)
@@ -180,7 +180,7 @@ def disk_coefficients(
     right angles or not, in either order: the region counts, and both sides of it shine. Seen edge-on it gives zeros.
     clip: keep only what lies above the horizon z ≥ 0. Returns (..., order²), right to 1e-10 of L_00 in float64 and 1e-5
     in float32, at contact, too. ValueError for dependent half axes and for a shading point in the ellipse.
-    Stokes' theorem along the outline as elliptic functions: docs/algorithms.md, "Disks and ellipses".
+    Stokes' theorem along the outline as elliptic functions: docs/theory.md, 5.
     """
     c, u, v = checked_disks(centers, half_axes_u, half_axes_v, dtype)
     shape = broadcast(centers=c.shape[:-1], half_axes_u=u.shape[:-1], half_axes_v=v.shape[:-1])

@@ -2,7 +2,7 @@
 """Materials lit by area lights: Eq. 5 of Zhou & Wei 2020 without the detour over coefficients.
 
 Glossy lobes are spherical harmonics in a warp of the sphere that makes them broad, against light that is warped with
-them, exactly (docs/algorithms.md); small lights and views that few bands do not describe are integrated by cubature of
+them, exactly (docs/theory.md, 6); small lights and views that few bands do not describe are integrated by cubature of
 the true f·cos, and a roughness of 0 shows the light's own image. Nothing here is random.
 """
 
@@ -212,7 +212,7 @@ def shade_disks(
     centers, half_axes_u, half_axes_v: (..., 3), in the shading frame, as of disk_coefficients: the points
     centre + a u + b v with a² + b² ≤ 1, seen from either side. A disk seen edge-on gives zeros.
     What a lobe reflects is that of a polygon of as many sides as it takes to keep a coefficient within about 1e-4 of
-    L_00, or the tolerance if that is less (docs/algorithms.md, "Lit by disks").
+    L_00, or the tolerance if that is less (docs/theory.md, 5.5).
     method: "auto" only; those of shlight.methods.shading_methods() know no disks.
     """
     if method != "auto":

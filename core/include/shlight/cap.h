@@ -3,7 +3,7 @@
 // Spherical caps: the region that a sphere light covers, seen from a shading point, clipped by the horizon.
 //
 // Coefficients are the integrals of the basis over the kept region (Zhou & Wei 2020, Eq. 4 with unit radiance),
-// by recurrences in the degree that cost O(order²) in all; docs/algorithms.md derives them.
+// by recurrences in the degree that cost O(order²) in all; docs/theory.md, 2 and 3, derives them.
 #pragma once
 
 #include <span>

@@ -4,7 +4,7 @@
 //
 // Seen from a point an ellipse is a cone of the second degree. In the parameter that makes its outline an elliptic
 // function, Stokes' integral along it converges exponentially however the ellipse lies; what is so small or thin that
-// the outline would cancel is swept by lines. docs/algorithms.md, "Disks and ellipses", derives both.
+// the outline would cancel is swept by lines. docs/theory.md, 5, derives both.
 #pragma once
 
 #include <span>

@@ -48,8 +48,8 @@ class LightShader {
                   std::span<Rgb> radiance, std::span<std::int32_t> effort = {});
 
     /// Disks and ellipses as disk_coefficients takes them; throws as that does, too. A lobe reflects what it reflects
-    /// of a polygon within about 1e-4 of the disk's L_00, or tolerance if that is less (docs/algorithms.md, "Lit by
-    /// disks"); of harmonics of a given order, of 1e-4.
+    /// of a polygon within about 1e-4 of the disk's L_00, or tolerance if that is less (docs/theory.md, 5.5);
+    /// of harmonics of a given order, of 1e-4.
     template <class T>
     void disks(std::span<const Vec3<T>> centers, std::span<const Vec3<T>> half_axes_u,
                std::span<const Vec3<T>> half_axes_v, std::span<const double> cos_theta_o, std::span<Rgb> radiance,

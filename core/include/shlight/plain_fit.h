@@ -4,7 +4,7 @@
 // over the *upper hemisphere*.
 //
 // Light coefficients are clipped at the horizon exactly, so below it the expansion may be anything; fitting only what
-// counts spares the ringing of a projection over the whole sphere. docs/algorithms.md derives the fit.
+// counts spares the ringing of a projection over the whole sphere. docs/theory.md, 7.1, derives the fit.
 // The view direction lies in the xz-plane, ω_o = (sinθ_o, 0, cosθ_o): only cosine terms (m ≥ 0) are non-zero.
 #pragma once
 

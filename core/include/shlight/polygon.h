@@ -3,7 +3,7 @@
 // Planar polygons seen from the shading point, clipped by the horizon z ≥ 0.
 //
 // By Stokes' theorem with Gauss points along the edges; those so small or thin that the edges would cancel, by Gauss
-// cubature. docs/algorithms.md derives both and says where one hands over to the other.
+// cubature. docs/theory.md, 4, derives both and says where one hands over to the other.
 #pragma once
 
 #include <span>

@@ -3,7 +3,7 @@
 // A conformal warp of the sphere of directions: a boost that spreads a narrow lobe until few bands describe it.
 //
 // A Möbius map of the sphere, the aberration of a moving observer: circles stay circles, so the cap of a sphere light,
-// the horizon, and the edges of a polygon keep exact coefficients in warped space. docs/algorithms.md derives it.
+// the horizon, and the edges of a polygon keep exact coefficients in warped space. docs/theory.md, 6.1, derives it.
 #pragma once
 
 #include "shlight/types.h"

@@ -5,7 +5,7 @@
 //
 // g(u) = f·cos(ω(u)) dω/du is fitted over the warped upper hemisphere u_z ≥ z_0 by least squares in u: what a light
 // receives is an integral over a part of that region, so this is the norm that bounds the error of a picture.
-// docs/algorithms.md shows how few bands are left. The view direction is ω_o = (sinθ_o, 0, cosθ_o): only cosine terms.
+// docs/theory.md, 6, shows how few bands are left. The view direction is ω_o = (sinθ_o, 0, cosθ_o): only cosine terms.
 #pragma once
 
 #include <cstddef>

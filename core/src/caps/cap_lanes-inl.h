@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Caps and what a horizon keeps of them, one light in each lane (docs/algorithms.md, "Caps" and "Caps against a horizon
-// at any height"). Included once per instruction set.
+// Caps and what a horizon keeps of them, one light in each lane (docs/theory.md, 3.3 and 3.5).
+// Included once per instruction set.
 #if defined(SHLIGHT_KERNELS_CAP_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_CAP_LANES_INL_H_
 #undef SHLIGHT_KERNELS_CAP_LANES_INL_H_

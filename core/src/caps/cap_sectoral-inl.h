@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The integrals of the basis over caps that cross the horizon, from each band's highest degree downwards
-// (docs/algorithms.md, "Caps from their sectoral terms"). Included once per instruction set.
+// (docs/theory.md, 3.4). Included once per instruction set.
 #if defined(SHLIGHT_KERNELS_CAP_SECTORAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_CAP_SECTORAL_INL_H_
 #undef SHLIGHT_KERNELS_CAP_SECTORAL_INL_H_

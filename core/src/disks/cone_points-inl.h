@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Points on the outlines of cones of second degree, one piece of an outline a lane (docs/algorithms.md, "Disks and
-// ellipses"). Included once per instruction set.
+// Points on the outlines of cones of second degree, one piece of an outline a lane (docs/theory.md, 5.2).
+// Included once per instruction set.
 #if defined(SHLIGHT_KERNELS_CONE_POINTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_CONE_POINTS_INL_H_
 #undef SHLIGHT_KERNELS_CONE_POINTS_INL_H_

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Coefficients of disks by Stokes' theorem along their outlines (docs/algorithms.md, "Disks and ellipses").
+// Coefficients of disks by Stokes' theorem along their outlines (docs/theory.md, 5.1 to 5.3).
 #pragma once
 
 #include "disks/ellipse_rows.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Polygons that stand for disks and ellipses where a lobe's warp is involved (docs/algorithms.md, "Lit by disks").
+// Polygons that stand for disks and ellipses where a lobe's warp is involved (docs/theory.md, 5.5).
 //
 // In the plane across the cone's axis the vertices lie a little outside the ellipse, so that each side, or pair of
 // sides, leaves out as much as it adds. What is left of the difference is of fourth order in the length of a side. The

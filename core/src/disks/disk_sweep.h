@@ -6,7 +6,7 @@
 namespace shlight {
 
 /// order² coefficients by Gauss cubature on lines across what is kept of a disk, all weights positive: to the precision
-/// of T however thin it is (docs/algorithms.md, "Disks and ellipses"). Precondition: can_be_swept.
+/// of T however thin it is (docs/theory.md, 5.4). Precondition: can_be_swept.
 template <class T>
 void disk_by_sweep(const SphericalEllipse<Wider<T>>& ellipse, int order, T* coefficients);
 

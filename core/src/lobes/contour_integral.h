@@ -5,7 +5,7 @@
 // with s = (h_x, h_y) / (α h_z) it is 1/(π (1 + s²)²), times factors that vary slowly. Green's theorem turns the
 // integral over the light's image in that plane into one along its outline, of a radial integral from the bell's
 // middle. Small α makes neither narrow, grazing views only somewhat. A lobe without a peak is taken as a factor of the
-// bell of α = 1, which is even. docs/algorithms.md derives it.
+// bell of α = 1, which is even. docs/theory.md, 6.5, derives it.
 #pragma once
 
 #include <span>

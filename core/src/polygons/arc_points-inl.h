@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Gauss points on circular arcs, one arc a lane (docs/algorithms.md, "Polygons"). Included once per instruction set.
+// Gauss points on circular arcs, one arc a lane (docs/theory.md, 4.2 and 4.7). Included once per instruction set.
 #if defined(SHLIGHT_KERNELS_ARC_POINTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_ARC_POINTS_INL_H_
 #undef SHLIGHT_KERNELS_ARC_POINTS_INL_H_

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Polygons in lanes: warped, measured, and taken apart into arcs (docs/algorithms.md, "Polygons"). Included once per
+// Polygons in lanes: warped, measured, and taken apart into arcs (docs/theory.md, 4.4 to 4.7). Included once per
 // instruction set.
 #if defined(SHLIGHT_KERNELS_CLIPPED_EDGES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_CLIPPED_EDGES_INL_H_

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Constants of the coefficients of arcs (docs/algorithms.md, "Polygons").
+// Constants of the coefficients of arcs (docs/theory.md, 4.2).
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Coefficients of arcs in lanes: what each adds to its region's (docs/algorithms.md, "Polygons"). Included once per
+// Coefficients of arcs in lanes: what each adds to its region's (docs/theory.md, 4.2). Included once per
 // instruction set.
 #if defined(SHLIGHT_KERNELS_MOMENTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_MOMENTS_INL_H_

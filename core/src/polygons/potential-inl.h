@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A lobe's potential along arcs, in lanes: its normal derivative at points, and along the horizon (docs/algorithms.md,
-// "Polygons"). Included once per instruction set.
+// A lobe's potential along arcs, in lanes: its normal derivative at points, and along the horizon (docs/theory.md, 4.3
+// and 4.4). Included once per instruction set.
 #if defined(SHLIGHT_KERNELS_POTENTIAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_POTENTIAL_INL_H_
 #undef SHLIGHT_KERNELS_POTENTIAL_INL_H_

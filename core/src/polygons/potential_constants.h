@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Constants of the potential F = Σ f_lm Y_lm / (l(l+1)) along arcs (docs/algorithms.md, "Polygons").
+// Constants of the potential F = Σ f_lm Y_lm / (l(l+1)) along arcs (docs/theory.md, 4.3).
 #pragma once
 
 #include <cstdint>

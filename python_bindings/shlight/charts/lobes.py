@@ -3,7 +3,7 @@
 
 Shares nothing with the library's own fits but Bsdf.evaluate and sh_basis, so it applies to any material that is a
 function. Directions are in the shading frame, the view is ω_o = (sinθ_o, 0, cosθ_o), and lobes are symmetric about the
-plane y = 0: only cosine terms of the harmonics are left. docs/algorithms.md, "Glossy lobes", derives the warp.
+plane y = 0: only cosine terms of the harmonics are left. docs/theory.md, 6.1, derives the warp.
 """
 
 from __future__ import annotations
