@@ -28,8 +28,8 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
     )
     tolerance: bpy.props.FloatProperty(
         name="Tolerance",
-        description="Error that the automatic order may make: of a light's reflection, relative to the light's own "
-        "radiance times the material's reflectance",
+        description="Error that the automatic order may make: of what a point reflects, relative to that, or to a "
+        "tenth of the picture's mean",
         default=1e-3,  # shlight.DEFAULT_TOLERANCE
         min=1e-6,
         max=0.5,

@@ -28,7 +28,7 @@ scene: a Scene with a camera.
 width, height: pixels.
 order: 1 ... 64: harmonics of this order for every light, or "auto": for each lobe, view and light the cheapest of
     harmonics in the lobe's warp and cubature that meets the tolerance.
-tolerance: error of the reflected radiance / (the light's radiance * the material's albedo), > 0.
+tolerance: error of what a point reflects / that, or / a tenth of the picture's mean where that is larger; > 0.
 pixel_samples: camera rays per pixel, over a box of one pixel; rounded up to a power of two if adaptive.
 adaptive: take up to 16 times as many where they disagree, as at edges, unless pixel_samples is 1.
 shadow_rays: per camera ray and light, at most, and again for each roughness of the material's glossy lobes; a quarter

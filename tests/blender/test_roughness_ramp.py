@@ -29,7 +29,6 @@ def step_columns(studio: Any) -> tuple[Array, Array]:
     render = studio.scene.render
     render.resolution_x, render.resolution_y = STEP * len(roughnesses), HEIGHT
     studio.scene.shlight.use_shadows = False
-    studio.scene.shlight.tolerance = 1e-4  # a hundredth of a seam that would be told
     image = studio.render("SHLIGHT")[..., :3].mean(axis=-1, dtype=np.float64)
     return roughnesses, image.reshape(HEIGHT, -1, STEP)[:, :, 1:-1].mean(axis=-1)
 

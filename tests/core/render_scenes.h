@@ -97,10 +97,9 @@ inline Vec3d floor_point(int column, int row, int size, double half_size, double
     return {(2 * (column + 0.5) / size - 1) * half_size, (1 - 2 * (row + 0.5) / size) * half_size, height};
 }
 
-/// One camera ray through each pixel's centre, no shadows, and a tolerance that closed forms can judge.
+/// One camera ray through each pixel's centre, and no shadows.
 inline RenderSettings analytic_settings() {
     RenderSettings settings;
-    settings.tolerance = 1e-4;
     settings.pixel_samples = 1;
     settings.shadow_rays = 0;
     settings.adaptive = false;

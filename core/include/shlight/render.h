@@ -15,8 +15,9 @@ namespace shlight {
 
 struct RenderSettings {
     int order = 0;  ///< 1 … 64: harmonics of this order for every light; 0: the cheapest that meets the tolerance
-    double tolerance =
-        kDefaultTolerance;   ///< error of a light's reflected radiance ÷ (its own radiance × the material's albedo)
+    /// Error of the light that a point reflects to the camera ÷ that light, or ÷ a tenth of the picture's mean where
+    /// that is larger. Only for order 0.
+    double tolerance = kDefaultTolerance;
     int pixel_samples = 16;  ///< camera rays per pixel, spread evenly over its square; see adaptive
     /// Per camera ray and light, at most, and again for each roughness of the glossy lobes; 0: no shadows.
     int shadow_rays = 16;
