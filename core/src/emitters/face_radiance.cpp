@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace shlight {
 namespace {
@@ -50,6 +51,7 @@ void FaceRadiance::build(std::uint32_t node, std::uint32_t first, std::uint32_t 
         const Face& f = faces_[i];
         const Vec3d normal = 0.5 * glm::cross(f.b - f.a, f.c - f.a);
         made.part.area_vector += normal;
+        made.part.power += glm::outerProduct(normal, Vec3d(f.radiance));
         made.part.area += glm::length(normal);
         radiance += glm::length(normal) * Vec3d(f.radiance);
         moment += glm::length(normal) / 3 * (f.a + f.b + f.c);
@@ -61,14 +63,7 @@ void FaceRadiance::build(std::uint32_t node, std::uint32_t first, std::uint32_t 
     made.part.center = made.part.area > 0 ? moment / made.part.area : 0.5 * (low + high);
     made.part.radius = glm::length(glm::max(high - made.part.center, made.part.center - low));
     made.part.radiance = made.part.area > 0 ? Rgb(radiance / made.part.area) : faces_[first].radiance;
-    double squares = 0;
-    for (std::uint32_t i = first; i < last; ++i) {
-        const Face& f = faces_[i];
-        const double difference = largest(f.radiance - made.part.radiance);
-        squares += 0.5 * glm::length(glm::cross(f.b - f.a, f.c - f.a)) * difference * difference;
-    }
-    made.part.deviation = made.part.area > 0 ? std::sqrt(squares / made.part.area) : 0;
-    made.part.unlike = made.part.area > 0 ? 1 - glm::length(made.part.area_vector) / made.part.area : 0;
+    find_variation(first, last, made.part);
     made.face = first;
     made.first_child = kLeaf;
     if (last - first > 1) {
@@ -87,6 +82,29 @@ void FaceRadiance::build(std::uint32_t node, std::uint32_t first, std::uint32_t 
     nodes_[node] = made;
 }
 
+void FaceRadiance::find_variation(std::uint32_t first, std::uint32_t last, FacePart& part) const {
+    if (!(part.area > 0)) {
+        return;
+    }
+    const double length = glm::length(part.area_vector);
+    const Vec3d common = length > 0 ? part.area_vector / length : Vec3d(0);
+    double squares = 0;
+    glm::dmat3 slopes(0);
+    for (std::uint32_t i = first; i < last; ++i) {
+        const Face& f = faces_[i];
+        const Vec3d normal = 0.5 * glm::cross(f.b - f.a, f.c - f.a);
+        const double area = glm::length(normal);
+        const Rgb difference = f.radiance - part.radiance;
+        squares += area * largest(difference) * largest(difference);
+        slopes += glm::outerProduct(area * ((f.a + f.b + f.c) / 3.0 - part.center), Vec3d(difference));
+        part.bend = area > 0 ? std::max(part.bend, glm::length(normal / area - common)) : part.bend;
+    }
+    part.deviation = std::sqrt(squares / part.area);
+    part.slope = std::max({glm::length(slopes[0]), glm::length(slopes[1]), glm::length(slopes[2])}) /
+                 (part.area * std::max(part.radius, std::numeric_limits<double>::min()));
+    part.unlike = 1 - length / part.area;
+}
+
 void FaceRadiance::along(std::span<const Ray> rays, std::vector<Rgb>& radiance) const {
     std::vector<RayHit> met(rays.size());
     rays_->intersect(rays, met);
@@ -95,9 +113,10 @@ void FaceRadiance::along(std::span<const Ray> rays, std::vector<Rgb>& radiance) 
     }
 }
 
-/// What the mean of a part leaves out has two reasons. Of faces that differ by their deviation the lobe and the
-/// distance prefer some by as much as these vary over the part, x; and a part that differs from the emitter's mean is
-/// itself weighed wrongly by x². Of faces that look all ways a part is seen, and which one their sum does not tell.
+/// A part's light is that of its power, which is exact as long as all its faces are seen from the same side. What that
+/// leaves out: the lobe and the distance change over the part by x, which prefers faces as far as radiance has a slope,
+/// and by x² for what differs without one, or as a whole from the emitter's mean. Where faces look away, some part is
+/// seen, and which one their sum does not tell.
 FaceMean::Weighed FaceMean::weigh(const FacePart& part) const {
     const Vec3d way = part.center - frame_->origin;
     const double distance = std::max(glm::length(way), 1e-3 * part.radius);
@@ -108,6 +127,7 @@ FaceMean::Weighed FaceMean::weigh(const FacePart& part) const {
     const double width = part.radius / distance;
     const double value = direction.z > 0 ? lobe_value(*lobe_, direction, view_) : 0.0;
     const double x = std::min(1.0, width / width_);
+    const bool one_side = std::abs(facing) > (part.bend + width) * glm::length(part.area_vector);
     double most = value;
     if (x > kBroad || !(direction.z > width)) {
         const double share = std::min(1.0, width / std::max(glm::length(brightest_ - direction), 1e-9));
@@ -115,20 +135,23 @@ FaceMean::Weighed FaceMean::weigh(const FacePart& part) const {
         most = std::max(value, nearest.z > 0 ? lobe_value(*lobe_, nearest, view_) : 0.0);
     }
     const double solid_angle = std::max(shown, 0.5 * part.unlike * part.area) / square;
-    return {shown / square * value, solid_angle * most *
-                                        (0.5 * std::max(x, part.unlike) * part.deviation +
-                                         0.25 * std::max(x * x, part.unlike) * part.difference)};
+    const double left_out = one_side ? 0.5 * x * part.slope + 0.25 * x * x * (part.deviation + part.difference)
+                                     : 0.5 * std::max(x, part.unlike) * part.deviation +
+                                           0.25 * std::max(x * x, part.unlike) * part.difference;
+    // Where some faces look away their mean stands for what is seen.
+    const Vec3d light = one_side && shown > 0 ? glm::abs(way * part.power) / distance : shown * Vec3d(part.radiance);
+    return {shown / square * value, value / square * light, solid_angle * most * left_out};
 }
 
 /// Whether a part may count as a whole: the squares of such errors add up to that of what is allowed, each part of the
 /// light having its share of it.
-bool FaceMean::suffices(const Weighed& weighed, const Rgb& radiance) const {
-    const double share = std::max(weighed.weight * largest(radiance) / light_, kLeastShare);
+bool FaceMean::suffices(const Weighed& weighed) const {
+    const double share = std::max(largest(Rgb(weighed.light)) / light_, kLeastShare);
     return weighed.error * weighed.error <= allowed_ * allowed_ * share;
 }
 
-void FaceMean::add(const Weighed& weighed, const Rgb& radiance) {
-    sum_ += weighed.weight * Vec3d(radiance);
+void FaceMean::add(const Weighed& weighed) {
+    sum_ += weighed.light;
     weights_ += weighed.weight;
 }
 
@@ -136,10 +159,11 @@ void FaceMean::add_face(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Rg
     const Vec3d center = (a + b + c) / 3.0;
     const Vec3d normal = 0.5 * glm::cross(b - a, c - a);
     const double radius = std::max({glm::length(a - center), glm::length(b - center), glm::length(c - center)});
-    const Weighed weighed =
-        weigh({center, radius, normal, glm::length(normal), radiance, 0, largest(radiance - faces_->mean()), 0});
-    if (quarterings == 0 || suffices(weighed, radiance)) {
-        add(weighed, radiance);
+    const double difference = largest(radiance - faces_->mean());
+    const Weighed weighed = weigh({center, radius, normal, glm::outerProduct(normal, Vec3d(radiance)),
+                                   glm::length(normal), radiance, 0, 0, difference, 0, 0});
+    if (quarterings == 0 || suffices(weighed)) {
+        add(weighed);
         return;
     }
     const Vec3d ab = 0.5 * (a + b);
@@ -176,8 +200,8 @@ Rgb FaceMean::of(const FaceRadiance& faces, const LobeShape& shape, const Vec3d&
             continue;
         }
         const Weighed weighed = weigh(node.part);
-        if (suffices(weighed, node.part.radiance)) {
-            add(weighed, node.part.radiance);
+        if (suffices(weighed)) {
+            add(weighed);
         } else {
             open_.push_back(node.first_child);
             open_.push_back(node.first_child + 1);

@@ -23,11 +23,14 @@ struct FacePart {
     Vec3d center;  ///< of their area
     double radius;
     Vec3d area_vector;  ///< sum of area · normal
+    glm::dmat3 power;   ///< for each colour channel the sum of radiance · area · normal
     double area;
     Rgb radiance;       ///< the mean by area
     double deviation;   ///< root mean square of the faces' radiance about it
-    double difference;  ///< of it from the emitter's mean
+    double slope;       ///< the mean of (radiance - mean) · (place - center) ÷ radius, 0 … deviation
+    double difference;  ///< of the mean from the emitter's
     double unlike;      ///< 0 … 1: 1 - |area_vector| ÷ area
+    double bend;        ///< no normal is farther, as a vector of length 1, from that of area_vector
 };
 
 /// Immutable; any number of threads may read it.
@@ -57,6 +60,8 @@ class FaceRadiance {
         Rgb radiance;
     };
 
+    /// What of the part's members tells how its faces differ.
+    void find_variation(std::uint32_t first, std::uint32_t last, FacePart& part) const;
     void build(std::uint32_t node, std::uint32_t first, std::uint32_t last);
 
     std::vector<Face> faces_;
@@ -77,12 +82,13 @@ class FaceMean {
   private:
     struct Weighed {
         double weight;  // solid angle times f·cos
+        Vec3d light;    // the same times radiance
         double error;   // of the light, if the part counts as a whole
     };
 
     Weighed weigh(const FacePart& part) const;
-    bool suffices(const Weighed& weighed, const Rgb& radiance) const;
-    void add(const Weighed& weighed, const Rgb& radiance);
+    bool suffices(const Weighed& weighed) const;
+    void add(const Weighed& weighed);
     /// A face or a part of one, quartered so many times more, at most.
     void add_face(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Rgb& radiance, int quarterings);
 
