@@ -56,6 +56,7 @@ void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPos
     positions_ = &positions;
     chooses_ = material.auto_order() && fit_ != nullptr && fit_->table() != nullptr;
     judged_ = judged;
+    relative_tolerance_ = 0;
     has_warps_ = false;
     stride_ = 0;
     if (judged_) {
@@ -117,6 +118,14 @@ void LobeViews::choose_orders(double tolerance, std::span<const float> allowance
     }
 }
 
+double LobeViews::error_of_largest_order(std::size_t view) const {
+    if (positions_->cosine()[view] < kLeastFittedCosine) {
+        return std::numeric_limits<double>::infinity();
+    }
+    const float* head = heads_.data() + view * FitTable::kHeadWidth;
+    return double{head[FitTable::kShadingErrors + fit_->table()->orders().size() - 1]} * albedo_[view];
+}
+
 WarpArrays LobeViews::warp_arrays() {
     const std::size_t room = padded_views(positions_->size());
     const ViewOutput views = positions_->arrays();
@@ -173,6 +182,7 @@ void MaterialViews::assign(const MaterialLobes& material, std::span<const double
                            const LobeWeights& weights, bool judged) {
     const bool weighed = judged || material.auto_order();
     lobe_count_ = material.lobes().size();
+    tolerance_ = material.tolerance();
     bool tabulated = false;
     for (std::size_t i = 0; i < lobe_count_; ++i) {
         const WarpedFit* fit = material.fit(i);
@@ -220,6 +230,7 @@ void MaterialViews::allow(double error, const Rgb& strength) {
     for (std::size_t i = 0; i < lobe_count_; ++i) {
         find_allowances(i, error, strength);
         lobes_[i].choose_orders(1, allowances_);
+        lobes_[i].relative_tolerance_ = tolerance_;
     }
 }
 

@@ -68,6 +68,12 @@ class LobeViews {
     /// Of the radiance.
     double absolute_tolerance(std::size_t view) const { return double{tolerance_[view]} * albedo_[view]; }
 
+    /// What suffices beside absolute_tolerance(): a share of what the light brings; 0: nothing does.
+    double relative_tolerance() const { return relative_tolerance_; }
+    int largest_order() const { return fit_->table()->orders().back(); }
+    /// Of the radiance; only if the lobe chooses.
+    double error_of_largest_order(std::size_t view) const;
+
     /// As the kernels read it. order: of those views that `used` lists.
     LobeArrays arrays(int order, std::span<const std::uint32_t> used);
     Warp warp(std::size_t view) const { return fit_->warp(positions_->cosine()[view]); }
@@ -88,6 +94,7 @@ class LobeViews {
     bool chooses_ = false, judged_ = false, any_black_ = false;
     LobeWeights weights_{};
     std::size_t index_ = 0;  // of the lobe in its material
+    double relative_tolerance_ = 0;
     std::vector<float> albedo_, tolerance_;
     std::vector<std::uint8_t> black_, order_, within_tolerance_;
     AlignedFloats heads_;
@@ -107,8 +114,8 @@ class MaterialViews {
     void assign(const MaterialLobes& material, std::span<const double> cos_theta_o, const LobeWeights& weights,
                 bool judged);
 
-    /// Chooses anew, so that each lobe's radiance under a light of this strength is wrong by no more than `error`.
-    /// Precondition: auto_order() of the material.
+    /// Chooses anew, so that each lobe's radiance under a light of this strength is wrong by no more than `error`, or
+    /// the material's tolerance of that radiance. Precondition: auto_order() of the material.
     void allow(double error, const Rgb& strength);
 
     std::size_t lobe_count() const { return lobe_count_; }
@@ -122,6 +129,7 @@ class MaterialViews {
 
     ViewPositions positions_;
     std::size_t lobe_count_ = 0;
+    double tolerance_ = 0;
     std::vector<LobeViews> lobes_;
     std::vector<Rgb> whole_;  // albedo of all lobes
     std::vector<float> allowances_;

@@ -230,6 +230,7 @@ void LobeBatch::integrate(LobeViews& lobe, Lights& lights, Key key) {
         mirror(lobe, lights);
     } else if (key == kOutline) {
         missed_.resize(values_.size());
+        by_largest_order(lobe, lights);
         by_outline(lobe, lights);
     } else if (key > kHarmonics) {
         by_harmonics(lobe, lights, key - kHarmonics);
@@ -264,6 +265,21 @@ void LobeBatch::by_harmonics(LobeViews& lobe, const PolygonBatch& polygons, int 
                    item_values_);
 }
 
+template <class Lights>
+void LobeBatch::by_largest_order(LobeViews& lobe, const Lights& lights) {
+    if (!(lobe.relative_tolerance() > 0)) {
+        return;
+    }
+    const int order = lobe.largest_order();
+    by_harmonics(lobe, lights, order);
+    for (std::size_t k = 0; k < items_.size(); ++k) {
+        if (lobe.error_of_largest_order(item_views_[k]) <= lobe.relative_tolerance() * item_values_[k]) {
+            keys_[items_[k]] = static_cast<Key>(kHarmonics + order);
+            efforts_[items_[k]] = order;
+        }
+    }
+}
+
 void LobeBatch::by_rule(const LobeViews& lobe, const CircleArrays& circles, int rule) {
     integrate_caps(lobe.shape(), circles, items_, lobe.positions().directions(), item_views_, rule, item_values_);
     const int points = cap_rule_points(rule);
@@ -283,14 +299,17 @@ void LobeBatch::by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int
 
 void LobeBatch::by_outline(const LobeViews& lobe, const CircleArrays& circles) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
-        const std::uint32_t i = items_[k];
-        integrate_outline(lobe, k, CapOutline({axis_of(circles, i), circles.cosine[i], circles.sine[i]}).arcs());
+        if (const std::uint32_t i = items_[k]; keys_[i] == kOutline) {
+            integrate_outline(lobe, k, CapOutline({axis_of(circles, i), circles.cosine[i], circles.sine[i]}).arcs());
+        }
     }
 }
 
 void LobeBatch::by_outline(const LobeViews& lobe, const PolygonBatch& polygons) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
-        integrate_outline(lobe, k, polygon_outline(SphericalPolygon(polygons.polygon(items_[k]), true)));
+        if (const std::uint32_t i = items_[k]; keys_[i] == kOutline) {
+            integrate_outline(lobe, k, polygon_outline(SphericalPolygon(polygons.polygon(i), true)));
+        }
     }
 }
 

@@ -83,6 +83,9 @@ class LobeBatch {
     void by_harmonics(LobeViews& lobe, const PolygonBatch& polygons, int order);
     void by_rule(const LobeViews& lobe, const CircleArrays& circles, int rule);
     void by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule);
+    /// Outlines cost most: lights that are bright enough are left to harmonics of the largest order.
+    template <class Lights>
+    void by_largest_order(LobeViews& lobe, const Lights& lights);
     void by_outline(const LobeViews& lobe, const CircleArrays& circles);
     void by_outline(const LobeViews& lobe, const PolygonBatch& polygons);
     /// Of an item.
