@@ -93,19 +93,6 @@ TEST(DeltaLights, ReflectAsEachByItself) {
     }
 }
 
-TEST(DeltaLights, ShineAsEachByItself) {
-    testing::RandomInput random(2);
-    for (int round = 0; round < 20; ++round) {
-        const auto [frame, lights, deltas] = random_lit(random);
-        double nearest = std::numeric_limits<double>::infinity();
-        for (std::size_t i = 0; i < kCount; ++i) {
-            EXPECT_EQ(deltas.shines(i, frame, kError), delta_view(lights[i], frame, kError).has_value()) << i;
-            nearest = std::min(nearest, changing_distance(lights[i], frame.origin));
-        }
-        EXPECT_LE(std::abs(deltas.changing_distance(frame.origin) - nearest), 1e-12 * nearest);
-    }
-}
-
 TEST(DeltaLights, RaysEndAtTheSource) {
     testing::RandomInput random(3);
     const Vec3d origin(3, -2, 1);

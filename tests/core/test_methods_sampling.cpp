@@ -200,24 +200,5 @@ TEST(NumericalMethods, PolygonsAreSampledAsTheySay) {
     }
 }
 
-TEST(NumericalMethods, ReflectionsAreSampledAsTheySay) {
-    for (const LobeShape& shape : {LobeShape(LambertShape{}), LobeShape(GgxShape{0.04}), LobeShape(GgxShape{0.6})}) {
-        for (const double cosine : {0.1, 0.7, 1.0}) {
-            const Vec3d view = view_direction(cosine);
-            RandomNumbers random(12);
-            Mean by_lobe;
-            for (int i = 0; i < 100000; ++i) {
-                const Vec3d direction = sample_lobe(shape, view, random.point());
-                const double density = lobe_density(shape, view, direction);
-                EXPECT_EQ(density > 0, direction.z > 0);
-                by_lobe.add(density > 0 ? lobe_value(shape, direction, view) / density : 0);
-            }
-            const auto truth = find_shading_method("quadrature").make(shape, cosine, {});
-            EXPECT_LE(by_lobe.deviation(truth->radiance(circle_about_axis({0, 0, 1}, kPi / 2), 0).value, 1e-9),
-                      kFewSigma);
-        }
-    }
-}
-
 }  // namespace
 }  // namespace shlight

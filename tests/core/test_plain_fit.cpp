@@ -136,19 +136,6 @@ TEST(PlainFit, ConvergesAsExpected) {
     }
 }
 
-/// Down to where Tikhonov's term, not the order, limits the fit.
-TEST(PlainFit, ErrorFallsWithTheOrder) {
-    for (const double alpha : {0.1, 0.3, 0.8}) {
-        const PlainFit fit{GgxShape{alpha}};
-        for (const double cos_theta_o : {0.05, 0.4, 0.9, 1.0}) {
-            for (int order = 2; order <= kMaxOrder; ++order) {
-                EXPECT_LE(fit.residual(cos_theta_o, order), 1.1 * fit.residual(cos_theta_o, order - 1) + 1.5e-4)
-                    << "alpha " << alpha << ", cosθ_o " << cos_theta_o << ", order " << order;
-            }
-        }
-    }
-}
-
 TEST(PlainFit, NormIsTheIntegral) {
     RandomInput random(61);
     for (const double alpha : {0.2, 0.5, 1.0}) {
@@ -179,13 +166,6 @@ TEST(PlainFit, CoefficientsStaySmall) {
             }
         }
     }
-}
-
-TEST(PlainFit, EqualShapesShareTheirFit) {
-    const auto first = plain_fit(GgxShape{0.7});
-    EXPECT_EQ(first, plain_fit(GgxShape{0.7}));
-    EXPECT_NE(first, plain_fit(GgxShape{0.71}));
-    EXPECT_NE(first, plain_fit(GgxShape{0.7, Fresnel::schlick}));
 }
 
 }  // namespace

@@ -222,14 +222,5 @@ TEST(RenderFarLights, NarrowLobesAndGivenOrdersHaveEachLight) {
     EXPECT_EQ(all_of_them(Bsdf::lambert(Rgb(0.5F)), settings).report.summed_count, 0U);
 }
 
-TEST(RenderFarLights, AsWithOneThreadSoWithThree) {
-    RenderSettings settings = plain_settings(4);
-    const Bsdf bsdf = Bsdf::lambert(Rgb(0.5F));
-    settings.threads = 1;
-    const Image one = all_of_them(bsdf, settings);
-    settings.threads = 3;
-    EXPECT_EQ(one.values, all_of_them(bsdf, settings).values);
-}
-
 }  // namespace
 }  // namespace shlight::testing

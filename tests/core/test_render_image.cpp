@@ -306,27 +306,6 @@ TEST(RenderImage, ALightInTheFloorsPlaneDoesNotSpeckle) {
     }
 }
 
-TEST(RenderImage, FixedAndAutomaticOrdersAgree) {
-    const Bsdf material = Bsdf::layer(Bsdf::ggx(0.7F, Rgb(0.04F)), Bsdf::lambert(Rgb(0.2F, 0.5F, 0.1F)));
-    Scene scene;
-    scene.add_mesh(floor_mesh(10, 0, material));
-    scene.add_sphere_light({0.5, 0.3, 1}, 0.4, Rgb(1));
-    const Camera camera(look_at({0, -3, 2}, {0, 0, 0}), 0.7);
-    RenderSettings settings = analytic_settings();
-    settings.order = 32;
-    const Image exact = render_image(scene, camera, kSize, kSize, settings);
-    settings.order = 0;
-    const Image automatic = render_image(scene, camera, kSize, kSize, settings);
-    EXPECT_EQ(automatic.report.over_tolerance, 0U);
-    EXPECT_GT(automatic.report.order_counts[2], 0U);  // Lambert takes no more
-    EXPECT_EQ(exact.report.order_counts[32], 2 * exact.report.hits);
-    EXPECT_EQ(exact.report.order_counts[2], exact.report.hits);
-    for (std::size_t i = 0; i < exact.values.size(); ++i) {
-        // ∫ |error| ≤ tolerance · ‖f·cos‖ · √Ω, with three lobes, ‖f·cos‖ < 1 and Ω < 0.5.
-        EXPECT_LE(std::abs(exact.values[i] - automatic.values[i]), 3e-3);
-    }
-}
-
 TEST(RenderImage, SharedShadingPointsStayWithinTheTolerance) {
     // With a fixed order the tolerance decides only how many hits of a pixel share a point; 1e-12: none. Curved and
     // flat, glossy and diffuse, lights near and far.

@@ -22,7 +22,9 @@ using namespace testing;
 Scene busy_scene() {
     Scene scene;
     scene.add_mesh(floor_mesh(4, 0, Bsdf::layer(Bsdf::ggx(0.7F, Rgb(0.04F)), Bsdf::lambert(Rgb(0.5F)))));
-    scene.add_mesh(sphere_mesh({0, 0, 0.5}, 0.5, 12, true));
+    Mesh ball = sphere_mesh({0, 0, 0.5}, 0.5, 12, true);
+    ball.bsdfs = {Bsdf::ggx(0.3F, Rgb(0.9F)) + Bsdf::lambert(Rgb(0.1F))};
+    scene.add_mesh(ball);
     scene.add_sphere_light({1, -1, 2}, 0.5, Rgb(3));
     scene.add_polygon_light({{-1, -1, 2}, {-1, 0, 2}, {0, 0, 2}, {0, -1, 2}}, Rgb(3));
     return scene;

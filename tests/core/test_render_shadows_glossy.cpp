@@ -201,23 +201,6 @@ TEST(RenderShadowsGlossy, RaysOfLobesAreSparedWhereAllAgree) {
     EXPECT_LE(image.report.shadow_rays, 8 * image.report.hits);
 }
 
-TEST(RenderShadowsGlossy, ThreadsDoNotChangeABit) {
-    Reflection setup(Bsdf::ggx(0.2F, Rgb(0.2F)) + Bsdf::ggx(0, Rgb(0.2F)) + Bsdf::lambert(Rgb(0.3F)));
-    add_light(setup.scene, 0, 1);
-    add_light(setup.scene, 2, 1);
-    const auto picture = [&](int threads) {
-        RenderSettings settings;
-        settings.threads = threads;
-        return render_image(setup.scene, setup.camera, 35, 17, settings);
-    };
-    const Image one = picture(1);
-    for (const int threads : {2, 5}) {
-        const Image many = picture(threads);
-        EXPECT_EQ(many.values, one.values) << threads;
-        EXPECT_EQ(many.report.shadow_rays, one.report.shadow_rays);
-    }
-}
-
 TEST(RenderShadowsGlossy, AHiddenPeakStaysHiddenUnderAdaptiveRays) {
     // A ball in a long reflection at a grazing view: behind it a narrow lobe's peak is hidden, its tails are not, and
     // the pixels on its shadow's edge take more camera rays with fewer shadow rays each.
