@@ -13,27 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scene_cases import FACES, FLOOR, from_above, lit_floor
 
 import shlight
-
-FLOOR = np.array([[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]], dtype=np.float32)
-QUAD = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
-
-
-def from_above(scene: shlight.Scene, half_size: float = 2.0) -> None:
-    """Column j shows x, row i shows -y of the floor."""
-    to_world = np.eye(4)
-    to_world[2, 3] = 10
-    scene.set_camera_window(to_world, -half_size, half_size, -half_size, half_size, orthographic=True)
-
-
-def lit_floor(**mesh: Any) -> shlight.Scene:
-    scene = shlight.Scene()
-    scene.add_mesh(FLOOR, QUAD, **mesh)
-    scene.add_sphere_light([0.5, 0.25, 1.5], 0.5, [4, 2, 1])
-    from_above(scene)
-    return scene
-
+from shlight import methods
 
 def floor_points(size: int, half_size: float = 2.0) -> NDArray[np.float64]:
     centers = (2 * (np.arange(size) + 0.5) / size - 1) * half_size
@@ -55,18 +38,13 @@ def test_lambert_floor_under_a_sphere_light() -> None:
     np.testing.assert_array_equal(image[..., 3], 1)
 
 
-def test_image_size_need_not_be_square() -> None:
-    image, report = shlight.render(lit_floor(), 7, 3, pixel_samples=2, adaptive=False, return_report=True)
-    assert image.shape == (3, 7, 4)
-    assert report.hits == 7 * 3 * 2
+def test_report_of_a_picture_that_is_not_square() -> None:
+    image, report = shlight.render(lit_floor(), 32, 16, pixel_samples=2, threads=2, adaptive=False, return_report=True)
+    assert image.shape == (16, 32, 4)
+    assert report.hits == 32 * 16 * 2
     assert report.order_shares == {2: 1.0}
     assert report.over_tolerance == 0
     assert report.shadow_rays > 0
-    assert report.render_seconds > 0
-
-
-def test_stages_take_the_time_of_the_render() -> None:
-    report = shlight.render(lit_floor(), 32, 32, threads=2, return_report=True)[1]
     assert list(report.stage_seconds) == ["camera rays", "views", "light", "shadows", "pixels"]
     assert all(seconds > 0 for seconds in report.stage_seconds.values())
     assert sum(report.stage_seconds.values()) <= 2 * report.render_seconds
@@ -74,7 +52,7 @@ def test_stages_take_the_time_of_the_render() -> None:
 
 def test_no_lights_is_black_and_background_is_transparent() -> None:
     scene = shlight.Scene()
-    scene.add_mesh(FLOOR[:, :] / 18, QUAD)  # x and y from -0.5 to 0.5
+    scene.add_mesh(FLOOR[:, :] / 18, FACES)  # x and y from -0.5 to 0.5
     from_above(scene, 1.0)
     image = shlight.render(scene, 8, 8, pixel_samples=1)
     np.testing.assert_array_equal(image[..., :3], 0)
@@ -85,7 +63,7 @@ def test_no_lights_is_black_and_background_is_transparent() -> None:
 
 def test_row_0_is_on_top() -> None:
     scene = shlight.Scene()
-    scene.add_mesh(FLOOR + np.array([0, 9, 0]), QUAD, emission=[1, 2, 3])  # y > 0
+    scene.add_mesh(FLOOR + np.array([0, 9, 0]), FACES, emission=[1, 2, 3])  # y > 0
     from_above(scene)
     image = shlight.render(scene, 4, 4, pixel_samples=1)
     np.testing.assert_array_equal(image[:2], np.broadcast_to([1, 2, 3, 1], (2, 4, 4)))
@@ -94,7 +72,7 @@ def test_row_0_is_on_top() -> None:
 
 def test_field_of_view_is_horizontal() -> None:
     scene = shlight.Scene()
-    scene.add_mesh(np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1]]) * [0.49, 0.24, 1], QUAD)
+    scene.add_mesh(np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1]]) * [0.49, 0.24, 1], FACES)
     scene.set_camera(np.eye(4), 2 * np.arctan(0.5))
     image = shlight.render(scene, 200, 100, pixel_samples=1, shadow_rays=0)
     assert image[..., 3].sum() == 196 * 96
@@ -109,7 +87,7 @@ def test_emission_per_material_and_instances() -> None:
     transforms[1, 0, 0] *= -1  # mirrored
     scene.add_mesh(
         FLOOR,
-        QUAD,
+        FACES,
         bsdf=[shlight.Bsdf.lambert(0.5), shlight.Bsdf.lambert(0.1)],
         emission=[[1, 0, 0], [0, 1, 0]],
         material_indices=[0, 1],
@@ -129,7 +107,7 @@ def test_emission_per_material_and_instances() -> None:
 def test_array_types_do_not_matter(dtype: Any, index: Any) -> None:
     scene = shlight.Scene()
     # Fortran order and a strided view as well.
-    scene.add_mesh(np.asfortranarray(FLOOR.astype(dtype)), np.repeat(QUAD, 2, axis=1)[:, ::2].astype(index))
+    scene.add_mesh(np.asfortranarray(FLOOR.astype(dtype)), np.repeat(FACES, 2, axis=1)[:, ::2].astype(index))
     scene.add_sphere_light((0.5, 0.25, 1.5), 0.5, np.array([4, 2, 1], dtype=dtype))
     from_above(scene)
     np.testing.assert_array_equal(shlight.render(scene, 8, 8), shlight.render(lit_floor(), 8, 8))
@@ -138,18 +116,9 @@ def test_array_types_do_not_matter(dtype: Any, index: Any) -> None:
 def test_normals_per_vertex_and_per_corner_agree() -> None:
     normals = np.array([[1, 0, 2], [0, 1, 2], [-1, 0, 2], [0, -1, 2]], dtype=np.float32)
     by_vertex = shlight.render(lit_floor(normals=normals), 8, 8)
-    by_corner = shlight.render(lit_floor(normals=normals[QUAD]), 8, 8)
+    by_corner = shlight.render(lit_floor(normals=normals[FACES]), 8, 8)
     np.testing.assert_array_equal(by_vertex, by_corner)
     assert np.abs(by_vertex - shlight.render(lit_floor(), 8, 8)).max() > 1e-3
-
-
-def test_threads_do_not_change_a_bit() -> None:
-    scene = lit_floor(bsdf=shlight.Bsdf.ggx(0.8, 0.5))
-    scene.add_mesh(FLOOR / 20 + [0, 0, 0.5], QUAD)
-    one = shlight.render(scene, 33, 21, threads=1)
-    np.testing.assert_array_equal(one, shlight.render(scene, 33, 21, threads=2))
-    np.testing.assert_array_equal(one, shlight.render(scene, 33, 21))
-    assert np.isfinite(one).all()
 
 
 def test_what_was_built_is_kept_until_something_is_added() -> None:
@@ -211,7 +180,7 @@ MESH_ERRORS: list[tuple[str, dict[str, Any]]] = [
     ("triangles", {"triangles": [[0, 1, -1]]}),
     ("triangles", {"triangles": [[0, 1, 2**32]]}),
     ("triangles", {"triangles": [[0, 1]]}),
-    ("triangles", {"triangles": QUAD.astype(float)}),
+    ("triangles", {"triangles": FACES.astype(float)}),
     ("normals", {"normals": FLOOR[:3]}),
     ("normals", {"normals": np.full_like(FLOOR, np.inf)}),
     ("uvs", {"uvs": FLOOR}),
@@ -235,7 +204,7 @@ MESH_ERRORS: list[tuple[str, dict[str, Any]]] = [
 def test_bad_meshes_leave_the_scene_as_it_was(name: str, change: dict[str, Any]) -> None:
     scene = lit_floor()
     before = shlight.render(scene, 4, 4)
-    arguments: dict[str, Any] = {"vertices": FLOOR + np.array([0, 0, 1]), "triangles": QUAD, **change}
+    arguments: dict[str, Any] = {"vertices": FLOOR + np.array([0, 0, 1]), "triangles": FACES, **change}
     expect_value_error(name, lambda: scene.add_mesh(**arguments))
     after, report = shlight.render(scene, 4, 4, return_report=True)
     np.testing.assert_array_equal(after, before)
@@ -265,11 +234,29 @@ def test_bad_lights_and_cameras() -> None:
     expect_value_error("clip_end", lambda: scene.set_camera_window(np.eye(4), 0, 1, 0, 1, clip_start=2, clip_end=1))
 
 
-def slow_arguments() -> dict[str, Any]:
-    return {"width": 2000, "height": 2000, "pixel_samples": 64}
+# --- while a picture is drawn, by the library and by Monte Carlo
 
 
-def test_progress_rises_to_one_in_the_calling_thread() -> None:
+def monte_carlo(scene: shlight.Scene, width: int, height: int, pixel_samples: int = 16, **options: Any) -> Any:
+    return methods.render_monte_carlo(scene, width, height, samples=pixel_samples, **options)
+
+
+both_renderers = pytest.mark.parametrize("render", [shlight.render, monte_carlo])
+SLOW: dict[str, Any] = {"width": 2000, "height": 2000, "pixel_samples": 256}
+
+
+@both_renderers
+def test_threads_do_not_change_a_bit(render: Callable[..., Any]) -> None:
+    scene = lit_floor(bsdf=shlight.Bsdf.ggx(0.8, 0.5))
+    scene.add_mesh(FLOOR / 20 + [0, 0, 0.5], FACES)
+    one = render(scene, 33, 21, threads=1)
+    np.testing.assert_array_equal(one, render(scene, 33, 21, threads=2))
+    np.testing.assert_array_equal(one, render(scene, 33, 21))
+    assert np.isfinite(one).all()
+
+
+@both_renderers
+def test_progress_rises_to_one_in_the_calling_thread(render: Callable[..., Any]) -> None:
     shares: list[float] = []
     threads: set[int] = set()
 
@@ -277,29 +264,30 @@ def test_progress_rises_to_one_in_the_calling_thread() -> None:
         shares.append(share)
         threads.add(threading.get_ident())
 
-    scene = lit_floor(bsdf=shlight.Bsdf.ggx(0.9, 0.5))
-    shlight.render(scene, 300, 300, progress=progress)
+    render(lit_floor(bsdf=shlight.Bsdf.ggx(0.9, 0.5)), 150, 150, progress=progress)
     assert threads == {threading.get_ident()}
     assert shares == sorted(shares)
     assert shares[-1] == 1
     assert all(0 <= share <= 1 for share in shares)
 
 
+@both_renderers
 @pytest.mark.parametrize("answer", [False, np.False_])
-def test_false_cancels(answer: Any) -> None:
+def test_false_cancels(render: Callable[..., Any], answer: Any) -> None:
     start = time.monotonic()
     with pytest.raises(shlight.RenderCancelled):
-        shlight.render(lit_floor(), **slow_arguments(), progress=lambda share: answer)
+        render(lit_floor(), **SLOW, progress=lambda share: answer)
     assert time.monotonic() - start < 10
     assert issubclass(shlight.RenderCancelled, RuntimeError)
 
 
-def test_errors_of_the_callback_propagate() -> None:
+@both_renderers
+def test_errors_of_the_callback_propagate(render: Callable[..., Any]) -> None:
     def progress(share: float) -> None:
         raise KeyError("mine")
 
     with pytest.raises(KeyError, match="mine"):
-        shlight.render(lit_floor(), **slow_arguments(), progress=progress)
+        render(lit_floor(), **SLOW, progress=progress)
 
 
 def test_control_c_ends_the_render() -> None:
@@ -307,7 +295,7 @@ def test_control_c_ends_the_render() -> None:
     timer.start()
     start = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
-        shlight.render(lit_floor(), **slow_arguments())
+        shlight.render(lit_floor(), **SLOW)
     assert time.monotonic() - start < 10
     timer.join()
 
@@ -326,13 +314,11 @@ def test_other_threads_run_meanwhile() -> None:
     start = time.monotonic()
     try:
         with pytest.raises(shlight.RenderCancelled):
-            shlight.render(
-                lit_floor(), **slow_arguments(), threads=1, progress=lambda share: time.monotonic() - start < 0.5
-            )
+            shlight.render(lit_floor(), **SLOW, threads=1, progress=lambda share: time.monotonic() - start < 0.3)
     finally:
         done.set()
         thread.join()
-    assert len(ticks) > 20
+    assert len(ticks) > 12
 
 
 def test_negative_light_takes_light_away() -> None:

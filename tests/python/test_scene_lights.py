@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scene_cases import FACES, FLOOR
 
 import shlight
 
@@ -16,9 +17,7 @@ import shlight
 def radiance_at_origin(add: Callable[[shlight.Scene], None]) -> Any:
     """Of a white Lambert floor z = 0 at its middle."""
     scene = shlight.Scene()
-    scene.add_mesh(
-        [[-3, -3, 0], [3, -3, 0], [3, 3, 0], [-3, 3, 0]], [[0, 1, 2], [0, 2, 3]], bsdf=shlight.Bsdf.lambert(1)
-    )
+    scene.add_mesh(FLOOR, FACES, bsdf=shlight.Bsdf.lambert(1))
     add(scene)
     to_world = np.eye(4)
     to_world[2, 3] = 20

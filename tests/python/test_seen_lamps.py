@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scene_cases import FACES, FLOOR
 
 import shlight
 
@@ -22,7 +23,7 @@ def picture(add: Callable[[shlight.Scene], None], floor: bool = False) -> Any:
     """From the origin along -z, one radian wide."""
     scene = shlight.Scene()
     if floor:
-        scene.add_mesh([[-9, -9, -3], [9, -9, -3], [9, 9, -3], [-9, 9, -3]], [[0, 1, 2], [0, 2, 3]])
+        scene.add_mesh(FLOOR - [0, 0, 3], FACES)
     add(scene)
     scene.set_camera(np.eye(4), 1.0)
     return shlight.render(scene, 64, 64, pixel_samples=16)
