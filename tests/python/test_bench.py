@@ -1,26 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""What `shlight bench` measures with, prints, writes and refuses; no test depends on how fast anything is."""
+"""What `shlight bench` measures, and its statistics; no test depends on how fast anything is."""
 
 from __future__ import annotations
 
-import importlib.util
-import subprocess
-import sys
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from command_cases import names, putter
 
 import shlight
-from shlight import _core
-from shlight.bench import builds, calls, command, compare, inputs, options, peer, sections
+from shlight.bench import builds, calls, compare, inputs, peer, sections
 from shlight.bench.rounds import Spread, Work, alternate
-from shlight.bench.row import Bench, Row, read
-from shlight.bench.run import Run, Section
-from shlight.commands import CommandError
+from shlight.bench.row import Bench, Row
+from shlight.bench.run import Run
 
 
 class Clock:
@@ -153,101 +146,3 @@ def test_two_builds_make_the_same_calls(monkeypatch: pytest.MonkeyPatch) -> None
     rows = builds.measure(own, Run("basis", 10, 2))
     assert [row.name for row in rows] == list(sections.works(Run("basis", 10, 2)))
     assert all(row.value > 0 and row.bound == builds.MOST for row in rows)
-
-
-# --- the command, with stand-ins for sections ---------------------------------------------------------------------
-
-
-def measure_two(run: Run) -> list[Row]:
-    run.step(0.5, "two")
-    return [
-        Row(run.section, "first", 0.5, 0.5, 0.5, "×", bound=0.6),
-        Row(run.section, "second", 7.0, 7.0, 7.0, "×"),
-    ]
-
-
-def measure_in_vain(run: Run) -> list[Row]:
-    raise KeyboardInterrupt
-
-
-@pytest.fixture
-def use(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
-    """Puts other sections in place of the real ones."""
-    return putter(monkeypatch, "SECTIONS", command, options)
-
-
-TWO = Section("two", "Two rows", measure_two)
-VAIN = Section("vain", "In vain", measure_in_vain)
-
-
-def test_a_run_and_one_against_it(tmp_path: Path, use: Callable[..., None], capsys: pytest.CaptureFixture[str]) -> None:
-    use(TWO)
-    first, second = tmp_path / "new" / "1.json", tmp_path / "new" / "2.json"
-    assert command.main(["--quick", "--out", str(first)]) == 0
-    bench = read(first)
-    assert [row.name for row in bench.rows] == ["first", "second"]
-    assert bench.settings == {"lights": options.QUICK_LIGHTS, "rounds": options.QUICK_ROUNDS}
-    assert bench.machine["instruction set"] == _core.kernel_target()
-    said = capsys.readouterr().out
-    assert "1/1 Two rows\n" in said
-    assert "Two rows\n\n|" in said
-    assert "1 of 1 bounds are met\n" in said
-    assert said.endswith(f"results: {first}\n")
-
-    first.write_text(first.read_text().replace("7.0", "3.5"))
-    assert command.main(["--out", str(second), "--compare", str(first)]) == 0
-    assert command.main(["--read", str(second), "--compare", str(first)]) == 0
-    assert capsys.readouterr().out.count("1 of 2 rows changed") == 2
-    assert names(first.parent) == ["1.json", "2.json"]
-
-
-def test_an_interrupt_leaves_the_file_before(
-    tmp_path: Path, use: Callable[..., None], capsys: pytest.CaptureFixture[str]
-) -> None:
-    use(TWO, VAIN)
-    out = tmp_path / "a.json"
-    out.write_text("before")
-    assert command.main(["--out", str(out)]) == 130
-    assert (names(tmp_path), out.read_text()) == (["a.json"], "before")
-    assert capsys.readouterr().err == "shlight bench: interrupted; nothing was written\n"
-
-
-@pytest.mark.parametrize(
-    "content", ["", "[]", '{"format": 1}', Bench({}, {}, [made(1.0)]).to_json().replace("1.0", "NaN")]
-)
-def test_other_files_are_refused(content: str, tmp_path: Path) -> None:
-    file = tmp_path / "other.json"
-    file.write_text(content)
-    with pytest.raises(CommandError, match=r"other\.json is not a file that shlight bench wrote"):
-        read(file)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "complaint"),
-    [
-        (["bases"], "there is no section 'bases'; there are: basis, "),
-        (["--compare", "/nowhere/b.json"], "cannot read /nowhere/b.json: No such file or directory"),
-        (["--against", "/nowhere"], "there is no built package shlight in /nowhere"),
-        (["--out", "/"], "/ is a folder; --out wants a file"),
-        (["--out", "/dev/null/a.json"], "/dev/null is a file; --out wants a folder"),
-    ],
-)
-def test_bad_requests_are_named(arguments: list[str], complaint: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert command.main(arguments) == 2
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert said.err.startswith(f"shlight bench: {complaint}")
-    assert said.err.count("\n") == 1
-
-
-def test_a_missing_peer_is_named(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    assert command.main(["basis"]) == 1
-    expected = "shlight bench: the Python module sphericart is missing: pip install 'shlight[bench]'\n"
-    assert capsys.readouterr().err == expected
-
-
-def test_the_list_needs_no_peer() -> None:
-    code = "import sys; sys.modules['sphericart'] = None; from shlight.bench.command import main; main(['--list'])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert [line.split()[0] for line in done.stdout.splitlines()] == [section.name for section in sections.SECTIONS]
