@@ -16,11 +16,11 @@ import pytest
 
 from shlight import _core
 from shlight.bench import command as bench
-from shlight.charts import command as charts
 from shlight.bench.row import Bench, Row, read
 from shlight.bench.run import QUICK_LIGHTS, QUICK_ROUNDS, Section
 from shlight.bench.run import Run as BenchRun
 from shlight.bench.sections import SECTIONS
+from shlight.charts import command as charts
 from shlight.charts import style
 from shlight.charts.figure import Drawn, Figure, Run, Table
 from shlight.charts.figures import FIGURES

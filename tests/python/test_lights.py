@@ -100,26 +100,6 @@ def test_float32_is_close_to_float64(kind: str, data: st.DataObject, order: int)
 
 
 @reproducible
-@given(spheres(), orders)
-def test_spheres_are_caps_of_their_half_angle(sphere: tuple[Floats, float], order: int) -> None:
-    center, radius = sphere
-    half_angle = math.asin(radius / np.linalg.norm(center))
-    cap = shlight.cap_coefficients(center, half_angle, order, dtype=np.float64)
-    # A half angle in doubles does not say where a grazing cap ends as exactly as centre and radius do.
-    light = Light("sphere", center, radius)
-    np.testing.assert_allclose(light.coefficients(order), cap, atol=1e-7 * light.whole())
-
-
-@reproducible
-@given(directions(), st.floats(0.01, 3.13), orders)
-def test_cap_and_the_rest_sum_to_the_hemisphere(axis: Floats, half_angle: float, order: int) -> None:
-    cap = shlight.cap_coefficients(axis, half_angle, order, dtype=np.float64)
-    rest = shlight.cap_coefficients(-axis, math.pi - half_angle, order, dtype=np.float64)
-    hemisphere = shlight.cap_coefficients([0, 0, 1], math.pi / 2, order, dtype=np.float64)
-    np.testing.assert_allclose(cap + rest, hemisphere, atol=1e-7)
-
-
-@reproducible
 @given(polygons(), st.integers(0, 5), st.floats(0.1, 0.9), orders)
 def test_winding_first_vertex_and_parts_of_polygons(vertices: Floats, first: int, share: float, order: int) -> None:
     light = Light("polygon", vertices)
@@ -133,16 +113,6 @@ def test_winding_first_vertex_and_parts_of_polygons(vertices: Floats, first: int
     whole, *parts = (Light("polygon", np.array(corners)) for corners in ([a, b, c], [a, b, cut], [a, cut, c]))
     total = sum(part.coefficients(order) for part in parts)
     np.testing.assert_allclose(total, whole.coefficients(order), atol=1e-10 * whole.whole())
-
-
-@reproducible
-@given(disks(), angles, orders)
-def test_any_conjugate_half_axes_are_the_same_ellipse(disk: Light, angle: float, order: int) -> None:
-    center, u, v = disk.points
-    c, s = math.cos(angle), math.sin(angle)
-    for axes in ((v, u), (-u, v), (c * u + s * v, c * v - s * u)):
-        same = replace(disk, points=np.array([center, *axes]))
-        np.testing.assert_allclose(same.coefficients(order), disk.coefficients(order), atol=1e-11 * disk.whole())
 
 
 # --- independent values -------------------------------------------------------------------------------------------

@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""The module keeps to its own Embree, whatever else lives in the process."""
+"""The module keeps to its own Embree, whatever else lives in the process, and to the best instruction set."""
 
 from __future__ import annotations
 
 import importlib.util
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from shlight import _core
 
 # A floor that a sphere light overhead lights, with a small plate between: rays that miss leave it black, rays that are
 # never blocked leave it without a shadow.
@@ -70,3 +73,23 @@ def test_dlopen_flags_are_restored() -> None:
     assert run("import sys; before = sys.getdlopenflags(); import shlight; print(before == sys.getdlopenflags())") == (
         "True"
     )
+
+
+def test_the_best_target_is_in_use_unless_another_is_forced() -> None:
+    def printed(**variables: str) -> subprocess.CompletedProcess[str]:
+        environment = {key: value for key, value in os.environ.items() if key != "SHLIGHT_KERNEL_TARGET"}
+        path = os.pathsep.join(part for part in sys.path if part)
+        return subprocess.run(
+            [sys.executable, "-c", "from shlight import _core; print(_core.kernel_target())"],
+            env={**environment, "PYTHONPATH": path, **variables},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    targets = _core.kernel_targets()
+    assert printed().stdout.strip() == targets[0]
+    for name in targets:
+        assert printed(SHLIGHT_KERNEL_TARGET=name).stdout.strip() == name
+    named = f"SHLIGHT_KERNEL_TARGET: this build has {', '.join(targets)} for this machine, not MMX"
+    assert named in printed(SHLIGHT_KERNEL_TARGET="MMX").stderr

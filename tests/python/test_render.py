@@ -18,6 +18,7 @@ from scene_cases import FACES, FLOOR, from_above, lit_floor
 import shlight
 from shlight import methods
 
+
 def floor_points(size: int, half_size: float = 2.0) -> NDArray[np.float64]:
     centers = (2 * (np.arange(size) + 0.5) / size - 1) * half_size
     x, y = np.meshgrid(centers, -centers)

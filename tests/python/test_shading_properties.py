@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from lobe_cubature import view_direction
-from shading_cases import albedo, cosines, random_light, random_quad, roughnesses
+from shading_cases import cosines, random_light, random_quad, roughnesses
 from strategies import Floats, polygons, reproducible, spheres
 
 import shlight
@@ -117,17 +117,6 @@ def test_scale_does_not_matter(
     np.testing.assert_array_equal(
         shlight.shade_polygons(scale * vertices, bsdf, cosine), shlight.shade_polygons(vertices, bsdf, cosine)
     )
-
-
-@reproducible
-@given(polygons(), st.integers(0, 5), roughnesses, cosines)
-def test_winding_and_first_vertex_do_not_matter(vertices: Floats, first: int, roughness: float, cosine: float) -> None:
-    bsdf = Bsdf.ggx(roughness, 1)
-    expected = shlight.shade_polygons(vertices, bsdf, cosine)
-    scale = albedo(bsdf, cosine)
-    for same in (vertices[::-1], np.roll(vertices, first, axis=0)):
-        # Cubature divides a polygon into a fan from its first vertex.
-        assert np.all(np.abs(shlight.shade_polygons(same, bsdf, cosine) - expected) <= 2e-3 * scale)
 
 
 def test_extremes_are_finite() -> None:
