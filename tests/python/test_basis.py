@@ -12,22 +12,6 @@ from strategies import directions, orders, reproducible
 import shlight
 
 
-def test_index_order_and_signs() -> None:
-    x, y, z = 0.48, -0.6, 0.64
-    expected = [
-        math.sqrt(1 / (4 * math.pi)),
-        math.sqrt(3 / (4 * math.pi)) * y,
-        math.sqrt(3 / (4 * math.pi)) * z,
-        math.sqrt(3 / (4 * math.pi)) * x,
-        math.sqrt(15 / (4 * math.pi)) * x * y,
-        math.sqrt(15 / (4 * math.pi)) * y * z,
-        math.sqrt(5 / (16 * math.pi)) * (3 * z * z - 1),
-        math.sqrt(15 / (4 * math.pi)) * z * x,
-        math.sqrt(15 / (16 * math.pi)) * (x * x - y * y),
-    ]
-    np.testing.assert_allclose(shlight.sh_basis([x, y, z], 3, dtype=np.float64), expected, atol=1e-15)
-
-
 @reproducible
 @given(directions())
 def test_agrees_with_scipy(direction: np.ndarray) -> None:

@@ -70,12 +70,6 @@ def test_shade_broadcasts_over_colors() -> None:
     np.testing.assert_allclose(radiance, np.einsum("ak,ack->ac", light, bsdf), rtol=1e-5)
 
 
-def test_nothing_is_reflected_below_the_horizon() -> None:
-    bsdf = Bsdf.ggx(0.5, 0.9) + Bsdf.lambert(0.5)
-    assert bsdf.evaluate([0.6, 0, -0.8], [0, 0, 1]) == 0
-    assert bsdf.evaluate([0, 0, 1], [0.6, 0, -0.8]) == 0
-
-
 @pytest.mark.parametrize("bad", [-0.1, math.nan, math.inf, [0.1, 0.2], [0.1, 0.2, -0.3]])
 def test_bad_colors_are_named(bad: object) -> None:
     with pytest.raises(ValueError, match="albedo"):

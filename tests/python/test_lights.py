@@ -167,16 +167,6 @@ def test_polygons_of_many_sides_come_near_disks(disk: Light, clip: bool) -> None
     np.testing.assert_allclose(disk.coefficients(8, clip=clip), polygon, atol=5e-3 * disk.whole())
 
 
-def test_facing_disk_is_a_cap() -> None:
-    radii = np.array([0.01, 0.5, 3.0])
-    half_axes = radii[:, None] * np.eye(3)[[0]], radii[:, None] * np.array([[0, 0.6, 0.8]])
-    center = np.array([0, 1.6, -1.2])
-    for clip in (False, True):
-        disk = shlight.disk_coefficients(center, *half_axes, 9, clip=clip, dtype=np.float64)
-        cap = shlight.cap_coefficients(center, np.arctan(radii / 2), 9, clip=clip, dtype=np.float64)
-        np.testing.assert_allclose(disk, cap, atol=1e-13)
-
-
 def test_hidden_lights_give_zeros() -> None:
     assert not shlight.sphere_coefficients([0, 0, -2], 1, 8).any()
     assert not shlight.cap_coefficients([0.1, 0, -1], 0.5, 8).any()
