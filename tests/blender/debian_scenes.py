@@ -12,7 +12,7 @@ import shlight_blender
 from shlight_blender.export import export_scene
 
 sys.path.append(str(Path(__file__).parent))
-from studio import Studio  # noqa: E402
+from studio import Studio
 
 FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
 GOLD = (0.8, 0.6, 0.2)

@@ -10,9 +10,7 @@ import bpy
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
+    from collections.abc import Callable, Sequence
 
 
 class Studio:
@@ -149,6 +147,27 @@ class Studio:
             else:
                 socket.default_value = value
         return made
+
+    def lit_floor(self) -> None:
+        """A diffuse floor under a square lamp, and the camera."""
+        self.plane(material=self.material())
+        self.area(150, size=0.8)
+        self.camera()
+
+    def on_points(self, points: Any, faces: Any, instance: Callable[[Any], Any], **inputs: Any) -> None:
+        """A mesh of points with what `instance` makes of its tree of geometry nodes on each; `inputs` as Scale."""
+        host = self.mesh("Host", points, faces)
+        tree = bpy.data.node_groups.new("Nodes", "GeometryNodeTree")
+        for direction in ("INPUT", "OUTPUT"):
+            tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
+        new, link = tree.nodes.new, tree.links.new
+        start, end, spread = new("NodeGroupInput"), new("NodeGroupOutput"), new("GeometryNodeInstanceOnPoints")
+        link(start.outputs[0], spread.inputs["Points"])
+        link(instance(tree), spread.inputs["Instance"])
+        for name, value in inputs.items():
+            spread.inputs[name].default_value = value
+        link(spread.outputs[0], end.inputs[0])
+        host.modifiers.new("Nodes", "NODES").node_group = tree
 
     def still_life(self) -> None:
         """An asymmetric group of boxes on a plane, coloured, under a rectangular area lamp."""

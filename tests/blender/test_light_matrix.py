@@ -14,7 +14,10 @@ bpy = pytest.importorskip("bpy", reason="tests/blender needs bpy: ./dev setup in
 SEEDS = (1, 2, 3, 4)
 # Properties of lamp and object; `at` is the place, lamps look down unless they are turned.
 LAMPS: dict[str, dict[str, Any]] = {
-    "point": {"kind": "POINT", "energy": 60, "shadow_soft_size": 0.4, "use_soft_falloff": False},
+    "point": {
+        "kind": "POINT", "energy": 60, "shadow_soft_size": 0.4, "use_soft_falloff": False, "color": (1.0, 0.7, 0.4),
+        "scale": (2.0, 0.5, 1.5),
+    },
     "point_disk": {"kind": "POINT", "energy": 60, "shadow_soft_size": 0.4, "use_soft_falloff": True},
     "point_small": {"kind": "POINT", "energy": 60, "shadow_soft_size": 0.0},
     "point_unnormalized": {"kind": "POINT", "energy": 20, "shadow_soft_size": 0.4, "normalize": False},
@@ -66,7 +69,10 @@ LAMPS: dict[str, dict[str, Any]] = {
     "not_diffuse": {"kind": "POINT", "energy": 60, "shadow_soft_size": 0.4, "visible_diffuse": False},
     "not_glossy": {"kind": "POINT", "energy": 60, "shadow_soft_size": 0.4, "visible_glossy": False},
 }  # fmt: skip
-QUICK = ("point", "point_small", "spot", "spot_small", "sun", "sun_small", "square", "spread", "disk", "ellipse")
+QUICK = {
+    "point", "point_disk", "point_small", "spot", "spot_small", "sun", "sun_small", "square", "spread", "disk",
+    "ellipse",
+}  # fmt: skip
 
 
 def set_up(studio: Any, lamp: str, glossy: bool) -> None:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -79,18 +78,6 @@ def test_lamp_in_a_collection_instance(studio: Any, kind: str, place: str) -> No
     assert studio.messages() == []
 
 
-@pytest.mark.parametrize(("kind", "place"), KINDS_IN_PLACES)
-def test_parented_lamp(studio: Any, kind: str, place: str) -> None:
-    """Turned by quarters inside its scaled parent, which shears nothing."""
-    stage(studio)
-    location, rotation, scale = PLACES[place]
-    parent = studio.link("Parent", None, location, rotation_euler=rotation, scale=scale)
-    child = lamp(studio, kind)
-    child.parent, child.rotation_euler = parent, (0, 0, QUARTER)
-    studio.compare(mean=3e-3, error=3e-3)
-    assert studio.messages() == []
-
-
 @pytest.mark.parametrize("kind", [pytest.param("POINT", marks=SLOW), "SPOT", pytest.param("SUN", marks=SLOW)])
 def test_lamp_sheared_by_its_parent(studio: Any, kind: str) -> None:
     stage(studio)
@@ -121,38 +108,24 @@ def test_nested_instances(studio: Any) -> None:
     studio.compare(mean=3e-3, error=3e-3)
 
 
-def nodes_on_points(studio: Any, instance: Callable[[Any], Any]) -> None:
-    """A mesh of three points with what `instance` makes of the node tree on each, turned and scaled."""
-    host = studio.mesh("Host", [(-1, 0, 1.6), (0.8, -0.2, 1.5), (0.3, 1, 1.8)], [])
-    tree = bpy.data.node_groups.new("Nodes", "GeometryNodeTree")
-    for direction in ("INPUT", "OUTPUT"):
-        if hasattr(tree, "interface"):
-            tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
-        else:
-            getattr(tree, f"{direction.lower()}s").new("NodeSocketGeometry", "Geometry")
-    new, link = tree.nodes.new, tree.links.new
-    start, end, spread = new("NodeGroupInput"), new("NodeGroupOutput"), new("GeometryNodeInstanceOnPoints")
-    link(start.outputs[0], spread.inputs["Points"])
-    link(instance(tree), spread.inputs["Instance"])
-    spread.inputs["Scale"].default_value = (1.0, 0.7, -1.3)
-    spread.inputs["Rotation"].default_value = (math.pi - 0.3, 0.2, 0.5)
-    link(spread.outputs[0], end.inputs[0])
-    host.modifiers.new("Nodes", "NODES").node_group = tree
+CORNERS = [(-1, 0, 1.6), (0.8, -0.2, 1.5), (0.3, 1, 1.8)]
 
 
-def from_collection(collection: Any) -> Callable[[Any], Any]:
-    def instance(tree: Any) -> Any:
+def on_points(studio: Any, collection: Any) -> None:
+    """The collection on three points, turned and mirrored, by geometry nodes."""
+
+    def instances(tree: Any) -> Any:
         node = tree.nodes.new("GeometryNodeCollectionInfo")
         node.inputs["Collection"].default_value = collection
         return node.outputs["Instances"]
 
-    return instance
+    studio.on_points(CORNERS, [], instances, Scale=(1.0, 0.7, -1.3), Rotation=(math.pi - 0.3, 0.2, 0.5))
 
 
 @pytest.mark.parametrize("kind", QUICK_KINDS)
 def test_lamps_of_geometry_nodes(studio: Any, kind: str) -> None:
     stage(studio)
-    nodes_on_points(studio, from_collection(collection_of(studio, lamp(studio, kind))))
+    on_points(studio, collection_of(studio, lamp(studio, kind)))
     studio.compare(mean=3e-3, error=3e-3)
     assert studio.messages() == []
 
@@ -160,8 +133,7 @@ def test_lamps_of_geometry_nodes(studio: Any, kind: str) -> None:
 @pytest.mark.parametrize("instance_type", ["VERTS", "FACES"])
 def test_lamps_of_a_parent_with_instances(studio: Any, instance_type: str) -> None:
     stage(studio)
-    corners = [(-1, 0, 1.6), (0.8, -0.2, 1.5), (0.3, 1, 1.8)]
-    host = studio.mesh("Host", corners, [(0, 1, 2)], instance_type=instance_type, show_instancer_for_render=False)
+    host = studio.mesh("Host", CORNERS, [(0, 1, 2)], instance_type=instance_type, show_instancer_for_render=False)
     lamp(studio, "AREA").parent = host
     studio.compare(mean=3e-3, error=3e-3)
 
@@ -171,18 +143,9 @@ def glowing(studio: Any, name: str = "Glow") -> Any:
     return studio.box((0.3, 0.6, 0.1), emission, name=name)
 
 
-@pytest.mark.parametrize("place", ["scaled", pytest.param("mirrored", marks=SLOW)])
-def test_emissive_mesh_in_a_collection_instance(studio: Any, place: str) -> None:
-    stage(studio)
-    place_instance(studio, collection_of(studio, glowing(studio)), place)
-    studio.scene.shlight.pixel_samples = 64
-    studio.compare(mean=3e-3, error=3e-3)
-    assert studio.messages() == []
-
-
 def test_emissive_meshes_of_geometry_nodes(studio: Any) -> None:
     stage(studio)
-    nodes_on_points(studio, from_collection(collection_of(studio, glowing(studio))))
+    on_points(studio, collection_of(studio, glowing(studio)))
     studio.scene.shlight.pixel_samples = 64
     studio.compare(mean=3e-3, error=3e-3)
     assert studio.messages() == []
