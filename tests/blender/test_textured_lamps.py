@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-bpy = pytest.importorskip("bpy", reason="tests/blender needs bpy: ./dev setup installs it")
+import shlight
+from shlight_blender.export.even_cells import cut_square
 
 Array = NDArray[np.float64]
 SLOW = pytest.mark.slow
@@ -123,111 +124,29 @@ def test_the_camera_sees_the_parts(studio: Any, shape: str) -> None:
 # --- without Cycles
 
 
-def lamps_of(studio: Any) -> list[tuple[str, dict[str, Any]]]:
-    """The lights that the file's lamp is handed to the core as."""
-    from shlight_blender.export.lights import add_lamp
-    from shlight_blender.report import ExportReport
-
-    class Recorder:
-        def __init__(self) -> None:
-            self.lights: list[tuple[str, dict[str, Any]]] = []
-
-        def add_polygon_light(self, vertices: Any, radiance: Any, **others: Any) -> None:
-            self.lights.append(("polygon", {"vertices": np.array(vertices), "radiance": radiance, **others}))
-
-        def add_disk_light(self, center: Any, u: Any, v: Any, radiance: Any, **others: Any) -> None:
-            self.lights.append(("disk", {"radiance": radiance, **others}))
-
-    (lamp,) = [made for made in studio.scene.objects if made.type == "LIGHT"]
-    bpy.context.view_layer.update()
-    recorder = Recorder()
-    add_lamp(recorder, lamp, np.array(lamp.matrix_world), ExportReport())  # type: ignore[arg-type]
-    return recorder.lights
-
-
-def flux(lights: list[tuple[str, dict[str, Any]]]) -> Array:
-    """Radiance times area, summed over polygons."""
-    total = np.zeros(3)
-    for _, light in lights:
-        corners = light["vertices"]
-        twice = np.cross(corners - corners[0], np.roll(corners, -1, axis=0) - corners[0]).sum(axis=0)
-        total += 0.5 * np.linalg.norm(twice) * np.array(light["radiance"])
-    return total
-
-
-@pytest.mark.parametrize("shape", ["RECTANGLE", "ELLIPSE"])
-def test_parts_keep_power_and_side(studio: Any, shape: str) -> None:
-    lamp = hang(studio, **RECTANGLE | {"shape": shape})
-    texture_of(lamp, studio.picture(picture(64, 64)))
-    lights = lamps_of(studio)
-    assert 8 <= len(lights) <= 64
-    u, v = np.meshgrid((np.arange(1024) + 0.5) / 1024, (np.arange(1024) + 0.5) / 1024)
-    inside = np.full_like(u, True, dtype=bool) if shape == "RECTANGLE" else np.hypot(u - 0.5, v - 0.5) < 0.5
-    texels = picture(64, 64)[(v[inside] * 64).astype(int), (u[inside] * 64).astype(int)]
-    np.testing.assert_allclose(flux(lights), 60.0 / math.pi * texels.mean(axis=0), rtol=2e-3)
-    for _, light in lights:
-        corners = light["vertices"]
-        normal = np.cross(corners - corners[0], np.roll(corners, -1, axis=0) - corners[0]).sum(axis=0)
-        assert normal @ np.array(lamp.matrix_world)[:3, 2] < 0.0
-
-
 @pytest.mark.parametrize(("shape", "kind"), [("SQUARE", "polygon"), ("DISK", "disk")])
-def test_nearly_one_color_is_a_plain_lamp(studio: Any, shape: str, kind: str) -> None:
-    studio.area(10.0, shape=shape, size=1.0)
-    lamp = studio.scene.objects[0]
-    texture_of(lamp, studio.picture(0.5 + 0.02 * picture()))
+def test_nearly_one_color_is_a_plain_lamp(studio: Any, monkeypatch: pytest.MonkeyPatch, shape: str, kind: str) -> None:
+    made: list[tuple[str, Any]] = []
+
+    class Scene(shlight.Scene):
+        def add_polygon_light(self, vertices: Any, radiance: Any, **_: Any) -> None:
+            made.append(("polygon", radiance))
+
+        def add_disk_light(self, center: Any, u: Any, v: Any, radiance: Any, **_: Any) -> None:
+            made.append(("disk", radiance))
+
+    monkeypatch.setattr(shlight, "Scene", Scene)
+    texture_of(studio.area(10.0, shape=shape, size=1.0), studio.picture(0.5 + 0.02 * picture()))
     studio.camera()
-    ((made, light),) = lamps_of(studio)
-    assert made == kind
+    assert studio.messages() == []
+    ((found, radiance),) = made
+    assert found == kind
     area = 1.0 if shape == "SQUARE" else math.pi / 4
     mean = 0.5 + 0.02 * np.array([0.75, 0.4, 0.3])
-    np.testing.assert_allclose(light["radiance"], 10.0 / math.pi / area * mean, rtol=1e-3)
-    assert studio.messages() == []
-
-
-def test_a_black_picture_gives_no_light(studio: Any) -> None:
-    texture_of(hang(studio), studio.picture(np.zeros((4, 4, 3))))
-    assert lamps_of(studio) == []
-
-
-def test_a_disk_is_covered_evenly() -> None:
-    from shlight_blender.export.textured_lamps import disk_places
-
-    random = np.random.default_rng(1).random((200000, 2))
-    x, y = (2.0 * disk_places(random) - 1.0).T
-    assert np.hypot(x, y).max() <= 1.0 + 1e-12
-    # Even over the disk: x has the variance 1/4, so has y, and r² is even over 0 … 1.
-    np.testing.assert_allclose([(x * x).mean(), (y * y).mean(), (x * y).mean()], [0.25, 0.25, 0.0], atol=3e-3)
-    counts = np.histogram(x * x + y * y, bins=10, range=(0.0, 1.0))[0]
-    assert np.abs(counts - 20000).max() <= 4.5 * math.sqrt(18000)
-    # Its sides keep their places.
-    np.testing.assert_allclose(disk_places(np.array([(1.0, 0.5), (0.5, 1.0)])), [(1.0, 0.5), (0.5, 1.0)], atol=1e-15)
-
-
-def bars(places: Array) -> Array:
-    """Three upright bars on black, of edges that no halving meets, and a bright corner."""
-    u, v = places.T
-    lit = ((u > 0.1) & (u < 0.17)) | ((u > 0.4) & (u < 0.63)) | (u > 0.9)
-    return np.stack([lit * 1.0, lit * 0.5, 4.0 * ((u > 0.9) & (v > 0.7))], axis=1)
-
-
-def test_cells_meet_edges_and_keep_the_light() -> None:
-    from shlight_blender.export.even_cells import cut_square
-
-    cells = cut_square(bars, (1000, 500), 64)
-    assert len(cells.bounds) <= 9
-    assert cells.error <= 0.01
-    left, bottom, right, top = cells.bounds.T
-    area = (right - left) * (top - bottom)
-    assert area.sum() == pytest.approx(1.0, rel=1e-12)
-    np.testing.assert_allclose(area @ cells.radiance, [0.4, 0.2, 0.12], rtol=1e-9)
-    middles = np.stack([(left + right) / 2, (bottom + top) / 2], axis=1)
-    np.testing.assert_allclose(cells.radiance, bars(middles), atol=1e-12)
+    np.testing.assert_allclose(radiance, 10.0 / math.pi / area * mean, rtol=1e-3)
 
 
 def test_cells_leave_out_what_they_say() -> None:
-    from shlight_blender.export.even_cells import cut_square
-
     pixels = np.random.default_rng(6).random((8, 8, 3)) ** 2
 
     def radiance(places: Array) -> Array:
@@ -243,14 +162,6 @@ def test_cells_leave_out_what_they_say() -> None:
     assert (seen == 1).all()
     exact = np.kron(pixels, np.ones((32, 32, 1)))
     assert cells.error == pytest.approx(np.sqrt(((drawn - exact) ** 2).sum() / (exact**2).sum()), rel=1e-6)
-
-
-def test_a_checker_whose_halves_are_alike_is_cut() -> None:
-    from shlight_blender.export.even_cells import cut_square
-
-    cells = cut_square(lambda p: ((p * 4).astype(int).sum(axis=1) % 2)[:, None] * np.ones(3), (256, 256), 64)
-    assert len(cells.bounds) == 16
-    assert cells.error == 0.0
 
 
 def test_what_is_not_supported_is_named(studio: Any) -> None:
