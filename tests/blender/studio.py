@@ -198,6 +198,13 @@ class Studio:
             background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
             background.inputs["Color"].default_value = (*color, 1)
 
+    def ball_in_view_of_the_world(self) -> None:
+        """A diffuse ball and a mirror, with much of the world around them."""
+        self.ball(material=self.material(Color=(0.8, 0.8, 0.8)), rings=48)
+        mirror = self.material("ShaderNodeBsdfAnisotropic", Color=(0.9, 0.9, 0.9), Roughness=0.0)
+        self.ball(radius=0.6, material=mirror, rings=48, location=(-1.8, 0, 0))
+        self.camera((0.5, -4, 0.6), (0, 0, 0), angle=1.6)
+
     def floors(self) -> None:
         """A diffuse floor and a glossy plate, and a camera that sees nothing else; many samples."""
         self.plane(material=self.material(Color=(0.7, 0.7, 0.6)))

@@ -65,22 +65,6 @@ def test_render_border(studio: Any, crop: bool) -> None:
     assert rel_mse(part, expected) < 1e-2
 
 
-def test_film_transparent_alpha_and_background(studio: Any) -> None:
-    studio.ball(material=studio.material(Color=(0.8, 0.5, 0.3)))
-    studio.area()
-    studio.camera(target=(0.8, 0, 0))
-    studio.plain_world((0.0, 0.0, 0.0))
-    studio.scene.render.film_transparent = True
-    studio.compare(error=1e-2, alpha=2e-3)
-    studio.plain_world((0.2, 0.4, 0.6))
-    image, _ = studio.compare(error=1e-2, alpha=2e-3)
-    studio.scene.render.film_transparent = False
-    opaque = studio.compare(error=1e-2)[0]
-    np.testing.assert_array_equal(opaque[..., 3], 1.0)
-    empty = image[..., 3] == 0
-    np.testing.assert_allclose(opaque[empty][:, :3], np.broadcast_to((0.2, 0.4, 0.6), (empty.sum(), 3)), rtol=1e-6)
-
-
 # --- lamps
 
 

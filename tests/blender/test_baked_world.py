@@ -6,13 +6,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import bpy
 import numpy as np
 import pytest
 
 from shlight_blender.engine import ShlightRenderEngine
-from shlight_blender.export import bake, export_scene
-from shlight_blender.report import ExportCancelled
+from shlight_blender.export import bake
 
 # Angles and turns without symmetry.
 ELEVATION, TURN = 0.5, 0.8
@@ -78,25 +76,14 @@ def ball_and_floor(studio: Any) -> None:
     studio.plane(material=studio.material(Color=(0.7, 0.6, 0.5)))
     studio.ball(material=studio.material(Color=(0.8, 0.7, 0.6)), rings=48, location=(0, 0, 1))
     studio.camera(target=(0, 0, 0.8))
-    studio.scene.render.resolution_x, studio.scene.render.resolution_y = 64, 48
     studio.scene.shlight.shadow_rays = 64
     studio.scene.cycles.samples = 512
 
 
-def ball_in_view_of_the_world(studio: Any) -> None:
-    """A diffuse ball and a mirror, with much of the world around them."""
-    studio.ball(material=studio.material(Color=(0.8, 0.8, 0.8)), rings=48)
-    mirror = studio.material("ShaderNodeBsdfAnisotropic", Color=(0.9, 0.9, 0.9), Roughness=0.0)
-    studio.ball(radius=0.6, material=mirror, rings=48, location=(-1.8, 0, 0))
-    studio.camera((0.5, -4, 0.6), (0, 0, 0), angle=1.6)
-    studio.scene.render.resolution_x, studio.scene.render.resolution_y = 64, 48
-    studio.scene.shlight.pixel_samples = 64
-
-
-@pytest.mark.parametrize("place", [pytest.param(ball_and_floor, marks=pytest.mark.slow), ball_in_view_of_the_world])
-def test_sky(studio: Any, place: Any) -> None:
-    place(studio)
+def test_sky(studio: Any) -> None:
+    studio.ball_in_view_of_the_world()
     set_sky(studio, disc=False)
+    studio.scene.shlight.pixel_samples = 64
     studio.compare(error=2e-3)
     assert studio.messages() == []
 
@@ -118,8 +105,9 @@ def test_sky_with_its_sun(studio: Any, sun: dict[str, float]) -> None:
 
 
 def test_gradient_and_noise(studio: Any) -> None:
-    ball_in_view_of_the_world(studio)
+    studio.ball_in_view_of_the_world()
     set_gradient(studio)
+    studio.scene.shlight.pixel_samples = 64
     studio.compare(error=2e-3)
     assert studio.messages() == []
 
@@ -165,7 +153,7 @@ def test_frame_of_an_animated_world(studio: Any) -> None:
 
 
 def test_renders_of_the_same_world_bake_it_once(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    ball_in_view_of_the_world(studio)
+    studio.ball_in_view_of_the_world()
     set_gradient(studio)
     started: list[Any] = []
     run = bake._run
@@ -208,24 +196,14 @@ def sleeping(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     return started
 
 
-def test_a_bake_can_be_stopped(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    set_sky(studio, disc=False)
-    started = sleeping(monkeypatch)
-    said: list[str] = []
-    assert bake.bake_world(studio.scene.world, studio.scene, lambda text: bool(said.append(text))) is None
-    assert said == ["Baking the world"]
-    assert started[0].returncode < 0
-    studio.camera()
-    with pytest.raises(ExportCancelled):
-        export_scene(bpy.context.evaluated_depsgraph_get(), waiting=lambda _: False)
-
-
 def test_a_render_that_is_stopped_in_the_bake_is_empty(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     studio.camera()
     set_sky(studio, disc=False)
     started = sleeping(monkeypatch)
-    monkeypatch.setattr(ShlightRenderEngine, "_wait", lambda self, text: False)
+    said: list[str] = []
+    monkeypatch.setattr(ShlightRenderEngine, "_wait", lambda self, text: bool(said.append(text)))
     assert not studio.render("SHLIGHT").any()
+    assert said == ["Baking the world"]
     assert started[0].returncode < 0
 
 
