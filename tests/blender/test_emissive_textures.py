@@ -164,17 +164,6 @@ def test_lookups_as_in_cycles(
     assert difference.max() <= 0.05  # where texels end within a pixel, Cycles' samples are few
 
 
-def test_a_mapping_node_of_nothing_is_one_place(studio: Any) -> None:
-    made = screen(studio, studio.picture(gradient()), OFF_CENTRE, 1.0)
-    mapped(made, "POINT", "Map")
-    tree = made.data.materials[0].node_tree
-    (link,) = tree.nodes["Mapping"].inputs["Vector"].links
-    tree.links.remove(link)
-    reference, found = looked_up(studio, made)
-    assert np.ptp(found, axis=0).max() <= 1e-9
-    np.testing.assert_allclose(found, reference, rtol=1e-3)
-
-
 def test_strength_from_a_picture_and_principled(studio: Any) -> None:
     made = screen(studio, studio.picture(gradient()), OFF_CENTRE)
     material = made.data.materials[0]

@@ -120,30 +120,23 @@ def test_lamps_that_are_not_supported_are_named(studio: Any) -> None:
         assert part in text
 
 
-def test_nodes_of_a_lamp(studio: Any) -> None:
+@pytest.mark.parametrize("use_nodes", [True, False])
+def test_nodes_of_a_lamp(studio: Any, use_nodes: bool) -> None:
+    """Materials and worlds of Blender 5.0 ignore the switch, lamps do later."""
     studio.plane(material=studio.material())
     lamp = studio.area(80, (0.5, -1, 2)).data
     lamp.use_nodes = True
     emission = next(node for node in lamp.node_tree.nodes if node.type == "EMISSION")
     emission.inputs["Color"].default_value = (1.0, 0.5, 0.2, 1)
     emission.inputs["Strength"].default_value = 1.7
+    lamp.use_nodes = use_nodes
     studio.camera()
     studio.compare()
     assert messages() == []
-    noise = lamp.node_tree.nodes.new("ShaderNodeTexNoise")
-    lamp.node_tree.links.new(noise.outputs[0], emission.inputs["Color"])
-    assert [line for line in messages() if "Light 'Area', node 'Noise Texture'" in line]
-
-
-def test_nodes_of_a_lamp_that_are_switched_off(studio: Any) -> None:
-    """Materials and worlds of Blender 5.0 ignore the switch, lamps do later."""
-    studio.plane(material=studio.material())
-    lamp = studio.area(80, (0.5, -1, 2)).data
-    lamp.use_nodes = True
-    next(node for node in lamp.node_tree.nodes if node.type == "EMISSION").inputs["Strength"].default_value = 1.7
-    lamp.use_nodes = False
-    studio.camera()
-    studio.compare()
+    if use_nodes:
+        noise = lamp.node_tree.nodes.new("ShaderNodeTexNoise")
+        lamp.node_tree.links.new(noise.outputs[0], emission.inputs["Color"])
+        assert [line for line in messages() if "Light 'Area', node 'Noise Texture'" in line]
 
 
 # --- reports
@@ -204,10 +197,21 @@ def test_equal_findings_are_one_message() -> None:
     assert len(report) == 2
 
 
-@pytest.mark.parametrize("missing", ["camera", "light", "panoramic", "flat camera"])
+CANNOT_BE_RENDERED = {
+    "camera": "no camera",
+    "light": "no light",
+    "light of any size": "Light 'Sun': its scale is 0",
+    "panoramic": "pano cameras",
+    "flat camera": "scale 0",
+}
+
+
+@pytest.mark.parametrize("missing", CANNOT_BE_RENDERED)
 def test_scenes_that_cannot_be_rendered(studio: Any, missing: str) -> None:
     studio.plane()
-    if missing != "light":
+    if missing == "light of any size":
+        studio.lamp("SUN", 3, (0, 0, 3), scale=(0, 0, 0))
+    elif missing != "light":
         studio.area()
     if missing != "camera":
         camera = studio.camera()
@@ -215,16 +219,7 @@ def test_scenes_that_cannot_be_rendered(studio: Any, missing: str) -> None:
             camera.data.type = "PANO"
         if missing == "flat camera":
             camera.scale = (1, 0, 1)
-    words = {"camera": "no camera", "light": "no light", "panoramic": "pano cameras", "flat camera": "scale 0"}
-    with pytest.raises(ExportError, match=words[missing]):
-        export()
-
-
-def test_without_light_the_lamps_left_out_are_named(studio: Any) -> None:
-    studio.plane()
-    studio.camera()
-    studio.lamp("SUN", 3, (0, 0, 3), scale=(0, 0, 0)).name = "Sol"
-    with pytest.raises(ExportError, match="Light 'Sol': its scale is 0"):
+    with pytest.raises(ExportError, match=CANNOT_BE_RENDERED[missing]):
         export()
 
 

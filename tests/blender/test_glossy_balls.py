@@ -15,8 +15,6 @@ import pytest
 from shlight.metrics import mean_ratio, reference_rel_mse, rel_mse
 from shlight_blender.preview.scene import without_shadows
 
-bpy = pytest.importorskip("bpy", reason="tests/blender needs bpy: ./dev setup installs it")
-
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "glossy_balls.py"
 SIDE = 64  # pixels of a picture, which one ball fills
 LENS = 270.0  # focal length [mm] that makes it do so

@@ -205,19 +205,6 @@ def test_frames_of_an_animated_world(
     assert len(bakes) == 3
 
 
-def test_a_driver_on_an_object(studio: Any, bakes: list[bake.Baked]) -> None:
-    fac = set_world(studio).nodes["MixRGB"].inputs["Fac"]
-    moved = studio.plane()
-    driver = fac.driver_add("default_value").driver
-    variable = driver.variables.new()
-    variable.targets[0].id, variable.targets[0].data_path = moved, "location.x"
-    driver.expression = variable.name
-    bake_now(studio)
-    moved.location.x = 0.5
-    assert bake_now(studio) is bake_now(studio)
-    assert len(bakes) == 2
-
-
 def test_what_does_not_change_the_picture(studio: Any, bakes: list[bake.Baked]) -> None:
     tree = set_world(studio)
     bake_now(studio)

@@ -9,8 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-bpy = pytest.importorskip("bpy", reason="tests/blender needs bpy: ./dev setup installs it")
-
 SEEDS = (1, 2, 3, 4)
 # Properties of lamp and object; `at` is the place, lamps look down unless they are turned.
 LAMPS: dict[str, dict[str, Any]] = {

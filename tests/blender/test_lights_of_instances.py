@@ -6,10 +6,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import bpy
 import numpy as np
 import pytest
-
-bpy = pytest.importorskip("bpy", reason="tests/blender needs bpy: ./dev setup installs it")
 
 KINDS: dict[str, dict[str, Any]] = {
     "AREA": {"energy": 60, "shape": "RECTANGLE", "size": 0.9, "size_y": 0.4},

@@ -6,10 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+import bpy
 import numpy as np
 import pytest
 
-bpy = pytest.importorskip("bpy", reason="tests/blender needs bpy: ./dev setup installs it")
+from shlight_blender.export.blackbody import blackbody_rgb
 
 
 def shine_on(studio: Any, material: Any, *, sharp: bool = False) -> None:
@@ -119,14 +120,9 @@ def test_mixed_and_added_shaders_in_groups(studio: Any) -> None:
     group.interface.new_socket("Share", in_out="INPUT", socket_type="NodeSocketFloat")
     group.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
     new, link = group.nodes.new, group.links.new
-    inside, outside = new("NodeGroupInput"), new("NodeGroupOutput")
-    diffuse, glossy, emission = (new(f"ShaderNode{kind}") for kind in ("BsdfDiffuse", "BsdfAnisotropic", "Emission"))
-    mix, add, reroute, muted = (
-        new("ShaderNodeMixShader"),
-        new("ShaderNodeAddShader"),
-        new("NodeReroute"),
-        new("ShaderNodeGamma"),
-    )
+    inside, outside, reroute = new("NodeGroupInput"), new("NodeGroupOutput"), new("NodeReroute")
+    kinds = ("BsdfDiffuse", "BsdfAnisotropic", "Emission", "MixShader", "AddShader", "Gamma")
+    diffuse, glossy, emission, mix, add, muted = (new(f"ShaderNode{kind}") for kind in kinds)
     glossy.distribution, glossy.inputs["Roughness"].default_value = "GGX", 0.5
     emission.inputs["Strength"].default_value = 2.0
     muted.inputs["Gamma"].default_value, muted.mute = 3.0, True
@@ -174,8 +170,6 @@ def test_blackbody_emission(studio: Any, temperature: float) -> None:
 
 def test_blackbody_over_its_whole_range() -> None:
     """Blender computes the colour of a lamp's temperature as Cycles computes the Blackbody node's."""
-    from shlight_blender.export.blackbody import blackbody_rgb
-
     lamp = bpy.data.lights.new("Lamp", "POINT")
     if not hasattr(lamp, "use_temperature"):
         pytest.skip("lamps of this version of Blender have no temperature")

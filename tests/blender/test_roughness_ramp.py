@@ -8,10 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 from numpy.typing import NDArray
-
-bpy = pytest.importorskip("bpy", reason="tests/blender needs bpy: ./dev setup installs it")
 
 Array = NDArray[np.float64]
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "roughness_ramp.py"

@@ -9,8 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-bpy = pytest.importorskip("bpy", reason="tests/blender needs bpy: ./dev setup installs it")
-
 SLOW = pytest.mark.slow
 # Lamps at the origin of the view; area lamps look at the camera.
 LAMPS: dict[str, dict[str, Any]] = {
@@ -19,10 +17,6 @@ LAMPS: dict[str, dict[str, Any]] = {
     "spot": {
         "kind": "SPOT", "energy": 200, "shadow_soft_size": 0.5, "spot_size": 0.8, "spot_blend": 1.0,
         "use_soft_falloff": False, "rotation_euler": (-1.45, 0, 0.1),
-    },
-    "spot_disk": {
-        "kind": "SPOT", "energy": 200, "shadow_soft_size": 0.5, "spot_size": 0.8, "spot_blend": 1.0,
-        "rotation_euler": (-1.45, 0, 0.1),
     },
     "rectangle": {"kind": "AREA", "energy": 60, "shape": "RECTANGLE", "size": 1.4, "size_y": 0.6},
     "turned_away": {
