@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import bpy
@@ -103,6 +104,20 @@ def test_degenerate_faces_and_many_emitters(studio: Any) -> None:
 
 
 # --- lamps
+
+
+def test_a_spread_below_a_tenth_of_a_degree_is_drawn_as_that(studio: Any) -> None:
+    studio.lit_floor()
+    lamp = studio.scene.objects["Area"].data
+    lamp.spread = math.radians(0.11)
+    assert messages() == []
+    lamp.spread = math.radians(0.09)
+    (line,) = messages()
+    assert "Light 'Area': a spread below 0.1° is drawn as that" in line
+    expected = studio.render("SHLIGHT")
+    lamp.spread = 0.0
+    np.testing.assert_array_equal(studio.render("SHLIGHT"), expected)
+    assert expected[..., :3].any()
 
 
 def test_lamps_that_are_not_supported_are_named(studio: Any) -> None:
