@@ -200,9 +200,9 @@ class Studio:
 
     def ball_in_view_of_the_world(self) -> None:
         """A diffuse ball and a mirror, with much of the world around them."""
-        self.ball(material=self.material(Color=(0.8, 0.8, 0.8)), rings=48)
+        self.ball(material=self.material(Color=(0.8, 0.8, 0.8)), rings=32)
         mirror = self.material("ShaderNodeBsdfAnisotropic", Color=(0.9, 0.9, 0.9), Roughness=0.0)
-        self.ball(radius=0.6, material=mirror, rings=48, location=(-1.8, 0, 0))
+        self.ball(radius=0.6, material=mirror, rings=32, location=(-1.8, 0, 0))
         self.camera((0.5, -4, 0.6), (0, 0, 0), angle=1.6)
 
     def floors(self) -> None:

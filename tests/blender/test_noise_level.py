@@ -23,7 +23,7 @@ def smooth_pixels(image: NDArray[np.float32], reach: int = 1, contrast: float = 
 def test_smooth_surfaces_lie_within_three_standard_errors(shared_scene: Any) -> None:
     studio = shared_scene("cornell_box.blend")
     render, cycles = studio.scene.render, studio.scene.cycles
-    render.resolution_x = render.resolution_y = 160
+    render.resolution_x = render.resolution_y = 120
     # The emitter as two lamps, one for each side: Cycles finds emitting faces seen at grazing angles too dark, by
     # 0.1 to 5 % of the closed form, and lamps of the same shape exact.
     bpy.data.objects["Light"].hide_render = True

@@ -81,20 +81,15 @@ def gradient(width: int = 32, height: int = 16) -> Any:
     return image
 
 
-@pytest.mark.parametrize("rotation", [None, (0, 0, 1.0), (0.4, -0.7, 2.0)])
-def test_orientation_of_a_picture(studio: Any, rotation: tuple[float, float, float] | None) -> None:
+@pytest.mark.parametrize("kind", ["", "POINT", "TEXTURE", "VECTOR", "NORMAL"])
+def test_orientation_of_a_picture(studio: Any, kind: str) -> None:
+    """By itself, and turned by each kind of Mapping node."""
     studio.ball_in_view_of_the_world()
-    set_picture(studio, gradient(), rotation)
+    texture = set_picture(studio, gradient(), (0.4, -0.7, 2.0) if kind else None)
+    if kind:
+        texture.inputs["Vector"].links[0].from_node.vector_type = kind
     studio.compare(mean=2e-3, error=1e-3)
     assert studio.messages() == []
-
-
-@pytest.mark.parametrize("kind", ["TEXTURE", "VECTOR", "NORMAL"])
-def test_kinds_of_mapping(studio: Any, kind: str) -> None:
-    studio.ball_in_view_of_the_world()
-    texture = set_picture(studio, gradient(), (0.4, -0.7, 2.0))
-    texture.inputs["Vector"].links[0].from_node.vector_type = kind
-    studio.compare(mean=2e-3, error=1e-3)
 
 
 def test_pictures_of_bytes_and_strength(studio: Any) -> None:
