@@ -26,14 +26,6 @@ LAMPS: dict[str, dict[str, Any]] = {
         "use_soft_falloff": False,
     },
     "spot_small": {"kind": "SPOT", "energy": 200, "shadow_soft_size": 0.0, "spot_size": 0.9, "spot_blend": 0.3},
-    "spot_scaled": {
-        "kind": "SPOT", "energy": 200, "shadow_soft_size": 0.1, "spot_size": 0.8, "spot_blend": 0.4,
-        "scale": (1.6, 0.7, 1.2), "rotation_euler": (0.2, 0.3, 0.5),
-    },
-    "spot_mirrored": {
-        "kind": "SPOT", "energy": 200, "shadow_soft_size": 0.1, "spot_size": 0.8, "spot_blend": 0.4,
-        "scale": (-1.0, 1.0, -1.5), "rotation_euler": (math.pi, 0.2, 0.0),
-    },
     "spot_unnormalized": {
         "kind": "SPOT", "energy": 200, "shadow_soft_size": 0.3, "spot_size": 1.0, "spot_blend": 0.5,
         "normalize": False,
@@ -44,7 +36,6 @@ LAMPS: dict[str, dict[str, Any]] = {
     "sun_unnormalized": {
         "kind": "SUN", "energy": 30, "angle": 0.3, "rotation_euler": (0.4, 0.5, 0), "normalize": False,
     },
-    "sun_scaled": {"kind": "SUN", "energy": 3, "angle": 0.1, "rotation_euler": (2.7, 0.5, 0), "scale": (2, 3, -0.5)},
     "square": {"kind": "AREA", "energy": 60, "shape": "SQUARE", "size": 0.8},
     "rectangle": {"kind": "AREA", "energy": 60, "shape": "RECTANGLE", "size": 1.4, "size_y": 0.5},
     "spread": {"kind": "AREA", "energy": 60, "shape": "RECTANGLE", "size": 1.4, "size_y": 0.5, "spread": math.pi / 3},

@@ -27,12 +27,6 @@ PLACES: dict[str, tuple[Any, Any, Any]] = {
     "upside_down": ((0.2, 0.2, 1.6), (math.pi - 0.3, 0.2, 0.4), (1, 1, -1)),
 }
 
-KINDS_IN_PLACES = [
-    pytest.param(kind, place, marks=() if (kind, place) in {("AREA", "mirrored"), ("SPOT", "scaled")} else SLOW)
-    for kind in KINDS
-    for place in PLACES
-]
-
 
 def stage(studio: Any) -> None:
     """A floor, a ball and a camera."""
@@ -43,8 +37,8 @@ def stage(studio: Any) -> None:
     studio.scene.render.resolution_x = studio.scene.render.resolution_y = 64
 
 
-def lamp(studio: Any, kind: str, **properties: Any) -> Any:
-    values = {**KINDS[kind], **properties}
+def lamp(studio: Any, kind: str) -> Any:
+    values = dict(KINDS[kind])
     return studio.lamp(kind, values.pop("energy"), (0, 0, 0), **values)
 
 
@@ -65,7 +59,14 @@ def place_instance(studio: Any, collection: Any, place: str) -> Any:
     return empty
 
 
-@pytest.mark.parametrize(("kind", "place"), KINDS_IN_PLACES)
+@pytest.mark.parametrize(
+    ("kind", "place"),
+    [
+        pytest.param(kind, place, marks=() if (kind, place) in {("AREA", "mirrored"), ("SPOT", "scaled")} else SLOW)
+        for kind in KINDS
+        for place in PLACES
+    ],
+)
 def test_lamp_in_a_collection_instance(studio: Any, kind: str, place: str) -> None:
     stage(studio)
     inside = lamp(studio, kind)
