@@ -10,9 +10,11 @@ namespace {
 
 template <class T>
 void cap(const CapLight& light, int order, bool clip, const Options& /*options*/, T* coefficients) {
-    const Cap<T> made = light.kind == CapLight::Kind::sphere ? Cap<T>::of_sphere(light.axis, light.size)
-                                                             : Cap<T>::about_axis(light.axis, light.size);
-    cap_coefficients(made, order, clip, coefficients);
+    const Vec3<T> axis(light.axis);
+    const auto size = static_cast<T>(light.size);
+    const auto coefficients_of = light.kind == CapLight::Kind::sphere ? sphere_coefficients<T> : cap_coefficients<T>;
+    coefficients_of({&axis, 1}, {&size, 1}, order, clip, {coefficients, static_cast<std::size_t>(order * order)},
+                    Output::cached);
 }
 
 template <class T>

@@ -57,7 +57,7 @@ class CubatureLobe : public LobeIntegrator {
             const CubatureSum sum = cap_cubature(shape_, view_, cap, static_cast<int>(rules));
             return {sum.value, sum.points};
         }
-        const double solid_angle = Cap<double>::inside(cap).solid_angle;
+        const double solid_angle = clipped_solid_angle(cap);
         if (!whole) {
             return over_patches(KeptRegion::of_cap(cap, true), solid_angle);
         }

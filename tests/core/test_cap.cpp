@@ -147,7 +147,8 @@ std::vector<T> coefficients(const CapInput& input, int order, bool clip) {
     } else if (input.kind == Kind::angle) {
         cap_coefficients<T>(std::span(&axis, 1), std::span(&size, 1), order, clip, result);
     } else {
-        cap_coefficients(Cap<T>::of_facing_disk(axis, size), order, clip, result.data());
+        const Circle circle = circle_of_facing_disk(input.axis, input.size);
+        circle_coefficients<T>({&circle, 1}, order, clip, result);
     }
     return result;
 }

@@ -117,7 +117,7 @@ TEST(CapSolve, AgreesWithFactorization) {
         const double depth = half * random.uniform(0.2, 0.8);
         const double tilt = kPi / 2 + (i % 2 == 0 ? depth : -depth);
         const Vec3d axis(std::sin(tilt), 0, std::cos(tilt));
-        cap_coefficients(Cap<double>::about_axis(axis, half), order, true, coefficients.data());
+        cap_coefficients<double>({&axis, 1}, {&half, 1}, order, true, coefficients);
         for (int l = 1; l < order; ++l) {
             const std::vector<double> expected = solved_band(l, tilt, half);
             for (int m = 0; m <= l; ++m) {

@@ -124,7 +124,8 @@ void compare_facing_disks_with_caps(double tolerance) {
         const double radius = as_float(glm::length(center) * random.log_uniform(1e-3, 100));
         const EllipseInput disk = {center, radius * plane.u, radius * plane.v};
         std::vector<T> cap(coefficient_count(order));
-        cap_coefficients(Cap<T>::of_facing_disk(center, radius), order, clip, cap.data());
+        const Circle circle = circle_of_facing_disk(center, radius);
+        circle_coefficients<T>({&circle, 1}, order, clip, cap);
         const auto computed = coefficients<T>(disk, order, clip);
         const double whole = coefficients<T>(disk, 1, false)[0];
         for (std::size_t k = 0; k < cap.size(); ++k) {

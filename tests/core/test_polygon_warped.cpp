@@ -13,6 +13,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@
 #include "random_polygon.h"
 #include "shlight/polygon.h"
 #include "shlight/warp.h"
+#include "warped_terms.h"
 
 namespace shlight {
 namespace {
@@ -34,60 +36,15 @@ using truth::WarpInput;
 
 constexpr double kSphere = 4 * std::numbers::pi;
 
-/// WarpArrays of `count` views that share a warp.
-class SharedWarp {
-  public:
-    SharedWarp(const WarpInput& warp, std::size_t count) {
-        const double r = 1 - warp.narrowness;
-        const double gamma = (1 + r * r) / (warp.narrowness * (1 + r));
-        const double speed = 2 * r / (1 + r * r);
-        const double across = std::sin(warp.tilt);
-        const double along = gamma * std::cos(warp.tilt);
-        const double length = std::hypot(across, along);
-        const std::array<double, 9> members = {
-            across,    std::cos(warp.tilt), speed,          warp.narrowness * warp.narrowness / (1 + r * r),
-            gamma,     across / length,     along / length, -speed * along / length,
-            1 / length};
-        for (std::size_t k = 0; k < members.size(); ++k) {
-            members_[k].assign(count, members[k]);
-        }
-    }
-    WarpArrays arrays() const {
-        const auto at = [this](std::size_t k) { return members_[k].data(); };
-        return {at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8)};
-    }
-
-  private:
-    std::array<std::vector<double>, 9> members_;
-};
-
-/// Of a polygon under lobes with one warp, each with its own terms: row after row, of cosine_count(order) numbers.
-std::vector<float> shaded(const Vertices& vertices, const WarpInput& warp, const std::vector<float>& terms, int order) {
-    const auto row = static_cast<std::size_t>(cosine_count(order));
-    const std::size_t count = terms.size() / row;
-    const std::size_t stride = (row + 15) / 16 * 16;
-    std::vector<float> padded(count * stride);
-    std::vector<std::uint32_t> views(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        std::copy_n(terms.data() + i * row, row, padded.data() + i * stride);
-        views[i] = static_cast<std::uint32_t>(i);
-    }
-    const SharedWarp shared(warp, count);
-    const std::vector<std::uint32_t> polygon(count, 0);
-    std::vector<float> values(count, std::numeric_limits<float>::quiet_NaN());
-    shade_polygons(vertices, static_cast<int>(vertices.size()), polygon,
-                   {true, shared.arrays(), padded.data(), stride, order}, views, values);
-    return values;
+auto shading_of(const Vertices& vertices) {
+    return [&vertices](std::span<const std::uint32_t> lights, const LobeArrays& lobe,
+                       std::span<const std::uint32_t> views, std::span<float> values) {
+        shade_polygons(vertices, static_cast<int>(vertices.size()), lights, lobe, views, values);
+    };
 }
 
-/// What the image of a polygon has at m ≥ 0: what it reflects of lobes that are one harmonic each.
 std::vector<float> warped_terms(const Vertices& vertices, const WarpInput& warp, int order) {
-    const auto row = static_cast<std::size_t>(cosine_count(order));
-    std::vector<float> terms(row * row);
-    for (std::size_t k = 0; k < row; ++k) {
-        terms[k * (row + 1)] = 1;
-    }
-    return shaded(vertices, warp, terms, order);
+    return testing::warped_terms(warp, order, shading_of(vertices));
 }
 
 struct Input {
@@ -154,17 +111,8 @@ constexpr auto kClasses = std::to_array<PolygonClass>({
 });
 
 double error_of(const Input& input, int order, const truth::Coefficients& reference) {
-    const std::vector<float> terms = warped_terms(input.vertices, input.warp, order);
-    double largest = 0;
-    for (int l = 0; l < order; ++l) {
-        for (int m = 0; m <= l; ++m) {
-            const auto k = static_cast<std::size_t>(coefficient_index(l, m));
-            const auto term = static_cast<double>(terms[static_cast<std::size_t>(cosine_index(l, m))]);
-            const double error = std::abs((reference.high[k] - term) + reference.low[k]);
-            largest = error <= largest ? largest : error;
-        }
-    }
-    return largest / std::max(reference.high[0], 1e-3 * kSphere);
+    return testing::largest_error(reference, order, warped_terms(input.vertices, input.warp, order)) /
+           std::max(reference.high[0], 1e-3 * kSphere);
 }
 
 void compare(std::size_t count, int order, std::uint64_t seed) {
@@ -234,7 +182,8 @@ TEST(PolygonWarpedLimits, ShadingIsTheDotProduct) {
         std::generate(lobe.begin(), lobe.end(), [&] { return static_cast<float>(random.uniform(-1, 1)); });
         const std::vector<float> light = warped_terms(input.vertices, input.warp, order);
         const double expected = std::inner_product(light.begin(), light.end(), lobe.begin(), 0.0);
-        EXPECT_NEAR(shaded(input.vertices, input.warp, lobe, order)[0], expected, kTolerance) << describe(input);
+        EXPECT_NEAR(testing::shaded(input.warp, lobe, order, shading_of(input.vertices))[0], expected, kTolerance)
+            << describe(input);
     }
 }
 

@@ -71,7 +71,8 @@ struct Light {
         axis = random.at_tilt(random.uniform(0, std::numbers::pi / 2 + 0.7 * half));
         samples = testing::clipped_cap_samples(axis, half, 48);
         coefficients.resize(coefficient_count(16));
-        cap_coefficients(Cap<float>::about_axis(Vec3f(axis), static_cast<float>(half)), 16, true, coefficients.data());
+        const Circle circle = circle_about_axis(axis, half);
+        circle_coefficients<float>({&circle, 1}, 16, true, coefficients);
     }
 
     double solid_angle() const {

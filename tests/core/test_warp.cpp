@@ -19,7 +19,6 @@ Warp random_warp(RandomInput& random) {
 
 TEST(Warp, WithoutOneDirectionsStay) {
     const Warp none;
-    EXPECT_TRUE(none.is_identity());
     EXPECT_EQ(none.horizon_height(), 0);
     const Vec3d d = glm::normalize(Vec3d(0.3, -0.2, 0.5));
     EXPECT_LE(glm::length(none.warped(d) - d), 1e-15);
@@ -49,25 +48,6 @@ TEST(Warp, EnlargesWhatLiesAlongItsAxis) {
     }
 }
 
-TEST(Warp, TakesCirclesToCircles) {
-    RandomInput random(2);
-    for (int i = 0; i < 5000; ++i) {
-        const double narrowness = random.log_uniform(1e-3, 1);
-        const Warp warp(random.uniform(-1.5, 1.5), narrowness);
-        const double half = random.uniform(0.001, 3.14);
-        const Circle circle{random.direction(), std::cos(half), std::sin(half)};
-        const Circle image = warp.warped(circle);
-        const Vec3d side = glm::normalize(glm::cross(circle.axis, random.direction()));
-        const Vec3d rim = circle.cosine * circle.axis + circle.sine * side;
-        const Vec3d inside = std::cos(0.7 * half) * circle.axis + std::sin(0.7 * half) * side;
-        // A rounding of the inputs is enlarged by at most (1 + r) / (1 - r).
-        EXPECT_LE(std::abs(glm::dot(warp.warped(rim), image.axis) - image.cosine),
-                  1e-15 * (2 - narrowness) / narrowness);
-        EXPECT_GT(glm::dot(warp.warped(inside), image.axis), image.cosine);
-        EXPECT_LE(std::abs(image.cosine * image.cosine + image.sine * image.sine - 1), 1e-12);
-    }
-}
-
 TEST(Warp, TakesTheHorizonToItsHeight) {
     RandomInput random(3);
     for (int i = 0; i < 2000; ++i) {
@@ -81,7 +61,7 @@ TEST(Warp, TakesTheHorizonToItsHeight) {
     }
 }
 
-TEST(Warp, DensityAndTangentAreDerivatives) {
+TEST(Warp, DensityIsADerivative) {
     RandomInput random(4);
     for (int i = 0; i < 2000; ++i) {
         const Warp warp(random.uniform(-1.5, 1.5), random.log_uniform(0.02, 1));
@@ -94,8 +74,6 @@ TEST(Warp, DensityAndTangentAreDerivatives) {
                    (2 * h);
         };
         // Central differences: h² times a third derivative of at most about density^(3/2) / narrowness, and rounding.
-        const double scale = std::sqrt(warp.density(u));
-        EXPECT_LE(glm::length(moved(a) - warp.tangent(u, warp.direction(u), a)), scale * 1e-6);
         EXPECT_LE(std::abs(glm::length(glm::cross(moved(a), moved(b))) / warp.density(u) - 1), 1e-6);
     }
 }

@@ -35,7 +35,6 @@ class Warp {
     /// Precondition: |tilt| < π/2 [rad], 0 < narrowness ≤ 1.
     Warp(double tilt, double narrowness);
 
-    bool is_identity() const { return speed_ == 0; }
     double horizon_height() const { return horizon_height_; }  ///< z_0 = u_z along the horizon
     double horizon_sine() const { return horizon_sine_; }      ///< √(1 - z_0²)
 
@@ -43,21 +42,10 @@ class Warp {
     Vec3d warped(const Vec3d& direction) const;
     /// The inverse; u unit.
     Vec3d direction(const Vec3d& warped) const;
-    /// What a step along the warped sphere becomes: du at u, with ω = direction(u) → dω.
-    Vec3d tangent(const Vec3d& warped, const Vec3d& direction, const Vec3d& step) const;
     /// dω/du at u, as areas.
     double density(const Vec3d& warped) const;
-    /// The image of a circle, inside to inside. sine' / sine of the result is the circle's scale.
-    Circle warped(const Circle& circle) const;
 
   private:
-    /// (c'; L') of the 4-vector (c; L), given the differences from 1 that a strong boost would cancel:
-    /// gap = |L| - L·axis and lack = |L| - c, with |L| = 1.
-    struct Boosted {
-        Vec3d vector;
-        double cosine;
-    };
-    Boosted boosted(const Vec3d& vector, double gap, double lack) const;
     Vec3d axis() const { return {-sin_tilt_, 0, cos_tilt_}; }
 
     double sin_tilt_ = 0, cos_tilt_ = 1;

@@ -152,8 +152,9 @@ struct ArcLanes {
 /// part = visit.open(l, share), visit.put(part, m, N_m) for m = l … 1 and visit.close(part, l, N_0,
 /// extra): the integral of degree m is share · N_m, and `extra` more for m = 0.
 ///
-/// kHorizon: whether caps may contain the horizon; else `extra` is 0 and costs nothing.
-template <class T, bool kScaled, bool kHorizon>
+/// kAny: for caps that contain the horizon too, and for tilts whose powers would leave the range of T; else `extra` is
+/// 0 and costs nothing.
+template <class T, bool kAny>
 class UncrossedBands {
     using D = Lanes<T>;
 
@@ -162,9 +163,9 @@ class UncrossedBands {
         : cap_(cap),
           light_(cap.cos_half, cap.sin_half),
           horizon_(cap.height, cap.horizon_sine),
-          turn_(kScaled ? cap.cos_tilt : hn::Div(cap.cos_tilt, cap.sin_tilt)),
+          turn_(kAny ? cap.cos_tilt : hn::Div(cap.cos_tilt, cap.sin_tilt)),
           square_(hn::Mul(cap.sin_tilt, cap.sin_tilt)) {
-        powers_in_lanes<T, kScaled>(cap.sin_tilt, order, sine_powers_);
+        powers_in_lanes<T, kAny>(cap.sin_tilt, order, sine_powers_);
     }
 
     template <class Visit>
@@ -178,7 +179,7 @@ class UncrossedBands {
             step_down(m, s, visit, part);
         }
         auto extra = hn::Zero(d);
-        if constexpr (kHorizon) {
+        if constexpr (kAny) {
             extra = hn::Mul(hn::Mul(hn::Mul(scale, cap_.arc), horizon_.next(l)), hn::Set(d, band.at_pole));
         }
         visit.close(part, l, s.n, extra);
@@ -196,7 +197,7 @@ class UncrossedBands {
         const D d;
         const CapConstants<T>& constants = CapConstants<T>::get();
         const auto n = hn::Set(d, constants.bands[l].diagonal);
-        return {kScaled ? n : hn::Mul(n, sine_powers_[l]), hn::Zero(d), turn_,
+        return {kAny ? n : hn::Mul(n, sine_powers_[l]), hn::Zero(d), turn_,
                 &constants.steps[at(static_cast<int>(l), 0)]};
     }
 
@@ -204,9 +205,9 @@ class UncrossedBands {
     template <class Visit>
     HWY_INLINE void step_down(std::size_t m, Down& s, Visit& visit, typename Visit::Part& part) const {
         const D d;
-        visit.put(part, m, kScaled ? hn::Mul(s.n, sine_powers_[m]) : s.n);
+        visit.put(part, m, kAny ? hn::Mul(s.n, sine_powers_[m]) : s.n);
         auto fall = hn::Mul(hn::Set(d, s.steps[m].down_fall), s.n_above);
-        fall = kScaled ? hn::Mul(fall, square_) : fall;
+        fall = kAny ? hn::Mul(fall, square_) : fall;
         s.n_above = s.n;
         s.n = hn::MulSub(hn::Mul(hn::Set(d, s.steps[m].down_climb), s.turn), s.n, fall);
     }
@@ -225,9 +226,7 @@ class UncrossedBands {
 ///
 /// N̂ = N / sin^m θ and Q̂ = Q sin^{m-1} θ take the place of N and Q, which would leave the range of T; likewise
 /// P̂ = P̄ / s_0^m on the horizon.
-///
-/// kPlane: the horizon is z = 0, where R_m = 0 for odd l - m and the slopes of P̄_l^m for even l - m.
-template <class T, bool kPlane>
+template <class T>
 class CrossedBands {
     using D = Lanes<T>;
 
@@ -237,13 +236,11 @@ class CrossedBands {
           light_(cap.cos_half, cap.sin_half),
           arc_(cap, order),
           turn_(cap.cos_tilt),
-          square_(hn::Mul(cap.sin_tilt, cap.sin_tilt)) {
+          square_(hn::Mul(cap.sin_tilt, cap.sin_tilt)),
+          horizon_turn_(cap.height),
+          horizon_square_(hn::Mul(cap.horizon_sine, cap.horizon_sine)) {
         powers_in_lanes<T, true>(cap.sin_tilt, order, sine_powers_);
-        if constexpr (!kPlane) {
-            horizon_turn_ = cap.height;
-            horizon_square_ = hn::Mul(cap.horizon_sine, cap.horizon_sine);
-            powers_in_lanes<T, true>(cap.horizon_sine, order, horizon_powers_);
-        }
+        powers_in_lanes<T, true>(cap.horizon_sine, order, horizon_powers_);
     }
 
     /// band = visit.open(l), visit.term(band, m, N_m, x_m) for m = 0 … l, visit.close(band, l, g, share, *this): the
@@ -259,8 +256,7 @@ class CrossedBands {
         const auto n1 = null_[1];
         const auto n1n1 = hn::Mul(hn::Mul(n1, n1), square_);
         auto green = hn::Div(hn::Set(d, band.casoratian), hn::MulAdd(n0, n0, n1n1));
-        green = hn::Mul(green, cap_.sin_tilt);
-        green = kPlane ? green : hn::Mul(green, cap_.horizon_sine);
+        green = hn::Mul(green, hn::Mul(cap_.sin_tilt, cap_.horizon_sine));
         auto sums = visit.open(l);
         const auto dot = hn::Mul(go_up(l, steps, visit, sums), green);
         // ∫ P_l(ω·L): Stokes on the Laplacian. Along the light's edge ω·L is constant, along the horizon it is expanded
@@ -290,35 +286,21 @@ class CrossedBands {
     /// N_m with its power of sinθ.
     HWY_INLINE V<D> full(V<D> n, std::size_t m) const { return hn::Mul(n, sine_powers_[m]); }
 
-    /// Adds degree m > 0 to the sums and steps to m - 1. kValue, kSlope: whether the horizon has one there.
-    template <bool kValue, bool kSlope>
+    /// Adds degree m > 0 to the sums and steps to m - 1.
     HWY_INLINE void down_site(std::size_t m, const CapStep<T>& step, Down& s) {
         const D d;
         null_.put(m, s.n);
-        if constexpr (kPlane) {
-            above_.put(m, s.u);
-            if constexpr (kValue) {
-                s.u = hn::MulAdd(s.n, hn::Mul(hn::Set(d, step.on_plane), arc_.moment[m]), s.u);
-            }
-            if constexpr (kSlope) {
-                s.along = hn::MulAdd(full(s.n, m), hn::Mul(hn::Set(d, step.on_plane), arc_.weight[m]), s.along);
-            }
-        } else {
-            above_.put(m, s.u);
-            auto right = hn::Neg(hn::Mul(s.h, arc_.moment[m]));
-            auto slope = hn::Mul(hn::Set(d, step.ladder), s.h_above);
-            slope = hn::Mul(slope, horizon_square_);
-            slope = hn::NegMulAdd(hn::Mul(all(d, static_cast<double>(m)), horizon_turn_), s.h, slope);
-            right = hn::Mul(right, horizon_powers_[m]);
-            slope = hn::Mul(slope, horizon_powers_[m]);
-            right_.put(m, right);
-            s.u = hn::MulAdd(s.n, right, s.u);
-            s.along = hn::MulAdd(full(s.n, m), hn::Mul(slope, arc_.weight[m]), s.along);
-            const auto h = lowered(s.h, s.h_above, step, horizon_turn_, horizon_square_);
-            s.h_above = s.h;
-            s.h = h;
-        }
-        s.u = hn::Mul(s.u, cap_.sin_tilt);
+        above_.put(m, s.u);
+        const auto right = hn::Neg(hn::Mul(hn::Mul(s.h, arc_.moment[m]), horizon_powers_[m]));
+        auto slope = hn::Mul(hn::Mul(hn::Set(d, step.ladder), s.h_above), horizon_square_);
+        slope = hn::NegMulAdd(hn::Mul(all(d, static_cast<double>(m)), horizon_turn_), s.h, slope);
+        slope = hn::Mul(slope, horizon_powers_[m]);
+        right_.put(m, right);
+        s.u = hn::Mul(hn::MulAdd(s.n, right, s.u), cap_.sin_tilt);
+        s.along = hn::MulAdd(full(s.n, m), hn::Mul(slope, arc_.weight[m]), s.along);
+        const auto h = lowered(s.h, s.h_above, step, horizon_turn_, horizon_square_);
+        s.h_above = s.h;
+        s.h = h;
         const auto n = lowered(s.n, s.n_above, step, s.turn, square_);
         s.n_above = s.n;
         s.n = n;
@@ -329,29 +311,15 @@ class CrossedBands {
         const D d;
         const auto zero = hn::Zero(d);
         const auto diagonal = hn::Set(d, band.diagonal);
-        Down s{diagonal, zero, zero, zero, zero, zero, turn_};
-        if constexpr (!kPlane) {
-            s.h = diagonal;
-        }
-        std::size_t m = l;
-        for (; m >= 2; m -= 2) {
-            down_site<true, !kPlane>(m, steps[m], s);
-            down_site<!kPlane, true>(m - 1, steps[m - 1], s);
-        }
-        if (m == 1) {
-            down_site<true, !kPlane>(1, steps[1], s);
+        Down s{diagonal, zero, diagonal, zero, zero, zero, turn_};
+        for (std::size_t m = l; m > 0; --m) {
+            down_site(m, steps[m], s);
         }
         null_.put(0, s.n);
         above_.put(0, s.u);
-        if constexpr (kPlane) {
-            const auto last = hn::Mul(hn::Set(d, steps[0].on_plane), arc_.weight[0]);
-            return m == 1 ? hn::MulAdd(s.n, last, s.along) : s.along;
-        } else {
-            auto slope = hn::Mul(hn::Set(d, steps[0].ladder), s.h_above);
-            slope = hn::Mul(slope, horizon_square_);
-            const auto along = hn::MulAdd(s.n, hn::Mul(slope, arc_.weight[0]), s.along);
-            return hn::Mul(hn::Set(d, band.four_pi_over), along);
-        }
+        const auto slope = hn::Mul(hn::Mul(hn::Set(d, steps[0].ladder), s.h_above), horizon_square_);
+        const auto along = hn::MulAdd(s.n, hn::Mul(slope, arc_.weight[0]), s.along);
+        return hn::Mul(hn::Set(d, band.four_pi_over), along);
     }
 
     struct Up {
@@ -362,14 +330,10 @@ class CrossedBands {
     };
 
     /// Adds degree m > 0 and steps to m + 1.
-    template <bool kValue, class Visit>
+    template <class Visit>
     HWY_INLINE void up_site(std::size_t m, const CapStep<T>& step, Up& s, Visit& visit, typename Visit::Band& sums) {
         const D d;
-        s.p = hn::Mul(s.p, cap_.sin_tilt);
-        if constexpr (kValue) {
-            const auto right = kPlane ? hn::Mul(hn::Set(d, step.on_plane), arc_.moment[m]) : right_[m];
-            s.p = hn::MulAdd(s.q, right, s.p);
-        }
+        s.p = hn::MulAdd(s.q, right_[m], hn::Mul(s.p, cap_.sin_tilt));
         s.u = above_[m];
         const auto n = null_[m];
         const auto x = hn::MulAdd(n, s.p, hn::Mul(s.q, s.u));
@@ -392,16 +356,9 @@ class CrossedBands {
         const auto x0 = hn::Mul(q0, u0);
         visit.term(sums, 0, n0, x0);
         Up s{n0, q0, hn::Zero(d), u0, hn::Zero(d), turn_};
-        std::size_t m = 1;
-        if (l % 2 == 0) {
-            up_site<!kPlane>(1, steps[1], s, visit, sums);
-            m = 2;
+        for (std::size_t m = 1; m <= l; ++m) {
+            up_site(m, steps[m], s, visit, sums);
         }
-        for (; m < l; m += 2) {
-            up_site<true>(m, steps[m], s, visit, sums);
-            up_site<!kPlane>(m + 1, steps[m + 1], s, visit, sums);
-        }
-        up_site<true>(l, steps[l], s, visit, sums);
         return hn::MulAdd(n0, x0, hn::Add(s.dot, s.dot));
     }
 

@@ -6,7 +6,7 @@
 
 #include "base/checks.h"
 #include "base/exact_sums.h"
-#include "caps/cap_kernel.h"
+#include "caps/circle_batch.h"
 
 namespace shlight {
 
@@ -23,10 +23,8 @@ void check_sphere(const Vec3d& center, double radius, double epsilon) {
 
 template <class T>
 void check_spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, double epsilon) {
-    if (!spheres_are_sound(centers.data(), radii.data(), centers.size())) {
-        for (std::size_t i = 0; i < centers.size(); ++i) {
-            check_sphere(Vec3d(centers[i]), static_cast<double>(radii[i]), epsilon);
-        }
+    for (std::size_t i = sound_spheres(centers.data(), radii.data(), centers.size()); i < centers.size(); ++i) {
+        check_sphere(Vec3d(centers[i]), static_cast<double>(radii[i]), epsilon);
     }
 }
 

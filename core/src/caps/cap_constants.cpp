@@ -47,18 +47,13 @@ template <class T>
 void fill_steps(int l, const PlaneRow& values, CapStep<T>* steps) {
     const double* ladder = &LegendreConstants<double>::get().ladder[at(l, 0)];
     const auto r = [](double x) { return static_cast<T>(x); };
-    const double four_pi_over = 4 * std::numbers::pi / (2 * l + 1);
     for (int m = 0; m <= l; ++m) {
-        const double above = ladder[m] * values[static_cast<std::size_t>(m) + 1];
-        const double below = m > 0 ? ladder[m - 1] * values[static_cast<std::size_t>(m) - 1] : -above;
-        const double slope = (above - below) / 2;
         steps[m] = {r(m > 0 ? 2 * m / ladder[m - 1] : 0),
                     r(m > 0 ? ladder[m] / ladder[m - 1] : 0),
                     r(m > 0 && m < l ? 2 * m / ladder[m] : 0),
                     r(m > 0 && m < l ? ladder[m - 1] / ladder[m] : 0),
                     r(m > 0 ? 2 / ladder[m - 1] : 0),
                     r(m > 0 ? 2 * values[static_cast<std::size_t>(m)] / ladder[m - 1] : 0),
-                    r((l - m) % 2 == 0 ? -values[static_cast<std::size_t>(m)] : four_pi_over * slope),
                     r(ladder[m])};
     }
 }

@@ -16,7 +16,6 @@ struct CapStep {
     T up_climb, up_fall;      ///< 2m / c_m, c_{m-1} / c_m: from m to m+1, 1 ≤ m < l
     T down_share;             ///< 2 / c_{m-1}
     T down_plane;             ///< 2 P̄_l^m(0) / c_{m-1}, zero for odd l-m
-    T on_plane;               ///< even l-m: -P̄_l^m(0); odd l-m: 4π/(2l+1) dP̄_l^m/dz(0)
     T ladder;                 ///< c_m
 };
 

@@ -21,20 +21,22 @@
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
-/// As Cap (cap.h).
+/// A cap {u : u·L ≥ cosσ} and what the horizon u_z ≥ z_0 keeps of it, as the recurrences want them. The horizon is the
+/// plane z = 0 or its image through a warp, which lies below it.
 template <class D>
 struct CapLanes {
-    V<D> cos_tilt, sin_tilt;
-    V<D> cos_azimuth, sin_azimuth;
-    V<D> cos_half, sin_half;
-    V<D> arc, cos_arc, sin_arc;
-    V<D> edge;
+    V<D> cos_tilt, sin_tilt;        ///< θ, the angle between the cap's axis L and z
+    V<D> cos_azimuth, sin_azimuth;  ///< the axis' azimuth about z
+    V<D> cos_half, sin_half;        ///< half angle σ, 0 < σ ≤ π
+    V<D> arc;                       ///< φ_a: the cap covers the horizon within φ_a of its axis' azimuth; 0 … π
+    V<D> cos_arc, sin_arc;
+    V<D> edge;         ///< ψ_0: the cap's edge is above the horizon within ψ_0 of its highest point; 0 … π
     V<D> edge_height;  ///< z_0 - cosσ cosθ = sinσ sinθ cos(edge)
-    V<D> solid_angle;
-    V<D> height, horizon_sine;
+    V<D> solid_angle;  ///< of the kept region
+    V<D> height, horizon_sine;  ///< z_0 and √(1 - z_0²), which a narrow warp needs beside it
 };
 
-/// As Circle (warp.h), and two squares that would lose digits if they were taken of rounded members.
+/// As CircleArrays, and a square that would lose digits if it were taken of rounded members.
 template <class D>
 struct CircleLanes {
     V<D> x, y, z;
@@ -89,22 +91,6 @@ HWY_INLINE void set_arc(D d, V<D> chord, V<D> arc_cosine, CapLanes<D>& cap) {
     cap.sin_arc = hn::IfThenElseZero(some, hn::Mul(chord, across));
 }
 
-/// A whole cap, without a horizon.
-template <class D>
-HWY_INLINE CapLanes<D> unclipped_cap(D d, const CircleLanes<D>& circle) {
-    CapLanes<D> cap;
-    set_axis(d, circle, cap);
-    const auto zero = hn::Zero(d);
-    cap.arc = cap.sin_arc = zero;
-    cap.cos_arc = all(d, 1);
-    cap.edge = all(d, std::numbers::pi);
-    cap.edge_height = zero;
-    cap.solid_angle = hn::Mul(all(d, 2 * std::numbers::pi), one_minus(d, circle.cosine, circle.sine));
-    cap.height = zero;
-    cap.horizon_sine = all(d, 1);
-    return cap;
-}
-
 /// A cap that crosses the plane z = 0, in the precision of D: given crossing_squared with all digits, nothing cancels
 /// but the last sum of solid angles below the horizon.
 template <class D>
@@ -138,7 +124,7 @@ HWY_INLINE CapLanes<D> cap_across_plane(D d, const CircleLanes<D>& circle) {
 template <class D>
 struct ContactLanes {
     CircleLanes<D> light;
-    V<D> height, sine;   // the horizon
+    V<D> height, sine;   // the horizon, height ≤ 0
     V<D> chord_squared;  // not positive where the circles do not cross
     V<D> corner;         // cosθ - cosσ z_0: at the crossing
     V<D> arc;            // cosσ - z_0 cosθ: at the horizon's pole
@@ -170,42 +156,36 @@ HWY_INLINE void complete(D d, ContactLanes<D>& contact) {
         hn::IfThenElse(direct, hn::NegMulAdd(c, contact.corner, other), hn::Mul(half, hn::Sub(sum, difference)));
 }
 
-/// Area of the lens that two crossing circles enclose. Gauss–Bonnet for caps up to hemispheres, others are turned
-/// inside out; with E the excess of the triangle and β the exterior angle at the crossing,
-///   Ω/2 = ψ_0 (1 - cosσ) + φ_a (1 - z_0) - E = ψ_0 (1 - cosσ) + (β - ψ_0) - φ_a z_0.
-/// The first form is for high horizons, where E is small; the second for low ones, where β - ψ_0 is one arctangent of
-/// numbers as small as the light.
+/// Area of what a horizon with z_0 ≤ 0 keeps of a light that crosses it: the light's less that of the lens below the
+/// horizon. Gauss–Bonnet for caps up to hemispheres, lights above them are turned inside out; with h = -z_0, with E the
+/// excess of the triangle and β the exterior angle at the crossing, the lens of ψ_0 and φ_a seen from below has
+///   Ω/2 = ψ_0 (1 - cosσ) + φ_a (1 - h) - E = ψ_0 (1 - cosσ) + (β - ψ_0) - φ_a h.
+/// The first form is for high h, where E is small; the second for low ones, where β - ψ_0 is one arctangent of numbers
+/// as small as the light.
 template <class D>
-HWY_INLINE V<D> lens_area(D d, const ContactLanes<D>& contact, V<D> chord, V<D> arc, V<D> edge) {
-    const auto zero = hn::Zero(d);
+HWY_INLINE V<D> kept_area(D d, const ContactLanes<D>& contact, V<D> chord, V<D> arc, V<D> edge) {
     const auto one = all(d, 1);
     const auto pi = all(d, std::numbers::pi);
-    const auto wide = hn::Lt(contact.light.cosine, zero);
-    const auto below = hn::Lt(contact.height, zero);
-    const auto inverted = hn::Xor(wide, below);
+    const auto two_pi = all(d, 2 * std::numbers::pi);
+    const auto wide = hn::Lt(contact.light.cosine, hn::Zero(d));
     const auto cosine = hn::Abs(contact.light.cosine);
-    const auto height = hn::Abs(contact.height);
-    const auto tilt = hn::IfThenElse(inverted, hn::Neg(contact.light.z), contact.light.z);
-    const auto corner = hn::IfThenElse(inverted, hn::Neg(contact.corner), contact.corner);
-    const auto light_cosine = hn::IfThenElse(below, hn::Neg(contact.edge), contact.edge);
+    const auto depth = hn::Abs(contact.height);
+    const auto tilt = hn::IfThenElse(wide, contact.light.z, hn::Neg(contact.light.z));
+    const auto corner = hn::IfThenElse(wide, contact.corner, hn::Neg(contact.corner));
     arc = hn::IfThenElse(wide, hn::Sub(pi, arc), arc);
-    edge = hn::IfThenElse(below, hn::Sub(pi, edge), edge);
     const auto lack = hn::Div(hn::Mul(contact.light.sine, contact.light.sine), hn::Add(one, cosine));
-    const auto short_of_pole = hn::Div(hn::Mul(contact.sine, contact.sine), hn::Add(one, height));
+    const auto short_of_pole = hn::Div(hn::Mul(contact.sine, contact.sine), hn::Add(one, depth));
 
-    const auto high = hn::Gt(height, all(d, 0.5));
-    const auto y = hn::Mul(chord, hn::IfThenElse(high, one, hn::Mul(hn::Add(height, tilt), lack)));
-    const auto x = hn::IfThenElse(high, hn::Add(hn::Add(one, tilt), hn::Add(cosine, height)),
-                                  hn::NegMulAdd(light_cosine, corner, contact.chord_squared));
+    const auto deep = hn::Gt(depth, all(d, 0.5));
+    const auto y = hn::Mul(chord, hn::IfThenElse(deep, one, hn::Mul(hn::Add(depth, tilt), lack)));
+    const auto x = hn::IfThenElse(deep, hn::Add(hn::Add(one, tilt), hn::Add(cosine, depth)),
+                                  hn::MulAdd(contact.edge, corner, contact.chord_squared));
     const auto angle = arctangent(d, y, x);
     const auto rest =
-        hn::IfThenElse(high, hn::MulSub(arc, short_of_pole, hn::Add(angle, angle)), hn::NegMulAdd(arc, height, angle));
-    const auto half_area = hn::MulAdd(edge, lack, rest);
-    auto area = hn::Add(half_area, half_area);
-    const auto two_pi = all(d, 2 * std::numbers::pi);
-    area = hn::IfThenElse(below, hn::MulSub(two_pi, lack, area), area);
-    const auto above = hn::IfThenElse(below, hn::Add(one, height), short_of_pole);
-    return hn::IfThenElse(wide, hn::MulSub(two_pi, above, area), area);
+        hn::IfThenElse(deep, hn::MulSub(arc, short_of_pole, hn::Add(angle, angle)), hn::NegMulAdd(arc, depth, angle));
+    const auto half_lens = hn::MulAdd(hn::Sub(pi, edge), lack, rest);
+    const auto area = hn::MulSub(two_pi, lack, hn::Add(half_lens, half_lens));
+    return hn::IfThenElse(wide, hn::MulSub(two_pi, hn::Add(one, depth), area), area);
 }
 
 /// What is kept where circles do not cross: they are nested, or apart, or together they cover the sphere. `corner`
@@ -245,7 +225,7 @@ HWY_INLINE CapLanes<D> cap_in_contact(D d, const ContactLanes<D>& contact) {
     const auto chord = root(d, contact.chord_squared);
     set_arc(d, chord, contact.arc, cap);
     cap.edge = arctangent(d, chord, contact.edge);
-    cap.solid_angle = hn::Max(hn::Zero(d), lens_area(d, contact, chord, cap.arc, cap.edge));
+    cap.solid_angle = hn::Max(hn::Zero(d), kept_area(d, contact, chord, cap.arc, cap.edge));
     if (!hn::AllTrue(d, crossing)) {
         CapLanes<D> other;
         keep_uncrossed(d, contact, other);
@@ -258,46 +238,32 @@ HWY_INLINE CapLanes<D> cap_in_contact(D d, const ContactLanes<D>& contact) {
     return cap;
 }
 
-/// A cap that does not cross the plane z = 0.
+/// A cap that does not cross the plane z = 0, or of which all is kept, as if the horizon were the point below.
 template <class D>
-HWY_INLINE CapLanes<D> cap_off_plane(D d, const CircleLanes<D>& circle) {
+HWY_INLINE CapLanes<D> cap_off_plane(D d, const CircleLanes<D>& circle, bool whole) {
     CapLanes<D> cap;
     set_axis(d, circle, cap);
     const auto zero = hn::Zero(d);
     cap.height = cap.edge_height = zero;
     cap.horizon_sine = all(d, 1);
-    keep_uncrossed(d, ContactLanes<D>{circle, zero, cap.horizon_sine, zero, circle.z, zero, zero}, cap);
+    keep_uncrossed(
+        d, ContactLanes<D>{circle, all(d, whole ? -1 : 0), cap.horizon_sine, zero, whole ? zero : circle.z, zero, zero},
+        cap);
     return cap;
 }
 
-/// sin²θ and sin²σ - L_z² = sin²θ - cos²σ from the other members, the latter from the smaller pair: near hemispheres
-/// may be seen straight above or below.
-template <class D>
-HWY_INLINE void set_squares(D /*d*/, CircleLanes<D>& circle) {
-    circle.tilt_squared = hn::MulAdd(circle.x, circle.x, hn::Mul(circle.y, circle.y));
-    const auto by_sine = hn::Mul(hn::Sub(circle.sine, circle.z), hn::Add(circle.sine, circle.z));
-    const auto by_cosine = hn::NegMulAdd(circle.cosine, circle.cosine, circle.tilt_squared);
-    circle.crossing_squared = hn::IfThenElse(hn::Lt(circle.sine, hn::Abs(circle.cosine)), by_sine, by_cosine);
+/// A cap against the plane z = 0, all lanes alike, or without a horizon.
+template <bool kCrossing, class D>
+HWY_INLINE CapLanes<D> cap_at_plane(D d, const CircleLanes<D>& circle, bool whole = false) {
+    return kCrossing ? cap_across_plane(d, circle) : cap_off_plane(d, circle, whole);
 }
 
-/// A light against the image of the plane z = 0. The warp is a Lorentz transform of the circles' 4-vectors (cosine;
-/// axis): their product is invariant, so where a light crosses the horizon is known from before the warp, with all
-/// digits. shrink: sine of the image ÷ sine of the light.
-template <class D>
-HWY_INLINE ContactLanes<D> contact_of_image(D d, const CircleLanes<D>& light, const CircleLanes<D>& image, V<D> shrink,
-                                            V<D> height, V<D> horizon_sine) {
-    const auto zero = hn::Zero(d);
-    const auto scale = hn::Mul(shrink, horizon_sine);
-    ContactLanes<D> contact{image, height, horizon_sine, zero, zero, zero, zero};
-    contact.chord_squared = hn::Mul(light.crossing_squared, hn::Mul(scale, scale));
-    contact.corner = hn::Mul(light.z, scale);
-    complete(d, contact);
-    return contact;
-}
-
-/// The same with the image that Warp::warped gives.
+/// A light through a warp against the image of the plane z = 0. The warp is a Lorentz transform of the circles'
+/// 4-vectors (cosine; axis): their product is invariant, so where a light crosses the horizon is known from before the
+/// warp, with all digits.
 template <class D>
 HWY_INLINE ContactLanes<D> warped_contact(D d, const CircleLanes<D>& circle, const WarpLanes<D>& warp) {
+    const auto zero = hn::Zero(d);
     const auto one = all(d, 1);
     // The differences from 1 that a strong boost would cancel: |L| - L·axis and |L| - c, with |L| = 1.
     const auto lack = one_minus(d, circle.cosine, circle.sine);
@@ -321,8 +287,13 @@ HWY_INLINE ContactLanes<D> warped_contact(D d, const CircleLanes<D>& circle, con
                                hn::Mul(cosine, scale),
                                hn::Mul(circle.sine, scale),
                                hn::MulAdd(ux, ux, hn::Mul(uy, uy)),
-                               hn::Zero(d)};
-    return contact_of_image(d, circle, image, scale, warp.horizon_height, warp.horizon_sine);
+                               zero};
+    const auto shrink = hn::Mul(scale, warp.horizon_sine);
+    ContactLanes<D> contact{image, warp.horizon_height, warp.horizon_sine, zero, zero, zero, zero};
+    contact.chord_squared = hn::Mul(circle.crossing_squared, hn::Mul(shrink, shrink));
+    contact.corner = hn::Mul(circle.z, shrink);
+    complete(d, contact);
+    return contact;
 }
 
 /// Two vectors of doubles as one of floats, rounded; the first of them as it is where T is double.

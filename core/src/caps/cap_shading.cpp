@@ -9,15 +9,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
 #include "caps/cap_batch-inl.h"
-#include "caps/cap_plane-inl.h"
-#include "caps/cap_spheres-inl.h"
-#include "caps/lobe_caps-inl.h"
 #include "simd/gather-inl.h"
+#include "simd/rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
@@ -25,6 +22,11 @@ namespace {
 
 constexpr std::size_t kLanes = kLaneCount<Floats>;
 constexpr std::size_t kBlock = kSquare<Floats>;
+
+using Lights = Chosen<float>;
+
+/// One vector for each cosine term; a square of columns may be written at once.
+using TermLanes = std::array<float, (kCosineMax + kBlock) * kLanes>;
 
 HWY_INLINE bool follow_each_other(const Lights& indices) {
     const hn::RebindToUnsigned<Floats> d;
@@ -37,26 +39,6 @@ HWY_INLINE Lights listed(const std::uint32_t* list, const Lights& chosen) {
         result[lane] = list[chosen[lane]];
     }
     return result;
-}
-
-struct CirclePair {
-    CircleLanes<Doubles> low, high;
-};
-
-/// Numbers: Neighbours or Scattered.
-template <class Numbers>
-HWY_INLINE CirclePair circles_of(const CircleArrays& circles, const Numbers& numbers) {
-    const Doubles d;
-    const DoublePair x = numbers.pair(circles.x);
-    const DoublePair y = numbers.pair(circles.y);
-    const DoublePair z = numbers.pair(circles.z);
-    const DoublePair cosine = numbers.pair(circles.cosine);
-    const DoublePair sine = numbers.pair(circles.sine);
-    CirclePair pair{{x.low, y.low, z.low, cosine.low, sine.low, hn::Zero(d), hn::Zero(d)},
-                    {x.high, y.high, z.high, cosine.high, sine.high, hn::Zero(d), hn::Zero(d)}};
-    set_squares(d, pair.low);
-    set_squares(d, pair.high);
-    return pair;
 }
 
 /// Numbers: Neighbours, Scattered or Same.
@@ -77,96 +59,37 @@ HWY_INLINE WarpPair warps_of(const WarpArrays& warps, const Numbers& numbers) {
              height.high, sine.high}};
 }
 
-/// Circles from memory, by number.
-class StoredCircles {
+/// Σ f_lm L_lm.
+template <class Bands>
+HWY_NOINLINE void shade_lanes(const CapLanes<Floats>& cap, std::size_t order, const TermLanes& terms, float* sums) {
+    ShadingVisitor<float> visit(cap, order, terms.data());
+    solve_bands(Bands(cap, order), order, visit);
+    hn::StoreU(visit.sum(), Floats(), sums);
+}
+
+/// Caps multiplied with the terms of lobes. kWithoutWarp: all of them.
+template <class Source, bool kWithoutWarp>
+class CapShading {
   public:
-    using Loaded = CirclePair;
-
-    StoredCircles(const CircleArrays& circles, const std::uint32_t* numbers) : circles_(circles), numbers_(numbers) {}
-
-    HWY_INLINE Loaded load(const Lights& chosen) const {
-        const Lights numbers = listed(numbers_, chosen);
-        return follow_each_other(numbers) ? circles_of(circles_, Neighbours(numbers[0]))
-                                          : circles_of(circles_, Scattered(numbers.data(), kLanes));
-    }
-
-    static HWY_INLINE std::uint32_t sides(const Loaded& circles) {
-        const Doubles d;
-        const auto half = [&](const CircleLanes<Doubles>& circle) HWY_ATTR {
-            const auto zero = hn::Zero(d);
-            const auto crossing = hn::Gt(circle.crossing_squared, zero);
-            const auto hidden = hn::AndNot(crossing, hn::And(hn::Lt(circle.z, zero), hn::Ge(circle.cosine, zero)));
-            return bits_of(d, crossing) | bits_of(d, hidden) << 16;
-        };
-        return half(circles.low) | half(circles.high) << kLaneCount<Doubles>;
-    }
-
-    static HWY_INLINE CirclePair pair(const Loaded& circles) { return circles; }
-    static HWY_INLINE CircleLanes<Floats> narrow(const Loaded& circles) {
-        return narrowed_circle<float>(circles.low, circles.high);
-    }
-
-  private:
-    CircleArrays circles_;
-    const std::uint32_t* numbers_;
-};
-
-/// Circles of spheres, computed where they are loaded.
-class SphereCircles {
-  public:
-    using Loaded = SphereLanes<Floats>;
-
-    explicit SphereCircles(const SphereArrays& spheres) : source_{spheres.centers, spheres.radii} {}
-
-    HWY_INLINE Loaded load(const Lights& chosen) const { return source_.spheres(chosen); }
-    static HWY_INLINE std::uint32_t sides(const Loaded& spheres) { return sides_of(Floats(), spheres); }
-
-    static HWY_INLINE CirclePair pair(const Loaded& s) {
-        const Doubles d;
-        const hn::Half<Floats> half;
-        const auto halves = [&](V<Floats> v) HWY_ATTR {
-            return DoublePair{hn::PromoteTo(d, hn::LowerHalf(half, v)), hn::PromoteTo(d, hn::UpperHalf(half, v))};
-        };
-        const DoublePair x = halves(s.x);
-        const DoublePair y = halves(s.y);
-        const DoublePair z = halves(s.z);
-        const DoublePair r = halves(s.r);
-        return {circle_of_floats(x.low, y.low, z.low, r.low), circle_of_floats(x.high, y.high, z.high, r.high)};
-    }
-    static HWY_INLINE CircleLanes<Floats> narrow(const Loaded& s) {
-        return circle_of_sphere_in_lanes(Floats(), s.x, s.y, s.z, s.r);
-    }
-
-  private:
-    SphereSource<float> source_;
-};
-
-/// Caps inside circles under the lobes of views.
-template <class Circles, bool kWithoutWarp>
-class SeenCaps {
-  public:
+    using Circles = Source;
     static constexpr bool kPlane = kWithoutWarp;
-    using Loaded = typename Circles::Loaded;
 
-    SeenCaps(const Circles& circles, const LobeArrays& lobe, const std::uint32_t* view_of)
-        : circles_(circles), lobe_(lobe), view_of_(view_of) {}
-
-    int order() const { return lobe_.order; }
-
-    HWY_INLINE void share(TermLanes& terms) const {
-        if (lobe_.stride == 0) {
-            repeat_terms(lobe_.terms, term_count(), terms);
+    CapShading(const Circles& circles, const LobeArrays& lobe, const std::uint32_t* view_of, float* values)
+        : circles_(circles), lobe_(lobe), view_of_(view_of), values_(values) {
+        for (std::size_t k = 0; lobe.stride == 0 && k < term_count(); ++k) {
+            hn::Store(hn::Set(Floats(), lobe.terms[k]), Floats(), terms_.data() + k * kLanes);
         }
     }
 
-    HWY_INLINE Loaded load(const Lights& chosen) const { return circles_.load(chosen); }
-    static HWY_INLINE std::uint32_t sides(const Loaded& loaded) { return Circles::sides(loaded); }
+    std::size_t order() const { return static_cast<std::size_t>(lobe_.order); }
+    static constexpr bool kept_whole() { return false; }
+    const Circles& circles() const { return circles_; }
+    static void hide(std::size_t /*first*/, std::uint32_t /*bits*/) {}  // all values were zero
 
     template <bool kCrossing>
-    HWY_INLINE void prepare(const Loaded& loaded, const Lights& chosen, CapLanes<Floats>& cap, TermLanes& terms) const {
+    HWY_NOINLINE void prepare(const typename Circles::Loaded& loaded, const Lights& chosen, CapLanes<Floats>& cap) {
         if constexpr (kPlane) {
-            const auto circle = Circles::narrow(loaded);
-            cap = kCrossing ? cap_across_plane(Floats(), circle) : cap_off_plane(Floats(), circle);
+            cap = cap_at_plane<kCrossing>(Floats(), Circles::narrow(loaded));
         } else {
             const CirclePair circles = Circles::pair(loaded);
             const WarpPair warps = load_warps(chosen);
@@ -175,12 +98,25 @@ class SeenCaps {
             cap = cap_in_contact(Floats(), narrowed_contact<float>(low, high));
         }
         if (lobe_.stride != 0) {
-            load_terms(listed(view_of_, chosen), terms);
+            load_terms(listed(view_of_, chosen));
+        }
+    }
+
+    template <class Bands>
+    HWY_INLINE void take(const CapLanes<Floats>& cap, const Lights& chosen) const {
+        if (are_in_a_row(chosen)) {
+            shade_lanes<Bands>(cap, order(), terms_, values_ + chosen[0]);
+            return;
+        }
+        alignas(64) std::array<float, kLanes> sums;
+        shade_lanes<Bands>(cap, order(), terms_, sums.data());
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            values_[chosen[lane]] = sums[lane];
         }
     }
 
   private:
-    std::size_t term_count() const { return static_cast<std::size_t>(lobe_.order * (lobe_.order + 1) / 2); }
+    std::size_t term_count() const { return order() * (order() + 1) / 2; }
 
     HWY_INLINE WarpPair load_warps(const Lights& chosen) const {
         if (lobe_.stride == 0) {
@@ -192,7 +128,7 @@ class SeenCaps {
     }
 
     /// Each lane's own terms.
-    HWY_INLINE void load_terms(const Lights& view_of, TermLanes& terms) const {
+    HWY_INLINE void load_terms(const Lights& view_of) {
         const Floats d;
         std::array<const float*, kLanes> rows;
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -201,7 +137,7 @@ class SeenCaps {
         for (std::size_t k = 0; k < term_count(); k += kBlock) {
             const auto columns = load_columns(d, rows.data(), k);
             for (std::size_t j = 0; j < kBlock; ++j) {
-                hn::Store(columns[j], d, terms.data() + (k + j) * kLanes);
+                hn::Store(columns[j], d, terms_.data() + (k + j) * kLanes);
             }
         }
     }
@@ -209,21 +145,25 @@ class SeenCaps {
     Circles circles_;
     LobeArrays lobe_;
     const std::uint32_t* view_of_;
+    float* values_;
+    alignas(64) TermLanes terms_;
 };
 
 template <class Circles>
 void shade_in_lanes(const Circles& circles, const LobeArrays& lobe, const std::uint32_t* view_of, std::size_t count,
                     float* values) {
+    std::fill_n(values, count, 0.0F);
+    const auto run = [&](auto&& work) { CapBatch(work).run(count); };
     if (lobe.warped) {
-        ShadingBatch<SeenCaps<Circles, false>>({circles, lobe, view_of}, values).run(count);
+        run(CapShading<Circles, false>(circles, lobe, view_of, values));
     } else {
-        ShadingBatch<SeenCaps<Circles, true>>({circles, lobe, view_of}, values).run(count);
+        run(CapShading<Circles, true>(circles, lobe, view_of, values));
     }
 }
 
 void shade_circles_in_lanes(const CircleArrays& circles, const std::uint32_t* circle_of, const LobeArrays& lobe,
                             const std::uint32_t* view_of, std::size_t count, float* values) {
-    shade_in_lanes(StoredCircles(circles, circle_of), lobe, view_of, count, values);
+    shade_in_lanes(StoredCircles<float>(circles, circle_of), lobe, view_of, count, values);
 }
 
 void shade_spheres_in_lanes(const SphereArrays& spheres, const LobeArrays& lobe, const std::uint32_t* view_of,

@@ -10,6 +10,7 @@
 
 #include <hwy/highway.h>
 
+#include <cstdint>
 #include <limits>
 
 #include "caps/cap_lanes-inl.h"
@@ -18,14 +19,12 @@ HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
 /// What the rounded product lacks of a².
-template <class D>
-HWY_INLINE V<D> square_error(D d, V<D> a, V<D> square) {
+HWY_INLINE V<Doubles> square_error(V<Doubles> a, V<Doubles> square) {
 #if HWY_NATIVE_FMA
-    (void)d;
     return hn::MulSub(a, a, square);
 #else
     // Veltkamp's halves, whose products are exact.
-    const auto split = hn::Mul(a, hn::Set(d, static_cast<Scalar<D> >(sizeof(Scalar<D>) == 4 ? 4097.0 : 134217729.0)));
+    const auto split = hn::Mul(a, hn::Set(Doubles(), 134217729.0));
     const auto high = hn::Sub(split, hn::Sub(split, a));
     const auto low = hn::Sub(a, high);
     const auto crossed = hn::Mul(high, low);
@@ -35,17 +34,16 @@ HWY_INLINE V<D> square_error(D d, V<D> a, V<D> square) {
 }
 
 /// |c|² - r² without the cancellation of |c| ≈ r, in doubled precision (Ogita, Rump & Oishi 2005, Dot2).
-template <class D>
-HWY_INLINE V<D> tangent_squared(D d, V<D> x, V<D> y, V<D> z, V<D> r) {
+HWY_INLINE V<Doubles> tangent_squared(V<Doubles> x, V<Doubles> y, V<Doubles> z, V<Doubles> r) {
     const auto first = hn::Mul(r, r);
     auto high = hn::Neg(first);
-    auto low = hn::Neg(square_error(d, r, first));
-    const auto add = [&](V<D> v) HWY_ATTR {
+    auto low = hn::Neg(square_error(r, first));
+    const auto add = [&](V<Doubles> v) HWY_ATTR {
         const auto square = hn::Mul(v, v);
         const auto sum = hn::Add(high, square);
         const auto rest = hn::Sub(sum, high);
         const auto lost = hn::Add(hn::Sub(high, hn::Sub(sum, rest)), hn::Sub(square, rest));
-        low = hn::Add(low, hn::Add(lost, square_error(d, v, square)));
+        low = hn::Add(low, hn::Add(lost, square_error(v, square)));
         high = sum;
     };
     add(x);
@@ -55,90 +53,57 @@ HWY_INLINE V<D> tangent_squared(D d, V<D> x, V<D> y, V<D> z, V<D> r) {
 }
 
 /// A power of two by which no vector is so small or so large that its square would leave the range.
-template <class D>
-HWY_INLINE V<D> safe_scale(D d, V<D> x, V<D> y, V<D> z) {
-    using T = Scalar<D>;
-    const hn::RebindToUnsigned<D> du;
-    using U = hn::TFromD<decltype(du)>;
-    constexpr int kBits = sizeof(T) == 4 ? 23 : 52;
-    constexpr U kLargest = sizeof(T) == 4 ? 254 : 2046;
-    constexpr U kExponent = (2 * ((kLargest / 2) + 1) - 1) << kBits;
+HWY_INLINE V<Doubles> safe_scale(V<Doubles> x, V<Doubles> y, V<Doubles> z) {
+    const Doubles d;
+    const hn::RebindToUnsigned<Doubles> du;
     // Of the largest normal numbers the inverse would be denormal.
-    const auto most = hn::Set(d, std::numeric_limits<T>::max() / 8);
+    const auto most = hn::Set(d, std::numeric_limits<double>::max() / 8);
     const auto largest = hn::Min(most, hn::Max(hn::Abs(x), hn::Max(hn::Abs(y), hn::Abs(z))));
-    const auto exponent = hn::And(hn::BitCast(du, largest), hn::Set(du, kExponent));
-    return hn::BitCast(d, hn::Sub(hn::Set(du, kLargest << kBits), exponent));
+    const auto exponent = hn::And(hn::BitCast(du, largest), hn::Set(du, std::uint64_t{2047} << 52));
+    return hn::BitCast(d, hn::Sub(hn::Set(du, std::uint64_t{2046} << 52), exponent));
 }
 
-/// As circle_of_sphere (warp.h), with where it crosses the plane z = 0: sin²σ - L_z² from centre and radius.
-template <class D>
-HWY_INLINE CircleLanes<D> circle_of_sphere_in_lanes(D d, V<D> x, V<D> y, V<D> z, V<D> r) {
-    const auto scale = safe_scale(d, x, y, z);
-    x = hn::Mul(x, scale);
-    y = hn::Mul(y, scale);
-    z = hn::Mul(z, scale);
-    r = hn::Mul(r, scale);
-    const auto square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
-    const auto inverse = hn::Div(all(d, 1), hn::Sqrt(square));
-    const auto crossing = hn::Mul(hn::Mul(hn::Sub(r, z), inverse), hn::Mul(hn::Add(r, z), inverse));
-    const auto ux = hn::Mul(x, inverse);
-    const auto uy = hn::Mul(y, inverse);
-    return {ux,
-            uy,
-            hn::Mul(z, inverse),
-            hn::Mul(root(d, tangent_squared(d, x, y, z, r)), inverse),
-            hn::Min(all(d, 1), hn::Mul(r, inverse)),
-            hn::MulAdd(ux, ux, hn::Mul(uy, uy)),
-            crossing};
-}
+/// What of a circle needs doubles whatever it is for. T: what the sphere was given in; products of floats are exact in
+/// doubles, and in range. Numbers of doubles are scaled.
+template <class T>
+struct SphereRatios {
+    V<Doubles> inverse;  // of |c|
+    V<Doubles> z, cosine_squared, tilt_squared, crossing_squared;
 
-/// The same for floats, which fill half a vector of doubles: their products are exact there, and in range.
-struct HalfSpheres {
-    V<Doubles> z, tangent_squared, tilt_squared, crossing_squared;
-    V<Doubles> inverse;
-
-    HWY_INLINE HalfSpheres(V<Doubles> x, V<Doubles> y, V<Doubles> own_z, V<Doubles> r) {
+    HWY_INLINE SphereRatios(V<Doubles>& x, V<Doubles>& y, V<Doubles>& own_z, V<Doubles>& r) {
         const Doubles d;
+        constexpr bool kExact = sizeof(T) == 4;
+        if constexpr (!kExact) {
+            const auto scale = safe_scale(x, y, own_z);
+            x = hn::Mul(x, scale);
+            y = hn::Mul(y, scale);
+            own_z = hn::Mul(own_z, scale);
+            r = hn::Mul(r, scale);
+        }
         const auto across = hn::MulAdd(x, x, hn::Mul(y, y));
         const auto square = hn::MulAdd(own_z, own_z, across);
         const auto inverse_square = hn::Div(all(d, 1), square);
+        const auto tangent = kExact ? hn::NegMulAdd(r, r, square) : tangent_squared(x, y, own_z, r);
         inverse = hn::Sqrt(inverse_square);
         z = hn::Mul(own_z, inverse);
-        tangent_squared = hn::Mul(hn::NegMulAdd(r, r, square), inverse_square);
+        cosine_squared = hn::Mul(tangent, inverse_square);
         tilt_squared = hn::Mul(across, inverse_square);
         crossing_squared = hn::Mul(hn::Mul(hn::Sub(r, own_z), hn::Add(r, own_z)), inverse_square);
     }
 };
 
-/// All of it in doubles.
-HWY_INLINE CircleLanes<Doubles> circle_of_floats(V<Doubles> x, V<Doubles> y, V<Doubles> z, V<Doubles> r) {
+/// circle_of_sphere (warp.h), with where it crosses the plane z = 0 from centre and radius.
+template <class T>
+HWY_INLINE CircleLanes<Doubles> circle_of_sphere_in_lanes(V<Doubles> x, V<Doubles> y, V<Doubles> z, V<Doubles> r) {
     const Doubles d;
-    const HalfSpheres half(x, y, z, r);
-    return {hn::Mul(x, half.inverse),
-            hn::Mul(y, half.inverse),
-            half.z,
-            root(d, half.tangent_squared),
-            hn::Min(all(d, 1), hn::Mul(r, half.inverse)),
-            half.tilt_squared,
-            half.crossing_squared};
-}
-
-/// Only what errors would be multiplied by the order needs the doubles.
-HWY_INLINE CircleLanes<Floats> circle_of_sphere_in_lanes(Floats d, V<Floats> x, V<Floats> y, V<Floats> z, V<Floats> r) {
-    const Doubles dd;
-    const hn::Half<Floats> half;
-    const auto low = [&](V<Floats> v) HWY_ATTR { return hn::PromoteTo(dd, hn::LowerHalf(half, v)); };
-    const auto high = [&](V<Floats> v) HWY_ATTR { return hn::PromoteTo(dd, hn::UpperHalf(half, v)); };
-    const HalfSpheres a(low(x), low(y), low(z), low(r));
-    const HalfSpheres b(high(x), high(y), high(z), high(r));
-    const auto inverse = narrowed<float>(a.inverse, b.inverse);
-    return {hn::Mul(x, inverse),
-            hn::Mul(y, inverse),
-            narrowed<float>(a.z, b.z),
-            root(d, narrowed<float>(a.tangent_squared, b.tangent_squared)),
-            hn::Min(all(d, 1), hn::Mul(r, inverse)),
-            narrowed<float>(a.tilt_squared, b.tilt_squared),
-            narrowed<float>(a.crossing_squared, b.crossing_squared)};
+    const SphereRatios<T> ratios(x, y, z, r);
+    return {hn::Mul(x, ratios.inverse),
+            hn::Mul(y, ratios.inverse),
+            ratios.z,
+            root(d, ratios.cosine_squared),
+            hn::Min(all(d, 1), hn::Mul(r, ratios.inverse)),
+            ratios.tilt_squared,
+            ratios.crossing_squared};
 }
 
 }  // namespace shlight::HWY_NAMESPACE

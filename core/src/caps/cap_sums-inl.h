@@ -26,15 +26,15 @@ HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
 /// The recurrences for most caps, and those for the others.
-template <class T, bool kCrossing, bool kPlane, bool kMayContainHorizon>
+template <class T, bool kCrossing, bool kPlane>
 struct BandsOf {
-    using Most = UncrossedBands<T, false, kMayContainHorizon>;
-    using Others = UncrossedBands<T, true, kMayContainHorizon>;
+    using Most = UncrossedBands<T, false>;
+    using Others = UncrossedBands<T, true>;
 };
-template <class T, bool kPlane, bool kMayContainHorizon>
-struct BandsOf<T, true, kPlane, kMayContainHorizon> {
+template <class T, bool kPlane>
+struct BandsOf<T, true, kPlane> {
     using Most = SectoralBands<T, kPlane>;
-    using Others = CrossedBands<T, kPlane>;
+    using Others = CrossedBands<T>;
 };
 
 /// Tells which lanes need BandsOf::Others.
@@ -50,7 +50,8 @@ class BandChoice {
         if constexpr (kCrossing) {
             return sectoral_.beyond(cap);
         } else {
-            return hn::Lt(hn::Min(cap.sin_tilt, cap.horizon_sine), all(D(), least_sine_));
+            return hn::Or(hn::Lt(hn::Min(cap.sin_tilt, cap.horizon_sine), all(D(), least_sine_)),
+                          hn::Gt(cap.arc, hn::Zero(D())));
         }
     }
 
@@ -152,20 +153,7 @@ class ShadingVisitor {
 
   public:
     HWY_INLINE ShadingVisitor(const CapLanes<D>& cap, std::size_t order, const T* terms)
-        : terms_(terms), sum_(hn::Mul(band_zero(D(), cap), hn::Load(D(), terms))) {
-        const D d;
-        const auto x = cap.cos_azimuth;
-        const auto y = cap.sin_azimuth;
-        auto re = hn::Mul(x, all(d, std::numbers::sqrt2));
-        auto im = hn::Mul(y, all(d, std::numbers::sqrt2));
-        cosine_.put(0, all(d, 1));
-        for (std::size_t m = 1; m < order; ++m) {
-            cosine_.put(m, re);
-            const auto next = hn::MulSub(re, x, hn::Mul(im, y));
-            im = hn::MulAdd(re, y, hn::Mul(im, x));
-            re = next;
-        }
-    }
+        : azimuth_(cap, order), terms_(terms), sum_(hn::Mul(band_zero(D(), cap), hn::Load(D(), terms))) {}
 
     /// The sums of one band. Of its own, to stay in registers.
     struct Band {
@@ -179,7 +167,7 @@ class ShadingVisitor {
     HWY_INLINE std::array<Band, 2> open_two(std::size_t l) const { return {open(l), open(l + 1)}; }
     /// What degree m > 0 of any band is multiplied with.
     using Turn = V<D>;
-    HWY_INLINE Turn turn(std::size_t m) const { return cosine_[m]; }
+    HWY_INLINE Turn turn(std::size_t m) const { return hn::Load(D(), azimuth_.cosine.data() + m * kLaneCount<D>); }
     HWY_INLINE void put_zonal(Band& band, V<D> value) const {
         band.with_null = hn::MulAdd(hn::Load(D(), band.terms), value, band.with_null);
     }
@@ -218,7 +206,7 @@ class ShadingVisitor {
         return hn::Mul(hn::Load(D(), band.terms + m * kLaneCount<D>), turn);
     }
 
-    DegreeRow<T> cosine_;  // √2 cos mφ, 1 for m = 0
+    AzimuthLanes<T> azimuth_;
     const T* terms_;
     V<D> sum_;
 };

@@ -2,38 +2,68 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
-#include "caps/cap_shading.h"
+#include "shlight/types.h"
 #include "shlight/warp.h"
 
 namespace shlight {
 
+/// Circles in the shading frame, before any warp: Circle's members, an array for each.
+struct CircleArrays {
+    const double *x, *y, *z;
+    const double *cosine, *sine;
+    /// sin²σ - L_z², positive where the circle crosses the plane z = 0. Rules that add up points do without.
+    const double* crossing_squared = nullptr;
+};
+
+/// Spheres in the shading frame, of which the kernels that read them find the circles.
+struct SphereArrays {
+    const Vec3<float>* centers;
+    const float* radii;
+};
+
 /// Circles as the kernels read them. Keeps its memory.
 class CircleBatch {
   public:
+    /// Those that it holds are lost.
     void resize(std::size_t count) {
-        for (std::vector<double>& member : members_) {
-            member.resize(count);
-        }
+        stride_ = (count + kStep - 1) / kStep * kStep;
+        members_.resize(kMembers * stride_);
     }
     void set(std::size_t i, const Circle& circle) {
-        members_[0][i] = circle.axis.x;
-        members_[1][i] = circle.axis.y;
-        members_[2][i] = circle.axis.z;
-        members_[3][i] = circle.cosine;
-        members_[4][i] = circle.sine;
+        const Vec3d& axis = circle.axis;
+        // From the smaller pair: near hemispheres may be seen straight above or below.
+        const double crossing = circle.sine < std::abs(circle.cosine)
+                                    ? (circle.sine - axis.z) * (circle.sine + axis.z)
+                                    : axis.x * axis.x + axis.y * axis.y - circle.cosine * circle.cosine;
+        const std::array<double, kMembers> values = {axis.x, axis.y, axis.z, circle.cosine, circle.sine, crossing};
+        for (std::size_t k = 0; k < kMembers; ++k) {
+            members_[k * stride_ + i] = values[k];
+        }
     }
-    CircleOutput output() {
-        return {members_[0].data(), members_[1].data(), members_[2].data(), members_[3].data(), members_[4].data()};
-    }
+    /// circle_of_sphere of each; precondition 0 < radius ≤ |center|, all finite.
+    void set_spheres(std::span<const Vec3<float>> centers, const float* radii);
+    void set_spheres(std::span<const Vec3<double>> centers, const double* radii);
+
     CircleArrays arrays() const {
-        return {members_[0].data(), members_[1].data(), members_[2].data(), members_[3].data(), members_[4].data()};
+        const auto at = [this](std::size_t k) { return members_.data() + k * stride_; };
+        return {at(0), at(1), at(2), at(3), at(4), at(5)};
     }
 
   private:
-    std::array<std::vector<double>, 5> members_;
+    static constexpr std::size_t kMembers = 6;
+    static constexpr std::size_t kStep = 8;  // no vector has more doubles
+
+    std::vector<double> members_;
+    std::size_t stride_ = 0;
 };
+
+/// The number of spheres, from the first on, that check_sphere accepts beyond doubt.
+std::size_t sound_spheres(const Vec3<float>* centers, const float* radii, std::size_t count);
+std::size_t sound_spheres(const Vec3<double>* centers, const double* radii, std::size_t count);
 
 }  // namespace shlight

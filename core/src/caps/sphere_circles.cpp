@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "caps/cap_shading.h"
+#include "caps/circle_batch.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "caps/sphere_circles.cpp"
@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "caps/cap_spheres-inl.h"
 
@@ -17,73 +18,80 @@ HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 namespace {
 
-constexpr std::size_t kHalf = kLaneCount<Doubles>;
+constexpr std::size_t kLanes = kLaneCount<Doubles>;
 
+/// Writes whole vectors, to arrays that lie `stride` apart.
 template <class T>
-struct SphereLanes {
-    V<Doubles> x, y, z, r;
-};
-
-/// kHalf spheres.
-template <class T>
-HWY_INLINE SphereLanes<T> load_spheres(const Vec3<T>* centers, const T* radii) {
+void circles_of(const Vec3<T>* centers, const T* radii, std::size_t count, double* members, std::size_t stride) {
     const Doubles d;
     const hn::Rebind<T, Doubles> own;
-    V<decltype(own)> x, y, z;
-    hn::LoadInterleaved3(own, &centers->x, x, y, z);
-    const auto r = hn::LoadU(own, radii);
-    if constexpr (sizeof(T) == 4) {
-        return {hn::PromoteTo(d, x), hn::PromoteTo(d, y), hn::PromoteTo(d, z), hn::PromoteTo(d, r)};
-    } else {
-        return {x, y, z, r};
-    }
-}
-
-template <class T>
-HWY_INLINE CircleLanes<Doubles> circle_of(const SphereLanes<T>& sphere) {
-    if constexpr (sizeof(T) == 4) {
-        return circle_of_floats(sphere.x, sphere.y, sphere.z, sphere.r);
-    } else {
-        return circle_of_sphere_in_lanes(Doubles(), sphere.x, sphere.y, sphere.z, sphere.r);
-    }
-}
-
-template <class T>
-void circles_in_lanes(const Vec3<T>* centers, const T* radii, std::size_t count, const CircleOutput& out) {
-    const Doubles d;
-    const auto write = [&](const CircleLanes<Doubles>& circle, const CircleOutput& o) HWY_ATTR {
-        hn::StoreU(circle.x, d, o.x);
-        hn::StoreU(circle.y, d, o.y);
-        hn::StoreU(circle.z, d, o.z);
-        hn::StoreU(circle.cosine, d, o.cosine);
-        hn::StoreU(circle.sine, d, o.sine);
+    const auto widened = [&](V<decltype(own)> v) HWY_ATTR {
+        if constexpr (sizeof(T) == 4) {
+            return hn::PromoteTo(d, v);
+        } else {
+            return v;
+        }
     };
-    std::size_t first = 0;
-    for (; first + kHalf <= count; first += kHalf) {
-        write(circle_of<T>(load_spheres(centers + first, radii + first)),
-              {out.x + first, out.y + first, out.z + first, out.cosine + first, out.sine + first});
-    }
-    if (first == count) {
-        return;
-    }
-    std::array<Vec3<T>, kHalf> last_centers;
-    std::array<T, kHalf> last_radii;
-    std::fill(std::copy(centers + first, centers + count, last_centers.begin()), last_centers.end(), centers[first]);
-    std::fill(std::copy(radii + first, radii + count, last_radii.begin()), last_radii.end(), radii[first]);
-    std::array<std::array<double, kHalf>, 5> fields;
-    write(circle_of<T>(load_spheres(last_centers.data(), last_radii.data())),
-          {fields[0].data(), fields[1].data(), fields[2].data(), fields[3].data(), fields[4].data()});
-    const std::array<double*, 5> arrays = {out.x, out.y, out.z, out.cosine, out.sine};
-    for (std::size_t k = 0; k < arrays.size(); ++k) {
-        std::copy_n(fields[k].begin(), count - first, arrays[k] + first);
+    for (std::size_t first = 0; first < count; first += kLanes) {
+        const Vec3<T>* c = centers + first;
+        const T* r = radii + first;
+        std::array<Vec3<T>, kLanes> last_centers;
+        std::array<T, kLanes> last_radii;
+        if (first + kLanes > count) {
+            std::fill(std::copy(c, centers + count, last_centers.begin()), last_centers.end(), *c);
+            std::fill(std::copy(r, radii + count, last_radii.begin()), last_radii.end(), *r);
+            c = last_centers.data();
+            r = last_radii.data();
+        }
+        V<decltype(own)> x, y, z;
+        hn::LoadInterleaved3(own, &c->x, x, y, z);
+        const auto circle =
+            circle_of_sphere_in_lanes<T>(widened(x), widened(y), widened(z), widened(hn::LoadU(own, r)));
+        const auto store = [&](std::size_t k, V<Doubles> v)
+                               HWY_ATTR { hn::StoreU(v, d, members + k * stride + first); };
+        store(0, circle.x);
+        store(1, circle.y);
+        store(2, circle.z);
+        store(3, circle.cosine);
+        store(4, circle.sine);
+        store(5, circle.crossing_squared);
     }
 }
 
-void circles_of_float(const Vec3<float>* centers, const float* radii, std::size_t count, const CircleOutput& out) {
-    circles_in_lanes(centers, radii, count, out);
+/// The number of spheres, from the first on, that check_sphere accepts beyond doubt.
+template <class T>
+std::size_t sound(const Vec3<T>* centers, const T* radii, std::size_t count) {
+    const Lanes<T> d;
+    std::size_t first = 0;
+    for (; first + kLaneCount<Lanes<T>> <= count; first += kLaneCount<Lanes<T>>) {
+        V<Lanes<T>> x, y, z;
+        hn::LoadInterleaved3(d, &centers[first].x, x, y, z);
+        const auto r = hn::LoadU(d, radii + first);
+        const auto square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+        const auto rest = hn::NegMulAdd(hn::Mul(r, r), all(d, 1 + 1e-6), square);
+        // NaN and infinity fail one of these, and so do squares that underflow or that are near to r².
+        const auto outside = hn::And(hn::Gt(rest, hn::Set(d, std::numeric_limits<T>::min() * T(1e6))),
+                                     hn::Le(rest, hn::Set(d, std::numeric_limits<T>::max())));
+        if (!hn::AllTrue(d, hn::And(outside, hn::Gt(r, hn::Zero(d))))) {
+            break;
+        }
+    }
+    return first;
 }
-void circles_of_double(const Vec3<double>* centers, const double* radii, std::size_t count, const CircleOutput& out) {
-    circles_in_lanes(centers, radii, count, out);
+
+std::size_t sound_float(const Vec3<float>* centers, const float* radii, std::size_t count) {
+    return sound(centers, radii, count);
+}
+std::size_t sound_double(const Vec3<double>* centers, const double* radii, std::size_t count) {
+    return sound(centers, radii, count);
+}
+void circles_of_float(const Vec3<float>* centers, const float* radii, std::size_t count, double* members,
+                      std::size_t stride) {
+    circles_of(centers, radii, count, members, stride);
+}
+void circles_of_double(const Vec3<double>* centers, const double* radii, std::size_t count, double* members,
+                       std::size_t stride) {
+    circles_of(centers, radii, count, members, stride);
 }
 
 }  // namespace
@@ -93,14 +101,25 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace shlight {
 
+HWY_EXPORT(sound_float);
+HWY_EXPORT(sound_double);
 HWY_EXPORT(circles_of_float);
 HWY_EXPORT(circles_of_double);
 
-void circles_of_spheres(std::span<const Vec3<float>> centers, const float* radii, const CircleOutput& circles) {
-    HWY_DYNAMIC_DISPATCH(circles_of_float)(centers.data(), radii, centers.size(), circles);
+std::size_t sound_spheres(const Vec3<float>* centers, const float* radii, std::size_t count) {
+    return HWY_DYNAMIC_DISPATCH(sound_float)(centers, radii, count);
 }
-void circles_of_spheres(std::span<const Vec3<double>> centers, const double* radii, const CircleOutput& circles) {
-    HWY_DYNAMIC_DISPATCH(circles_of_double)(centers.data(), radii, centers.size(), circles);
+std::size_t sound_spheres(const Vec3<double>* centers, const double* radii, std::size_t count) {
+    return HWY_DYNAMIC_DISPATCH(sound_double)(centers, radii, count);
+}
+
+void CircleBatch::set_spheres(std::span<const Vec3<float>> centers, const float* radii) {
+    resize(centers.size());
+    HWY_DYNAMIC_DISPATCH(circles_of_float)(centers.data(), radii, centers.size(), members_.data(), stride_);
+}
+void CircleBatch::set_spheres(std::span<const Vec3<double>> centers, const double* radii) {
+    resize(centers.size());
+    HWY_DYNAMIC_DISPATCH(circles_of_double)(centers.data(), radii, centers.size(), members_.data(), stride_);
 }
 
 }  // namespace shlight

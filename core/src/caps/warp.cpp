@@ -49,17 +49,14 @@ Warp::Warp(double tilt, double narrowness) : sin_tilt_(std::sin(tilt)), cos_tilt
     horizon_sine_ = 1 / length;
 }
 
-Warp::Boosted Warp::boosted(const Vec3d& vector, double gap, double lack) const {
-    const double across = cos_tilt_ * vector.x + sin_tilt_ * vector.z;
-    // γ (L_∥ - b c) and γ (c - b L_∥) with L_∥ = 1 - gap, c = 1 - lack.
-    const double along = gamma_ * (one_minus_speed_ + speed_ * lack - gap);
-    const double cosine = gamma_ * (one_minus_speed_ - lack + speed_ * gap);
-    return {{horizon_z_ * across - horizon_x_ * along, vector.y, horizon_x_ * across + horizon_z_ * along}, cosine};
-}
-
 Vec3d Warp::warped(const Vec3d& direction) const {
-    const Boosted b = boosted(direction, squared_length(direction - axis()) / 2, 0);
-    return b.vector / b.cosine;
+    const double gap = squared_length(direction - axis()) / 2;  // 1 - ω·axis, which a strong boost would cancel
+    const double across = cos_tilt_ * direction.x + sin_tilt_ * direction.z;
+    // γ (ω·axis - b) and γ (1 - b ω·axis).
+    const double along = gamma_ * (one_minus_speed_ - gap);
+    const double time = gamma_ * (one_minus_speed_ + speed_ * gap);
+    return Vec3d(horizon_z_ * across - horizon_x_ * along, direction.y, horizon_x_ * across + horizon_z_ * along) /
+           time;
 }
 
 Vec3d Warp::direction(const Vec3d& warped) const {
@@ -73,31 +70,10 @@ Vec3d Warp::direction(const Vec3d& warped) const {
     return {cos_tilt_ * side - sin_tilt_ * along, warped.y / (gamma_ * weight), sin_tilt_ * side + cos_tilt_ * along};
 }
 
-Vec3d Warp::tangent(const Vec3d& warped, const Vec3d& direction, const Vec3d& step) const {
-    // direction() is a quotient with the denominator `weight`: d(p/w) = (dp - (p/w) dw) / w.
-    const Vec3d middle(-horizon_x_, 0, horizon_z_);
-    const double weight = one_minus_speed_ + speed_ * squared_length(warped + middle) / 2;
-    const double rise = glm::dot(step, middle);
-    const double grow = speed_ * rise;
-    const double side = cos_tilt_ * direction.x + sin_tilt_ * direction.z;
-    const double along = cos_tilt_ * direction.z - sin_tilt_ * direction.x;
-    const double d_side = ((horizon_z_ * step.x + horizon_x_ * step.z) / gamma_ - side * grow) / weight;
-    const double d_along = (rise - along * grow) / weight;
-    const double d_y = (step.y / gamma_ - direction.y * grow) / weight;
-    return {cos_tilt_ * d_side - sin_tilt_ * d_along, d_y, sin_tilt_ * d_side + cos_tilt_ * d_along};
-}
-
 double Warp::density(const Vec3d& warped) const {
     const Vec3d middle(-horizon_x_, 0, horizon_z_);
     const double weight = gamma_ * (one_minus_speed_ + speed_ * squared_length(warped + middle) / 2);
     return 1 / (weight * weight);
-}
-
-Circle Warp::warped(const Circle& circle) const {
-    const double lack = circle.cosine > 0 ? circle.sine * circle.sine / (1 + circle.cosine) : 1 - circle.cosine;
-    const Boosted b = boosted(circle.axis, squared_length(circle.axis - axis()) / 2, lack);
-    const double length = glm::length(b.vector);
-    return {b.vector / length, b.cosine / length, circle.sine / length};
 }
 
 }  // namespace shlight

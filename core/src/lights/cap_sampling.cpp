@@ -57,7 +57,7 @@ LightSample CapSampler::sample(const glm::dvec2& point) const {
 }
 
 double CapSampler::solid_angle() const {
-    return cut_ ? Cap<double>::inside(circle_of(cap_)).solid_angle : 2 * pi * one_minus_cos_;
+    return cut_ ? clipped_solid_angle(circle_of(cap_)) : 2 * pi * one_minus_cos_;
 }
 
 std::optional<double> CapSampler::meets(const Vec3d& direction) const {

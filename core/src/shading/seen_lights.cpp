@@ -98,8 +98,7 @@ void SeenLights::set_spheres(std::span<const Vec3d> centers, const double* radii
     clear();
     given_ = Given::spheres;
     float_centers_ = {};
-    circles_.resize(centers.size());
-    circles_of_spheres(centers, radii, circles_.output());
+    circles_.set_spheres(centers, radii);
 }
 
 void SeenLights::shade_spheres(LobeViews& lobe, std::span<const std::uint32_t> view_of, bool with_statistics,
@@ -109,8 +108,7 @@ void SeenLights::shade_spheres(LobeViews& lobe, std::span<const std::uint32_t> v
         return;
     }
     if (!float_centers_.empty()) {
-        circles_.resize(float_centers_.size());
-        circles_of_spheres(float_centers_, float_radii_, circles_.output());
+        circles_.set_spheres(float_centers_, float_radii_);
         float_centers_ = {};
     }
     batch.shade(lobe, circles_.arrays(), view_of, with_statistics);
@@ -130,7 +128,6 @@ void SeenLights::find_circles() {
     if (caps_.empty()) {
         return;
     }
-    circles_.resize(caps_.size());
     centers_.resize(caps_.size());
     radii_.resize(caps_.size());
     for (std::size_t k = 0; k < caps_.size(); ++k) {
@@ -138,7 +135,7 @@ void SeenLights::find_circles() {
         centers_[k] = sphere ? caps_[k].center : Vec3d(0, 0, 1);
         radii_[k] = sphere ? caps_[k].radius : 1;
     }
-    circles_of_spheres(std::span<const Vec3d>(centers_), radii_.data(), circles_.output());
+    circles_.set_spheres(centers_, radii_.data());
     for (std::size_t k = 0; k < caps_.size(); ++k) {
         if (caps_[k].kind != CapView::Kind::sphere) {
             circles_.set(k, circle_of(caps_[k]));
