@@ -63,7 +63,7 @@ struct PolygonWarps {
         Vectors3<double> axis;
         V<D> cosine, inverse_length;
     };
-    /// Warp::warped of the circle (cosine; axis), 1 - cosine = lack.
+    /// The image of the circle (cosine; axis), 1 - cosine = lack.
     HWY_INLINE Image of_circle(const Vectors3<double>& axis, V<D> lack) const {
         const D d;
         const Vectors3<double> to_axis = {hn::Add(axis.x, sin_tilt), axis.y, hn::Sub(axis.z, cos_tilt)};
