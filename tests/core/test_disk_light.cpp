@@ -233,7 +233,9 @@ double picture_error(const Scene& lamps, const std::function<double(const Vec3d&
     scene.add_mesh(
         floor_mesh(9, 0, diffuse ? Bsdf::lambert(Rgb(1)) : Bsdf::ggx(static_cast<float>(roughness), Rgb(1))));
     const Camera camera(kSlanted, Window{-kHalf, kHalf, -kHalf, kHalf}, Projection::orthographic);
-    const Image image = render_image(scene, camera, kSize, kSize, analytic_settings());
+    RenderSettings settings = analytic_settings();
+    settings.tolerance = 1e-4;
+    const Image image = render_image(scene, camera, kSize, kSize, settings);
     const LobeShape shape =
         diffuse ? LobeShape(LambertShape{}) : LobeShape(GgxShape{roughness * roughness, Fresnel::one, 1.5});
     double error = 0;

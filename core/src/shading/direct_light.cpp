@@ -170,8 +170,9 @@ void DirectLight::apply_profile(std::size_t lobe, std::size_t view, const Shadin
     const LobeViews& views = views_.lobe(lobe);
     profile_.reset(light, points.frame[point]);
     // A small light's radiance keeps within the tolerance whatever its profile, but a spot's rim should look right.
-    const double tolerance = std::min(views.absolute_tolerance(view) / double{value}, tolerance_);
-    const double mean = profile_.mean(views.shape(), points.cos_theta_o[point], tolerance * profile_.range().high);
+    const double tolerance =
+        std::min(views.absolute_tolerance(view) / double{value}, tolerance_ * profile_.range().high);
+    const double mean = profile_.mean(views.shape(), points.cos_theta_o[point], tolerance);
     value = static_cast<float>(value * mean);
 }
 
