@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -54,6 +55,13 @@ inline EllipseInput large_disk(RandomInput& random) {
 inline EllipseInput disk_near_contact(RandomInput& random) {
     const Place place = place_near_contact(random);
     return conjugate(random, place.center, place.plane, place.half, random.uniform(0.5, 1) * place.half);
+}
+
+/// At right angles to the way to it: a cap.
+inline EllipseInput disk_that_faces(RandomInput& random) {
+    const Vec3d center = as_float(random.log_uniform(0.01, 100) * seen_direction(random));
+    const double radius = glm::length(center) * random.log_uniform(1e-3, 100);
+    return conjugate(random, center, Plane(random, center), radius, radius);
 }
 
 /// A point of the rim all but touches the shading point, from inside or outside.
@@ -114,5 +122,23 @@ inline EllipseInput lune(RandomInput& random) {
                          random.uniform(0, 0.5) * (random.uniform(-1, 1) * plane.u + random.uniform(-1, 1) * plane.v);
     return conjugate(random, center, plane, 1, random.uniform(0.8, 1));
 }
+
+constexpr auto kEllipseClasses = std::to_array<EllipseClass>({
+    {"disk", plain_disk},
+    {"facing disk", disk_that_faces},
+    {"ellipse", plain_ellipse},
+    {"small", small_disk},
+    {"tiny", tiny_disk},
+    {"large", large_disk},
+    {"near contact", disk_near_contact},
+    {"rim near contact", rim_near_contact},
+    {"thin", thin_ellipse},
+    {"nearly edge-on", disk_nearly_edge_on},
+    {"sliver", sliver_of_disk},
+    {"tangent", tangent_disk},
+    {"cut", cut_disk},
+    {"cut strip", cut_strip},
+    {"lune", lune},
+});
 
 }  // namespace shlight::testing

@@ -108,7 +108,7 @@ inline Vertices near_contact(RandomInput& random) {
 inline Vertices contact_at_an_edge(RandomInput& random) {
     const Vec3d along = random.chance(0.5) ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
     const Vec3d across = as_float(glm::cross(random.at_tilt(random.uniform(0.2, 1.3)), along));
-    const Vec3d above = random.log_uniform(1e-7, 1e-3) * glm::normalize(glm::cross(along, across));
+    const Vec3d above = random.log_uniform(1e-12, 1e-3) * glm::normalize(glm::cross(along, across));
     const double reach = random.uniform(0.3, 1);
     return {above - reach * along, above + along, above + along + across, above - reach * along + across};
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "shlight/render.h"
@@ -95,6 +96,18 @@ inline Camera camera_above(double half_size, double height = 10) {
 /// Where the centre of a pixel of camera_above lies.
 inline Vec3d floor_point(int column, int row, int size, double half_size, double height = 0) {
     return {(2 * (column + 0.5) / size - 1) * half_size, (1 - 2 * (row + 0.5) / size) * half_size, height};
+}
+
+/// Irradiance ÷ π on a point of a floor from a polygon of unit radiance above it (Lambert 1760): ½ Σ γ_i n·Γ_i ÷ π.
+inline double form_factor(const Vec3d& point, const std::vector<Vec3d>& vertices) {
+    double sum = 0;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const Vec3d a = glm::normalize(vertices[i] - point);
+        const Vec3d b = glm::normalize(vertices[(i + 1) % vertices.size()] - point);
+        const Vec3d cross = glm::cross(a, b);
+        sum += std::atan2(glm::length(cross), glm::dot(a, b)) * glm::normalize(cross).z;
+    }
+    return std::abs(sum) / (2 * std::numbers::pi);
 }
 
 /// One camera ray through each pixel's centre, and no shadows.

@@ -88,46 +88,6 @@ TEST(Basis, AgreesWithLaplacesIntegral) {
     compare_with_laplace<float>(64, 30, 2e-3);
 }
 
-/// ∫ Y_k Y_j dω by equally spaced longitudes and the Clenshaw–Curtis rule in z, both exact for these polynomials.
-TEST(Basis, IsOrthonormal) {
-    const int order = 12;
-    const int count = coefficient_count(order);
-    const int circles = 2 * order;
-    const int longitudes = 2 * order;
-    std::vector<double> gram(static_cast<std::size_t>(count * count));
-    for (int j = 0; j <= circles; ++j) {
-        const double tilt = std::numbers::pi * j / circles;
-        double weight = 1;
-        for (int k = 1; k <= circles / 2; ++k) {
-            weight -= (2 * k == circles ? 1 : 2) * std::cos(2 * k * tilt) / (4 * k * k - 1);
-        }
-        weight *= (j % circles == 0 ? 1.0 : 2.0) / circles * 2 * std::numbers::pi / longitudes;
-        for (int i = 0; i < longitudes; ++i) {
-            const double phi = 2 * std::numbers::pi * i / longitudes;
-            const std::vector<double> y = basis_in<double>(
-                {std::sin(tilt) * std::cos(phi), std::sin(tilt) * std::sin(phi), std::cos(tilt)}, order);
-            for (int a = 0; a < count; ++a) {
-                for (int b = 0; b < count; ++b) {
-                    gram[static_cast<std::size_t>(a * count + b)] += weight * y[a] * y[b];
-                }
-            }
-        }
-    }
-    for (int a = 0; a < count; ++a) {
-        for (int b = 0; b < count; ++b) {
-            EXPECT_NEAR(gram[static_cast<std::size_t>(a * count + b)], a == b ? 1 : 0, 1e-13) << a << ", " << b;
-        }
-    }
-}
-
-TEST(Basis, LowerOrdersArePrefixes) {
-    const std::vector<double> all = basis_in<double>({0.3, -0.5, 0.2}, 64);
-    for (int order = 1; order < 64; ++order) {
-        const std::vector<double> some = basis_in<double>({0.3, -0.5, 0.2}, order);
-        EXPECT_TRUE(std::equal(some.begin(), some.end(), all.begin()));
-    }
-}
-
 TEST(Basis, EvaluatesExpansions) {
     RandomInput random(13);
     const int order = 9;

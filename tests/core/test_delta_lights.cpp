@@ -93,46 +93,5 @@ TEST(DeltaLights, ReflectAsEachByItself) {
     }
 }
 
-TEST(DeltaLights, RaysEndAtTheSource) {
-    testing::RandomInput random(3);
-    const Vec3d origin(3, -2, 1);
-    const std::vector<Light> lights = random_lights(random, origin);
-    const DeltaLights deltas(pointers_to(lights));
-    for (std::size_t i = 0; i < kCount; ++i) {
-        const Ray ray = deltas.ray(i, origin);
-        if (const auto* parallel = std::get_if<ParallelSource>(&lights[i])) {
-            EXPECT_EQ(ray.t_max, std::numeric_limits<float>::infinity());
-            EXPECT_LE(glm::length(Vec3d(ray.direction) - parallel->direction), 1e-6);
-            continue;
-        }
-        const Vec3d& position = std::get<PointSource>(lights[i]).position;
-        EXPECT_LE(ray.t_max, 1.0F);
-        EXPECT_LE(glm::length(Vec3d(ray.origin) + double{ray.t_max} * Vec3d(ray.direction) - position),
-                  1e-6 * glm::length(position - origin));
-    }
-}
-
-TEST(DeltaLights, SumsAreThoseOfPlainLoops) {
-    testing::RandomInput random(4);
-    const std::vector<Light> lights = random_lights(random, Vec3d(0));
-    const DeltaLights deltas(pointers_to(lights));
-    std::vector<float> values(deltas.padded_size());
-    for (float& value : values) {
-        value = static_cast<float>(random.uniform(0, 1));
-    }
-    const Rgb weight(0.2F, 0.3F, 0.7F);
-    std::vector<float> sums(values.size(), 1.0F);
-    add_weighted(values.data(), deltas.magnitudes(0), weight, values.size(), sums.data());
-    Vec3d sum(0);
-    for (std::size_t i = 0; i < kCount; ++i) {
-        sum += double{values[i]} * Vec3d(strength_of(lights[i]));
-        const double expected =
-            1 + double{values[i]} * glm::dot(Vec3d(weight), glm::abs(Vec3d(strength_of(lights[i]))));
-        EXPECT_LE(std::abs(double{sums[i]} - expected), 1e-6 * expected);
-    }
-    const Vec3d found(weighted_sum(values.data(), deltas.strengths(0), values.size()));
-    EXPECT_LE(glm::length(found - sum), 1e-5 * glm::length(sum));
-}
-
 }  // namespace
 }  // namespace shlight

@@ -17,7 +17,6 @@
 #include "light_errors.h"
 #include "quad_truth.h"
 #include "random_disk.h"
-#include "shlight/cap.h"
 
 namespace shlight {
 namespace {
@@ -28,7 +27,6 @@ using testing::describe;
 using testing::EllipseClass;
 using testing::EllipseInput;
 using testing::errors_by_order;
-using testing::Plane;
 using testing::RandomInput;
 using testing::relative_error;
 
@@ -49,23 +47,6 @@ EllipseInput rounded_to_float(const EllipseInput& disk) {
 std::array<Vec3d, 3> vectors_of(const EllipseInput& disk) {
     return {disk.center, disk.half_axis_u, disk.half_axis_v};
 }
-
-constexpr auto kClasses = std::to_array<EllipseClass>({
-    {"disk", testing::plain_disk},
-    {"ellipse", testing::plain_ellipse},
-    {"small", testing::small_disk},
-    {"tiny", testing::tiny_disk},
-    {"large", testing::large_disk},
-    {"near contact", testing::disk_near_contact},
-    {"rim near contact", testing::rim_near_contact},
-    {"thin", testing::thin_ellipse},
-    {"nearly edge-on", testing::disk_nearly_edge_on},
-    {"sliver", testing::sliver_of_disk},
-    {"tangent", testing::tangent_disk},
-    {"cut", testing::cut_disk},
-    {"cut strip", testing::cut_strip},
-    {"lune", testing::lune},
-});
 
 /// One in four is not clipped. At high orders, where the reference takes long, float64 gets the disks of float32.
 void compare_class(const EllipseClass& kind, std::size_t count, const std::vector<int>& orders, std::uint64_t seed) {
@@ -99,7 +80,7 @@ void compare_class(const EllipseClass& kind, std::size_t count, const std::vecto
 }
 
 void compare(std::size_t count, const std::vector<int>& orders, std::uint64_t seed) {
-    for (const EllipseClass& kind : kClasses) {
+    for (const EllipseClass& kind : testing::kEllipseClasses) {
         compare_class(kind, count, orders, seed++);
     }
 }
@@ -111,32 +92,6 @@ TEST(Disk, AgreesWithReferenceUpToOrder16) {
 }
 TEST(Disk, AgreesWithReferenceAtOrders33And64) {
     compare(1 * kMore, {33, 64}, 1600);
-}
-
-template <class T>
-void compare_facing_disks_with_caps(double tolerance) {
-    RandomInput random(1800);
-    for (int i = 0; i < 200; ++i) {
-        const int order = random.integer(1, 20);
-        const bool clip = random.chance(0.7);
-        const Vec3d center = as_float(random.log_uniform(0.01, 100) * random.direction());
-        const Plane plane(random, center);
-        const double radius = as_float(glm::length(center) * random.log_uniform(1e-3, 100));
-        const EllipseInput disk = {center, radius * plane.u, radius * plane.v};
-        std::vector<T> cap(coefficient_count(order));
-        const Circle circle = circle_of_facing_disk(center, radius);
-        circle_coefficients<T>({&circle, 1}, order, clip, cap);
-        const auto computed = coefficients<T>(disk, order, clip);
-        const double whole = coefficients<T>(disk, 1, false)[0];
-        for (std::size_t k = 0; k < cap.size(); ++k) {
-            EXPECT_LE(std::abs(computed[k] - cap[k]), tolerance * whole)
-                << "order " << order << ' ' << describe(vectors_of(disk), clip);
-        }
-    }
-}
-TEST(Disk, FacingTheShadingPointIsACap) {
-    compare_facing_disks_with_caps<double>(1e-11);
-    compare_facing_disks_with_caps<float>(1e-4);
 }
 
 TEST(Disk, NothingIsSeenEdgeOnOrBelowTheHorizon) {

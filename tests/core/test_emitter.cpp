@@ -112,38 +112,6 @@ TEST(Silhouette, OfAnOpenSurfaceHoldsBothSides) {
     }
 }
 
-TEST(Silhouette, InsideAClosedSurfaceThereIsNone) {
-    const Solid solid = icosphere(1);
-    const EmitterLevels emitter = make_emitter_levels(solid.vertices, solid.triangles, 1000);
-    Silhouette silhouette;
-    EXPECT_FALSE(silhouette.find(emitter.levels.front(), true, Vec3d(0.1, 0.2, -0.3)));
-    EXPECT_FALSE(silhouette.any_front());
-    EXPECT_TRUE(silhouette.find(emitter.levels.front(), true, Vec3d(0, 0, 2)));
-}
-
-TEST(Silhouette, IsLinesThatPassNoVertexTwice) {
-    const auto line_count = [](const Solid& solid, bool closed, const Vec3d& point) {
-        const EmitterLevels emitter = make_emitter_levels(solid.vertices, solid.triangles, 1000);
-        Silhouette silhouette;
-        EXPECT_TRUE(silhouette.find(emitter.levels.front(), closed, point));
-        return silhouette.ends().size();
-    };
-    const Solid ball = icosphere(1);
-    EXPECT_EQ(line_count(ball, true, {0.1, 0.2, 3}), 1U);
-    Solid two = ball;
-    const auto count = static_cast<std::uint32_t>(ball.vertices.size());
-    for (const Vec3d& v : ball.vertices) {
-        two.vertices.push_back(v + Vec3d(4, 0, 0));
-    }
-    for (const Triangle& t : ball.triangles) {
-        two.triangles.push_back({t.x + count, t.y + count, t.z + count});
-    }
-    EXPECT_EQ(line_count(two, true, {0.1, 0.2, 3}), 2U);
-    // Two triangles that touch at a corner.
-    const Solid corners{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}};
-    EXPECT_EQ(line_count(corners, false, {0.1, 0.2, 3}), 2U);
-}
-
 TEST(EmitterLevels, AreWoundOutwardsWhateverTheMeshWas) {
     Solid solid = icosphere(1);
     for (Triangle& t : solid.triangles) {

@@ -103,22 +103,6 @@ TEST(FlatOutline, LinesAboutNextToNothingGo) {
     EXPECT_LE(std::abs(far.area() - area), 1e-14);
 }
 
-TEST(FlatOutline, JoinedLinesWindAboutWhatEachWindsAbout) {
-    RandomInput random(12);
-    const Lines lines = {ring({-0.3, 0, 1}, 0.2, 20, random), ring({0.3, 0.1, 1}, 0.15, 9, random),
-                         ring({0.2, -0.4, 1}, 0.1, 4, random)};
-    const FlatOutline outline = drawn(lines);
-    EXPECT_GT(outline.area(), 0);
-    for (int i = 0; i < 200; ++i) {
-        const Vec3d point(random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), 1);
-        int sum = 0;
-        for (const std::vector<Vec3d>& line : lines) {
-            sum += winding(line, point);
-        }
-        EXPECT_EQ(winding(joined(outline), point), sum);
-    }
-}
-
 TEST(FlatOutline, MoreThanHalfOfSpaceIsNotDrawn) {
     FlatOutline outline;
     const std::vector<std::size_t> ends = {3};

@@ -53,32 +53,5 @@ TEST(LobeKernels, ValuesInLanesAreTheLobes) {
     EXPECT_LE(largest, 1);
 }
 
-TEST(LobeKernels, WarpsOfManyViewsAreThoseOfOne) {
-    RandomInput random(42);
-    for (const double alpha : {1e-4, 0.003, 0.1, 0.5, 1.0}) {
-        const Bsdf bsdf = Bsdf::ggx(static_cast<float>(std::sqrt(alpha)), Rgb(1));
-        const MaterialLobes material(bsdf.lobes(), 8, 1e-3);
-        std::vector<double> cosines = {0, 1e-9, 0.01, 0.02, 0.5, 1 - 1e-9, 1};
-        for (int i = 0; i < 50; ++i) {
-            cosines.push_back(random.uniform(0, 1));
-        }
-        MaterialViews views;
-        std::vector<Rgb> weights;
-        views.assign(material, cosines, material.weights(cosines, weights), false);
-        const LobeArrays lobe = views.lobe(0).arrays(8, views.positions().all());
-        for (std::size_t i = 0; i < cosines.size(); ++i) {
-            const Warp warp = lobe_warp(bsdf.lobes()[0].shape, cosines[i]);
-            const double sine = warp.horizon_sine();
-            EXPECT_LE(std::abs(lobe.warps.horizon_sine[i] - sine), 1e-6 * sine);
-            EXPECT_LE(std::abs(lobe.warps.horizon_height[i] - warp.horizon_height()), 1e-6);
-            std::vector<float> terms(static_cast<std::size_t>(cosine_count(8)));
-            warped_fit(bsdf.lobes()[0].shape, 8)->coefficients(cosines[i], 8, terms.data());
-            for (std::size_t k = 0; k < terms.size(); ++k) {
-                EXPECT_EQ(lobe.terms[i * lobe.stride + k], terms[k]);  // a view does not depend on its neighbours
-            }
-        }
-    }
-}
-
 }  // namespace
 }  // namespace shlight

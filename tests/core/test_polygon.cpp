@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Polygons against the 113-bit reference. Errors are the largest over all coefficients of a light, relative to its
-// L_00.
+// Polygons against the 113-bit reference, without area, and bad input. Errors are the largest over all coefficients of a
+// light, relative to its L_00.
 #include "shlight/polygon.h"
 
 #include <gtest/gtest.h>
@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "error_message.h"
 #include "light_errors.h"
 #include "quad_truth.h"
 #include "random_polygon.h"
@@ -42,6 +43,11 @@ Vertices rounded_to_float(Vertices vertices) {
     return vertices;
 }
 
+Vertices scaled(Vertices vertices, double scale) {
+    std::for_each(vertices.begin(), vertices.end(), [&](Vec3d& v) { v *= scale; });
+    return vertices;
+}
+
 constexpr auto kClasses = std::to_array<PolygonClass>({
     {"plain", testing::plain},
     {"concave", testing::concave},
@@ -56,14 +62,15 @@ constexpr auto kClasses = std::to_array<PolygonClass>({
     {"contact at an edge", testing::contact_at_an_edge},
 });
 
-/// One in four is not clipped; half are wound the other way.
+/// One in four is not clipped; half are wound the other way; some are as large or small as floats allow.
 void compare_class(const PolygonClass& kind, std::size_t count, const std::vector<int>& orders, std::uint64_t seed) {
     RandomInput random(seed);
     std::vector<Vertices> polygons64(count);
     std::vector<Vertices> polygons32(count);
     for (std::size_t i = 0; i < count; ++i) {
-        polygons64[i] = kind.draw(random);
-        polygons32[i] = rounded_to_float(kind.draw(random));
+        const double scale = i % 5 == 0 ? 0x1p-30 : i % 5 == 1 ? 0x1p+30 : 1;
+        polygons64[i] = scaled(kind.draw(random), scale);
+        polygons32[i] = scaled(rounded_to_float(kind.draw(random)), scale);
         if (random.chance(0.5)) {
             std::reverse(polygons64[i].begin(), polygons64[i].end());
             std::reverse(polygons32[i].begin(), polygons32[i].end());
@@ -104,6 +111,66 @@ TEST(Polygon, AgreesWithReferenceAtOrder33) {
 }
 TEST(Polygon, AgreesWithReferenceAtOrder64) {
     compare(3 * kMore, {64}, 600);
+}
+
+template <class T>
+void expect_nothing_seen() {
+    const std::vector<T> zeros(64, T(0));
+    for (const Vertices& vertices : {
+             Vertices{{1, 0, 1}, {1, 0, 1}, {1, 0, 1}},                    // a point
+             {{1, 0, 1}, {2, 0, 1}, {3, 0, 1}},                            // a line
+             {{1, 0, 1}, {2, 0, 2}, {3, 0, 1}},                            // edge-on
+             {{-1, -1, 1}, {1, 1, 1}, {2, 2, 3}, {-2, -2, 3}},             // edge-on, above
+             {{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}},                         // in the horizon's plane
+             {{2, -1, -1}, {2, 1, -1}, {2, 1, 0}, {2, -1, 0}},             // up to the horizon
+             {{1, 0, 0}, {2, 1, -1}, {2, -1, -1}},                         // touches from below
+         }) {
+        EXPECT_EQ(coefficients<T>(vertices, 8, true), zeros) << describe(vertices, true);
+    }
+}
+TEST(Polygon, WithoutAreaItGivesZeros) {
+    expect_nothing_seen<double>();
+    expect_nothing_seen<float>();
+}
+
+/// Whatever their coordinates that are zero make of them.
+TEST(Polygon, EverythingIsFinite) {
+    RandomInput random(44);
+    for (std::size_t i = 0; i < 2000; ++i) {
+        Vertices vertices = kClasses.at(i % kClasses.size()).draw(random);
+        for (Vec3d& vertex : vertices) {
+            for (int k = 0; k < 3; ++k) {
+                vertex[k] = vertices.size() == 3 && random.chance(0.1) ? 0 : vertex[k];
+            }
+        }
+        const auto finite = [](double value) { return std::isfinite(value); };
+        const std::vector<double> float64 = coefficients<double>(vertices, 16, i % 3 != 0);
+        const std::vector<float> float32 = coefficients<float>(vertices, 16, i % 3 != 0);
+        EXPECT_TRUE(std::all_of(float64.begin(), float64.end(), finite)) << describe(vertices, i % 3 != 0);
+        EXPECT_TRUE(std::all_of(float32.begin(), float32.end(), finite)) << describe(vertices, i % 3 != 0);
+    }
+}
+
+TEST(Polygon, BadArgumentsAreNamed) {
+    const auto message = [](const Vertices& vertices, int order = 4, std::size_t room = 65 * 65) {
+        return testing::error_message([&] {
+            std::vector<double> values(room);
+            polygon_coefficients<double>(vertices, static_cast<int>(vertices.size()), order, true, std::span(values));
+        });
+    };
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double inf = std::numeric_limits<double>::infinity();
+    const auto names = [](const std::string& text, const std::string& argument) {
+        EXPECT_NE(text.find(argument), std::string::npos) << argument << ": " << text;
+    };
+    names(message({{1, 0, 1}, {0, 1, 1}}), "vertices");
+    names(message({{1, 0, nan}, {0, 1, 1}, {0, 0, 1}}), "vertices");
+    names(message({{1, 0, 1}, {-inf, 1, 1}, {0, 0, 1}}), "vertices");
+    names(message({{1, 1, 1}, {-1, 1, 1}, {-1, -1, 1}, {1, -1, 1.5}}), "planar");
+    for (const int order : {-1, 0, 65}) {
+        names(message({{1, 0, 1}, {0, 1, 1}, {0, 0, 2}}, order), "order");
+    }
+    names(message({{1, 0, 1}, {0, 1, 1}, {0, 0, 2}}, 4, 15), "coefficients");
 }
 
 }  // namespace

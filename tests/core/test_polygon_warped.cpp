@@ -65,7 +65,10 @@ std::string describe(const Input& input) {
 
 /// Of a warp that a lobe may have, or of one with its axis at the polygon.
 WarpInput random_warp(RandomInput& random, const Vertices& vertices) {
-    WarpInput warp{random.uniform(-1.5, 1.5), random.chance(0.1) ? 1 : random.log_uniform(1e-3, 1)};
+    WarpInput warp{random.uniform(-1.5, 1.5), random.log_uniform(1e-3, 1)};
+    if (random.chance(0.2)) {
+        warp.narrowness = random.chance(0.5) ? 1 : 1 - 1e-13;
+    }
     if (random.chance(0.3)) {
         Vec3d middle(0);
         for (const Vec3d& v : vertices) {
@@ -187,44 +190,6 @@ TEST(PolygonWarpedLimits, ShadingIsTheDotProduct) {
     }
 }
 
-/// No warp, and a warp so weak that it hardly moves anything, must meet.
-TEST(PolygonWarpedLimits, NoWarpIsTheLimit) {
-    RandomInput random(762);
-    for (int i = 0; i < 50; ++i) {
-        const Input input = random_input(random, i % 2 == 0 ? testing::plain : testing::concave);
-        std::vector<double> expected(144);
-        polygon_coefficients<double>(input.vertices, 12, true, expected.data());
-        const std::vector<float> none = warped_terms(input.vertices, {0.7, 1}, 12);
-        const std::vector<float> weak = warped_terms(input.vertices, {0.7, 1 - 1e-13}, 12);
-        for (int l = 0; l < 12; ++l) {
-            for (int m = 0; m <= l; ++m) {
-                const double value = expected[static_cast<std::size_t>(coefficient_index(l, m))];
-                const auto k = static_cast<std::size_t>(cosine_index(l, m));
-                EXPECT_NEAR(none[k], value, kTolerance);
-                EXPECT_NEAR(weak[k], value, kTolerance);
-            }
-        }
-    }
-}
-
-/// A ceiling that fills the hemisphere becomes the cap inside the warped horizon, nearly everything if the warp is
-/// strong: L_00, the vector irradiance, and nothing that is not symmetric about z.
-TEST(PolygonWarpedLimits, HugeCeilingIsTheHorizonsCap) {
-    const double far = 1e9;
-    for (const double narrowness : {0.9, 0.1, 1e-3}) {
-        const Warp warp(0.3, narrowness);
-        const std::vector<float> c =
-            warped_terms({{-far, -far, 1}, {far, -far, 1}, {far, far, 1}, {-far, far, 1}}, {0.3, narrowness}, 6);
-        const double z = warp.horizon_height();
-        const double pi = std::numbers::pi;
-        EXPECT_NEAR(c[0], std::sqrt(pi) * (1 - z), 2e-6);
-        EXPECT_NEAR(c[1], std::sqrt(3 * pi) / 2 * (1 - z * z), 2e-6);
-        EXPECT_NEAR(c[3], std::sqrt(5 * pi) / 2 * z * (1 - z * z), 2e-6);
-        EXPECT_NEAR(c[2], 0, 2e-6);
-        EXPECT_NEAR(c[cosine_index(5, 3)], 0, 2e-6);
-    }
-}
-
 TEST(PolygonWarpedLimits, NoAreaGivesZeros) {
     const std::vector<float> zeros(36, 0.0F);
     const WarpInput warp{0.5, 0.1};
@@ -257,28 +222,6 @@ TEST(PolygonWarpedLimits, CoincidingVerticesDoNotMatter) {
         const std::vector<float> doubled = warped_terms(vertices, warp, 12);
         for (std::size_t k = 0; k < expected.size(); ++k) {
             EXPECT_NEAR(doubled[k], expected[k], 10 * kTolerance) << describe({vertices, warp});
-        }
-    }
-}
-
-/// A shading point closer and closer to an edge: the edge becomes half a turn, of which the ends say nothing about the
-/// middle.
-TEST(PolygonWarpedLimits, TouchedEdgeIsHalfATurn) {
-    RandomInput random(765);
-    for (int i = 0; i < 40; ++i) {
-        // Few digits, so that the edge's ends are opposite to the last bit, until their lengths are divided out.
-        const Vec3d along = glm::round(random.at_tilt(std::numbers::pi / 2) * 1024.0) / 1024.0 * Vec3d(1, 1, 0);
-        const Vec3d across(-along.y, along.x, random.uniform(0.3, 3));
-        const WarpInput warp{random.uniform(-1, 1), random.log_uniform(0.1, 1)};
-        const auto touching = [&](double height) {
-            const Vec3d above(0, 0, height);
-            return warped_terms({above - 0.8125 * along, above + along, above + along + across}, warp, 8);
-        };
-        const std::vector<float> near = touching(1e-8);
-        const std::vector<float> nearer = touching(1e-12);
-        for (std::size_t k = 0; k < near.size(); ++k) {
-            // The edge moves by 1e-8, its image twenty times that.
-            EXPECT_NEAR(near[k], nearer[k], 2e-6);
         }
     }
 }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <vector>
 
@@ -34,10 +33,6 @@ double difference(const Coefficients& a, const Coefficients& b) {
         largest = worst(largest, std::abs((a.high[i] - b.high[i]) + (a.low[i] - b.low[i])));
     }
     return largest / a.high[0];
-}
-
-void print(const char* what, double error) {
-    std::printf("%-28s %.1e of L_00\n", what, error);
 }
 
 CapInput random_clipped_cap(RandomInput& random) {
@@ -71,7 +66,6 @@ TEST(Reference, CapsHaveConverged) {
             }
         }
     }
-    print("caps, two resolutions", largest);
     EXPECT_LE(largest, 1e-20);
 }
 
@@ -88,7 +82,6 @@ TEST(Reference, CapsAgreeWithQuadratureOverColatitude) {
             largest = worst(largest, difference(reference, truth::cap_by_slices(input, 12, clip)));
         }
     }
-    print("caps, two methods", largest);
     EXPECT_LE(largest, 1e-20);
 }
 
@@ -110,8 +103,6 @@ TEST(Reference, CapsAgainstAnyHorizonAgreeWithQuadratureOverColatitude) {
                                                                                       std::sin(horizon), 12)));
         }
     }
-    print("any horizon, two resolutions", resolutions);
-    print("any horizon, two methods", methods);
     EXPECT_LE(resolutions, 1e-20);
     EXPECT_LE(methods, 1e-20);
 }
@@ -129,7 +120,6 @@ TEST(Reference, WarpedCapsHaveConverged) {
             largest = worst(largest, difference(reference, truth::cap(input, 12, true)));
         }
     }
-    print("warped caps, two resolutions", largest);
     EXPECT_LE(largest, 1e-16);  // a warp leaves areas down to 1e-17, and they are differences of larger ones
 }
 
@@ -147,7 +137,6 @@ TEST(Reference, PolygonsHaveConverged) {
             }
         }
     }
-    print("polygons, two resolutions", largest);
     EXPECT_LE(largest, 1e-20);
 }
 
@@ -163,7 +152,6 @@ TEST(Reference, PolygonsAgreeWithProductCubature) {
             }
         }
     }
-    print("polygons, two methods", largest);
     EXPECT_LE(largest, 1e-17);
 }
 
@@ -186,7 +174,6 @@ TEST(Reference, EllipsesHaveConverged) {
             }
         }
     }
-    print("ellipses, two resolutions", largest);
     EXPECT_LE(largest, 1e-20);
 }
 
@@ -201,7 +188,6 @@ TEST(Reference, FacingDisksAgreeWithCaps) {
         const Coefficients cap = truth::cap({center, CapInput::Kind::facing_disk, size}, 12, clip);
         largest = worst(largest, difference(cap, truth::ellipse({center, {size, 0, 0}, {0, 0, size}}, 12, clip)));
     }
-    print("facing disks and caps", largest);
     EXPECT_LE(largest, 1e-25);
 }
 

@@ -75,33 +75,6 @@ std::vector<glm::dvec2> corners(double half_x, double half_y, double angle, cons
     return result;
 }
 
-TEST(RenderAdaptive, TheCoverageOfAHalfPlaneConvergesToItsArea) {
-    // Pixels of unit size, the edge at any place and angle. 256 cells of a pixel, some 16 to 32 of them cut: each errs
-    // by less than 1/256, most of which cancels.
-    double squares = 0;
-    double plain_squares = 0;
-    int count = 0;
-    for (int i = 0; i < 24; ++i) {
-        const double angle = 0.07 + 0.27 * i;
-        const Vec3d direction(std::cos(angle), std::sin(angle), 0);
-        const Vec3d place = (-50 + 0.4 * std::cos(2.3 * i)) * direction;
-        Scene scene;
-        scene.add_mesh(glowing(50, 50, angle, place));
-        const double truth = area_in_square(corners(50, 50, angle, place, 1, 0.5), 0, 0);
-        const Image fine = render_image(scene, camera_above(0.5), 1, 1, unshadowed_settings(true));
-        const Image plain = render_image(scene, camera_above(0.5), 1, 1, unshadowed_settings(false));
-        EXPECT_EQ(fine.alpha(0, 0), fine.red(0, 0));
-        if (truth < 0.01 || truth > 0.99) continue;  // may be missed, without harm
-        EXPECT_LE(std::abs(fine.alpha(0, 0) - truth), 0.02) << angle;
-        squares += std::pow(fine.alpha(0, 0) - truth, 2);
-        plain_squares += std::pow(plain.alpha(0, 0) - truth, 2);
-        ++count;
-    }
-    EXPECT_GE(count, 15);
-    EXPECT_LE(std::sqrt(squares / count), 0.007);
-    EXPECT_LE(squares, plain_squares / 5);
-}
-
 TEST(RenderAdaptive, AThinWireHasItsArea) {
     // 1/8 pixel wide and across 64 pixels at a slant: 16 rays meet it twice a pixel or so.
     constexpr int kSize = 64;
@@ -242,27 +215,6 @@ TEST(RenderAdaptive, ProgressNeverFallsAndRefiningCanBeCancelled) {
     EXPECT_EQ(std::count(shares.begin(), shares.end(), 1.0), 1);
     EXPECT_THROW(render_image(scene, camera_above(1), 64, 64, settings, [](double share) { return share < 0.65; }),
                  RenderCancelled);
-}
-
-TEST(RenderAdaptive, NestedPointsAreEvenAndCentredAtEveryLevel) {
-    const std::vector<glm::dvec2> points = nested_points(256);
-    for (std::uint32_t bits = 0; bits <= 8; ++bits) {
-        for (std::uint32_t columns = 0; columns <= bits; ++columns) {
-            for (std::uint32_t block = 0; block < 256U >> bits; ++block) {
-                std::set<std::pair<int, int>> cells;
-                for (std::uint32_t i = block << bits; i < (block + 1) << bits; ++i) {
-                    cells.emplace(static_cast<int>(points[i].x * (1U << columns)),
-                                  static_cast<int>(points[i].y * (1U << (bits - columns))));
-                }
-                EXPECT_EQ(cells.size(), 1U << bits) << "block " << block << ", columns 2^" << columns;
-            }
-        }
-    }
-    glm::dvec2 sum(0);
-    for (std::uint32_t i = 0; i < 256; ++i) {
-        sum += points[i] - 0.5;
-        EXPECT_LE(glm::length(sum), i % 2 == 1 ? 1e-12 : 1.0) << i;
-    }
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include "random_input.h"
 #include "render_scenes.h"
 #include "shlight/emission_profile.h"
-#include "shlight/lobe_shape.h"
+#include "slanted_floor.h"
 
 namespace shlight {
 namespace {
@@ -22,48 +22,6 @@ namespace {
 using namespace testing;  // NOLINT(google-build-using-namespace): the scenes' own
 using std::numbers::pi;
 
-constexpr int kSize = 7;
-constexpr double kHalf = 1.5;
-
-/// A camera that looks at the floor from the side, without perspective.
-class SlantedView {
-  public:
-    Camera camera() const { return {frame_, Window{-kHalf, kHalf, -kHalf, kHalf}, Projection::orthographic}; }
-    Vec3d towards_viewer() const { return {frame_[2]}; }
-    /// Where the middle of a pixel shows the floor.
-    Vec3d point(int column, int row) const {
-        const double x = (2 * (column + 0.5) / kSize - 1) * kHalf;
-        const double y = (1 - 2 * (row + 0.5) / kSize) * kHalf;
-        const Vec3d origin(frame_ * glm::dvec4(x, y, 0, 1));
-        return origin - origin.z / towards_viewer().z * towards_viewer();
-    }
-
-  private:
-    glm::dmat4 frame_ = look_at({3, -2, 4}, {0, 0, 0});
-};
-
-/// f·cos of a direction towards the light, both in the world.
-using Reflection = std::function<double(const Vec3d& towards_light)>;
-/// What a light brings to a point of the floor.
-using Truth = std::function<double(const Vec3d& point, const Reflection& reflection)>;
-
-/// Largest error of a picture of the floor.
-double error_under(const std::function<void(Scene&)>& add_light, const Truth& truth, double roughness) {
-    const bool diffuse = roughness > 1;
-    const SlantedView slanted;
-    Scene scene;
-    scene.add_mesh(
-        floor_mesh(9, 0, diffuse ? Bsdf::lambert(Rgb(1)) : Bsdf::ggx(static_cast<float>(roughness), Rgb(1))));
-    add_light(scene);
-    const Image image = render_image(scene, slanted.camera(), kSize, kSize, analytic_settings());
-    const LobeShape shape =
-        diffuse ? LobeShape(LambertShape{}) : LobeShape(GgxShape{roughness * roughness, Fresnel::one, 1.5});
-    const Reflection reflection = [&](const Vec3d& w) { return lobe_value(shape, w, slanted.towards_viewer()); };
-    const auto expected = [&](int column, int row) { return truth(slanted.point(column, row), reflection); };
-    return picture_error(image, expected).largest;
-}
-
-constexpr double kDiffuse = 2;
 /// Of the largest radiance: the settings' tolerance, and what lights of the same radiance everywhere may miss it by.
 constexpr double kTolerance = 3e-4;
 

@@ -18,18 +18,6 @@ using namespace testing;
 
 constexpr int kSize = 32;
 
-/// Irradiance ÷ π on a floor point from a polygon of unit radiance above it.
-double form_factor(const Vec3d& point, const std::vector<Vec3d>& vertices) {
-    double sum = 0;
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const Vec3d a = glm::normalize(vertices[i] - point);
-        const Vec3d b = glm::normalize(vertices[(i + 1) % vertices.size()] - point);
-        const Vec3d cross = glm::cross(a, b);
-        sum += std::atan2(glm::length(cross), glm::dot(a, b)) * glm::normalize(cross).z;
-    }
-    return std::abs(sum) / (2 * std::numbers::pi);
-}
-
 RenderSettings with_rays(int pixel_samples, int shadow_rays) {
     RenderSettings settings;
     settings.pixel_samples = pixel_samples;
@@ -307,29 +295,6 @@ TEST(RenderShadows, ALampDoesNotBlockAndIsNotBlockedByWhatItIsMountedOn) {
             EXPECT_LE(std::abs(image.red(column, row) - truth), 1e-3 * 0.07 + 1e-5);
         }
     }
-}
-
-TEST(RenderShadows, AGlossyPenumbraFollowsTheLobe) {
-    // The ratio is weighted by the lobe: against a render with very many rays, errors must be unbiased.
-    Scene scene;
-    scene.add_mesh(floor_mesh(10, 0, Bsdf::ggx(0.5F, Rgb(0.5F))));
-    Mesh blocker = cuboid({-0.2, -0.2, 0.3}, {0.2, 0.2, 0.4});
-    scene.add_mesh(blocker);
-    scene.add_sphere_light({0.5, 1.5, 1.5}, 0.4, Rgb(3));
-    const Camera camera(look_at({0, -2, 1.5}, {0, 0, 0}), 0.6);
-    const Image usual = render_image(scene, camera, kSize, kSize, with_rays(16, 16));
-    const Image fine = render_image(scene, camera, kSize, kSize, with_rays(16, 1024));
-    double bias = 0;
-    double squares = 0;
-    double mean = 0;
-    for (int i = 0; i < kSize * kSize; ++i) {
-        const double error = usual.red(i % kSize, i / kSize) - fine.red(i % kSize, i / kSize);
-        bias += error / (kSize * kSize);
-        squares += error * error / (kSize * kSize);
-        mean += fine.red(i % kSize, i / kSize) / (kSize * kSize);
-    }
-    EXPECT_LE(std::abs(bias), 2e-3 * mean);
-    EXPECT_LE(std::sqrt(squares), 1e-2 * mean);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Directions of lobes: their density against f·cos and against counts, and where they meet lights.
+// Directions of lobes, whose density is that of f·cos, and where directions meet lights.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,42 +46,22 @@ TEST(RenderShadowsSampling, LobeDirectionsHaveTheirDensity) {
     }
 }
 
-TEST(RenderShadowsSampling, LobeDirectionsFallIntoCapsByTheirDensity) {
-    // Shares of directions within cones, against the density summed over even points of the cones.
-    RandomInput random(21);
-    for (int i = 0; i < 60; ++i) {
-        const double alpha = random.log_uniform(0.003, 1);
-        const Vec3d view = view_at(random.uniform(0.05, 1));
-        const LobeShape shape = GgxShape{alpha};
-        const double half_angle = std::min(1.2, 2 * alpha * random.log_uniform(0.3, 3));
-        Vec3d axis = glm::normalize(Vec3d(-view.x, 0, view.z) + alpha * random.direction());
-        axis.z = std::abs(axis.z);
-        const CapView cap = {CapView::Kind::sphere, axis, std::sin(half_angle)};
-        if (cap.radius >= axis.z) continue;  // above the horizon, where the density is that of all directions
-        const CapSampler light(cap);
-        double inside = 0;
-        double integral = 0;
-        for (std::uint32_t k = 0; k < kPoints; ++k) {
-            const Vec3d direction = sample_lobe(shape, view, sobol(k, 4));
-            inside += direction.z > 0 && light.meets(direction) ? 1.0 / kPoints : 0;
-            const LightSample sample = light.sample(sobol(k, 5));
-            integral += sample.weight * lobe_density(shape, view, sample.direction) / kPoints;
-        }
-        // An area is counted by n even points to about n^-3/4 = 7e-4.
-        EXPECT_LE(std::abs(inside - integral), 3e-3) << "alpha " << alpha << ", view " << view.z;
+/// How far a point lies off a light's surface or plane.
+double distance_from(const Light& light, const Vec3d& p) {
+    if (const auto* sphere = std::get_if<SphereLight>(&light)) {
+        const double beyond = glm::length(p - sphere->center) - sphere->radius;
+        return sphere->facing_disk
+                   ? std::max(beyond, std::abs(glm::dot(p - sphere->center, glm::normalize(sphere->center))))
+                   : std::abs(beyond);
     }
+    const auto* polygon = std::get_if<PolygonLight>(&light);
+    const auto* disk = std::get_if<DiskLight>(&light);
+    return std::abs(polygon != nullptr ? glm::dot(p - polygon->center, polygon->normal)
+                                       : glm::dot(p - disk->center, disk->normal));
 }
 
-TEST(RenderShadowsSampling, AMirrorHasOneDirection) {
-    const LobeShape shape = GgxShape{0};
-    for (std::uint32_t i = 0; i < 16; ++i) {
-        const Vec3d expected(-view_at(0.3).x, 0, 0.3);
-        EXPECT_LE(glm::length(sample_lobe(shape, view_at(0.3), sobol(i, 6)) - expected), 1e-15);
-    }
-}
-
-/// Where samples lie, rays meet the light at the same distance; the share of even directions that do is the solid
-/// angle.
+/// Samples lie on the light, and rays there meet it at the same distance; the share of even directions that do is the
+/// solid angle.
 void expect_met(const Light& light) {
     const ShadingFrame frame = {Vec3d(0), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     LightSampler sampler;
@@ -94,6 +74,7 @@ void expect_met(const Light& light) {
     for (std::uint32_t i = 0; i < kPoints; ++i) {
         const LightSample sample = sampler.sample(sobol(i, 8));
         weight += sample.weight / kPoints;
+        EXPECT_LE(distance_from(light, sample.distance * sample.direction), 1e-6);
         const auto distance = sampler.meets(sample.direction);
         missed += distance ? 0 : 1;  // an edge may be missed by rounding
         if (distance) {
@@ -117,6 +98,8 @@ TEST(RenderShadowsSampling, RaysMeetLightsWhereTheyAre) {
         expect_met(make_sphere_light({1, 0.2, -0.2}, 0.6, Rgb(1), disk));  // its middle below it
     }
     expect_met(make_sphere_light({0.1, 0.2, 0.3}, 1, Rgb(1), false));  // around the hit
+    expect_met(make_disk_light({0.3, -0.5, 1}, {1, 0.2, 0.3}, {-0.2, 0.5, 0.4}, Rgb(1), true));
+    expect_met(make_disk_light({1, -0.5, 0.2}, {0.1, 0.2, 0.8}, {-0.2, 0.5, 0.4}, Rgb(1), true));
     // Concave and near, cut by the horizon, wound either way.
     expect_met(make_polygon_light({{-1, -1, 0.5}, {0, -0.2, 0.5}, {1, -1, 0.5}, {0, 1, 0.5}}, Rgb(1), true));
     expect_met(make_polygon_light({{1, -1, -1}, {1, -1, 1}, {1, 1, 1}, {1, 1, -1}}, Rgb(1), true));

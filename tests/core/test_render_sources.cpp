@@ -128,17 +128,19 @@ TEST(RenderSources, ASourceTakesOneShadowRayPerHit) {
 }
 
 TEST(RenderSources, ShadowsAreSharpAndCanBeSwitchedOff) {
-    // A square of half size 0.5 at height 1 under sources at height 2: its shadow reaches twice as far.
+    // A square of half size 0.5 at height 1 under a source at height 2: its shadow reaches twice as far. What is above
+    // the source shades nothing.
     for (const bool shadows : {true, false}) {
         LightTraits traits;
         traits.casts_shadows = shadows;
         Scene scene;
         scene.add_mesh(floor_mesh(5));
         scene.add_mesh(floor_mesh(0.5F, 1));
+        scene.add_mesh(floor_mesh(5, 2.01F));
         scene.add_point_light({0, 0, 2}, Rgb(7), traits);
         RenderSettings settings;
         settings.pixel_samples = 1;
-        const Image image = render_image(scene, camera_above(kHalf), 64, 64, settings);
+        const Image image = render_image(scene, camera_above(kHalf, 1.9), 64, 64, settings);
         const auto lit = [&](double x) {
             const int column = static_cast<int>((x / kHalf + 1) * 32);
             return image.red(column, 32) > 0;

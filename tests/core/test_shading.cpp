@@ -43,23 +43,6 @@ TEST(Shading, IsADotProduct) {
     EXPECT_THROW(shade<double>(light, bsdf, 0, radiance), std::invalid_argument);
 }
 
-TEST(Shading, CosineTermsMeetTheirCoefficients) {
-    RandomInput random(81);
-    std::vector<double> light(coefficient_count(9));
-    std::vector<double> terms(cosine_count(6));
-    for (double& value : light) {
-        value = random.uniform(-1, 1);
-    }
-    double expected = 0;
-    for (int l = 0; l < 6; ++l) {
-        for (int m = 0; m <= l; ++m) {
-            terms[cosine_index(l, m)] = random.uniform(-1, 1);
-            expected += terms[cosine_index(l, m)] * light[coefficient_index(l, m)];
-        }
-    }
-    EXPECT_NEAR(shade_cosine(light.data(), terms.data(), 6), expected, 1e-13);
-}
-
 /// A light whose cubature over its kept part is known, with its float coefficients of order 16.
 struct Light {
     Vec3d axis;
@@ -79,22 +62,6 @@ struct Light {
         return testing::integral(samples, [](const Vec3d&) { return 1.0; });
     }
 };
-
-TEST(Shading, LambertUnderClippedCapsIsExact) {
-    RandomInput random(82);
-    const auto lambert = plain_fit(LambertShape{});
-    for (int i = 0; i < 200; ++i) {
-        const Light light(random);
-        const double expected =
-            testing::integral(light.samples, [](const Vec3d& wi) { return wi.z / std::numbers::pi; });
-        for (const int order : {2, 8, 16}) {
-            std::vector<float> terms(cosine_count(order));
-            lambert->coefficients(0.5, order, terms.data());
-            EXPECT_NEAR(shade_cosine(light.coefficients.data(), terms.data(), order), expected, 2e-6)
-                << "half angle " << light.half << ", z of the axis " << light.axis.z << ", order " << order;
-        }
-    }
-}
 
 /// By Cauchy and Schwarz the error is at most the fit's L2 error times √Ω.
 TEST(Shading, GgxUnderClippedCapsErrsLessThanItsResidual) {
@@ -119,34 +86,6 @@ TEST(Shading, GgxUnderClippedCapsErrsLessThanItsResidual) {
                 }
             }
         }
-    }
-}
-
-/// Irradiance of a polygon by Lambert's formula, ½ Σ_edges angle · (unit normal)_z, known since 1760.
-TEST(Shading, LambertUnderPolygonsIsLambertsFormula) {
-    RandomInput random(84);
-    const auto lambert = plain_fit(LambertShape{});
-    for (int i = 0; i < 200; ++i) {
-        const Vec3d center = random.log_uniform(0.1, 10) * random.at_tilt(random.uniform(0, 1));
-        std::vector<Vec3f> vertices;
-        for (int k = 0; k < 3; ++k) {
-            Vec3d vertex = center + 0.7 * glm::length(center) * random.direction();
-            vertex.z = std::abs(vertex.z);
-            vertices.emplace_back(vertex);
-        }
-        double expected = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3d a = glm::normalize(Vec3d(vertices[k]));
-            const Vec3d b = glm::normalize(Vec3d(vertices[(k + 1) % 3]));
-            const Vec3d normal = glm::cross(a, b);
-            const double angle = std::atan2(glm::length(normal), glm::dot(a, b));
-            expected += angle * normal.z / glm::length(normal) / (2 * std::numbers::pi);
-        }
-        std::vector<float> coefficients(coefficient_count(4));
-        polygon_coefficients<float>(vertices, 4, true, coefficients.data());
-        std::vector<float> terms(cosine_count(2));
-        lambert->coefficients(0.5, 2, terms.data());
-        EXPECT_NEAR(shade_cosine(coefficients.data(), terms.data(), 2), std::abs(expected), 2e-6);
     }
 }
 
