@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "render_scenes.h"
 #include "solids.h"
@@ -32,24 +33,24 @@ Mesh emissive(const testing::Solid& solid, const Vec3d& center, double scale) {
 /// Beside the square that camera_above shows.
 const Vec3d kCenter(0.4, 3.5, 1.2);
 
-Image of_sphere_light(const RenderSettings& settings, const Bsdf& floor, const Mesh* blocker) {
+/// Of a floor under what `add` puts into the scene, and a blocker.
+Image floor_under(const std::function<void(Scene&)>& add, const RenderSettings& settings, const Bsdf& floor,
+                  const Mesh* blocker) {
     Scene scene;
     scene.add_mesh(testing::floor_mesh(10, 0, floor));
     if (blocker != nullptr) {
         scene.add_mesh(*blocker);
     }
-    scene.add_sphere_light(kCenter, 1, Rgb(1));
+    add(scene);
     return render_image(scene, camera_above(kHalf), kSize, kSize, settings);
 }
 
+Image of_sphere_light(const RenderSettings& settings, const Bsdf& floor, const Mesh* blocker) {
+    return floor_under([](Scene& scene) { scene.add_sphere_light(kCenter, 1, Rgb(1)); }, settings, floor, blocker);
+}
+
 Image of_mesh(const Mesh& mesh, const RenderSettings& settings, const Bsdf& floor, const Mesh* blocker) {
-    Scene scene;
-    scene.add_mesh(testing::floor_mesh(10, 0, floor));
-    if (blocker != nullptr) {
-        scene.add_mesh(*blocker);
-    }
-    scene.add_mesh(mesh);
-    return render_image(scene, camera_above(kHalf), kSize, kSize, settings);
+    return floor_under([&](Scene& scene) { scene.add_mesh(mesh); }, settings, floor, blocker);
 }
 
 void expect_close(const Image& a, const Image& b, double relative) {
@@ -144,10 +145,8 @@ TEST(RenderEmitters, FacesOfDifferentRadianceAreOneLightAndAddUp) {
     RenderSettings settings = testing::analytic_settings();
     settings.tolerance = 1e-3;
     for (const Bsdf& floor : {Bsdf::lambert(Rgb(0.5F)), Bsdf::ggx(0.5F, Rgb(0.9F))}) {
-        Scene lamps;
-        lamps.add_mesh(testing::floor_mesh(10, 0, floor));
-        Screen().add_lamps(lamps);
-        const Image truth = render_image(lamps, camera_above(kHalf), kSize, kSize, exact);
+        const Image truth =
+            floor_under([](Scene& scene) { Screen().add_lamps(scene); }, exact, floor, nullptr);
         const Image image = of_mesh(Screen().mesh(), settings, floor, nullptr);
         double squares = 0;
         double whole = 0;
@@ -213,15 +212,9 @@ TEST(RenderEmitters, WithinOneAllDirectionsShine) {
     for (const int rays : {0, 16}) {
         RenderSettings settings = testing::analytic_settings();
         settings.shadow_rays = rays;
-        Scene scene;
-        scene.add_mesh(testing::floor_mesh(10, 0, Bsdf::lambert(Rgb(0.5F))));
-        scene.add_mesh(emissive(testing::icosphere(3), Vec3d(0, 0, 0), 20));
-        const Image image = render_image(scene, camera_above(kHalf), kSize, kSize, settings);
-        for (int row = 0; row < kSize; ++row) {
-            for (int column = 0; column < kSize; ++column) {
-                EXPECT_NEAR(image.red(column, row), 0.5, 1e-5);
-            }
-        }
+        const Image image = of_mesh(emissive(testing::icosphere(3), Vec3d(0, 0, 0), 20), settings,
+                                    Bsdf::lambert(Rgb(0.5F)), nullptr);
+        EXPECT_LE(testing::picture_error(image, [](int, int) { return 0.5; }).largest, 1e-5);
     }
 }
 
@@ -234,11 +227,7 @@ TEST(RenderEmitters, AnEmitterDoesNotLightItself) {
         Scene scene;
         scene.add_mesh(mesh);
         const Image image = render_image(scene, camera_above(0.6), kSize, kSize, settings);
-        for (int row = 0; row < kSize; ++row) {
-            for (int column = 0; column < kSize; ++column) {
-                EXPECT_NEAR(image.red(column, row), 1, 0.01);
-            }
-        }
+        EXPECT_LE(testing::picture_error(image, [](int, int) { return 1.0; }).largest, 0.01);
     }
 }
 
