@@ -20,6 +20,17 @@ inline Vec3d view_direction(double cos_theta_o) {
     return {std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o};
 }
 
+/// Σ of terms at m ≥ 0 times a direction's basis.
+inline double expansion(const std::vector<float>& terms, int order, const std::vector<double>& basis) {
+    double sum = 0;
+    for (int l = 0; l < order; ++l) {
+        for (int m = 0; m <= l; ++m) {
+            sum += static_cast<double>(terms[cosine_index(l, m)]) * basis[coefficient_index(l, m)];
+        }
+    }
+    return sum;
+}
+
 /// Break points of (from, to) that crowd towards `peak` geometrically, down to a piece of length `finest`.
 inline std::vector<double> crowded(double from, double to, double peak, double finest) {
     std::vector<double> breaks = {from, to};

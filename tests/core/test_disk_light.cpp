@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Disk and ellipse lights: the polygons that stand for them, samples, pictures. Against exact coefficients and against
+// Disk and ellipse lights: the polygons that stand for them, and pictures. Against exact coefficients and against
 // cubature over the disk itself.
 #include <gtest/gtest.h>
 
@@ -15,13 +15,10 @@
 
 #include "disks/disk_polygon.h"
 #include "error_message.h"
-#include "lights/ellipse_sampling.h"
-#include "lights/seen_light.h"
 #include "math/gauss_legendre.h"
 #include "random_disk.h"
 #include "render_scenes.h"
 #include "shlight/polygon.h"
-#include "shlight/sampling.h"
 #include "slanted_floor.h"
 
 namespace shlight {
@@ -94,33 +91,6 @@ TEST(DiskLight, ItsRadiusHoldsAllOfIt) {
                 std::max(farthest, glm::length(std::cos(t) * light.half_axis_u + std::sin(t) * light.half_axis_v));
         }
         EXPECT_LE(std::abs(farthest / light.radius - 1), 1e-4);
-    }
-}
-
-TEST(EllipseSampling, CoversWhatIsAboveTheHorizon) {
-    constexpr std::uint32_t kPoints = 1 << 14;
-    for (const EllipseClass& c : kEllipseClasses) {
-        RandomInput random(24);
-        for (int i = 0; i < 20; ++i) {
-            const Ellipse<double> disk = ellipse_of(c.draw(random));
-            std::array<double, 4> exact{};
-            disk_coefficients<double>(disk, 2, true, exact.data());
-            const double solid_angle = exact[0] * std::sqrt(4 * pi);
-            const EllipseSampler sampler(disk);
-            glm::dvec2 sum(0);
-            double largest = 0;
-            for (std::uint32_t k = 0; k < kPoints; ++k) {
-                const LightSample s = sampler.sample(sobol(k, 7));
-                ASSERT_GE(s.weight, 0) << c.name;
-                EXPECT_GE(s.direction.z, -1e-9) << c.name;
-                sum += glm::dvec2(1, s.direction.z) * (s.weight / kPoints);
-                largest = std::max(largest, s.weight);
-            }
-            // As test_render_sampling.cpp; the weights of cut ones are uneven.
-            EXPECT_LE(std::abs(sum.x - solid_angle), 3e-3 * solid_angle) << c.name;
-            EXPECT_LE(std::abs(sum.y - exact[2] * std::sqrt(4 * pi / 3)), 3e-3 * solid_angle) << c.name;
-            EXPECT_LE(std::abs(sampler.solid_angle() - solid_angle), 0.05 * solid_angle) << c.name;
-        }
     }
 }
 

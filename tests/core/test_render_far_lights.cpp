@@ -115,29 +115,21 @@ Difference difference_between(const Image& image, const Image& truth) {
 /// The tolerance of a sum is ten times that of a light, as root mean square over all turns of the sum; a pixel in its
 /// unluckiest turn may err by some times that.
 TEST(RenderFarLights, KeepWithinTheTolerance) {
-    const RenderSettings settings = plain_settings(0);
+    RenderSettings settings = plain_settings(0);
     for (const Bsdf& bsdf : {Bsdf::lambert(Rgb(0.5F, 0.6F, 0.7F)), Bsdf::ggx(0.8F, Rgb(0.9F)),
                              Bsdf::lambert(Rgb(0.4F)) + Bsdf::ggx(0.8F, Rgb(0.04F), 1.45F)}) {
-        const Image image = all_of_them(bsdf, settings);
-        EXPECT_GE(image.report.summed_count, image.report.hits * kLights / 4);
-        const Difference difference = difference_between(image, sum_of_groups(bsdf, settings));
-        EXPECT_LE(std::sqrt(difference.relative_mse), settings.tolerance);
-        EXPECT_LE(difference.largest, 4 * settings.tolerance);
-    }
-}
-
-TEST(RenderFarLights, EndWhereTheToleranceDoes) {
-    RenderSettings settings = plain_settings(0);
-    const Bsdf bsdf = Bsdf::lambert(Rgb(0.5F));
-    std::uint64_t before = std::uint64_t{kLights} * kSize * kSize * 16;
-    for (const double tolerance : {3e-4, 3e-5}) {
-        settings.tolerance = tolerance;
-        const Image image = all_of_them(bsdf, settings);
-        EXPECT_LT(image.report.summed_count, before);
-        before = image.report.summed_count;
-        // And the rounding of floats.
-        const double error = std::sqrt(difference_between(image, sum_of_groups(bsdf, settings)).relative_mse);
-        EXPECT_LE(error, tolerance + 2e-6);
+        std::uint64_t before = std::uint64_t{kLights} * kSize * kSize * 32;
+        for (const double tolerance : {7e-4, 3e-5}) {
+            settings.tolerance = tolerance;
+            const Image image = all_of_them(bsdf, settings);
+            EXPECT_LT(image.report.summed_count, before) << "sums end where the tolerance does";
+            EXPECT_TRUE(tolerance < 7e-4 || image.report.summed_count >= image.report.hits * kLights / 4);
+            before = image.report.summed_count;
+            const Difference difference = difference_between(image, sum_of_groups(bsdf, settings));
+            const double rounding = tolerance < 7e-4 ? 2e-6 : 0;
+            EXPECT_LE(std::sqrt(difference.relative_mse), tolerance + rounding);
+            EXPECT_LE(difference.largest, 4 * (tolerance + rounding));
+        }
     }
 }
 

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <vector>
 
+#include "quadrature.h"
 #include "render_scenes.h"
 
 namespace shlight {
@@ -286,22 +287,12 @@ TEST(RenderImage, SharedShadingPointsStayWithinTheTolerance) {
     EXPECT_GT(largest, 0) << "no hits were shared";
 }
 
-/// What a point reflects of a sphere of radiance 1, by the midpoint rule in 1 - cos and azimuth.
+/// What a point of a floor reflects of a sphere of radiance 1.
 Vec3d reflected(const Bsdf& material, const Vec3d& point, const Vec3d& wo, const Vec3d& center, double radius) {
-    constexpr int kSteps = 100;
-    const Vec3d to_center = center - point;
-    const Vec3d axis = glm::normalize(to_center);
-    const Vec3d u = glm::normalize(glm::cross(axis, Vec3d(1, 0, 0)));
-    const Vec3d v = glm::cross(axis, u);
-    const double drop = 1 - std::sqrt(1 - radius * radius / glm::dot(to_center, to_center));
+    const Vec3d way = center - point;
     Vec3d sum(0);
-    for (int i = 0; i < kSteps; ++i) {
-        const double z = 1 - drop * (i + 0.5) / kSteps;
-        for (int j = 0; j < kSteps; ++j) {
-            const double angle = 2 * kPi * (j + 0.5) / kSteps;
-            const Vec3d wi = z * axis + std::sqrt(1 - z * z) * (std::cos(angle) * u + std::sin(angle) * v);
-            sum += Vec3d(material.evaluate(wi, wo)) * (2 * kPi * drop / (kSteps * kSteps));
-        }
+    for (const Sample& sample : clipped_cap_samples(way, std::asin(radius / glm::length(way)), 32)) {
+        sum += sample.weight * Vec3d(material.evaluate(sample.direction, wo));
     }
     return sum;
 }

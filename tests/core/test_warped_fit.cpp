@@ -14,21 +14,10 @@
 namespace shlight {
 namespace {
 
+using testing::expansion;
 using testing::lobe_over_cap;
 using testing::RandomInput;
 using testing::view_direction;
-
-double expansion(const std::vector<float>& terms, int order, const Vec3d& u) {
-    std::vector<double> basis(static_cast<std::size_t>(coefficient_count(order)));
-    sh_basis(u, order, basis.data());
-    double sum = 0;
-    for (int l = 0; l < order; ++l) {
-        for (int m = 0; m <= l; ++m) {
-            sum += static_cast<double>(terms[cosine_index(l, m)]) * basis[coefficient_index(l, m)];
-        }
-    }
-    return sum;
-}
 
 std::vector<float> terms_of(const WarpedFit& fit, double cosine, int order) {
     std::vector<float> terms(static_cast<std::size_t>(cosine_count(order)));
@@ -43,6 +32,7 @@ double measured_error(const WarpedFit& fit, double cosine, int order) {
     const std::vector<float> terms = terms_of(fit, cosine, order);
     const GaussRule& heights = gauss_rule(64);
     const double z0 = warp.horizon_height();
+    std::vector<double> basis(static_cast<std::size_t>(coefficient_count(order)));
     double warped = 0;
     double albedo = 0;
     constexpr int kAround = 96;
@@ -55,7 +45,8 @@ double measured_error(const WarpedFit& fit, double cosine, int order) {
             const double weight = (1 - z0) * heights.weights[i] * 2 * std::numbers::pi / kAround;
             const double density = warp.density(u);
             const double g = lobe_value(fit.shape(), warp.direction(u), view) * density;
-            const double error = expansion(terms, order, u) - g;
+            sh_basis(u, order, basis.data());
+            const double error = expansion(terms, order, basis) - g;
             warped += weight * error * error;
             albedo += weight * g;
         }
