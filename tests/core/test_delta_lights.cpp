@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
-#include <utility>
+#include <iterator>
 #include <vector>
 
 #include "lights/delta_lights.h"
@@ -16,8 +14,6 @@
 
 namespace shlight {
 namespace {
-
-using std::numbers::pi;
 
 constexpr std::size_t kCount = 203;  // no multiple of any number of lanes
 constexpr double kError = 1e-7;
@@ -39,29 +35,6 @@ Light random_light(testing::RandomInput& random, const Vec3d& around) {
     }
 }
 
-std::vector<Light> random_lights(testing::RandomInput& random, const Vec3d& around) {
-    std::vector<Light> lights;
-    for (std::size_t i = 0; i < kCount; ++i) {
-        lights.push_back(random_light(random, around));
-    }
-    return lights;
-}
-
-/// Lights around a shading point.
-struct Lit {
-    ShadingFrame frame;
-    std::vector<Light> lights;
-    DeltaLights deltas;
-};
-
-Lit random_lit(testing::RandomInput& random) {
-    const Vec3d position = 100.0 * random.direction();
-    const ShadingFrame frame = shading_frame(position, random.direction(), random.direction());
-    std::vector<Light> lights = random_lights(random, frame.origin);
-    DeltaLights deltas(pointers_to(lights));
-    return {frame, std::move(lights), std::move(deltas)};
-}
-
 double value_of(const Light& light, const ShadingFrame& frame, const LobeShape& shape, float cosine) {
     const auto seen = delta_view(light, frame, kError);
     const bool glossy = std::holds_alternative<GgxShape>(shape);
@@ -75,7 +48,10 @@ double value_of(const Light& light, const ShadingFrame& frame, const LobeShape& 
 TEST(DeltaLights, ReflectAsEachByItself) {
     testing::RandomInput random(1);
     for (int round = 0; round < 20; ++round) {
-        const auto [frame, lights, deltas] = random_lit(random);
+        const ShadingFrame frame = shading_frame(100.0 * random.direction(), random.direction(), random.direction());
+        std::vector<Light> lights;
+        std::generate_n(std::back_inserter(lights), kCount, [&] { return random_light(random, frame.origin); });
+        const DeltaLights deltas(pointers_to(lights));
         const auto cosine = static_cast<float>(random.uniform(0.1, 1));
         for (const LobeShape& shape : {LobeShape(LambertShape{}), LobeShape(GgxShape{0.3}), LobeShape(GgxShape{0})}) {
             for (const DeltaRange range : {DeltaRange{0, deltas.padded_size()}, DeltaRange{48, 32}}) {

@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// Coefficients by quadrature against the 113-bit reference, and the adaptive cubature that it stands on.
+// Coefficients by quadrature against the 113-bit reference.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <span>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
-#include "adaptive_cubature.h"
 #include "error_record.h"
-#include "kept_region.h"
 #include "light_errors.h"
 #include "method_calls.h"
 #include "quad_truth.h"
@@ -24,9 +20,6 @@
 namespace shlight {
 namespace {
 
-using methods::AdaptiveCubature;
-using methods::KeptRegion;
-using methods::Patch;
 using testing::across_horizon;
 using testing::ErrorRecord;
 using testing::of_cap;
