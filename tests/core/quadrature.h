@@ -109,4 +109,25 @@ inline double integral(const std::vector<Sample>& samples, const Integrand& f) {
     return sum;
 }
 
+/// ∫ f dω over a parallelogram, of which the corners 0, 1 and 3 are asked for, seen from p: two Gauss points each way in
+/// panels² parts.
+inline double over_parallelogram(const Vec3d& p, const std::vector<Vec3d>& corners, int panels, const Integrand& f) {
+    const Vec3d along = corners[1] - corners[0];
+    const Vec3d across = corners[3] - corners[0];
+    const Vec3d area = glm::cross(along, across) / (1.0 * panels * panels);
+    double sum = 0;
+    for (const Node& a : gauss_nodes(2, 0, 1)) {
+        for (const Node& b : gauss_nodes(2, 0, 1)) {
+            for (int i = 0; i < panels * panels; ++i) {
+                const double v = i / panels + b.x;  // NOLINT(bugprone-integer-division): rows of panels
+                const Vec3d way = corners[0] + (i % panels + a.x) / panels * along + v / panels * across - p;
+                const double distance = glm::length(way);
+                const double seen = std::abs(glm::dot(area, way)) / (distance * distance * distance);
+                sum += a.weight * b.weight * seen * f(way / distance);
+            }
+        }
+    }
+    return sum;
+}
+
 }  // namespace shlight::testing

@@ -185,16 +185,5 @@ TEST(MonteCarloRender, NoLightIsBlackAndNothingIsTransparent) {
     EXPECT_NEAR(covered, 0.25, 1e-6);  // its edges lie between pixels
 }
 
-TEST(MonteCarloRender, LongPixelsAreCutIntoBatches) {
-    const auto scene = room(Bsdf::lambert(Rgb(0.5F)), "s").compile();
-    std::vector<float> few(4, -1.0F);
-    std::vector<float> many(4, -1.0F);
-    render_monte_carlo(*scene, camera_above(0.1), 1, 1, {.samples = 4096}, few);
-    render_monte_carlo(*scene, camera_above(0.1), 1, 1, {.samples = 3 * 4096 + 1}, many);
-    EXPECT_EQ(many[3], 1.0F);
-    EXPECT_NE(few, many);
-    EXPECT_NEAR(few[0], many[0], 0.1 * few[0]);
-}
-
 }  // namespace
 }  // namespace shlight

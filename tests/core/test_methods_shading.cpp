@@ -193,17 +193,5 @@ TEST(NumericalMethods, CubatureConvergesAndTakesNoMorePointsThanAllowed) {
     }
 }
 
-TEST(NumericalMethods, CubatureOfFewPointsIsTheLibrarysOwn) {
-    const GgxShape shape{0.3};
-    const Circle cap = circle_about_axis({-0.5, 0.2, 0.8}, 0.2);
-    int rule = 0;
-    for (const int points : {1, 4, 7, 24}) {
-        const auto method = find_shading_method("cubature").make(shape, 0.7, {.samples = points});
-        const CubatureSum expected = cap_cubature(shape, view_direction(0.7), cap, ++rule);
-        EXPECT_EQ(method->radiance(cap, 0).value, expected.value);
-        EXPECT_EQ(method->radiance(cap, 0).points, points);
-    }
-}
-
 }  // namespace
 }  // namespace shlight

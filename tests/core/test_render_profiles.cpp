@@ -86,33 +86,12 @@ TEST(RenderProfiles, SpotWithARadiusVariesOverIt) {
     }
 }
 
-/// Over a rectangle with edges along x and y at z = height that shines down.
-double over_rectangle(const Vec3d& p, const std::vector<Vec3d>& corners, const std::function<double(const Vec3d&)>& f) {
-    constexpr int kPanels = 200;
-    const Vec3d along = corners[1] - corners[0];
-    const Vec3d across = corners[3] - corners[0];
-    double sum = 0;
-    for (const Node& a : gauss_nodes(2, 0, 1)) {
-        for (const Node& b : gauss_nodes(2, 0, 1)) {
-            for (int i = 0; i < kPanels * kPanels; ++i) {
-                const double u = (i % kPanels + a.x) / kPanels;
-                const double v = (i / kPanels + b.x) / kPanels;  // NOLINT(bugprone-integer-division)
-                const Vec3d way = corners[0] + u * along + v * across - p;
-                const double d2 = glm::dot(way, way);
-                const Vec3d w = way / std::sqrt(d2);
-                sum += a.weight * b.weight * w.z / d2 * f(w);
-            }
-        }
-    }
-    return sum * glm::length(glm::cross(along, across)) / (kPanels * kPanels);
-}
-
 TEST(RenderProfiles, SpreadOfAnAreaLight) {
     const std::vector<Vec3d> corners = {{-0.8, -0.5, 1.1}, {-0.8, 0.7, 1.1}, {1, 0.7, 1.1}, {1, -0.5, 1.1}};
     for (const double spread : {0.2, pi / 3, 2.5, 3.1}) {
         const double h = spread / 2;
         const auto truth = [&](const Vec3d& p, const Reflection& f) {
-            return over_rectangle(p, corners, [&](const Vec3d& w) {
+            return over_parallelogram(p, corners, 200, [&](const Vec3d& w) {
                 const double tangent = std::hypot(w.x, w.y) / w.z;
                 return 3 * std::max(0.0, std::tan(h) - tangent) / (std::tan(h) - h) * f(w);
             });

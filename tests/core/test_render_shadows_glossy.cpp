@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "quadrature.h"
 #include "render_scenes.h"
 
 namespace shlight {
@@ -115,22 +116,12 @@ TEST(RenderShadowsGlossy, AMirrorShowsSilhouettesExactly) {
     }
 }
 
-/// Of the rectangle with radiance 1, beside the half plane: midpoints of cells far smaller than any lobe here is wide.
+/// Of the rectangle with radiance 1, beside the half plane: cells far smaller than any lobe here is wide.
 double reflected(const Bsdf& bsdf, const Vec3d& point, const Vec3d& towards_viewer) {
-    constexpr int kCells = 160;
     const double left = std::max(-0.7, -point.x);  // the line over the edge at height 1 goes on to height 2
-    const double width = std::max(0.0, 0.5 - left);
-    double sum = 0;
-    for (int i = 0; i < kCells; ++i) {
-        for (int j = 0; j < kCells; ++j) {
-            const Vec3d target(left + width * (i + 0.5) / kCells, 2.8 + 1.3 * (j + 0.5) / kCells, 2);
-            const Vec3d way = target - point;
-            const double distance = glm::length(way);
-            const Vec3d direction = way / distance;
-            sum += bsdf.evaluate(direction, towards_viewer).x * direction.z / (distance * distance);
-        }
-    }
-    return sum * width * 1.3 / (kCells * kCells);
+    const std::vector<Vec3d> seen = {{left, 2.8, 2}, {left, 4.1, 2}, {0.5, 4.1, 2}, {0.5, 2.8, 2}};
+    const auto value = [&](const Vec3d& wi) { return double{bsdf.evaluate(wi, towards_viewer).x}; };
+    return left < 0.5 ? over_parallelogram(point, seen, 80, value) : 0;
 }
 
 TEST(RenderShadowsGlossy, AHalfHiddenLightAgainstCubature) {
