@@ -24,7 +24,8 @@ class EnvironmentRays::Directions {
     std::size_t set_count() const { return lobes_.size() + (map_ != nullptr ? 1 : 0); }
     /// May lie below the horizon.
     Vec3d sample(std::size_t set, const glm::dvec2& point) const {
-        return set < lobes_.size() ? sample_lobe(lobes_[set], view_, point) : map_->sampler.sample(point) * to_map_;
+        const bool of_map = map_ != nullptr && set == lobes_.size();
+        return of_map ? map_->sampler.sample(point) * to_map_ : sample_lobe(lobes_[set], view_, point);
     }
     double density(const Vec3d& direction) const {
         double sum = map_ != nullptr ? map_->sampler.density(to_map_ * direction) : 0.0;
