@@ -3,7 +3,6 @@
 // Random disks and ellipses: the plain ones and all kinds that tempt rounding.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>

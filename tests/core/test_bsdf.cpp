@@ -13,7 +13,6 @@
 #include <limits>
 #include <numbers>
 #include <string>
-#include <vector>
 
 #include "error_message.h"
 #include "quadrature.h"

@@ -2,7 +2,6 @@
 //
 // Light from all around, of one radiance.
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 

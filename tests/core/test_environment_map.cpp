@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Light from all around as a picture has it: its harmonics, their turns, directions drawn from it, and what surfaces
-// reflect of it.
+// Light from all around as a picture has it: its harmonics, their turns, lobes clamped at the horizon, directions drawn
+// from it, and what surfaces reflect of it.
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -12,6 +12,8 @@
 
 #include "environment/environment_map.h"
 #include "error_message.h"
+#include "lobes/lobe_moments.h"
+#include "lobes/sh_projection.h"
 #include "math/band_rotation.h"
 #include "render_scenes.h"
 #include "shlight/basis.h"
@@ -160,6 +162,29 @@ TEST(BandRotation, MovesAFunctionAsItsArgument) {
     }
 }
 
+// --- lobes
+
+TEST(ShProjection, IsTheLobesMoments) {
+    for (const LobeShape& shape : {LobeShape(LambertShape{}), LobeShape(GgxShape{0.25}), LobeShape(GgxShape{0.02})}) {
+        const auto lobe = sh_projection(shape);
+        for (const double tilt : {0.1234, 0.9, 1.4}) {
+            const LobeMoments expected = lobe_moments(shape, tilt);
+            std::vector<float> terms(2080);
+            lobe->coefficients(static_cast<float>(std::cos(tilt)), 64, terms.data());
+            for (std::size_t i = 0; i < terms.size(); ++i) {
+                ASSERT_NEAR(terms[i], expected.moments[i], 1e-4 * std::max(1.0, std::sqrt(expected.norm_squared)))
+                    << tilt << ", " << i;
+            }
+        }
+        const LobeMoments head_on = lobe_moments(shape, 0);
+        double all = lobe->tail(0);
+        for (int l = 0; l < 64; ++l) {
+            all += lobe->powers(0)[l];
+        }
+        EXPECT_NEAR(all / head_on.norm_squared, 1, 1e-5);
+    }
+}
+
 // --- directions
 
 TEST(RadianceSampler, DrawsAsItsDensitySays) {
@@ -197,11 +222,11 @@ class Floor {
         return render_image(scene, {look_at(5.0 * view_, {0, 0, 0}), 1e-4}, 1, 1, analytic_settings()).color(0, 0);
     }
     double expected(const LatLong& picture, const Bsdf& bsdf) const {
-        const Environment environment(picture);
+        const RadiancePyramid lookup(picture.pixels, picture.width, picture.height);
         const glm::dmat3 frame(x_, y_, normal_);
         return sphere_integral(500, [&](const Vec3d& direction) {
             return direction.z > 0
-                       ? double{bsdf.evaluate(direction, view_ * frame).x * environment.radiance(frame * direction).x}
+                       ? double{bsdf.evaluate(direction, view_ * frame).x * lookup.radiance(glm::transpose(picture.to_world) * frame * direction).x}
                        : 0.0;
         });
     }
@@ -213,7 +238,7 @@ class Floor {
 TEST(EnvironmentMap, SurfacesReflectTheirIntegral) {
     LatLong picture = random_picture(32, 16, 4);
     picture.pixels[170] = Rgb(60);  // some of it a spot
-    picture.to_world = rotation_about({1, -2, 0.5}, 2.2);
+    picture.to_world = rotation_about({0.5, 0.5, 0.7}, 2.2);  // leaves the spot above the floor
     for (const double cosine : {0.95, 0.5, 0.2}) {
         const Floor floor(cosine);
         const double matte = floor.expected(picture, Bsdf::lambert(Rgb(0.7F)));

@@ -14,7 +14,6 @@
 #include "lobe_truth.h"
 #include "mean.h"
 #include "method.h"
-#include "polygons/spherical_polygon.h"
 #include "quadrature.h"
 #include "random_input.h"
 #include "random_polygon.h"

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -29,7 +28,6 @@ namespace {
 using testing::ErrorRecord;
 using testing::of_cap;
 using testing::of_polygon;
-using testing::of_sphere;
 using testing::PolygonClass;
 using testing::RandomInput;
 using testing::relative_error;
@@ -264,17 +262,6 @@ TEST(ZonalCaps, AreLostInFloatWhereTheEdgeCancels) {
         expect_lost("small, whole", small_whole, "zhou_wei", order, loss);
         expect_lost("small, clipped", small_clipped, "zhou_wei", order, loss);
         expect_lost("nearly set", nearly_set, "zhou_wei", order, loss / 10);
-    }
-}
-
-/// A sphere in contact covers a hemisphere whose edge all but coincides with the horizon.
-TEST(ZonalCaps, StayRightForSpheresThatTouchFromAbove) {
-    for (const char* method : {"zhou_wei", "snyder"}) {
-        for (const float aside : {0.0F, 1e-30F, 1e-23F, 1e-22F, 1e-18F, 1e-12F, 1e-6F}) {
-            const std::vector<float> values = of_sphere<float>(method, Vec3d(aside, -aside, 1), 1, 5);
-            const truth::Coefficients reference = truth::cap({Vec3d(0, 0, 1), Kind::angle, kPi / 2}, 5, true);
-            EXPECT_LE(truth::largest_error(reference, 5, values.data()), 2e-5) << method << ", aside " << aside;
-        }
     }
 }
 

@@ -21,7 +21,6 @@
 #include "polygons/polygon_shading_kernel.h"
 #include "quad_polygon.h"
 #include "random_polygon.h"
-#include "shlight/polygon.h"
 #include "shlight/warp.h"
 #include "warped_terms.h"
 

@@ -3,7 +3,6 @@
 // The rule along the circles of a profile, against the exact coefficients of the same lights.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>

@@ -6,11 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <vector>
 
 #include "render_scenes.h"
-#include "shlight/sampling.h"
 
 namespace shlight {
 namespace {

@@ -3,7 +3,6 @@
 // Making lights: polygons of any simple shape, emissive faces, and what is turned down.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>

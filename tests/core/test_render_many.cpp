@@ -84,20 +84,6 @@ TEST_P(RenderMany, LightsTogetherAreTheSumOfTheirParts) {
     }
 }
 
-TEST_P(RenderMany, PixelsOfMoreRaysThanAreHeldAtATime) {
-    RenderSettings settings;
-    settings.adaptive = false;
-    settings.pixel_samples = 1024;
-    const Camera camera = testing::camera_above(0.5);
-    const Bsdf floor = Bsdf::ggx(0.2F, Rgb(0.9F));
-    const Image all = testing::render_image(scene_of(0, kLights, GetParam(), floor), camera, 2, 2, settings);
-    const Image sum = sum_of_groups(GetParam(), floor, camera, 2, settings);
-    for (int pixel = 0; pixel < 4; ++pixel) {
-        const double expected = sum.red(pixel % 2, pixel / 2);
-        EXPECT_LE(std::abs(all.red(pixel % 2, pixel / 2) - expected), 2e-3 * expected);
-    }
-}
-
 /// A bright half of the floor under lights that a wall hides from the dark other half.
 TEST_P(RenderMany, APixelOfTwoSurfacesIsNoMixOfTheirShadows) {
     Scene scene;

@@ -3,7 +3,6 @@
 // Suns and sources without extent against closed forms: irradiance E gives a Lambert surface the radiance albedo E / π.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>

@@ -14,7 +14,6 @@
 #include "random_input.h"
 #include "shlight/cap.h"
 #include "shlight/plain_fit.h"
-#include "shlight/polygon.h"
 
 namespace shlight {
 namespace {
