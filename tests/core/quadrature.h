@@ -109,8 +109,8 @@ inline double integral(const std::vector<Sample>& samples, const Integrand& f) {
     return sum;
 }
 
-/// ∫ f dω over a parallelogram, of which the corners 0, 1 and 3 are asked for, seen from p: two Gauss points each way in
-/// panels² parts.
+/// ∫ f dω over a parallelogram, of which the corners 0, 1 and 3 are asked for, seen from p: two Gauss points each way
+/// in panels² parts.
 inline double over_parallelogram(const Vec3d& p, const std::vector<Vec3d>& corners, int panels, const Integrand& f) {
     const Vec3d along = corners[1] - corners[0];
     const Vec3d across = corners[3] - corners[0];

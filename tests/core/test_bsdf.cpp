@@ -63,8 +63,8 @@ Vec3d upper(RandomInput& random) {
 TEST(LobeShape, GgxIsTheTextbooks) {
     RandomInput random(50);
     for (int i = 0; i < 3000; ++i) {
-        const GgxShape shape{std::array{0.01, 0.1, 0.3, 0.6, 1.0}.at(static_cast<std::size_t>(i % 5)), static_cast<Fresnel>(i % 3),
-                             random.uniform(1.05, 2.5)};
+        const GgxShape shape{std::array{0.01, 0.1, 0.3, 0.6, 1.0}.at(static_cast<std::size_t>(i % 5)),
+                             static_cast<Fresnel>(i % 3), random.uniform(1.05, 2.5)};
         const Vec3d wi = upper(random);
         const Vec3d wo = upper(random);
         const double expected = textbook(shape, wi, wo);

@@ -141,7 +141,8 @@ void expect_integral(const DiskLight& light, double spread, const std::function<
     };
     RenderSettings settings = analytic_settings();
     settings.tolerance = 1e-4;
-    EXPECT_LE(error_under(add, truth, roughness, settings), tolerance) << light.center.x << ' ' << spread << ' ' << roughness;
+    EXPECT_LE(error_under(add, truth, roughness, settings), tolerance)
+        << light.center.x << ' ' << spread << ' ' << roughness;
 }
 
 TEST(DiskLight, PicturesAreIntegralsOverTheDisk) {

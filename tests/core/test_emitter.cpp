@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Outlines of emissive meshes against the sum over their faces, and with fewer vertices against those they were made from, and levels of detail against the sphere.
+// Outlines of emissive meshes against the sum over their faces, those with fewer vertices against what they were made
+// from, and levels of detail against the sphere.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -99,7 +100,7 @@ TEST(Silhouette, OfAConcaveSurfaceCountsLayersAndOfAnOpenOneBothSides) {
     for (const Solid& solid : {testing::torus(1, 0.3, 24, 12), open}) {
         const EmitterLevels emitter = make_emitter_levels(solid.vertices, solid.triangles, 1000);
         EXPECT_EQ(emitter.closed, solid.triangles.size() != open.triangles.size());
-        for (const Vec3d& point : {Vec3d(0.1, 0.2, 3), Vec3d(3, 0.2, 0.1), Vec3d(2, 0.2, 0.9), Vec3d(2.5, -0.3, -1.1)}) {
+        for (const Vec3d& point : {Vec3d(0.1, 0.2, 3), Vec3d(3, 0.2, 0.1), Vec3d(2, 0.2, 1), Vec3d(2.5, -0.3, -1.1)}) {
             expect_outline_is_sum_of_faces(emitter, point, false);
         }
     }

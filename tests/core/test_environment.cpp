@@ -47,9 +47,8 @@ TEST(Environment, GlossyReflectsItsAlbedo) {
         for (const double cosine : {0.2, 0.6, 0.95}) {
             const double alpha = double{roughness} * roughness;
             const Vec3d wo(std::sqrt(1 - cosine * cosine), 0, cosine);
-            const double expected = integral(mirrored_hemisphere(160, 160), [&](const Vec3d& wi) {
-                return lobe_value(GgxShape{alpha}, wi, wo);
-            });
+            const double expected = integral(mirrored_hemisphere(160, 160),
+                                             [&](const Vec3d& wi) { return lobe_value(GgxShape{alpha}, wi, wo); });
             const Image image =
                 render_image(floor_under_sky(Bsdf::ggx(roughness, Rgb(1))), camera_at(cosine), 1, 1, {});
             EXPECT_NEAR(image.red(0, 0), expected * kSky.x, 2e-3 * kSky.x) << roughness << " " << cosine;

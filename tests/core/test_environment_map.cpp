@@ -225,9 +225,9 @@ class Floor {
         const RadiancePyramid lookup(picture.pixels, picture.width, picture.height);
         const glm::dmat3 frame(x_, y_, normal_);
         return sphere_integral(500, [&](const Vec3d& direction) {
-            return direction.z > 0
-                       ? double{bsdf.evaluate(direction, view_ * frame).x * lookup.radiance(glm::transpose(picture.to_world) * frame * direction).x}
-                       : 0.0;
+            return direction.z > 0 ? double{bsdf.evaluate(direction, view_ * frame).x *
+                                            lookup.radiance(glm::transpose(picture.to_world) * frame * direction).x}
+                                   : 0.0;
         });
     }
 
@@ -237,7 +237,7 @@ class Floor {
 
 TEST(EnvironmentMap, SurfacesReflectTheirIntegral) {
     LatLong picture = random_picture(32, 16, 4);
-    picture.pixels[170] = Rgb(60);  // some of it a spot
+    picture.pixels[170] = Rgb(60);                            // some of it a spot
     picture.to_world = rotation_about({0.5, 0.5, 0.7}, 2.2);  // leaves the spot above the floor
     for (const double cosine : {0.95, 0.5, 0.2}) {
         const Floor floor(cosine);

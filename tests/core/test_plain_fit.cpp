@@ -46,8 +46,9 @@ const Grid& grid() {
 
 /// L2 norm of f·cos and of its difference from the expansions, on this file's own grid.
 double measured_norm(const LobeShape& shape, double cos_theta_o) {
-    return std::sqrt(testing::integral(
-        grid().samples, [&](const Vec3d& wi) { return std::pow(lobe_value(shape, wi, view_direction(cos_theta_o)), 2); }));
+    return std::sqrt(testing::integral(grid().samples, [&](const Vec3d& wi) {
+        return std::pow(lobe_value(shape, wi, view_direction(cos_theta_o)), 2);
+    }));
 }
 
 double measured_residual(const LobeShape& shape, const PlainFit& fit, double cos_theta_o, int order) {
@@ -104,8 +105,12 @@ TEST(PlainFit, ConvergesAsExpected) {
     struct Row {
         double alpha, cos_theta_o, at_order_4, at_order_16;
     };
-    for (const Row& row : {Row{0.6, 0.95, 0.009, 5e-5}, {0.6, 0.5, 0.10, 4e-4}, {0.3, 0.95, 0.18, 2e-4},
-                           {0.3, 0.5, 0.46, 0.025}, {0.3, 0.2, 0.63, 0.17}, {0.1, 0.95, 0.74, 0.12}}) {
+    for (const Row& row : {Row{0.6, 0.95, 0.009, 5e-5},
+                           {0.6, 0.5, 0.10, 4e-4},
+                           {0.3, 0.95, 0.18, 2e-4},
+                           {0.3, 0.5, 0.46, 0.025},
+                           {0.3, 0.2, 0.63, 0.17},
+                           {0.1, 0.95, 0.74, 0.12}}) {
         const PlainFit fit{GgxShape{row.alpha}};
         EXPECT_LE(fit.residual(row.cos_theta_o, 4), 1.15 * row.at_order_4) << row.alpha << ' ' << row.cos_theta_o;
         EXPECT_LE(fit.residual(row.cos_theta_o, 16), 1.15 * row.at_order_16) << row.alpha << ' ' << row.cos_theta_o;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Polygons against the 113-bit reference, without area, and bad input. Errors are the largest over all coefficients of a
-// light, relative to its L_00.
+// Polygons against the 113-bit reference, without area, and bad input. Errors are the largest over all coefficients of
+// a light, relative to its L_00.
 #include "shlight/polygon.h"
 
 #include <gtest/gtest.h>

@@ -88,7 +88,8 @@ TEST(RenderEmitters, FineIcospheresShineAsSpheres) {
             scene.add_sphere_light(kCenter, 1, Rgb(1));
             scene.add_sphere_light(kOther, 1, Rgb(1));
         };
-        expect_close(floor_under(meshes, settings, floor, nullptr), floor_under(spheres, settings, floor, nullptr), 0.02);
+        expect_close(floor_under(meshes, settings, floor, nullptr), floor_under(spheres, settings, floor, nullptr),
+                     0.02);
     }
 }
 
@@ -153,8 +154,7 @@ TEST(RenderEmitters, FacesOfDifferentRadianceAreOneLightAndAddUp) {
     RenderSettings settings = testing::analytic_settings();
     settings.tolerance = 1e-3;
     for (const Bsdf& floor : {Bsdf::lambert(Rgb(0.5F)), Bsdf::ggx(0.5F, Rgb(0.9F))}) {
-        const Image truth =
-            floor_under([](Scene& scene) { Screen().add_lamps(scene); }, exact, floor, nullptr);
+        const Image truth = floor_under([](Scene& scene) { Screen().add_lamps(scene); }, exact, floor, nullptr);
         const Image image = of_mesh(Screen().mesh(), settings, floor, nullptr);
         double squares = 0;
         double whole = 0;
@@ -220,8 +220,8 @@ TEST(RenderEmitters, WithinOneAllDirectionsShine) {
     for (const int rays : {0, 16}) {
         RenderSettings settings = testing::analytic_settings();
         settings.shadow_rays = rays;
-        const Image image = of_mesh(emissive(testing::icosphere(3), Vec3d(0, 0, 0), 20), settings,
-                                    Bsdf::lambert(Rgb(0.5F)), nullptr);
+        const Image image =
+            of_mesh(emissive(testing::icosphere(3), Vec3d(0, 0, 0), 20), settings, Bsdf::lambert(Rgb(0.5F)), nullptr);
         EXPECT_LE(testing::picture_error(image, [](int, int) { return 0.5; }).largest, 1e-5);
     }
 }

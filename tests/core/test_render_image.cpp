@@ -28,7 +28,7 @@ void expect_close(double value, double truth, double largest) {
     EXPECT_LE(std::abs(value - truth), kTolerance * largest);
 }
 
-/// Largest error of a picture of a floor under one light, ÷ kTolerance and `largest`, what is about the truth's maximum.
+/// Largest error of a picture of a floor under one light, ÷ kTolerance and `largest`, about the truth's maximum.
 double error_of(const Image& image, const std::function<double(const Vec3d&)>& truth, double largest) {
     const auto expected = [&](int column, int row) { return truth(floor_point(column, row, kSize, kHalf)); };
     return picture_error(image, expected).largest / (kTolerance * largest);
