@@ -117,13 +117,13 @@ template <class T>
 void expect_nothing_seen() {
     const std::vector<T> zeros(64, T(0));
     for (const Vertices& vertices : {
-             Vertices{{1, 0, 1}, {1, 0, 1}, {1, 0, 1}},                    // a point
-             {{1, 0, 1}, {2, 0, 1}, {3, 0, 1}},                            // a line
-             {{1, 0, 1}, {2, 0, 2}, {3, 0, 1}},                            // edge-on
-             {{-1, -1, 1}, {1, 1, 1}, {2, 2, 3}, {-2, -2, 3}},             // edge-on, above
-             {{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}},                         // in the horizon's plane
-             {{2, -1, -1}, {2, 1, -1}, {2, 1, 0}, {2, -1, 0}},             // up to the horizon
-             {{1, 0, 0}, {2, 1, -1}, {2, -1, -1}},                         // touches from below
+             Vertices{{1, 0, 1}, {1, 0, 1}, {1, 0, 1}},         // a point
+             {{1, 0, 1}, {2, 0, 1}, {3, 0, 1}},                 // a line
+             {{1, 0, 1}, {2, 0, 2}, {3, 0, 1}},                 // edge-on
+             {{-1, -1, 1}, {1, 1, 1}, {2, 2, 3}, {-2, -2, 3}},  // edge-on, above
+             {{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}},              // in the horizon's plane
+             {{2, -1, -1}, {2, 1, -1}, {2, 1, 0}, {2, -1, 0}},  // up to the horizon
+             {{1, 0, 0}, {2, 1, -1}, {2, -1, -1}},              // touches from below
          }) {
         EXPECT_EQ(coefficients<T>(vertices, 8, true), zeros) << describe(vertices, true);
     }

@@ -79,9 +79,13 @@ TEST(RenderImage, PolygonLightShinesToItsFrontOnly) {
     const std::vector<Vec3d> down = {{-0.5, -0.5, 1}, {-0.5, 0.7, 1}, {0.9, 0.7, 1}, {0.9, -0.5, 1}};
     const std::vector<Vec3d> up(down.rbegin(), down.rend());
     const Image bright = floor_under([&](Scene& scene) { scene.add_polygon_light(down, Rgb(3)); });
-    EXPECT_LE(error_of(bright, [&](const Vec3d& point) { return 1.5 * form_factor(point, down); }, 1), 1);
+    EXPECT_LE(error_of(
+                  bright, [&](const Vec3d& point) { return 1.5 * form_factor(point, down); }, 1),
+              1);
     const Image black = floor_under([&](Scene& scene) { scene.add_polygon_light(up, Rgb(3)); });
-    EXPECT_EQ(error_of(black, [](const Vec3d&) { return 0.0; }, 1), 0);
+    EXPECT_EQ(error_of(
+                  black, [](const Vec3d&) { return 0.0; }, 1),
+              0);
 }
 
 TEST(RenderImage, PolygonLightCutByTheHorizon) {
@@ -89,7 +93,9 @@ TEST(RenderImage, PolygonLightCutByTheHorizon) {
     const std::vector<Vec3d> wall = {{3, -1, -2}, {3, -1, 1}, {3, 1, 1}, {3, 1, -2}};
     const std::vector<Vec3d> above = {{3, -1, 0}, {3, -1, 1}, {3, 1, 1}, {3, 1, 0}};
     const Image image = floor_under([&](Scene& scene) { scene.add_polygon_light(wall, Rgb(1)); });
-    EXPECT_LE(error_of(image, [&](const Vec3d& point) { return 0.5 * form_factor(point, above); }, 0.3), 1);
+    EXPECT_LE(error_of(
+                  image, [&](const Vec3d& point) { return 0.5 * form_factor(point, above); }, 0.3),
+              1);
 }
 
 TEST(RenderImage, LampsAreNotSeen) {
@@ -209,7 +215,9 @@ TEST(RenderImage, InsideTheSphereTheHemisphereIsLit) {
         RenderSettings settings = analytic_settings();
         settings.shadow_rays = rays;
         const Image image = floor_under([](Scene& scene) { scene.add_sphere_light({0, 0, 0.5}, 3, Rgb(1)); }, settings);
-        EXPECT_LE(error_of(image, [](const Vec3d&) { return 0.5; }, 0.5), 1);
+        EXPECT_LE(error_of(
+                      image, [](const Vec3d&) { return 0.5; }, 0.5),
+                  1);
     }
 }
 
