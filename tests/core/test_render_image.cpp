@@ -29,7 +29,7 @@ void expect_close(double value, double truth, double largest) {
 }
 
 /// Largest error of a picture of a floor under one light, ÷ kTolerance and `largest`, about the truth's maximum.
-double error_of(const Image& image, const std::function<double(const Vec3d&)>& truth, double largest) {
+double error_of(const Image& image, double largest, const std::function<double(const Vec3d&)>& truth) {
     const auto expected = [&](int column, int row) { return truth(floor_point(column, row, kSize, kHalf)); };
     return picture_error(image, expected).largest / (kTolerance * largest);
 }
@@ -53,7 +53,7 @@ TEST(RenderImage, SphereLightOverALambertFloor) {
             const double sin2 = radius * radius / (facing_disk ? d2 + radius * radius : d2);
             return sin2 * way.z / std::sqrt(d2);  // 2 · albedo ÷ π · π sin²σ cosθ
         };
-        EXPECT_LE(error_of(image, truth, 0.2), 1);
+        EXPECT_LE(error_of(image, 0.2, truth), 1);
         for (int i = 0; i < kSize * kSize; ++i) {
             const Rgb color = image.color(i % kSize, i / kSize);
             expect_close(color.y, color.x / 2, 0.1);
@@ -72,20 +72,16 @@ TEST(RenderImage, SphereCutByTheHorizon) {
         const double sigma = std::asin(sine);
         return 0.5 / kPi * (sigma - sine * std::cos(sigma));
     };
-    EXPECT_LE(error_of(image, truth, 0.05), 1);
+    EXPECT_LE(error_of(image, 0.05, truth), 1);
 }
 
 TEST(RenderImage, PolygonLightShinesToItsFrontOnly) {
     const std::vector<Vec3d> down = {{-0.5, -0.5, 1}, {-0.5, 0.7, 1}, {0.9, 0.7, 1}, {0.9, -0.5, 1}};
     const std::vector<Vec3d> up(down.rbegin(), down.rend());
     const Image bright = floor_under([&](Scene& scene) { scene.add_polygon_light(down, Rgb(3)); });
-    EXPECT_LE(error_of(
-                  bright, [&](const Vec3d& point) { return 1.5 * form_factor(point, down); }, 1),
-              1);
+    EXPECT_LE(error_of(bright, 1, [&](const Vec3d& point) { return 1.5 * form_factor(point, down); }), 1);
     const Image black = floor_under([&](Scene& scene) { scene.add_polygon_light(up, Rgb(3)); });
-    EXPECT_EQ(error_of(
-                  black, [](const Vec3d&) { return 0.0; }, 1),
-              0);
+    EXPECT_EQ(error_of(black, 1, [](const Vec3d&) { return 0.0; }), 0);
 }
 
 TEST(RenderImage, PolygonLightCutByTheHorizon) {
@@ -93,9 +89,7 @@ TEST(RenderImage, PolygonLightCutByTheHorizon) {
     const std::vector<Vec3d> wall = {{3, -1, -2}, {3, -1, 1}, {3, 1, 1}, {3, 1, -2}};
     const std::vector<Vec3d> above = {{3, -1, 0}, {3, -1, 1}, {3, 1, 1}, {3, 1, 0}};
     const Image image = floor_under([&](Scene& scene) { scene.add_polygon_light(wall, Rgb(1)); });
-    EXPECT_LE(error_of(
-                  image, [&](const Vec3d& point) { return 0.5 * form_factor(point, above); }, 0.3),
-              1);
+    EXPECT_LE(error_of(image, 0.3, [&](const Vec3d& point) { return 0.5 * form_factor(point, above); }), 1);
 }
 
 TEST(RenderImage, LampsAreNotSeen) {
@@ -127,7 +121,7 @@ TEST(RenderImage, EmissiveQuadEqualsPolygonLightAndIsSeen) {
         const auto truth = [&](const Vec3d& point) {
             return point.x > 0.5 && point.x < 1.5 && std::abs(point.y) < 0.5 ? 2 : form_factor(point, quad);
         };
-        EXPECT_LE(error_of(image, truth, 1), 1);
+        EXPECT_LE(error_of(image, 1, truth), 1);
         EXPECT_EQ(image.red(18, 12), 2);
     }
 }
@@ -215,9 +209,7 @@ TEST(RenderImage, InsideTheSphereTheHemisphereIsLit) {
         RenderSettings settings = analytic_settings();
         settings.shadow_rays = rays;
         const Image image = floor_under([](Scene& scene) { scene.add_sphere_light({0, 0, 0.5}, 3, Rgb(1)); }, settings);
-        EXPECT_LE(error_of(
-                      image, [](const Vec3d&) { return 0.5; }, 0.5),
-                  1);
+        EXPECT_LE(error_of(image, 0.5, [](const Vec3d&) { return 0.5; }), 1);
     }
 }
 
