@@ -136,12 +136,8 @@ TEST(Polygon, WithoutAreaItGivesZeros) {
 /// Whatever their coordinates that are zero make of them.
 TEST(Polygon, EverythingIsFinite) {
     RandomInput random(44);
-    using Draw = Vertices (*)(RandomInput&);
-    const std::array<Draw, 8> kinds = {testing::plain,        testing::concave, testing::tiny,
-                                       testing::near_contact, testing::thin,    testing::nearly_edge_on,
-                                       testing::on_horizon,   testing::deep};
     for (std::size_t i = 0; i < 2000; ++i) {
-        Vertices vertices = kinds.at(i % kinds.size())(random);
+        Vertices vertices = kClasses.at(i % kClasses.size()).draw(random);
         for (Vec3d& vertex : vertices) {
             for (int k = 0; k < 3; ++k) {
                 vertex[k] = vertices.size() == 3 && random.chance(0.1) ? 0 : vertex[k];

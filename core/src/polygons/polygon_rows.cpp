@@ -74,13 +74,16 @@ class PolygonRows : public PolygonLists<PolygonRows<T>, T, false> {
     void add_narrow(std::size_t count) {
         slot_.assign(count, kNone);
         std::size_t slots = 0;
-        for (std::size_t points = 1; points <= kMaxGaussPoints; ++points) {
-            const auto& list = this->double_arcs_.arcs(points);
+        const auto give_slots = [&](const auto& list) {
             for (std::size_t k = 0; k < list.size(); ++k) {
                 std::size_t& slot = slot_[list.region(k)];
                 slot = slot == kNone ? slots++ : slot;
             }
+        };
+        for (std::size_t points = 1; points <= kMaxGaussPoints; ++points) {
+            give_slots(this->double_arcs_.arcs(points));
         }
+        give_slots(this->double_arcs_.horizon());  // a sliver may have no other arc
         if (room_ < slots * numbers_) {
             room_ = slots * numbers_;
             sums_ = hwy::AllocateAligned<double>(room_);
