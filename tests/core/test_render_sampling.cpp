@@ -217,7 +217,12 @@ void expect_met(const Light& light) {
     for (std::uint32_t i = 0; i < kPoints; ++i) {
         const LightSample sample = sampler.sample(sobol(i, 8));
         weight += sample.weight / kPoints;
-        EXPECT_LE(distance_from(light, sample.distance * sample.direction), 1e-6);
+        const Vec3d place = sample.distance * sample.direction;
+        EXPECT_LE(distance_from(light, place), 1e-6);
+        if (const auto* sphere = std::get_if<SphereLight>(&light);
+            sphere != nullptr && !sphere->facing_disk && glm::length(sphere->center) > sphere->radius) {
+            EXPECT_LE(glm::dot(place - sphere->center, sample.direction), 1e-6) << "on the far side";
+        }
         const auto distance = sampler.meets(sample.direction);
         missed += distance ? 0 : 1;  // an edge may be missed by rounding
         if (distance) {
