@@ -160,20 +160,21 @@ void bind_bsdf(py::module_& m) {
             py::arg("albedo"), "Diffuse: f·cos = albedo · cosθ_i / π. albedo: a number or RGB, ≥ 0. Order 2 is exact.")
         .def_static(
             "ggx",
-            [](float roughness, const AnyArray<float>& f0, std::optional<float> ior) {
+            [](float roughness, const AnyArray<float>& f0, std::optional<double> ior) {
                 const Rgb head_on = color("f0", f0);
                 if (ior && !(*ior > 1)) {  // 0 would mean none
-                    throw std::invalid_argument("ior must be greater than 1");
+                    throw std::invalid_argument("ior must be finite and greater than 1");
                 }
                 const py::gil_scoped_release release;
-                return Bsdf::ggx(roughness, head_on, ior.value_or(0.0F));
+                return Bsdf::ggx(roughness, head_on, ior.value_or(0));
             },
             py::arg("roughness"), py::arg("f0"), py::kw_only(), py::arg("ior") = py::none(),
             R"(GGX microfacets with height-correlated Smith masking; alpha = roughness², 0 ≤ roughness ≤ 1.
 Below a roughness of 0.003 a perfect mirror: lights reflect in it, but it has no coefficients and evaluates to 0.
 
 f0 (a number or RGB) is the reflectance seen head-on; Fresnel is f0 + (1 - f0) s with Schlick's
-s = (1 - cosθ_d)⁵ or, with `ior`, the dielectric Fresnel curve of that index remapped to 0 … 1.
+s = (1 - cosθ_d)⁵ or, with `ior`, finite and greater than 1, the dielectric Fresnel curve of that index remapped to
+0 … 1; s is 0 where the curve of an index above 3.73 dips under its value head-on.
 Raises ValueError naming the argument.)")
         .def_static("layer", &Bsdf::layer, py::arg("top"), py::arg("base"),
                     "top + base · (1 - largest channel of top's directional albedo at the view angle).")

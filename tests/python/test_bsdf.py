@@ -47,6 +47,26 @@ def test_sums_and_multiples_are_linear() -> None:
     np.testing.assert_allclose(mixed.coefficients(0.8, 6), expected, atol=1e-5)
 
 
+@pytest.mark.parametrize("ior", [1 + 1e-12, 1.0001, 4, 10, 99, 101, 1e30, 1e300])
+def test_reflectance_is_a_share_for_every_ior(ior: float) -> None:
+    """Above 3.73 the dielectric curve dips under its value head-on."""
+    black, grey, mirror = Bsdf.ggx(0.5, 0, ior=ior), Bsdf.ggx(0.5, 0.04, ior=ior), Bsdf.ggx(0.5, 1)
+    points, _ = hemisphere_grid(30)
+    for cosine in (0.001, 0.01, 0.1, 0.5, 1.0):
+        least = 0.04 * mirror.evaluate(points, upper(cosine, 0))
+        values = grey.evaluate(points, upper(cosine, 0))
+        assert (black.evaluate(points, upper(cosine, 0)) >= 0).all()
+        assert (values >= least * (1 - 1e-6)).all()
+        assert (values <= least / 0.04 * (1 + 1e-6)).all()
+        light = np.array([-math.sqrt(1 - cosine**2), 0.1, cosine + 0.1])
+        for order in ("auto", 8):
+            radiance = shlight.shade_spheres(light, 0.2, grey, cosine, order=order)[0]
+            full = shlight.shade_spheres(light, 0.2, mirror, cosine, order=order)[0]
+            assert 0.04 * full - 1e-3 <= radiance <= full + 1e-3
+        assert np.isfinite(grey.coefficients(cosine, 6)).all()
+        assert np.isfinite(grey.residual(cosine, 6))
+
+
 def test_shapes() -> None:
     grey, colored = Bsdf.lambert(0.5), Bsdf.lambert([0.1, 0.2, 0.3])
     for shape in [(), (4,), (2, 3)]:

@@ -28,6 +28,16 @@ bool is_black(const Rgb& c) {
     return c == Rgb(0);
 }
 
+/// The dielectric curve nears a step at grazing angles for an ior near 1, and no rise for a large one: outside these
+/// limits it differs by more than 1e-2 from what is taken in its place only where cosθ_d < 3e-3.
+constexpr double kLeastIor = 1 + 1e-6, kLargestIor = 100;
+
+/// What the part of a reflectance that rises towards grazing angles is multiplied by. ior: 0 for Schlick's curve.
+LobeShape edge_shape(double alpha, double ior) {
+    return ior == 0 ? GgxShape{alpha, Fresnel::schlick}
+                    : GgxShape{alpha, Fresnel::dielectric, std::max(ior, kLeastIor)};
+}
+
 }  // namespace
 
 double Lobe::albedo(double cos_theta_o) const {
@@ -50,13 +60,13 @@ Bsdf Bsdf::lambert(const Rgb& albedo) {
     return lobe(LambertShape{}, albedo);
 }
 
-Bsdf Bsdf::ggx(float roughness, const Rgb& f0, float ior) {
+Bsdf Bsdf::ggx(float roughness, const Rgb& f0, double ior) {
     if (!(roughness >= 0 && roughness <= 1)) {
         reject("roughness must lie in [0, 1]");
     }
     check_color("f0", f0);
     if (ior != 0 && !(std::isfinite(ior) && ior > 1)) {
-        reject("ior must be greater than 1");
+        reject("ior must be finite and greater than 1");
     }
     const double alpha = roughness < kLeastRoughness ? 0 : static_cast<double>(roughness) * roughness;
     Bsdf b;
@@ -64,9 +74,8 @@ Bsdf Bsdf::ggx(float roughness, const Rgb& f0, float ior) {
         b = lobe(GgxShape{alpha, Fresnel::one}, f0);
     }
     const Rgb rest = Rgb(1) - glm::min(f0, Rgb(1));
-    if (!is_black(rest)) {
-        const GgxShape edge = ior != 0 ? GgxShape{alpha, Fresnel::dielectric, ior} : GgxShape{alpha, Fresnel::schlick};
-        b = b + lobe(edge, rest);
+    if (!is_black(rest) && ior <= kLargestIor) {
+        b = b + lobe(edge_shape(alpha, ior), rest);
     }
     return b;
 }

@@ -40,7 +40,7 @@ HWY_INLINE V<D> fresnel_in_lanes(D d, double ior, V<D> cosine) {
     const auto a = hn::Add(all(d, head_on), e);
     const auto parallel = hn::Mul(hn::Mul(a, a), hn::MulAdd(hn::Mul(f, f), all(d, 0.5), f));
     const auto rise = hn::MulAdd(e, hn::Add(a, all(d, head_on)), parallel);
-    return hn::Mul(rise, all(d, 1 / (1 - head_on * head_on)));
+    return hn::Max(hn::Zero(d), hn::Mul(rise, all(d, 1 / (1 - head_on * head_on))));
 }
 
 /// kFresnel as in the shape. What changes from view to view is in View: so would be a roughness of each hit's own.

@@ -35,7 +35,7 @@ double fresnel_factor(const GgxShape& shape, double cosine) {
         }
         case Fresnel::dielectric: {
             const double head_on = fresnel_dielectric(1, shape.ior);
-            return (fresnel_dielectric(cosine, shape.ior) - head_on) / (1 - head_on);
+            return std::max(0.0, (fresnel_dielectric(cosine, shape.ior) - head_on) / (1 - head_on));
         }
     }
     return 0;
