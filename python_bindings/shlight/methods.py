@@ -119,7 +119,7 @@ def _options(
     if "seed" in chosen:
         chosen["seed"] = _integer("seed", chosen["seed"], 0, 2**32 - 1)
     defaults = {"tolerance": 0.0, "samples": DEFAULT_SAMPLES, "seed": 0, "sampling": sampling}
-    return _core.MethodOptions(order=order, **{**defaults, **chosen})
+    return _core.method_options(order=order, **{**defaults, **chosen})
 
 
 def checked_tolerance(value: Any) -> float:

@@ -3,15 +3,20 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "arrays.h"
 #include "bindings.h"
 #include "shlight/bsdf.h"
 #include "shlight/plain_fit.h"
+#include "whole_objects.h"
 
 namespace shlight::python {
 namespace {
@@ -146,6 +151,44 @@ Bsdf scaled(const Bsdf& bsdf, const AnyArray<float>& factor) {
     return bsdf.scaled(color("factor", factor));
 }
 
+using GgxState = std::tuple<double, int, double>;  // alpha, Fresnel, ior
+using LobeState = std::tuple<std::optional<GgxState>, std::array<float, 3>, std::optional<std::vector<float>>>;
+
+std::vector<LobeState> state_of(const Bsdf& bsdf) {
+    std::vector<LobeState> state;
+    for (const Lobe& lobe : bsdf.lobes()) {
+        std::optional<GgxState> shape;
+        if (const auto* ggx = std::get_if<GgxShape>(&lobe.shape)) {
+            shape = {ggx->alpha, static_cast<int>(ggx->fresnel), ggx->ior};
+        }
+        state.push_back({shape,
+                         {lobe.color.x, lobe.color.y, lobe.color.z},
+                         lobe.weight ? std::optional(lobe.weight->nodes()) : std::nullopt});
+    }
+    return state;
+}
+
+LobeShape shape_from(const std::optional<GgxState>& state) {
+    if (!state) {
+        return LambertShape{};
+    }
+    const auto [alpha, fresnel, ior] = *state;
+    if (!(alpha >= 0 && alpha <= 1 && ior > 1 && std::isfinite(ior)) || fresnel < static_cast<int>(Fresnel::one) ||
+        fresnel > static_cast<int>(Fresnel::dielectric)) {
+        throw std::invalid_argument("state does not describe a lobe");
+    }
+    return GgxShape{alpha, static_cast<Fresnel>(fresnel), ior};
+}
+
+Bsdf bsdf_from(const std::vector<LobeState>& state) {
+    Bsdf sum;
+    for (const auto& [shape, color, nodes] : state) {
+        sum = sum + Bsdf::lobe(shape_from(shape), {color[0], color[1], color[2]},
+                               nodes ? std::make_shared<const ViewWeight>(*nodes) : nullptr);
+    }
+    return sum;
+}
+
 constexpr const char* kDoc =
     R"(A material: a sum of coloured lobes f·cos in the shading frame (z is the surface normal).
 
@@ -154,8 +197,9 @@ Bsdfs can be added and multiplied by a number or an RGB colour. They are immutab
 }  // namespace
 
 void bind_bsdf(py::module_& m) {
-    py::class_<Bsdf>(m, "Bsdf", kDoc)
-        .def_static(
+    py::class_<Bsdf> type(m, "Bsdf", kDoc, without_constructor());
+    define_pickling(type, &state_of, &bsdf_from);
+    type.def_static(
             "lambert", [](const AnyArray<float>& albedo) { return Bsdf::lambert(color("albedo", albedo)); },
             py::arg("albedo"), "Diffuse: f·cos = albedo · cosθ_i / π. albedo: a number or RGB, ≥ 0. Order 2 is exact.")
         .def_static(

@@ -8,6 +8,7 @@
 #include "bindings.h"
 #include "chunks.h"
 #include "shaded.h"
+#include "whole_objects.h"
 #include "zonal_factorization.h"
 
 namespace shlight::python {
@@ -128,22 +129,26 @@ py::tuple shaded_polygons(const std::string& method, const Array<double>& vertic
 }  // namespace
 
 void bind_methods(py::module_& m) {
-    py::class_<Options>(m, "MethodOptions")
-        .def(py::init([](double tolerance, int order, int samples, std::uint32_t seed, const std::string& sampling) {
-                 return Options{tolerance, order, samples, seed, sampling_from(sampling)};
-             }),
-             py::kw_only(), py::arg("tolerance"), py::arg("order"), py::arg("samples"), py::arg("seed"),
-             py::arg("sampling"));
-    py::class_<Method>(m, "Method")
-        .def_readonly("name", &Method::name)
+    py::class_<Options>(m, "MethodOptions", without_constructor());
+    m.def(
+        "method_options",
+        [](double tolerance, int order, int samples, std::uint32_t seed, const std::string& sampling) {
+            return Options{tolerance, order, samples, seed, sampling_from(sampling)};
+        },
+        py::kw_only(), py::arg("tolerance"), py::arg("order"), py::arg("samples"), py::arg("seed"),
+        py::arg("sampling"));
+    py::class_<Method> method_type(m, "Method", without_constructor());
+    define_pickling(method_type, [](const Method& method) { return method.name; }, &find_method);
+    method_type.def_readonly("name", &Method::name)
         .def_readonly("source", &Method::source)
         .def_readonly("largest_order", &Method::largest_order)
         .def_readonly("adaptive", &Method::adaptive)
         .def_readonly("random", &Method::random)
         .def_property_readonly("knows_caps", [](const Method& method) { return method.single.cap != nullptr; })
         .def_property_readonly("knows_polygons", [](const Method& method) { return method.single.polygon != nullptr; });
-    py::class_<ShadingMethod>(m, "ShadingMethod")
-        .def_readonly("name", &ShadingMethod::name)
+    py::class_<ShadingMethod> shading_method_type(m, "ShadingMethod", without_constructor());
+    define_pickling(shading_method_type, [](const ShadingMethod& method) { return method.name; }, &find_shading_method);
+    shading_method_type.def_readonly("name", &ShadingMethod::name)
         .def_readonly("source", &ShadingMethod::source)
         .def_readonly("harmonic", &ShadingMethod::harmonic)
         .def_readonly("adaptive", &ShadingMethod::adaptive)

@@ -6,16 +6,19 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <string>
+#include <tuple>
 
 #include "arrays.h"
 #include "bindings.h"
 #include "render_calls.h"
+#include "whole_objects.h"
 
 using namespace pybind11::literals;
 
@@ -83,6 +86,26 @@ struct Report {
     }
 };
 
+using ReportState = std::tuple<std::array<std::uint64_t, kMaxOrder + 1>, std::array<std::uint64_t, 6>, double,
+                               std::array<double, kRenderStages.size()>, double>;
+
+ReportState report_state(const Report& report) {
+    const RenderReport& core = report.core;
+    return {core.order_counts,
+            {core.cubature_count, core.mirror_count, core.over_tolerance, core.summed_count, core.hits,
+             core.shadow_rays},
+            core.seconds,
+            core.stage_seconds,
+            report.build_seconds};
+}
+
+Report report_from(const ReportState& state) {
+    const auto& [order_counts, counts, seconds, stage_seconds, build_seconds] = state;
+    const auto& [cubature, mirror, over_tolerance, summed, hits, shadow_rays] = counts;
+    return {{order_counts, cubature, mirror, over_tolerance, summed, hits, shadow_rays, seconds, stage_seconds},
+            build_seconds};
+}
+
 int order_from(const py::object& order) {
     if (py::isinstance<py::str>(order) && order.cast<std::string>() == "auto") {
         return 0;
@@ -126,7 +149,9 @@ py::object render_scene(SceneObject& scene, std::int64_t width, std::int64_t hei
 
 void bind_render(py::module_& m) {
     py::register_exception<RenderCancelled>(m, "RenderCancelled", PyExc_RuntimeError);
-    py::class_<Report>(m, "RenderReport", "What a picture took.")
+    py::class_<Report> report_type(m, "RenderReport", "What a picture took.", without_constructor());
+    define_pickling(report_type, &report_state, &report_from);
+    report_type
         .def_property_readonly("order_shares", &Report::order_shares,
                                "Shares of what was shaded by harmonics, by their order. Once is a lobe of a camera hit "
                                "under a light that it sees.")

@@ -6,6 +6,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "mesh_arrays.h"
+#include "whole_objects.h"
 
 using namespace pybind11::literals;
 
@@ -15,7 +16,8 @@ namespace {
 constexpr const char* kSceneDoc = R"(Meshes, lights and a camera in one world frame, in metres.
 
 Scene() is empty. Add meshes and lights, set a camera, then call shlight.render().
-What render() builds for ray tracing is kept until something is added.)";
+What render() builds for ray tracing is kept until something is added.
+A copy, deep or not, and the Scene that it was made of do not change each other.)";
 
 constexpr const char* kAddMeshDoc = R"(Add a triangle mesh. Surfaces are two-sided.
 
@@ -84,8 +86,16 @@ void set_camera_window(SceneObject& self, const py::object& to_world, double lef
 }  // namespace
 
 void bind_scene(py::module_& m) {
-    py::class_<SceneObject> scene(m, "Scene", kSceneDoc);
+    py::class_<SceneObject> scene(m, "Scene", kSceneDoc, constructed_when_new());
     scene.def(py::init<>())
+        .def("__copy__", [](const SceneObject& self) { return self; })
+        .def(
+            "__deepcopy__", [](const SceneObject& self, const py::object&) { return self; }, "memo"_a)
+        .def("__reduce__",
+             [](const SceneObject&) -> py::object {
+                 throw py::type_error("a Scene cannot be pickled: build it in the process that renders it, from arrays "
+                                      "and materials, which can");
+             })
         .def("add_mesh", &add_mesh, kAddMeshDoc, "vertices"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
              "uvs"_a = py::none(), "bsdf"_a = py::none(), "emission"_a = py::none(), "material_indices"_a = py::none(),
              "transforms"_a = py::none())

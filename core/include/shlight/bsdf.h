@@ -15,7 +15,8 @@ namespace shlight {
 /// A weight that depends on the view angle alone, tabulated as the fits are.
 class ViewWeight {
   public:
-    explicit ViewWeight(std::vector<float> nodes) : nodes_(std::move(nodes)) {}
+    /// Throws std::invalid_argument unless there are as many nodes as the fits have, each in 0 … 1.
+    explicit ViewWeight(std::vector<float> nodes);
     float operator()(float cos_theta_o) const;
     const std::vector<float>& nodes() const { return nodes_; }
 
@@ -42,8 +43,8 @@ class Bsdf {
   public:
     Bsdf() = default;  ///< black
 
-    /// color · shape. Throws std::invalid_argument for a colour that is negative or not finite.
-    static Bsdf lobe(const LobeShape& shape, const Rgb& color);
+    /// color · weight · shape. Throws std::invalid_argument for a colour that is negative or not finite.
+    static Bsdf lobe(const LobeShape& shape, const Rgb& color, std::shared_ptr<const ViewWeight> weight = nullptr);
     /// Throws std::invalid_argument for an albedo that is negative or not finite.
     static Bsdf lambert(const Rgb& albedo);
     /// GGX, height-correlated Smith, F = f0 + (1 - f0) s with s = (1 - cosθ_d)⁵, or with ior > 1 the exact dielectric

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "base/checks.h"
 #include "lobes/view_grid.h"
@@ -44,14 +45,21 @@ double Lobe::albedo(double cos_theta_o) const {
     return fit ? fit->albedo(cos_theta_o) : lobe_albedo(shape, cos_theta_o);
 }
 
+ViewWeight::ViewWeight(std::vector<float> nodes) : nodes_(std::move(nodes)) {
+    check_size("weight", nodes_.size(), kViewNodes);
+    if (!std::all_of(nodes_.begin(), nodes_.end(), [](float node) { return node >= 0 && node <= 1; })) {
+        reject("weight must lie in [0, 1]");
+    }
+}
+
 float ViewWeight::operator()(float cos_theta_o) const {
     return interpolate_even(nodes_, cos_theta_o);
 }
 
-Bsdf Bsdf::lobe(const LobeShape& shape, const Rgb& color) {
+Bsdf Bsdf::lobe(const LobeShape& shape, const Rgb& color, std::shared_ptr<const ViewWeight> weight) {
     check_color("color", color);
     Bsdf b;
-    b.lobes_.push_back({shape, is_mirror(shape) ? nullptr : warped_fit(shape), color, nullptr});
+    b.lobes_.push_back({shape, is_mirror(shape) ? nullptr : warped_fit(shape), color, std::move(weight)});
     return b;
 }
 
@@ -84,7 +92,7 @@ Bsdf Bsdf::layer(const Bsdf& top, const Bsdf& base) {
     std::vector<float> passed(kViewNodes);
     for (int i = 0; i < kViewNodes; ++i) {
         const float reflected = largest(top.albedo(std::cos(view_angle(i))));
-        passed[i] = std::max(0.0F, 1 - reflected);
+        passed[i] = std::clamp(1 - reflected, 0.0F, 1.0F);
     }
     Bsdf result = top;
     for (Lobe lobe : base.lobes_) {
