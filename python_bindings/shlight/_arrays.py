@@ -3,11 +3,17 @@
 
 from __future__ import annotations
 
-import operator
+import math
+import warnings
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+from shlight._core import Bsdf, checked_flag, checked_integer, checked_number, converted_array
+
+__all__ = ["checked_flag", "checked_integer", "checked_number"]
 
 Floats = NDArray[Any]
 
@@ -21,24 +27,33 @@ def shaped(flat: Floats, shape: tuple[int, ...]) -> Floats:
     return flat.reshape(shape)[()]
 
 
-def checked_order(order: int) -> int:
-    try:
-        n = operator.index(order)
-    except TypeError:
-        raise ValueError(f"order must be an integer 1 … {MAX_ORDER}, got {order!r}") from None
-    if not 1 <= n <= MAX_ORDER:
-        raise ValueError(f"order must be 1 … {MAX_ORDER}, got {n}")
-    return n
+def checked_order(order: Any) -> int:
+    return checked_integer("order", order, 1, MAX_ORDER)
 
 
-def checked_threads(threads: int) -> int:
-    try:
-        n = operator.index(threads)
-    except TypeError:
-        raise ValueError(f"threads must be an integer ≥ 0, got {threads!r}") from None
-    if n < 0:
-        raise ValueError(f"threads must be ≥ 0, got {n}")
-    return n
+def checked_threads(threads: Any) -> int:
+    return checked_integer("threads", threads, 0, 2**31 - 1)
+
+
+def checked_material(bsdf: Any) -> Bsdf:
+    if not isinstance(bsdf, Bsdf):
+        raise TypeError(f"bsdf must be a Bsdf, got {type(bsdf).__name__}")
+    return bsdf
+
+
+def checked_tolerance(tolerance: Any) -> float:
+    checked = checked_number("tolerance", tolerance)
+    if not (math.isfinite(checked) and checked > 0):
+        raise ValueError(f"tolerance must be positive and finite, got {checked}")
+    return checked
+
+
+def checked_name(name: str, value: Any, known: Iterable[str]) -> str:
+    """One of some names."""
+    if not isinstance(value, str) or value not in known:
+        got = repr(value) if isinstance(value, str) else type(value).__name__
+        raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {got}")
+    return value
 
 
 def common_type(*arrays: ArrayLike) -> DTypeLike:
@@ -46,27 +61,26 @@ def common_type(*arrays: ArrayLike) -> DTypeLike:
 
 
 def checked_array(name: str, value: ArrayLike, dtype: DTypeLike, *, core_axes: int = 0) -> Floats:
-    wanted = np.dtype(dtype)
-    if wanted not in _TYPES:
-        raise ValueError(f"dtype must be float32 or float64, got {wanted}")
+    wanted = _checked_type(dtype)
     if type(value) is np.ndarray and value.dtype == wanted and value.flags.c_contiguous:
         array: Floats = value  # finding out with numpy that nothing is to be done takes as long as a hundred lights
     else:
-        array = _converted(name, value, wanted)
+        array = converted_array(name, value, wanted == np.float32)
     if array.ndim < core_axes:
         raise ValueError(f"{name} must have at least {core_axes} axes, got shape {array.shape}")
     return array
 
 
-def _converted(name: str, value: ArrayLike, dtype: np.dtype[Any]) -> Floats:
+def _checked_type(dtype: DTypeLike) -> np.dtype[Any]:
     try:
-        given = np.asarray(value)
-        if not (np.issubdtype(given.dtype, np.floating) or np.issubdtype(given.dtype, np.integer)):
-            raise ValueError
-        with np.errstate(over="ignore"):  # what does not fit becomes infinite and is refused as such
-            return np.ascontiguousarray(given, dtype=dtype).reshape(given.shape)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} must be an array of real numbers") from None
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # numpy takes classes of types with a warning
+            wanted = np.dtype(dtype)
+    except (TypeError, ValueError, Warning):
+        raise ValueError(f"dtype must be float32 or float64, got {type(dtype).__name__}") from None
+    if wanted not in _TYPES:
+        raise ValueError(f"dtype must be float32 or float64, got {wanted}")
+    return wanted
 
 
 def check_last(name: str, array: Floats, size: int) -> None:
@@ -93,7 +107,7 @@ def broadcast(**shapes: tuple[int, ...]) -> tuple[int, ...]:
         return np.broadcast_shapes(*distinct)
     except ValueError:
         described = " and ".join(f"{name} {shape}" for name, shape in shapes.items())
-        raise ValueError(f"the leading axes of {described} do not broadcast") from None
+        raise ValueError(f"{described}: these leading axes do not broadcast") from None
 
 
 def rows(array: Floats, shape: tuple[int, ...], *core: int) -> Floats:

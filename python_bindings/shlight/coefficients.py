@@ -25,6 +25,7 @@ from shlight._arrays import (
     check_last,
     checked_array,
     checked_disks,
+    checked_flag,
     checked_order,
     checked_threads,
     common_type,
@@ -87,12 +88,12 @@ def sphere_coefficients(
     r = checked_array("radii", radii, dtype)
     check_last("centers", c, 3)
     shape = broadcast(centers=c.shape[:-1], radii=r.shape)
-    n = checked_order(order)
+    n, above = checked_order(order), checked_flag("clip", clip)
     lights = (rows(c, shape, 3), rows(r, shape))
     if method == "exact":
-        flat = _core.sphere_coefficients(*lights, n, bool(clip), checked_threads(threads))
+        flat = _core.sphere_coefficients(*lights, n, above, checked_threads(threads))
     else:
-        flat = _core.method_sphere_coefficients(method, *lights, n, bool(clip), options, checked_threads(threads))
+        flat = _core.method_sphere_coefficients(method, *lights, n, above, options, checked_threads(threads))
     return flat.reshape(*shape, n * n)
 
 
@@ -120,12 +121,12 @@ def cap_coefficients(
     h = checked_array("half_angles", half_angles, dtype)
     check_last("axes", a, 3)
     shape = broadcast(axes=a.shape[:-1], half_angles=h.shape)
-    n = checked_order(order)
+    n, above = checked_order(order), checked_flag("clip", clip)
     lights = (rows(a, shape, 3), rows(h, shape))
     if method == "exact":
-        flat = _core.cap_coefficients(*lights, n, bool(clip), checked_threads(threads))
+        flat = _core.cap_coefficients(*lights, n, above, checked_threads(threads))
     else:
-        flat = _core.method_cap_coefficients(method, *lights, n, bool(clip), options, checked_threads(threads))
+        flat = _core.method_cap_coefficients(method, *lights, n, above, options, checked_threads(threads))
     return flat.reshape(*shape, n * n)
 
 
@@ -148,18 +149,18 @@ def polygon_coefficients(
     A polygon without area or seen edge-on gives zeros. clip: keep only what lies above the horizon z ≥ 0.
     Returns (..., order²).
     """
-    method = "exact" if method in PARTS_OF_EXACT else method
+    method = "exact" if isinstance(method, str) and method in PARTS_OF_EXACT else method
     options = coefficient_options(method, tolerance=tolerance, samples=samples, seed=seed, sampling=sampling)
     v = checked_array("vertices", vertices, dtype, core_axes=2)
     check_last("vertices", v, 3)
     if v.shape[-2] < 3:
         raise ValueError(f"vertices: a polygon needs at least 3, got {v.shape[-2]}")
-    n = checked_order(order)
+    n, above = checked_order(order), checked_flag("clip", clip)
     lights = (v.reshape(-1, *v.shape[-2:]),)
     if method == "exact":
-        flat = _core.polygon_coefficients(*lights, n, bool(clip), checked_threads(threads))
+        flat = _core.polygon_coefficients(*lights, n, above, checked_threads(threads))
     else:
-        flat = _core.method_polygon_coefficients(method, *lights, n, bool(clip), options, checked_threads(threads))
+        flat = _core.method_polygon_coefficients(method, *lights, n, above, options, checked_threads(threads))
     return flat.reshape(*v.shape[:-2], n * n)
 
 
@@ -184,9 +185,9 @@ def disk_coefficients(
     """
     c, u, v = checked_disks(centers, half_axes_u, half_axes_v, dtype)
     shape = broadcast(centers=c.shape[:-1], half_axes_u=u.shape[:-1], half_axes_v=v.shape[:-1])
-    n = checked_order(order)
+    n, above = checked_order(order), checked_flag("clip", clip)
     lights = (rows(c, shape, 3), rows(u, shape, 3), rows(v, shape, 3))
-    flat = _core.disk_coefficients(*lights, n, bool(clip), checked_threads(threads))
+    flat = _core.disk_coefficients(*lights, n, above, checked_threads(threads))
     return flat.reshape(*shape, n * n)
 
 

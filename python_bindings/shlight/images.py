@@ -17,6 +17,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from shlight._arrays import checked_array, checked_number
+
 __all__ = ["linear_to_srgb8", "read_exr", "write_exr", "write_png"]
 
 _CHANNEL_NAMES = {1: ("Y",), 3: ("R", "G", "B"), 4: ("R", "G", "B", "A")}
@@ -28,8 +30,8 @@ def write_exr(path: str | os.PathLike[str], image: npt.ArrayLike) -> None:
     With 4 channels RGB is premultiplied by alpha, as OpenEXR asks and as `shlight.render` returns it.
     Raises ValueError for an array that is no such image, OSError when the file cannot be written.
     """
-    pixels = _as_image(image, np.float32)
-    _write(Path(path), pixels, "openexr", "float", {"compression": "zip"})
+    pixels = _checked_image("image", checked_array("image", image, np.float32))
+    _write(_checked_path(path), pixels, "openexr", "float", {"compression": "zip"})
 
 
 def read_exr(path: str | os.PathLike[str]) -> npt.NDArray[np.float32]:
@@ -39,7 +41,7 @@ def read_exr(path: str | os.PathLike[str]) -> npt.NDArray[np.float32]:
     """
     import OpenImageIO as oiio
 
-    path = Path(path)
+    path = _checked_path(path)
     with path.open("rb"):  # the usual FileNotFoundError, PermissionError or IsADirectoryError
         pass
     source = oiio.ImageInput.open(str(path))
@@ -60,37 +62,50 @@ def write_png(path: str | os.PathLike[str], image_srgb_uint8: npt.ArrayLike) -> 
 
     Raises ValueError for an array that is no such image, OSError when the file cannot be written.
     """
-    if np.asarray(image_srgb_uint8).dtype != np.uint8:
+    if getattr(image_srgb_uint8, "dtype", None) != np.uint8:
         raise ValueError("image_srgb_uint8 must be of dtype uint8; linear_to_srgb8 makes it from linear light")
-    pixels = _as_image(image_srgb_uint8, np.uint8, "image_srgb_uint8")
-    _write(Path(path), pixels, "png", "uint8", {"oiio:ColorSpace": "sRGB", "oiio:UnassociatedAlpha": 1})
+    pixels = _checked_image("image_srgb_uint8", np.ascontiguousarray(image_srgb_uint8))
+    _write(_checked_path(path), pixels, "png", "uint8", {"oiio:ColorSpace": "sRGB", "oiio:UnassociatedAlpha": 1})
 
 
 def linear_to_srgb8(image: npt.ArrayLike, exposure: float = 0.0) -> npt.NDArray[np.uint8]:
     """Linear light to 8-bit sRGB (IEC 61966-2-1), brightened by `exposure` stops first; what is brighter than 1 clips.
 
     Of 4 channels the last is alpha: RGB is divided by it, and alpha itself stays linear. NaN becomes black.
+    exposure: -500 … 500.
     """
-    linear = np.nan_to_num(_as_image(image, np.float32), nan=0.0).astype(np.float64)
+    pixels = _checked_image("image", checked_array("image", image, np.float32))
+    stops = checked_number("exposure", exposure)
+    if not -500 <= stops <= 500:
+        raise ValueError(f"exposure must be -500 … 500, got {stops}")
+    linear = np.nan_to_num(pixels, nan=0.0).astype(np.float64)
     colour = linear[..., :3]
     if linear.shape[2] == 4:
         alpha = np.clip(linear[..., 3:], 0.0, 1.0)
         colour = np.divide(colour, alpha, out=np.zeros_like(colour), where=alpha > 0)
         linear[..., 3:] = alpha
-    colour = np.clip(colour * 2.0**exposure, 0.0, 1.0)
+    colour = np.clip(colour * 2.0**stops, 0.0, 1.0)
     linear[..., :3] = np.where(colour <= 0.0031308, 12.92 * colour, 1.055 * colour ** (1 / 2.4) - 0.055)
     srgb: npt.NDArray[np.uint8] = np.round(linear * 255).astype(np.uint8)
     return srgb
 
 
-def _as_image(image: npt.ArrayLike, dtype: type[np.generic], name: str = "image") -> npt.NDArray[Any]:
-    try:
-        pixels = np.ascontiguousarray(image, dtype=dtype)
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} must be an array of numbers") from error
+def _checked_image(name: str, pixels: npt.NDArray[Any]) -> npt.NDArray[Any]:
     if pixels.ndim != 3 or pixels.shape[2] not in _CHANNEL_NAMES or pixels.size == 0:
         raise ValueError(f"{name} must have shape (height, width, 1, 3 or 4), not {pixels.shape}")
     return pixels
+
+
+def _checked_path(path: str | os.PathLike[str]) -> Path:
+    try:
+        checked = Path(path)
+    except TypeError:
+        raise TypeError(f"path must be a string or a Path, got {type(path).__name__}") from None
+    if "\0" in str(checked):
+        raise ValueError("path must not contain a null character")
+    if not checked.name:
+        raise ValueError("path must name a file")
+    return checked
 
 
 @contextmanager

@@ -13,21 +13,19 @@ the others with their sources. Each takes the options that make sense for it and
 from __future__ import annotations
 
 import functools
-import math
-import operator
-from collections.abc import Callable, Iterable
-from typing import Any, TypeVar
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shlight import _core
+from shlight._arrays import checked_integer, checked_name, checked_tolerance
 
 __all__ = ["coefficient_methods", "lobe_condition", "render_monte_carlo", "shading_methods"]
 
-_Method = TypeVar("_Method", _core.Method, _core.ShadingMethod)
-
 DEFAULT_SAMPLES = 256
+SAMPLINGS = ("solid_angle", "area", "bsdf", "mis")
 # What polygon_coefficients takes for "exact", beside that.
 PARTS_OF_EXACT = ("polygon_boundary", "polygon_edge_points", "polygon_cubature")
 
@@ -55,7 +53,7 @@ def _shading_methods() -> dict[str, _core.ShadingMethod]:
 def lobe_condition(band: int) -> float:
     """The condition number of the zonal factorization of one band, 0 … 31, by which zhou_wei, snyder and
     wang_ramamoorthi multiply the errors of their integrals over lobes."""
-    return _core.lobe_condition(_integer("band", band, 0, 31))
+    return _core.lobe_condition(checked_integer("band", band, 0, 31))
 
 
 def render_monte_carlo(
@@ -75,34 +73,29 @@ def render_monte_carlo(
     weighed by the balance heuristic and followed by shadow rays.
     seed: 0 … 2³²-1; the image depends on it and not on threads. progress, result and errors: as of shlight.render.
     """
-    count = _integer("samples", samples, 1, 2**20)
-    checked_seed = _integer("seed", seed, 0, 2**32 - 1)
-    return _core.render_monte_carlo(scene, width, height, count, checked_seed, threads, progress)
+    return _core.render_monte_carlo(scene, width, height, samples, seed, threads, progress)
+
+
+def checked_shading_method(method: Any) -> str:
+    return checked_name("method", method, ("auto", *_shading_methods()))
 
 
 def coefficient_options(method: str, **given: Any) -> _core.MethodOptions:
     """Checks the options that were given (None: not) against the method's, and converts them."""
-    found = _named(method, _coefficient_methods())
+    found = _coefficient_methods()[checked_name("method", method, _coefficient_methods())]
     takes = {"tolerance": found.adaptive, "samples": found.random, "seed": found.random, "sampling": found.random}
     return _options(method, takes, given, order=0, sampling="solid_angle")
 
 
 def shading_options(method: str, order: int, **given: Any) -> _core.MethodOptions:
     """As coefficient_options. order: 0 where none was given."""
-    found = _named(method, _shading_methods(), extra=["auto"])
+    found = _shading_methods()[method]
     takes = {"tolerance": True, "samples": found.sampled, "seed": found.random, "sampling": found.random}
     if found.harmonic and order == 0:
         raise ValueError(f"order must be 1 … 64 for method {method!r}")
     if order > 0 and not found.harmonic:
         raise ValueError(f"order does not apply to method {method!r}")
     return _options(method, takes, given, order=order, sampling="mis")
-
-
-def _named(name: str, methods: dict[str, _Method], extra: Iterable[str] = ()) -> _Method:
-    if not isinstance(name, str) or name not in methods:
-        known = ", ".join(repr(known) for known in [*extra, *methods])
-        raise ValueError(f"method must be one of {known}, got {name!r}")
-    return methods[name]
 
 
 def _options(
@@ -115,28 +108,10 @@ def _options(
     if "tolerance" in chosen:
         chosen["tolerance"] = checked_tolerance(chosen["tolerance"])
     if "samples" in chosen:
-        chosen["samples"] = _integer("samples", chosen["samples"], 1, 2**24)
+        chosen["samples"] = checked_integer("samples", chosen["samples"], 1, 2**24)
     if "seed" in chosen:
-        chosen["seed"] = _integer("seed", chosen["seed"], 0, 2**32 - 1)
+        chosen["seed"] = checked_integer("seed", chosen["seed"], 0, 2**32 - 1)
+    if "sampling" in chosen:
+        checked_name("sampling", chosen["sampling"], SAMPLINGS)
     defaults = {"tolerance": 0.0, "samples": DEFAULT_SAMPLES, "seed": 0, "sampling": sampling}
     return _core.method_options(order=order, **{**defaults, **chosen})
-
-
-def checked_tolerance(value: Any) -> float:
-    try:
-        checked = float(value)
-    except (TypeError, ValueError):
-        raise ValueError(f"tolerance must be a number, got {value!r}") from None
-    if not (math.isfinite(checked) and checked > 0):
-        raise ValueError(f"tolerance must be positive and finite, got {value!r}")
-    return checked
-
-
-def _integer(name: str, value: Any, least: int, largest: int) -> int:
-    try:
-        n = operator.index(value)
-    except TypeError:
-        raise ValueError(f"{name} must be an integer, got {value!r}") from None
-    if not least <= n <= largest:
-        raise ValueError(f"{name} must be {least} … {largest}, got {n}")
-    return n

@@ -20,12 +20,15 @@ from shlight._arrays import (
     check_last,
     checked_array,
     checked_disks,
+    checked_flag,
+    checked_material,
     checked_order,
     checked_threads,
+    checked_tolerance,
     rows,
 )
 from shlight._core import DEFAULT_TOLERANCE
-from shlight.methods import checked_tolerance, shading_options
+from shlight.methods import checked_shading_method, shading_options
 
 Radiance = NDArray[np.float32]
 Effort = NDArray[np.int32]
@@ -96,7 +99,8 @@ def shade_spheres(
     Returns (..., 3), float32. With return_effort also (...), int32: per light the largest order, or number of values
     of f·cos, that a lobe of the material took; 0 where a light is hidden or mirrored.
     """
-    dtype = _given_type(centers, radii) if method == "auto" else np.float64
+    bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
+    dtype = _given_type(centers, radii) if checked_shading_method(method) == "auto" else np.float64
     c = checked_array("centers", centers, dtype, core_axes=1)
     r = checked_array("radii", radii, dtype)
     cosines = _checked_views(cos_theta_o)
@@ -104,16 +108,14 @@ def shade_spheres(
     shape = broadcast(centers=c.shape[:-1], radii=r.shape, cos_theta_o=cosines.shape)
     if method == "auto":
         settings = _settings(order, tolerance, threads, samples, seed, sampling)
-        flat = _core.shade_spheres(
-            rows(c, shape, 3), rows(r, shape), bsdf, _views(cosines, shape), *settings, return_effort
-        )
+        flat = _core.shade_spheres(rows(c, shape, 3), rows(r, shape), bsdf, _views(cosines, shape), *settings, wanted)
     else:
         lights = (rows(c, shape, 3), rows(r, shape), bsdf, rows(cosines.astype(np.float64), shape))
         options = shading_options(
             method, _order(order), tolerance=tolerance, samples=samples, seed=seed, sampling=sampling
         )
         flat = _core.method_shade_spheres(method, *lights, options, checked_threads(threads))
-    return _result(*flat, shape, return_effort)
+    return _result(*flat, shape, wanted)
 
 
 @overload
@@ -153,7 +155,9 @@ def shade_polygons(
     vertices: (..., k, 3) with k ≥ 3, in the shading frame, in either winding: the region counts. A polygon without area
     or seen edge-on gives zeros.
     """
-    v = checked_array("vertices", vertices, _given_type(vertices) if method == "auto" else np.float64, core_axes=2)
+    bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
+    dtype = _given_type(vertices) if checked_shading_method(method) == "auto" else np.float64
+    v = checked_array("vertices", vertices, dtype, core_axes=2)
     check_last("vertices", v, 3)
     if v.shape[-2] < 3:
         raise ValueError(f"vertices: a polygon needs at least 3, got {v.shape[-2]}")
@@ -162,14 +166,14 @@ def shade_polygons(
     polygons = rows(v, shape, *v.shape[-2:])
     if method == "auto":
         settings = _settings(order, tolerance, threads, samples, seed, sampling)
-        flat = _core.shade_polygons(polygons, bsdf, _views(cosines, shape), *settings, return_effort)
+        flat = _core.shade_polygons(polygons, bsdf, _views(cosines, shape), *settings, wanted)
     else:
         lights = (polygons, bsdf, rows(cosines.astype(np.float64), shape))
         options = shading_options(
             method, _order(order), tolerance=tolerance, samples=samples, seed=seed, sampling=sampling
         )
         flat = _core.method_shade_polygons(method, *lights, options, checked_threads(threads))
-    return _result(*flat, shape, return_effort)
+    return _result(*flat, shape, wanted)
 
 
 @overload
@@ -215,7 +219,8 @@ def shade_disks(
     L_00, or the tolerance if that is less (docs/theory.md, 5.5).
     method: "auto" only; those of shlight.methods.shading_methods() know no disks.
     """
-    if method != "auto":
+    bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
+    if checked_shading_method(method) != "auto":
         raise ValueError(f"method must be 'auto' for disks, got {method!r}")
     dtype = _given_type(centers, half_axes_u, half_axes_v)
     c, u, v = checked_disks(centers, half_axes_u, half_axes_v, dtype)
@@ -225,8 +230,8 @@ def shade_disks(
     )
     lights = (rows(c, shape, 3), rows(u, shape, 3), rows(v, shape, 3))
     settings = (_order(order), checked_tolerance(tolerance), checked_threads(threads))
-    flat = _core.shade_disks(*lights, bsdf, _views(cosines, shape), *settings, return_effort)
-    return _result(*flat, shape, return_effort)
+    flat = _core.shade_disks(*lights, bsdf, _views(cosines, shape), *settings, wanted)
+    return _result(*flat, shape, wanted)
 
 
 def _given_type(*arrays: ArrayLike) -> type[np.floating[Any]]:

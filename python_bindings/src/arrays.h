@@ -59,15 +59,4 @@ void check_all_finite(const char* name, std::span<const T> all) {
     }
 }
 
-/// A colour given as one number or as RGB. Throws ValueError naming the argument.
-inline Rgb color(const char* name, const AnyArray<float>& a) {
-    if (a.size() == 1 && a.ndim() == 0) {
-        return Rgb(*a.data());
-    }
-    if (a.ndim() == 1 && a.size() == 3) {
-        return {a.data()[0], a.data()[1], a.data()[2]};
-    }
-    throw std::invalid_argument(std::string(name) + " must be a number or have shape (3,)");
-}
-
 }  // namespace shlight::python

@@ -5,6 +5,7 @@
 
 namespace shlight::python {
 
+void bind_arguments(pybind11::module_& m);
 void bind_coefficients(pybind11::module_& m);
 void bind_kernels(pybind11::module_& m);
 void bind_bsdf(pybind11::module_& m);

@@ -12,7 +12,8 @@
 #include <variant>
 #include <vector>
 
-#include "arrays.h"
+#include "arguments.h"
+#include "base/unit_direction.h"
 #include "bindings.h"
 #include "shlight/bsdf.h"
 #include "shlight/plain_fit.h"
@@ -72,7 +73,9 @@ void write_coefficients(const LobeFits& lobes, double cosine, int order, int cha
     }
 }
 
-Array<float> coefficients(const Bsdf& bsdf, const AnyArray<double>& cos_theta_o, int order) {
+Array<float> coefficients(const Bsdf& bsdf, const py::object& views, const py::object& bands) {
+    const AnyArray<double> cos_theta_o = array_from<double>("cos_theta_o", views);
+    const int order = int_from("order", bands);
     check_order(order);
     const int channels = is_grey(bsdf) ? 1 : 3;
     std::vector<py::ssize_t> added{coefficient_count(order)};
@@ -104,7 +107,10 @@ double residual_at(const LobeFits& lobes, double cosine, int order) {
     return squares > 0 ? error / std::sqrt(squares) : 0;
 }
 
-Array<double> residual(const Bsdf& bsdf, const AnyArray<double>& cos_theta_o, int order) {
+Array<double> residual(const Bsdf& bsdf, const py::object& views, const py::object& bands) {
+    const AnyArray<double> cos_theta_o = array_from<double>("cos_theta_o", views);
+    const int order = int_from("order", bands);
+    check_order(order);
     Array<double> out(shape_with(cos_theta_o, 0, {}));
     const LobeFits lobes = fits_of(bsdf);
     double* data = out.mutable_data();
@@ -114,23 +120,24 @@ Array<double> residual(const Bsdf& bsdf, const AnyArray<double>& cos_theta_o, in
     return out;
 }
 
-Vec3d unit(const char* name, const Vec3d& v) {
-    const double length = glm::length(v);
-    if (!(length > 0 && std::isfinite(length))) {
-        throw std::invalid_argument(std::string(name) + " contains a direction that is zero or not finite");
-    }
-    return v / length;
+AnyArray<double> directions_from(const char* name, const py::object& value) {
+    AnyArray<double> array = array_from<double>(name, value);
+    vectors(name, array);  // which checks the shape
+    return array;
 }
 
-Array<double> evaluate(const Bsdf& bsdf, const AnyArray<double>& wi, const AnyArray<double>& wo) {
-    const auto numpy = py::module_::import("numpy");
-    if (wi.ndim() < 1 || wi.shape(wi.ndim() - 1) != 3) {
-        throw std::invalid_argument("wi must have shape (..., 3)");
+Array<double> evaluate(const Bsdf& bsdf, const py::object& wi, const py::object& wo) {
+    const AnyArray<double> lights = directions_from("wi", wi);
+    const AnyArray<double> views = directions_from("wo", wo);
+    py::sequence both;
+    try {
+        both = py::module_::import("numpy").attr("broadcast_arrays")(lights, views);
+    } catch (const py::error_already_set& error) {
+        if (!error.matches(PyExc_ValueError)) {
+            throw;
+        }
+        throw std::invalid_argument("wi and wo have leading axes that do not broadcast");
     }
-    if (wo.ndim() < 1 || wo.shape(wo.ndim() - 1) != 3) {
-        throw std::invalid_argument("wo must have shape (..., 3)");
-    }
-    const py::sequence both = numpy.attr("broadcast_arrays")(wi, wo);
     const AnyArray<double> incoming(py::reinterpret_borrow<py::object>(both[0]));
     const AnyArray<double> outgoing(py::reinterpret_borrow<py::object>(both[1]));
     const auto i = vectors("wi", incoming);
@@ -139,7 +146,7 @@ Array<double> evaluate(const Bsdf& bsdf, const AnyArray<double>& wi, const AnyAr
     Array<double> out(shape_with(incoming, 1, grey ? std::vector<py::ssize_t>{} : std::vector<py::ssize_t>{3}));
     double* data = out.mutable_data();
     for (std::size_t k = 0; k < i.size(); ++k) {
-        const Rgb f = bsdf.evaluate(unit("wi", i[k]), unit("wo", o[k]));
+        const Rgb f = bsdf.evaluate(unit_direction(i[k], "wi"), unit_direction(o[k], "wo"));
         for (int channel = 0; channel < (grey ? 1 : 3); ++channel) {
             *data++ = static_cast<double>(f[channel]);
         }
@@ -147,8 +154,23 @@ Array<double> evaluate(const Bsdf& bsdf, const AnyArray<double>& wi, const AnyAr
     return out;
 }
 
-Bsdf scaled(const Bsdf& bsdf, const AnyArray<float>& factor) {
-    return bsdf.scaled(color("factor", factor));
+Bsdf scaled(const Bsdf& bsdf, const py::object& factor) {
+    return bsdf.scaled(color_from("factor", factor));
+}
+
+Bsdf ggx(const py::object& roughness, const py::object& f0, const py::object& ior) {
+    const auto width = static_cast<float>(real_from("roughness", roughness));
+    const Rgb head_on = color_from("f0", f0);
+    const double index = ior.is_none() ? 0 : real_from("ior", ior);
+    if (!ior.is_none() && !(index > 1)) {  // 0 would mean none
+        throw std::invalid_argument("ior must be finite and greater than 1");
+    }
+    const py::gil_scoped_release release;
+    return Bsdf::ggx(width, head_on, index);
+}
+
+Bsdf layer(const py::object& top, const py::object& base) {
+    return Bsdf::layer(object_from<Bsdf>("top", top, "Bsdf"), object_from<Bsdf>("base", base, "Bsdf"));
 }
 
 using GgxState = std::tuple<double, int, double>;  // alpha, Fresnel, ior
@@ -200,27 +222,17 @@ void bind_bsdf(py::module_& m) {
     py::class_<Bsdf> type(m, "Bsdf", kDoc, without_constructor());
     define_pickling(type, &state_of, &bsdf_from);
     type.def_static(
-            "lambert", [](const AnyArray<float>& albedo) { return Bsdf::lambert(color("albedo", albedo)); },
+            "lambert", [](const py::object& albedo) { return Bsdf::lambert(color_from("albedo", albedo)); },
             py::arg("albedo"), "Diffuse: f·cos = albedo · cosθ_i / π. albedo: a number or RGB, ≥ 0. Order 2 is exact.")
-        .def_static(
-            "ggx",
-            [](float roughness, const AnyArray<float>& f0, std::optional<double> ior) {
-                const Rgb head_on = color("f0", f0);
-                if (ior && !(*ior > 1)) {  // 0 would mean none
-                    throw std::invalid_argument("ior must be finite and greater than 1");
-                }
-                const py::gil_scoped_release release;
-                return Bsdf::ggx(roughness, head_on, ior.value_or(0));
-            },
-            py::arg("roughness"), py::arg("f0"), py::kw_only(), py::arg("ior") = py::none(),
-            R"(GGX microfacets with height-correlated Smith masking; alpha = roughness², 0 ≤ roughness ≤ 1.
+        .def_static("ggx", &ggx, py::arg("roughness"), py::arg("f0"), py::kw_only(), py::arg("ior") = py::none(),
+                    R"(GGX microfacets with height-correlated Smith masking; alpha = roughness², 0 ≤ roughness ≤ 1.
 Below a roughness of 0.003 a perfect mirror: lights reflect in it, but it has no coefficients and evaluates to 0.
 
 f0 (a number or RGB) is the reflectance seen head-on; Fresnel is f0 + (1 - f0) s with Schlick's
 s = (1 - cosθ_d)⁵ or, with `ior`, finite and greater than 1, the dielectric Fresnel curve of that index remapped to
 0 … 1; s is 0 where the curve of an index above 3.73 dips under its value head-on.
 Raises ValueError naming the argument.)")
-        .def_static("layer", &Bsdf::layer, py::arg("top"), py::arg("base"),
+        .def_static("layer", &layer, py::arg("top"), py::arg("base"),
                     "top + base · (1 - largest channel of top's directional albedo at the view angle).")
         .def("coefficients", &coefficients, py::arg("cos_theta_o"), py::arg("order"),
              R"(Coefficients of f·cos for ω_o = (sinθ_o, 0, cosθ_o): shape (..., order²), float32, or (..., 3, order²)

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
 // Flat batch functions; shlight/coefficients.py broadcasts in front of them.
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <utility>
+
 #include "arrays.h"
 #include "bindings.h"
 #include "chunks.h"
@@ -27,6 +32,17 @@ std::span<T> slice(T* data, int order, std::size_t first, std::size_t count) {
     return {data + first * row, count * row};
 }
 
+/// Finite sums have finite terms: these need a look only where a sum is not.
+template <class T>
+void check_sums(std::span<const T> sums, std::initializer_list<std::pair<const char*, std::span<const T>>> terms) {
+    if (std::all_of(sums.begin(), sums.end(), [](T sum) { return std::isfinite(sum); })) {
+        return;
+    }
+    for (const auto& [name, values] : terms) {
+        check_all_finite(name, values);
+    }
+}
+
 template <class T>
 Array<T> basis(const Array<T>& directions, int order, int threads) {
     const auto d = vectors("directions", directions);
@@ -49,6 +65,7 @@ Array<T> evaluated(const Array<T>& coefficients, const Array<T>& directions, int
         shlight::evaluate(slice(c.data(), order, first, count), d.subspan(first, count), order,
                           std::span<T>(data + first, count));
     });
+    check_sums<T>({data, d.size()}, {{"coefficients", c}});
     return out;
 }
 
@@ -118,6 +135,7 @@ Array<T> shaded(const Array<T>& light, const Array<T>& bsdf, int order, int thre
         shade(slice(light.data(), order, first, count), slice(bsdf.data(), order, first, count), order,
               std::span<T>(data + first, count));
     });
+    check_sums<T>({data, total}, {{"light_coefficients", values(light)}, {"bsdf_coefficients", values(bsdf)}});
     return out;
 }
 

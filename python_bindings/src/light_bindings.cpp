@@ -2,7 +2,7 @@
 #include <numbers>
 #include <string>
 
-#include "arrays.h"
+#include "arguments.h"
 #include "mesh_arrays.h"
 #include "scene_bindings.h"
 
@@ -71,58 +71,69 @@ tangent: False: its radiance is irradiance / (pi sin^2(angle / 2)) everywhere; T
     cos^3 alpha) at an angle alpha to its middle, as Blender had it before version 4; angle is then at most 3.
 )";
 
-LightTraits traits_from(bool shadows, bool diffuse, bool glossy, bool camera) {
+LightTraits traits_from(const py::object& shadows, const py::object& diffuse, const py::object& glossy,
+                        const py::object& camera) {
     LightTraits traits;
-    traits.casts_shadows = shadows;
-    traits.lights_diffuse = diffuse;
-    traits.lights_glossy = glossy;
-    traits.seen_by_camera = camera;
+    traits.casts_shadows = flag_from("shadows", shadows);
+    traits.lights_diffuse = flag_from("diffuse", diffuse);
+    traits.lights_glossy = flag_from("glossy", glossy);
+    traits.seen_by_camera = flag_from("camera", camera);
     return traits;
 }
 
-void add_sphere_light(SceneObject& self, const py::object& center, double radius, const py::object& radiance,
-                      bool facing_disk, bool shadows, bool diffuse, bool glossy, bool camera) {
-    self.scene.add_sphere_light(vector_from("center", center), radius, rgb_from("radiance", radiance), facing_disk,
+void add_sphere_light(SceneObject& self, const py::object& center, const py::object& radius, const py::object& radiance,
+                      const py::object& facing_disk, const py::object& shadows, const py::object& diffuse,
+                      const py::object& glossy, const py::object& camera) {
+    self.scene.add_sphere_light(vector_from("center", center), real_from("radius", radius),
+                                rgb_from("radiance", radiance), flag_from("facing_disk", facing_disk),
                                 traits_from(shadows, diffuse, glossy, camera));
     self.changed();
 }
 
-void add_polygon_light(SceneObject& self, const py::object& vertices, const py::object& radiance, double spread,
-                       bool shadows, bool diffuse, bool glossy, bool camera) {
-    self.scene.add_polygon_light(points_from("vertices", vertices), rgb_from("radiance", radiance), spread,
-                                 traits_from(shadows, diffuse, glossy, camera));
+void add_polygon_light(SceneObject& self, const py::object& vertices, const py::object& radiance,
+                       const py::object& spread, const py::object& shadows, const py::object& diffuse,
+                       const py::object& glossy, const py::object& camera) {
+    self.scene.add_polygon_light(points_from("vertices", vertices), rgb_from("radiance", radiance),
+                                 real_from("spread", spread), traits_from(shadows, diffuse, glossy, camera));
     self.changed();
 }
 
 void add_disk_light(SceneObject& self, const py::object& center, const py::object& half_axis_u,
-                    const py::object& half_axis_v, const py::object& radiance, double spread, bool shadows,
-                    bool diffuse, bool glossy, bool camera) {
+                    const py::object& half_axis_v, const py::object& radiance, const py::object& spread,
+                    const py::object& shadows, const py::object& diffuse, const py::object& glossy,
+                    const py::object& camera) {
     self.scene.add_disk_light(vector_from("center", center), vector_from("half_axis_u", half_axis_u),
-                              vector_from("half_axis_v", half_axis_v), rgb_from("radiance", radiance), spread,
-                              traits_from(shadows, diffuse, glossy, camera));
+                              vector_from("half_axis_v", half_axis_v), rgb_from("radiance", radiance),
+                              real_from("spread", spread), traits_from(shadows, diffuse, glossy, camera));
     self.changed();
 }
 
-void add_point_light(SceneObject& self, const py::object& position, const py::object& intensity, bool shadows,
-                     bool diffuse, bool glossy, bool camera) {
+void add_point_light(SceneObject& self, const py::object& position, const py::object& intensity,
+                     const py::object& shadows, const py::object& diffuse, const py::object& glossy,
+                     const py::object& camera) {
     self.scene.add_point_light(vector_from("position", position), rgb_from("intensity", intensity),
                                traits_from(shadows, diffuse, glossy, camera));
     self.changed();
 }
 
-void add_spot_light(SceneObject& self, const py::object& position, const py::object& direction, double spot_angle,
-                    double blend, const py::object& intensity, double radius, bool facing_disk, bool times_cosine,
-                    bool shadows, bool diffuse, bool glossy, bool camera) {
+void add_spot_light(SceneObject& self, const py::object& position, const py::object& direction,
+                    const py::object& spot_angle, const py::object& blend, const py::object& intensity,
+                    const py::object& radius, const py::object& facing_disk, const py::object& times_cosine,
+                    const py::object& shadows, const py::object& diffuse, const py::object& glossy,
+                    const py::object& camera) {
     self.scene.add_spot_light(vector_from("position", position),
-                              make_spot_profile(axes_from("direction", direction), spot_angle, blend, times_cosine),
-                              rgb_from("intensity", intensity), radius, facing_disk,
-                              traits_from(shadows, diffuse, glossy, camera));
+                              make_spot_profile(axes_from("direction", direction), real_from("spot_angle", spot_angle),
+                                                real_from("blend", blend), flag_from("times_cosine", times_cosine)),
+                              rgb_from("intensity", intensity), real_from("radius", radius),
+                              flag_from("facing_disk", facing_disk), traits_from(shadows, diffuse, glossy, camera));
     self.changed();
 }
 
-void add_sun_light(SceneObject& self, const py::object& direction, double angle, const py::object& irradiance,
-                   bool tangent, bool shadows, bool diffuse, bool glossy, bool camera) {
-    self.scene.add_sun_light(vector_from("direction", direction), angle, rgb_from("irradiance", irradiance), tangent,
+void add_sun_light(SceneObject& self, const py::object& direction, const py::object& angle,
+                   const py::object& irradiance, const py::object& tangent, const py::object& shadows,
+                   const py::object& diffuse, const py::object& glossy, const py::object& camera) {
+    self.scene.add_sun_light(vector_from("direction", direction), real_from("angle", angle),
+                             rgb_from("irradiance", irradiance), flag_from("tangent", tangent),
                              traits_from(shadows, diffuse, glossy, camera));
     self.changed();
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "mesh_arrays.h"
 
-#include <cstring>
 #include <initializer_list>
 #include <limits>
 #include <stdexcept>
@@ -10,7 +9,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 
-#include "arrays.h"
+#include "arguments.h"
 #include "shlight/emission_profile.h"
 
 namespace shlight::python {
@@ -40,25 +39,9 @@ bool fits(const py::array& array, std::initializer_list<py::ssize_t> shape) {
     return true;
 }
 
-/// kinds: numpy's letters of the types that are accepted.
-template <class T>
-AnyArray<T> array_from(const char* name, const py::handle& value, const char* kinds, const char* expected) {
-    const py::array raw = py::array::ensure(value);
-    if (!raw || std::strchr(kinds, raw.dtype().kind()) == nullptr) {
-        PyErr_Clear();
-        throw std::invalid_argument(std::string(name) + " must be an array of " + expected);
-    }
-    return AnyArray<T>(raw);
-}
-
-template <class T>
-AnyArray<T> numbers(const char* name, const py::handle& value) {
-    return array_from<T>(name, value, "fiub", "numbers");
-}
-
 template <class T>
 AnyArray<T> numbers(const char* name, const py::handle& value, std::initializer_list<py::ssize_t> shape) {
-    AnyArray<T> array = numbers<T>(name, value);
+    AnyArray<T> array = array_from<T>(name, value);
     if (!fits(array, shape)) {
         throw std::invalid_argument(std::string(name) + " must have shape " + describe(shape));
     }
@@ -68,11 +51,10 @@ AnyArray<T> numbers(const char* name, const py::handle& value, std::initializer_
 /// Integers in 0 … 2³² - 1.
 std::vector<std::uint32_t> indices(const char* name, const py::handle& value,
                                    std::initializer_list<py::ssize_t> shape) {
-    const py::array raw = py::array::ensure(value);
-    PyErr_Clear();
     // An empty list has numpy's default type, float.
+    const py::array raw = py::array::ensure(value);
     const bool empty = raw && raw.size() == 0;
-    const auto array = array_from<std::int64_t>(name, value, empty ? "fiu" : "iu", "integers");
+    const auto array = array_from<std::int64_t>(name, value, empty ? "fiu" : "iu");
     if (!fits(array, shape)) {
         throw std::invalid_argument(std::string(name) + " must have shape " + describe(shape));
     }
@@ -103,6 +85,18 @@ glm::dmat4 matrix_at(const double* rows) {
     return matrix;
 }
 
+/// Empty for what has none, as an array without axes.
+py::list items_of(const py::object& value) {
+    try {
+        return py::list(value);
+    } catch (const py::error_already_set& error) {
+        if (!error.matches(PyExc_TypeError)) {
+            throw;
+        }
+        return py::list();
+    }
+}
+
 std::vector<Bsdf> bsdfs_from(const py::object& value) {
     if (value.is_none()) {
         return {Bsdf::lambert(Rgb(0.8F))};
@@ -111,13 +105,11 @@ std::vector<Bsdf> bsdfs_from(const py::object& value) {
         return {value.cast<Bsdf>()};
     }
     std::vector<Bsdf> result;
-    if (py::isinstance<py::sequence>(value)) {
-        for (const py::handle item : py::reinterpret_borrow<py::sequence>(value)) {
-            if (!py::isinstance<Bsdf>(item)) {
-                throw std::invalid_argument("bsdf must be a Bsdf or a sequence of them");
-            }
-            result.push_back(item.cast<Bsdf>());
+    for (const py::handle item : items_of(value)) {
+        if (!py::isinstance<Bsdf>(item)) {
+            throw std::invalid_argument("bsdf must be a Bsdf or a sequence of them");
         }
+        result.push_back(item.cast<Bsdf>());
     }
     if (result.empty()) {
         throw std::invalid_argument("bsdf must be a Bsdf or a sequence of at least one");
@@ -129,7 +121,7 @@ std::vector<Rgb> emission_from(const py::object& value) {
     if (value.is_none()) {
         return {Rgb(0)};
     }
-    const AnyArray<float> array = numbers<float>("emission", value);
+    const AnyArray<float> array = array_from<float>("emission", value);
     if (!fits(array, {3}) && !(fits(array, {kAny, 3}) && array.size() > 0)) {
         throw std::invalid_argument("emission must have shape (3,) or (m, 3)");
     }
@@ -138,7 +130,7 @@ std::vector<Rgb> emission_from(const py::object& value) {
 
 /// Either of the two forms; the other stays empty.
 void set_normals(Mesh& mesh, const py::object& value) {
-    const AnyArray<float> array = numbers<float>("normals", value);
+    const AnyArray<float> array = array_from<float>("normals", value);
     const auto vertex_count = static_cast<py::ssize_t>(mesh.vertices.size());
     const auto triangle_count = static_cast<py::ssize_t>(mesh.triangles.size());
     if (fits(array, {vertex_count, 3})) {
@@ -152,7 +144,7 @@ void set_normals(Mesh& mesh, const py::object& value) {
 }
 
 void check_uvs(const Mesh& mesh, const py::object& value) {
-    const AnyArray<float> array = numbers<float>("uvs", value);
+    const AnyArray<float> array = array_from<float>("uvs", value);
     const auto vertex_count = static_cast<py::ssize_t>(mesh.vertices.size());
     const auto triangle_count = static_cast<py::ssize_t>(mesh.triangles.size());
     if (!fits(array, {vertex_count, 2}) && !fits(array, {triangle_count, 3, 2})) {
@@ -176,7 +168,7 @@ std::vector<Vec3d> points_from(const char* name, const py::handle& value) {
 }
 
 glm::dmat3 axes_from(const char* name, const py::handle& value) {
-    const AnyArray<double> array = numbers<double>(name, value);
+    const AnyArray<double> array = array_from<double>(name, value);
     if (fits(array, {3})) {
         return lamp_axes({array.data()[0], array.data()[1], array.data()[2]});
     }
@@ -196,7 +188,7 @@ glm::dmat3 rotation_from(const char* name, const py::handle& value) {
 }
 
 Environment environment_from(const char* name, const py::handle& value, const glm::dmat3& to_world) {
-    const AnyArray<float> array = numbers<float>(name, value);
+    const AnyArray<float> array = array_from<float>(name, value);
     if (fits(array, {3})) {
         return Environment(vectors(name, array)[0]);
     }

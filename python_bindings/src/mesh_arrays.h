@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// numpy arrays → what the core's scene holds. Everything throws std::invalid_argument naming the argument.
+// numpy arrays → what the core's scene holds. Errors as of arguments.h.
 #pragma once
 
 #include <pybind11/numpy.h>

@@ -5,6 +5,7 @@
 PYBIND11_MODULE(_core, m) {
     m.doc() = "The compiled core of shlight; use it through the package `shlight`.";
     m.attr("DEFAULT_TOLERANCE") = shlight::kDefaultTolerance;
+    shlight::python::bind_arguments(m);
     shlight::python::bind_kernels(m);
     shlight::python::bind_coefficients(m);
     shlight::python::bind_bsdf(m);

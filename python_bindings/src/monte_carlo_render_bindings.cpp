@@ -5,7 +5,9 @@
 #include <pybind11/pybind11.h>
 
 #include <cstdint>
+#include <limits>
 
+#include "arguments.h"
 #include "bindings.h"
 #include "render_calls.h"
 
@@ -15,11 +17,16 @@ namespace py = pybind11;
 
 namespace {
 
-py::array_t<float> render(SceneObject& scene, std::int64_t width, std::int64_t height, std::int64_t samples,
-                          std::uint32_t seed, std::int64_t threads, const py::object& progress) {
-    const methods::MonteCarloSettings settings = {clamp_to_int(samples), seed, clamp_to_int(threads)};
-    const int columns = clamp_to_int(width);
-    const int rows = clamp_to_int(height);
+py::array_t<float> render(const py::object& scene_object, const py::object& width, const py::object& height,
+                          const py::object& samples, const py::object& seed, const py::object& threads,
+                          const py::object& progress) {
+    auto& scene = object_from<SceneObject>("scene", scene_object, "Scene");
+    const auto checked_seed =
+        static_cast<std::uint32_t>(integer_from("seed", seed, 0, std::numeric_limits<std::uint32_t>::max()));
+    const methods::MonteCarloSettings settings = {int_from("samples", samples), checked_seed,
+                                                  int_from("threads", threads)};
+    const int columns = int_from("width", width);
+    const int rows = int_from("height", height);
     methods::check_monte_carlo(settings, columns, rows);
     const Progress report_progress = progress_from(progress);
     const Camera camera = camera_of(scene);

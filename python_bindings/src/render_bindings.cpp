@@ -9,13 +9,12 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <string>
 #include <tuple>
 
-#include "arrays.h"
+#include "arguments.h"
 #include "bindings.h"
 #include "render_calls.h"
 #include "whole_objects.h"
@@ -91,12 +90,12 @@ using ReportState = std::tuple<std::array<std::uint64_t, kMaxOrder + 1>, std::ar
 
 ReportState report_state(const Report& report) {
     const RenderReport& core = report.core;
-    return {core.order_counts,
-            {core.cubature_count, core.mirror_count, core.over_tolerance, core.summed_count, core.hits,
-             core.shadow_rays},
-            core.seconds,
-            core.stage_seconds,
-            report.build_seconds};
+    return {
+        core.order_counts,
+        {core.cubature_count, core.mirror_count, core.over_tolerance, core.summed_count, core.hits, core.shadow_rays},
+        core.seconds,
+        core.stage_seconds,
+        report.build_seconds};
 }
 
 Report report_from(const ReportState& state) {
@@ -110,24 +109,23 @@ int order_from(const py::object& order) {
     if (py::isinstance<py::str>(order) && order.cast<std::string>() == "auto") {
         return 0;
     }
-    const bool integer = PyIndex_Check(order.ptr()) != 0 && !py::isinstance<py::bool_>(order);
-    // Out of long long's range counts as out of range too.
-    int overflow = 0;
-    const long long value = integer ? PyLong_AsLongLongAndOverflow(py::int_(order).ptr(), &overflow) : 0;
-    if (overflow != 0 || value < 1 || value > kMaxOrder) {
-        throw std::invalid_argument("order must be 1 … 64 or \"auto\"");
-    }
-    return static_cast<int>(value);
+    return static_cast<int>(integer_from("order", order, 1, kMaxOrder));
 }
 
-py::object render_scene(SceneObject& scene, std::int64_t width, std::int64_t height, const py::object& order,
-                        double tolerance, std::int64_t pixel_samples, std::int64_t shadow_rays, std::int64_t threads,
-                        const py::object& progress, bool adaptive, bool return_report) {
-    const RenderSettings settings = {order_from(order),           tolerance,
-                                     clamp_to_int(pixel_samples), clamp_to_int(shadow_rays),
-                                     clamp_to_int(threads),       adaptive};
-    const int columns = clamp_to_int(width);
-    const int rows = clamp_to_int(height);
+py::object render_scene(const py::object& scene_object, const py::object& width, const py::object& height,
+                        const py::object& order, const py::object& tolerance, const py::object& pixel_samples,
+                        const py::object& shadow_rays, const py::object& threads, const py::object& progress,
+                        const py::object& adaptive, const py::object& return_report) {
+    auto& scene = object_from<SceneObject>("scene", scene_object, "Scene");
+    const RenderSettings settings = {order_from(order),
+                                     real_from("tolerance", tolerance),
+                                     int_from("pixel_samples", pixel_samples),
+                                     int_from("shadow_rays", shadow_rays),
+                                     int_from("threads", threads),
+                                     flag_from("adaptive", adaptive)};
+    const int columns = int_from("width", width);
+    const int rows = int_from("height", height);
+    const bool with_report = flag_from("return_report", return_report);
     check_render(settings, columns, rows);
     const Progress report_progress = progress_from(progress);
     const Camera camera = camera_of(scene);
@@ -139,7 +137,7 @@ py::object render_scene(SceneObject& scene, std::int64_t width, std::int64_t hei
         const py::gil_scoped_release release;
         report = render(*compiled_scene, camera, columns, rows, settings, pixels, report_progress);
     }
-    if (return_report) {
+    if (with_report) {
         return py::make_tuple(image, Report{report, build_seconds});
     }
     return image;

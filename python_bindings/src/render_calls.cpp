@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "render_calls.h"
 
-#include <algorithm>
 #include <chrono>
-#include <limits>
 #include <stdexcept>
 
 namespace shlight::python {
@@ -18,11 +16,6 @@ bool is_false(const py::object& value) {
 }
 
 }  // namespace
-
-int clamp_to_int(std::int64_t value) {
-    return static_cast<int>(
-        std::clamp<std::int64_t>(value, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
-}
 
 Progress progress_from(const py::object& callback) {
     if (!callback.is_none() && PyCallable_Check(callback.ptr()) == 0) {

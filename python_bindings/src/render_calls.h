@@ -5,7 +5,6 @@
 
 #include <pybind11/pybind11.h>
 
-#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -13,9 +12,6 @@
 #include "shlight/parallel.h"
 
 namespace shlight::python {
-
-/// Numbers that do not fit an int are as much out of range as the largest that does.
-int clamp_to_int(std::int64_t value);
 
 /// Runs in the calling thread, which does not hold the GIL while it waits: signals are seen, and the callback called.
 /// Throws std::invalid_argument naming `progress` unless it is callable or None; keeps a reference to the argument.

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "arrays.h"
+#include "arguments.h"
 #include "bindings.h"
 #include "mesh_arrays.h"
 #include "whole_objects.h"
@@ -66,21 +66,26 @@ void add_mesh(SceneObject& self, const py::object& vertices, const py::object& t
     self.changed();
 }
 
-void set_environment(SceneObject& self, const py::object& radiance, const py::object& to_world, bool visible) {
+void set_environment(SceneObject& self, const py::object& radiance, const py::object& to_world,
+                     const py::object& visible) {
     const glm::dmat3 rotation = to_world.is_none() ? glm::dmat3(1) : rotation_from("to_world", to_world);
-    self.scene.set_environment(environment_from("radiance", radiance, rotation), visible);
+    const bool seen = flag_from("visible", visible);
+    self.scene.set_environment(environment_from("radiance", radiance, rotation), seen);
     self.changed();
 }
 
-void set_camera(SceneObject& self, const py::object& to_world, double fov_x) {
-    self.camera.emplace(matrix_from("to_world", to_world), fov_x);
+void set_camera(SceneObject& self, const py::object& to_world, const py::object& fov_x) {
+    self.camera.emplace(matrix_from("to_world", to_world), real_from("fov_x", fov_x));
 }
 
-void set_camera_window(SceneObject& self, const py::object& to_world, double left, double right, double bottom,
-                       double top, bool orthographic, double clip_start, double clip_end) {
-    self.camera.emplace(matrix_from("to_world", to_world), Window{left, right, bottom, top},
-                        orthographic ? Projection::orthographic : Projection::perspective,
-                        ClipRange{clip_start, clip_end});
+void set_camera_window(SceneObject& self, const py::object& to_world, const py::object& left, const py::object& right,
+                       const py::object& bottom, const py::object& top, const py::object& orthographic,
+                       const py::object& clip_start, const py::object& clip_end) {
+    const Window window = {real_from("left", left), real_from("right", right), real_from("bottom", bottom),
+                           real_from("top", top)};
+    self.camera.emplace(matrix_from("to_world", to_world), window,
+                        flag_from("orthographic", orthographic) ? Projection::orthographic : Projection::perspective,
+                        ClipRange{real_from("clip_start", clip_start), real_from("clip_end", clip_end)});
 }
 
 }  // namespace
@@ -93,8 +98,9 @@ void bind_scene(py::module_& m) {
             "__deepcopy__", [](const SceneObject& self, const py::object&) { return self; }, "memo"_a)
         .def("__reduce__",
              [](const SceneObject&) -> py::object {
-                 throw py::type_error("a Scene cannot be pickled: build it in the process that renders it, from arrays "
-                                      "and materials, which can");
+                 throw py::type_error(
+                     "a Scene cannot be pickled: build it in the process that renders it, from arrays "
+                     "and materials, which can");
              })
         .def("add_mesh", &add_mesh, kAddMeshDoc, "vertices"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
              "uvs"_a = py::none(), "bsdf"_a = py::none(), "emission"_a = py::none(), "material_indices"_a = py::none(),

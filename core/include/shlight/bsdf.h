@@ -48,9 +48,9 @@ class Bsdf {
     /// Throws std::invalid_argument for an albedo that is negative or not finite.
     static Bsdf lambert(const Rgb& albedo);
     /// GGX, height-correlated Smith, F = f0 + (1 - f0) s with s = (1 - cosθ_d)⁵, or with ior > 1 the exact dielectric
-    /// curve remapped to 0 … 1. Above an ior of 3.73 that curve dips under its value head-on; s is 0 there, as in Cycles.
-    /// alpha = roughness²; below kLeastRoughness it is a perfect mirror.
-    /// Throws for roughness outside [0, 1], a negative or non-finite f0, or an ior that is not finite and above 1.
+    /// curve remapped to 0 … 1. Above an ior of 3.73 that curve dips under its value head-on; s is 0 there, as in
+    /// Cycles. alpha = roughness²; below kLeastRoughness it is a perfect mirror. Throws for roughness outside [0, 1], a
+    /// negative or non-finite f0, or an ior that is not finite and above 1.
     static Bsdf ggx(float roughness, const Rgb& f0, double ior = 0);
     /// top + base · (1 - max over RGB of top's directional albedo).
     static Bsdf layer(const Bsdf& top, const Bsdf& base);

@@ -3,18 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "base/checks.h"
 #include "shlight/types.h"
 
 namespace shlight {
 
-/// `direction` at length 1. Throws std::invalid_argument naming it if it is not finite or has length 0.
-inline Vec3d unit_direction(const Vec3d& direction) {
-    check_finite("direction", direction);
+/// `direction` at length 1. Throws std::invalid_argument naming the argument if it is not finite or has length 0.
+inline Vec3d unit_direction(const Vec3d& direction, const char* name = "direction") {
+    check_finite(name, direction);
     const double largest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
     if (!(largest > 0)) {
-        reject("direction has length 0");
+        reject(std::string(name) + " has length 0");
     }
     // Scaled first: the square of a component may overflow or vanish.
     return glm::normalize(direction / largest);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "base/transforms.h"
 
@@ -11,16 +13,18 @@ namespace shlight {
 namespace {
 
 void check_window(const Window& window) {
-    for (const double edge : {window.left, window.right, window.bottom, window.top}) {
+    const std::pair<const char*, double> edges[] = {
+        {"left", window.left}, {"right", window.right}, {"bottom", window.bottom}, {"top", window.top}};
+    for (const auto& [name, edge] : edges) {
         if (!std::isfinite(edge)) {
-            reject("window contains a number that is not finite");
+            reject(std::string(name) + " must be finite");
         }
     }
     if (!(window.left < window.right)) {
-        reject("window: left must be smaller than right");
+        reject("right must be greater than left");
     }
     if (!(window.bottom < window.top)) {
-        reject("window: bottom must be smaller than top");
+        reject("top must be greater than bottom");
     }
 }
 

@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: MIT
+"""Calls public functions with each argument replaced by what a stranger may type, and says what came of it.
+
+Run as a script with the name of one call: a call that ends the process is seen by whoever ran it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import reprlib
+import sys
+import tempfile
+import warnings
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+import shlight
+from shlight import Bsdf, images, methods
+
+TRIANGLE = [[1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [-1.0, -1.0, 1.0]]
+FACES = [[0, 1, 2]]
+GGX = Bsdf.ggx(0.3, [0.9, 0.5, 0.1])
+SPHERE = {"centers": [0.0, 0.0, 2.0], "radii": 1.0}
+CAP = {"axes": [0.0, 0.0, 2.0], "half_angles": 1.0}
+POLYGON = {"vertices": TRIANGLE}
+DISK = {"centers": [0.0, 0.0, 1.0], "half_axes_u": [1.0, 0.0, 0.0], "half_axes_v": [0.0, 1.0, 0.0]}
+COEFFICIENTS = {"order": 3, "clip": True, "dtype": np.float32, "threads": 0}
+EXACT = {**COEFFICIENTS, "method": "exact", "tolerance": None, "samples": None, "seed": None, "sampling": None}
+RANDOM = {**COEFFICIENTS, "method": "monte_carlo", "samples": 8, "seed": 1, "sampling": "area"}
+SHADED = {"bsdf": GGX, "cos_theta_o": 0.5, "tolerance": 1e-3, "threads": 0, "return_effort": True}
+AUTO = {**SHADED, "order": "auto", "method": "auto", "samples": None, "seed": None, "sampling": None}
+SAMPLED = {**SHADED, "method": "monte_carlo", "samples": 8, "seed": 1, "sampling": "mis"}
+SEEN_BY = {"shadows": True, "diffuse": True, "glossy": True, "camera": False}
+RGB = [1.0, 2.0, 3.0]
+LIGHTS: dict[str, dict[str, Any]] = {
+    "add_sphere_light": {"center": [0, 0, 1], "radius": 0.1, "radiance": RGB, "facing_disk": False},
+    "add_polygon_light": {"vertices": TRIANGLE, "radiance": RGB, "spread": 1.0},
+    "add_disk_light": {
+        "center": [0, 0, 1],
+        "half_axis_u": [1, 0, 0],
+        "half_axis_v": [0, 1, 0],
+        "radiance": RGB,
+        "spread": 1.0,
+    },
+    "add_point_light": {"position": [0, 0, 1], "intensity": RGB},
+    "add_spot_light": {
+        "position": [0, 0, 1],
+        "direction": [0, 0, -1],
+        "spot_angle": 1.0,
+        "blend": 0.5,
+        "intensity": RGB,
+        "radius": 0.1,
+        "facing_disk": False,
+        "times_cosine": False,
+    },
+    "add_sun_light": {"direction": [0, 0, -1], "angle": 0.1, "irradiance": RGB, "tangent": False},
+}
+WINDOW = {"left": -1.0, "right": 1.0, "bottom": -1.0, "top": 1.0, "orthographic": False}
+CLIPS = {"clip_start": 0.0, "clip_end": 10.0}
+MESH = {
+    "vertices": TRIANGLE,
+    "triangles": FACES,
+    "normals": TRIANGLE,
+    "uvs": [[0.0, 0.0]] * 3,
+    "bsdf": GGX,
+    "emission": RGB,
+    "material_indices": [0],
+    "transforms": [np.eye(4)],
+}
+RENDER = {"width": 2, "height": 2, "threads": 1, "progress": None}
+SETTINGS = {"order": "auto", "tolerance": 0.1, "pixel_samples": 1, "shadow_rays": 1, "adaptive": False}
+
+
+def new_scene() -> shlight.Scene:
+    scene = shlight.Scene()
+    scene.add_mesh(TRIANGLE, FACES)
+    scene.set_camera(np.eye(4), 1.0)
+    return scene
+
+
+def of_scene(name: str) -> Callable[..., Any]:
+    return lambda **arguments: getattr(new_scene(), name)(**arguments)
+
+
+def picture(channels: int, dtype: Any) -> Any:
+    return np.ones((2, 2, channels), dtype)
+
+
+# For each way to call a function its arguments by name; "/" and what follows it tells ways of one function apart.
+CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
+    "Bsdf.lambert": (Bsdf.lambert, {"albedo": 0.5}),
+    "Bsdf.ggx": (Bsdf.ggx, {"roughness": 0.5, "f0": 0.04, "ior": 1.5}),
+    "Bsdf.layer": (Bsdf.layer, {"top": GGX, "base": Bsdf.lambert(1.0)}),
+    "Bsdf.coefficients": (GGX.coefficients, {"cos_theta_o": 0.5, "order": 3}),
+    "Bsdf.residual": (GGX.residual, {"cos_theta_o": 0.5, "order": 3}),
+    "Bsdf.evaluate": (GGX.evaluate, {"wi": [0.0, 0.6, 0.8], "wo": [0.0, 0.0, 1.0]}),
+    "Bsdf.__mul__": (GGX.__mul__, {"factor": 0.5}),
+    "Bsdf.__rmul__": (GGX.__rmul__, {"factor": 0.5}),
+    **{f"Scene.{name}": (of_scene(name), {**light, **SEEN_BY}) for name, light in LIGHTS.items()},
+    "Scene.add_mesh": (of_scene("add_mesh"), MESH),
+    "Scene.set_environment": (
+        of_scene("set_environment"),
+        {"radiance": np.ones((2, 4, 3)), "to_world": np.eye(3), "visible": True},
+    ),
+    "Scene.set_camera": (of_scene("set_camera"), {"to_world": np.eye(4), "fov_x": 1.0}),
+    "Scene.set_camera_window": (of_scene("set_camera_window"), {"to_world": np.eye(4), **WINDOW, **CLIPS}),
+    "cap_coefficients": (shlight.cap_coefficients, {**CAP, **EXACT}),
+    "cap_coefficients/random": (shlight.cap_coefficients, {**CAP, **RANDOM}),
+    "disk_coefficients": (shlight.disk_coefficients, {**DISK, **COEFFICIENTS}),
+    "polygon_coefficients": (shlight.polygon_coefficients, {**POLYGON, **EXACT}),
+    "polygon_coefficients/random": (shlight.polygon_coefficients, {**POLYGON, **RANDOM}),
+    "sphere_coefficients": (shlight.sphere_coefficients, {**SPHERE, **EXACT}),
+    "sphere_coefficients/random": (shlight.sphere_coefficients, {**SPHERE, **RANDOM}),
+    "evaluate": (shlight.evaluate, {"coefficients": [1.0, 0, 0, 0], "directions": [0.0, 0, 1], "threads": 0}),
+    "sh_basis": (shlight.sh_basis, {"directions": [0.0, 0, 1], "order": 3, "dtype": np.float32, "threads": 0}),
+    "shade": (
+        shlight.shade,
+        {"light_coefficients": [1.0, 0, 0, 0], "bsdf_coefficients": [1.0, 0, 0, 0], "threads": 0},
+    ),
+    "shade_spheres": (shlight.shade_spheres, {**SPHERE, **AUTO}),
+    "shade_spheres/random": (shlight.shade_spheres, {**SPHERE, **SAMPLED}),
+    "shade_polygons": (shlight.shade_polygons, {**POLYGON, **AUTO}),
+    "shade_polygons/random": (shlight.shade_polygons, {**POLYGON, **SAMPLED}),
+    "shade_disks": (shlight.shade_disks, {**DISK, **SHADED, "order": "auto", "method": "auto"}),
+    "render": (shlight.render, {"scene": new_scene(), **RENDER, **SETTINGS, "return_report": True}),
+    "images.write_exr": (images.write_exr, {"path": "a.exr", "image": picture(4, np.float32)}),
+    "images.read_exr": (images.read_exr, {"path": "missing.exr"}),
+    "images.write_png": (images.write_png, {"path": "a.png", "image_srgb_uint8": picture(3, np.uint8)}),
+    "images.linear_to_srgb8": (images.linear_to_srgb8, {"image": picture(3, np.float32), "exposure": 1.0}),
+    "methods.coefficient_methods": (methods.coefficient_methods, {}),
+    "methods.shading_methods": (methods.shading_methods, {}),
+    "methods.lobe_condition": (methods.lobe_condition, {"band": 3}),
+    "methods.render_monte_carlo": (
+        methods.render_monte_carlo,
+        {"scene": new_scene(), **RENDER, "samples": 1, "seed": 0},
+    ),
+}
+
+for name, method in methods.coefficient_methods().items():
+    if method.knows_caps:
+        CALLS[f"sphere_coefficients/{name}"] = shlight.sphere_coefficients, {**SPHERE, "order": 3, "method": name}
+        CALLS[f"cap_coefficients/{name}"] = shlight.cap_coefficients, {**CAP, "order": 3, "method": name}
+    if method.knows_polygons:
+        CALLS[f"polygon_coefficients/{name}"] = shlight.polygon_coefficients, {**POLYGON, "order": 3, "method": name}
+for name, way in methods.shading_methods().items():
+    of_method = {"bsdf": GGX, "cos_theta_o": 0.5, "method": name, **({"order": 3} if way.harmonic else {})}
+    CALLS[f"shade_spheres/{name}"] = shlight.shade_spheres, {**SPHERE, **of_method}
+    CALLS[f"shade_polygons/{name}"] = shlight.shade_polygons, {**POLYGON, **of_method}
+
+# What the range of one argument may depend on.
+RELATED = {
+    "bsdf_coefficients": ("light_coefficients",),
+    "centers": ("radii",),
+    "clip_start": ("clip_end",),
+    "half_axes_u": ("half_axes_v", "centers"),
+    "half_axes_v": ("centers",),
+    "half_axis_u": ("half_axis_v",),
+    "left": ("right",),
+    "bottom": ("top",),
+    "light_coefficients": ("bsdf_coefficients",),
+    "method": ("order", "tolerance", "samples", "seed", "sampling"),
+    "radius": ("intensity",),
+    "triangles": ("material_indices",),
+    "vertices": ("normals", "triangles"),
+}
+NUMBERS = [0, 1, -1, 2**31, 2**40, 2**63, 2**64, 10**400, -(10**400), 10**5000, 0.5, -0.0, -0.5, 1e-45, 1e-320]
+NUMBERS += [1e38, 1e39, 1e200, 1.7e308, float("nan"), float("inf"), -float("inf"), 1j, 1 + 0j, complex("nan")]
+WRONG: list[Any] = [
+    *(None, "x", "", "1", b"x", "a\0b", "float16", "float64", True, object(), Fraction(1, 3), repr, int, GGX),
+    *([], [[]], {}, (), [[], [1]], set(), ["x"] * 3, [None] * 3, {1: 2}),
+    *NUMBERS,
+    *([number] * 3 for number in NUMBERS),
+    *([number] * 4 for number in NUMBERS),
+    *([[number] * 3] * 3 for number in NUMBERS),
+    *(
+        np.ones(shape)
+        for shape in [(), 0, (0, 3), (3, 0), 1, 4, (2, 2), (4, 4), (7, 3), (2, 4, 3), (2, 3, 4, 5), (1,) * 30]
+    ),
+    *(
+        np.ones((2, 2, 3), np.uint8),
+        np.ones(3, np.float32)[::-1],
+        np.zeros(2, "f4,f4"),
+        np.array([2**64 - 1] * 3, np.uint64),
+    ),
+    *(np.array([1, None], object), np.array([1.0, 2.0, 3.0], object), np.array("x"), np.array(["1"] * 3)),
+    *(np.array(True), np.array([True, False, True]), np.array([1 + 1j] * 3), np.array(1 + 1j)),
+    *(np.bool_(True), np.complex64(1), np.longdouble("1e4000"), np.float16(0.5), np.int8(-1), np.uint64(2**64 - 1)),
+    *(np.datetime64("2020-01-01"), np.timedelta64(1), np.float64, np.floating),
+]
+
+
+def complaint(call: str, name: str, value: Any) -> str | None:
+    """What is wrong with the answer to one wrong argument; None: nothing."""
+    function, arguments = CALLS[call]
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            result = function(**{**arguments, name: value})
+    except (TypeError, ValueError) as error:
+        named = str(error).startswith((name, *RELATED.get(name, ())))
+        return None if named or name == "progress" else f"{type(error).__name__}: {error}"
+    except OSError as error:
+        return None if name == "path" else f"{type(error).__name__}: {error}"
+    except shlight.RenderCancelled:
+        return None if name == "progress" else "cancelled"
+    except Exception as error:
+        return f"{type(error).__name__}: {error}"
+    for array in result if isinstance(result, tuple) else (result,):
+        if isinstance(array, np.ndarray | np.floating) and not np.isfinite(array).all():
+            return "the result is not finite"
+    return None
+
+
+def printable(value: Any) -> bool:
+    """Python refuses to print integers of thousands of digits."""
+    try:
+        return bool(repr(value))
+    except ValueError:
+        return False
+
+
+def main() -> None:
+    """Problems to standard output; to standard error what is tried, so that its last line is what ended the process."""
+    call = sys.argv[1]
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        for name in CALLS[call][1]:
+            for value in WRONG:
+                shown = f"{call}({name}={reprlib.repr(value) if printable(value) else type(value)})"
+                print(shown, file=sys.stderr, flush=True)
+                problem = complaint(call, name, value)
+                if problem is not None:
+                    print(f"{shown}: {problem}")
+
+
+if __name__ == "__main__":
+    main()
