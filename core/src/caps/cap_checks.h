@@ -12,7 +12,7 @@ namespace shlight {
 /// A positive radius, and a shading point that is not inside: contact within epsilon, the rounding of the inputs,
 /// counts as contact.
 void check_sphere(const Vec3d& center, double radius, double epsilon);
-/// check_sphere of each of many.
+/// check_sphere of each of many, and of floats a distance that is a normal float.
 template <class T>
 void check_spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, double epsilon);
 

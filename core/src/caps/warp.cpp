@@ -18,10 +18,12 @@ double squared_length(const Vec3d& v) {
 }  // namespace
 
 Circle circle_of_sphere(const Vec3d& center, double radius) {
-    const double distance = safe_length(center);
-    const double tangent_squared = std::max(0.0, difference_of_squares({center.x, center.y, center.z}, radius));
-    const double inverse = 1 / distance;
-    return {center * inverse, std::sqrt(tangent_squared) * inverse, std::min(1.0, radius * inverse)};
+    const double scale = safe_scale(center);
+    const Vec3d c = center * scale;
+    const double r = radius * scale;
+    const double tangent_squared = std::max(0.0, difference_of_squares({c.x, c.y, c.z}, r));
+    const double inverse = 1 / glm::length(c);
+    return {c * inverse, std::sqrt(tangent_squared) * inverse, std::min(1.0, r * inverse)};
 }
 
 Circle circle_of_facing_disk(const Vec3d& center, double radius) {
@@ -32,7 +34,8 @@ Circle circle_of_facing_disk(const Vec3d& center, double radius) {
 
 Circle circle_about_axis(const Vec3d& axis, double half_angle) {
     const double half = std::min(half_angle, std::numbers::pi);
-    return {axis / safe_length(axis), std::cos(half), std::sin(half)};
+    const Vec3d scaled = axis * safe_scale(axis);
+    return {scaled / glm::length(scaled), std::cos(half), std::sin(half)};
 }
 
 Warp::Warp(double tilt, double narrowness) : sin_tilt_(std::sin(tilt)), cos_tilt_(std::cos(tilt)) {
