@@ -214,7 +214,7 @@ Bsdf bsdf_from(const std::vector<LobeState>& state) {
 constexpr const char* kDoc =
     R"(A material: a sum of coloured lobes f·cos in the shading frame (z is the surface normal).
 
-Bsdfs can be added and multiplied by a number or an RGB colour. They are immutable.)";
+Bsdfs can be added and multiplied by a number or an RGB colour. They are immutable. Colours are 0 … 1e10.)";
 
 }  // namespace
 

@@ -138,7 +138,8 @@ void bind_methods(py::module_& m) {
         py::kw_only(), py::arg("tolerance"), py::arg("order"), py::arg("samples"), py::arg("seed"),
         py::arg("sampling"));
     py::class_<Method> method_type(m, "Method", without_constructor());
-    define_pickling(method_type, [](const Method& method) { return method.name; }, &find_method);
+    define_pickling(
+        method_type, [](const Method& method) { return method.name; }, &find_method);
     method_type.def_readonly("name", &Method::name)
         .def_readonly("source", &Method::source)
         .def_readonly("largest_order", &Method::largest_order)
@@ -147,7 +148,8 @@ void bind_methods(py::module_& m) {
         .def_property_readonly("knows_caps", [](const Method& method) { return method.single.cap != nullptr; })
         .def_property_readonly("knows_polygons", [](const Method& method) { return method.single.polygon != nullptr; });
     py::class_<ShadingMethod> shading_method_type(m, "ShadingMethod", without_constructor());
-    define_pickling(shading_method_type, [](const ShadingMethod& method) { return method.name; }, &find_shading_method);
+    define_pickling(
+        shading_method_type, [](const ShadingMethod& method) { return method.name; }, &find_shading_method);
     shading_method_type.def_readonly("name", &ShadingMethod::name)
         .def_readonly("source", &ShadingMethod::source)
         .def_readonly("harmonic", &ShadingMethod::harmonic)

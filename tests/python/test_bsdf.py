@@ -90,7 +90,7 @@ def test_shade_broadcasts_over_colors() -> None:
     np.testing.assert_allclose(radiance, np.einsum("ak,ack->ac", light, bsdf), rtol=1e-5)
 
 
-@pytest.mark.parametrize("bad", [-0.1, math.nan, math.inf, [0.1, 0.2], [0.1, 0.2, -0.3]])
+@pytest.mark.parametrize("bad", [-0.1, math.nan, math.inf, 1e11, [0.1, 0.2], [0.1, 0.2, -0.3]])
 def test_bad_colors_are_named(bad: object) -> None:
     with pytest.raises(ValueError, match="albedo"):
         Bsdf.lambert(bad)
@@ -98,6 +98,16 @@ def test_bad_colors_are_named(bad: object) -> None:
         Bsdf.ggx(0.5, bad)
     with pytest.raises(ValueError, match="factor"):
         Bsdf.lambert(0.5) * bad
+
+
+def test_products_of_colors_stay_in_range() -> None:
+    with pytest.raises(ValueError, match="factor"):
+        1e6 * (1e6 * Bsdf.lambert(1))
+    sharp = 1e10 * Bsdf.ggx(0.0031, 1)
+    assert np.isfinite(sharp.evaluate([-0.6, 0, 0.8], [0.6, 0, 0.8]))
+    assert np.isfinite(sharp.coefficients([0, 0.5, 1], 64)).all()
+    for order in ("auto", 8):
+        assert np.isfinite(shlight.shade_spheres([[-0.6, 0, 0.8], [0, 0, -2]], 0.1, sharp, [0.8, 0], order=order)).all()
 
 
 def test_other_bad_arguments_are_named() -> None:

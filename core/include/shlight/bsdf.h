@@ -36,6 +36,9 @@ struct Lobe {
     double albedo(double cos_theta_o) const;
 };
 
+/// No float that is computed of a colour and a lobe leaves its range.
+inline constexpr float kLargestColor = 1e10F;
+
 /// A lobe narrower than this, some 1e-5 rad wide, is narrower than any pixel or light.
 inline constexpr float kLeastRoughness = 0.003F;
 
@@ -43,19 +46,20 @@ class Bsdf {
   public:
     Bsdf() = default;  ///< black
 
-    /// color · weight · shape. Throws std::invalid_argument for a colour that is negative or not finite.
+    /// color · weight · shape. Throws std::invalid_argument for a colour outside [0, kLargestColor].
     static Bsdf lobe(const LobeShape& shape, const Rgb& color, std::shared_ptr<const ViewWeight> weight = nullptr);
-    /// Throws std::invalid_argument for an albedo that is negative or not finite.
+    /// Throws std::invalid_argument for an albedo outside [0, kLargestColor].
     static Bsdf lambert(const Rgb& albedo);
     /// GGX, height-correlated Smith, F = f0 + (1 - f0) s with s = (1 - cosθ_d)⁵, or with ior > 1 the exact dielectric
     /// curve remapped to 0 … 1. Above an ior of 3.73 that curve dips under its value head-on; s is 0 there, as in
-    /// Cycles. alpha = roughness²; below kLeastRoughness it is a perfect mirror. Throws for roughness outside [0, 1], a
-    /// negative or non-finite f0, or an ior that is not finite and above 1.
+    /// Cycles. alpha = roughness²; below kLeastRoughness it is a perfect mirror.
+    /// Throws for roughness outside [0, 1], f0 outside [0, kLargestColor], or an ior that is not finite and above 1.
     static Bsdf ggx(float roughness, const Rgb& f0, double ior = 0);
     /// top + base · (1 - max over RGB of top's directional albedo).
     static Bsdf layer(const Bsdf& top, const Bsdf& base);
 
     Bsdf operator+(const Bsdf& other) const;
+    /// Throws for a factor, and for one that makes a colour, outside [0, kLargestColor].
     Bsdf scaled(const Rgb& factor) const;
 
     const std::vector<Lobe>& lobes() const { return lobes_; }

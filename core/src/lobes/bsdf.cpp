@@ -15,8 +15,8 @@ namespace {
 
 void check_color(const char* name, const Rgb& color) {
     for (int i = 0; i < 3; ++i) {
-        if (!(std::isfinite(color[i]) && color[i] >= 0)) {
-            reject(std::string(name) + " must be finite and not negative");
+        if (!(color[i] >= 0 && color[i] <= kLargestColor)) {
+            reject(std::string(name) + " must lie in [0, 1e10]");
         }
     }
 }
@@ -118,6 +118,7 @@ Bsdf Bsdf::scaled(const Rgb& factor) const {
     Bsdf result = *this;
     for (Lobe& lobe : result.lobes_) {
         lobe.color *= factor;
+        check_color("factor times the material's own colour", lobe.color);
     }
     return result;
 }
