@@ -31,7 +31,11 @@ class PolygonBatch {
             std::copy_n(&vertices->x, 3 * count, &vertices_[first].x);
         }
     }
-    void check() const { check_polygons<float>(vertices_, vertex_count()); }
+    /// As check_polygons.
+    template <class T>
+    void check() const {
+        check_polygons<T>(vertices_, vertex_count());
+    }
 
     int vertex_count() const { return static_cast<int>(vertex_count_); }
     std::size_t size() const { return vertices_.size() / vertex_count_; }

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "base/checks.h"
 
@@ -14,8 +16,13 @@ namespace {
 /// What vertices may be off the mean plane, ÷ the polygon's extent.
 constexpr double kGranted = 1e-4;
 
-/// Squares: of the area, the extent, and the largest deviation from the mean plane × the area.
+/// Of T, in the distance of a plane from the shading point: what the rounding of its vertices leaves open, and more.
+constexpr double kInPlane = 8;
+
+/// Squares: of the area, the extent, and the largest deviation from the mean plane × the area. normal: of the mean
+/// plane, of any length.
 struct Flatness {
+    Vec3d normal;
     double area, extent, deviation;
 
     bool within(double granted) const { return deviation <= granted * granted * extent * area; }
@@ -42,7 +49,7 @@ Flatness flatness_of(std::size_t count, const Step& step) {
     for (std::size_t i = 1; i < count; ++i) {
         deviation = std::max(deviation, std::abs(glm::dot(area, step(i))));
     }
-    return {glm::dot(area, area), extent, deviation * deviation};
+    return {area, glm::dot(area, area), extent, deviation * deviation};
 }
 
 /// The mean plane of four vertices is parallel to both diagonals. The extent is one of them at least.
@@ -50,14 +57,39 @@ inline Flatness flatness_of_quad(const Vec3d* v) {
     const Vec3d diagonal = v[2] - v[0];
     const Vec3d area = glm::cross(diagonal, v[3] - v[1]);
     const double deviation = glm::dot(area, v[1] - v[0]);
-    return {glm::dot(area, area), glm::dot(diagonal, diagonal), deviation * deviation};
+    return {area, glm::dot(area, area), glm::dot(diagonal, diagonal), deviation * deviation};
+}
+
+/// Whether the rounding of a vertex to numbers of this epsilon decides on which side of the origin the plane is.
+bool holds_origin(const Vec3d& normal, std::span<const Vec3d> v, double epsilon) {
+    double rounded = 0;
+    for (const Vec3d& p : v) {
+        rounded = std::max(rounded, glm::dot(glm::abs(normal), glm::abs(p)));
+    }
+    return std::abs(glm::dot(normal, v[0])) <= kInPlane * epsilon * rounded;
+}
+
+/// Of a polygon in whose plane the origin lies: whether it is inside or on the outline, by the turns around it.
+bool surrounds_origin(const Vec3d& normal, std::span<const Vec3d> v, double epsilon) {
+    double angle = 0;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        const Vec3d& a = v[i];
+        const Vec3d& b = v[(i + 1) % v.size()];
+        const double sine = glm::dot(glm::cross(a, b), normal) / glm::length(normal);
+        const double cosine = glm::dot(a, b);
+        if (cosine <= 0 && std::abs(sine) <= kInPlane * epsilon * (glm::dot(a, a) + glm::dot(b, b))) {
+            return true;
+        }
+        angle += std::atan2(sine, cosine);
+    }
+    return std::abs(angle) > 1;
 }
 
 /// True for nearly all polygons that are sound, and for no others.
-bool is_surely_sound(std::span<const Vec3d> v) {
+bool is_surely_sound(std::span<const Vec3d> v, double epsilon) {
     const Flatness flatness =
         v.size() == 4 ? flatness_of_quad(v.data()) : flatness_of(v.size(), [&](std::size_t i) { return v[i] - v[0]; });
-    return flatness.is_usual() && flatness.within(kGranted / 2);
+    return flatness.is_usual() && flatness.within(kGranted / 2) && !holds_origin(flatness.normal, v, epsilon);
 }
 
 void check_polygon(std::span<const Vec3d> vertices, double epsilon) {
@@ -81,6 +113,13 @@ void check_polygon(std::span<const Vec3d> vertices, double epsilon) {
     if (!flatness.within(kGranted + 8 * epsilon * std::sqrt(3) * far)) {
         reject("vertices: a polygon is not planar");
     }
+    std::vector<Vec3d> scaled;
+    std::transform(vertices.begin(), vertices.end(), std::back_inserter(scaled),
+                   [largest](const Vec3d& v) { return v / largest; });
+    if (flatness.area > 0 && holds_origin(flatness.normal, scaled, epsilon) &&
+        surrounds_origin(flatness.normal, scaled, epsilon)) {
+        reject("vertices: the shading point lies inside a polygon");
+    }
 }
 
 }  // namespace
@@ -96,7 +135,7 @@ void check_polygons(std::span<const Vec3d> vertices, int vertex_count) {
     const auto k = static_cast<std::size_t>(vertex_count);
     for (std::size_t first = 0; first < vertices.size(); first += k) {
         const auto polygon = vertices.subspan(first, k);
-        if (!is_surely_sound(polygon)) {
+        if (!is_surely_sound(polygon, std::numeric_limits<T>::epsilon())) {
             check_polygon(polygon, std::numeric_limits<T>::epsilon());
         }
     }
