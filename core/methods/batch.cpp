@@ -180,8 +180,10 @@ void polygon_coefficients(const Method& method, std::span<const Vec3<T>> vertice
     check_size("coefficients", coefficients.size(), count * row);
     Options own = options;
     for (std::size_t i = 0; i < count; ++i) {
-        const auto polygon = vertices.subspan(i * k, k);
-        check_polygons<T>(std::vector<Vec3d>(polygon.begin(), polygon.end()), vertex_count);
+        const auto given = vertices.subspan(i * k, k);
+        std::vector<Vec3d> prepared(given.begin(), given.end());
+        prepare_polygons<T>(prepared, vertex_count);
+        const std::vector<Vec3<T>> polygon(prepared.begin(), prepared.end());
         own.seed = seed_of(options, first + i);
         function(polygon, order, clip, own, coefficients.data() + i * row);
     }
@@ -204,11 +206,10 @@ void shade_polygons(const ShadingMethod& method, std::span<const Vec3d> vertices
     check_vertex_count(vertex_count);
     const auto k = static_cast<std::size_t>(vertex_count);
     check_size("vertices", vertices.size(), radiance.size() * k);
-    shade_each(method, bsdf, cos_theta_o, options, first, radiance, effort, [&](std::size_t i) {
-        const auto polygon = vertices.subspan(i * k, k);
-        check_polygons<float>(polygon, vertex_count);
-        return SeenPolygon(polygon);
-    });
+    std::vector<Vec3d> prepared(vertices.begin(), vertices.end());
+    prepare_polygons<float>(prepared, vertex_count);
+    shade_each(method, bsdf, cos_theta_o, options, first, radiance, effort,
+               [&](std::size_t i) { return SeenPolygon(std::span(prepared).subspan(i * k, k)); });
 }
 
 template void sphere_coefficients(const Method&, std::span<const Vec3<float>>, std::span<const float>, int, bool,

@@ -147,7 +147,7 @@ def polygon_coefficients(
 
     vertices: (..., k, 3) with k ≥ 3, in the shading frame, any unit of length, in either winding: the region counts.
     A polygon without area or seen edge-on gives zeros. clip: keep only what lies above the horizon z ≥ 0.
-    Returns (..., order²).
+    Returns (..., order²). ValueError for vertices that are not planar and for a shading point in the polygon.
     """
     method = "exact" if isinstance(method, str) and method in PARTS_OF_EXACT else method
     options = coefficient_options(method, tolerance=tolerance, samples=samples, seed=seed, sampling=sampling)

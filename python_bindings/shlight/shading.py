@@ -153,7 +153,7 @@ def shade_polygons(
     """As shade_spheres, for planar polygons.
 
     vertices: (..., k, 3) with k ≥ 3, in the shading frame, in either winding: the region counts. A polygon without area
-    or seen edge-on gives zeros.
+    or seen edge-on gives zeros. ValueError for vertices that are not planar and for a shading point in the polygon.
     """
     bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
     dtype = _given_type(vertices) if checked_shading_method(method) == "auto" else np.float64

@@ -219,7 +219,7 @@ TEST(ZonalMethods, SeeNothingBelowTheHorizonOrEdgeOn) {
     };
     for (const Vertices& vertices :
          {Vertices{{1, 0, -1}, {0, 1, -1}, {-1, -1, -1}}, Vertices{{1, 0, 0}, {2, 0, 0}, {2, 0, 1}},
-          Vertices{{1, 0, 1}, {2, 0, 1}, {1, 0, 1}}, Vertices{{0, 0, 0}, {2, 0, 1}, {0, 1, 1}}}) {
+          Vertices{{1, 0, 1}, {2, 0, 1}, {1, 0, 1}}, Vertices{{1, 0, 0}, {2, 0, 1}, {3, 0, 0}}}) {
         expect_zeros(of_polygon<double>("wang_ramamoorthi", vertices, 8, true));
     }
     for (const char* method : {"zhou_wei", "snyder"}) {

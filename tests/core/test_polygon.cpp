@@ -23,6 +23,7 @@ using testing::as_float;
 using testing::BothErrors;
 using testing::describe;
 using testing::errors_by_order;
+using testing::Plane;
 using testing::PolygonClass;
 using testing::RandomInput;
 using testing::relative_error;
@@ -121,7 +122,7 @@ void expect_nothing_seen() {
              {{1, 0, 1}, {2, 0, 1}, {3, 0, 1}},                 // a line
              {{1, 0, 1}, {2, 0, 2}, {3, 0, 1}},                 // edge-on
              {{-1, -1, 1}, {1, 1, 1}, {2, 2, 3}, {-2, -2, 3}},  // edge-on, above
-             {{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}},              // in the horizon's plane
+             {{1, -1, 0}, {3, -1, 0}, {2, 2, 0}},               // in the horizon's plane
              {{2, -1, -1}, {2, 1, -1}, {2, 1, 0}, {2, -1, 0}},  // up to the horizon
              {{1, 0, 0}, {2, 1, -1}, {2, -1, -1}},              // touches from below
          }) {
@@ -131,6 +132,17 @@ void expect_nothing_seen() {
 TEST(Polygon, WithoutAreaItGivesZeros) {
     expect_nothing_seen<double>();
     expect_nothing_seen<float>();
+}
+
+template <class T>
+void expect_finite_unless_refused(const Vertices& vertices, bool clip) {
+    try {
+        const std::vector<T> values = coefficients<T>(vertices, 16, clip);
+        EXPECT_TRUE(std::ranges::all_of(values, [](T value) { return std::isfinite(value); }))
+            << describe(vertices, clip);
+    } catch (const std::invalid_argument& error) {
+        EXPECT_STREQ(error.what(), "vertices: the shading point lies inside a polygon");
+    }
 }
 
 /// Whatever their coordinates that are zero make of them.
@@ -143,11 +155,64 @@ TEST(Polygon, EverythingIsFinite) {
                 vertex[k] = vertices.size() == 3 && random.chance(0.1) ? 0 : vertex[k];
             }
         }
-        const auto finite = [](double value) { return std::isfinite(value); };
-        const std::vector<double> float64 = coefficients<double>(vertices, 16, i % 3 != 0);
-        const std::vector<float> float32 = coefficients<float>(vertices, 16, i % 3 != 0);
-        EXPECT_TRUE(std::all_of(float64.begin(), float64.end(), finite)) << describe(vertices, i % 3 != 0);
-        EXPECT_TRUE(std::all_of(float32.begin(), float32.end(), finite)) << describe(vertices, i % 3 != 0);
+        expect_finite_unless_refused<double>(vertices, i % 3 != 0);
+        expect_finite_unless_refused<float>(vertices, i % 3 != 0);
+    }
+}
+
+/// In a plane through the shading point: refused where it is on the polygon, without light where it is aside, but for
+/// what the rounding of the vertices, a size from it or half of that, lets be seen.
+template <class T>
+void expect_one_rule_in_plane(const Vertices& vertices, bool on_it, bool clip) {
+    const std::string message = testing::error_message([&] {
+        const T seen = coefficients<T>(vertices, 4, clip)[0];
+        EXPECT_LE(std::abs(seen), 20 * std::numeric_limits<T>::epsilon()) << describe(vertices, clip);
+    });
+    EXPECT_EQ(message, on_it ? "vertices: the shading point lies inside a polygon" : "") << describe(vertices, clip);
+}
+
+/// A ring's sector of 200 … 340 degrees; the shading point in its middle is outside.
+Vertices horseshoe(RandomInput& random, const Plane& plane) {
+    const double opened = random.uniform(200, 340) * std::numbers::pi / 180;
+    Vertices vertices;
+    for (int i = 0; i < 14; ++i) {
+        const double angle = opened * (i < 7 ? i : 13 - i) / 6;
+        vertices.push_back((i < 7 ? 1.0 : 0.5) * (std::cos(angle) * plane.u + std::sin(angle) * plane.v));
+    }
+    return vertices;
+}
+
+/// Moved so that the shading point is inside, a vertex, on an edge, or aside.
+Vertices moved_in_plane(RandomInput& random, const Plane& plane, int place) {
+    Vertices vertices = testing::star(random, Vec3d(0), plane, random.integer(4, 7), 0.6, 1, 1);
+    const std::array<Vec3d, 4> points = {0.1 * plane.u, vertices[1],
+                                         glm::mix(vertices[0], vertices[1], random.uniform(0.1, 0.9)),
+                                         1.5 * (random.chance(0.5) ? plane.u : plane.v)};
+    for (Vec3d& vertex : vertices) {
+        vertex -= points.at(static_cast<std::size_t>(place));
+    }
+    return vertices;
+}
+
+/// In planes that the numbers, turned, scaled and rounded, hold to a rounding or two.
+TEST(Polygon, HasNoLightInThePlaneOfTheShadingPointAndIsRefusedOnIt) {
+    RandomInput random(45);
+    for (int i = 0; i < 4000; ++i) {
+        const int place = i % 5;
+        const Plane plane(random, random.direction());
+        const Vertices vertices = scaled(place == 4 ? horseshoe(random, plane) : moved_in_plane(random, plane, place),
+                                         random.log_uniform(1e-9, 1e9));
+        expect_one_rule_in_plane<double>(vertices, place < 3, random.chance(0.5));
+        expect_one_rule_in_plane<float>(vertices, place < 3, random.chance(0.5));
+    }
+}
+
+/// A room's floor, however little below a point on it.
+TEST(Polygon, JustBelowTheHorizonIsUnseen) {
+    for (const double below : {1e-12, 1e-9, 1e-6}) {
+        const Vertices floor = {{-1, -1, -below}, {1, -1, -below}, {1, 1, -below}, {-1, 1, -below}};
+        EXPECT_EQ(coefficients<double>(floor, 4, true), std::vector<double>(16, 0));
+        EXPECT_EQ(coefficients<float>(floor, 4, true), std::vector<float>(16, 0));
     }
 }
 

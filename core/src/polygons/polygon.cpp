@@ -39,10 +39,9 @@ void polygon_coefficients(std::span<const Vec3<T>> vertices, int vertex_count, i
     const std::size_t count = vertices.size() / k;
     check_size("vertices", vertices.size(), count * k);
     check_size("coefficients", coefficients.size(), count * static_cast<std::size_t>(coefficient_count(order)));
-    in_double(vertices, [&](std::span<const Vec3d> v) {
-        check_polygons<T>(v, vertex_count);
-        polygon_rows(v, vertex_count, order, clip, coefficients.data());
-    });
+    std::vector<Vec3d> prepared(vertices.begin(), vertices.end());
+    prepare_polygons<T>(prepared, vertex_count);
+    polygon_rows(prepared, vertex_count, order, clip, coefficients.data());
 }
 
 template void polygon_coefficients(std::span<const Vec3f>, int, bool, float*);

@@ -31,10 +31,10 @@ class PolygonBatch {
             std::copy_n(&vertices->x, 3 * count, &vertices_[first].x);
         }
     }
-    /// As check_polygons.
+    /// As prepare_polygons.
     template <class T>
-    void check() const {
-        check_polygons<T>(vertices_, vertex_count());
+    void prepare() {
+        prepare_polygons<T>(vertices_, vertex_count());
     }
 
     int vertex_count() const { return static_cast<int>(vertex_count_); }

@@ -16,8 +16,11 @@ namespace {
 /// What vertices may be off the mean plane, ÷ the polygon's extent.
 constexpr double kGranted = 1e-4;
 
-/// Of T, in the distance of a plane from the shading point: what the rounding of its vertices leaves open, and more.
+/// Epsilons of T: what the rounding of vertices and a step or two before it leave open.
 constexpr double kInPlane = 8;
+
+/// Of the farthest vertex: distances of a plane from the shading point that the kernels hold for zero.
+constexpr double kEdgeOn = 64 * std::numeric_limits<double>::epsilon();
 
 /// Squares: of the area, the extent, and the largest deviation from the mean plane × the area. normal: of the mean
 /// plane, of any length.
@@ -60,39 +63,69 @@ inline Flatness flatness_of_quad(const Vec3d* v) {
     return {area, glm::dot(area, area), glm::dot(diagonal, diagonal), deviation * deviation};
 }
 
-/// Whether the rounding of a vertex to numbers of this epsilon decides on which side of the origin the plane is.
-bool holds_origin(const Vec3d& normal, std::span<const Vec3d> v, double epsilon) {
-    double rounded = 0;
-    for (const Vec3d& p : v) {
-        rounded = std::max(rounded, glm::dot(glm::abs(normal), glm::abs(p)));
-    }
-    return std::abs(glm::dot(normal, v[0])) <= kInPlane * epsilon * rounded;
+/// Of three vertices: whether more than their rounding to numbers of this epsilon decides on which side of their plane
+/// the origin is. An edge that all but touches the origin decides it, however far the third vertex.
+bool is_decided(const Vec3d& a, const Vec3d& b, const Vec3d& c, double epsilon) {
+    const auto products = [](const Vec3d& p, const Vec3d& q) {
+        return Vec3d(p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x);
+    };
+    const double rounded = glm::dot(products(glm::abs(a), glm::abs(b)), glm::abs(c));
+    return std::abs(glm::dot(glm::cross(a, b), c)) > kInPlane * epsilon * rounded;
 }
 
-/// Of a polygon in whose plane the origin lies: whether it is inside or on the outline, by the turns around it.
-bool surrounds_origin(const Vec3d& normal, std::span<const Vec3d> v, double epsilon) {
-    double angle = 0;
+/// Of a plane with this normal.
+bool is_edge_on(const Vec3d& normal, std::span<const Vec3d> v, double epsilon) {
+    double farthest = 0;
+    bool decided = false;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        farthest = std::max(farthest, glm::length(v[i]));
+        decided = decided || is_decided(v[i], v[(i + 1) % v.size()], v[(i + 2) % v.size()], epsilon);
+    }
+    return !decided || std::abs(glm::dot(normal, v[0])) <= kEdgeOn * farthest * glm::length(normal);
+}
+
+/// True for all that is_edge_on, and for some others.
+bool may_be_edge_on(const Vec3d& normal, std::span<const Vec3d> v, double epsilon) {
+    double farthest = 0;
+    for (const Vec3d& p : v) {
+        farthest = std::max(farthest, glm::dot(p, p));
+    }
+    const double granted = 2 * std::max(kInPlane * epsilon, kEdgeOn);
+    const double distance = glm::dot(normal, v[0]);
+    return distance * distance <= granted * granted * farthest * glm::dot(normal, normal);
+}
+
+/// How a polygon in whose plane the origin lies goes around it.
+struct Turns {
+    bool touch = false;             ///< the origin is on the outline
+    double sum = 0;                 ///< of the angles of the edges [rad]
+    double least = 0, largest = 0;  ///< of that sum on the way
+};
+
+Turns turns_around_origin(const Vec3d& normal, std::span<const Vec3d> v, double epsilon) {
+    Turns turns;
     for (std::size_t i = 0; i < v.size(); ++i) {
         const Vec3d& a = v[i];
         const Vec3d& b = v[(i + 1) % v.size()];
         const double sine = glm::dot(glm::cross(a, b), normal) / glm::length(normal);
         const double cosine = glm::dot(a, b);
-        if (cosine <= 0 && std::abs(sine) <= kInPlane * epsilon * (glm::dot(a, a) + glm::dot(b, b))) {
-            return true;
-        }
-        angle += std::atan2(sine, cosine);
+        turns.touch =
+            turns.touch || (cosine <= 0 && std::abs(sine) <= kInPlane * epsilon * (glm::dot(a, a) + glm::dot(b, b)));
+        turns.sum += std::atan2(sine, cosine);
+        turns.least = std::min(turns.least, turns.sum);
+        turns.largest = std::max(turns.largest, turns.sum);
     }
-    return std::abs(angle) > 1;
+    return turns;
 }
 
 /// True for nearly all polygons that are sound, and for no others.
 bool is_surely_sound(std::span<const Vec3d> v, double epsilon) {
     const Flatness flatness =
         v.size() == 4 ? flatness_of_quad(v.data()) : flatness_of(v.size(), [&](std::size_t i) { return v[i] - v[0]; });
-    return flatness.is_usual() && flatness.within(kGranted / 2) && !holds_origin(flatness.normal, v, epsilon);
+    return flatness.is_usual() && flatness.within(kGranted / 2) && !may_be_edge_on(flatness.normal, v, epsilon);
 }
 
-void check_polygon(std::span<const Vec3d> vertices, double epsilon) {
+void prepare_polygon(std::span<Vec3d> vertices, double epsilon) {
     double largest = 0;
     double size = 0;
     for (const Vec3d& v : vertices) {
@@ -116,9 +149,14 @@ void check_polygon(std::span<const Vec3d> vertices, double epsilon) {
     std::vector<Vec3d> scaled;
     std::transform(vertices.begin(), vertices.end(), std::back_inserter(scaled),
                    [largest](const Vec3d& v) { return v / largest; });
-    if (flatness.area > 0 && holds_origin(flatness.normal, scaled, epsilon) &&
-        surrounds_origin(flatness.normal, scaled, epsilon)) {
-        reject("vertices: the shading point lies inside a polygon");
+    if (flatness.area > 0 && is_edge_on(flatness.normal, scaled, epsilon)) {
+        const Turns turns = turns_around_origin(flatness.normal, scaled, epsilon);
+        if (turns.touch || std::abs(turns.sum) > 1) {
+            reject("vertices: the shading point lies inside a polygon");
+        }
+        if (turns.largest - turns.least > 3) {
+            std::fill(vertices.begin(), vertices.end(), vertices[0]);
+        }
     }
 }
 
@@ -131,17 +169,17 @@ void check_vertex_count(int vertex_count) {
 }
 
 template <class T>
-void check_polygons(std::span<const Vec3d> vertices, int vertex_count) {
+void prepare_polygons(std::span<Vec3d> vertices, int vertex_count) {
     const auto k = static_cast<std::size_t>(vertex_count);
     for (std::size_t first = 0; first < vertices.size(); first += k) {
         const auto polygon = vertices.subspan(first, k);
         if (!is_surely_sound(polygon, std::numeric_limits<T>::epsilon())) {
-            check_polygon(polygon, std::numeric_limits<T>::epsilon());
+            prepare_polygon(polygon, std::numeric_limits<T>::epsilon());
         }
     }
 }
 
-template void check_polygons<float>(std::span<const Vec3d>, int);
-template void check_polygons<double>(std::span<const Vec3d>, int);
+template void prepare_polygons<float>(std::span<Vec3d>, int);
+template void prepare_polygons<double>(std::span<Vec3d>, int);
 
 }  // namespace shlight

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What may be passed as a polygon: checks that throw std::invalid_argument naming the argument.
+// What may be passed as a polygon; std::invalid_argument names the argument that may not.
 #pragma once
 
 #include <span>
@@ -12,10 +12,11 @@ namespace shlight {
 /// At least 3.
 void check_vertex_count(int vertex_count);
 
-/// Finite, planar to the precision of T, in which the numbers were given, and none with the shading point on it: where
-/// the rounding to T decides on which side of a polygon's plane it is, it lies outside. Many polygons of vertex_count
-/// vertices.
+/// Throws unless all polygons, of vertex_count vertices each, are finite and planar to the precision of T, in which the
+/// numbers were given, and none has the shading point on it. Where the rounding to T leaves open on which side of the
+/// plane the shading point is, a polygon that bends around it by half a turn may be seen as half the sphere or more: its
+/// vertices all become the first, and nothing is seen of it.
 template <class T>
-void check_polygons(std::span<const Vec3d> vertices, int vertex_count);
+void prepare_polygons(std::span<Vec3d> vertices, int vertex_count);
 
 }  // namespace shlight

@@ -119,7 +119,7 @@ void SeenLights::set_polygons(std::span<const Vec3<T>> vertices, std::size_t ver
     clear();
     gathered_.clear(vertex_count);
     gathered_.append(vertices.data(), vertices.size() / vertex_count);
-    gathered_.check<T>();
+    gathered_.prepare<T>();
     given_ = Given::polygons;
 }
 

@@ -33,7 +33,7 @@ class SeenLights {
     /// reference.
     void set_spheres(std::span<const Vec3f> centers, const float* radii);
     void set_spheres(std::span<const Vec3d> centers, const double* radii);
-    /// Likewise, planar polygons of so many vertices each. Throws as check_polygons does.
+    /// Likewise, planar polygons of so many vertices each. Throws as prepare_polygons does.
     template <class T>
     void set_polygons(std::span<const Vec3<T>> vertices, std::size_t vertex_count);
 
