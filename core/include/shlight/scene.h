@@ -81,10 +81,12 @@ class Scene {
     void set_environment(Environment environment, bool visible = true);
 
     /// Builds with at most `threads` threads, 0: all cores.
-    /// Throws std::invalid_argument for threads < 0, std::bad_alloc or std::runtime_error when Embree fails.
+    /// Throws std::invalid_argument for threads < 0 and for surfaces in a scene of less than 1e-6 m, std::bad_alloc or std::runtime_error when Embree fails.
     std::shared_ptr<const CompiledScene> compile(int threads = 0) const;
 
   private:
+    void check_size() const;
+
     std::vector<std::shared_ptr<const Mesh>> meshes_;
     std::vector<Light> lamps_;
     Environment environment_;

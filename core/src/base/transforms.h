@@ -24,6 +24,14 @@ inline Vec3d transform_vector(const glm::dmat4& to_world, const Vec3d& vector) {
     return Vec3d(to_world * glm::dvec4(vector, 0.0));
 }
 
+inline double inf_norm(const glm::dmat3& m) {
+    double norm = 0;
+    for (int row = 0; row < 3; ++row) {
+        norm = std::max(norm, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
+    }
+    return norm;
+}
+
 /// Throws std::invalid_argument naming the argument unless the matrix is finite, affine and invertible.
 inline void check_transform(const char* name, const glm::dmat4& matrix) {
     for (int column = 0; column < 4; ++column) {

@@ -5,20 +5,18 @@
 #include <cmath>
 #include <cstdint>
 
-#include "base/checks.h"
+#include "base/scene_range.h"
 #include "environment/environment_map.h"
 
 namespace shlight {
 namespace {
 
 constexpr std::int64_t kMostTexels = 1 << 28;
-/// Squares of brighter ones would leave the range of float.
-constexpr float kBrightest = 1e15F;
 /// How far the elements of a rotation times its transpose may be from the identity's.
 constexpr double kRotationError = 1e-4;
 
 void check_radiance(const Rgb& radiance) {
-    check_finite("radiance", radiance);
+    check_strength("radiance", radiance);
     if (glm::any(glm::lessThan(radiance, Rgb(0)))) {
         reject("radiance must not be negative");
     }
@@ -51,9 +49,6 @@ LatLong checked(LatLong picture) {
     check_size("radiance", picture.pixels.size(), static_cast<std::size_t>(texels));
     for (const Rgb& texel : picture.pixels) {
         check_radiance(texel);
-        if (glm::any(glm::greaterThan(texel, Rgb(kBrightest)))) {
-            reject("radiance must not exceed 1e15");
-        }
     }
     picture.to_world = checked_rotation(picture.to_world);
     return picture;

@@ -12,6 +12,13 @@
 
 namespace shlight {
 
+namespace {
+
+/// [m]: a point source is not seen from nearer; squares of less would make what it gives leave floats.
+constexpr double kNearest = 1e-12;
+
+}  // namespace
+
 std::vector<const Light*> pointers_to(std::span<const Light> lights) {
     std::vector<const Light*> pointers;
     std::transform(lights.begin(), lights.end(), std::back_inserter(pointers),
@@ -70,7 +77,7 @@ double DeltaLights::factor(std::size_t i, const Vec3d& way) const {
 
 void DeltaLights::see(const DeltaRange& range, const ShadingFrame& frame, double error, DeltaViews& views) const {
     views.resize(range.count);
-    see_deltas(arrays(range), frame, 2 * error, views.arrays());
+    see_deltas(arrays(range), frame, std::max(2 * error, kNearest), views.arrays());
     for (auto i = std::lower_bound(uneven_.begin(), uneven_.end(), range.begin);
          i != uneven_.end() && *i < range.begin + range.count; ++i) {
         double& irradiance = views.irradiance[*i - range.begin];

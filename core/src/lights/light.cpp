@@ -9,6 +9,7 @@
 
 #include "base/checks.h"
 #include "base/ray_rounding.h"
+#include "base/scene_range.h"
 #include "base/unit_direction.h"
 
 namespace shlight {
@@ -160,11 +161,12 @@ bool is_delta(const Light& light) {
 
 SphereLight make_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk,
                               const LightTraits& traits) {
-    check_finite("center", center);
+    check_position("center", center);
     if (!(std::isfinite(radius) && radius > 0)) {
         reject("radius must be positive and finite");
     }
-    check_finite("radiance", radiance);
+    check_reach("radius", radius);
+    check_strength("radiance", radiance);
     return {center, radius, radiance, facing_disk, traits};
 }
 
@@ -174,9 +176,9 @@ PolygonLight make_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance
         reject("vertices: a polygon needs at least three");
     }
     for (const Vec3d& v : vertices) {
-        check_finite("vertices", v);
+        check_position("vertices", v);
     }
-    check_finite("radiance", radiance);
+    check_strength("radiance", radiance);
     const double extent = extent_of(vertices);
     merge_repeated(vertices, extent);
     const Vec3d area = doubled_area(vertices);
@@ -217,10 +219,10 @@ PolygonLight make_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance
 
 DiskLight make_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const Vec3d& half_axis_v, const Rgb& radiance,
                           bool two_sided, const LightTraits& traits) {
-    check_finite("center", center);
-    check_finite("half_axis_u", half_axis_u);
-    check_finite("half_axis_v", half_axis_v);
-    check_finite("radiance", radiance);
+    check_position("center", center);
+    check_position("half_axis_u", half_axis_u);
+    check_position("half_axis_v", half_axis_v);
+    check_strength("radiance", radiance);
     const double u = glm::length(half_axis_u);
     const double v = glm::length(half_axis_v);
     if (!(u > 0)) {
@@ -241,8 +243,8 @@ DiskLight make_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const V
 }
 
 PointSource make_point_source(const Vec3d& position, const Rgb& intensity, const LightTraits& traits) {
-    check_finite("position", position);
-    check_finite("intensity", intensity);
+    check_position("position", position);
+    check_strength("intensity", intensity, kMostIntense);
     return {position, intensity, traits};
 }
 
@@ -251,6 +253,7 @@ Light make_spot_light(const Vec3d& position, const SpotProfile& profile, const R
     if (!(std::isfinite(radius) && radius >= 0)) {
         reject("radius must be finite and not negative");
     }
+    check_reach("radius", radius);
     traits.profile = profile;
     PointSource source = make_point_source(position, intensity, traits);
     if (radius == 0) {
@@ -267,7 +270,7 @@ Light make_sun_light(const Vec3d& direction, double angle, const Rgb& irradiance
     if (!(angle >= 0 && angle <= (tangent ? kWidestTangentSun : std::numbers::pi * (1 + 1e-6)))) {
         reject(std::string("angle must be 0 … ") + (tangent ? "3 for a tangent sun" : "pi"));
     }
-    check_finite("irradiance", irradiance);
+    check_strength("irradiance", irradiance);
     if (angle < kNarrowestSun) {
         return ParallelSource{-away, irradiance, traits};
     }

@@ -2,22 +2,27 @@
 #include "shlight/basis.h"
 
 #include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "base/checks.h"
+#include "base/unit_direction.h"
 #include "math/basis_kernel.h"
 #include "simd/dot_products.h"
 
 namespace shlight {
 namespace {
 
-/// What is wrong with the directions, once a kernel has found that something is.
+/// As the kernel does, and where the square of a direction leaves T.
 template <class T>
-[[noreturn]] void reject_directions(std::span<const Vec3<T>> directions) {
-    for (const Vec3<T>& direction : directions) {
-        check_finite("directions", direction);
+void rows_of_directions(std::span<const Vec3<T>> directions, int order, T* basis, Output output = Output::cached) {
+    if (basis_rows(directions.data(), directions.size(), order, basis, output)) {
+        return;
     }
-    reject("directions contains a zero vector");
+    std::vector<Vec3<T>> units;
+    std::transform(directions.begin(), directions.end(), std::back_inserter(units),
+                   [](const Vec3<T>& direction) { return Vec3<T>(unit_direction(Vec3d(direction), "directions")); });
+    basis_rows(units.data(), units.size(), order, basis, output);
 }
 
 /// Directions whose basis is in the cache at a time.
@@ -27,9 +32,7 @@ constexpr std::size_t kBlock = 64;
 
 template <class T>
 void sh_basis(const Vec3<T>& direction, int order, T* basis) {
-    if (!basis_rows(&direction, 1, order, basis)) {
-        reject_directions(std::span(&direction, 1));
-    }
+    rows_of_directions(std::span(&direction, 1), order, basis);
 }
 
 template <class T>
@@ -37,9 +40,7 @@ void sh_basis(std::span<const Vec3<T>> directions, int order, std::span<T> basis
     check_order(order);
     const auto row = static_cast<std::size_t>(coefficient_count(order));
     check_size("basis", basis.size(), directions.size() * row);
-    if (!basis_rows(directions.data(), directions.size(), order, basis.data(), output)) {
-        reject_directions(directions);
-    }
+    rows_of_directions(directions, order, basis.data(), output);
 }
 
 template <class T>
@@ -51,9 +52,7 @@ void evaluate(std::span<const T> coefficients, std::span<const Vec3<T>> directio
     std::vector<T> basis(std::min(kBlock, directions.size()) * row);
     for (std::size_t first = 0; first < directions.size(); first += kBlock) {
         const auto block = directions.subspan(first, std::min(kBlock, directions.size() - first));
-        if (!basis_rows(block.data(), block.size(), order, basis.data())) {
-            reject_directions(block);
-        }
+        rows_of_directions(block, order, basis.data());
         dot_products(coefficients.data() + first * row, basis.data(), row, block.size(), values.data() + first);
     }
 }

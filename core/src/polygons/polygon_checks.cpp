@@ -19,6 +19,9 @@ constexpr double kGranted = 1e-4;
 /// Epsilons of T: what the rounding of vertices and a step or two before it leave open.
 constexpr double kInPlane = 8;
 
+/// Of the square of its extent: the area of a line, to rounding.
+constexpr double kNoArea = 16 * std::numeric_limits<double>::epsilon();
+
 /// Of the farthest vertex: distances of a plane from the shading point that the kernels hold for zero.
 constexpr double kEdgeOn = 64 * std::numeric_limits<double>::epsilon();
 
@@ -34,6 +37,7 @@ struct Flatness {
         const double product = area * extent;
         return product > std::numeric_limits<double>::min() && product < std::numeric_limits<double>::max();
     }
+    bool is_line(double granted) const { return area <= granted * granted * extent * extent; }
 };
 
 /// Of what steps from the first vertex tell.
@@ -122,7 +126,8 @@ Turns turns_around_origin(const Vec3d& normal, std::span<const Vec3d> v, double 
 bool is_surely_sound(std::span<const Vec3d> v, double epsilon) {
     const Flatness flatness =
         v.size() == 4 ? flatness_of_quad(v.data()) : flatness_of(v.size(), [&](std::size_t i) { return v[i] - v[0]; });
-    return flatness.is_usual() && flatness.within(kGranted / 2) && !may_be_edge_on(flatness.normal, v, epsilon);
+    return flatness.is_usual() && !flatness.is_line(4 * kNoArea) && flatness.within(kGranted / 2) &&
+           !may_be_edge_on(flatness.normal, v, epsilon);
 }
 
 void prepare_polygon(std::span<Vec3d> vertices, double epsilon) {
@@ -141,15 +146,19 @@ void prepare_polygon(std::span<Vec3d> vertices, double epsilon) {
     // In units of the polygon, in which nothing overflows.
     const Flatness flatness =
         flatness_of(vertices.size(), [&](std::size_t i) { return (vertices[i] / 2.0 - vertices[0] / 2.0) / size; });
+    if (flatness.is_line(kNoArea)) {
+        std::fill(vertices.begin(), vertices.end(), vertices[0]);
+        return;
+    }
     // A far polygon's vertices are off its plane by their own rounding.
     const double far = largest / (2 * size * std::sqrt(flatness.extent));
-    if (!flatness.within(kGranted + 8 * epsilon * std::sqrt(3) * far)) {
+    if (vertices.size() > 3 && !flatness.within(kGranted + 8 * epsilon * std::sqrt(3) * far)) {
         reject("vertices: a polygon is not planar");
     }
     std::vector<Vec3d> scaled;
     std::transform(vertices.begin(), vertices.end(), std::back_inserter(scaled),
                    [largest](const Vec3d& v) { return v / largest; });
-    if (flatness.area > 0 && is_edge_on(flatness.normal, scaled, epsilon)) {
+    if (is_edge_on(flatness.normal, scaled, epsilon)) {
         const Turns turns = turns_around_origin(flatness.normal, scaled, epsilon);
         if (turns.touch || std::abs(turns.sum) > 1) {
             reject("vertices: the shading point lies inside a polygon");

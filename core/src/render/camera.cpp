@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "shlight/camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "base/scene_range.h"
 #include "base/transforms.h"
 
 namespace shlight {
@@ -26,12 +28,26 @@ void check_window(const Window& window) {
     if (!(window.bottom < window.top)) {
         reject("top must be greater than bottom");
     }
+    for (const auto& [name, edge] : edges) {
+        check_reach(name, edge);
+    }
+}
+
+/// From where rays start: of an orthographic camera, all of the window.
+void check_place(const glm::dmat4& to_world, const Window& window, Projection projection) {
+    const double spread = projection == Projection::perspective ? 0 : 1;
+    for (const double x : {window.left, window.right}) {
+        for (const double y : {window.bottom, window.top}) {
+            check_reach("to_world", largest_component(transform_point(to_world, spread * Vec3d(x, y, 0))));
+        }
+    }
 }
 
 }  // namespace
 
 Camera::Camera(const glm::dmat4& to_world, double fov_x) : to_world_(to_world) {
     check_transform("to_world", to_world);
+    check_place(to_world, {}, projection_);
     if (!(fov_x > 0 && fov_x < std::numbers::pi)) {
         reject("fov_x must lie between 0 and π");
     }
@@ -42,6 +58,7 @@ Camera::Camera(const glm::dmat4& to_world, const Window& window, Projection proj
     : to_world_(to_world), window_(window), projection_(projection), clip_(clip) {
     check_transform("to_world", to_world);
     check_window(window);
+    check_place(to_world, window, projection);
     if (!(std::isfinite(clip.start) && clip.start >= 0)) {
         reject("clip_start must be finite and not negative");
     }
@@ -64,7 +81,9 @@ Ray Camera::ray(double x, double y) const {
     const Vec3d per_depth = transform_vector(to_world_, perspective ? Vec3d(x, y, -1) : Vec3d(0, 0, -1));
     const double length = glm::length(per_depth);
     const Vec3d origin = transform_point(to_world_, perspective ? Vec3d(0) : Vec3d(x, y, 0));
-    return {Vec3f(origin), static_cast<float>(clip_.start * length), Vec3f(per_depth / length),
+    // What starts farther than anything may be sees nothing.
+    const double start = std::min(clip_.start * length, 4 * kFarthest);
+    return {Vec3f(origin), static_cast<float>(start), Vec3f(per_depth / length),
             static_cast<float>(clip_.end * length)};
 }
 

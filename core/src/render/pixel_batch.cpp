@@ -16,6 +16,8 @@ constexpr std::size_t kLeastLights = 8;
 /// Camera rays of a batch: enough for long batches, few enough for the cache.
 constexpr std::size_t kMostBatchSamples = 4096;
 constexpr std::size_t kLeastSamples = 256;
+/// Of what a camera ray adds to a pixel; squares of brighter ones would leave floats.
+constexpr double kBrightestRay = 1e18;
 /// In the place of a light's number.
 constexpr std::uint32_t kEnvironmentSeed = 0xFFFFFFFFU;
 constexpr std::uint32_t kDeltaSeed = 0xFFFFFFFEU;
@@ -48,12 +50,13 @@ Vec3d PixelSums::variance() const {
     return glm::max(squares / count - mean * mean - linear, Vec3d(0));
 }
 
-void PixelSums::add(const Vec3d& ray_radiance, const Vec3d& noise, const glm::dvec2& from_center, bool is_opaque) {
+void PixelSums::add(const Rgb& ray_radiance, const Rgb& noise, const glm::dvec2& from_center, bool is_opaque) {
+    const Vec3d shown = glm::clamp(Vec3d(ray_radiance), -kBrightestRay, kBrightestRay);
     opaque += is_opaque ? 1 : 0;
-    radiance += ray_radiance;
-    squares += ray_radiance * ray_radiance - noise;
-    along_x += from_center.x * ray_radiance;
-    along_y += from_center.y * ray_radiance;
+    radiance += shown;
+    squares += shown * shown - glm::min(Vec3d(noise), kBrightestRay * kBrightestRay);
+    along_x += from_center.x * shown;
+    along_y += from_center.y * shown;
 }
 
 Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const RenderSettings& r,
@@ -277,12 +280,11 @@ void PixelBatch::add_up(const SampleRange& samples, std::span<PixelSums> sums) c
         PixelSums& sum = sums[pixel];
         sum.rays += samples.count;
         for (std::size_t hit = hits_.pixel_begin[pixel]; hit < hits_.pixel_begin[pixel + 1]; ++hit) {
-            sum.add(Vec3d(hits_.radiance[hit]), Vec3d(hits_.noise[hit]), from_center(hits_.sample[hit]));
+            sum.add(hits_.radiance[hit], hits_.noise[hit], from_center(hits_.sample[hit]));
         }
     }
     for (const Miss& miss : misses_) {
-        sums[miss.pixel].add(Vec3d(miss.radiance), Vec3d(0), from_center(miss.sample),
-                             picture_->scene->background() != nullptr);
+        sums[miss.pixel].add(miss.radiance, Rgb(0), from_center(miss.sample), picture_->scene->background() != nullptr);
     }
 }
 

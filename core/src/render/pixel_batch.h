@@ -43,7 +43,7 @@ struct PixelSums {
     /// out.
     Vec3d variance() const;
     /// The part of one ray; from_center: its distance from the pixel's centre.
-    void add(const Vec3d& ray_radiance, const Vec3d& noise, const glm::dvec2& from_center, bool is_opaque = true);
+    void add(const Rgb& ray_radiance, const Rgb& noise, const glm::dvec2& from_center, bool is_opaque = true);
 };
 
 /// Everything that the batches of one picture share and only read.

@@ -9,6 +9,7 @@
 #include <tbb/task_arena.h>
 
 #include "base/ray_rounding.h"
+#include "base/scene_range.h"
 #include "base/transforms.h"
 #include "emitters/emitter_levels.h"
 #include "emitters/face_radiance.h"
@@ -44,14 +45,6 @@ struct Placement {
     double origin;               // largest component of the translation
 };
 
-double inf_norm(const glm::dmat3& m) {
-    double norm = 0;
-    for (int row = 0; row < 3; ++row) {
-        norm = std::max(norm, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
-    }
-    return norm;
-}
-
 Placement place(std::uint32_t mesh, const glm::dmat4& to_world, bool baked) {
     const glm::dmat3 linear(to_world);
     const glm::dmat3 inverse = glm::inverse(linear);
@@ -71,6 +64,18 @@ std::vector<Vec3f> moved(const std::vector<Vec3f>& vertices, const glm::dmat4& t
     }
     return result;
 }
+
+/// The largest coordinate of a lamp that has a place, within its size.
+struct Reach {
+    double operator()(const SunLight&) const { return 0; }
+    double operator()(const ParallelSource&) const { return 0; }
+    double operator()(const MeshLight&) const { return 0; }
+    double operator()(const PointSource& light) const { return largest_component(light.position); }
+    template <class AreaLight>
+    double operator()(const AreaLight& light) const {
+        return largest_component(light.center) + light.radius;
+    }
+};
 
 Vec3d normalized_or(const Vec3d& v, const Vec3d& fallback) {
     const double length = glm::length(v);
@@ -310,7 +315,24 @@ void Scene::set_environment(Environment environment, bool visible) {
     environment_visible_ = visible;
 }
 
+void Scene::check_size() const {
+    double farthest = 0;
+    for (const auto& mesh : meshes_) {
+        farthest = std::max(farthest, reach(*mesh));
+    }
+    if (farthest == 0 || farthest >= kLeastReach) {
+        return;
+    }
+    for (const Light& lamp : lamps_) {
+        farthest = std::max(farthest, std::visit(Reach{}, lamp));
+    }
+    if (farthest < kLeastReach) {
+        reject("scene reaches less than 1e-6 m from the origin, which rays in float do not resolve");
+    }
+}
+
 std::shared_ptr<const CompiledScene> Scene::compile(int threads) const {
+    check_size();
     auto impl = std::make_unique<CompiledScene::Impl>(lamps_, environment_, environment_visible_);
     for (const auto& mesh : meshes_) {
         if (!mesh->triangles.empty() && !mesh->transforms.empty()) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 
+#include "base/scene_range.h"
 #include "base/transforms.h"
 
 namespace shlight {
@@ -25,7 +26,8 @@ void check_per_material(const char* name, std::size_t size, std::size_t material
 void check_materials(const Mesh& mesh) {
     check_per_material("bsdf", mesh.bsdfs.size(), mesh.material_count());
     check_per_material("emission", mesh.emission.size(), mesh.material_count());
-    check_all_finite("emission", mesh.emission);
+    std::for_each(mesh.emission.begin(), mesh.emission.end(),
+                  [](const Rgb& color) { check_strength("emission", color); });
     if (mesh.material_indices.empty()) {
         return;
     }
@@ -38,10 +40,41 @@ void check_materials(const Mesh& mesh) {
     }
 }
 
+/// Rays go through instances' frames, in float.
+void check_scale(const glm::dmat4& transform) {
+    const glm::dmat3 linear(transform);
+    if (!(inf_norm(linear) <= kLargestScale && inf_norm(glm::inverse(linear)) <= kLargestScale)) {
+        reject("transforms: an instance must be scaled by 1e-7 … 1e7");
+    }
+}
+
 }  // namespace
 
+double reach(const Mesh& mesh) {
+    if (mesh.vertices.empty()) {
+        return 0;
+    }
+    Vec3d least(mesh.vertices.front());
+    Vec3d largest = least;
+    for (const Vec3f& v : mesh.vertices) {
+        least = glm::min(least, Vec3d(v));
+        largest = glm::max(largest, Vec3d(v));
+    }
+    double farthest = 0;
+    for (const glm::dmat4& transform : mesh.transforms) {
+        for (int corner = 0; corner < 8; ++corner) {
+            const Vec3d p(corner & 1 ? least.x : largest.x, corner & 2 ? least.y : largest.y,
+                          corner & 4 ? least.z : largest.z);
+            farthest = std::max(farthest, largest_component(transform_point(transform, p)));
+        }
+    }
+    return farthest;
+}
+
 void check_mesh(const Mesh& mesh) {
-    check_all_finite("vertices", mesh.vertices);
+    for (const Vec3f& v : mesh.vertices) {
+        check_position("vertices", Vec3d(v));
+    }
     for (const Triangle& triangle : mesh.triangles) {
         const std::uint32_t largest = std::max({triangle.x, triangle.y, triangle.z});
         if (largest >= mesh.vertices.size()) {
@@ -60,7 +93,11 @@ void check_mesh(const Mesh& mesh) {
     check_materials(mesh);
     for (const glm::dmat4& transform : mesh.transforms) {
         check_transform("transforms", transform);
+        if (mesh.transforms.size() > 1) {
+            check_scale(transform);
+        }
     }
+    check_reach("transforms", reach(mesh));
 }
 
 }  // namespace shlight
