@@ -32,8 +32,7 @@ struct Mesh {
 };
 
 /// Throws std::invalid_argument naming the member that is wrong: sizes that do not fit, an index out of range,
-/// a number that is not finite or that docs/conventions.md has no scene hold, a transform that is not affine and
-/// invertible.
+/// a number outside docs/conventions.md's range, a transform that is not affine and invertible.
 void check_mesh(const Mesh& mesh);
 
 /// A bound of the coordinates that its instances have in the world.

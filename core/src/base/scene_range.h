@@ -27,7 +27,7 @@ inline constexpr float kMostIntense = 1e30F;
 /// Of one number that is known to be finite, or what is left of overflow.
 inline void check_reach(const std::string& name, double reach) {
     if (!(std::abs(reach) <= kFarthest)) {
-        reject(name + " leads farther than 1e10 m, which is as far as a scene may reach");
+        reject(name + ": a scene reaches 1e10 m from the origin at most");
     }
 }
 
