@@ -122,6 +122,25 @@ inline EllipseInput lune(RandomInput& random) {
     return conjugate(random, center, plane, 1, random.uniform(0.8, 1));
 }
 
+/// All vectors along axes or diagonals, where angles are multiples of a quarter turn.
+inline EllipseInput whole_numbers(RandomInput& random) {
+    const auto draw = [&](int most) {
+        return Vec3d(random.integer(-most, most), random.integer(-most, most), random.integer(-most, most));
+    };
+    EllipseInput disk{};
+    do {
+        disk = {draw(2), draw(1), draw(1)};
+    } while (glm::dot(disk.center, glm::cross(disk.half_axis_u, disk.half_axis_v)) == 0);
+    return disk;
+}
+/// A great one that all but touches the shading point from below, of which the horizon leaves a lune.
+inline EllipseInput lune_in_contact(RandomInput& random) {
+    const Plane plane(random, random.at_tilt(std::numbers::pi - random.log_uniform(1e-4, 1)));
+    const Vec3d normal = glm::cross(plane.u, plane.v);
+    const Vec3d aside = random.uniform(-0.4, 0.4) * plane.u + random.uniform(-0.4, 0.4) * plane.v;
+    return conjugate(random, random.log_uniform(1e-12, 1e-6) * normal + aside, plane, 1, random.uniform(0.8, 1));
+}
+
 constexpr auto kEllipseClasses = std::to_array<EllipseClass>({
     {"disk", plain_disk},
     {"facing disk", disk_that_faces},
@@ -138,6 +157,8 @@ constexpr auto kEllipseClasses = std::to_array<EllipseClass>({
     {"cut", cut_disk},
     {"cut strip", cut_strip},
     {"lune", lune},
+    {"lune in contact", lune_in_contact},
+    {"whole numbers", whole_numbers},
 });
 
 }  // namespace shlight::testing

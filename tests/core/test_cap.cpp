@@ -232,7 +232,7 @@ void compare(std::size_t count, const std::vector<int>& orders, std::uint64_t se
     }
 }
 
-const std::size_t kMore = testing::all_tests() ? 40 : 1;
+const std::size_t kMore = testing::all_tests() ? 8 : 1;
 
 TEST(Cap, AgreesWithReferenceUpToOrder16) {
     compare(2000 * kMore, {1, 2, 8, 16}, 100);

@@ -182,7 +182,7 @@ constexpr auto kClasses = std::to_array<Class>({{"anywhere", at_horizon<anywhere
                                                 {"in the lobe", in_lobe, 100},
                                                 {"spheres", sphere, 100}});
 
-const std::size_t kMore = testing::all_tests() ? 40 : 1;
+const std::size_t kMore = testing::all_tests() ? 8 : 1;
 
 TEST(CapHorizon, WarpedLightsAgreeWithReference) {
     std::uint64_t seed = 400;

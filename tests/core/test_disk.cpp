@@ -85,7 +85,7 @@ void compare(std::size_t count, const std::vector<int>& orders, std::uint64_t se
     }
 }
 
-const std::size_t kMore = testing::all_tests() ? 40 : 1;
+const std::size_t kMore = testing::all_tests() ? 8 : 1;
 
 TEST(Disk, AgreesWithReferenceUpToOrder16) {
     compare(8 * kMore, {1, 2, 3, 8, 16}, 1400);

@@ -102,7 +102,7 @@ void compare(std::size_t count, const std::vector<int>& orders, std::uint64_t se
     }
 }
 
-const std::size_t kMore = testing::all_tests() ? 40 : 1;
+const std::size_t kMore = testing::all_tests() ? 8 : 1;
 
 TEST(Polygon, AgreesWithReferenceUpToOrder16) {
     compare(50 * kMore, {1, 2, 3, 4, 8, 16}, 400);

@@ -148,7 +148,7 @@ void compare(std::size_t count, int order, std::uint64_t seed) {
     }
 }
 
-const std::size_t kMore = testing::all_tests() ? 40 : 1;
+const std::size_t kMore = testing::all_tests() ? 8 : 1;
 
 TEST(PolygonWarped, AgreesWithReferenceAtOrder1) {
     compare(30 * kMore, 1, 700);

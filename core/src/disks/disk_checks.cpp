@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "disks/disk_checks.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "base/checks.h"
 #include "disks/spherical_ellipse.h"
 
 namespace shlight {
+
+namespace {
+
+/// Width ÷ length of an ellipse whose coefficients are right to 1e-10 in float64.
+constexpr double kNarrowest = 1e-9;
+
+}  // namespace
 
 template <class T>
 void check_disk(const Ellipse<Wider<T>>& disk) {
@@ -24,6 +32,10 @@ void check_disk(const Ellipse<Wider<T>>& disk) {
     constexpr Real kEpsilon = std::numeric_limits<T>::epsilon();
     if (!(glm::length(glm::cross(a, b)) > 4 * kEpsilon)) {
         reject("half_axes_v: a disk's half axes are dependent");
+    }
+    const Real longest = std::max(glm::length(u), glm::length(v));
+    if (!(glm::length(glm::cross(u / longest, v / longest)) > kNarrowest)) {
+        reject("half_axes_v: an ellipse may be 1e9 times as long as it is wide, at most");
     }
     if (place_of_origin(disk) == OriginPlace::in_plane_inside) {
         reject("centers: the shading point lies inside a disk");

@@ -102,7 +102,7 @@ double digits_for(const SphericalEllipse<Wider<T>>& ellipse, int order) {
 
 template <class T>
 bool disk_outline_in_float(const SphericalEllipse<Wider<T>>& ellipse, int order) {
-    constexpr double kWideForFloat = 0.05;
+    constexpr double kWideForFloat = 0.1;
     // Long periods would enlarge the rounding of a point's place.
     constexpr double kRoundest = 0.1;
     return std::is_same_v<T, float> && order > 2 && ellipse.cone().complement > kRoundest &&

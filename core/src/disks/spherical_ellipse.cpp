@@ -126,9 +126,15 @@ SphericalEllipse<Real>::SphericalEllipse(const Ellipse<Real>& ellipse, bool clip
         std::swap(half_long, half_short);
         std::swap(principal.half_axis_u, principal.half_axis_v);
     }
-    cone_.axis = principal.center / distance;
-    cone_.long_axis = principal.half_axis_u - glm::dot(principal.half_axis_u, cone_.axis) * cone_.axis;
-    cone_.long_axis = glm::normalize(cone_.long_axis);
+    // A column that is short beside the others comes from their difference, and has a direction of fewer digits: the
+    // two longer columns give all three.
+    if (distance < half_short) {
+        const Vec3<Real> away = glm::cross(principal.half_axis_u, principal.half_axis_v);
+        cone_.axis = glm::normalize(glm::dot(away, principal.center) < 0 ? -away : away);
+    } else {
+        cone_.axis = principal.center / distance;
+    }
+    cone_.long_axis = glm::normalize(principal.half_axis_u - glm::dot(principal.half_axis_u, cone_.axis) * cone_.axis);
     cone_.short_axis = glm::cross(cone_.long_axis, cone_.axis);
     if (glm::dot(cone_.short_axis, principal.half_axis_v) < 0) {
         principal.half_axis_v = -principal.half_axis_v;

@@ -48,15 +48,19 @@ class EllipticFunctions {
 
     /// u with sn u : cn u = k'⁻¹ sin τ : cos τ, growing with τ: 4K more for a whole turn.
     Real argument(Real tau) const {
-        const Real turns = std::round(tau / (2 * std::numbers::pi_v<Real>));
-        const Real rest = tau - 2 * std::numbers::pi_v<Real> * turns;
+        constexpr Real kTurn = 2 * std::numbers::pi_v<Real>;
+        // Of all angles with a tangent the one in the quadrant of `angle`, on whose edge rounding may have it.
+        const auto next_to = [](Real angle, Real sine, Real cosine) {
+            const Real other = std::atan2(sine, cosine);
+            return other + kTurn * std::round((angle - other) / kTurn);
+        };
+        const Real turns = std::round(tau / kTurn);
+        const Real rest = tau - kTurn * turns;
         // tan(φ_{n+1} - φ_n) = b/a tan φ_n, and the first of these differences is τ itself.
-        Real phi = std::atan2(std::sin(rest), complement_ * std::cos(rest));
+        Real phi = next_to(rest, std::sin(rest), complement_ * std::cos(rest));
         for (int i = 0; i < steps_; ++i) {
             const Level& level = levels_[static_cast<std::size_t>(i)];
-            const Real near = std::atan2(level.b * std::sin(phi), level.a * std::cos(phi));
-            const Real whole = std::round((phi - near) / (2 * std::numbers::pi_v<Real>));
-            phi += near + 2 * std::numbers::pi_v<Real> * whole;
+            phi += next_to(phi, level.b * std::sin(phi), level.a * std::cos(phi));
         }
         return phi / scale_ + 4 * quarter_period() * turns;
     }
