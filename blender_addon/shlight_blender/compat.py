@@ -8,6 +8,8 @@ the attribute they need instead of the version, so that no other module knows a 
 from __future__ import annotations
 
 import math
+import sys
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -142,11 +144,21 @@ def lamp_is_normalized(lamp: Any) -> bool:
     return bool(getattr(lamp, "normalize", True))
 
 
-def lamp_casts_shadows(lamp: Any) -> bool:
-    """Cycles' own switch (3.4) and Blender's (4.2 and later; EEVEE alone reads it in 3.4)."""
+def shadow_switch(lamp: Any) -> tuple[Any, str] | None:
+    """What has the switch for a lamp's shadows, and the switch's name.
+
+    It is Cycles' own in 3.4, None without its add-on, and Blender's in 4.2 and later; EEVEE alone reads that in 3.4.
+    """
     if IS_BLENDER_4:
-        return bool(lamp.use_shadow)
-    return bool(getattr(getattr(lamp, "cycles", None), "cast_shadow", True))
+        return lamp, "use_shadow"
+    settings = getattr(lamp, "cycles", None)
+    return None if settings is None else (settings, "cast_shadow")
+
+
+def lamp_casts_shadows(lamp: Any) -> bool:
+    """True unless the lamp's shadows are switched off."""
+    switch = shadow_switch(lamp)
+    return switch is None or bool(getattr(*switch))
 
 
 def point_is_disk(lamp: Any) -> bool:
@@ -191,12 +203,25 @@ def set_sample_range(cycles: Any, first: int, count: int, of: int) -> None:
         cycles.samples = count
 
 
-def uses_nodes(owner: Any) -> bool:
-    """True if a material, world or lamp is defined by its node tree.
+def has_node_switch(owner: Any) -> bool:
+    """True if `use_nodes` of a material, world or lamp is read.
 
-    Once Blender has declared `use_nodes` obsolete nothing reads it: of materials and worlds in 5.0, of lamps later.
+    Nothing reads it once Blender has declared it obsolete: of materials and worlds in 5.0, of lamps later.
     """
-    if owner.node_tree is None:
-        return False
     switch = owner.bl_rna.properties.get("use_nodes")
-    return switch is None or getattr(switch, "is_deprecated", False) or bool(owner.use_nodes)
+    return switch is not None and not getattr(switch, "is_deprecated", False)
+
+
+def uses_nodes(owner: Any) -> bool:
+    """True if a material, world or lamp is defined by its node tree."""
+    return owner.node_tree is not None and (not has_node_switch(owner) or bool(owner.use_nodes))
+
+
+def nodes_by_engine() -> Iterator[Any]:
+    """Items of the Shader editor's Add menu that are shown under a condition.
+
+    The menu is made of items in 3.4 alone, where most conditions name Blender's own engines.
+    """
+    menu = sys.modules.get("nodeitems_builtins")
+    for category in getattr(menu, "shader_node_categories", ()):
+        yield from (item for item in category.items(None) if item.poll is not None)

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panels of the render engine, and Blender's own that also fit it."""
+"""Panels of the render engine, and Blender's own panels and menu of nodes that also fit it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import bpy
 
+from .compat import LAMPS, has_node_switch, nodes_by_engine, shadow_switch, uses_nodes
 from .engine import ENGINE
 
 # Panels for every engine that show what shlight does not have, or are replaced below.
@@ -17,16 +19,18 @@ EXCLUDED = {
     "DATA_PT_light",
     "DATA_PT_spot",
     "NODE_DATA_PT_light",
-    "RENDER_PT_freestyle",
-    "RENDER_PT_gpencil",
-    "VIEWLAYER_PT_freestyle",
+    "OBJECT_PT_shading",  # light linking
 }
+# What shlight does not draw, in names of panels.
+NOT_DRAWN = ("_PT_freestyle", "_PT_gpencil", "_PT_grease_pencil")
 # Panels of EEVEE that edit what every engine reads.
 INCLUDED = {
     "EEVEE_MATERIAL_PT_context_material",
     "EEVEE_MATERIAL_PT_surface",
     "EEVEE_WORLD_PT_surface",
 }
+# Types of objects that have a surface or give light.
+DRAWN_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META", "LIGHT"}
 
 
 class EnginePanel:
@@ -59,7 +63,6 @@ class SHLIGHT_RENDER_PT_accuracy(EnginePanel, bpy.types.Panel):
         column.active = settings.order == "AUTO"
         column.prop(settings, "tolerance")
         layout.prop(settings, "pixel_samples")
-        layout.prop(settings, "world_width")
 
 
 class SHLIGHT_RENDER_PT_shadows(EnginePanel, bpy.types.Panel):
@@ -95,6 +98,50 @@ class SHLIGHT_RENDER_PT_film(EnginePanel, bpy.types.Panel):
         layout.prop(context.scene.render, "film_transparent", text="Transparent")
 
 
+class SHLIGHT_WORLD_PT_baking(EnginePanel, bpy.types.Panel):
+    """What a world is baked to."""
+
+    bl_label = "Baking"
+    bl_context = "world"
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        """Shown if there is a world."""
+        return bool(context.world) and super().poll(context)
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.prop(context.scene.shlight, "world_width")
+
+
+class SHLIGHT_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
+    """Kinds of rays that an object is hidden from; dim where that is not supported."""
+
+    bl_label = "Ray Visibility"
+    bl_context = "object"
+    bl_parent_id = "OBJECT_PT_visibility"
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        """Shown for objects that are drawn or show others."""
+        shown = context.object
+        return bool(shown) and (shown.type in DRAWN_TYPES or shown.is_instancer) and super().poll(context)
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        shown = context.object
+        column = layout.column()
+        column.active = shown.type == "LIGHT" or (shown.is_instancer and LAMPS.instancer_hides)
+        for kind in ("camera", "diffuse", "glossy"):
+            column.prop(shown, f"visible_{kind}", text=kind.title())
+
+
 class SHLIGHT_LIGHT_PT_light(EnginePanel, bpy.types.Panel):
     """Colour, power and shape of a lamp."""
 
@@ -120,6 +167,36 @@ class SHLIGHT_LIGHT_PT_light(EnginePanel, bpy.types.Panel):
                 row.active = name != "temperature" or light.use_temperature
                 row.prop(light, name)
         _DRAW_SHAPE[light.type](layout.column(), light)
+        switch = shadow_switch(light)
+        if switch is not None:
+            layout.prop(*switch, text="Cast Shadow")
+
+
+class SHLIGHT_LIGHT_PT_nodes(EnginePanel, bpy.types.Panel):
+    """The shader of a lamp."""
+
+    bl_label = "Nodes"
+    bl_context = "data"
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        """Shown for lamps."""
+        return bool(context.light) and super().poll(context)
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        layout = self.layout
+        light = context.light
+        if has_node_switch(light):
+            layout.prop(light, "use_nodes", icon="NODETREE")
+        if not uses_nodes(light):
+            return
+        layout.use_property_split = True
+        output = light.node_tree.get_output_node("CYCLES")
+        if output is None:
+            layout.label(text="No output node")
+        else:
+            layout.template_node_view(light.node_tree, output, output.inputs["Surface"])
 
 
 def _draw_point(column: Any, light: Any) -> None:
@@ -154,7 +231,10 @@ CLASSES = (
     SHLIGHT_RENDER_PT_accuracy,
     SHLIGHT_RENDER_PT_shadows,
     SHLIGHT_RENDER_PT_film,
+    SHLIGHT_WORLD_PT_baking,
+    SHLIGHT_OBJECT_PT_ray_visibility,
     SHLIGHT_LIGHT_PT_light,
+    SHLIGHT_LIGHT_PT_nodes,
 )
 
 
@@ -164,20 +244,42 @@ def shared_panels() -> Iterator[Any]:
         engines = getattr(panel, "COMPAT_ENGINES", None)
         if engines is None or panel in CLASSES:
             continue
-        if ("BLENDER_RENDER" in engines and panel.__name__ not in EXCLUDED) or panel.__name__ in INCLUDED:
+        name = panel.__name__
+        excluded = name in EXCLUDED or any(part in name for part in NOT_DRAWN)
+        if ("BLENDER_RENDER" in engines and not excluded) or name in INCLUDED:
             yield panel
 
 
+_own_polls: dict[Any, Any] = {}  # of the items of Blender's menu of nodes
+
+
+def _offer_nodes() -> None:
+    """Shows for shlight the nodes that the menu shows for Cycles."""
+    for item in nodes_by_engine():
+        poll = _own_polls.setdefault(item, item.poll)
+        item.poll = lambda context, poll=poll: poll(_as_for_cycles(context))
+
+
+def _as_for_cycles(context: Any) -> Any:
+    if context.engine != ENGINE:
+        return context
+    return SimpleNamespace(engine="CYCLES", space_data=context.space_data)
+
+
 def register() -> None:
-    """Adds the panels and joins Blender's."""
+    """Adds the panels, and joins Blender's and its menu of nodes."""
     for panel in CLASSES:
         bpy.utils.register_class(panel)
     for panel in shared_panels():
         panel.COMPAT_ENGINES.add(ENGINE)
+    _offer_nodes()
 
 
 def unregister() -> None:
-    """Leaves Blender's panels and removes our own."""
+    """Leaves Blender's panels and menu, and removes our own."""
+    while _own_polls:
+        item, poll = _own_polls.popitem()
+        item.poll = poll
     for panel in bpy.types.Panel.__subclasses__():
         if panel not in CLASSES:
             getattr(panel, "COMPAT_ENGINES", set()).discard(ENGINE)

@@ -9,6 +9,7 @@ from pathlib import Path
 import bpy
 
 import shlight_blender
+from shlight_blender.compat import nodes_by_engine
 from shlight_blender.export import export_scene
 
 sys.path.append(str(Path(__file__).parent))
@@ -148,6 +149,7 @@ SCENES = [
     metal, principled, curves, sky, dark,
 ]  # fmt: skip
 
+polls = [item.poll for item in nodes_by_engine()]
 shlight_blender.register()
 results = {}
 for build in SCENES:
@@ -161,4 +163,5 @@ for build in SCENES:
     except RuntimeError as error:
         results[folder.name] = {"error": str(error)}
 shlight_blender.unregister()
+results["left_menu"] = polls == [item.poll for item in nodes_by_engine()] != []
 (FOLDER / "results.json").write_text(json.dumps(results))

@@ -7,6 +7,7 @@ import traceback
 from pathlib import Path
 
 import bpy
+import nodeitems_utils
 
 import shlight_blender
 from shlight_blender import engine, panels, record
@@ -14,7 +15,7 @@ from shlight_blender.export import bake
 
 FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
 ended = []
-drawn = {"panels": [], "viewport_updates": 0, "messages": [], "kept": []}
+drawn = {"panels": [], "nodes": {}, "viewport_updates": 0, "messages": [], "kept": []}
 
 
 def watched(original, name):
@@ -55,6 +56,7 @@ def steps():
     yield
     properties.context = "DATA"
     yield
+    yield from note_nodes(scene)
     viewport = area_of("VIEW_3D").spaces[0]
     for shading in ("RENDERED", "MATERIAL", "RENDERED", "SOLID"):
         viewport.shading.type = shading
@@ -64,6 +66,20 @@ def steps():
     set_sky(scene)
     for number in range(2):
         yield from final_render(scene, FOLDER / f"final_{number}.exr")
+
+
+def note_nodes(scene):
+    """Notes what the Shader editor's Add menu offers for each engine."""
+    window = bpy.context.window_manager.windows[0]
+    area = area_of("DOPESHEET_EDITOR")
+    area.ui_type = "ShaderNodeTree"
+    yield
+    for name in ("BLENDER_WORKBENCH", "CYCLES", "SHLIGHT"):
+        scene.render.engine = name
+        with bpy.context.temp_override(window=window, area=area):
+            items = list(nodeitems_utils.node_items_iter(bpy.context))
+        drawn["nodes"][name] = [item.nodetype for item in items if hasattr(item, "nodetype")]
+        yield
 
 
 def set_sky(scene):

@@ -112,6 +112,10 @@ def test_errors_do_not_crash(pictures: dict[str, Any]) -> None:
     assert "no light that shlight can render" in pictures["dark"]["error"]
 
 
+def test_the_menu_of_nodes_is_left_as_it_was(pictures: dict[str, Any]) -> None:
+    assert pictures["left_menu"]
+
+
 def test_window(tmp_path: Path) -> None:
     """A real window: the engine selected, its panels drawn, the viewport in rendered mode, and final renders.
 
@@ -126,7 +130,13 @@ def test_window(tmp_path: Path) -> None:
     assert done.returncode == 0, output
     assert "Traceback" not in output, output
     drawn = json.loads((tmp_path / "drawn.json").read_text())
-    assert {"SHLIGHT_RENDER_PT_accuracy", "SHLIGHT_RENDER_PT_shadows", "SHLIGHT_LIGHT_PT_light"} <= set(drawn["panels"])
+    shown = {"RENDER_PT_accuracy", "RENDER_PT_shadows", "WORLD_PT_baking", "LIGHT_PT_light", "LIGHT_PT_nodes"}
+    assert {f"SHLIGHT_{name}" for name in shown} <= set(drawn["panels"])
+    shaders = {"BsdfPrincipled", "BsdfDiffuse", "BsdfGlossy", "Emission", "MixShader", "AddShader", "OutputLight"}
+    assert {f"ShaderNode{name}" for name in shaders} <= set(drawn["nodes"]["SHLIGHT"])
+    assert "ShaderNodeEeveeSpecular" not in drawn["nodes"]["SHLIGHT"]
+    assert drawn["nodes"]["SHLIGHT"] == drawn["nodes"]["CYCLES"]
+    assert "ShaderNodeEmission" not in drawn["nodes"]["BLENDER_WORKBENCH"]
     assert drawn["viewport_updates"] >= 1
     assert drawn["messages"] == [[], []]
     assert drawn["kept"] == [1, 1]

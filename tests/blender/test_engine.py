@@ -15,8 +15,8 @@ import pytest
 import shlight
 import shlight_blender
 from shlight.images import read_exr
+from shlight_blender import compat, panels
 from shlight_blender.engine import ShlightRenderEngine
-from shlight_blender.panels import SHLIGHT_LIGHT_PT_light
 
 
 def simple_scene(studio: Any) -> None:
@@ -147,26 +147,55 @@ def test_order_takes_auto_and_every_number_up_to_64(studio: Any) -> None:
 
 
 def test_blenders_own_panels_and_unregistering(studio: Any) -> None:
-    def panels() -> set[str]:
+    def shared() -> set[str]:
         return {
             panel.__name__
             for panel in bpy.types.Panel.__subclasses__()
             if "SHLIGHT" in getattr(panel, "COMPAT_ENGINES", ()) and not panel.__name__.startswith("SHLIGHT")
         }
 
-    joined = panels()
+    joined = shared()
     assert {"DATA_PT_lens", "EEVEE_MATERIAL_PT_surface", "EEVEE_WORLD_PT_surface", "RENDER_PT_format"} <= joined
-    assert not {"DATA_PT_light", "RENDER_PT_freestyle", "DATA_PT_EEVEE_light"} & joined
+    assert not {"DATA_PT_light", "DATA_PT_EEVEE_light", "OBJECT_PT_shading"} & joined
+    assert not [name for name in joined if "_freestyle" in name or "_gpencil" in name or "_grease_pencil" in name]
     shlight_blender.unregister()
     try:
-        assert panels() == set()
+        assert shared() == set()
         assert not hasattr(bpy.types.Scene, "shlight")
         assert not hasattr(bpy.types, "SHLIGHT_RENDER_PT_accuracy")
         with pytest.raises(TypeError):
             bpy.context.scene.render.engine = "SHLIGHT"
     finally:
         shlight_blender.register()
-    assert panels() == joined
+    assert shared() == joined
+
+
+class Layout:
+    """Notes what a panel draws; as Blender's, it raises for properties that their owner does not have."""
+
+    def __init__(self) -> None:
+        self.shown: set[str] = set()
+        self.active = True
+
+    def prop(self, owner: Any, name: str, **_: Any) -> None:
+        getattr(owner, name)
+        self.shown.add(name)
+
+    def template_node_view(self, tree: Any, node: Any, socket: Any) -> None:
+        self.shown.add(f"{node.bl_idname}.{socket.name}")
+
+    def column(self) -> Layout:
+        return self
+
+    row = column
+
+
+def drawn_by(panel: Any, **context: Any) -> Layout:
+    """What `panel` draws in a context of shlight; nothing where it is not shown."""
+    layout, shown_in = Layout(), SimpleNamespace(engine="SHLIGHT", **context)
+    if panel.poll(shown_in):
+        panel.draw(SimpleNamespace(layout=layout), shown_in)
+    return layout
 
 
 @pytest.mark.parametrize(
@@ -178,24 +207,33 @@ def test_blenders_own_panels_and_unregistering(studio: Any) -> None:
         ("AREA", {"shape", "size", "spread"}),
     ],
 )
-def test_the_panel_of_a_lamp_shows_what_shapes_its_light(studio: Any, kind: str, shape: set[str]) -> None:
-    shown: set[str] = set()
-
-    class Layout:
-        """Notes which properties are drawn; as Blender's, it raises for those that a lamp does not have."""
-
-        def prop(self, light: Any, name: str, **_: Any) -> None:
-            getattr(light, name)
-            shown.add(name)
-
-        def column(self) -> Layout:
-            return self
-
-        row = column
-
+def test_the_panels_of_a_lamp_show_what_makes_its_light(studio: Any, kind: str, shape: set[str]) -> None:
     light = bpy.data.lights.new(kind, kind)
-    SHLIGHT_LIGHT_PT_light.draw(SimpleNamespace(layout=Layout()), SimpleNamespace(light=light))
-    assert shape | {"type", "color", "energy"} <= shown
+    switch = compat.shadow_switch(light)
+    assert switch is not None
+    assert shape | {"type", "color", "energy", switch[1]} <= drawn_by(panels.SHLIGHT_LIGHT_PT_light, light=light).shown
+    light.use_nodes = True
+    assert "ShaderNodeOutputLight.Surface" in drawn_by(panels.SHLIGHT_LIGHT_PT_nodes, light=light).shown
+
+
+def test_ray_visibility_is_shown_and_dim_where_it_is_not_supported(studio: Any) -> None:
+    studio.camera()
+    kinds = {"visible_camera", "visible_diffuse", "visible_glossy"}
+    shown = {
+        thing.name: drawn_by(panels.SHLIGHT_OBJECT_PT_ray_visibility, object=thing)
+        for thing in (studio.area(), studio.box(), studio.scene.camera)
+    }
+    assert {name: layout.shown for name, layout in shown.items()} == {"Area": kinds, "Box": kinds, "Camera": set()}
+    assert shown["Area"].active
+    assert not shown["Box"].active
+
+
+def test_world_width_is_a_setting_of_the_world(studio: Any) -> None:
+    studio.world()
+    context = {"scene": studio.scene, "world": studio.scene.world}
+    assert drawn_by(panels.SHLIGHT_WORLD_PT_baking, **context).shown == {"world_width"}
+    assert "world_width" not in drawn_by(panels.SHLIGHT_RENDER_PT_accuracy, **context).shown
+    assert drawn_by(panels.SHLIGHT_WORLD_PT_baking, scene=studio.scene, world=None).shown == set()
 
 
 def test_without_the_native_module_the_engine_says_so(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
