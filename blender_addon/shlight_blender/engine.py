@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from . import record
 from .compat import write_pass
-from .report import ExportCancelled, ExportError, ExportReport
+from .report import ExportCancelled, ExportError
 
 ENGINE = "SHLIGHT"
 MOST_WARNINGS = 20
@@ -32,7 +32,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
     def render(self, depsgraph: Any) -> None:
         """Renders one view layer. Blender prints exceptions and goes on, so all of them are reported here."""
         frame: Any = None
-        record.begin()
+        self._begin(depsgraph.view_layer.name)
         try:
             # Imported here: an installation without the native module still registers, and says what is wrong.
             from .export import frame_of
@@ -46,6 +46,15 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             traceback.print_exc()
             self._fail(depsgraph, frame, f"{type(error).__name__}: {error}")
 
+    def _begin(self, view_layer: str) -> None:
+        """Starts the record of a render with its first view layer; the others add to it."""
+        # Blender makes an engine for each frame, or keeps one for all (Persistent Data).
+        if view_layer in getattr(self, "_view_layers", {view_layer}):
+            record.begin()
+            self._view_layers: set[str] = set()
+            self._shown: set[str] = set()
+        self._view_layers.add(view_layer)
+
     def _render(self, depsgraph: Any, frame: Any) -> None:
         import shlight
 
@@ -54,21 +63,22 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         self.update_stats("", "Exporting the scene")
         start = time.perf_counter()
         try:
-            scene, report = export_scene(depsgraph, frame=frame, camera=self.camera_override, waiting=self._wait)
+            exported = export_scene(depsgraph, frame=frame, camera=self.camera_override, waiting=self._wait)
         except ExportCancelled:
             self._deliver(depsgraph, frame, None)
             return
         settings = render_settings(depsgraph.scene).arguments()
         record.last.export_seconds = time.perf_counter() - start
-        record.last.messages = report.to_data()
+        record.last.report.extend(exported.report)
+        record.last.dark = exported.dark or record.last.dark
         record.last.settings = settings
-        self._show(report)
+        self._show(record.last.report.lines())
         if self.test_break():
             self._deliver(depsgraph, frame, None)
             return
         try:
             image, record.last.statistics = shlight.render(
-                scene, frame.width, frame.height, progress=self._progress, return_report=True, **settings
+                exported.scene, frame.width, frame.height, progress=self._progress, return_report=True, **settings
             )
         except shlight.RenderCancelled:
             self._deliver(depsgraph, frame, None)
@@ -84,13 +94,18 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         self.update_stats("", text)
         return not self.test_break()
 
-    def _show(self, report: ExportReport) -> None:
-        lines = report.lines()
-        for line in lines[:MOST_WARNINGS]:
+    def _show(self, lines: list[str]) -> None:
+        """Shows what is new of the render's warnings, the weightiest last: Blender's status bar keeps that."""
+        fresh = [line for line in lines if line not in self._shown]
+        self._shown.update(fresh)
+        shown, more = fresh[:MOST_WARNINGS], fresh[MOST_WARNINGS:]
+        if more:
+            self.report({"WARNING"}, f"shlight: and {len(more)} more warnings, see the console")
+            print(*(f"shlight: {line}" for line in more), sep="\n")
+        if shown and shown[0] != lines[0]:  # that of a view layer before
+            shown.insert(0, lines[0])
+        for line in reversed(shown):
             self.report({"WARNING"}, f"shlight: {line}")
-        if len(lines) > MOST_WARNINGS:
-            self.report({"WARNING"}, f"shlight: and {len(lines) - MOST_WARNINGS} more warnings, see the console")
-            print(*(f"shlight: {line}" for line in lines[MOST_WARNINGS:]), sep="\n")
 
     def _fail(self, depsgraph: Any, frame: Any, text: str) -> None:
         self.report({"ERROR"}, f"shlight: {text}")

@@ -136,9 +136,10 @@ class SHLIGHT_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         shown = context.object
+        is_lamp = shown.type == "LIGHT"
         column = layout.column()
-        column.active = shown.type == "LIGHT" or (shown.is_instancer and LAMPS.instancer_hides)
-        for kind in ("camera", "diffuse", "glossy"):
+        column.active = is_lamp or (shown.is_instancer and LAMPS.instancer_hides)
+        for kind in ("camera", "diffuse", "glossy", *([] if is_lamp else ["shadow"])):
             column.prop(shown, f"visible_{kind}", text=kind.title())
 
 

@@ -6,16 +6,24 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from .report import ExportReport
+
 
 @dataclass
 class RenderRecord:
-    """One render; empty where it did not come that far."""
+    """One render; empty where it did not come that far. Times and statistics are those of its last view layer."""
 
     settings: dict[str, Any] = field(default_factory=dict)  # arguments of shlight.render
-    messages: list[dict[str, object]] = field(default_factory=list)  # ExportReport.to_data()
+    report: ExportReport = field(default_factory=ExportReport)  # of all view layers
     export_seconds: float = 0.0
     statistics: Any = None  # the report of shlight.render
     scene_error: str = ""  # why the scene cannot be rendered at all
+    dark: str = ""  # why the picture of a view layer is black: the message that nothing gives light
+
+    @property
+    def messages(self) -> list[dict[str, object]]:
+        """What the report says, as plain data."""
+        return self.report.to_data()
 
 
 last = RenderRecord()

@@ -5,14 +5,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from enum import IntEnum
 
 
 class ExportError(ValueError):
-    """The scene cannot be rendered at all (no camera, no light, a camera type without a picture plane)."""
+    """The scene cannot be rendered at all (no camera, a camera type without a picture plane)."""
 
 
 class ExportCancelled(Exception):  # noqa: N818
     """The user stopped the export; nothing is wrong."""
+
+
+class Effect(IntEnum):
+    """How much of the picture a finding changes, the most first."""
+
+    DARK = 0  # nothing gives light
+    LIGHT = 1  # light is missing or goes elsewhere, which shows on everything
+    THING = 2  # something is missing, black, or seen where it should not be
+    LOOK = 3  # something looks otherwise
+    SLIGHT = 4  # hardly seen, or not in the picture at all
 
 
 @dataclass
@@ -20,6 +31,7 @@ class Message:
     """One finding: what is the case and what is done instead (`text`), and everything it holds for (`places`)."""
 
     text: str
+    effect: Effect
     places: list[str] = field(default_factory=list)
 
     def line(self, most: int = 4) -> str:
@@ -31,14 +43,18 @@ class Message:
 
 
 class ExportReport:
-    """Messages in the order of their first occurrence; the same text about several things is one message."""
+    """Messages by their effect, then in the order of their first occurrence.
+
+    The same text about several things is one message.
+    """
 
     def __init__(self) -> None:
         self._messages: dict[str, Message] = {}
 
-    def add(self, place: str, text: str) -> None:
+    def add(self, place: str, text: str, effect: Effect = Effect.LOOK) -> None:
         """Notes `text` about `place`, for instance "Material 'Wood', node 'Noise Texture'"."""
-        message = self._messages.setdefault(text, Message(text))
+        message = self._messages.setdefault(text, Message(text, effect))
+        message.effect = min(message.effect, effect)
         if place not in message.places:
             message.places.append(place)
 
@@ -46,10 +62,10 @@ class ExportReport:
         """Notes all that `other` has."""
         for message in other:
             for place in message.places:
-                self.add(place, message.text)
+                self.add(place, message.text, message.effect)
 
     def __iter__(self) -> Iterator[Message]:
-        return iter(self._messages.values())
+        return iter(sorted(self._messages.values(), key=lambda message: message.effect))
 
     def __len__(self) -> int:
         return len(self._messages)

@@ -141,12 +141,21 @@ def sky(studio):
 
 
 def dark(studio):
-    studio.plane()
+    """Lit by a lamp that is not yet turned on, with nothing behind the plane's edge."""
+    studio.plane(1.0, studio.material("ShaderNodeBsdfPrincipled"))
+    studio.box(material=studio.material("ShaderNodeBsdfGlass"))
+    studio.lamp("POINT", 0, (0, 0, 2))
+    studio.scene.render.film_transparent = True
+
+
+def panoramic(studio):
+    lit_by(studio, "POINT", 60)
+    studio.scene.camera.data.type = "PANO"
 
 
 SCENES = [
     point, area, spot, small_spot, small_point, sun, small_sun, spread, textured, textured_by_default, smooth, glossy,
-    metal, principled, curves, sky, dark,
+    metal, principled, curves, sky, dark, panoramic,
 ]  # fmt: skip
 
 polls = [item.poll for item in nodes_by_engine()]

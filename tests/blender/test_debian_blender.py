@@ -66,7 +66,7 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """Runs all background scenes once; returns what the script says of them."""
     folder = tmp_path_factory.mktemp("debian")
     done = run_blender("-b", script="debian_scenes.py", folder=folder)
-    # Blender's exit code is 1 after any operator's error, the expected one of the dark scene too.
+    # Blender's exit code is 1 after any operator's error, the expected one of the panoramic camera too.
     assert done.returncode in {0, 1}, spoken(done)
     assert (folder / "results.json").is_file(), spoken(done)
     results: dict[str, Any] = json.loads((folder / "results.json").read_text())
@@ -109,7 +109,17 @@ def test_example_scenes_are_built(tmp_path: Path, name: str) -> None:
 
 
 def test_errors_do_not_crash(pictures: dict[str, Any]) -> None:
-    assert "no light that shlight can render" in pictures["dark"]["error"]
+    assert "pano cameras are not supported" in pictures["panoramic"]["error"]
+
+
+def test_a_dark_frame_is_black(pictures: dict[str, Any]) -> None:
+    image, reference = (read_exr(pictures["dark"][engine]) for engine in ("SHLIGHT", "CYCLES"))
+    assert not image[..., :3].any()
+    assert 0.0 < image[..., 3].mean() < 1.0
+    assert abs(image[..., 3] - reference[..., 3]).mean() <= 5e-3
+    # What changes the picture most first.
+    parts = ("no light that shlight can render", "Glass BSDF", "the diffuse part is drawn as Diffuse BSDF")
+    assert all(part in line for part, line in zip(parts, pictures["dark"]["messages"], strict=True))
 
 
 def test_the_menu_of_nodes_is_left_as_it_was(pictures: dict[str, Any]) -> None:

@@ -15,7 +15,7 @@ import pytest
 import shlight
 import shlight_blender
 from shlight.images import read_exr
-from shlight_blender import compat, panels
+from shlight_blender import compat, panels, record
 from shlight_blender.engine import ShlightRenderEngine
 
 
@@ -28,12 +28,29 @@ def simple_scene(studio: Any) -> None:
 
 
 def test_errors_are_reported_and_something_is_saved(studio: Any) -> None:
-    studio.plane()
-    studio.camera()
-    studio.scene.render.engine = "SHLIGHT"
+    simple_scene(studio)
+    studio.scene.camera.data.type = "PANO"
     studio.scene.render.filepath = str(studio.folder / "dark.exr")
-    with pytest.raises(RuntimeError, match="no light that shlight can render"):
+    with pytest.raises(RuntimeError, match="pano cameras are not supported"):
         bpy.ops.render.render(write_still=True)
+
+
+def test_an_animation_goes_on_after_a_dark_frame(studio: Any) -> None:
+    simple_scene(studio)
+    lamp = bpy.data.objects["Area"].data
+    for frame, energy in ((1, 0.0), (2, 150.0)):
+        lamp.energy = energy
+        lamp.keyframe_insert("energy", frame=frame)
+    render = studio.scene.render
+    studio.scene.frame_start, studio.scene.frame_end = 1, 2
+    render.film_transparent = True
+    render.filepath = str(studio.folder / "frame_")
+    bpy.ops.render.render(animation=True)
+    dark, lit = (read_exr(studio.folder / f"frame_{frame:04}.exr") for frame in (1, 2))
+    assert not dark[..., :3].any()
+    assert lit[..., :3].any()
+    assert 0.0 < dark[..., 3].mean() < 1.0
+    np.testing.assert_array_equal(dark[..., 3], lit[..., 3])
 
 
 def test_unexpected_exceptions_are_reported(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -93,6 +110,34 @@ def test_every_view_layer_gets_its_own_picture(studio: Any) -> None:
     source.close()
     assert all(layer[..., :3].any() for layer in layers)
     assert not np.array_equal(*layers)
+
+
+def test_all_view_layers_are_reported_and_the_weightiest_warning_last(
+    studio: Any, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """The first layer's counts more than the second's; a render after that starts anew."""
+    simple_scene(studio)
+    scene = studio.scene
+    other = bpy.data.collections.new("Other")
+    scene.collection.children.link(other)
+    sun = studio.lamp("SUN", 3, (0, 0, 3), scale=(0, 0, 0))
+    scene.collection.objects.unlink(sun)
+    other.objects.link(sun)
+    second = scene.view_layers.new("Second")
+    second.layer_collection.children["Other"].exclude = True
+    second.use_pass_normal = True
+    scene.render.use_motion_blur = True
+    heavy, middle, slight = "its scale is 0", "motion blur", "only the Combined pass"
+    for keeps_the_engine in (False, True, True):
+        scene.render.use_persistent_data = keeps_the_engine
+        capfd.readouterr()
+        bpy.ops.render.render()
+        texts = [str(message["text"]) for message in record.last.messages]
+        assert [part for text in texts for part in (heavy, middle, slight) if part in text] == [heavy, middle, slight]
+        assert [message["places"] for message in record.last.messages][-1] == ["View layer 'Second'"]
+        warnings = [line for line in capfd.readouterr().out.splitlines() if "shlight: " in line]
+        shown = [part for line in warnings for part in (heavy, middle, slight) if part in line]
+        assert shown == [middle, heavy, slight, heavy]
 
 
 def test_both_eyes_get_a_picture(studio: Any) -> None:
@@ -223,9 +268,11 @@ def test_ray_visibility_is_shown_and_dim_where_it_is_not_supported(studio: Any) 
         thing.name: drawn_by(panels.SHLIGHT_OBJECT_PT_ray_visibility, object=thing)
         for thing in (studio.area(), studio.box(), studio.scene.camera)
     }
-    assert {name: layout.shown for name, layout in shown.items()} == {"Area": kinds, "Box": kinds, "Camera": set()}
+    assert shown["Area"].shown == kinds
     assert shown["Area"].active
+    assert shown["Box"].shown == kinds | {"visible_shadow"}
     assert not shown["Box"].active
+    assert shown["Camera"].shown == set()
 
 
 def test_world_width_is_a_setting_of_the_world(studio: Any) -> None:

@@ -12,7 +12,7 @@ import pytest
 
 import shlight
 from shlight_blender.export import ExportError, export_scene
-from shlight_blender.report import ExportReport
+from shlight_blender.report import Effect, ExportReport
 
 
 def export() -> Any:
@@ -173,7 +173,10 @@ def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any
     scene = studio.scene
     scene.render.use_motion_blur = True
     scene.camera.data.dof.use_dof = True
-    bpy.context.view_layer.use_pass_normal = True
+    view_layer = bpy.context.view_layer
+    view_layer.use_pass_normal = True
+    view_layer.aovs.add().name = "Mask"
+    view_layer.lightgroups.add(name="Key")
     scene.world = bpy.data.worlds.new("Sky")
     scene.world.use_nodes = False
     scene.world.color = (0.1, 0.1, 0.1)
@@ -190,7 +193,7 @@ def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any
     for part in (
         "motion blur is not supported",
         "Camera 'Camera': depth of field",
-        "only the Combined pass is written; not normal",
+        "only the Combined pass is written; not normal, AOV 'Mask', light group 'Key'",
         "World 'Sky': hiding it from diffuse rays",
         "Object 'Hidden': objects hidden from the camera",
         "Object 'Catcher': shadow catchers",
@@ -210,12 +213,13 @@ def test_equal_findings_are_one_message() -> None:
     assert report.lines() == ["a, b, c, d and 1 more: odd", "a: even"]
     assert report.to_data()[0] == {"text": "odd", "places": ["a", "b", "c", "d", "e"]}
     assert len(report) == 2
+    report.add("b", "even", Effect.LIGHT)
+    report.add("a", "dull", Effect.SLIGHT)
+    assert report.lines(1) == ["a and 1 more: even", "a and 4 more: odd", "a: dull"]
 
 
 CANNOT_BE_RENDERED = {
     "camera": "no camera",
-    "light": "no light",
-    "light of any size": "Light 'Sun': its scale is 0",
     "panoramic": "pano cameras",
     "flat camera": "scale 0",
 }
@@ -224,10 +228,7 @@ CANNOT_BE_RENDERED = {
 @pytest.mark.parametrize("missing", CANNOT_BE_RENDERED)
 def test_scenes_that_cannot_be_rendered(studio: Any, missing: str) -> None:
     studio.plane()
-    if missing == "light of any size":
-        studio.lamp("SUN", 3, (0, 0, 3), scale=(0, 0, 0))
-    elif missing != "light":
-        studio.area()
+    studio.area()
     if missing != "camera":
         camera = studio.camera()
         if missing == "panoramic":
@@ -236,6 +237,19 @@ def test_scenes_that_cannot_be_rendered(studio: Any, missing: str) -> None:
             camera.scale = (1, 0, 1)
     with pytest.raises(ExportError, match=CANNOT_BE_RENDERED[missing]):
         export()
+
+
+def test_what_is_left_out_of_a_dark_scene_is_named_first(studio: Any) -> None:
+    studio.plane(material=studio.material("ShaderNodeBsdfGlass"))
+    studio.camera()
+    assert export().dark == messages()[0]
+    assert messages()[0] == "Scene 'Scene': it has no light that shlight can render; the picture is black"
+    studio.lamp("SUN", 3, (0, 0, 3), scale=(0, 0, 0))
+    assert messages()[0].endswith("the picture is black. Light 'Sun': its scale is 0; left out")
+    assert not studio.render("SHLIGHT")[..., :3].any()
+    studio.area()
+    assert export().dark == ""
+    assert messages()[0] == "Light 'Sun': its scale is 0; left out"
 
 
 # --- real scenes

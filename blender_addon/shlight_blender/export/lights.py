@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 import shlight
 
 from ..compat import LAMPS, lamp_casts_shadows, lamp_is_normalized, lamp_tint, point_is_disk, uses_nodes
-from ..report import ExportReport
+from ..report import Effect, ExportReport
 from .nodes import RGB, rgb
 from .shaders import SHADERS
 from .surface import SurfaceReader
@@ -71,10 +71,10 @@ def add_lamp(
     glow = _glow_of_nodes(lamp, place, report)
     power = unit * glow.mean
     if not np.isfinite(power).all() or not np.isfinite(to_world).all():
-        report.add(place, "its power or its transform is not finite; left out")
+        report.add(place, "its power or its transform is not finite; left out", Effect.LIGHT)
         return False
     if (power < 0.0).any():
-        report.add(place, "negative light is not supported; left out")
+        report.add(place, "negative light is not supported; left out", Effect.LIGHT)
         return False
     if not power.any():
         return False
@@ -138,7 +138,7 @@ def spot_direction(to_world: NDArray[np.float64]) -> NDArray[np.float64] | None:
 def _add_spot(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
     direction = spot_direction(lamp.to_world)
     if direction is None:
-        report.add(lamp.place, "its scale is 0; left out")
+        report.add(lamp.place, "its scale is 0; left out", Effect.LIGHT)
         return False
     scene.add_spot_light(
         lamp.place_in_world(),
@@ -157,11 +157,15 @@ def _add_spot(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
 def _add_sun(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
     direction = -lamp.to_world[:3, 2]
     if not np.linalg.norm(direction) > 0.0:
-        report.add(lamp.place, "its scale is 0; left out")
+        report.add(lamp.place, "its scale is 0; left out", Effect.LIGHT)
         return False
     angle = float(lamp.data.angle)
     if LAMPS.sun_is_tangent and angle > WIDEST_TANGENT_SUN:
-        report.add(lamp.place, f"a sun wider than {math.degrees(WIDEST_TANGENT_SUN):.0f}° is drawn as wide as that")
+        report.add(
+            lamp.place,
+            f"a sun wider than {math.degrees(WIDEST_TANGENT_SUN):.0f}° is drawn as wide as that",
+            Effect.SLIGHT,
+        )
         angle = WIDEST_TANGENT_SUN
     irradiance = lamp.power
     if not lamp_is_normalized(lamp.data) and angle > 0.0:
@@ -199,14 +203,14 @@ def _add_area(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
     half_axes = _half_axes(data, lamp.to_world)
     area = 4.0 * float(np.linalg.norm(half_axes[0]) * np.linalg.norm(half_axes[1]))
     if area <= 0.0 or not np.linalg.norm(axis_z) > 0.0:
-        report.add(lamp.place, "its area is 0; left out")
+        report.add(lamp.place, "its area is 0; left out", Effect.LIGHT)
         return False
     is_round = data.shape in ROUND_SHAPES
     if is_round:
         area *= 0.25 * math.pi
     spread = float(data.spread)
     if spread < SMALLEST_SPREAD:
-        report.add(lamp.place, f"a spread below {math.degrees(SMALLEST_SPREAD):g}° is drawn as that")
+        report.add(lamp.place, f"a spread below {math.degrees(SMALLEST_SPREAD):g}° is drawn as that", Effect.SLIGHT)
         spread = SMALLEST_SPREAD
     sheared = abs(float(axis_x @ axis_y)) > 1e-3 * float(np.linalg.norm(axis_x) * np.linalg.norm(axis_y))
     if sheared:

@@ -10,7 +10,7 @@ import numpy as np
 import shlight
 
 from ..compat import MATERIALS, uses_nodes
-from ..report import ExportReport
+from ..report import Effect, ExportReport
 from .nodes import origin
 from .principled import untouched_principled
 from .shaders import SHADERS
@@ -36,7 +36,7 @@ def read_material(material: Any, report: ExportReport) -> Surface:
     place = f"Material '{material.name}'"
     output = material.node_tree.get_output_node("CYCLES")
     if output is None:
-        report.add(place, "there is no Material Output node; drawn black")
+        report.add(place, "there is no Material Output node; drawn black", Effect.THING)
         return Surface()
     for name in ("Volume", "Displacement"):
         socket = output.inputs.get(name)
@@ -45,6 +45,6 @@ def read_material(material: Any, report: ExportReport) -> Surface:
     surface = SurfaceReader(place, report, SHADERS, uvs_of="mesh").surface(output.inputs["Surface"])
     factors = [surface.emission, *(glow.factor for glow in surface.textured)]
     if not np.isfinite(factors).all():
-        report.add(place, "the emitted light is not finite; nothing is emitted")
+        report.add(place, "the emitted light is not finite; nothing is emitted", Effect.LIGHT)
         surface.emission, surface.textured = np.zeros(3), ()
     return surface

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 import shlight
 
 from ..compat import slot_materials, smooth_corner_normals
-from ..report import ExportReport
+from ..report import Effect, ExportReport
 from .materials import read_material
 from .surface import Surface
 from .textured_meshes import MeshArrays, corner_uvs, with_even_emission
@@ -88,7 +88,7 @@ class MeshCollector:
         """Notes one evaluated mesh object (or instance) at `to_world`."""
         place = f"Object '{mesh_object.name}'"
         if not np.isfinite(to_world).all():
-            self._report.add(place, "its transform is not finite; left out")
+            self._report.add(place, "its transform is not finite; left out", Effect.THING)
             return
         materials = slot_materials(mesh_object)
         key = (mesh_object.data.as_pointer(), *(material and material.as_pointer() for material in materials))
@@ -109,7 +109,7 @@ class MeshCollector:
         if arrays is None:
             return None
         if not np.isfinite(arrays.vertices).all():
-            self._report.add(place, "some of its vertices are not finite; left out")
+            self._report.add(place, "some of its vertices are not finite; left out", Effect.THING)
             return None
         if arrays.normals is not None and not np.isfinite(arrays.normals).all():
             arrays.normals = None
@@ -154,7 +154,8 @@ class MeshCollector:
         faces = np.bincount(indices, minlength=len(surfaces))[emission.any(axis=1)]
         lights = int(np.where(faces > MOST_SINGLE_FACES, 1, faces).sum()) * len(use.transforms)
         if lights >= MANY_EMITTERS:
-            self._report.add(use.place, f"its emissive faces are up to {lights} lights, which take long to render")
+            text = f"its emissive faces are up to {lights} lights, which take long to render"
+            self._report.add(use.place, text, Effect.SLIGHT)
         for arrays, transforms in standing(use):
             scene.add_mesh(
                 arrays.vertices,

@@ -15,6 +15,7 @@ import numpy as np
 import shlight
 
 from ..compat import PRINCIPLED
+from ..report import Effect
 from .microfacets import Remark, metal_lobe
 from .nodes import RGB, rgb
 from .surface import Surface, SurfaceReader, lambert
@@ -43,13 +44,13 @@ def _read_layered(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> 
     metallic = reader.share(node, "Metallic", groups)
     roughness = reader.share(node, "Roughness", groups)
     tint = reader.color(node, "Specular Tint", groups)
-    remark = reader.remarks(node)
+    remark, slight = reader.remarks(node), reader.remarks(node, Effect.SLIGHT)
     surface = Surface()
     if metallic > 0.0:
         if (tint != 1.0).any():
             remark("'Specular Tint' of metal is not supported; white is used")
         multiple_bounces = node.distribution == "MULTI_GGX"
-        surface = Surface(metal_lobe(np.minimum(base, 1.0), roughness, multiple_bounces, remark)).scaled(metallic)
+        surface = Surface(metal_lobe(np.minimum(base, 1.0), roughness, multiple_bounces, slight)).scaled(metallic)
     if metallic < 1.0:
         level = max(reader.number(node, "Specular IOR Level", groups), 0.0)
         ior = reader.number(node, "IOR", groups)
@@ -80,7 +81,7 @@ def _dielectric_over(
 def _read_sum(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> shlight.Bsdf | None:
     base = reader.color(node, "Base Color", groups)
     metallic = reader.share(node, "Metallic", groups)
-    remark = reader.remarks(node)
+    remark = reader.remarks(node, Effect.SLIGHT)
     roughness = reader.share(node, "Roughness", groups)
     specular = max(reader.number(node, "Specular", groups), 0.0)
     tint = reader.number(node, "Specular Tint", groups)

@@ -9,7 +9,7 @@ import numpy as np
 
 import shlight
 
-from ..report import ExportError, ExportReport
+from ..report import Effect, ExportError, ExportReport
 from .bake import Waiting
 from .camera import Frame, frame_of, set_camera
 from .lights import add_lamp
@@ -43,6 +43,7 @@ class ExportedScene(NamedTuple):
 
     scene: shlight.Scene
     report: ExportReport  # what of the Blender scene is not supported
+    dark: str  # what the report says if nothing gives light, else ""
 
 
 def export_scene(
@@ -55,8 +56,8 @@ def export_scene(
     frame: the picture and its part to render; None: resolution and render border of `scene.render`.
     camera: the camera object; None: the scene's.
     waiting: called with what is being done while a world is baked; False stops it.
-    Raises ExportError if there is no camera, no light, or a camera that is not supported, and ExportCancelled if
-    `waiting` stopped it.
+    Raises ExportError if there is no camera or one that is not supported, and ExportCancelled if `waiting` stopped it.
+    A scene without light is black, and the report says so.
     """
     blender_scene = depsgraph.scene_eval
     frame = frame or frame_of(blender_scene.render)
@@ -70,14 +71,17 @@ def export_scene(
     set_camera(scene, camera.evaluated_get(depsgraph), depsgraph, frame, blender_scene.render, report)
     report_unsupported_settings(blender_scene, depsgraph.view_layer_eval, report)
     lit = add_world(scene, blender_scene, report, waiting)
-    if not (_add_objects(scene, depsgraph, report) or lit):
-        raise ExportError(_no_light(blender_scene, report))
-    return ExportedScene(scene, report)
+    lit |= _add_objects(scene, depsgraph, report)
+    return ExportedScene(scene, report, "" if lit else _report_darkness(blender_scene, report))
 
 
-def _no_light(blender_scene: Any, report: ExportReport) -> str:
-    left_out = [line for line in report.lines() if line.startswith(("Light", "World"))]
-    return " ".join([f"Scene '{blender_scene.name}' has no light that shlight can render.", *left_out])
+def _report_darkness(blender_scene: Any, report: ExportReport) -> str:
+    """Reports that nothing gives light, with what of the light is left out; returns that line."""
+    left_out = [message.line() for message in report if message.effect == Effect.LIGHT]
+    place = f"Scene '{blender_scene.name}'"
+    text = ". ".join(["it has no light that shlight can render; the picture is black", *left_out])
+    report.add(place, text, Effect.DARK)
+    return f"{place}: {text}"
 
 
 def _add_objects(scene: shlight.Scene, depsgraph: Any, report: ExportReport) -> bool:
@@ -97,7 +101,8 @@ def _add_objects(scene: shlight.Scene, depsgraph: Any, report: ExportReport) -> 
             _report_object(seen, instancer, report)
             meshes.add(seen, to_world)
         elif seen.type in UNSUPPORTED_TYPES:
-            report.add(f"Object '{seen.name}'", f"{UNSUPPORTED_TYPES[seen.type]} are not supported; left out")
+            text = f"{UNSUPPORTED_TYPES[seen.type]} are not supported; left out"
+            report.add(f"Object '{seen.name}'", text, Effect.THING)
     return meshes.hand_over(scene) or lit
 
 
@@ -105,11 +110,12 @@ def _report_object(seen: Any, instancer: Any, report: ExportReport) -> None:
     place = f"Object '{seen.name}'"
     for name, (neutral, text) in VISIBILITY.items():
         if any(bool(getattr(shown, name, neutral)) != neutral for shown in (seen, instancer)):
-            report.add(place, text)
+            report.add(place, text, Effect.THING)
     for system in seen.particle_systems:
         settings = system.settings
         if settings.type == "HAIR" and settings.render_type == "PATH":
-            report.add(f"{place}, particle system '{system.name}'", "hair is not supported; left out")
+            hair = f"{place}, particle system '{system.name}'"
+            report.add(hair, "hair is not supported; left out", Effect.THING)
     _report_light_linking((seen, instancer), place, report)
 
 
@@ -117,6 +123,6 @@ def _report_light_linking(shown_by: tuple[Any, Any], place: str, report: ExportR
     for shown in shown_by:
         linking = getattr(shown, "light_linking", None)
         if linking is not None and linking.receiver_collection:
-            report.add(place, "light linking is not supported; it lights everything")
+            report.add(place, "light linking is not supported; it lights everything", Effect.LIGHT)
         if linking is not None and linking.blocker_collection:
-            report.add(place, "shadow linking is not supported; everything shadows it")
+            report.add(place, "shadow linking is not supported; everything shadows it", Effect.LIGHT)

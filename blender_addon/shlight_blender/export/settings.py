@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..compat import REC709, working_space
-from ..report import ExportReport
+from ..report import Effect, ExportReport
 
 PASSES_WRITTEN = {"use_pass_combined"}
 # Says how precise another pass is, and is no pass itself.
@@ -54,19 +54,22 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
         report.add(place, "Freestyle lines are not supported; left out")
     if working_space() != REC709:
         report.add(place, f"working space {working_space()} is not supported; skies and pictures stay Rec. 709")
-    passes = sorted(
-        name
-        for name in dir(view_layer)
-        if name.startswith("use_pass_") and name not in PASSES_WRITTEN | PASS_OPTIONS and getattr(view_layer, name)
-    )
+    passes = ", ".join(_passes_not_written(view_layer))
     if passes:
-        names = ", ".join(name.removeprefix("use_pass_") for name in passes)
-        report.add(f"View layer '{view_layer.name}'", f"only the Combined pass is written; not {names}")
+        report.add(f"View layer '{view_layer.name}'", f"only the Combined pass is written; not {passes}", Effect.SLIGHT)
     _report_layer_collections(view_layer.layer_collection, report)
+
+
+def _passes_not_written(view_layer: Any) -> list[str]:
+    flags = sorted(name for name in dir(view_layer) if name.startswith("use_pass_") and getattr(view_layer, name))
+    passes = [flag.removeprefix("use_pass_") for flag in flags if flag not in PASSES_WRITTEN | PASS_OPTIONS]
+    passes += [f"AOV '{aov.name}'" for aov in view_layer.aovs]
+    return passes + [f"light group '{group.name}'" for group in view_layer.lightgroups]
 
 
 def _report_layer_collections(layer_collection: Any, report: ExportReport) -> None:
     for child in layer_collection.children:
         if child.holdout or child.indirect_only:
-            report.add(f"Collection '{child.name}'", "holdout and indirect only are not supported; drawn as usual")
+            text = "holdout and indirect only are not supported; drawn as usual"
+            report.add(f"Collection '{child.name}'", text, Effect.THING)
         _report_layer_collections(child, report)

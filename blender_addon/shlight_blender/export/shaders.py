@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..report import Effect
 from .microfacets import glossy_lobe
 from .principled import read_principled
 from .surface import ReadShader, Surface, SurfaceReader, lambert
@@ -26,7 +27,7 @@ def _glossy(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> Surfac
     if node.distribution not in {"GGX", "MULTI_GGX"} and roughness > 0.0:  # all distributions end in the same mirror
         reader.report.add(reader.at(node), f"distribution {node.distribution} is not supported; GGX is used")
     multiple_bounces = node.distribution == "MULTI_GGX"
-    return Surface(glossy_lobe(color, roughness, multiple_bounces, reader.remarks(node)))
+    return Surface(glossy_lobe(color, roughness, multiple_bounces, reader.remarks(node, Effect.SLIGHT)))
 
 
 def _emission(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> Surface:

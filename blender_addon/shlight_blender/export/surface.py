@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 import shlight
 
-from ..report import ExportReport
+from ..report import Effect, ExportReport
 from .nodes import RGB, ConstantReader, origin, rgb
 from .textures import ImageTexture, UvOwner, read_image_texture
 
@@ -120,7 +120,9 @@ class SurfaceReader(ConstantReader):
         if textures[strength] is None:
             number = self.number(node, strength, groups)
             if number < 0.0:
-                self.report.add(self.at(node), f"negative {strength} is not supported; nothing is emitted")
+                self.report.add(
+                    self.at(node), f"negative {strength} is not supported; nothing is emitted", Effect.LIGHT
+                )
             factor *= max(number, 0.0)
         if textures[color] is None:
             factor *= self.color(node, color, groups)
@@ -137,14 +139,14 @@ class SurfaceReader(ConstantReader):
     def _unsupported(self, node: Any, groups: tuple[Any, ...]) -> Surface:
         kind = node.bl_label or node.bl_idname
         if node.type in SEE_THROUGH or "Color" not in node.inputs:
-            self.report.add(self.at(node), f"{kind} is not supported; drawn black")
+            self.report.add(self.at(node), f"{kind} is not supported; drawn black", Effect.THING)
             return Surface()
         self.report.add(self.at(node), f"{kind} is not supported; drawn as Diffuse BSDF of its colour")
         return Surface(lambert(self.color(node, "Color", groups)))
 
-    def remarks(self, node: Any) -> Callable[[str], None]:
+    def remarks(self, node: Any, effect: Effect = Effect.LOOK) -> Callable[[str], None]:
         """A function that adds its text to the report, about this node."""
-        return lambda text: self.report.add(self.at(node), text)
+        return lambda text: self.report.add(self.at(node), text, effect)
 
     def ignore_linked(self, node: Any, groups: tuple[Any, ...], *names: str) -> None:
         """Reports inputs for directions that are linked, for instance to a Normal Map."""

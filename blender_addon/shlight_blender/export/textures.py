@@ -16,7 +16,7 @@ from mathutils import Euler
 from numpy.typing import NDArray
 
 from ..compat import LAMPS
-from ..report import ExportReport
+from ..report import Effect, ExportReport
 from .nodes import REC709_LUMINANCE, ConstantReader, Origin, origin
 from .pictures import linear_from_srgb, stored_pixels
 
@@ -98,7 +98,7 @@ def read_image_texture(reader: ConstantReader, source: Origin, owner: UvOwner, i
     _report_differences(report, place, node)
     stored = None if node.image is None else stored_pixels(node.image)
     if stored is None:
-        report.add(place, "it has no image, or its file is missing; black is used")
+        report.add(place, "it has no image, or its file is missing; black is used", Effect.LIGHT)
     return ImageTexture(
         pixels=np.zeros((1, 1, 3), dtype=np.float32) if stored is None else stored.values,
         is_srgb=stored is not None and stored.is_srgb,

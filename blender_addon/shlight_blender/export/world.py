@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 import shlight
 
 from ..compat import uses_nodes
-from ..report import ExportCancelled, ExportReport
+from ..report import Effect, ExportCancelled, ExportReport
 from .bake import BakeError, Sun, Waiting, bake_world
 from .nodes import ConstantReader, Origin, all_nodes, origin
 from .pictures import linear_pixels
@@ -58,7 +58,7 @@ def _read_world(blender_scene: Any, report: ExportReport, waiting: Waiting | Non
     if output is None:
         return _black()
     if origin(output.inputs["Volume"]).node is not None:
-        report.add(place, "volume is not supported; left out")
+        report.add(place, "volume is not supported; left out", Effect.THING)
     source = origin(output.inputs["Surface"])
     if source.node is None:
         return _black()
@@ -69,7 +69,7 @@ def _read_world(blender_scene: Any, report: ExportReport, waiting: Waiting | Non
     try:
         baked = bake_world(world, blender_scene, waiting)
     except BakeError as error:
-        report.add(place, f"it could not be baked to a picture ({error}); it is simplified")
+        report.add(place, f"it could not be baked to a picture ({error}); it is simplified", Effect.LIGHT)
         report.extend(findings)
         return read
     if baked is None:
@@ -81,7 +81,9 @@ def _read_world(blender_scene: Any, report: ExportReport, waiting: Waiting | Non
 def _read_surface(source: Origin, reader: ConstantReader) -> World:
     """A world without baking; what of it is otherwise than this is in the reader's report."""
     if source.node.type != "BACKGROUND":
-        reader.report.add(reader.at(source.node), f"{source.node.bl_label} is not supported; black is used")
+        reader.report.add(
+            reader.at(source.node), f"{source.node.bl_label} is not supported; black is used", Effect.LIGHT
+        )
         return _black()
     strength = max(reader.number(source.node, "Strength", source.groups), 0.0)
     color = origin(source.node.inputs["Color"], source.groups)
@@ -96,7 +98,7 @@ def _read_picture(reader: ConstantReader, source: Origin) -> World:
     node = source.node
     place = reader.at(node)
     if node.projection != "EQUIRECTANGULAR":
-        reader.report.add(place, f"projection {node.projection} is not supported; black is used")
+        reader.report.add(place, f"projection {node.projection} is not supported; black is used", Effect.LIGHT)
         return _black()
     if node.interpolation != "Linear":
         reader.report.add(place, f"interpolation {node.interpolation} is not supported; Linear is used")
@@ -104,7 +106,7 @@ def _read_picture(reader: ConstantReader, source: Origin) -> World:
         reader.report.add(place, f"images of the kind {node.image.source} are not supported; one picture is used")
     pixels = None if node.image is None else linear_pixels(node.image)
     if pixels is None:
-        reader.report.add(place, "it has no image, or its file is missing; black is used")
+        reader.report.add(place, "it has no image, or its file is missing; black is used", Effect.LIGHT)
         return _black()
     return World(pixels, _rotation(reader, origin(node.inputs["Vector"], source.groups)))
 
@@ -140,7 +142,8 @@ def _report_visibility(world: Any, place: str, report: ExportReport) -> None:
     visibility = getattr(world, "cycles_visibility", None)
     hidden = [kind for kind in RAY_KINDS if not getattr(visibility, kind, True)]
     if hidden:
-        report.add(place, f"hiding it from {' and '.join(hidden)} rays is not supported; it lights and is seen")
+        text = f"hiding it from {' and '.join(hidden)} rays is not supported; it lights and is seen"
+        report.add(place, text, Effect.LIGHT)
 
 
 def _report_rays(world: Any, reader: ConstantReader) -> None:

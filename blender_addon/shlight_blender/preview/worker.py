@@ -88,6 +88,8 @@ class Worker:
             if record.last.scene_error:
                 raise SceneError(record.last.scene_error) from error
             raise
+        if record.last.dark:
+            raise SceneError(record.last.dark)
         self._save("shlight.exr")
         self._send(kind="shlight", seconds=seconds)
         made, statistics = record.last, record.last.statistics
