@@ -1,19 +1,31 @@
 // SPDX-License-Identifier: MIT
 //
 // The true f·cos along the light's outline, in the plane of half vectors.
+#include <algorithm>
+#include <cmath>
+
 #include "method.h"
 #include "shading/light_outline.h"
+#include "shlight/cap.h"
 
 namespace shlight::methods {
 namespace {
 
 constexpr double kDefaultTolerance = 1e-7;
 
+/// The sine of a half angle below which points of the circle are its centre to rounding; the value there will do.
+constexpr double kSmallestCap = 1e-7;
+
 class OutlineLobe : public LobeIntegrator {
   public:
     OutlineLobe(const LobeShape& shape, double cos_theta_o, double tolerance)
         : shape_(shape), cos_theta_o_(cos_theta_o), tolerance_(tolerance) {}
     Reflected radiance(const Circle& cap, std::uint32_t /*seed*/) const override {
+        if (cap.sine < kSmallestCap) {
+            const Vec3d above(cap.axis.x, cap.axis.y, std::max(cap.axis.z, 0.0));
+            const Vec3d view(std::sqrt((1 - cos_theta_o_) * (1 + cos_theta_o_)), 0, cos_theta_o_);
+            return {lobe_value(shape_, above, view) * clipped_solid_angle(cap), 1};
+        }
         return reflected(CapOutline(cap).arcs());
     }
     Reflected radiance(const SeenPolygon& polygon, std::uint32_t /*seed*/) const override {

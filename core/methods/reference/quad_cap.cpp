@@ -174,7 +174,8 @@ quad half_angle(const CapInput& input) {
     const quad size = input.size;
     switch (input.kind) {
         case CapInput::Kind::sphere:
-            return atan2f128(size, sqrtf128((distance - size) * (distance + size)));
+            // Lengths that are equal in double may differ here.
+            return size < distance ? atan2f128(size, sqrtf128((distance - size) * (distance + size))) : pi() / 2;
         case CapInput::Kind::facing_disk:
             return atan2f128(size, distance);
         case CapInput::Kind::angle:

@@ -36,6 +36,10 @@ constexpr int kMostPieces = 96;
 /// From this tolerance on, of a radiance of 0 … 1, floats will do.
 constexpr double kLeastSingle = 1e-5;
 
+/// A lower view mirrors itself in the horizon so closely that half vectors there lose their digits; what it sees
+/// differs by less than 1e-6 ÷ the lobe's width.
+constexpr double kLeastViewCosine = 1e-6;
+
 /// Points along a radius: the factors beside the bell vary slowly.
 int points_for(double tolerance) {
     return tolerance > 4e-3 ? 4 : tolerance > 2e-4 ? 6 : tolerance > 1e-5 ? 12 : 24;
@@ -270,8 +274,12 @@ class Outline {
 
 }  // namespace
 
-OutlineIntegral outline_integral(const LobeShape& shape, double cos_theta_o, std::span<const OutlineArc> arcs,
+OutlineIntegral outline_integral(const LobeShape& shape, double view_cosine, std::span<const OutlineArc> arcs,
                                  double tolerance) {
+    if (!(view_cosine > 0)) {
+        return {0, 0, 0};
+    }
+    const double cos_theta_o = std::max(view_cosine, kLeastViewCosine);
     const Vec3d view(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o);
     Outline outline(shape, cos_theta_o, tolerance);
     for (const OutlineArc& arc : arcs) {

@@ -15,8 +15,15 @@ bool is_mirror(const LobeShape& shape) {
     return lobe_width(shape) == 0;
 }
 
+namespace {
+
+/// Of the view; the inverse of less is none.
+constexpr double kLeastCosine = 1e-300;
+
+}  // namespace
+
 double lobe_value(const LobeShape& shape, const Vec3d& wi, const Vec3d& wo) {
-    if (!(wi.z > 0 && wo.z > 0)) {
+    if (!(wi.z > 0 && wo.z > kLeastCosine)) {
         return 0;
     }
     return std::visit([&](const auto& s) { return s.width() > 0 ? s.value(wi, wo) : 0.0; }, shape);
@@ -26,7 +33,7 @@ void lobe_values(const LobeShape& shape, const double* x, const double* y, const
                  const Vec3d& wo, float* values) {
     std::visit(
         [&](const auto& s) {
-            const bool any = wo.z > 0 && s.width() > 0;
+            const bool any = wo.z > kLeastCosine && s.width() > 0;
             for (std::size_t i = 0; i < count; ++i) {
                 values[i] = any && z[i] > 0 ? static_cast<float>(s.value(Vec3d(x[i], y[i], z[i]), wo)) : 0.0F;
             }

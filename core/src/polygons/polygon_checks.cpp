@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <string>
-#include <vector>
 
 #include "base/checks.h"
+#include "base/ray_rounding.h"
 
 namespace shlight {
 namespace {
@@ -21,6 +20,9 @@ constexpr double kInPlane = 8;
 
 /// Of the square of its extent: the area of a line, to rounding.
 constexpr double kNoArea = 16 * std::numeric_limits<double>::epsilon();
+
+/// The square of a distance from which on its third power stays within doubles.
+constexpr double kLeastSquare = 1e-60;
 
 /// Of the farthest vertex: distances of a plane from the shading point that the kernels hold for zero.
 constexpr double kEdgeOn = 64 * std::numeric_limits<double>::epsilon();
@@ -88,11 +90,14 @@ bool is_edge_on(const Vec3d& normal, std::span<const Vec3d> v, double epsilon) {
     return !decided || std::abs(glm::dot(normal, v[0])) <= kEdgeOn * farthest * glm::length(normal);
 }
 
-/// True for all that is_edge_on, and for some others.
+/// True for all that is_edge_on, for those of unusual units, and for some others.
 bool may_be_edge_on(const Vec3d& normal, std::span<const Vec3d> v, double epsilon) {
     double farthest = 0;
     for (const Vec3d& p : v) {
         farthest = std::max(farthest, glm::dot(p, p));
+    }
+    if (!(farthest > kLeastSquare && farthest < 1 / kLeastSquare)) {
+        return true;
     }
     const double granted = 2 * std::max(kInPlane * epsilon, kEdgeOn);
     const double distance = glm::dot(normal, v[0]);
@@ -130,36 +135,48 @@ bool is_surely_sound(std::span<const Vec3d> v, double epsilon) {
            !may_be_edge_on(flatness.normal, v, epsilon);
 }
 
-void prepare_polygon(std::span<Vec3d> vertices, double epsilon) {
+/// By a power of two, so that the largest coordinate is 1 … 2; false if all are 0.
+bool take_own_unit(std::span<Vec3d> vertices) {
     double largest = 0;
-    double size = 0;
     for (const Vec3d& v : vertices) {
         check_finite("vertices", v);
-        for (int i = 0; i < 3; ++i) {
-            largest = std::max(largest, std::abs(v[i]));
-            size = std::max(size, std::abs(v[i] / 2 - vertices[0][i] / 2));
-        }
+        largest = std::max(largest, largest_component(v));
     }
-    if (!(size > 0)) {
+    if (largest == 0) {
+        return false;
+    }
+    const int exponent = -std::ilogb(largest);
+    for (Vec3d& v : vertices) {
+        v = {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
+    }
+    return true;
+}
+
+/// Likewise, and without light where rounding decides what is seen.
+void prepare_polygon(std::span<Vec3d> vertices, double epsilon) {
+    if (!take_own_unit(vertices)) {
         return;
     }
-    // In units of the polygon, in which nothing overflows.
+    double size = 0;
+    for (const Vec3d& v : vertices) {
+        size = std::max(size, largest_component(v - vertices[0]));
+    }
+    if (size == 0) {
+        return;
+    }
     const Flatness flatness =
-        flatness_of(vertices.size(), [&](std::size_t i) { return (vertices[i] / 2.0 - vertices[0] / 2.0) / size; });
+        flatness_of(vertices.size(), [&](std::size_t i) { return (vertices[i] - vertices[0]) / size; });
     if (flatness.is_line(kNoArea)) {
         std::fill(vertices.begin(), vertices.end(), vertices[0]);
         return;
     }
     // A far polygon's vertices are off its plane by their own rounding.
-    const double far = largest / (2 * size * std::sqrt(flatness.extent));
+    const double far = 2 / (size * std::sqrt(flatness.extent));
     if (vertices.size() > 3 && !flatness.within(kGranted + 8 * epsilon * std::sqrt(3) * far)) {
         reject("vertices: a polygon is not planar");
     }
-    std::vector<Vec3d> scaled;
-    std::transform(vertices.begin(), vertices.end(), std::back_inserter(scaled),
-                   [largest](const Vec3d& v) { return v / largest; });
-    if (is_edge_on(flatness.normal, scaled, epsilon)) {
-        const Turns turns = turns_around_origin(flatness.normal, scaled, epsilon);
+    if (is_edge_on(flatness.normal, vertices, epsilon)) {
+        const Turns turns = turns_around_origin(flatness.normal, vertices, epsilon);
         if (turns.touch || std::abs(turns.sum) > 1) {
             reject("vertices: the shading point lies inside a polygon");
         }
