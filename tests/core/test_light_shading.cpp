@@ -238,18 +238,48 @@ TEST(LightShading, SpheresAsTheyComeAreThoseThatAreSorted) {
     }
 }
 
+std::vector<Rgb> shade_floats(const Bsdf& bsdf, const std::vector<Vec3f>& centers, const std::vector<float>& radii,
+                              const std::vector<double>& views) {
+    std::vector<Rgb> values(radii.size());
+    LightShader shader(bsdf, {8, 1e-3});
+    shader.spheres(std::span(centers), std::span(radii), std::span(views), values);
+    return values;
+}
+
 TEST(LightShading, SpheresDependOnNoNeighbour) {
     const FloatSpheres lights(300);
     for (const Bsdf& bsdf : materials_of_one_order()) {
-        std::vector<Rgb> together(lights.radii.size());
-        LightShader shader(bsdf, {8, 1e-3});
-        shader.spheres(std::span<const Vec3f>(lights.centers), std::span<const float>(lights.radii),
-                       std::span<const double>(lights.views), together);
+        const auto together = shade_floats(bsdf, lights.centers, lights.radii, lights.views);
         for (std::size_t i = 0; i < together.size(); ++i) {
-            Rgb alone(-1);
-            shader.spheres(std::span(&lights.centers[i], 1), std::span(&lights.radii[i], 1),
-                           std::span(&lights.views[i], 1), {&alone, 1});
-            EXPECT_EQ(alone, together[i]) << i;
+            const auto alone = shade_floats(bsdf, {lights.centers[i]}, {lights.radii[i]}, {lights.views[i]});
+            EXPECT_EQ(alone[0], together[i]) << i;
+        }
+    }
+}
+
+/// Lights on the axis need recurrences of their own, for which they are listed: those of vectors that are whole first,
+/// then those of vectors that lights at the horizon share. Here the list's first and last light are as far apart as in
+/// a row, for vectors of each length.
+TEST(LightShading, ListsOfSpheresNeedNotAscend) {
+    const Vec3f axis(0, 0, 2);
+    const Vec3f aside(1, 0, 2);
+    const Vec3f horizon(2, 0, 0);
+    for (const std::size_t lanes : {4, 8, 16}) {
+        std::vector<Vec3f> centers(3 * lanes, aside);
+        std::fill_n(centers.begin(), lanes - 2, axis);
+        centers[lanes - 1] = horizon;
+        centers[lanes + 1] = axis;
+        centers[2 * lanes] = axis;
+        centers[2 * lanes + 1] = horizon;
+        std::vector<float> radii(centers.size());
+        for (std::size_t i = 0; i < radii.size(); ++i) {
+            radii[i] = 0.01F * static_cast<float>(i + 1);
+        }
+        const std::vector<double> views(radii.size(), 1);
+        const auto together = shade_floats(Bsdf::ggx(0.5F, Rgb(1)), centers, radii, views);
+        for (std::size_t i = 0; i < together.size(); ++i) {
+            EXPECT_EQ(together[i], shade_floats(Bsdf::ggx(0.5F, Rgb(1)), {centers[i]}, {radii[i]}, {views[i]})[0])
+                << i << " of vectors of " << lanes;
         }
     }
 }

@@ -30,11 +30,18 @@ namespace shlight::HWY_NAMESPACE {
 template <class T>
 using Chosen = std::array<std::uint32_t, kLaneCount<Lanes<T>>>;
 
-/// Lists ascend, and only the last light of one is repeated.
-template <class Indices>
-HWY_INLINE bool are_in_a_row(const Indices& chosen) {
-    const std::size_t last = chosen.size() - 1;
-    return chosen[last] - chosen[0] == last && chosen[last] != chosen[last - 1];
+/// Compilers fold Iota of a constant only.
+template <class D>
+HWY_INLINE V<hn::Rebind<std::uint32_t, D>> row_from(D /*d*/, std::size_t first) {
+    const hn::Rebind<std::uint32_t, D> du;
+    return hn::Add(hn::Iota(du, 0), hn::Set(du, static_cast<std::uint32_t>(first)));
+}
+
+/// All of them: a list of lights whose recurrences are taken again need not ascend.
+template <class D>
+HWY_INLINE bool are_in_a_row(D d, const std::uint32_t* indices) {
+    const hn::Rebind<std::uint32_t, D> du;
+    return hn::AllTrue(du, hn::Eq(hn::LoadU(du, indices), row_from(d, indices[0])));
 }
 
 /// A bit for each lane, the first lane's lowest.
@@ -118,16 +125,8 @@ HWY_INLINE V<Doubles> loaded(const double* values, const std::uint32_t* indices,
     return in_a_row ? hn::LoadU(Doubles(), values + indices[0]) : gathered(Doubles(), values, indices);
 }
 
-HWY_INLINE bool all_in_a_row(const std::uint32_t* indices) {
-    bool result = true;
-    for (std::size_t i = 1; i < kLaneCount<Doubles>; ++i) {
-        result = result & (indices[i] == indices[0] + i);
-    }
-    return result;
-}
-
 HWY_INLINE CircleLanes<Doubles> load_circle(const CircleArrays& circles, const std::uint32_t* indices) {
-    const bool in_a_row = all_in_a_row(indices);
+    const bool in_a_row = are_in_a_row(Doubles(), indices);
     const auto x = loaded(circles.x, indices, in_a_row);
     const auto y = loaded(circles.y, indices, in_a_row);
     return {x,
@@ -199,7 +198,7 @@ class SphereCircles {
         const Floats d;
         constexpr std::size_t kLanes = kLaneCount<Floats>;
         Loaded s;
-        if (are_in_a_row(chosen)) {
+        if (are_in_a_row(d, chosen.data())) {
             hn::LoadInterleaved3(d, &spheres_.centers[chosen.front()].x, s.x, s.y, s.z);
             s.r = hn::LoadU(d, spheres_.radii + chosen.front());
             return s;
@@ -295,9 +294,10 @@ class CapBatch {
     /// Lights that lie side by side and need the same are taken at once, others are put on lists.
     HWY_INLINE void sort(std::size_t first, std::size_t count) {
         Chosen<T> chosen;
-        for (std::size_t lane = 0; lane < kLanes; ++lane) {
-            chosen[lane] = static_cast<std::uint32_t>(first + std::min(lane, count - 1));
-        }
+        const Lanes<T> d;
+        const hn::Rebind<std::uint32_t, Lanes<T>> du;
+        const auto last = hn::Set(du, static_cast<std::uint32_t>(first + count - 1));
+        hn::StoreU(hn::Min(row_from(d, first), last), du, chosen.data());
         const auto loaded = work_.circles().load(chosen);
         const Sides sides = work_.kept_whole() ? Sides{0, 0} : Circles::sides(loaded);
         const std::uint32_t all_lanes = (1U << count) - 1;

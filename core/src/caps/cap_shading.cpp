@@ -28,11 +28,6 @@ using Lights = Chosen<float>;
 /// One vector for each cosine term; a square of columns may be written at once.
 using TermLanes = std::array<float, (kCosineMax + kBlock) * kLanes>;
 
-HWY_INLINE bool follow_each_other(const Lights& indices) {
-    const hn::RebindToUnsigned<Floats> d;
-    return hn::AllTrue(d, hn::Eq(hn::LoadU(d, indices.data()), hn::Iota(d, indices[0])));
-}
-
 HWY_INLINE Lights listed(const std::uint32_t* list, const Lights& chosen) {
     Lights result;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -104,7 +99,7 @@ class CapShading {
 
     template <class Bands>
     HWY_INLINE void take(const CapLanes<Floats>& cap, const Lights& chosen) const {
-        if (are_in_a_row(chosen)) {
+        if (are_in_a_row(Floats(), chosen.data())) {
             shade_lanes<Bands>(cap, order(), terms_, values_ + chosen[0]);
             return;
         }
@@ -123,8 +118,8 @@ class CapShading {
             return warps_of(lobe_.warps, Same(view_of_, kLanes));
         }
         const Lights view_of = listed(view_of_, chosen);
-        return follow_each_other(view_of) ? warps_of(lobe_.warps, Neighbours(view_of[0]))
-                                          : warps_of(lobe_.warps, Scattered(view_of.data(), kLanes));
+        return are_in_a_row(Floats(), view_of.data()) ? warps_of(lobe_.warps, Neighbours(view_of[0]))
+                                                      : warps_of(lobe_.warps, Scattered(view_of.data(), kLanes));
     }
 
     /// Each lane's own terms.
