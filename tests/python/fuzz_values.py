@@ -14,6 +14,7 @@ from shlight import Bsdf
 Array = NDArray[Any]
 Rng = np.random.Generator
 Expected = bool | None  # whether it is accepted; None: either
+Zero = bool | None  # whether light of it is zero; None: it is no region, as where outlines cross
 
 SPECIAL = [0.0, -0.0, 1.0, -1.0, 0.5, 1e-12, -1e-12, 1e-7, 5e-324, 1e-45, 1e-40, 1.2e-38, 1e-30, 1e-19, 1e-15]
 SPECIAL += [1e15, 1e19, 1e20, 3e38, 1.4e154, 1.3e154, 1e308, math.pi, math.nextafter(1, 0), math.nextafter(1, 2)]
@@ -116,21 +117,25 @@ def outline(rng: Rng, count: int) -> Array:
     return np.stack([np.cos(angles), np.sin(angles)], -1) * rng.uniform(0.4, 1, (count, 1))
 
 
-def polygon(rng: Rng, count: int, dtype: Any) -> tuple[Array, Expected, bool]:
-    """Vertices, whether they are accepted, and whether all of the result is zero."""
+def polygon(rng: Rng, count: int, dtype: Any) -> tuple[Array, Expected, Zero]:
+    """Vertices, whether they are accepted, and whether all light of them is zero."""
+    v, accepted, zero = _polygon(rng, count, dtype)
+    return v, accepted if np.isfinite(v).all() else False, zero
+
+
+def _polygon(rng: Rng, count: int, dtype: Any) -> tuple[Array, Expected, Zero]:
     kind, axes = rng.integers(9), plane(rng)
     exact = bool(np.isin(axes, (0, 1)).all())
     unit = magnitude(rng, dtype)
     flat = outline(rng, count)
-    if kind == 0:
-        v = numbers(rng, (count, 3), dtype)
-        return v, None if np.isfinite(v).all() else False, False
+    if kind == 0:  # planar, or with luck
+        return numbers(rng, (count, 3), dtype), None, None if count > 3 else False
     if kind == 1:  # the shading point inside
         return cast(flat * unit @ axes[:2], dtype), False if exact and count > 3 else None, False
     if kind == 2:  # on an edge or a vertex
         v = cast(flat * unit @ axes[:2], dtype)
         v[1] = -0.5 * v[0] if chance(rng, 0.5) else 0
-        return v, False if exact and unit > 1e-30 else None, False
+        return v, False if exact and unit > 1e-30 else None, None
     if kind == 3:  # outside, edge-on
         shift = 10 ** rng.uniform(0.1, 3)
         return cast((flat + [shift, 0]) * unit @ axes[:2], dtype), True, exact
@@ -144,21 +149,26 @@ def polygon(rng: Rng, count: int, dtype: Any) -> tuple[Array, Expected, bool]:
     if kind == 6:  # a sliver
         flat[:, 1] *= 10 ** rng.uniform(-30, -3)
     if kind == 7:  # repeated and collinear vertices
-        flat[1:] = flat[(np.arange(1, count) * 2 // 3)]
-        flat[-1] = (flat[-2] + flat[0]) / 2
+        flat = np.repeat(outline(rng, (count + 1) // 2), 2, axis=0)[:count]
+        flat[1::2] += one_of(rng, 0, 0.5) * (np.roll(flat, -1, axis=0) - flat)[1::2]
     v = cast((flat @ axes[:2] + offset) * unit, dtype)
-    height = abs(float(offset @ axes[2])) * unit / float(length(v).max())
+    height = abs(float(offset @ axes[2])) * unit / max(float(length(v).max()), 5e-324)
     return v, True if height > 1e-5 and kind == 8 and unit > 1e-30 else None, False
 
 
-def disk(rng: Rng, dtype: Any) -> tuple[Array, Array, Array, Expected, bool]:
-    """Centre and half axes, whether they are accepted, and whether all of the result is zero."""
+def disk(rng: Rng, dtype: Any) -> tuple[Array, Array, Array, Expected, Zero]:
+    """Centre and half axes, and as of polygon."""
+    c, u, v, accepted, zero = _disk(rng, dtype)
+    return c, u, v, accepted if np.isfinite([c, u, v]).all() else False, zero
+
+
+def _disk(rng: Rng, dtype: Any) -> tuple[Array, Array, Array, Expected, Zero]:
     kind, axes, unit = rng.integers(6), plane(rng), magnitude(rng, dtype)
     exact = bool(np.isin(axes, (0, 1)).all())
     u, v = axes[0] * unit, (axes[1] * 10 ** rng.uniform(-3, 0) + axes[0] * one_of(rng, 0, rng.normal())) * unit
     if kind == 0:
         c, u, v = numbers(rng, (3, 3), dtype)
-        return c, u, v, None if np.isfinite([c, u, v]).all() else False, False
+        return c, u, v, None, False
     if kind == 1:  # the shading point inside
         return (*cast([0.3 * v + 0.3 * u, u, v], dtype), False if exact and 1e-30 < unit < 1e30 else None, False)
     if kind == 2:  # edge-on
