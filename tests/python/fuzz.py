@@ -31,6 +31,9 @@ from fuzz_calls import Step, random_call
 from fuzz_scenes import random_scene
 from fuzz_values import MATERIALS
 
+import shlight
+from shlight import Bsdf
+
 KINDS = {"call": random_call, "scene": random_scene}
 BATCH = {"call": 20_000, "scene": 250}
 LIMIT = 10.0  # seconds; what takes longer hangs
@@ -68,10 +71,16 @@ def shown(value: Any) -> str:
         return f"np.{value.__name__}"
     if isinstance(value, list):
         return f"[{', '.join(map(shown, value))}]"
-    for code, bsdf in MATERIALS.items():
-        if value is bsdf:
-            return code
+    if isinstance(value, Bsdf | shlight.Scene):
+        return next((code for code, bsdf in MATERIALS.items() if value is bsdf), type(value).__name__.lower())
     return f"{value.bit_length()} bits" if isinstance(value, int) and abs(value) > 10**500 else repr(value)
+
+
+def code_of(steps: list[Step]) -> str:
+    return "\n".join(
+        f"{step.call.split('/')[0]}({', '.join(f'{name}={shown(value)}' for name, value in step.arguments.items())})"
+        for step in steps
+    )
 
 
 def work(kind: str, seed: int, first: int, end: int, limit: float) -> None:
@@ -118,19 +127,19 @@ def run(
     counts: dict[str, int], seed: int, *, jobs: int = 2, limit: float = LIMIT, program: Sequence[str] = THIS
 ) -> dict[Case, str]:
     batches = [
-        (kind, seed, first, min(first + BATCH[kind], count))
+        (kind, first, min(first + BATCH[kind], count))
         for kind, count in counts.items()
         for first in range(0, count, BATCH[kind])
     ]
     found: dict[Case, str] = {}
     with ThreadPoolExecutor(jobs) as pool:
-        for part in pool.map(lambda batch: run_batch(*batch, limit, program), batches):
+        for part in pool.map(lambda batch: run_batch(batch[0], seed, *batch[1:], limit, program), batches):
             found.update(part)
     return found
 
 
-def code_of(case: Case) -> str:
-    """In a process of its own, because some of its arguments are made by the library."""
+def shown_case(case: Case) -> str:
+    """In a process of its own, because the library makes some of the arguments."""
     done = subprocess.run([*THIS, "--show", str(case)], capture_output=True, text=True, check=False)
     return done.stdout or done.stderr
 
@@ -142,7 +151,7 @@ def report(found: dict[Case, str]) -> str:
         alike.setdefault(re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", problem), []).append(case)
     parts = []
     for cases in sorted(alike.values(), key=len, reverse=True):
-        code, case = min(((code_of(case), case) for case in cases[:8]), key=lambda pair: len(pair[0]))
+        code, case = min(((shown_case(case), case) for case in cases[:8]), key=lambda pair: len(pair[0]))
         parts.append(f"{len(cases)} like {case}: {found[case]}\n{code}")
     return "\n".join(parts)
 
@@ -150,11 +159,6 @@ def report(found: dict[Case, str]) -> str:
 def parsed_case(text: str) -> Case:
     kind, seed, number = text.split(":")
     return Case(kind, int(seed), int(number))
-
-
-def show(case: Case) -> None:
-    for step in case.steps():
-        print(f"{step.call.split('/')[0]}({', '.join(f'{k}={shown(v)}' for k, v in step.arguments.items())})")
 
 
 def main() -> int:
@@ -168,12 +172,12 @@ def main() -> int:
     parser.add_argument("--work", nargs=5, help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.work:
-        kind, *numbers, limit = given.work
+        kind, seed, first, end, limit = given.work
         with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
-            work(kind, *map(int, numbers), float(limit))
+            work(kind, int(seed), int(first), int(end), float(limit))
         return 0
     if given.show or given.case:
-        show(given.show or given.case)
+        print(code_of((given.show or given.case).steps()))
         problem = complaint(given.case) if given.case else None
         if problem is not None:
             print(problem)

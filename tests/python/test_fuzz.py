@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+"""Random calls and scenes with seeds that are kept, and the fuzzer with planted faults."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import fuzz
+import fuzz_calls
+import numpy as np
+import pytest
+from fuzz_calls import Step
+
+import shlight
+
+FOLDER = str(Path(fuzz.__file__).parent)
+
+
+def test_calls_and_scenes_are_answered() -> None:
+    found = fuzz.run({"call": 32_000, "scene": 800}, seed=1)
+    assert not found, fuzz.report(found)
+
+
+def test_a_number_and_a_seed_make_one_case() -> None:
+    for kind in fuzz.KINDS:
+        cases = [fuzz.Case(kind, seed, number) for seed in (1, 2) for number in range(30)]
+        codes = [fuzz.code_of(case.steps()) for case in cases]
+        assert codes == [fuzz.code_of(case.steps()) for case in cases]
+        assert len(set(codes)) == len(cases)
+
+
+def faulty(fault: str, **counts: int) -> dict[fuzz.Case, str]:
+    """What is found where a function is replaced in all processes that work."""
+    script = f"import os, sys, time\nsys.path.insert(0, {FOLDER!r})\nimport fuzz, shlight\n{fault}\nfuzz.main()"
+    return fuzz.run({"call": 0, "scene": 0, **counts}, seed=1, limit=1.0, program=(sys.executable, "-c", script))
+
+
+@pytest.mark.parametrize(
+    ("function", "problem"), [("lambda **_: os.abort()", "ended with -6"), ("lambda **_: time.sleep(60)", "hangs")]
+)
+def test_ends_and_hangs_are_found_and_the_others_still_tried(function: str, problem: str) -> None:
+    found = faulty(f"shlight.cap_coefficients = {function}", call=40)
+    calls = [
+        case for case in (fuzz.Case("call", 1, n) for n in range(40)) if case.steps()[0].call == "cap_coefficients"
+    ]
+    assert [case for case, each in found.items() if problem in each] == calls
+    assert len(calls) > 1
+
+
+@pytest.mark.parametrize(
+    ("result", "problem"),
+    [
+        (lambda c: c * np.nan, "not finite"),
+        (lambda c: -c, "negative or too large"),
+        (lambda c: 100 * c, "negative or too large"),
+        (lambda c: c * np.arange(1, 10), "band 1"),
+        (lambda c: np.array(3 * [*c[:1], 0, 0]), "squares"),
+        (lambda c: c[:4], "shape"),
+    ],
+)
+def test_wrong_coefficients_are_found(result: Any, problem: str) -> None:
+    sphere = {"centers": [0, 0, 2.0], "radii": 1.9, "order": 3}
+
+    def check(c: Any) -> str | None:
+        return fuzz_calls.coefficient_problem(c, (9,), clip=True, zero=False)
+
+    assert Step("", shlight.sphere_coefficients, sphere, True, check).complaint() is None
+    wrong = Step("", lambda **given: result(shlight.sphere_coefficients(**given)), sphere, True, check)
+    assert problem in str(wrong.complaint())
+
+
+def raised(error: Exception) -> Any:
+    def function(radii: float) -> None:
+        raise error
+
+    return function
+
+
+@pytest.mark.parametrize(
+    ("function", "accepted", "problem"),
+    [
+        (raised(ValueError("radii must be positive")), None, "None"),
+        (raised(ValueError("radii must be positive")), True, "refused"),
+        (raised(ValueError("must be positive: radii")), None, "names no argument"),
+        (raised(TypeError("radiis")), None, "names no argument"),
+        (raised(RuntimeError("radii")), None, "RuntimeError"),
+        (lambda radii: radii, False, "accepted"),
+        (lambda radii: np.array(radii) / 0, None, "RuntimeWarning"),
+        (lambda radii: (np.ones(2), np.array([radii, np.inf])), None, "not finite"),
+    ],
+)
+def test_wrong_answers_are_found(function: Any, accepted: bool | None, problem: str) -> None:
+    assert problem in str(Step("", function, {"radii": 1.0}, accepted).complaint())
+
+
+def test_scenes_are_checked() -> None:
+    found = faulty("shlight.render = lambda *_, **__: np.full((1, 1, 4), np.nan)\nimport numpy as np", scene=5)
+    assert "shlight.render: the picture is not finite" in found.values()
