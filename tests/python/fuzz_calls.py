@@ -24,6 +24,7 @@ SHAPES: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
     "polygon": (polygon, ("vertices",)),
     "disk": (disk, ("centers", "half_axes_u", "half_axes_v")),
 }
+LENGTHS = {name for _, names in SHAPES.values() for name in names} - {"half_angles"}
 
 
 def finite(result: Any) -> str | None:
@@ -88,6 +89,23 @@ def coefficient_problem(c: Array, shape: tuple[int, ...], *, clip: bool, zero: b
     return f"the squares exceed the solid angle by {over.max()}" if over.max() > slack * largest else None
 
 
+def units_problem(step: Step, axes: tuple[int, ...], result: Any, slack: float) -> str | None:
+    """Of lights: the unit of length makes no difference, which is here a power of two near the size of each."""
+    lengths = {name: a for name, a in step.arguments.items() if name in LENGTHS}
+    sizes = np.max([np.abs(a).reshape(*axes, -1).max(-1) for a in lengths.values()], axis=0)
+    scaled: dict[str, Any] = {}
+    for name, a in lengths.items():
+        exponents = np.reshape(np.frexp(sizes)[1], (*axes, *[1] * (np.ndim(a) - len(axes))))
+        scaled[name] = np.ldexp(a, -exponents)
+        if (np.ldexp(scaled[name], exponents) != a).any():
+            return None  # the least numbers lose digits
+    try:
+        error = np.abs(step.function(**{**step.arguments, **scaled}) - result).max()
+    except ValueError as refused:
+        return f"in other units of length: {refused}"
+    return None if error <= slack else f"in other units of length the result differs by {error}"
+
+
 def lights(rng: Rng, kind: str, dtype: Any) -> tuple[dict[str, Array], tuple[int, ...], bool | None, bool | None]:
     """Arguments, their leading axes, and whether they are accepted and all of their light is zero, as of Shape."""
     count, corners = one_of(rng, 0, 0, 0, 1, 2, 5, 9, 17), int(one_of(rng, 3, 4, 4, 5, 8, 19))
@@ -118,11 +136,13 @@ def coefficients_of_light(rng: Rng) -> Step:
         if not exact or zero is None:
             return finite(result)
         clip = options["clip"] or kind != "cap"
-        return coefficient_problem(result, (*axes, order**2), clip=clip, zero=zero)
+        problem = coefficient_problem(result, (*axes, order**2), clip=clip, zero=zero)
+        return problem or units_problem(step, axes, result, 1e-4 if dtype == np.float32 else 1e-8)
 
     call = f"{kind}_coefficients"
     arguments = {**arrays, "order": order, **options}
-    return Step(call, getattr(shlight, call), arguments, accepted if exact else None, check)
+    step = Step(call, getattr(shlight, call), arguments, accepted if exact else None, check)
+    return step
 
 
 def shaded_light(rng: Rng) -> Step:
@@ -133,9 +153,7 @@ def shaded_light(rng: Rng) -> Step:
     elif kind != "disk" and chance(rng, 0.1):
         way, dtype = one_of(rng, *methods.shading_methods().values()), np.float64
         options |= {"method": way.name, "tolerance": max(options["tolerance"], 1e-3)}
-        options |= ({"order": one_of(rng, 3, 8)} if way.harmonic else {}) | (
-            {"samples": 20} if way.sampled else {}
-        )
+        options |= ({"order": one_of(rng, 3, 8)} if way.harmonic else {}) | ({"samples": 20} if way.sampled else {})
     arrays, axes, accepted, zero = lights(rng, kind, dtype)
     of_views = axes if chance(rng, 0.2) else ()
     views = np.array(one_of(rng, rng.random(of_views), rng.choice([0, 1, 5e-324, 1e-8, 1e-3, 1 - 1e-16], of_views)))
@@ -150,10 +168,11 @@ def shaded_light(rng: Rng) -> Step:
             return f"not zero: {np.abs(result).max()}"
         if auto and zero is not None and not (result.min() >= -slack and result.max() <= 1 + slack):
             return f"the radiance is not 0 … 1: {result.min()} … {result.max()}"
-        return None
+        return units_problem(step, axes, result, slack) if auto and zero is not None else None
 
     arguments = {**arrays, "bsdf": material(rng), "cos_theta_o": views, **options}
-    return Step(f"shade_{kind}s", getattr(shlight, f"shade_{kind}s"), arguments, accepted if exact else None, check)
+    step = Step(f"shade_{kind}s", getattr(shlight, f"shade_{kind}s"), arguments, accepted if exact else None, check)
+    return step
 
 
 def any_arguments(rng: Rng) -> Step:

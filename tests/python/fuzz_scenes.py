@@ -103,7 +103,7 @@ def picture_problem(image: Any) -> str | None:
 
 def random_scene(rng: Rng) -> list[Step]:
     hostile = chance(rng, 0.7)
-    unit = float(one_of(rng, *SCALES, *[1.0] * 9, 10 ** rng.uniform(-15, 15))) if hostile else 1.0
+    unit = float(one_of(rng, 1.0, *[10 ** rng.uniform(-6, 10)] * 3, one_of(rng, *SCALES))) if hostile else 1.0
     calls = [mesh(rng, unit) for _ in range(rng.integers(1, 4))] + [lamp(rng, unit) for _ in range(rng.integers(0, 6))]
     calls += [environment(rng, unit)] * chance(rng, 0.3) + [camera(rng, unit)]
     if hostile and chance(rng, 0.7):

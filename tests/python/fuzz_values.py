@@ -53,10 +53,12 @@ def numbers(rng: Rng, shape: Any, dtype: Any = np.float64) -> Array:
 
 def direction(rng: Rng) -> Array:
     """Also along axes, in the horizon and next to it."""
-    d = one_of(rng, 1.0, -1.0) * np.eye(3)[rng.integers(3)] if chance(rng, 0.2) else rng.normal(size=3)
+    if chance(rng, 0.2):
+        return one_of(rng, 1.0, -1.0) * np.eye(3)[rng.integers(3)]
+    d = rng.normal(size=3)
     if chance(rng, 0.2):
         d[2] = one_of(rng, 0.0, 1e-12, -1e-12, 1e-7, -1e-7)
-    return np.asarray(d / max(float(np.linalg.norm(d)), 1e-12))
+    return np.asarray(d / np.linalg.norm(d))
 
 
 def magnitude(rng: Rng, dtype: Any) -> float:
