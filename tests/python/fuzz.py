@@ -35,7 +35,7 @@ import shlight
 from shlight import Bsdf
 
 KINDS = {"call": random_call, "scene": random_scene}
-BATCH = {"call": 20_000, "scene": 250}
+BATCH = {"call": 10_000, "scene": 250}
 LIMIT = 10.0  # seconds of a core; what takes longer hangs
 MEMORY = 8 << 30
 THIS = (sys.executable, str(Path(__file__).resolve()))
@@ -127,15 +127,15 @@ def run_batch(kind: str, first: int, end: int, seed: int, limit: float, program:
 def run(
     counts: dict[str, int], seed: int, *, jobs: int = 2, limit: float = LIMIT, program: Sequence[str] = THIS
 ) -> dict[Case, str]:
-    batches = [
-        (kind, first, min(first + BATCH[kind], count))
-        for kind, count in counts.items()
-        for first in range(0, count, BATCH[kind])
-    ]
     found: dict[Case, str] = {}
     with ThreadPoolExecutor(jobs) as pool:
-        for part in pool.map(lambda batch: run_batch(*batch, seed, limit, program), batches):
-            found.update(part)
+        parts = [
+            pool.submit(run_batch, kind, first, min(first + BATCH[kind], count), seed, limit, program)
+            for kind, count in counts.items()
+            for first in range(0, count, BATCH[kind])
+        ]
+        for part in parts:
+            found.update(part.result())
     return found
 
 
