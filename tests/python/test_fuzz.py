@@ -19,7 +19,7 @@ FOLDER = str(Path(fuzz.__file__).parent)
 
 
 def test_calls_and_scenes_are_answered() -> None:
-    found = fuzz.run({"call": 20_000, "scene": 500}, seed=1)
+    found = fuzz.run({"call": 30_000, "scene": 700}, seed=1)
     assert not found, fuzz.report(found)
 
 
