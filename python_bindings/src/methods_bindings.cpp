@@ -129,7 +129,7 @@ py::tuple shaded_polygons(const std::string& method, const Array<double>& vertic
 }  // namespace
 
 void bind_methods(py::module_& m) {
-    py::class_<Options>(m, "MethodOptions", without_constructor());
+    const py::class_<Options> options_type(m, "MethodOptions", without_constructor());
     m.def(
         "method_options",
         [](double tolerance, int order, int samples, std::uint32_t seed, const std::string& sampling) {

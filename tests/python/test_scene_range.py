@@ -86,7 +86,9 @@ def test_what_lies_beyond_is_refused(far: float) -> None:
                 call()
 
 
-@pytest.mark.parametrize(("bsdf", "order"), [(Bsdf.lambert(1), "auto"), (Bsdf.ggx(0.1, 1), "auto"), (Bsdf.ggx(0, 1), 8)])
+@pytest.mark.parametrize(
+    ("bsdf", "order"), [(Bsdf.lambert(1), "auto"), (Bsdf.ggx(0.1, 1), "auto"), (Bsdf.ggx(0, 1), 8)]
+)
 def test_the_brightest_lights_give_finite_pictures(bsdf: Bsdf, order: Any) -> None:
     scene = lit_floor(bsdf=bsdf)
     scene.set_environment([1e15, 1, 0])

@@ -114,12 +114,13 @@ SphereLight make_sphere_light(const Vec3d& center, double radius, const Rgb& rad
 
 /// vertices: k ≥ 3 of a simple polygon, convex or not; repeated vertices are merged, and vertices off the polygon's
 /// plane by less than 1e-4 of its extent are moved onto it.
-/// Throws std::invalid_argument naming the argument: fewer than three vertices, a number outside docs/conventions.md's range, vertices
-/// that are not planar, enclose no area or cross themselves.
+/// Throws std::invalid_argument naming the argument: fewer than three vertices, a number outside docs/conventions.md's
+/// range, vertices that are not planar, enclose no area or cross themselves.
 PolygonLight make_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance, bool two_sided,
                                 const LightTraits& traits = {});
 
-/// Throws std::invalid_argument naming the argument: a number outside docs/conventions.md's range, half axes that are parallel or zero.
+/// Throws std::invalid_argument naming the argument: a number outside docs/conventions.md's range, half axes that are
+/// parallel or zero.
 DiskLight make_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const Vec3d& half_axis_v, const Rgb& radiance,
                           bool two_sided, const LightTraits& traits = {});
 
@@ -136,8 +137,8 @@ Light make_spot_light(const Vec3d& position, const SpotProfile& profile, const R
 /// direction: the way the light travels, of any length > 0. angle: the sun's diameter [rad], 0 … π. irradiance [W m⁻²]:
 /// on a surface at right angles to the direction. tangent: of the radiance irradiance / (π tan²(angle/2) cos³α), see
 /// TangentProfile, in place of irradiance / (π sin²(angle/2)); traits.profile is then replaced.
-/// Throws std::invalid_argument naming the argument: a number outside docs/conventions.md's range, a direction of length 0, an angle
-/// outside 0 … π, or above 3 if tangent.
+/// Throws std::invalid_argument naming the argument: a number outside docs/conventions.md's range, a direction of
+/// length 0, an angle outside 0 … π, or above 3 if tangent.
 Light make_sun_light(const Vec3d& direction, double angle, const Rgb& irradiance, bool tangent,
                      const LightTraits& traits = {});
 

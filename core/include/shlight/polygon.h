@@ -22,8 +22,8 @@ void polygon_coefficients(std::span<const Vec3<T>> vertices, int order, bool cli
 /// Many polygons with the same number of vertices.
 /// vertices: count × vertex_count; coefficients: count × order², row by row.
 /// Throws std::invalid_argument naming the argument: order outside 1 … 64, fewer than 3 vertices, sizes that do not
-/// fit, a non-finite number, vertices that are not planar, a shading point inside a polygon or on its outline (where the
-/// rounding of the vertices leaves open on which side of the plane it lies).
+/// fit, a non-finite number, vertices that are not planar, a shading point inside a polygon or on its outline (where
+/// the rounding of the vertices leaves open on which side of the plane it lies).
 template <class T>
 void polygon_coefficients(std::span<const Vec3<T>> vertices, int vertex_count, int order, bool clip,
                           std::span<T> coefficients);

@@ -81,7 +81,8 @@ class Scene {
     void set_environment(Environment environment, bool visible = true);
 
     /// Builds with at most `threads` threads, 0: all cores.
-    /// Throws std::invalid_argument for threads < 0 and for surfaces in a scene of less than 1e-6 m, std::bad_alloc or std::runtime_error when Embree fails.
+    /// Throws std::invalid_argument for threads < 0 and for surfaces in a scene of less than 1e-6 m, std::bad_alloc or
+    /// std::runtime_error when Embree fails.
     std::shared_ptr<const CompiledScene> compile(int threads = 0) const;
 
   private:

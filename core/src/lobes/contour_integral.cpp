@@ -274,14 +274,14 @@ class Outline {
 
 }  // namespace
 
-OutlineIntegral outline_integral(const LobeShape& shape, double view_cosine, std::span<const OutlineArc> arcs,
+OutlineIntegral outline_integral(const LobeShape& shape, double cos_theta_o, std::span<const OutlineArc> arcs,
                                  double tolerance) {
-    if (!(view_cosine > 0)) {
+    if (!(cos_theta_o > 0)) {
         return {0, 0, 0};
     }
-    const double cos_theta_o = std::max(view_cosine, kLeastViewCosine);
-    const Vec3d view(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o);
-    Outline outline(shape, cos_theta_o, tolerance);
+    const double cosine = std::max(cos_theta_o, kLeastViewCosine);
+    const Vec3d view(std::sqrt((1 - cosine) * (1 + cosine)), 0, cosine);
+    Outline outline(shape, cosine, tolerance);
     for (const OutlineArc& arc : arcs) {
         outline.add(arc, view, lobe_width(shape), 1.0 / static_cast<double>(arcs.size()));
     }

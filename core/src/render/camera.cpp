@@ -2,6 +2,7 @@
 #include "shlight/camera.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -15,8 +16,8 @@ namespace shlight {
 namespace {
 
 void check_window(const Window& window) {
-    const std::pair<const char*, double> edges[] = {
-        {"left", window.left}, {"right", window.right}, {"bottom", window.bottom}, {"top", window.top}};
+    const std::array edges = {std::pair("left", window.left), std::pair("right", window.right),
+                              std::pair("bottom", window.bottom), std::pair("top", window.top)};
     for (const auto& [name, edge] : edges) {
         if (!std::isfinite(edge)) {
             reject(std::string(name) + " must be finite");
