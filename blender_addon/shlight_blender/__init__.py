@@ -28,11 +28,14 @@ _find_native_package()
 
 
 def register() -> None:
-    """Adds the engine, its scene settings and its panels to Blender."""
+    """Adds the engine, its scene settings and its panels to Blender. Does nothing where they are."""
     import bpy
 
-    from . import engine, panels, properties
+    from . import engine, panels, preferences, properties
 
+    if properties.are_registered():
+        return
+    preferences.register()
     properties.register()
     engine.register()
     panels.register()
@@ -42,10 +45,13 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Removes everything that `register` added."""
-    from . import engine, panels, properties
+    """Stops renders and removes everything that `register` added. Does nothing where it is removed."""
+    from . import engine, panels, preferences, properties
 
+    if not properties.are_registered():
+        return
     atexit.unregister(unregister)
-    panels.unregister()
     engine.unregister()
+    panels.unregister()
+    preferences.unregister()
     properties.unregister()

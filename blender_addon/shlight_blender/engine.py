@@ -11,11 +11,13 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from . import record
+from . import record, running
 from .compat import write_pass
+from .frame import Frame, frame_of
+from .native import native_problem
 from .report import ExportCancelled, ExportError
+from .running import ENGINE
 
-ENGINE = "SHLIGHT"
 MOST_WARNINGS = 20
 VIEWPORT_NOTE = "shlight draws final renders (F12); use Material Preview in the viewport"
 
@@ -28,17 +30,23 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
     bl_use_preview = False  # material previews stay with EEVEE
     bl_use_eevee_viewport = True  # and so does the viewport's Material Preview
     bl_use_shading_nodes_custom = False
+    bl_use_custom_freestyle = True  # EEVEE would draw the lines, which takes long, or fails, without a graphics card
 
     def render(self, depsgraph: Any) -> None:
         """Renders one view layer. Blender prints exceptions and goes on, so all of them are reported here."""
-        frame: Any = None
+        if depsgraph.scene.original not in bpy.data.scenes.values():  # one of Freestyle's own, of strokes
+            self._deliver(depsgraph, frame_of(depsgraph.scene.render), None)
+            return
+        frame: Frame | None = None
         self._begin(depsgraph.view_layer.name)
         try:
-            # Imported here: an installation without the native module still registers, and says what is wrong.
-            from .export import frame_of
-
             frame = frame_of(depsgraph.scene.render)
-            self._render(depsgraph, frame)
+            if native_problem():
+                raise ExportError(native_problem())
+            image = self._render(depsgraph, frame)
+            if running.renders.stopped:
+                self._say_error(running.STOPPED)  # after an error Blender begins no other frame
+            self._deliver(depsgraph, frame, image)
         except ExportError as error:
             record.last.scene_error = str(error)
             self._fail(depsgraph, frame, str(error))
@@ -55,44 +63,43 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             self._shown: set[str] = set()
         self._view_layers.add(view_layer)
 
-    def _render(self, depsgraph: Any, frame: Any) -> None:
+    def _render(self, depsgraph: Any, frame: Frame) -> NDArray[np.float32] | None:
+        """The picture; None if the user stops the render."""
+        # Imported here: an installation without the native module still registers.
         import shlight
 
         from .export import export_scene, render_settings
 
-        self.update_stats("", "Exporting the scene")
         start = time.perf_counter()
         try:
+            self._check("Exporting the scene")
             exported = export_scene(depsgraph, frame=frame, camera=self.camera_override, waiting=self._wait)
-        except ExportCancelled:
-            self._deliver(depsgraph, frame, None)
-            return
-        settings = render_settings(depsgraph.scene).arguments()
-        record.last.export_seconds = time.perf_counter() - start
-        record.last.report.extend(exported.report)
-        record.last.dark = exported.dark or record.last.dark
-        record.last.settings = settings
-        self._show(record.last.report.lines())
-        if self.test_break():
-            self._deliver(depsgraph, frame, None)
-            return
-        try:
+            settings = render_settings(depsgraph.scene).arguments()
+            record.last.export_seconds = time.perf_counter() - start
+            record.last.report.extend(exported.report)
+            record.last.dark = exported.dark or record.last.dark
+            record.last.settings = settings
+            self._show(record.last.report.lines())
+            self._check("Rendering")
             image, record.last.statistics = shlight.render(
                 exported.scene, frame.width, frame.height, progress=self._progress, return_report=True, **settings
             )
-        except shlight.RenderCancelled:
-            self._deliver(depsgraph, frame, None)
-            return
-        self._deliver(depsgraph, frame, image)
+        except (ExportCancelled, shlight.RenderCancelled):
+            return None
+        return image
 
     def _progress(self, fraction: float) -> bool:
         self.update_progress(fraction)
-        self.update_stats("", f"Rendering {fraction:.0%}")
-        return not self.test_break()
+        return self._wait(f"Rendering {fraction:.0%}")
 
     def _wait(self, text: str) -> bool:
+        """Says what is done; False if it is to stop."""
         self.update_stats("", text)
-        return not self.test_break()
+        return not (running.renders.stopped or self.test_break())
+
+    def _check(self, text: str) -> None:
+        if not self._wait(text):
+            raise ExportCancelled
 
     def _show(self, lines: list[str]) -> None:
         """Shows what is new of the render's warnings, the weightiest last: Blender's status bar keeps that."""
@@ -107,12 +114,15 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         for line in reversed(shown):
             self.report({"WARNING"}, f"shlight: {line}")
 
-    def _fail(self, depsgraph: Any, frame: Any, text: str) -> None:
-        self.report({"ERROR"}, f"shlight: {text}")
+    def _fail(self, depsgraph: Any, frame: Frame | None, text: str) -> None:
+        self._say_error(text)
         if frame is not None:
             self._deliver(depsgraph, frame, None)
 
-    def _deliver(self, depsgraph: Any, frame: Any, image: NDArray[np.float32] | None) -> None:
+    def _say_error(self, text: str) -> None:
+        self.report({"ERROR"}, f"shlight: {text}")
+
+    def _deliver(self, depsgraph: Any, frame: Frame, image: NDArray[np.float32] | None) -> None:
         """Hands over the picture (None: an empty one; without any, saving the render crashes Blender)."""
         if image is None:
             image = np.zeros((frame.height, frame.width, 4), dtype=np.float32)
@@ -134,9 +144,13 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
 
 def register() -> None:
     """Adds the engine."""
-    bpy.utils.register_class(ShlightRenderEngine)
+    running.register()
+    if not ShlightRenderEngine.is_registered:
+        bpy.utils.register_class(ShlightRenderEngine)
 
 
 def unregister() -> None:
-    """Removes the engine."""
-    bpy.utils.unregister_class(ShlightRenderEngine)
+    """Stops the render that runs, and removes the engine."""
+    if running.renders.stop():  # else Blender would use what is removed
+        bpy.utils.unregister_class(ShlightRenderEngine)
+    running.unregister()

@@ -10,7 +10,7 @@ from typing import Any
 import bpy
 
 from .compat import LAMPS, has_node_switch, nodes_by_engine, shadow_switch, uses_nodes
-from .engine import ENGINE
+from .running import ENGINE
 
 # Panels for every engine that show what shlight does not have, or are replaced below.
 EXCLUDED = {

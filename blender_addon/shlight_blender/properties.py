@@ -69,6 +69,11 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
     )
 
 
+def are_registered() -> bool:
+    """Whether Blender knows `scene.shlight`."""
+    return bool(SHLIGHT_SceneSettings.is_registered)
+
+
 def register() -> None:
     """Adds `scene.shlight`."""
     bpy.utils.register_class(SHLIGHT_SceneSettings)

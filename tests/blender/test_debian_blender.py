@@ -36,7 +36,7 @@ pytestmark = pytest.mark.skipif(bool(WHY_NOT), reason=WHY_NOT or "-")
 
 
 def run_blender(
-    *arguments: str, script: str, folder: Path, before: tuple[str, ...] = ()
+    *arguments: str, script: str, folder: Path, before: tuple[str, ...] = (), after: tuple[str, ...] = ()
 ) -> subprocess.CompletedProcess[str]:
     """Runs Blender with the source tree's add-on on its path and nothing of the user's configuration."""
     environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTHON", "BLENDER"))}
@@ -47,7 +47,8 @@ def run_blender(
     paths = [str(ROOT / "python_bindings"), str(ROOT / "blender_addon")]
     command = [
         *before, str(BLENDER), *arguments, "--factory-startup", "--python-exit-code", "1",
-        "--python-expr", f"import sys; sys.path[:0] = {paths!r}", "--python", str(HERE / script), "--", str(folder),
+        "--python-expr", f"import sys; sys.path[:0] = {paths!r}", "--python", str(HERE / script),
+        "--", str(folder), *after,
     ]  # fmt: skip
     try:
         return subprocess.run(command, capture_output=True, text=True, env=environment, timeout=240, check=False)
@@ -126,18 +127,37 @@ def test_the_menu_of_nodes_is_left_as_it_was(pictures: dict[str, Any]) -> None:
     assert pictures["left_menu"]
 
 
+def run_in_window(*arguments: str, script: str, folder: Path, after: tuple[str, ...] = ()) -> tuple[int, str]:
+    """Runs Blender with a window; returns its exit code and what it says."""
+    if shutil.which("xvfb-run") is None:
+        pytest.skip("xvfb-run is not installed")
+    window = ("-noaudio", "--window-geometry", "0", "0", "1280", "800", *arguments)
+    screen = ("xvfb-run", "-a", "-s", "-screen 0 1280x800x24 +extension GLX")
+    done = run_blender(*window, script=script, folder=folder, before=screen, after=after)
+    return done.returncode, spoken(done)
+
+
+def test_a_walk_in_the_window(tmp_path: Path) -> None:
+    """A hundred random steps during renders: other files, undo, the add-on and Cycles disabled, scripts reloaded."""
+    addons = tmp_path / ".config/blender/3.4/scripts/addons"
+    addons.mkdir(parents=True)
+    (addons / "shlight_blender").symlink_to(ROOT / "blender_addon/shlight_blender")
+    walk = (os.environ.get("SHLIGHT_SEED", "1"), "100")
+    code, output = run_in_window("--enable-event-simulate", script="debian_walk.py", folder=tmp_path, after=walk)
+    assert code in {0, 1}, output  # 1 after a render that was stopped, which is an operator's error
+    assert "step 1: quit" in output, output
+    assert "Traceback" not in output, output
+    stopped = "Error: shlight: the render was stopped because a render engine was removed"
+    assert all(line == stopped for line in output.splitlines() if line.startswith("Error")), output
+
+
 def test_window(tmp_path: Path) -> None:
     """A real window: the engine selected, its panels drawn, the viewport in rendered mode, and final renders.
 
     They run beside the window, as with F12, in a world that is baked for the first of them.
     """
-    if shutil.which("xvfb-run") is None:
-        pytest.skip("xvfb-run is not installed")
-    window = ("-noaudio", "--window-geometry", "0", "0", "1280", "800")
-    screen = ("xvfb-run", "-a", "-s", "-screen 0 1280x800x24 +extension GLX")
-    done = run_blender(*window, script="debian_window.py", folder=tmp_path, before=screen)
-    output = spoken(done)
-    assert done.returncode == 0, output
+    code, output = run_in_window(script="debian_window.py", folder=tmp_path)
+    assert code == 0, output
     assert "Traceback" not in output, output
     drawn = json.loads((tmp_path / "drawn.json").read_text())
     shown = {"RENDER_PT_accuracy", "RENDER_PT_shadows", "WORLD_PT_baking", "LIGHT_PT_light", "LIGHT_PT_nodes"}

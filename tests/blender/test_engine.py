@@ -3,7 +3,11 @@
 
 from __future__ import annotations
 
+import os
+import shutil
+import subprocess
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,7 +19,7 @@ import pytest
 import shlight
 import shlight_blender
 from shlight.images import read_exr
-from shlight_blender import compat, panels, record
+from shlight_blender import compat, native, panels, preferences, record
 from shlight_blender.engine import ShlightRenderEngine
 
 
@@ -151,6 +155,22 @@ def test_both_eyes_get_a_picture(studio: Any) -> None:
     assert all(read_exr(path)[..., :3].any() for path in written)
 
 
+@pytest.mark.parametrize("eyes", [1, 2])
+def test_freestyle_ends_and_changes_nothing(studio: Any, eyes: int) -> None:
+    simple_scene(studio)
+    render = studio.scene.render
+    render.use_multiview = eyes == 2
+    pictures = []
+    for lines in (False, True):
+        render.use_freestyle = lines
+        render.filepath = str(studio.folder / f"{lines}.exr")
+        bpy.ops.render.render(write_still=True)
+        pictures.append([read_exr(path) for path in sorted(studio.folder.glob(f"{lines}*.exr"))])
+    np.testing.assert_array_equal(*pictures)
+    assert len(pictures[1]) == eyes
+    assert "Freestyle lines are not supported; left out" in str(record.last.messages)
+
+
 def test_settings_reach_the_renderer(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     simple_scene(studio)
     scene = studio.scene
@@ -204,6 +224,7 @@ def test_blenders_own_panels_and_unregistering(studio: Any) -> None:
     assert not {"DATA_PT_light", "DATA_PT_EEVEE_light", "OBJECT_PT_shading"} & joined
     assert not [name for name in joined if "_freestyle" in name or "_gpencil" in name or "_grease_pencil" in name]
     shlight_blender.unregister()
+    shlight_blender.unregister()
     try:
         assert shared() == set()
         assert not hasattr(bpy.types.Scene, "shlight")
@@ -211,6 +232,7 @@ def test_blenders_own_panels_and_unregistering(studio: Any) -> None:
         with pytest.raises(TypeError):
             bpy.context.scene.render.engine = "SHLIGHT"
     finally:
+        shlight_blender.register()
         shlight_blender.register()
     assert shared() == joined
 
@@ -220,6 +242,7 @@ class Layout:
 
     def __init__(self) -> None:
         self.shown: set[str] = set()
+        self.text = ""
         self.active = True
 
     def prop(self, owner: Any, name: str, **_: Any) -> None:
@@ -228,6 +251,9 @@ class Layout:
 
     def template_node_view(self, tree: Any, node: Any, socket: Any) -> None:
         self.shown.add(f"{node.bl_idname}.{socket.name}")
+
+    def label(self, text: str, **_: Any) -> None:
+        self.text += " " + text
 
     def column(self) -> Layout:
         return self
@@ -283,10 +309,43 @@ def test_world_width_is_a_setting_of_the_world(studio: Any) -> None:
     assert drawn_by(panels.SHLIGHT_WORLD_PT_baking, scene=studio.scene, world=None).shown == set()
 
 
-def test_without_the_native_module_the_engine_says_so(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_native_module_the_engine_says_so(
+    studio: Any, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def ready() -> str:
+        native.native_problem.cache_clear()
+        layout = Layout()
+        preferences.SHLIGHT_Preferences.draw(SimpleNamespace(layout=layout), None)
+        return layout.text
+
     simple_scene(studio)
-    for name in [name for name in sys.modules if name.startswith("shlight_blender.export")]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, "shlight", None)
-    with pytest.raises(RuntimeError, match="ModuleNotFoundError"):
-        studio.render("SHLIGHT")
+    assert "Ready" in ready()
+    with monkeypatch.context() as missing:
+        missing.setitem(sys.modules, "shlight", None)
+        said = ready()
+        with pytest.raises(RuntimeError, match=r"'shlight' cannot be loaded .*pip install") as error:
+            studio.render("SHLIGHT")
+        assert str(error.value).count("\n") <= 1
+        assert "'shlight' cannot be loaded" in said
+        assert "pip install" in said
+    assert "Ready" in ready()
+    assert "Traceback" not in capfd.readouterr().err
+
+
+INSTALL = """
+import sys, bpy
+bpy.ops.extensions.package_install_files(filepath=sys.argv[-1], repo="user_default", enable_on_install=True)
+bpy.context.scene.render.engine = "SHLIGHT"
+"""
+
+
+def test_an_extension_leaves_without_a_traceback(tmp_path: Path) -> None:
+    if not compat.IS_BLENDER_4:
+        pytest.skip("this version of Blender has no extensions")
+    addon = Path(shlight_blender.__file__).parent
+    archive = shutil.make_archive(str(tmp_path / "addon"), "zip", addon)
+    command = [sys.executable, "-c", INSTALL, archive]
+    environment = {**os.environ, "HOME": str(tmp_path), "BLENDER_USER_RESOURCES": str(tmp_path)}
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "Traceback" not in done.stdout + done.stderr, done.stderr

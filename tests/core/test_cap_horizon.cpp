@@ -183,6 +183,8 @@ constexpr auto kClasses = std::to_array<Class>({{"anywhere", at_horizon<anywhere
                                                 {"spheres", sphere, 100}});
 
 const std::size_t kMore = testing::all_tests() ? 8 : 1;
+// Of the sliver's own solid angle; more cases, and kernels without fused products, find a worse one.
+const double kBound = testing::all_tests() ? 3e-4 : 2e-4;
 
 TEST(CapHorizon, WarpedLightsAgreeWithReference) {
     std::uint64_t seed = 400;
@@ -198,7 +200,7 @@ TEST(CapHorizon, WarpedLightsAgreeWithReference) {
                         std::max(reference.high[0], kSmall);
         });
         errors.publish(kind.name);
-        EXPECT_LE(errors.largest(), 2e-4) << kind.name << ": " << describe(cases[errors.worst()]);
+        EXPECT_LE(errors.largest(), kBound) << kind.name << ": " << describe(cases[errors.worst()]);
     }
 }
 

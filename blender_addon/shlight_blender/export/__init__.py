@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From Blender's depsgraph to a shlight.Scene."""
 
+from ..frame import Frame, frame_of, whole_frame
 from ..report import ExportError, ExportReport
-from .camera import Frame, frame_of, whole_frame
 from .scene import ExportedScene, export_scene
 from .settings import RenderSettings, render_settings
 

@@ -9,9 +9,10 @@ import numpy as np
 
 import shlight
 
+from ..frame import Frame, frame_of
 from ..report import Effect, ExportError, ExportReport
 from .bake import Waiting
-from .camera import Frame, frame_of, set_camera
+from .camera import set_camera
 from .lights import add_lamp
 from .meshes import MeshCollector
 from .settings import report_unsupported_settings

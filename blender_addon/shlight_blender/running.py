@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The render that runs beside Blender's window, which has to end before a render engine is removed.
+
+Blender frees the engines of all renders when a class of any engine is removed, and uses them until its job has ended,
+after the last call of `RenderEngine.render`.
+"""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+import bpy
+from bpy.app.handlers import persistent
+
+ENGINE = "SHLIGHT"
+LONGEST_WAIT = 30.0  # seconds; the longest part of an export that does not ask whether it is to end takes a few
+STOPPED = "the render was stopped because a render engine was removed"
+
+
+class Renders:
+    """Whether Blender's render job runs with this engine, and whether it is to end."""
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+        self._thread: int | None = None
+        self.stopped = False
+
+    def begin(self) -> None:
+        """The job has begun in this thread."""
+        self._thread = threading.get_ident()
+
+    def end(self) -> None:
+        """The job has ended."""
+        with self._changed:
+            self._thread = None
+            self._changed.notify_all()
+
+    def stop(self) -> bool:
+        """Ends the job, and keeps others from running until `resume`; False if it does not end."""
+        with self._changed:
+            self.stopped = True
+            if self._thread == threading.get_ident():
+                return False
+            if not bpy.app.is_job_running("RENDER"):
+                return True
+            return self._changed.wait_for(lambda: self._thread is None, LONGEST_WAIT)
+
+    def resume(self) -> None:
+        """Lets renders run."""
+        self.stopped = False
+
+
+renders = Renders()
+
+
+@persistent
+def _note_begin(scene: Any, *_: Any) -> None:
+    if scene.render.engine == ENGINE:
+        renders.begin()
+
+
+@persistent
+def _note_end(*_: Any) -> None:
+    renders.end()
+
+
+def _stop_for(cls: Any) -> None:
+    """Blender calls a class's `unregister` before it removes it."""
+    if not renders.stopped:
+        renders.stop()
+        renders.resume()
+
+
+HANDLERS = {"render_init": _note_begin, "render_complete": _note_end, "render_cancel": _note_end}
+
+
+def register() -> None:
+    """Watches for renders and for engines that are removed."""
+    renders.resume()
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).append(handler)
+    bpy.types.RenderEngine.unregister = classmethod(_stop_for)
+
+
+def unregister() -> None:
+    """Ends the watch."""
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).remove(handler)
+    del bpy.types.RenderEngine.unregister
