@@ -4,6 +4,7 @@
 Arguments: a folder, a seed and how many steps to take. Prints the steps, so that a walk that fails is known.
 """
 
+import os
 import random
 import sys
 import traceback
@@ -95,21 +96,39 @@ plan.append("quit")
 STEP["quit"] = (0, bpy.ops.wm.quit_blender)
 
 
+refused = 0
+
+
 def walk():
+    global refused
     name = plan[0]
-    print(f"step {len(plan)}: {name}", flush=True)
+    if refused == 0:
+        print(f"step {len(plan)}: {name}", flush=True)
     try:
         with bpy.context.temp_override(window=window()):
             STEP[name][1]()
     except (AttributeError, RuntimeError) as error:
-        # Blender lets no script write while any thread is in a method of a class that draws or renders.
         if "in this context" in str(error) or "in this state" in str(error):
-            return 0.02
+            return wait_to_write()
         traceback.print_exc()
     except Exception:
         traceback.print_exc()
+    refused = 0
     plan.pop(0)
     return chance.choice([0.02, 0.1, 0.5]) if plan else None
+
+
+def wait_to_write():
+    """Blender lets no script write while any thread is in a method of a class that draws or renders.
+
+    Where a panel is drawn as a render ends, Blender 3.4 leaves it at that for good.
+    """
+    global refused
+    refused += 1
+    if refused == 500:
+        print("Blender lets no script write any more", flush=True)
+        os._exit(0)
+    return 0.02
 
 
 bpy.context.preferences.view.show_splash = False

@@ -145,7 +145,7 @@ def test_a_walk_in_the_window(tmp_path: Path) -> None:
     walk = (os.environ.get("SHLIGHT_SEED", "1"), "100")
     code, output = run_in_window("--enable-event-simulate", script="debian_walk.py", folder=tmp_path, after=walk)
     assert code in {0, 1}, output  # 1 after a render that was stopped, which is an operator's error
-    assert "step 1: quit" in output, output
+    assert "step 1: quit" in output or "Blender lets no script write any more" in output, output
     assert "Traceback" not in output, output
     stopped = "Error: shlight: the render was stopped because a render engine was removed"
     assert all(line == stopped for line in output.splitlines() if line.startswith("Error")), output
