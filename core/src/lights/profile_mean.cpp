@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "lobes/material_lobes.h"
 #include "math/gauss_legendre.h"
 
 namespace shlight {
@@ -16,6 +17,9 @@ constexpr int kAgreements = 2;
 constexpr int kAgreementsOfRings = 1;
 /// A lobe takes nodes of its own where it may be denser than this many times the light's.
 constexpr double kNarrowLobe = 8;
+/// Nodes of its own are few for a lobe that lies on the light as a whole, and many where the light's outline cuts it.
+/// Lobes wider than this [rad] are cut often; pieces of rings that are fitted to the lobe then need fewer.
+constexpr double kLeastFocus = 0.01;
 
 /// Nodes of a rule at t² for each coordinate: samplers take roots, at the middle of a cap and in a corner of a
 /// triangle.
@@ -92,7 +96,12 @@ double ProfileMean::mean(const LobeShape& lobe, double cos_theta_o, double toler
         return seen_.profile().factor(mirrored(view));
     }
     const bool narrow = sampler_.solid_angle() * largest_lobe_density(lobe, view) > kNarrowLobe;
-    const Reflection reflection{&lobe, view, narrow};
+    const double width = narrowest(lobe, cos_theta_o);
+    const bool focused = narrow && has_rings_ && width > kLeastFocus;
+    if (focused) {
+        rings_.focus(mirrored(view), width);
+    }
+    const Reflection reflection{&lobe, view, narrow && !focused};
     double mean = range().low;
     int agreements = -1;  // the first is compared with nothing
     for (const int points : kPoints) {

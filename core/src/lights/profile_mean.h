@@ -4,8 +4,9 @@
 //
 // Radiance of an even light, which is exact, times Σ w L f / Σ w f over nodes that fill the light, L the profile's
 // factor, f the lobe's f·cos. What the rule gets wrong of a narrow lobe it gets wrong in both sums. Nodes are those of
-// a Gauss rule on the unit square, mapped as shadow rays are; for a lobe that is narrower than the light, others are
-// spread as the lobe reflects, and both count by the balance heuristic, as in shadow_rays.h. No chance is involved.
+// rings (profile_rings.h), with pieces fitted to a lobe that is narrower than the light, or else of a Gauss rule on the
+// unit square, mapped as shadow rays are; for such a lobe others are spread as it reflects, and both count by the
+// balance heuristic, as in shadow_rays.h. No chance is involved.
 #pragma once
 
 #include "lights/light_sampling.h"

@@ -17,11 +17,12 @@ constexpr double kRound = 1e-6;       // by which a map, or a disk, may fail to 
 constexpr double kLeastSine = 1e-4;   // of a cap's half angle; of smaller ones cosines say too little
 constexpr double kSlack = 1e-9;       // of points that lie on a side
 constexpr double kLeastPiece = 1e-9;  // [rad]
-constexpr std::size_t kMostCorners = 12;
-constexpr int kScan = 32;      // steps around an ellipse in search of its turns
-constexpr double kFlat = 0.4;  // slope of an outline's distance that is nearly a turn
+constexpr int kScan = 32;             // steps around an ellipse in search of its turns
+constexpr double kFlat = 0.4;         // slope of an outline's distance that is nearly a turn
 constexpr int kMostSteps = 60;
 constexpr double kRootError = 1e-12;
+/// Ends of pieces beside a focus, in its widths.
+constexpr std::array kFocusEnds = {-6.0, -1.5, 1.5, 6.0};
 
 /// A root between two arguments at which the function has different signs: regula falsi that halves the value of an end
 /// which stays (Illinois).
@@ -138,8 +139,10 @@ void ProfileRings::Disk::add_cuts(double circle, std::vector<double>& cuts) cons
 
 bool ProfileRings::reset(const SeenLight& seen) {
     sides_.clear();
+    corner_sides_ = 0;
     disk_.reset();
     events_.clear();
+    focus_width_ = 0;
     const Axis axis = axis_of(traits_of(seen.light()).profile);
     if (!axis.direction) {
         return false;
@@ -180,9 +183,6 @@ bool ProfileRings::add_cap(const CapView& cap) {
 }
 
 bool ProfileRings::add_polygon(std::span<const Vec3d> corners) {
-    if (corners.size() > kMostCorners) {
-        return false;
-    }
     std::vector<Vec3d> directions;
     for (const Vec3d& corner : corners) {
         directions.push_back(to_rings(glm::normalize(corner)));
@@ -208,10 +208,17 @@ bool ProfileRings::add_polygon(std::span<const Vec3d> corners) {
             side.azimuth += pi;
         }
     }
+    if (sides_.size() < 3) {
+        return false;
+    }
+    corner_sides_ = sides_.size();
     if (std::any_of(corners.begin(), corners.end(), [](const Vec3d& corner) { return corner.z < 0; })) {
         add_horizon();
     }
-    return sides_.size() >= 3;
+    for (const Vec3d& direction : directions) {
+        add_event(direction);
+    }
+    return true;
 }
 
 void ProfileRings::add_disk(const Ellipse<double>& ellipse) {
@@ -297,12 +304,25 @@ void ProfileRings::add_disk_events() {
     }
 }
 
+void ProfileRings::focus(const Vec3d& direction, double width) {
+    if (events_.empty()) {
+        return;
+    }
+    const Vec3d there = to_rings(direction);
+    focus_azimuth_ = std::atan2(there.y, there.x);
+    focus_width_ = width;
+    std::array<double, kFocusEnds.size()> angles;
+    std::transform(kFocusEnds.begin(), kFocusEnds.end(), angles.begin(),
+                   [&](double end) { return angle_to_axis(there) + end * width; });
+    add_between(angles);
+}
+
 void ProfileRings::find_events(std::span<const double> kinks) {
     add_event({0, 0, 1});
     add_event({0, 0, -1});
     for (std::size_t i = 0; i < sides_.size(); ++i) {
         add_touching(sides_[i]);
-        for (std::size_t j = 0; j < i; ++j) {
+        for (std::size_t j = 0; j < i && i >= corner_sides_; ++j) {
             add_crossings(sides_[i], sides_[j]);
         }
     }
@@ -312,14 +332,15 @@ void ProfileRings::find_events(std::span<const double> kinks) {
     if (events_.empty()) {
         return;
     }
-    const auto [nearest, farthest] = std::minmax_element(events_.begin(), events_.end());
-    const double from = *nearest;
-    const double to = *farthest;
-    for (const double kink : kinks) {
-        if (from < kink && kink < to) {
-            events_.push_back(kink);
-        }
-    }
+    std::sort(events_.begin(), events_.end());
+    add_between(kinks);
+}
+
+void ProfileRings::add_between(std::span<const double> angles) {
+    const double from = events_.front();
+    const double to = events_.back();
+    std::copy_if(angles.begin(), angles.end(), std::back_inserter(events_),
+                 [&](double angle) { return from < angle && angle < to; });
     std::sort(events_.begin(), events_.end());
     const auto near = [](double a, double b) { return b - a < kLeastPiece; };
     events_.erase(std::unique(events_.begin(), events_.end(), near), events_.end());
@@ -332,8 +353,12 @@ void ProfileRings::add_cuts(double cosine, double sine) {
         const double swing = side.across * sine;
         if (std::abs(height) < swing) {
             const double half = std::acos(height / swing);
-            cuts_.push_back(side.azimuth + half);
-            cuts_.push_back(side.azimuth - half);
+            for (const double cut : {side.azimuth + half, side.azimuth - half}) {
+                // Sides of a polygon go on beyond its corners.
+                if (corner_sides_ == 0 || holds({sine * std::cos(cut), sine * std::sin(cut), cosine})) {
+                    cuts_.push_back(cut);
+                }
+            }
         }
     }
     if (disk_) {
@@ -343,6 +368,29 @@ void ProfileRings::add_cuts(double cosine, double sine) {
         cut -= 2 * pi * std::floor(cut / (2 * pi));
     }
     std::sort(cuts_.begin(), cuts_.end());
+}
+
+void ProfileRings::split_arcs(double sine) {
+    whole_arcs_.swap(arcs_);
+    arcs_.clear();
+    for (const Arc& arc : whole_arcs_) {
+        cuts_.clear();
+        for (const double end : kFocusEnds) {
+            const double away = end * focus_width_ / sine;
+            const double turned = focus_azimuth_ + away - arc.begin;
+            const double length = turned - 2 * pi * std::floor(turned / (2 * pi));
+            if (std::abs(away) < pi && length < arc.length) {
+                cuts_.push_back(length);
+            }
+        }
+        cuts_.push_back(arc.length);
+        std::sort(cuts_.begin(), cuts_.end());
+        double done = 0;
+        for (const double cut : cuts_) {
+            arcs_.push_back({arc.begin + done, cut - done});
+            done = cut;
+        }
+    }
 }
 
 void ProfileRings::find_arcs(double cosine, double sine) {
@@ -358,7 +406,6 @@ void ProfileRings::find_arcs(double cosine, double sine) {
                 arcs_.push_back({2 * pi / 3 * i, 2 * pi / 3});
             }
         }
-        return;
     }
     for (std::size_t i = 0; i < cuts_.size(); ++i) {
         const double end = i + 1 < cuts_.size() ? cuts_[i + 1] : cuts_[0] + 2 * pi;
@@ -366,6 +413,9 @@ void ProfileRings::find_arcs(double cosine, double sine) {
         if (arc.length > 0 && is_lit(arc.begin + arc.length / 2)) {
             arcs_.push_back(arc);
         }
+    }
+    if (focus_width_ > 0) {
+        split_arcs(sine);
     }
 }
 

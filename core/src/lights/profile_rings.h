@@ -29,6 +29,10 @@ class ProfileRings {
     /// Of a rectangle or disk under a spread, the part that shines on the hit.
     bool reset(const SeenLight& seen);
 
+    /// Pieces of the rule end on both sides of a unit direction of the shading frame at so many radians, and at
+    /// multiples that grow geometrically: for a lobe that is narrower than the light. Until the next reset().
+    void focus(const Vec3d& direction, double width);
+
     /// visit(direction, weight, factor): unit directions in the shading frame above the horizon; Σ weight ·
     /// g(direction) is the integral of g over the light. factor: factor_of(direction), asked once for each circle.
     /// `points` along each piece of a circle and across each piece between kinks.
@@ -68,6 +72,7 @@ class ProfileRings {
     void add_disk(const Ellipse<double>& ellipse);
     bool holds(const Vec3d& direction) const;
     void find_events(std::span<const double> kinks);
+    void add_between(std::span<const double> angles);
     void add_event(const Vec3d& direction);
     void add_touching(const Side& side);
     void add_crossings(const Side& a, const Side& b);
@@ -75,13 +80,16 @@ class ProfileRings {
     /// What of the circle at this angle to the axis lies on the light.
     void find_arcs(double cosine, double sine);
     void add_cuts(double cosine, double sine);
+    void split_arcs(double sine);
 
     glm::dmat3 to_shading_{1};
     std::vector<Side> sides_;
+    std::size_t corner_sides_ = 0;  // of these, the first ones are a polygon's
     std::optional<Disk> disk_;
     std::vector<double> events_;  // angles to the axis, rising
     std::vector<double> cuts_;    // azimuths at which the circle of find_arcs crosses the light's outline
-    std::vector<Arc> arcs_;
+    std::vector<Arc> arcs_, whole_arcs_;
+    double focus_azimuth_ = 0, focus_width_ = 0;  // 0: none
 };
 
 template <class Factor, class Visit>
