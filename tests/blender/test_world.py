@@ -48,6 +48,17 @@ def test_world_and_lamp(studio: Any) -> None:
     studio.compare(error=2e-3)
 
 
+def test_the_world_of_a_view_layer(studio: Any) -> None:
+    layer = bpy.context.view_layer
+    if not hasattr(layer, "world_override"):
+        pytest.skip("view layers of this version of Blender have no world")
+    balls(studio)
+    studio.world((0.1, 0.6, 0.2), 1.5)
+    layer.world_override = studio.scene.world
+    studio.world((0.9, 0.3, 0.2))
+    studio.compare(error=1e-3)
+
+
 # --- pictures
 
 WORLDS = Path(bpy.utils.system_resource("DATAFILES")) / "studiolights" / "world"

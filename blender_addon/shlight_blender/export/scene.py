@@ -71,7 +71,7 @@ def export_scene(
     scene = shlight.Scene()
     set_camera(scene, camera.evaluated_get(depsgraph), depsgraph, frame, blender_scene.render, report)
     report_unsupported_settings(blender_scene, depsgraph.view_layer_eval, report)
-    lit = add_world(scene, blender_scene, report, waiting)
+    lit = add_world(scene, blender_scene, depsgraph.view_layer_eval, report, waiting)
     lit |= _add_objects(scene, depsgraph, report)
     return ExportedScene(scene, report, "" if lit else _report_darkness(blender_scene, report))
 

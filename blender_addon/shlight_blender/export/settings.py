@@ -61,7 +61,12 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
 
 
 def _passes_not_written(view_layer: Any) -> list[str]:
-    flags = sorted(name for name in dir(view_layer) if name.startswith("use_pass_") and getattr(view_layer, name))
+    flags = sorted(
+        name
+        for owner in (view_layer, getattr(view_layer, "cycles", None))
+        for name in dir(owner)
+        if name.startswith("use_pass_") and getattr(owner, name)
+    )
     passes = [flag.removeprefix("use_pass_") for flag in flags if flag not in PASSES_WRITTEN | PASS_OPTIONS]
     passes += [f"AOV '{aov.name}'" for aov in view_layer.aovs]
     return passes + [f"light group '{group.name}'" for group in view_layer.lightgroups]

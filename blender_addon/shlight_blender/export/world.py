@@ -31,13 +31,16 @@ class World:
     suns: list[Sun] = field(default_factory=list)
 
 
-def add_world(scene: shlight.Scene, blender_scene: Any, report: ExportReport, waiting: Waiting | None = None) -> bool:
-    """Sets the environment of `scene`; True if it gives light.
+def add_world(
+    scene: shlight.Scene, blender_scene: Any, view_layer: Any, report: ExportReport, waiting: Waiting | None = None
+) -> bool:
+    """Sets the environment of `scene`, which is the scene's unless the view layer has another; True if it gives light.
 
     Blender's film is opaque: without a world the camera sees black behind the scene, unless the film is transparent.
     """
     visible = not blender_scene.render.film_transparent
-    read = _black() if blender_scene.world is None else _read_world(blender_scene, report, waiting)
+    world = getattr(view_layer, "world_override", None) or blender_scene.world
+    read = _black() if world is None else _read_world(world, blender_scene, report, waiting)
     scene.set_environment(read.radiance, to_world=read.to_world, visible=visible)
     for sun in read.suns:
         scene.add_sun_light(sun.direction, sun.angle, sun.irradiance, camera=visible)
@@ -48,8 +51,7 @@ def _black() -> World:
     return World(np.zeros(3))
 
 
-def _read_world(blender_scene: Any, report: ExportReport, waiting: Waiting | None) -> World:
-    world = blender_scene.world
+def _read_world(world: Any, blender_scene: Any, report: ExportReport, waiting: Waiting | None) -> World:
     place = f"World '{world.name}'"
     _report_visibility(world, place, report)
     if not uses_nodes(world):
