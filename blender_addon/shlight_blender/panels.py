@@ -143,16 +143,21 @@ class SHLIGHT_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
             column.prop(shown, f"visible_{kind}", text=kind.title())
 
 
-class SHLIGHT_LIGHT_PT_light(EnginePanel, bpy.types.Panel):
-    """Colour, power and shape of a lamp."""
+class LampPanel(EnginePanel):
+    """What panels of lamps have in common."""
 
-    bl_label = "Light"
     bl_context = "data"
 
     @classmethod
     def poll(cls, context: Any) -> bool:
         """Shown for lamps."""
         return bool(context.light) and super().poll(context)
+
+
+class SHLIGHT_LIGHT_PT_light(LampPanel, bpy.types.Panel):
+    """Colour, power and shape of a lamp."""
+
+    bl_label = "Light"
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
@@ -173,16 +178,10 @@ class SHLIGHT_LIGHT_PT_light(EnginePanel, bpy.types.Panel):
             layout.prop(*switch, text="Cast Shadow")
 
 
-class SHLIGHT_LIGHT_PT_nodes(EnginePanel, bpy.types.Panel):
+class SHLIGHT_LIGHT_PT_nodes(LampPanel, bpy.types.Panel):
     """The shader of a lamp."""
 
     bl_label = "Nodes"
-    bl_context = "data"
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        """Shown for lamps."""
-        return bool(context.light) and super().poll(context)
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
