@@ -172,3 +172,21 @@ def test_hidden_lights_give_zeros() -> None:
     assert not shlight.cap_coefficients([0.1, 0, -1], 0.5, 8).any()
     assert not shlight.polygon_coefficients([[1, 0, -1], [0, 1, -1], [-1, -1, -1]], 8).any()
     assert not shlight.disk_coefficients([3, 0, 1], [1, 0, 0], [0, 0, 1], 5).any()  # edge-on
+
+
+def test_triangles_with_a_vertex_far_away() -> None:
+    triangle = np.array([[-1.4e12, 2.4e13, -0.09], [1.0, 1.6335, 0.2551], [-0.0926, -0.8833, -0.904]], np.float32)
+    expected = shlight.polygon_coefficients(triangle.astype(np.float64), 4, dtype=np.float64)
+    np.testing.assert_allclose(shlight.polygon_coefficients(triangle, 4), expected, rtol=0, atol=1e-7)
+
+
+def test_solid_angles_are_not_negative() -> None:
+    """Rounding to floats takes the vertices off the plane of the polygon, which all but holds the shading point."""
+    rng = np.random.default_rng(4)
+    u, v = rng.normal(size=(2, 2000, 1, 3))
+    angles = np.linspace(0, 2 * np.pi, 8, endpoint=False)[:, None]
+    tilt = 10 ** rng.uniform(-9, -5, (2000, 1, 1)) * rng.normal(size=(2000, 1, 3))
+    polygons = (3 * u + u * np.cos(angles) + v * np.sin(angles) + tilt).astype(np.float32)
+    solid = shlight.polygon_coefficients(polygons, 1)
+    assert (solid >= 0).all()
+    assert (solid > 0).any()

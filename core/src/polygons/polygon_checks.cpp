@@ -135,7 +135,13 @@ bool is_surely_sound(std::span<const Vec3d> v, double epsilon) {
            !may_be_edge_on(flatness.normal, v, epsilon);
 }
 
-/// By a power of two, so that the largest coordinate is 1 … 2; false if all are 0.
+/// A vertex in a unit that is a power of two, so that its largest coordinate is 1 … 2.
+Vec3d in_unit(const Vec3d& v, double largest) {
+    const int exponent = -std::ilogb(largest);
+    return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
+}
+
+/// The unit of the largest coordinate; false if all are 0.
 bool take_own_unit(std::span<Vec3d> vertices) {
     double largest = 0;
     for (const Vec3d& v : vertices) {
@@ -145,14 +151,13 @@ bool take_own_unit(std::span<Vec3d> vertices) {
     if (largest == 0) {
         return false;
     }
-    const int exponent = -std::ilogb(largest);
     for (Vec3d& v : vertices) {
-        v = {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
+        v = in_unit(v, largest);
     }
     return true;
 }
 
-/// Likewise, and without light where rounding decides what is seen.
+/// Checks a polygon in its own unit, and leaves it without light where rounding decides what is seen.
 void prepare_polygon(std::span<Vec3d> vertices, double epsilon) {
     if (!take_own_unit(vertices)) {
         return;
@@ -182,6 +187,12 @@ void prepare_polygon(std::span<Vec3d> vertices, double epsilon) {
         }
         if (turns.largest - turns.least > 3) {
             std::fill(vertices.begin(), vertices.end(), vertices[0]);
+        }
+    }
+    if (vertices.size() == 3) {
+        // Only directions count, and floats could not hold the products of a far vertex and of near ones.
+        for (Vec3d& v : vertices) {
+            v = largest_component(v) > 0 ? in_unit(v, largest_component(v)) : v;
         }
     }
 }

@@ -135,6 +135,10 @@ void polygon_by_cubature(std::span<const Vec3d> vertices, int order, bool clip, 
         volume += triangle.triple;
         clip ? sum.add_above_horizon(triangle) : sum.add(triangle);
     }
+    // Vertices that are rounded off their plane may leave less than nothing of a thin polygon.
+    if ((volume < 0) != (total[0] < 0)) {
+        std::fill_n(total.begin(), count, 0.0);
+    }
     std::transform(total.begin(), total.begin() + count, coefficients,
                    [volume](double c) { return static_cast<T>(volume < 0 ? -c : c); });
 }

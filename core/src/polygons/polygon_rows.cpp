@@ -59,7 +59,8 @@ class PolygonRows : public PolygonLists<PolygonRows<T>, T, false> {
                               std::size_t count) {
         const Lanes<R> d;
         std::array<LaneValues<R>, 4> values;
-        put<R>(values[0], hn::Mul(all(d, kBand0), solid_angle));
+        // Of thin polygons rounding may leave less than nothing.
+        put<R>(values[0], hn::Mul(all(d, kBand0), hn::Max(solid_angle, hn::Zero(d))));
         put<R>(values[1], hn::Mul(all(d, kBand1), moment.y));
         put<R>(values[2], hn::Mul(all(d, kBand1), moment.z));
         put<R>(values[3], hn::Mul(all(d, kBand1), moment.x));
