@@ -20,6 +20,7 @@ ORDER = [
     "polygons",
     "disks",
     "lobes",
+    "shaders",
     "tracing",
     "emitters",
     "lights",

@@ -145,7 +145,6 @@ void Worker::render(std::size_t first, std::size_t count, std::span<float> image
         shadowed_.clear();
         pixel_of_ray_.clear();
         for (std::size_t hit = 0; hit < hits_.size(); ++hit) {
-            radiance_[pixel_of_hit_[hit]] += Vec3d(hits_.radiance[hit]);
             ++covered_[pixel_of_hit_[hit]];
             shade(hit);
         }
@@ -194,8 +193,10 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
             const SurfacePoint surface = p.scene.surface(ray_hits_[i], rays_[i].direction);
             const Vec3d direction = glm::normalize(Vec3d(rays_[i].direction));
             const double distance = glm::dot(surface.position - Vec3d(rays_[i].origin), direction);
-            hits_.add(surface, {}, -direction,
-                      p.scene.materials()[surface.material].emission + p.scene.lamps_along(rays_[i], distance), 0);
+            radiance_[pixel] += Vec3d(p.scene.materials()[surface.material].emission);
+            radiance_[pixel] += Vec3d(p.scene.lamps_along(rays_[i], distance));
+            const ShadingFrame frame = shading_frame(surface.position, surface.shading_normal, -direction);
+            hits_.add(surface, frame, view_cosine(frame, -direction), {}, 0);
             pixel_of_hit_.push_back(pixel);
             continue;
         }

@@ -3,14 +3,40 @@
 // Triangle meshes with materials, placed once or many times.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "shlight/bsdf.h"
 #include "shlight/ray_tracer.h"
+#include "shlight/surface_shader.h"
 #include "shlight/types.h"
 
 namespace shlight {
+
+/// Numbers on a mesh that shader programs read, linear over each triangle.
+struct MeshAttribute {
+    std::uint32_t components;   ///< 1 … 4
+    std::vector<float> values;  ///< `components` for each vertex, or for each triangle, or for each triangle's corner
+};
+
+/// A material as the renderer meets it.
+struct Material {
+    Bsdf bsdf;
+    Rgb emission{0};                              ///< radiance of both sides
+    std::shared_ptr<const SurfaceShader> shader;  ///< takes the place of both; null: they are constant
+    std::vector<std::uint32_t> attributes;        ///< as of MeshShader
+};
+
+/// A material whose numbers vary.
+struct MeshShader {
+    std::shared_ptr<const SurfaceShader> shader;  ///< null: the material's Bsdf and emission
+    /// Which of the mesh's attributes the program's attribute of this index is; kNoAttribute: none.
+    std::vector<std::uint32_t> attributes;
+
+    static constexpr std::uint32_t kNoAttribute = 0xFFFFFFFFU;
+};
 
 /// Surfaces are two-sided: the normal is turned to the viewer.
 struct Mesh {
@@ -20,15 +46,23 @@ struct Mesh {
     std::vector<Vec3f> vertex_normals, corner_normals;
     std::vector<Bsdf> bsdfs = {Bsdf()};                    ///< one per material, or one for all
     std::vector<Rgb> emission = {Rgb(0)};                  ///< radiance of both sides: one per material, or one for all
+    /// One per material, or none. Emission of theirs is seen by the camera; what lights the scene is `emission`.
+    std::vector<MeshShader> shaders;
+    std::vector<MeshAttribute> attributes;
     std::vector<std::uint32_t> material_indices;           ///< one per triangle, or none (all 0)
     std::vector<glm::dmat4> transforms = {glm::dmat4(1)};  ///< object to world, one per instance
+    std::vector<std::vector<float>> object_values;         ///< one per instance, or none: see ShaderSource
 
-    std::size_t material_count() const { return bsdfs.size() > emission.size() ? bsdfs.size() : emission.size(); }
+    std::size_t material_count() const { return std::max({bsdfs.size(), emission.size(), shaders.size()}); }
     std::uint32_t material_index(std::size_t triangle) const {
         return material_indices.empty() ? 0 : material_indices[triangle];
     }
     const Bsdf& bsdf(std::size_t material) const { return bsdfs[bsdfs.size() == 1 ? 0 : material]; }
     const Rgb& emitted(std::size_t material) const { return emission[emission.size() == 1 ? 0 : material]; }
+    Material material(std::size_t index) const {
+        const MeshShader shader = shaders.empty() ? MeshShader() : shaders[index];
+        return {bsdf(index), emitted(index), shader.shader, shader.attributes};
+    }
 };
 
 /// Throws std::invalid_argument naming the member that is wrong: sizes that do not fit, an index out of range,

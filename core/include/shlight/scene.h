@@ -5,6 +5,7 @@
 // A Scene collects; compile() makes of it an immutable CompiledScene that any number of threads may read.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -20,10 +21,19 @@
 
 namespace shlight {
 
-/// A material as the renderer meets it.
-struct Material {
-    Bsdf bsdf;
-    Rgb emission;  ///< radiance of both sides
+/// A place on a surface where a shader program runs.
+struct SurfacePlace {
+    RayHit hit;
+    Vec3d position;
+    Vec3d towards_viewer;  ///< unit
+};
+
+/// The same, and the surface's neighbours in the picture (see shader_program.h).
+struct ShadedPlace {
+    std::array<SurfacePlace, 3> at;  ///< the hit, to the right, below
+    double ray_length;
+    bool shadow_ray;
+    std::uint32_t transparent_depth;
 };
 
 class CompiledScene {
@@ -46,6 +56,12 @@ class CompiledScene {
     const RayTracer& rays() const;
     /// Precondition: not hit.missed(); direction is the ray's.
     SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
+    /// Where another ray meets the plane of a surface, which may be outside of its triangle; the ray is taken to be
+    /// longer than the hit's by no more than that one's length. Precondition: as of surface().
+    SurfacePlace neighbour(const SurfacePlace& place, const Vec3d& normal, double length, const Ray& ray) const;
+    /// What a material's program reads. place: 0 at the hit, 1 and 2 at its neighbours.
+    void read(const ShaderInput& input, const Material& material, int place, std::span<const ShadedPlace> places,
+              std::span<float> out) const;
 
   private:
     friend class Scene;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "shlight/sampling.h"
@@ -50,9 +51,9 @@ Vec3d PixelSums::variance() const {
     return glm::max(squares / count - mean * mean - linear, Vec3d(0));
 }
 
-void PixelSums::add(const Rgb& ray_radiance, const Rgb& noise, const glm::dvec2& from_center, bool is_opaque) {
+void PixelSums::add(const Rgb& ray_radiance, const Rgb& noise, const glm::dvec2& from_center, float ray_opacity) {
     const Vec3d shown = glm::clamp(Vec3d(ray_radiance), -kBrightestRay, kBrightestRay);
-    opaque += is_opaque ? 1 : 0;
+    opacity += double{ray_opacity};
     radiance += shown;
     squares += shown * shown - glm::min(Vec3d(noise), kBrightestRay * kBrightestRay);
     along_x += from_center.x * shown;
@@ -72,7 +73,10 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
       extended(pointers_to(lights)),
       deltas(pointers_to(s.lights().subspan(s.extended_light_count()))) {
     for (const Material& material : s.materials()) {
-        materials.emplace_back(material.bsdf.lobes(), r.order, r.tolerance);
+        materials.emplace_back(material.shader == nullptr ? material.bsdf.lobes() : lobes_of(*material.shader), r.order,
+                               r.tolerance);
+        takes_differences =
+            takes_differences || (material.shader != nullptr && material.shader->program.takes_differences());
         lobe_stride = std::max(lobe_stride, materials.back().lobes().size());
     }
     far = FarLights(s.lights(), materials, r.order);
@@ -88,6 +92,7 @@ std::uint32_t Picture::batch_samples() const {
 
 PixelBatch::PixelBatch(const Picture& picture)
     : picture_(&picture),
+      surfaces_(*picture.scene, picture.materials, static_cast<std::uint32_t>(picture.settings.transparent_bounces)),
       hits_(picture.lobe_stride),
       far_light_sum_(picture.far, picture.materials, picture.settings.tolerance),
       shadowed_far_lights_(picture.scene->rays(), picture.materials, picture.scene->lights()),
@@ -111,7 +116,6 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
 double PixelBatch::reflected(std::span<const Pixel> pixels, std::uint32_t shadow_rays) {
     const SampleRange first = {0, 1, shadow_rays};
     trace_camera_rays(pixels, first);
-    std::fill(hits_.radiance.begin(), hits_.radiance.end(), Rgb(0));
     add_reflected(pixels, first);
     double sum = 0;
     for (const Rgb& radiance : hits_.radiance) {
@@ -140,52 +144,31 @@ RenderReport PixelBatch::report() const {
     return report;
 }
 
+Ray PixelBatch::camera_ray(double column, double row) const {
+    const Window& window = picture_->window;
+    return picture_->camera->ray(window.left + column / picture_->width * (window.right - window.left),
+                                 window.top + row / picture_->height * (window.bottom - window.top));
+}
+
 void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples) {
-    const Picture& p = *picture_;
     rays_.clear();
+    // The rays of a pixel share its area.
+    const double step = 1 / std::sqrt(samples.first + samples.count);
     for (const Pixel& pixel : pixels) {
-        for (std::uint32_t i = 0; i < samples.count; ++i) {
-            const double x = (pixel.column + p.pixel_points[samples.first + i].x) / p.width;
-            const double y = (pixel.row + p.pixel_points[samples.first + i].y) / p.height;
-            rays_.push_back(p.camera->ray(p.window.left + x * (p.window.right - p.window.left),
-                                          p.window.top + y * (p.window.bottom - p.window.top)));
-        }
-    }
-    ray_hits_.resize(rays_.size());
-    p.scene->rays().intersect(rays_, ray_hits_);
-    hits_.clear();
-    misses_.clear();
-    for (std::size_t first = 0; first < rays_.size(); first += samples.count) {
-        for (std::uint32_t i = 0; i < samples.count; ++i) {
-            if (ray_hits_[first + i].missed()) {
-                add_miss(rays_[first + i], static_cast<std::uint32_t>(first / samples.count), samples.first + i);
-            } else {
-                add_hit(rays_[first + i], ray_hits_[first + i], samples.first + i);
+        for (std::uint32_t i = samples.first; i < samples.first + samples.count; ++i) {
+            const double column = pixel.column + picture_->pixel_points[i].x;
+            const double row = pixel.row + picture_->pixel_points[i].y;
+            CameraRay& ray = rays_.emplace_back();
+            ray.ray = camera_ray(column, row);
+            ray.sample = i;
+            if (picture_->takes_differences) {
+                ray.right = camera_ray(column + step, row);
+                ray.below = camera_ray(column, row + step);
             }
         }
-        hits_.end_pixel();
     }
+    surfaces_.trace(rays_, samples.count, hits_, ray_light_);
     report_.hits += hits_.size();
-}
-
-void PixelBatch::add_hit(const Ray& ray, const RayHit& hit, std::uint32_t sample) {
-    const CompiledScene& scene = *picture_->scene;
-    const SurfacePoint surface = scene.surface(hit, ray.direction);
-    const Vec3d direction = glm::normalize(Vec3d(ray.direction));
-    const double distance = glm::dot(surface.position - Vec3d(ray.origin), direction);
-    hits_.add(surface, picture_->materials[surface.material].lobes(), -direction,
-              scene.materials()[surface.material].emission + scene.lamps_along(ray, distance), sample);
-}
-
-void PixelBatch::add_miss(const Ray& ray, std::uint32_t pixel, std::uint32_t sample) {
-    const Environment* background = picture_->scene->background();
-    Rgb radiance = picture_->scene->lamps_along(ray, std::nullopt);
-    if (background != nullptr) {
-        radiance += background->radiance(glm::normalize(Vec3d(ray.direction)));
-    }
-    if (background != nullptr || radiance != Rgb(0)) {
-        misses_.push_back({pixel, sample, radiance});
-    }
 }
 
 void PixelBatch::sort_lights() {
@@ -276,15 +259,17 @@ void PixelBatch::seed_pixels(std::span<const Pixel> pixels, std::uint32_t light)
 
 void PixelBatch::add_up(const SampleRange& samples, std::span<PixelSums> sums) const {
     const auto from_center = [&](std::uint32_t sample) { return picture_->pixel_points[sample] - 0.5; };
-    for (std::size_t pixel = 0; pixel < hits_.pixel_count(); ++pixel) {
-        PixelSums& sum = sums[pixel];
-        sum.rays += samples.count;
-        for (std::size_t hit = hits_.pixel_begin[pixel]; hit < hits_.pixel_begin[pixel + 1]; ++hit) {
-            sum.add(hits_.radiance[hit], hits_.noise[hit], from_center(hits_.sample[hit]));
+    std::size_t hit = 0;
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+        Rgb radiance = ray_light_[i].radiance;
+        Rgb noise(0);
+        const std::size_t pixel = i / samples.count;
+        for (; hit < hits_.pixel_begin[pixel + 1] && hits_.sample[hit] == rays_[i].sample; ++hit) {
+            radiance += hits_.radiance[hit];
+            noise += hits_.noise[hit];
         }
-    }
-    for (const Miss& miss : misses_) {
-        sums[miss.pixel].add(miss.radiance, Rgb(0), from_center(miss.sample), picture_->scene->background() != nullptr);
+        ++sums[pixel].rays;
+        sums[pixel].add(radiance, noise, from_center(rays_[i].sample), ray_light_[i].opacity);
     }
 }
 

@@ -11,6 +11,7 @@
 #include "environment/environment_shading.h"
 #include "lights/delta_lights.h"
 #include "lobes/material_lobes.h"
+#include "render/camera_surfaces.h"
 #include "shading/direct_light.h"
 #include "shading/far_light_sum.h"
 #include "shading/far_lights.h"
@@ -34,7 +35,7 @@ struct Pixel {
 /// background, and black but for lamps.
 struct PixelSums {
     std::uint32_t rays = 0;
-    std::uint32_t opaque = 0;  ///< rays that met a surface or the background
+    double opacity = 0;  ///< of rays that met a surface or the background 1, if these let nothing through
     Vec3d radiance{0};
     Vec3d squares{0};              ///< of radiance, without the part that is noise of shadow rays
     Vec3d along_x{0}, along_y{0};  ///< of radiance times the ray's distance from the pixel's centre
@@ -43,7 +44,7 @@ struct PixelSums {
     /// out.
     Vec3d variance() const;
     /// The part of one ray; from_center: its distance from the pixel's centre.
-    void add(const Rgb& ray_radiance, const Rgb& noise, const glm::dvec2& from_center, bool is_opaque = true);
+    void add(const Rgb& ray_radiance, const Rgb& noise, const glm::dvec2& from_center, float ray_opacity);
 };
 
 /// Everything that the batches of one picture share and only read.
@@ -62,6 +63,7 @@ struct Picture {
     std::vector<glm::dvec2> pixel_points;  ///< where each camera ray of a pixel goes through its unit square
     std::vector<MaterialLobes> materials;
     std::size_t lobe_stride = 1;
+    bool takes_differences = false;      ///< whether any material looks at neighbouring camera rays
     std::span<const Light> lights;       ///< with extent
     std::vector<const Light*> extended;  ///< the same
     DeltaLights deltas;
@@ -83,8 +85,6 @@ class PixelBatch {
 
   private:
     void trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples);
-    void add_hit(const Ray& ray, const RayHit& hit, std::uint32_t sample);
-    void add_miss(const Ray& ray, std::uint32_t pixel, std::uint32_t sample);
     /// To the radiance of the hits.
     void add_reflected(std::span<const Pixel> pixels, const SampleRange& samples);
     /// Sums the dimmest lights up; the others are shaded one by one.
@@ -96,19 +96,15 @@ class PixelBatch {
     /// One for each pixel and light.
     void seed_pixels(std::span<const Pixel> pixels, std::uint32_t light);
     void add_up(const SampleRange& samples, std::span<PixelSums> sums) const;
-
-    /// A camera ray that met no surface, but the background or a lamp.
-    struct Miss {
-        std::uint32_t pixel, sample;
-        Rgb radiance;
-    };
+    /// Through a point of the window, in pixels.
+    Ray camera_ray(double column, double row) const;
 
     const Picture* picture_;
     RenderReport report_;
-    std::vector<Ray> rays_;
-    std::vector<RayHit> ray_hits_;
+    std::vector<CameraRay> rays_;
+    std::vector<RayLight> ray_light_;  // one for each
+    CameraSurfaces surfaces_;
     Hits hits_;
-    std::vector<Miss> misses_;  // in the order of pixels
     ShadingPoints points_;
     FarLightSum far_light_sum_;
     std::vector<const Light*> lights_;      // with extent, that are not summed up

@@ -39,7 +39,7 @@ void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std
     const double before = samples(state.level);
     const double all = samples(level);
     const Vec3d radiance = before > 0 ? (before * color(image, i) + sums.radiance) / all : sums.radiance / all;
-    const double alpha = before > 0 ? (before * image[4 * i + 3] + sums.opaque) / all : sums.opaque / all;
+    const double alpha = before > 0 ? (before * image[4 * i + 3] + sums.opacity) / all : sums.opacity / all;
     for (int channel = 0; channel < 3; ++channel) {
         image[4 * i + static_cast<std::size_t>(channel)] = static_cast<float>(radiance[channel]);
     }

@@ -252,6 +252,7 @@ void check_render(const RenderSettings& settings, int width, int height) {
     check_range("pixel_samples", settings.pixel_samples, 1, kMostPixelSamples);
     check_range("shadow_rays", settings.shadow_rays, 0,
                 std::min<std::int64_t>(kMostPixelSamples, kMostRaysPerPixel / settings.pixel_samples));
+    check_range("transparent_bounces", settings.transparent_bounces, 0, 1024);
     check_range("threads", settings.threads, 0, std::numeric_limits<int>::max());
 }
 

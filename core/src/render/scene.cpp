@@ -2,18 +2,17 @@
 #include "shlight/scene.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include <tbb/task_arena.h>
 
-#include "base/ray_rounding.h"
 #include "base/scene_range.h"
 #include "base/transforms.h"
 #include "emitters/emitter_levels.h"
 #include "emitters/face_radiance.h"
 #include "render/camera_visible_lamps.h"
+#include "render/placed_meshes.h"
 #include "shlight/mesh_light.h"
 #include "shlight/parallel.h"
 
@@ -24,46 +23,6 @@ namespace {
 constexpr std::size_t kMostSingleFaces = 16;
 /// Of the coarsest level of detail: below, outlines lose their shape.
 constexpr std::size_t kLeastLevelFaces = 64;
-
-/// A mesh as it is traced. A mesh placed once has its vertices moved to the world; others are instanced.
-struct TracedMesh {
-    std::shared_ptr<const Mesh> mesh;
-    std::vector<Vec3f> world_vertices;  // empty: instanced
-    std::uint32_t first_material;
-
-    std::span<const Vec3f> vertices() const {
-        return world_vertices.empty() ? std::span<const Vec3f>(mesh->vertices) : world_vertices;
-    }
-};
-
-struct Placement {
-    std::uint32_t mesh;
-    bool baked;  // vertices are in the world frame
-    glm::dmat4 to_world;
-    glm::dmat3 normal_to_world;  // inverse transpose
-    double condition;            // how much a ray's rounding grows on its way through the instance's frame
-    double origin;               // largest component of the translation
-};
-
-Placement place(std::uint32_t mesh, const glm::dmat4& to_world, bool baked) {
-    const glm::dmat3 linear(to_world);
-    const glm::dmat3 inverse = glm::inverse(linear);
-    return {mesh,
-            baked,
-            to_world,
-            glm::transpose(inverse),
-            baked ? 1.0 : inf_norm(linear) * inf_norm(inverse),
-            baked ? 0.0 : largest_component(Vec3d(to_world[3]))};
-}
-
-std::vector<Vec3f> moved(const std::vector<Vec3f>& vertices, const glm::dmat4& to_world) {
-    std::vector<Vec3f> result;
-    result.reserve(vertices.size());
-    for (const Vec3f& v : vertices) {
-        result.emplace_back(transform_point(to_world, Vec3d(v)));
-    }
-    return result;
-}
 
 /// The largest coordinate of a lamp that has a place, within its size.
 struct Reach {
@@ -77,11 +36,6 @@ struct Reach {
     }
 };
 
-Vec3d normalized_or(const Vec3d& v, const Vec3d& fallback) {
-    const double length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : fallback;
-}
-
 }  // namespace
 
 class CompiledScene::Impl {
@@ -90,18 +44,12 @@ class CompiledScene::Impl {
         : lights(std::move(lamps)), environment(std::move(all_around)), has_background(environment_visible) {}
 
     void add(const std::shared_ptr<const Mesh>& mesh) {
-        const auto index = static_cast<std::uint32_t>(meshes.size());
-        const bool baked = mesh->transforms.size() == 1;
-        meshes.push_back({mesh, baked ? moved(mesh->vertices, mesh->transforms[0]) : std::vector<Vec3f>(),
-                          static_cast<std::uint32_t>(materials.size())});
+        const auto first_placement = static_cast<std::uint32_t>(placed.placements().size());
+        const TracedMesh& traced = placed.add(mesh, static_cast<std::uint32_t>(materials.size()));
         for (std::size_t i = 0; i < mesh->material_count(); ++i) {
-            materials.push_back({mesh->bsdf(i), mesh->emitted(i)});
+            materials.push_back(mesh->material(i));
         }
-        const auto first_placement = static_cast<std::uint32_t>(placements.size());
-        for (const glm::dmat4& to_world : mesh->transforms) {
-            placements.push_back(place(index, to_world, baked));
-        }
-        add_emissive_faces(mesh, first_placement);
+        add_emissive_faces(traced, first_placement);
     }
 
     void build() {
@@ -109,21 +57,18 @@ class CompiledScene::Impl {
             std::stable_partition(lights.begin(), lights.end(), [](const Light& light) { return !is_delta(light); });
         extended_light_count = static_cast<std::size_t>(first_delta - lights.begin());
         std::vector<TracedGeometry> geometries;
-        for (const TracedMesh& traced : meshes) {
+        for (const TracedMesh& traced : placed.meshes()) {
             geometries.push_back({traced.vertices(), traced.mesh->triangles});
         }
         std::vector<TracedInstance> instances;
-        for (const Placement& placement : placements) {
+        for (const Placement& placement : placed.placements()) {
             instances.push_back({placement.mesh, placement.baked, placement.to_world});
         }
         rays = std::make_unique<const RayTracer>(geometries, instances);
         seen_lamps = CameraVisibleLamps(lights);
     }
 
-    SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
-
-    std::vector<TracedMesh> meshes;
-    std::vector<Placement> placements;
+    PlacedMeshes placed;
     std::vector<Material> materials;
     std::vector<Light> lights;
     std::size_t extended_light_count = 0;
@@ -133,15 +78,15 @@ class CompiledScene::Impl {
     CameraVisibleLamps seen_lamps;
 
   private:
-    void add_emissive_faces(const std::shared_ptr<const Mesh>& mesh, std::uint32_t first_placement);
+    void add_emissive_faces(const TracedMesh& traced, std::uint32_t first_placement);
     void add_single_faces(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
                           std::span<const Rgb> radiance);
     void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
                         const std::vector<Rgb>& radiance);
 };
 
-void CompiledScene::Impl::add_emissive_faces(const std::shared_ptr<const Mesh>& mesh, std::uint32_t first_placement) {
-    const TracedMesh& traced = meshes.back();
+void CompiledScene::Impl::add_emissive_faces(const TracedMesh& traced, std::uint32_t first_placement) {
+    const std::shared_ptr<const Mesh>& mesh = traced.mesh;
     std::vector<Triangle> emissive;
     std::vector<Rgb> radiance;  // of each of them
     for (std::size_t i = 0; i < mesh->triangles.size(); ++i) {
@@ -198,51 +143,6 @@ void CompiledScene::Impl::add_mesh_light(MeshLight light, std::span<const Vec3d>
     lights.emplace_back(std::move(light));
 }
 
-SurfacePoint CompiledScene::Impl::surface(const RayHit& hit, const Vec3f& direction) const {
-    const Placement& placement = placements[hit.instance];
-    const TracedMesh& traced = meshes[placement.mesh];
-    const Mesh& mesh = *traced.mesh;
-    const Triangle& triangle = mesh.triangles[hit.triangle];
-    const std::array<double, 3> weights = {1.0 - hit.u - hit.v, hit.u, hit.v};
-    std::array<Vec3d, 3> corners{};
-    Vec3d position(0);
-    for (int i = 0; i < 3; ++i) {
-        const Vec3d local(traced.vertices()[triangle[i]]);
-        corners[static_cast<std::size_t>(i)] = placement.baked ? local : transform_point(placement.to_world, local);
-        position += weights[static_cast<std::size_t>(i)] * corners[static_cast<std::size_t>(i)];
-    }
-    // From the corners in double, and not along the ray, the point lies in the triangle's plane to double precision.
-    const Vec3d towards_viewer = -Vec3d(direction);
-    Vec3d geometric =
-        normalized_or(glm::cross(corners[1] - corners[0], corners[2] - corners[0]), glm::normalize(towards_viewer));
-    if (glm::dot(geometric, towards_viewer) < 0) {
-        geometric = -geometric;
-    }
-    Vec3d shading = geometric;
-    if (!mesh.vertex_normals.empty() || !mesh.corner_normals.empty()) {
-        Vec3d local(0);
-        for (int i = 0; i < 3; ++i) {
-            const Vec3f& normal =
-                mesh.corner_normals.empty()
-                    ? mesh.vertex_normals[triangle[i]]
-                    : mesh.corner_normals[3 * std::size_t{hit.triangle} + static_cast<std::size_t>(i)];
-            local += weights[static_cast<std::size_t>(i)] * Vec3d(normal);
-        }
-        shading = normalized_or(placement.normal_to_world * local, geometric);
-        // By side and not by winding: mirrored instances and faces wound the wrong way come out right.
-        if (glm::dot(shading, geometric) < 0) {
-            shading = -shading;
-        }
-    }
-    double extent = 0;
-    for (const Vec3d& corner : corners) {
-        extent = std::max(extent, largest_component(corner - position));
-    }
-    const double scale = placement.condition * (largest_component(position) + placement.origin) + extent;
-    return {position, geometric, shading, kRayRounding * scale,
-            traced.first_material + mesh.material_index(hit.triangle)};
-}
-
 CompiledScene::CompiledScene(std::unique_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 CompiledScene::~CompiledScene() = default;
 
@@ -269,7 +169,15 @@ const RayTracer& CompiledScene::rays() const {
 }
 
 SurfacePoint CompiledScene::surface(const RayHit& hit, const Vec3f& direction) const {
-    return impl_->surface(hit, direction);
+    return impl_->placed.surface(hit, direction);
+}
+SurfacePlace CompiledScene::neighbour(const SurfacePlace& place, const Vec3d& normal, double length,
+                                      const Ray& ray) const {
+    return impl_->placed.neighbour(place, normal, length, ray);
+}
+void CompiledScene::read(const ShaderInput& input, const Material& material, int place,
+                         std::span<const ShadedPlace> places, std::span<float> out) const {
+    impl_->placed.read(input, material.attributes, place, places, out);
 }
 
 void Scene::add_mesh(Mesh mesh) {

@@ -16,18 +16,17 @@ void Hits::clear() {
     pixel_begin.assign(1, 0);
 }
 
-void Hits::add(const SurfacePoint& surface, std::span<const Lobe> lobes, const Vec3d& towards_viewer,
-               const Rgb& emission, std::uint32_t sample_index) {
-    frame.push_back(shading_frame(surface.position, surface.shading_normal, towards_viewer));
-    cos_theta_o.push_back(view_cosine(frame.back(), towards_viewer));
+void Hits::add(const SurfacePoint& surface, const ShadingFrame& shading_frame, float view_cosine,
+               std::span<const Rgb> weights, std::uint32_t sample_index) {
+    frame.push_back(shading_frame);
+    cos_theta_o.push_back(view_cosine);
     shadow_origin.push_back(surface.position + surface.error * surface.geometric_normal);
     error.push_back(surface.error);
     material.push_back(surface.material);
-    for (std::size_t i = 0; i < lobe_stride; ++i) {
-        lobe_weight.push_back(i < lobes.size() ? lobes[i].scale(cos_theta_o.back()) : Rgb(0));
-    }
+    lobe_weight.insert(lobe_weight.end(), weights.begin(), weights.end());
+    lobe_weight.resize(size() * lobe_stride, Rgb(0));
     sample.push_back(sample_index);
-    radiance.push_back(emission);
+    radiance.emplace_back(0);
     noise.emplace_back(0);
 }
 

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "base/shading_frame.h"
-#include "shlight/bsdf.h"
 #include "shlight/surface_point.h"
 #include "shlight/types.h"
 
 namespace shlight {
 
-/// Hits in the order of pixels, and of samples within each.
+/// Hits in the order of pixels, and of samples within each. A camera ray has several where it goes on through a
+/// transparent surface, or where lobes of a surface have normals of their own.
 struct Hits {
     /// stride: lobes of any material, at most.
     explicit Hits(std::size_t stride) : lobe_stride(stride) {}
@@ -30,7 +30,7 @@ struct Hits {
     /// material does not have.
     std::vector<Rgb> lobe_weight;
     std::vector<std::uint32_t> sample;           ///< number of the camera ray within its pixel
-    std::vector<Rgb> radiance;                   ///< towards the camera, summed up
+    std::vector<Rgb> radiance;                   ///< reflected to the camera, summed up
     std::vector<Rgb> noise;                      ///< the part of its variance that comes from shadow rays
     std::vector<std::size_t> pixel_begin = {0};  ///< pixel p has the hits pixel_begin[p] … pixel_begin[p + 1] - 1
 
@@ -43,9 +43,9 @@ struct Hits {
     }
     std::size_t pixel_count() const { return pixel_begin.size() - 1; }
     void clear();
-    /// lobes: of the material. Their weights, which later steps only read, are written here.
-    void add(const SurfacePoint& surface, std::span<const Lobe> lobes, const Vec3d& towards_viewer, const Rgb& emission,
-             std::uint32_t sample_index);
+    /// weights: of the material's lobes.
+    void add(const SurfacePoint& surface, const ShadingFrame& shading_frame, float view_cosine,
+             std::span<const Rgb> weights, std::uint32_t sample_index);
     /// The hits added since the last call are those of one pixel.
     void end_pixel() { pixel_begin.push_back(size()); }
 };

@@ -23,6 +23,33 @@ void check_per_material(const char* name, std::size_t size, std::size_t material
     }
 }
 
+void check_attributes(const Mesh& mesh) {
+    for (const MeshAttribute& attribute : mesh.attributes) {
+        if (attribute.components < 1 || attribute.components > 4) {
+            reject("attributes must have 1 … 4 components");
+        }
+        const std::size_t count = attribute.values.size() / attribute.components;
+        if (count * attribute.components != attribute.values.size() ||
+            (count != mesh.vertices.size() && count != mesh.triangles.size() && count != 3 * mesh.triangles.size())) {
+            reject("attributes must have one entry per vertex, triangle or triangle's corner");
+        }
+    }
+}
+
+void check_shaders(const Mesh& mesh) {
+    if (mesh.shaders.empty()) {
+        return;
+    }
+    check_size("shaders", mesh.shaders.size(), mesh.material_count());
+    for (const MeshShader& own : mesh.shaders) {
+        for (const std::uint32_t index : own.attributes) {
+            if (index != MeshShader::kNoAttribute && index >= mesh.attributes.size()) {
+                reject("shaders: attribute " + std::to_string(index) + " does not exist");
+            }
+        }
+    }
+}
+
 void check_materials(const Mesh& mesh) {
     check_per_material("bsdf", mesh.bsdfs.size(), mesh.material_count());
     check_per_material("emission", mesh.emission.size(), mesh.material_count());
@@ -91,6 +118,11 @@ void check_mesh(const Mesh& mesh) {
         check_all_finite("normals", mesh.corner_normals);
     }
     check_materials(mesh);
+    check_shaders(mesh);
+    check_attributes(mesh);
+    if (!mesh.object_values.empty()) {
+        check_size("object_values", mesh.object_values.size(), mesh.transforms.size());
+    }
     for (const glm::dmat4& transform : mesh.transforms) {
         check_transform("transforms", transform);
         if (mesh.transforms.size() > 1) {

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+#include "render/camera_surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace shlight {
+namespace {
+
+/// Of one material.
+class PlaceReader : public ShaderReader {
+  public:
+    PlaceReader(const CompiledScene& scene, const Material& material, std::span<const ShadedPlace> places)
+        : scene_(&scene), material_(&material), places_(places) {}
+
+    void read(const ShaderInput& input, int place, std::size_t first, std::span<float> out) const override {
+        scene_->read(input, *material_, place, places_.subspan(first, out.size()), out);
+    }
+
+  private:
+    const CompiledScene* scene_;
+    const Material* material_;
+    std::span<const ShadedPlace> places_;
+};
+
+}  // namespace
+
+void CameraSurfaces::trace(std::span<const CameraRay> rays, std::size_t rays_per_pixel, Hits& hits,
+                           std::vector<RayLight>& light) {
+    surfaces_.clear();
+    results_.clear();
+    light.assign(rays.size(), {});
+    throughput_.assign(rays.size(), Rgb(1));
+    active_.resize(rays.size());
+    std::iota(active_.begin(), active_.end(), std::size_t{0});
+    segments_.clear();
+    std::transform(rays.begin(), rays.end(), std::back_inserter(segments_), [](const CameraRay& r) { return r.ray; });
+    while (!active_.empty()) {
+        const std::size_t first = surfaces_.size();
+        meet(rays, light);
+        run_programs(first);
+        pass_on(first, light);
+    }
+    add_hits(rays, rays_per_pixel, hits);
+}
+
+/// The next surface of each ray, or what lies behind all of them.
+void CameraSurfaces::meet(std::span<const CameraRay> rays, std::vector<RayLight>& light) {
+    met_.resize(segments_.size());
+    scene_->rays().intersect(segments_, met_);
+    for (std::size_t i = 0; i < active_.size(); ++i) {
+        const std::size_t index = active_[i];
+        const CameraRay& ray = rays[index];
+        if (met_[i].missed()) {
+            light[index].radiance += throughput_[index] * scene_->lamps_along(segments_[i], std::nullopt);
+            leave_scene(ray, index, light);
+            continue;
+        }
+        Surface& surface = surfaces_.emplace_back();
+        surface.ray = index;
+        surface.point = scene_->surface(met_[i], ray.ray.direction);
+        surface.throughput = throughput_[index];
+        surface.stride = 0;
+        const Vec3d direction = glm::normalize(Vec3d(ray.ray.direction));
+        const double distance = glm::dot(surface.point.position - Vec3d(ray.ray.origin), direction);
+        light[index].radiance += throughput_[index] * scene_->lamps_along(segments_[i], distance);
+        surface.place.ray_length = distance;
+        surface.place.at[0] = {met_[i], surface.point.position, -direction};
+    }
+}
+
+void CameraSurfaces::leave_scene(const CameraRay& ray, std::size_t index, std::vector<RayLight>& light) {
+    const Environment* background = scene_->background();
+    const Rgb& left = throughput_[index];
+    if (background != nullptr) {
+        light[index].radiance += left * background->radiance(glm::normalize(Vec3d(ray.ray.direction)));
+    }
+    light[index].opacity = background != nullptr ? 1.0F : 1.0F - (left.x + left.y + left.z) / 3;
+}
+
+void CameraSurfaces::run_programs(std::size_t first) {
+    order_.clear();
+    for (std::size_t i = first; i < surfaces_.size(); ++i) {
+        if (scene_->materials()[surfaces_[i].point.material].shader != nullptr) {
+            order_.push_back(static_cast<std::uint32_t>(i));
+        }
+    }
+    const auto material = [&](std::uint32_t i) { return surfaces_[i].point.material; };
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return material(a) < material(b); });
+    for (auto begin = order_.begin(); begin != order_.end();) {
+        const auto end = std::find_if(begin, order_.end(), [&](std::uint32_t i) { return material(i) != material(*begin); });
+        run_program({begin, end});
+        begin = end;
+    }
+}
+
+void CameraSurfaces::run_program(std::span<const std::uint32_t> surfaces) {
+    const Material& material = scene_->materials()[surfaces_[surfaces.front()].point.material];
+    const ShaderProgram& program = material.shader->program;
+    places_.clear();
+    for (const std::uint32_t i : surfaces) {
+        places_.push_back(surfaces_[i].place);
+    }
+    const std::size_t begin = results_.size();
+    results_.resize(begin + program.result_count() * surfaces.size());
+    program.evaluate(PlaceReader(*scene_, material, places_), surfaces.size(), program.takes_differences(), registers_,
+                     std::span(results_).subspan(begin));
+    for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        surfaces_[surfaces[k]].results = begin + k;
+        surfaces_[surfaces[k]].stride = surfaces.size();
+    }
+}
+
+Vec3d CameraSurfaces::vector(const Surface& surface, std::uint32_t result) const {
+    const auto at = [&](std::uint32_t i) { return double{results_[surface.results + (result + i) * surface.stride]}; };
+    return {at(0), at(1), at(2)};
+}
+
+Rgb CameraSurfaces::color(const Surface& surface, std::uint32_t result) const {
+    const Rgb color(vector(surface, result));
+    return {std::isfinite(color.x) ? color.x : 0.0F, std::isfinite(color.y) ? color.y : 0.0F,
+            std::isfinite(color.z) ? color.z : 0.0F};
+}
+
+/// Emission of the surfaces met last, and what is left of the rays behind them.
+void CameraSurfaces::pass_on(std::size_t first, std::vector<RayLight>& light) {
+    active_.clear();
+    segments_.clear();
+    for (std::size_t i = first; i < surfaces_.size(); ++i) {
+        const Surface& surface = surfaces_[i];
+        const Material& material = scene_->materials()[surface.point.material];
+        RayLight& own = light[surface.ray];
+        own.opacity = 1;
+        if (material.shader == nullptr) {
+            own.radiance += surface.throughput * material.emission;
+            continue;
+        }
+        if (material.shader->emission) {
+            own.radiance += surface.throughput * color(surface, *material.shader->emission);
+        }
+    }
+}
+
+void CameraSurfaces::add_hits(std::span<const CameraRay> rays, std::size_t rays_per_pixel, Hits& hits) {
+    hits.clear();
+    order_.resize(surfaces_.size());
+    std::iota(order_.begin(), order_.end(), 0U);
+    const auto by_ray = [&](std::uint32_t a, std::uint32_t b) { return surfaces_[a].ray < surfaces_[b].ray; };
+    if (!std::is_sorted(order_.begin(), order_.end(), by_ray)) {
+        std::stable_sort(order_.begin(), order_.end(), by_ray);
+    }
+    auto next = order_.begin();
+    for (std::size_t end = rays_per_pixel; end <= rays.size(); end += rays_per_pixel) {
+        for (; next != order_.end() && surfaces_[*next].ray < end; ++next) {
+            add_hit(rays[surfaces_[*next].ray], surfaces_[*next], hits);
+        }
+        hits.end_pixel();
+    }
+}
+
+/// One hit for each normal that lobes have.
+void CameraSurfaces::add_shaded(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader, Hits& hits) {
+    const std::span<const ShadedLobe> lobes(shader.lobes);
+    for (std::size_t first = 0; first < lobes.size(); ++first) {
+        const auto shares = [&](const ShadedLobe& lobe) { return lobe.normal == lobes[first].normal; };
+        if (std::any_of(lobes.begin(), lobes.begin() + static_cast<std::ptrdiff_t>(first), shares)) {
+            continue;
+        }
+        weights_.assign(lobes.size(), Rgb(0));
+        for (std::size_t i = first; i < lobes.size(); ++i) {
+            if (shares(lobes[i])) {
+                weights_[i] = surface.throughput * color(surface, lobes[i].weight);
+            }
+        }
+        if (std::all_of(weights_.begin(), weights_.end(), [](const Rgb& weight) { return weight == Rgb(0); })) {
+            continue;
+        }
+        SurfacePoint point = surface.point;
+        if (lobes[first].normal) {
+            const Vec3d normal = vector(surface, *lobes[first].normal);
+            const double length = glm::length(normal);
+            point.shading_normal = length > 0 && std::isfinite(length) ? normal / length : point.shading_normal;
+        }
+        const ShadingFrame frame =
+            shading_frame(point.position, point.shading_normal, surface.place.at[0].towards_viewer);
+        hits.add(point, frame, view_cosine(frame, surface.place.at[0].towards_viewer), weights_, ray.sample);
+    }
+}
+
+void CameraSurfaces::add_hit(const CameraRay& ray, const Surface& surface, Hits& hits) {
+    const Material& material = scene_->materials()[surface.point.material];
+    if (material.shader != nullptr) {
+        add_shaded(ray, surface, *material.shader, hits);
+        return;
+    }
+    const std::span<const Lobe> lobes = materials_[surface.point.material].lobes();
+    const ShadingFrame frame =
+        shading_frame(surface.point.position, surface.point.shading_normal, surface.place.at[0].towards_viewer);
+    const float cosine = view_cosine(frame, surface.place.at[0].towards_viewer);
+    weights_.clear();
+    for (const Lobe& lobe : lobes) {
+        weights_.push_back(surface.throughput * lobe.scale(cosine));
+    }
+    hits.add(surface.point, frame, cosine, weights_, ray.sample);
+}
+
+}  // namespace shlight

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+//
+// What the camera rays of a batch meet: surfaces, one behind the other as long as they let light through, and at last
+// the background. Shader programs run here, over all surfaces of a material at once.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lobes/material_lobes.h"
+#include "shlight/scene.h"
+#include "shlight/types.h"
+#include "tracing/hits.h"
+
+namespace shlight {
+
+/// A camera ray, and those of its neighbours in the picture.
+struct CameraRay {
+    Ray ray, right, below;
+    std::uint32_t sample;  ///< its number within its pixel
+};
+
+/// What a camera ray brings besides what surfaces reflect: their emission, lamps, and the background.
+struct RayLight {
+    Rgb radiance{0};
+    float opacity = 0;
+};
+
+/// Keeps its memory from batch to batch; one per thread.
+class CameraSurfaces {
+  public:
+    /// transparent_bounces: surfaces that a camera ray passes through, at most.
+    CameraSurfaces(const CompiledScene& scene, std::span<const MaterialLobes> materials, std::uint32_t transparent_bounces)
+        : scene_(&scene), materials_(materials), transparent_bounces_(transparent_bounces) {}
+
+    /// rays: those of a pixel, rays_per_pixel, follow each other. light: one for each ray. Clears the hits first.
+    void trace(std::span<const CameraRay> rays, std::size_t rays_per_pixel, Hits& hits, std::vector<RayLight>& light);
+
+  private:
+    /// A surface that a camera ray has met.
+    struct Surface {
+        std::size_t ray;
+        SurfacePoint point;
+        ShadedPlace place;
+        Rgb throughput;       // share of its light that reaches the camera
+        std::size_t results;  // of its program: where the first is
+        std::size_t stride;   // and from result to result; 0: it has none
+    };
+
+    void meet(std::span<const CameraRay> rays, std::vector<RayLight>& light);
+    void leave_scene(const CameraRay& ray, std::size_t index, std::vector<RayLight>& light);
+    void run_programs(std::size_t first);
+    void run_program(std::span<const std::uint32_t> surfaces);
+    void pass_on(std::size_t first, std::vector<RayLight>& light);
+    void add_hits(std::span<const CameraRay> rays, std::size_t rays_per_pixel, Hits& hits);
+    void add_hit(const CameraRay& ray, const Surface& surface, Hits& hits);
+    void add_shaded(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader, Hits& hits);
+    Vec3d vector(const Surface& surface, std::uint32_t result) const;
+    /// Without what is not finite.
+    Rgb color(const Surface& surface, std::uint32_t result) const;
+
+    const CompiledScene* scene_;
+    std::span<const MaterialLobes> materials_;
+    std::uint32_t transparent_bounces_;
+    std::vector<std::size_t> active_;    // rays that go on
+    std::vector<Ray> segments_;          // what is left of them
+    std::vector<Rgb> throughput_;        // of each ray
+    std::vector<RayHit> met_;
+    std::vector<Surface> surfaces_;
+    std::vector<std::uint32_t> order_;
+    std::vector<ShadedPlace> places_;
+    std::vector<float> results_;
+    ShaderProgram::Registers registers_;
+    std::vector<Rgb> weights_;
+    std::vector<float> alphas_;
+};
+
+}  // namespace shlight

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+#include "render/placed_meshes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/ray_rounding.h"
+#include "base/scene_range.h"
+#include "base/transforms.h"
+
+namespace shlight {
+namespace {
+
+Placement place(std::uint32_t mesh, std::uint32_t number, const glm::dmat4& to_world, bool baked) {
+    const glm::dmat3 linear(to_world);
+    return {mesh,
+            number,
+            baked,
+            to_world,
+            glm::inverse(to_world),
+            baked ? 1.0 : inf_norm(linear) * inf_norm(glm::inverse(linear)),
+            baked ? 0.0 : largest_component(Vec3d(to_world[3]))};
+}
+
+std::vector<Vec3f> moved(const std::vector<Vec3f>& vertices, const glm::dmat4& to_world) {
+    std::vector<Vec3f> result;
+    result.reserve(vertices.size());
+    for (const Vec3f& v : vertices) {
+        result.emplace_back(transform_point(to_world, Vec3d(v)));
+    }
+    return result;
+}
+
+Vec3d normalized_or(const Vec3d& v, const Vec3d& fallback) {
+    const double length = glm::length(v);
+    return length > 0 && std::isfinite(length) ? v / length : fallback;
+}
+
+std::array<double, 3> weights_of(const RayHit& hit) {
+    return {1.0 - hit.u - hit.v, hit.u, hit.v};
+}
+
+/// Row by row.
+float matrix_number(const glm::dmat4& matrix, std::uint32_t component) {
+    return static_cast<float>(matrix[static_cast<int>(component % 4)][static_cast<int>(component / 4)]);
+}
+
+}  // namespace
+
+const TracedMesh& PlacedMeshes::add(const std::shared_ptr<const Mesh>& mesh, std::uint32_t first_material) {
+    const auto index = static_cast<std::uint32_t>(meshes_.size());
+    const bool baked = mesh->transforms.size() == 1;
+    meshes_.push_back(
+        {mesh, baked ? moved(mesh->vertices, mesh->transforms[0]) : std::vector<Vec3f>(), first_material});
+    std::uint32_t number = 0;
+    for (const glm::dmat4& to_world : mesh->transforms) {
+        placements_.push_back(place(index, number++, to_world, baked));
+    }
+    return meshes_.back();
+}
+
+Vec3d PlacedMeshes::corner(const RayHit& hit, int corner) const {
+    const Placement& placement = placements_[hit.instance];
+    const TracedMesh& traced = meshes_[placement.mesh];
+    const Vec3d local(traced.vertices()[traced.mesh->triangles[hit.triangle][corner]]);
+    return placement.baked ? local : transform_point(placement.to_world, local);
+}
+
+bool PlacedMeshes::smooth_normal(const RayHit& hit, Vec3d& normal) const {
+    const Placement& placement = placements_[hit.instance];
+    const Mesh& mesh = *meshes_[placement.mesh].mesh;
+    if (mesh.vertex_normals.empty() && mesh.corner_normals.empty()) {
+        return false;
+    }
+    const Triangle& triangle = mesh.triangles[hit.triangle];
+    const std::array<double, 3> weights = weights_of(hit);
+    Vec3d local(0);
+    for (int i = 0; i < 3; ++i) {
+        const Vec3f& own = mesh.corner_normals.empty()
+                               ? mesh.vertex_normals[triangle[i]]
+                               : mesh.corner_normals[3 * std::size_t{hit.triangle} + static_cast<std::size_t>(i)];
+        local += weights[static_cast<std::size_t>(i)] * Vec3d(own);
+    }
+    normal = glm::transpose(glm::dmat3(placement.to_object)) * local;
+    return true;
+}
+
+SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) const {
+    const Placement& placement = placements_[hit.instance];
+    const TracedMesh& traced = meshes_[placement.mesh];
+    const std::array<double, 3> weights = weights_of(hit);
+    std::array<Vec3d, 3> corners{};
+    Vec3d position(0);
+    for (int i = 0; i < 3; ++i) {
+        corners[static_cast<std::size_t>(i)] = corner(hit, i);
+        position += weights[static_cast<std::size_t>(i)] * corners[static_cast<std::size_t>(i)];
+    }
+    // From the corners in double, and not along the ray, the point lies in the triangle's plane to double precision.
+    const Vec3d towards_viewer = -Vec3d(direction);
+    Vec3d geometric =
+        normalized_or(glm::cross(corners[1] - corners[0], corners[2] - corners[0]), glm::normalize(towards_viewer));
+    if (glm::dot(geometric, towards_viewer) < 0) {
+        geometric = -geometric;
+    }
+    Vec3d shading = geometric;
+    if (smooth_normal(hit, shading)) {
+        shading = normalized_or(shading, geometric);
+        // By side and not by winding: mirrored instances and faces wound the wrong way come out right.
+        if (glm::dot(shading, geometric) < 0) {
+            shading = -shading;
+        }
+    }
+    double extent = 0;
+    for (const Vec3d& own : corners) {
+        extent = std::max(extent, largest_component(own - position));
+    }
+    const double scale = placement.condition * (largest_component(position) + placement.origin) + extent;
+    return {position, geometric, shading, kRayRounding * scale,
+            traced.first_material + traced.mesh->material_index(hit.triangle)};
+}
+
+SurfacePlace PlacedMeshes::neighbour(const SurfacePlace& place, const Vec3d& normal, double length,
+                                     const Ray& ray) const {
+    const Vec3d direction = glm::normalize(Vec3d(ray.direction));
+    const Vec3d origin(ray.origin);
+    const double approach = glm::dot(direction, normal);
+    const double away = glm::dot(place.position - origin, normal);
+    // A ray that meets the plane far away, or behind itself, is taken to meet it not so far.
+    const double most = 2 * length;
+    const double t = away * approach > 0 && away / approach < most ? away / approach : most;
+    const Vec3d position = origin + t * direction;
+    const Vec3d first = corner(place.hit, 0);
+    const Vec3d u = corner(place.hit, 1) - first;
+    const Vec3d v = corner(place.hit, 2) - first;
+    const Vec3d step = position - place.position;
+    const double uu = glm::dot(u, u);
+    const double uv = glm::dot(u, v);
+    const double vv = glm::dot(v, v);
+    const double determinant = uu * vv - uv * uv;
+    SurfacePlace result = {place.hit, position, -direction};
+    if (determinant > 0) {
+        const double su = glm::dot(step, u);
+        const double sv = glm::dot(step, v);
+        result.hit.u += static_cast<float>((vv * su - uv * sv) / determinant);
+        result.hit.v += static_cast<float>((uu * sv - uv * su) / determinant);
+    }
+    return result;
+}
+
+float PlacedMeshes::attribute(const MeshAttribute& attribute, std::uint32_t component, const RayHit& hit) const {
+    const Mesh& mesh = *meshes_[placements_[hit.instance].mesh].mesh;
+    const std::size_t count = attribute.values.size() / attribute.components;
+    const auto value = [&](std::size_t index) { return attribute.values[index * attribute.components + component]; };
+    const std::size_t triangle = hit.triangle;
+    const Triangle& vertices = mesh.triangles[triangle];
+    const std::array<double, 3> weights = weights_of(hit);
+    if (component >= attribute.components || count == 0) {
+        return 0;
+    }
+    double sum = 0;
+    if (count == 3 * mesh.triangles.size()) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            sum += weights[i] * value(3 * triangle + i);
+        }
+    } else if (count == mesh.vertices.size()) {
+        for (int i = 0; i < 3; ++i) {
+            sum += weights[static_cast<std::size_t>(i)] * value(vertices[i]);
+        }
+    } else {
+        sum = value(triangle);
+    }
+    return static_cast<float>(sum);
+}
+
+float PlacedMeshes::number(const ShaderInput& input, const std::vector<std::uint32_t>& attributes,
+                           const ShadedPlace& place, const SurfacePlace& at) const {
+    const Placement& placement = placements_[at.hit.instance];
+    const Mesh& mesh = *meshes_[placement.mesh].mesh;
+    const auto component = static_cast<int>(input.component);
+    switch (input.source) {
+        case ShaderSource::position:
+            return static_cast<float>(at.position[component]);
+        case ShaderSource::normal:
+        case ShaderSource::geometric_normal: {
+            const SurfacePoint point = surface(at.hit, Vec3f(-place.at[0].towards_viewer));
+            const bool smooth = input.source == ShaderSource::normal;
+            return static_cast<float>((smooth ? point.shading_normal : point.geometric_normal)[component]);
+        }
+        case ShaderSource::towards_viewer:
+            return static_cast<float>(at.towards_viewer[component]);
+        case ShaderSource::attribute: {
+            const std::uint32_t index =
+                input.index < attributes.size() ? attributes[input.index] : MeshShader::kNoAttribute;
+            return index == MeshShader::kNoAttribute ? 0.0F
+                                                     : attribute(mesh.attributes[index], input.component, at.hit);
+        }
+        case ShaderSource::object_to_world:
+            return matrix_number(placement.to_world, input.component);
+        case ShaderSource::world_to_object:
+            return matrix_number(placement.to_object, input.component);
+        case ShaderSource::object_value: {
+            const bool known = placement.number < mesh.object_values.size() &&
+                               input.index < mesh.object_values[placement.number].size();
+            return known ? mesh.object_values[placement.number][input.index] : 0.0F;
+        }
+        case ShaderSource::barycentric:
+            return component == 0 ? at.hit.u : at.hit.v;
+        case ShaderSource::backfacing: {
+            const Vec3d normal = glm::cross(corner(at.hit, 1) - corner(at.hit, 0), corner(at.hit, 2) - corner(at.hit, 0));
+            // A mirrored instance shows its front where its corners, as they stand in the world, run clockwise.
+            const bool clockwise = glm::dot(normal, place.at[0].towards_viewer) < 0;
+            return clockwise != (glm::determinant(glm::dmat3(placement.to_world)) < 0) ? 1.0F : 0.0F;
+        }
+        case ShaderSource::ray_length:
+            return static_cast<float>(place.ray_length);
+        case ShaderSource::shadow_ray:
+            return place.shadow_ray ? 1.0F : 0.0F;
+        case ShaderSource::transparent_depth:
+            return static_cast<float>(place.transparent_depth);
+    }
+    return 0;
+}
+
+void PlacedMeshes::read(const ShaderInput& input, const std::vector<std::uint32_t>& attributes, int place,
+                        std::span<const ShadedPlace> places, std::span<float> out) const {
+    std::transform(places.begin(), places.end(), out.begin(), [&](const ShadedPlace& shaded) {
+        return number(input, attributes, shaded, shaded.at[static_cast<std::size_t>(place)]);
+    });
+}
+
+}  // namespace shlight

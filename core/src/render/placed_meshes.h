@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+//
+// Meshes where they stand in a scene: what a ray meets there, as shading wants it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+
+#include "shlight/mesh.h"
+#include "shlight/ray_tracer.h"
+#include "shlight/scene.h"
+#include "shlight/surface_point.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// A mesh as it is traced. A mesh placed once has its vertices moved to the world; others are instanced.
+struct TracedMesh {
+    std::shared_ptr<const Mesh> mesh;
+    std::vector<Vec3f> world_vertices;  // empty: instanced
+    std::uint32_t first_material;
+
+    std::span<const Vec3f> vertices() const {
+        return world_vertices.empty() ? std::span<const Vec3f>(mesh->vertices) : world_vertices;
+    }
+};
+
+struct Placement {
+    std::uint32_t mesh, number;  // number: of the mesh's instances
+    bool baked;                  // vertices are in the world frame
+    glm::dmat4 to_world;
+    glm::dmat4 to_object;
+    double condition;  // how much a ray's rounding grows on its way through the instance's frame
+    double origin;     // largest component of the translation
+};
+
+class PlacedMeshes {
+  public:
+    /// first_material: number of the mesh's first material in the scene.
+    const TracedMesh& add(const std::shared_ptr<const Mesh>& mesh, std::uint32_t first_material);
+
+    std::span<const TracedMesh> meshes() const { return meshes_; }
+    std::span<const Placement> placements() const { return placements_; }
+
+    /// As CompiledScene's.
+    SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
+    SurfacePlace neighbour(const SurfacePlace& place, const Vec3d& normal, double length, const Ray& ray) const;
+    void read(const ShaderInput& input, const std::vector<std::uint32_t>& attributes, int place,
+              std::span<const ShadedPlace> places, std::span<float> out) const;
+
+  private:
+    /// The mesh's own, of no particular length; false: it is flat there.
+    bool smooth_normal(const RayHit& hit, Vec3d& normal) const;
+    Vec3d geometric_normal(const RayHit& hit) const;
+    Vec3d corner(const RayHit& hit, int corner) const;
+    float number(const ShaderInput& input, const std::vector<std::uint32_t>& attributes, const ShadedPlace& place,
+                 const SurfacePlace& at) const;
+    float attribute(const MeshAttribute& attribute, std::uint32_t component, const RayHit& hit) const;
+
+    std::vector<TracedMesh> meshes_;
+    std::vector<Placement> placements_;
+};
+
+}  // namespace shlight

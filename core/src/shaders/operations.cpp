@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+#include "shaders/operations.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "shaders/image_texture.h"
+
+namespace shlight {
+namespace {
+
+using Parameter = ShaderOperation::Parameter;
+
+/// A function of floats, applied lane by lane.
+template <auto kFunction, std::size_t... kArgument>
+void apply(const OperationLanes& lanes, std::index_sequence<kArgument...>) {
+    float* out = lanes.results[0];
+    for (std::size_t i = 0; i < lanes.count; ++i) {
+        out[i] = kFunction(lanes.arguments[kArgument][i]...);
+    }
+}
+
+template <auto kFunction, std::size_t kArguments>
+void each(const OperationLanes& lanes) {
+    apply<kFunction>(lanes, std::make_index_sequence<kArguments>());
+}
+
+float arctangent2(float y, float x) {
+    return x == 0 && y == 0 ? 0.0F : std::atan2(y, x);
+}
+
+/// 0 where the result would not be real.
+float power(float base, float exponent) {
+    return base < 0 && exponent != std::trunc(exponent) ? 0.0F : std::pow(base, exponent);
+}
+
+/// What std::max and std::min leave open: a NaN loses.
+float larger(float a, float b) {
+    return std::fmax(a, b);
+}
+float smaller(float a, float b) {
+    return std::fmin(a, b);
+}
+
+std::uint32_t rotated(std::uint32_t x, int by) {
+    return std::rotl(x, by);
+}
+
+/// Bob Jenkins's final mixing of three words (lookup3.c, public domain).
+std::uint32_t mixed(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    c = (c ^ b) - rotated(b, 14);
+    a = (a ^ c) - rotated(c, 11);
+    b = (b ^ a) - rotated(a, 25);
+    c = (c ^ b) - rotated(b, 16);
+    a = (a ^ c) - rotated(c, 4);
+    b = (b ^ a) - rotated(a, 14);
+    return (c ^ b) - rotated(b, 24);
+}
+
+/// And of three more before these.
+void stir(std::uint32_t& a, std::uint32_t& b, std::uint32_t& c) {
+    a = (a - c) ^ rotated(c, 4);
+    c += b;
+    b = (b - a) ^ rotated(a, 6);
+    a += c;
+    c = (c - b) ^ rotated(b, 8);
+    b += a;
+    a = (a - c) ^ rotated(c, 16);
+    c += b;
+    b = (b - a) ^ rotated(a, 19);
+    a += c;
+    c = (c - b) ^ rotated(b, 4);
+    b += a;
+}
+
+/// 0 … 1, of the bits of 1 … 4 floats.
+template <std::size_t kCount>
+float hash_to_float(const std::array<float, kCount>& key) {
+    const auto start = static_cast<std::uint32_t>(0xDEADBEEFU + (kCount << 2U) + 13);
+    std::array<std::uint32_t, 3> state = {start, start, start};
+    for (std::size_t i = 0; i < kCount; ++i) {
+        if (i == 3) {
+            stir(state[0], state[1], state[2]);
+        }
+        state[i % 3] += std::bit_cast<std::uint32_t>(key[i]);
+    }
+    return static_cast<float>(mixed(state[0], state[1], state[2])) / static_cast<float>(0xFFFFFFFFU);
+}
+
+/// The values at both ends of an interval of a table's coordinate, and the share of the second.
+struct Interval {
+    std::size_t low, high;
+    float share;
+
+    Interval(float coordinate, std::uint32_t size) {
+        // A NaN is clamped to 0.
+        const float place = std::min(std::max(0.0F, coordinate), 1.0F) * static_cast<float>(size - 1);
+        low = static_cast<std::size_t>(place);
+        high = std::min(low + 1, std::size_t{size} - 1);
+        share = place - static_cast<float>(low);
+    }
+    float between(float a, float b) const { return share == 0 ? a : (1 - share) * a + share * b; }
+};
+
+float read_table(const ShaderTable& table, const std::array<float, 3>& place, std::size_t dimension,
+                 std::size_t offset) {
+    const Interval interval(place[dimension], table.sizes[dimension]);
+    if (dimension == 0) {
+        return interval.between(table.values[offset + interval.low], table.values[offset + interval.high]);
+    }
+    std::size_t stride = 1;
+    for (std::size_t i = 0; i < dimension; ++i) {
+        stride *= table.sizes[i];
+    }
+    return interval.between(read_table(table, place, dimension - 1, offset + interval.low * stride),
+                            read_table(table, place, dimension - 1, offset + interval.high * stride));
+}
+
+template <std::size_t kDimensions>
+void look_up(const OperationLanes& lanes) {
+    for (std::size_t i = 0; i < lanes.count; ++i) {
+        std::array<float, 3> place{};
+        for (std::size_t k = 0; k < kDimensions; ++k) {
+            place[k] = lanes.arguments[k][i];
+        }
+        lanes.results[0][i] = read_table(*lanes.table, place, kDimensions - 1, 0);
+    }
+}
+
+void sample_image(const OperationLanes& lanes) {
+    const float* const* a = lanes.arguments;
+    for (std::size_t i = 0; i < lanes.count; ++i) {
+        const TextureFootprint footprint = {{a[2][i], a[3][i]}, {a[4][i], a[5][i]}};
+        const glm::vec4 color = lanes.image->sample({a[0][i], a[1][i]}, footprint);
+        for (int channel = 0; channel < 4; ++channel) {
+            lanes.results[channel][i] = color[channel];
+        }
+    }
+}
+
+struct Operation {
+    ShaderOperation about;
+    OperationLoop loop;
+};
+
+template <std::size_t kArguments, auto kFunction>
+constexpr Operation elementwise(std::string_view name) {
+    return {{name, kArguments, 1, Parameter::none}, &each<kFunction, kArguments>};
+}
+
+constexpr std::string_view kRight = "right", kBelow = "below";
+
+constexpr std::array kOperations = {
+    Operation{{kRight, 1, 1, Parameter::none}, nullptr},
+    Operation{{kBelow, 1, 1, Parameter::none}, nullptr},
+    elementwise<2, [](float a, float b) { return a + b; }>("add"),
+    elementwise<2, [](float a, float b) { return a - b; }>("subtract"),
+    elementwise<2, [](float a, float b) { return a * b; }>("multiply"),
+    elementwise<2, [](float a, float b) { return b != 0 ? a / b : 0.0F; }>("divide"),
+    elementwise<2, power>("power"),
+    elementwise<1, [](float a) { return 0 < a ? std::log(a) : 0.0F; }>("log"),
+    elementwise<1, [](float a) { return std::exp(a); }>("exp"),
+    elementwise<1, [](float a) { return std::sqrt(larger(a, 0.0F)); }>("sqrt"),
+    elementwise<1, [](float a) { return std::abs(a); }>("absolute"),
+    elementwise<2, smaller>("minimum"),
+    elementwise<2, larger>("maximum"),
+    elementwise<2, [](float a, float b) { return a < b ? 1.0F : 0.0F; }>("less"),
+    elementwise<2, [](float a, float b) { return a == b ? 1.0F : 0.0F; }>("equal"),
+    elementwise<3, [](float a, float b, float c) { return a != 0 ? b : c; }>("select"),
+    elementwise<1, [](float a) { return std::floor(a); }>("floor"),
+    elementwise<2, [](float a, float b) { return b != 0 ? std::fmod(a, b) : 0.0F; }>("modulo"),
+    elementwise<1, [](float a) { return std::sin(a); }>("sine"),
+    elementwise<1, [](float a) { return std::cos(a); }>("cosine"),
+    elementwise<1, [](float a) { return std::tan(a); }>("tangent"),
+    elementwise<1, [](float a) { return std::asin(std::clamp(a, -1.0F, 1.0F)); }>("arcsine"),
+    elementwise<1, [](float a) { return std::acos(std::clamp(a, -1.0F, 1.0F)); }>("arccosine"),
+    elementwise<1, [](float a) { return std::atan(a); }>("arctangent"),
+    elementwise<2, arctangent2>("arctangent2"),
+    elementwise<1, [](float a) { return std::sinh(a); }>("sinh"),
+    elementwise<1, [](float a) { return std::cosh(a); }>("cosh"),
+    elementwise<1, [](float a) { return std::tanh(a); }>("tanh"),
+    elementwise<1, [](float a) { return hash_to_float(std::array{a}); }>("hash1"),
+    elementwise<2, [](float a, float b) { return hash_to_float(std::array{a, b}); }>("hash2"),
+    elementwise<3, [](float a, float b, float c) { return hash_to_float(std::array{a, b, c}); }>("hash3"),
+    elementwise<4, [](float a, float b, float c, float d) { return hash_to_float(std::array{a, b, c, d}); }>("hash4"),
+    Operation{{"table1", 1, 1, Parameter::table}, &look_up<1>},
+    Operation{{"table2", 2, 1, Parameter::table}, &look_up<2>},
+    Operation{{"table3", 3, 1, Parameter::table}, &look_up<3>},
+    Operation{{"image", 6, 4, Parameter::image}, &sample_image},
+};
+
+}  // namespace
+
+std::span<const ShaderOperation> shader_operations() {
+    static const std::vector<ShaderOperation> all = [] {
+        std::vector<ShaderOperation> list;
+        for (const Operation& operation : kOperations) {
+            list.push_back(operation.about);
+        }
+        return list;
+    }();
+    return all;
+}
+
+std::span<const OperationLoop> operation_loops() {
+    static const std::vector<OperationLoop> all = [] {
+        std::vector<OperationLoop> list;
+        for (const Operation& operation : kOperations) {
+            list.push_back(operation.loop);
+        }
+        return list;
+    }();
+    return all;
+}
+
+std::size_t difference_right() {
+    return 0;
+}
+std::size_t difference_below() {
+    return 1;
+}
+
+}  // namespace shlight

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+//
+// What the operations of shader programs compute.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "shlight/shader_program.h"
+
+namespace shlight {
+
+/// Arguments and results of one step over some lanes.
+struct OperationLanes {
+    const float* const* arguments;
+    float* const* results;
+    std::size_t count;
+    const ShaderTable* table;
+    const ImageTexture* image;
+};
+
+/// As numbered by shader_operations().
+using OperationLoop = void (*)(const OperationLanes& lanes);
+std::span<const OperationLoop> operation_loops();
+
+/// Numbers of the operations that take differences; they are not computed by a loop.
+std::size_t difference_right();
+std::size_t difference_below();
+
+}  // namespace shlight

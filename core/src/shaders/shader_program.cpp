@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/shader_program.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "base/checks.h"
+#include "shaders/operations.h"
+
+namespace shlight {
+namespace {
+
+using Kind = ShaderStep::Kind;
+using Parameter = ShaderOperation::Parameter;
+
+/// Lanes that run at a time, so that the values of a long program stay in the cache.
+constexpr std::size_t kLanes = 128;
+constexpr int kPlaces = 3;
+constexpr std::size_t kMostArguments = 8, kMostResults = 4;
+
+const ShaderOperation& operation_of(const ShaderStep& step) {
+    return shader_operations()[step.operation];
+}
+
+bool is_difference(const ShaderStep& step) {
+    return step.kind == Kind::operation &&
+           (step.operation == difference_right() || step.operation == difference_below());
+}
+
+std::size_t result_count(const ShaderStep& step) {
+    return step.kind == Kind::operation ? operation_of(step).result_count : 1;
+}
+
+void check_table(const ShaderTable& table) {
+    std::size_t size = 1;
+    for (const std::uint32_t side : table.sizes) {
+        size *= side;
+    }
+    if (table.sizes.empty() || table.sizes.size() > 3 || size == 0 || size != table.values.size()) {
+        reject("tables: the sizes do not fit the number of values");
+    }
+}
+
+void check_operation(const ShaderStep& step, std::uint32_t values, std::span<const ShaderTable> tables,
+                     std::size_t images) {
+    if (step.operation >= shader_operations().size()) {
+        reject("steps: there is no operation " + std::to_string(step.operation));
+    }
+    const ShaderOperation& operation = operation_of(step);
+    const std::string name(operation.name);
+    if (step.arguments.size() != operation.argument_count) {
+        reject("steps: " + name + " takes " + std::to_string(operation.argument_count) + " arguments, got " +
+               std::to_string(step.arguments.size()));
+    }
+    for (const std::uint32_t argument : step.arguments) {
+        if (argument >= values) {
+            reject("steps: an argument of " + name + " is no value of an earlier step");
+        }
+    }
+    if (operation.parameter == Parameter::image && step.parameter >= images) {
+        reject("steps: there is no image " + std::to_string(step.parameter));
+    }
+    if (operation.parameter == Parameter::table &&
+        (step.parameter >= tables.size() || tables[step.parameter].sizes.size() != operation.argument_count)) {
+        reject("steps: " + name + " has no table with as many coordinates");
+    }
+}
+
+}  // namespace
+
+ShaderProgram::ShaderProgram(std::vector<ShaderStep> steps, std::vector<ShaderTable> tables,
+                             std::vector<std::shared_ptr<const ImageTexture>> images,
+                             const std::vector<std::uint32_t>& results)
+    : steps_(std::move(steps)), tables_(std::move(tables)), images_(std::move(images)), results_(results) {
+    check(results);
+    find_places();
+    assign_slots(results);
+}
+
+void ShaderProgram::check(const std::vector<std::uint32_t>& results) {
+    std::for_each(tables_.begin(), tables_.end(), check_table);
+    std::uint32_t values = 0;
+    for (const ShaderStep& step : steps_) {
+        if (step.kind == Kind::operation) {
+            check_operation(step, values, tables_, images_.size());
+            ++operations_;
+        }
+        first_value_.push_back(values);
+        values += static_cast<std::uint32_t>(shlight::result_count(step));
+    }
+    values_.resize(values);
+    for (const std::uint32_t result : results) {
+        if (result >= values) {
+            reject("results: " + std::to_string(result) + " is no value of a step");
+        }
+    }
+}
+
+/// A value is needed at the neighbours if a difference is taken of what depends on it.
+void ShaderProgram::find_places() {
+    for (std::size_t s = steps_.size(); s-- > 0;) {
+        const ShaderStep& step = steps_[s];
+        const auto own = std::span(values_).subspan(first_value_[s], shlight::result_count(step));
+        bool everywhere =
+            std::any_of(own.begin(), own.end(), [](const Value& value) { return value.everywhere; });
+        if (is_difference(step)) {
+            takes_differences_ = true;
+            values_[step.arguments[0]].everywhere = true;
+            everywhere = false;
+        }
+        everywhere = everywhere && step.kind != Kind::constant;
+        for (Value& value : own) {
+            value.everywhere = everywhere;
+        }
+        for (const std::uint32_t argument : step.arguments) {
+            values_[argument].everywhere = values_[argument].everywhere || everywhere;
+        }
+    }
+}
+
+/// Values share memory where one is read for the last time before the other is made.
+void ShaderProgram::assign_slots(const std::vector<std::uint32_t>& results) {
+    std::vector<std::size_t> last_use(values_.size(), 0);
+    for (std::size_t s = 0; s < steps_.size(); ++s) {
+        for (const std::uint32_t argument : steps_[s].arguments) {
+            last_use[argument] = s;
+        }
+        for (std::size_t k = 0; k < shlight::result_count(steps_[s]); ++k) {
+            last_use[first_value_[s] + k] = s;
+        }
+    }
+    for (const std::uint32_t result : results) {
+        last_use[result] = steps_.size();
+    }
+    std::vector<std::vector<std::uint32_t>> ending(steps_.size() + 1);
+    for (std::uint32_t value = 0; value < values_.size(); ++value) {
+        ending[last_use[value]].push_back(value);
+    }
+    std::vector<std::uint32_t> free;
+    for (std::size_t s = 0; s < steps_.size(); ++s) {
+        for (std::size_t k = 0; k < shlight::result_count(steps_[s]); ++k) {
+            if (free.empty()) {
+                free.push_back(static_cast<std::uint32_t>(slots_++));
+            }
+            values_[first_value_[s] + k].slot = free.back();
+            free.pop_back();
+        }
+        for (const std::uint32_t value : ending[s]) {
+            free.push_back(values_[value].slot);
+        }
+    }
+}
+
+void ShaderProgram::evaluate(const ShaderReader& reader, std::size_t count, bool neighbours, Registers& registers,
+                             std::span<float> results) const {
+    registers.resize(slots_ * kPlaces * kLanes);
+    for (std::size_t first = 0; first < count; first += kLanes) {
+        const std::size_t lanes = std::min(kLanes, count - first);
+        for (std::size_t s = 0; s < steps_.size(); ++s) {
+            run(steps_[s], first_value_[s], reader, first, lanes, neighbours, registers.data());
+        }
+        for (std::size_t r = 0; r < results_.size(); ++r) {
+            const float* from = registers.data() + values_[results_[r]].slot * kPlaces * kLanes;
+            std::copy_n(from, lanes, results.begin() + static_cast<std::ptrdiff_t>(r * count + first));
+        }
+    }
+}
+
+void ShaderProgram::run(const ShaderStep& step, std::uint32_t first_value, const ShaderReader& reader,
+                        std::size_t first, std::size_t count, bool neighbours, float* registers) const {
+    // A value that is known at one place is the same at the others.
+    const auto at = [&](std::uint32_t value, int place) {
+        const std::size_t row = values_[value].slot * kPlaces + (values_[value].everywhere ? place : 0);
+        return registers + row * kLanes;
+    };
+    if (is_difference(step)) {
+        const int place = step.operation == difference_right() ? 1 : 2;
+        const float* here = at(step.arguments[0], 0);
+        const float* there = at(step.arguments[0], neighbours ? place : 0);
+        std::transform(there, there + count, here, at(first_value, 0), std::minus<>());
+        return;
+    }
+    const int places = values_[first_value].everywhere && neighbours ? kPlaces : 1;
+    for (int place = 0; place < places; ++place) {
+        if (step.kind == Kind::constant) {
+            std::fill_n(at(first_value, place), count, step.constant);
+        } else if (step.kind == Kind::input) {
+            reader.read(step.input, place, first, {at(first_value, place), count});
+        } else {
+            const ShaderOperation& operation = operation_of(step);
+            std::array<const float*, kMostArguments> arguments{};
+            std::array<float*, kMostResults> results{};
+            for (std::size_t i = 0; i < operation.argument_count; ++i) {
+                arguments[i] = at(step.arguments[i], place);
+            }
+            for (std::uint32_t i = 0; i < operation.result_count; ++i) {
+                results[i] = at(first_value + i, place);
+            }
+            const bool has_table = operation.parameter == Parameter::table;
+            const bool has_image = operation.parameter == Parameter::image;
+            operation_loops()[step.operation]({arguments.data(), results.data(), count,
+                                               has_table ? &tables_[step.parameter] : nullptr,
+                                               has_image ? images_[step.parameter].get() : nullptr});
+        }
+    }
+}
+
+}  // namespace shlight

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#include "shlight/surface_shader.h"
+
+#include "base/checks.h"
+
+namespace shlight {
+
+std::vector<Lobe> lobes_of(const SurfaceShader& shader) {
+    std::vector<Lobe> lobes;
+    for (const ShadedLobe& shaded : shader.lobes) {
+        lobes.push_back(Bsdf::lobe(shaded.shape, Rgb(1)).lobes().front());
+    }
+    return lobes;
+}
+
+void check_surface_shader(const SurfaceShader& shader) {
+    const std::size_t count = shader.program.result_count();
+    const auto check = [&](const char* name, std::optional<std::uint32_t> result, std::size_t width) {
+        if (result && *result + width > count) {
+            reject(std::string(name) + ": the program has only " + std::to_string(count) + " results");
+        }
+    };
+    for (const ShadedLobe& lobe : shader.lobes) {
+        check("weight", lobe.weight, 3);
+        check("alpha", lobe.alpha, 1);
+        check("normal", lobe.normal, 3);
+    }
+    check("emission", shader.emission, 3);
+    check("transparency", shader.transparency, 3);
+}
+
+}  // namespace shlight
