@@ -9,6 +9,7 @@ void bind_arguments(pybind11::module_& m);
 void bind_coefficients(pybind11::module_& m);
 void bind_kernels(pybind11::module_& m);
 void bind_bsdf(pybind11::module_& m);
+void bind_shader(pybind11::module_& m);
 void bind_shading(pybind11::module_& m);
 void bind_methods(pybind11::module_& m);
 void bind_scene(pybind11::module_& m);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "mesh_arrays.h"
 
+#include <algorithm>
 #include <initializer_list>
 #include <limits>
 #include <stdexcept>
@@ -10,6 +11,7 @@
 #include <glm/matrix.hpp>
 
 #include "arguments.h"
+#include "shader_bindings.h"
 #include "shlight/emission_profile.h"
 
 namespace shlight::python {
@@ -97,24 +99,89 @@ py::list items_of(const py::object& value) {
     }
 }
 
-std::vector<Bsdf> bsdfs_from(const py::object& value) {
+/// Attributes by name.
+using AttributeNames = std::vector<std::string>;
+
+std::uint32_t attribute_index(const AttributeNames& names, const std::string& name) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found == names.end() ? MeshShader::kNoAttribute : static_cast<std::uint32_t>(found - names.begin());
+}
+
+/// A Bsdf, or what has a method `compiled` that makes a shader.
+void add_material(Mesh& mesh, const AttributeNames& names, const py::handle& item) {
+    mesh.bsdfs.emplace_back();
+    mesh.shaders.emplace_back();
+    if (py::isinstance<Bsdf>(item)) {
+        mesh.bsdfs.back() = item.cast<Bsdf>();
+        return;
+    }
+    if (!py::hasattr(item, "compiled")) {
+        throw std::invalid_argument("bsdf must be a Bsdf, a shader of shlight.nodes, or a sequence of them");
+    }
+    const auto shader = item.attr("compiled")().cast<ShaderObject>();
+    mesh.shaders.back().shader = shader.shader;
+    for (const std::string& name : shader.attribute_names) {
+        mesh.shaders.back().attributes.push_back(attribute_index(names, name));
+    }
+}
+
+void set_materials(Mesh& mesh, const AttributeNames& names, const py::object& value) {
+    mesh.bsdfs.clear();
     if (value.is_none()) {
-        return {Bsdf::lambert(Rgb(0.8F))};
+        mesh.bsdfs = {Bsdf::lambert(Rgb(0.8F))};
+        return;
     }
-    if (py::isinstance<Bsdf>(value)) {
-        return {value.cast<Bsdf>()};
-    }
-    std::vector<Bsdf> result;
-    for (const py::handle item : items_of(value)) {
-        if (!py::isinstance<Bsdf>(item)) {
-            throw std::invalid_argument("bsdf must be a Bsdf or a sequence of them");
+    if (py::isinstance<Bsdf>(value) || py::hasattr(value, "compiled")) {
+        add_material(mesh, names, value);
+    } else {
+        for (const py::handle item : items_of(value)) {
+            add_material(mesh, names, item);
         }
-        result.push_back(item.cast<Bsdf>());
     }
-    if (result.empty()) {
+    if (mesh.bsdfs.empty()) {
         throw std::invalid_argument("bsdf must be a Bsdf or a sequence of at least one");
     }
-    return result;
+    const bool constant = std::all_of(mesh.shaders.begin(), mesh.shaders.end(),
+                                      [](const MeshShader& shader) { return shader.shader == nullptr; });
+    if (constant) {
+        mesh.shaders.clear();
+    }
+}
+
+/// (n,) or (n, c) for n vertices or triangles; (k, 3) or (k, 3, c) for corners.
+MeshAttribute attribute_from(const std::string& name, const Mesh& mesh, const py::handle& value) {
+    const AnyArray<float> array = array_from<float>(name.c_str(), value);
+    const auto vertex_count = static_cast<py::ssize_t>(mesh.vertices.size());
+    const auto triangle_count = static_cast<py::ssize_t>(mesh.triangles.size());
+    const bool has_rows = array.ndim() >= 1;
+    const bool of_corners = array.ndim() == 3 && fits(array, {triangle_count, 3, kAny});
+    const bool of_rows = has_rows && array.ndim() <= 2 &&
+                         (array.shape(0) == vertex_count || array.shape(0) == triangle_count);
+    const py::ssize_t components = array.ndim() == 1 ? 1 : has_rows ? array.shape(array.ndim() - 1) : 0;
+    if (!(of_corners || of_rows) || components < 1 || components > 4) {
+        throw std::invalid_argument(name + " must have one to four numbers for each of " + std::to_string(vertex_count) +
+                                    " vertices or " + std::to_string(triangle_count) +
+                                    " triangles, or shape (triangles, 3, components)");
+    }
+    const auto all = values(array);
+    return {static_cast<std::uint32_t>(components), {all.begin(), all.end()}};
+}
+
+/// One array, under the argument's own name, or a dict of them.
+void add_attributes(Mesh& mesh, AttributeNames& names, const std::string& argument, const py::object& value) {
+    if (value.is_none()) {
+        return;
+    }
+    if (!py::isinstance<py::dict>(value)) {
+        mesh.attributes.push_back(attribute_from(argument, mesh, value));
+        names.push_back(argument);
+        return;
+    }
+    for (const auto& [key, array] : value.cast<py::dict>()) {
+        const auto name = py::str(key).cast<std::string>();
+        mesh.attributes.push_back(attribute_from(argument + "['" + name + "']", mesh, array));
+        names.push_back(name);
+    }
 }
 
 std::vector<Rgb> emission_from(const py::object& value) {
@@ -140,16 +207,6 @@ void set_normals(Mesh& mesh, const py::object& value) {
     } else {
         throw std::invalid_argument("normals must have shape " + describe({vertex_count, 3}) + " or " +
                                     describe({triangle_count, 3, 3}));
-    }
-}
-
-void check_uvs(const Mesh& mesh, const py::object& value) {
-    const AnyArray<float> array = array_from<float>("uvs", value);
-    const auto vertex_count = static_cast<py::ssize_t>(mesh.vertices.size());
-    const auto triangle_count = static_cast<py::ssize_t>(mesh.triangles.size());
-    if (!fits(array, {vertex_count, 2}) && !fits(array, {triangle_count, 3, 2})) {
-        throw std::invalid_argument("uvs must have shape " + describe({vertex_count, 2}) + " or " +
-                                    describe({triangle_count, 3, 2}));
     }
 }
 
@@ -215,10 +272,11 @@ Mesh mesh_from(const MeshArguments& arguments) {
     if (!arguments.normals.is_none()) {
         set_normals(mesh, arguments.normals);
     }
-    if (!arguments.uvs.is_none()) {
-        check_uvs(mesh, arguments.uvs);
-    }
-    mesh.bsdfs = bsdfs_from(arguments.bsdf);
+    AttributeNames names;
+    add_attributes(mesh, names, "uvs", arguments.uvs);
+    add_attributes(mesh, names, "colors", arguments.colors);
+    add_attributes(mesh, names, "attributes", arguments.attributes);
+    set_materials(mesh, names, arguments.bsdf);
     mesh.emission = emission_from(arguments.emission);
     if (!arguments.material_indices.is_none()) {
         mesh.material_indices =
@@ -229,6 +287,13 @@ Mesh mesh_from(const MeshArguments& arguments) {
         mesh.transforms.clear();
         for (py::ssize_t i = 0; i < array.shape(0); ++i) {
             mesh.transforms.push_back(matrix_at(array.data() + 16 * i));
+        }
+    }
+    if (!arguments.object_values.is_none()) {
+        const auto count = static_cast<py::ssize_t>(mesh.transforms.size());
+        const AnyArray<float> array = numbers<float>("object_values", arguments.object_values, {count, kAny});
+        for (py::ssize_t i = 0; i < count; ++i) {
+            mesh.object_values.emplace_back(array.data(i, 0), array.data(i, 0) + array.shape(1));
         }
     }
     return mesh;

@@ -32,7 +32,8 @@ Environment environment_from(const char* name, const pybind11::handle& value, co
 
 /// The arguments of Scene.add_mesh; None where Python leaves one out.
 struct MeshArguments {
-    pybind11::object vertices, triangles, normals, uvs, bsdf, emission, material_indices, transforms;
+    pybind11::object vertices, triangles, normals, uvs, colors, attributes, bsdf, emission, material_indices,
+        transforms, object_values;
 };
 
 /// Shapes and types are checked here, the rest by check_mesh.

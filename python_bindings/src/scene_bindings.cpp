@@ -24,12 +24,16 @@ constexpr const char* kAddMeshDoc = R"(Add a triangle mesh. Surfaces are two-sid
 vertices: (n, 3).
 triangles: (k, 3) integers, vertex indices.
 normals: (n, 3) per vertex or (k, 3, 3) per triangle corner, of any length; None: flat triangles.
-uvs: (n, 2) per vertex or (k, 3, 2) per triangle corner. Checked only: no material reads them.
-bsdf: a Bsdf, or a sequence with one per material; None: Bsdf.lambert(0.8).
+uvs: (n, 2) per vertex or (k, 3, 2) per triangle corner, or a dict of such arrays by name; shlight.nodes.uv() reads
+    them.
+colors, attributes: likewise, of one to four numbers per vertex, triangle or triangle corner; shlight.nodes.attribute()
+    reads them.
+bsdf: a Bsdf or a Shader of shlight.nodes, or a sequence with one per material; None: Bsdf.lambert(0.8).
 emission: emitted radiance [W m^-2 sr^-1] of both sides, RGB, or (m, 3) with one per material; None: none. Emissive
     faces light the scene, are seen by the camera and block light.
 material_indices: (k,) integers, the material of each triangle; None: 0 for all.
 transforms: (i, 4, 4), one object-to-world matrix per instance, for column vectors; None: one at the identity.
+object_values: (i, v), numbers of each instance, which shlight.nodes.object_value() reads.
 
 Raises ValueError naming the argument; the scene is then as it was.)";
 
@@ -60,9 +64,11 @@ clip_start, clip_end: surfaces are seen between these depths along the view axis
 Raises ValueError naming the argument.)";
 
 void add_mesh(SceneObject& self, const py::object& vertices, const py::object& triangles, const py::object& normals,
-              const py::object& uvs, const py::object& bsdf, const py::object& emission,
-              const py::object& material_indices, const py::object& transforms) {
-    self.scene.add_mesh(mesh_from({vertices, triangles, normals, uvs, bsdf, emission, material_indices, transforms}));
+              const py::object& uvs, const py::object& colors, const py::object& attributes, const py::object& bsdf,
+              const py::object& emission, const py::object& material_indices, const py::object& transforms,
+              const py::object& object_values) {
+    self.scene.add_mesh(mesh_from({vertices, triangles, normals, uvs, colors, attributes, bsdf, emission,
+                                   material_indices, transforms, object_values}));
     self.changed();
 }
 
@@ -103,8 +109,9 @@ void bind_scene(py::module_& m) {
                      "and materials, which can");
              })
         .def("add_mesh", &add_mesh, kAddMeshDoc, "vertices"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
-             "uvs"_a = py::none(), "bsdf"_a = py::none(), "emission"_a = py::none(), "material_indices"_a = py::none(),
-             "transforms"_a = py::none())
+             "uvs"_a = py::none(), "colors"_a = py::none(), "attributes"_a = py::none(), "bsdf"_a = py::none(),
+             "emission"_a = py::none(), "material_indices"_a = py::none(), "transforms"_a = py::none(),
+             "object_values"_a = py::none())
         .def("set_environment", &set_environment, kEnvironmentDoc, "radiance"_a, py::kw_only(),
              "to_world"_a = py::none(), "visible"_a = true)
         .def("set_camera", &set_camera, kCameraDoc, "to_world"_a, "fov_x"_a)

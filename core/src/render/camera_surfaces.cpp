@@ -67,8 +67,20 @@ void CameraSurfaces::meet(std::span<const CameraRay> rays, std::vector<RayLight>
         const double distance = glm::dot(surface.point.position - Vec3d(ray.ray.origin), direction);
         light[index].radiance += throughput_[index] * scene_->lamps_along(segments_[i], distance);
         surface.place.ray_length = distance;
-        surface.place.at[0] = {met_[i], surface.point.position, -direction};
+        surface.place.at.fill({met_[i], surface.point.position, -direction});
+        find_neighbours(ray, surface);
     }
+}
+
+void CameraSurfaces::find_neighbours(const CameraRay& ray, Surface& surface) const {
+    const Material& material = scene_->materials()[surface.point.material];
+    if (material.shader == nullptr || !material.shader->program.takes_differences()) {
+        return;
+    }
+    ShadedPlace& place = surface.place;
+    const Vec3d& normal = surface.point.geometric_normal;
+    place.at[1] = scene_->neighbour(place.at[0], normal, place.ray_length, ray.right);
+    place.at[2] = scene_->neighbour(place.at[0], normal, place.ray_length, ray.below);
 }
 
 void CameraSurfaces::leave_scene(const CameraRay& ray, std::size_t index, std::vector<RayLight>& light) {

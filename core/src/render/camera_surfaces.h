@@ -49,6 +49,7 @@ class CameraSurfaces {
     };
 
     void meet(std::span<const CameraRay> rays, std::vector<RayLight>& light);
+    void find_neighbours(const CameraRay& ray, Surface& surface) const;
     void leave_scene(const CameraRay& ray, std::size_t index, std::vector<RayLight>& light);
     void run_programs(std::size_t first);
     void run_program(std::span<const std::uint32_t> surfaces);

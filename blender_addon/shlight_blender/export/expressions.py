@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Values of node trees as expressions of `shlight.nodes`: constant ones are computed here, varying ones at each hit.
+
+`NODES` says what each type of node makes of its inputs. A node of another type is reported, and the constant that
+its socket holds is used in its place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from shlight.nodes import Color, Value, Vector
+from shlight.nodes.values import Varying, color, number, vector
+
+from ..report import Effect, ExportReport
+from .nodes import Origin, node_name, origin
+
+Expression = Value | Vector  # a Color is a Vector that counts with its luminance
+
+
+@dataclass(frozen=True)
+class NodeInputs:
+    """A node whose output is asked for, as the functions of `NODES` see it."""
+
+    reader: ExpressionReader
+    node: Any
+    output: Any
+    groups: tuple[Any, ...]
+
+    def is_linked(self, name: str | int) -> bool:
+        """True if another node makes the value of an input."""
+        return origin(self.node.inputs[name], self.groups).node is not None
+
+    def expression(self, name: str | int) -> Expression:
+        """An input as its link or socket has it."""
+        return self.reader.expression(self.node.inputs[name], self.groups)
+
+    def number(self, name: str | int) -> Value:
+        """An input as a number."""
+        return number(self.expression(name))
+
+    def vector(self, name: str | int) -> Vector:
+        """An input as a vector."""
+        return vector(self.expression(name))
+
+    def color(self, name: str | int) -> Color:
+        """An input as a colour."""
+        return color(self.expression(name))
+
+    def remark(self, text: str, effect: Effect = Effect.LOOK) -> None:
+        """Adds a line about this node to the report."""
+        self.reader.report.add(self.reader.at(self.node), text, effect)
+
+
+ReadNode = Callable[[NodeInputs], Varying]
+
+
+class ExpressionReader:
+    """Follows the links of one tree; `place` names the tree's owner in the report, for instance "Material 'Wood'"."""
+
+    def __init__(self, place: str, report: ExportReport) -> None:
+        self.place = place
+        self.report = report
+        self._known: dict[tuple[Any, ...], Expression] = {}
+        self._open: set[tuple[Any, ...]] = set()
+
+    def at(self, node: Any) -> str:
+        """The place of one node in the report."""
+        return f"{self.place}, node '{node_name(node)}'"
+
+    def expression(self, socket: Any, groups: tuple[Any, ...] = ()) -> Expression:
+        """What an input socket receives."""
+        source = origin(socket, groups)
+        if source.node is None:
+            return own_value(source.socket)
+        key = (source.node.as_pointer(), source.output.identifier, tuple(g.as_pointer() for g in source.groups))
+        if key not in self._known:
+            if key in self._open:
+                self.report.add(self.at(source.node), "its links run in a circle; 0 is used")
+                return number(0.0)
+            self._open.add(key)
+            self._known[key] = self._read(source, socket)
+            self._open.discard(key)
+        return self._known[key]
+
+    def _read(self, source: Origin, socket: Any) -> Expression:
+        read = NODES.get(source.node.type)
+        if read is not None:
+            found = read(NodeInputs(self, source.node, source.output, source.groups))
+            return found if isinstance(found, Value | Vector) else _constant(found)
+        fallback = own_value(source.socket)
+        kind = source.node.bl_label or source.node.bl_idname
+        text = f"{kind} is not supported; '{socket.name}' of '{node_name(socket.node)}' uses its constant {fallback}"
+        self.report.add(self.at(source.node), text)
+        return fallback
+
+
+def _constant(value: Any) -> Expression:
+    return number(value) if np.ndim(value) == 0 else Color(*np.asarray(value, dtype=np.float64)[:3])
+
+
+def own_value(socket: Any) -> Expression:
+    """The constant that a socket holds; 0 for one that holds none."""
+    value = getattr(socket, "default_value", None)
+    if value is None or isinstance(value, str):
+        return number(0.0)
+    if np.ndim(value) == 0:
+        return number(float(value))
+    kind = Color if socket.type == "RGBA" else Vector
+    return kind(*(float(component) for component in value[:3]))
+
+
+def _output_value(inputs: NodeInputs) -> Expression:
+    return own_value(inputs.output)
+
+
+NODES: dict[str, ReadNode] = {
+    "VALUE": _output_value,
+    "RGB": _output_value,
+}

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: MIT
+"""Numbers and colours that vary over a surface, and materials made of them.
+
+What these functions return stands where a constant stood: `Bsdf.lambert(nodes.image(pixels))`.
+"""
+
+from shlight.nodes.inputs import (
+    attribute,
+    backfacing,
+    barycentric,
+    geometric_normal,
+    normal,
+    object_value,
+    position,
+    towards_viewer,
+    uv,
+)
+from shlight.nodes.shader import Shader, emission, ggx, lambert, mix, transparent
+from shlight.nodes.textures import image
+from shlight.nodes.values import Color, Value, Vector
+
+__all__ = [
+    "Color",
+    "Shader",
+    "Value",
+    "Vector",
+    "attribute",
+    "backfacing",
+    "barycentric",
+    "emission",
+    "geometric_normal",
+    "ggx",
+    "image",
+    "lambert",
+    "mix",
+    "normal",
+    "object_value",
+    "position",
+    "towards_viewer",
+    "transparent",
+    "uv",
+]

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+"""What a shader program can read at a hit. Vectors are in world coordinates."""
+
+from __future__ import annotations
+
+from shlight.nodes.values import Color, Step, Value, Vector
+
+# As numbered in the core.
+SOURCES = {
+    "position": 0,
+    "normal": 1,
+    "geometric_normal": 2,
+    "towards_viewer": 3,
+    "attribute": 4,
+    "object_to_world": 5,
+    "world_to_object": 6,
+    "object_value": 7,
+    "barycentric": 8,
+    "backfacing": 9,
+    "ray_length": 10,
+    "shadow_ray": 11,
+    "transparent_depth": 12,
+}
+
+
+def read(source: str, component: int = 0, index: int | str = 0) -> Value:
+    """One number of a source; index: of an attribute its name."""
+    return Value(Step("input", (), (source, index, component)))
+
+
+def _vector(source: str, index: int | str = 0) -> Vector:
+    return Vector(*(read(source, component, index) for component in range(3)))
+
+
+def position() -> Vector:
+    """Where the hit is."""
+    return _vector("position")
+
+
+def normal() -> Vector:
+    """The smooth normal, on the viewer's side."""
+    return _vector("normal")
+
+
+def geometric_normal() -> Vector:
+    """The normal of the triangle, on the viewer's side."""
+    return _vector("geometric_normal")
+
+
+def towards_viewer() -> Vector:
+    """The unit vector to where the ray comes from."""
+    return _vector("towards_viewer")
+
+
+def uv(name: str = "uvs") -> Vector:
+    """The texture coordinates (u, v, 0) that `Scene.add_mesh` got under this name; (0, 0, 0) if there are none."""
+    return Vector(read("attribute", 0, name), read("attribute", 1, name), 0.0)
+
+
+def attribute(name: str) -> Color:
+    """The numbers that `Scene.add_mesh` got under this name as a colour; 0 if there are none. One number is its red."""
+    return Color(*(read("attribute", component, name) for component in range(4)))
+
+
+def object_value(index: int) -> Value:
+    """A number of the instance that the hit is on."""
+    return read("object_value", 0, index)
+
+
+def barycentric() -> Vector:
+    """(u, v, 0) on the triangle: the weights of its second and third corner."""
+    return Vector(read("barycentric", 0), read("barycentric", 1), 0.0)
+
+
+def backfacing() -> Value:
+    """1 where the triangle is seen from behind, else 0."""
+    return read("backfacing")
+
+
+def ray_length() -> Value:
+    """How far the ray has come."""
+    return read("ray_length")
+
+
+def shadow_ray() -> Value:
+    """1 for rays between a surface and a light, 0 for camera rays."""
+    return read("shadow_ray")
+
+
+def transparent_depth() -> Value:
+    """How many surfaces the ray has passed through."""
+    return read("transparent_depth")
+
+
+def _rows(source: str, v: Vector, *, columns: int) -> Vector:
+    numbers = []
+    for row in range(3):
+        terms = [read(source, 4 * row + column) * component for column, component in enumerate(v)]
+        offset = [read(source, 4 * row + 3)] if columns == 4 else []
+        numbers.append(sum((*terms[1:], *offset), start=terms[0]))
+    return Vector(*numbers)
+
+
+def point_to_world(point: Vector) -> Vector:
+    """A point of the object's frame in the world."""
+    return _rows("object_to_world", point, columns=4)
+
+
+def point_to_object(point: Vector) -> Vector:
+    """A point of the world in the object's frame."""
+    return _rows("world_to_object", point, columns=4)
+
+
+def vector_to_world(v: Vector) -> Vector:
+    """A vector of the object's frame in the world."""
+    return _rows("object_to_world", v, columns=3)
+
+
+def vector_to_object(v: Vector) -> Vector:
+    """A vector of the world in the object's frame."""
+    return _rows("world_to_object", v, columns=3)
+
+
+def _columns(source: str, v: Vector) -> Vector:
+    return Vector(
+        *(sum((read(source, 4 * row + c) * component for row, component in enumerate(v)), start=Value(Step("constant", (), 0.0))) for c in range(3))
+    )
+
+
+def normal_to_world(n: Vector) -> Vector:
+    """A normal of the object's frame in the world, of another length."""
+    return _columns("world_to_object", n)
+
+
+def normal_to_object(n: Vector) -> Vector:
+    """A normal of the world in the object's frame, of another length."""
+    return _columns("object_to_world", n)

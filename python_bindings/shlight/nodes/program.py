@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+"""Expressions as a program of the core: each operation once, in an order in which arguments come first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from shlight import _core
+from shlight.nodes.inputs import SOURCES
+from shlight.nodes.values import Step, Value, operations
+
+CONSTANT, INPUT, OPERATION = 0, 1, 2
+
+
+class Table:
+    """Numbers over one to three coordinates in 0 … 1, the first of which is the last axis of `values`."""
+
+    def __init__(self, values: Any) -> None:
+        self.values = np.ascontiguousarray(values, dtype=np.float32)
+        self.sizes = list(reversed(self.values.shape))
+
+
+class ProgramBuilder:
+    """Lists the steps of expressions."""
+
+    def __init__(self) -> None:
+        self.attributes: list[str] = []
+        self._steps: list[tuple[int, float, int, int, list[int]]] = []
+        self._tables: list[tuple[Any, list[int]]] = []
+        self._images: list[_core.ImageTexture] = []
+        self._numbers: dict[int, int] = {}  # first value of a step, by id
+        self._known: dict[Any, int] = {}  # the same by what the step computes
+        self._kept: list[Step] = []  # whose id must not be given to another
+        self._resources: dict[int, int] = {}
+        self._values = 0
+        self._results: list[int] = []
+
+    def result(self, values: Sequence[Value]) -> int:
+        """Makes values results of the program; the number of the first."""
+        first = len(self._results)
+        for value in values:
+            self._list(value.step)
+            self._results.append(self._numbers[id(value.step)] + value.output)
+        return first
+
+    def program(self) -> _core.ShaderProgram:
+        """What was listed."""
+        return _core.shader_program(self._steps, self._tables, self._images, self._results)
+
+    def _list(self, step: Step) -> None:
+        waiting = [step]
+        while waiting:
+            top = waiting[-1]
+            missing = [a.step for a in top.arguments if id(a.step) not in self._numbers]
+            if missing:
+                waiting += missing
+                continue
+            waiting.pop()
+            if id(top) not in self._numbers:
+                self._kept.append(top)
+                self._numbers[id(top)] = self._add(top)
+
+    def _add(self, step: Step) -> int:
+        arguments = [self._numbers[id(a.step)] + a.output for a in step.arguments]
+        entry, count = self._entry(step, arguments)
+        key = (*entry[:4], tuple(entry[4]), str(entry[1]))
+        if key not in self._known:
+            self._known[key] = self._values
+            self._steps.append(entry)
+            self._values += count
+        return self._known[key]
+
+    def _entry(self, step: Step, arguments: list[int]) -> tuple[tuple[int, float, int, int, list[int]], int]:
+        if step.name == "constant":
+            return (CONSTANT, step.data, 0, 0, []), 1
+        if step.name == "input":
+            source, index, component = step.data
+            if source == "attribute":
+                if index not in self.attributes:
+                    self.attributes.append(index)
+                index = self.attributes.index(index)
+            return (INPUT, 0.0, SOURCES[source], index, [component]), 1
+        number, _, results = operations()[step.name]
+        return (OPERATION, 0.0, number, self._resource(step.data), arguments), results
+
+    def _resource(self, data: Any) -> int:
+        if data is None:
+            return 0
+        if id(data) not in self._resources:
+            if isinstance(data, Table):
+                self._resources[id(data)] = len(self._tables)
+                self._tables.append((data.values, data.sizes))
+            else:
+                self._resources[id(data)] = len(self._images)
+                self._images.append(data)
+        return self._resources[id(data)]

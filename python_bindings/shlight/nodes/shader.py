@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: MIT
+"""Materials whose numbers vary: sums of lobes with expressions for their colours, widths and normals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+from shlight import _core
+from shlight.nodes.program import ProgramBuilder
+from shlight.nodes.values import Color, Number, Value, Varying, Vector, clamp, color, number
+
+BLACK = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Lobe:
+    """A part of a material: `weight` times a shape of the core."""
+
+    kind: str  # "lambert", "ggx" with Fresnel factor 1, or the part of it that rises towards grazing angles:
+    # "ggx_schlick", "ggx_dielectric"
+    weight: Color
+    alpha: Value | None = None  # roughness², of GGX
+    normal: Vector | None = None  # None: the smooth one
+    ior: float = 1.5  # of "ggx_dielectric"
+
+
+@dataclass(frozen=True)
+class Shader:
+    """What a surface does to light; made by the functions of `shlight.nodes`, taken by `Scene.add_mesh`."""
+
+    lobes: tuple[Lobe, ...] = ()
+    emission: Color = field(default_factory=lambda: color(BLACK))  # radiance towards the viewer
+    transparency: Color = field(default_factory=lambda: color(BLACK))  # share of light that goes on straight through
+
+    def __add__(self, other: Shader) -> Shader:
+        return Shader(
+            self.lobes + other.lobes,
+            _color(self.emission + other.emission),
+            _color(self.transparency + other.transparency),
+        )
+
+    def __mul__(self, factor: Varying) -> Shader:
+        by = color(factor, "factor")
+        lobes = tuple(replace(lobe, weight=_color(lobe.weight * by)) for lobe in self.lobes)
+        return Shader(lobes, _color(self.emission * by), _color(self.transparency * by))
+
+    __rmul__ = __mul__
+
+    def compiled(self) -> _core.SurfaceShader:
+        """The program that the core runs."""
+        return self._compiled
+
+    @property
+    def operation_count(self) -> int:
+        """How many operations the core runs for each hit."""
+        return self._program[0].operation_count
+
+    @cached_property
+    def _program(self) -> tuple[_core.ShaderProgram, _core.SurfaceShader]:
+        builder = ProgramBuilder()
+        lobes = []
+        normals: dict[int, int] = {}  # lobes with the same normal share the number of its result
+        for lobe in (lobe for lobe in self.lobes if lobe.weight.constant != BLACK):
+            weight = builder.result(tuple(lobe.weight))
+            alpha = None if lobe.alpha is None else builder.result([lobe.alpha])
+            if lobe.normal is not None and id(lobe.normal) not in normals:
+                normals[id(lobe.normal)] = builder.result(tuple(lobe.normal))
+            normal = None if lobe.normal is None else normals[id(lobe.normal)]
+            lobes.append((lobe.kind, lobe.ior, weight, alpha, normal))
+        shown = [None if c.constant == BLACK else builder.result(tuple(c)) for c in (self.emission, self.transparency)]
+        program = builder.program()
+        return program, _core.surface_shader(program, lobes, *shown, builder.attributes)
+
+    @cached_property
+    def _compiled(self) -> _core.SurfaceShader:
+        return self._program[1]
+
+
+def _color(v: Vector) -> Color:
+    return v if isinstance(v, Color) else Color(v.x, v.y, v.z)
+
+
+def lambert(albedo: Varying, normal: Vector | None = None) -> Shader:
+    """Lambert's reflection."""
+    return Shader((Lobe("lambert", color(albedo, "albedo"), normal=normal),))
+
+
+def ggx(roughness: Number, f0: Varying, *, ior: float | None = None, normal: Vector | None = None) -> Shader:
+    """As `Bsdf.ggx`: a microfacet reflection whose alpha is roughness²."""
+    f0_color = color(f0, "f0")
+    r = number(roughness, "roughness")
+    edge = "ggx_schlick" if ior is None else "ggx_dielectric"
+    rest = _color(1.0 - f0_color)
+    return Shader(
+        (
+            Lobe("ggx", f0_color, r * r, normal),
+            Lobe(edge, rest, r * r, normal, 1.5 if ior is None else ior),
+        )
+    )
+
+
+def emission(radiance: Varying) -> Shader:
+    """A surface that gives light [W m^-2 sr^-1] to both sides."""
+    return Shader(emission=color(radiance, "radiance"))
+
+
+def transparent(share: Varying = 1.0) -> Shader:
+    """A surface that lets light go straight through."""
+    return Shader(transparency=color(share, "share"))
+
+
+def mix(a: Shader, b: Shader, factor: Number) -> Shader:
+    """(1 - factor) a + factor b; factor is clamped to 0 … 1."""
+    t = clamp(number(factor, "factor"))
+    return (1.0 - t) * a + t * b

@@ -1,0 +1,313 @@
+# SPDX-License-Identifier: MIT
+"""Numbers, vectors and colours that vary over a surface: expressions from which shader programs are made.
+
+An expression is built by Python's operators and by the functions of `shlight.nodes`; the core evaluates it in float32
+for many hits at once. What has constant arguments only is computed at once and costs a hit nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from shlight import _core
+
+# How a colour counts as a number: its luminance in Rec. 709.
+LUMINANCE = (0.2126729, 0.7151522, 0.0721750)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Step:
+    """A constant, an input or an operation; `data` is the constant, or (source, index or name, component), or a table
+    or image."""
+
+    name: str
+    arguments: tuple[Value, ...] = ()
+    data: Any = None
+
+
+@lru_cache(maxsize=1)
+def operations() -> dict[str, tuple[int, int, int]]:
+    """By name: number, arguments and results of the core's operations."""
+    return {name: (number, count, results) for number, (name, count, results) in enumerate(_core.shader_operations())}
+
+
+class Value:
+    """A number at each hit."""
+
+    __slots__ = ("output", "step")
+
+    def __init__(self, step: Step, output: int = 0) -> None:
+        self.step = step
+        self.output = output
+
+    @property
+    def constant(self) -> float | None:
+        """The number, if it is the same everywhere."""
+        return float(self.step.data) if self.step.name == "constant" else None
+
+    def __add__(self, other: Number) -> Value:
+        return add(self, other)
+
+    def __radd__(self, other: Number) -> Value:
+        return add(other, self)
+
+    def __sub__(self, other: Number) -> Value:
+        return subtract(self, other)
+
+    def __rsub__(self, other: Number) -> Value:
+        return subtract(other, self)
+
+    def __mul__(self, other: Number) -> Value:
+        return multiply(self, other)
+
+    def __rmul__(self, other: Number) -> Value:
+        return multiply(other, self)
+
+    def __truediv__(self, other: Number) -> Value:
+        return operation("divide", self, other)
+
+    def __rtruediv__(self, other: Number) -> Value:
+        return operation("divide", other, self)
+
+    def __neg__(self) -> Value:
+        return subtract(0.0, self)
+
+    def __abs__(self) -> Value:
+        return operation("absolute", self)
+
+    def __lt__(self, other: Number) -> Value:
+        return operation("less", self, other)
+
+    def __gt__(self, other: Number) -> Value:
+        return operation("less", other, self)
+
+    def __repr__(self) -> str:
+        return f"{self.constant:g}" if self.constant is not None else f"<{self.step.name}>"
+
+
+class Vector:
+    """Three numbers at each hit; operators go by component, and a number stands for three equal ones."""
+
+    __slots__ = ("x", "y", "z")
+
+    def __init__(self, x: Number, y: Number, z: Number) -> None:
+        self.x, self.y, self.z = number(x), number(y), number(z)
+
+    def __iter__(self) -> Iterator[Value]:
+        return iter((self.x, self.y, self.z))
+
+    def _each(self, name: str, other: Varying, *, swapped: bool = False) -> Vector:
+        pairs = zip(self, triple(other), strict=True)
+        return type(self)(*(arithmetic(name, *((b, a) if swapped else (a, b))) for a, b in pairs))
+
+    def __add__(self, other: Varying) -> Vector:
+        return self._each("add", other)
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Varying) -> Vector:
+        return self._each("subtract", other)
+
+    def __rsub__(self, other: Varying) -> Vector:
+        return self._each("subtract", other, swapped=True)
+
+    def __mul__(self, other: Varying) -> Vector:
+        return self._each("multiply", other)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Varying) -> Vector:
+        return self._each("divide", other)
+
+    def __rtruediv__(self, other: Varying) -> Vector:
+        return self._each("divide", other, swapped=True)
+
+    def __neg__(self) -> Vector:
+        return 0.0 - self
+
+    @property
+    def constant(self) -> tuple[float, float, float] | None:
+        """The numbers, if they are the same everywhere."""
+        x, y, z = self.x.constant, self.y.constant, self.z.constant
+        return None if x is None or y is None or z is None else (x, y, z)
+
+    def as_number(self) -> Value:
+        """What it is where a number is asked for: the mean."""
+        return (self.x + self.y + self.z) / 3.0
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.x}, {self.y}, {self.z})"
+
+
+class Color(Vector):
+    """Linear RGB at each hit."""
+
+    __slots__ = ("alpha",)
+
+    def __init__(self, r: Number, g: Number, b: Number, alpha: Number = 1.0) -> None:
+        super().__init__(r, g, b)
+        self.alpha = number(alpha)
+
+    def as_number(self) -> Value:
+        """What it is where a number is asked for: the luminance."""
+        r, g, b = LUMINANCE
+        return self.x * r + self.y * g + self.z * b
+
+
+Number: TypeAlias = "Value | float | Vector"
+Varying: TypeAlias = "Value | Vector | float | Sequence[float]"
+
+
+def number(value: Any, name: str = "value") -> Value:
+    """A number as an expression. Raises ValueError for anything else, naming the argument."""
+    if isinstance(value, Value):
+        return value
+    if isinstance(value, Vector):
+        return value.as_number()
+    try:
+        return Value(Step("constant", (), float(np.float32(value))))
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name} must be a number or an expression of shlight.nodes, got {value!r}") from None
+
+
+def triple(value: Any, name: str = "value") -> tuple[Value, Value, Value]:
+    """Three numbers as expressions; a number stands for three equal ones. Raises ValueError naming the argument."""
+    if isinstance(value, Vector):
+        return value.x, value.y, value.z
+    if isinstance(value, Value):
+        return value, value, value
+    try:
+        numbers = np.broadcast_to(np.asarray(value, dtype=np.float32), (3,))
+    except (TypeError, ValueError):
+        message = f"{name} must be a number, three numbers or an expression of shlight.nodes, got {value!r}"
+        raise ValueError(message) from None
+    x, y, z = (number(component) for component in numbers)
+    return x, y, z
+
+
+def vector(value: Any, name: str = "value") -> Vector:
+    """A vector; see `triple`."""
+    return value if type(value) is Vector else Vector(*triple(value, name))
+
+
+def color(value: Any, name: str = "color") -> Color:
+    """A colour; see `triple`."""
+    return value if isinstance(value, Color) else Color(*triple(value, name))
+
+
+def steps(name: str, *arguments: Number, data: Any = None) -> tuple[Value, ...]:
+    """All results of an operation of the core."""
+    values = tuple(number(argument) for argument in arguments)
+    _, _, results = operations()[name]
+    step = Step(name, values, data)
+    if name not in DIFFERENCES and data is None and all(value.constant is not None for value in values):
+        return tuple(number(result) for result in _computed(name, tuple(value.constant or 0.0 for value in values)))
+    return tuple(Value(step, output) for output in range(results))
+
+
+def operation(name: str, *arguments: Number, data: Any = None) -> Value:
+    """The only result of an operation of the core."""
+    return steps(name, *arguments, data=data)[0]
+
+
+# What an image or a bump map takes: how far a value moves to the neighbouring camera rays.
+DIFFERENCES = ("right", "below")
+
+
+@lru_cache(maxsize=4096)
+def _computed(name: str, constants: tuple[float, ...]) -> tuple[float, ...]:
+    operation_number, _, results = operations()[name]
+    count = len(constants)
+    listed = [(0, constant, 0, 0, []) for constant in constants]
+    listed.append((2, 0.0, operation_number, 0, list(range(count))))  # type: ignore[arg-type]
+    program = _core.shader_program(listed, [], [], list(range(count, count + results)))
+    return tuple(float(value) for value in program.evaluate([], 1)[:, 0])
+
+
+def add(a: Number, b: Number) -> Value:
+    """a + b."""
+    x, y = number(a), number(b)
+    return y if x.constant == 0.0 else x if y.constant == 0.0 else operation("add", x, y)
+
+
+def subtract(a: Number, b: Number) -> Value:
+    """a - b."""
+    x, y = number(a), number(b)
+    return x if y.constant == 0.0 else operation("subtract", x, y)
+
+
+def multiply(a: Number, b: Number) -> Value:
+    """a b."""
+    x, y = number(a), number(b)
+    if x.constant == 1.0 or y.constant == 0.0:
+        return y
+    return x if y.constant == 1.0 or x.constant == 0.0 else operation("multiply", x, y)
+
+
+def arithmetic(name: str, a: Number, b: Number) -> Value:
+    """An operation of two numbers, without those that change nothing."""
+    return {"add": add, "subtract": subtract, "multiply": multiply}.get(name, lambda x, y: operation(name, x, y))(a, b)
+
+
+def minimum(a: Number, b: Number) -> Value:
+    """The smaller of two numbers."""
+    return operation("minimum", a, b)
+
+
+def maximum(a: Number, b: Number) -> Value:
+    """The larger of two numbers."""
+    return operation("maximum", a, b)
+
+
+def clamp(value: Number, low: Number = 0.0, high: Number = 1.0) -> Value:
+    """The number, or the end of the interval that it lies beyond."""
+    return minimum(maximum(value, low), high)
+
+
+def sqrt(value: Number) -> Value:
+    """The square root; 0 of what is negative."""
+    return operation("sqrt", value)
+
+
+def select(condition: Number, if_true: Number, if_false: Number) -> Value:
+    """One of two numbers, by whether the first is 0."""
+    constant = number(condition).constant
+    if constant is not None:
+        return number(if_true if constant != 0.0 and not math.isnan(constant) else if_false)
+    return operation("select", condition, if_true, if_false)
+
+
+def dot(a: Vector, b: Vector) -> Value:
+    """The scalar product."""
+    return a.x * b.x + a.y * b.y + a.z * b.z
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    """The vector product."""
+    return Vector(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
+
+
+def length(a: Vector) -> Value:
+    """How long a vector is."""
+    return sqrt(dot(a, a))
+
+
+def normalize(a: Vector) -> Vector:
+    """The unit vector along a vector; 0 for 0."""
+    return a / length(a)
+
+
+def right(value: Number) -> Value:
+    """How much the value grows to the camera ray of the pixel to the right."""
+    return operation("right", value)
+
+
+def below(value: Number) -> Value:
+    """How much the value grows to the camera ray of the pixel below."""
+    return operation("below", value)

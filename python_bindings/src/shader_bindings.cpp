@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#include "shader_bindings.h"
+
+#include <pybind11/stl.h>
+
+#include <array>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "arguments.h"
+#include "bindings.h"
+#include "shaders/image_texture.h"
+#include "shaders/operations.h"
+#include "whole_objects.h"
+
+using namespace pybind11::literals;
+
+namespace shlight::python {
+namespace {
+
+using ImagePointer = std::shared_ptr<const ImageTexture>;
+using StepTuple = std::tuple<int, double, std::uint32_t, std::uint32_t, std::vector<std::uint32_t>>;
+using TableTuple = std::tuple<AnyArray<float>, std::vector<std::uint32_t>>;
+/// kind of lobe, ior, and numbers of results: weight, alpha, normal
+using LobeTuple = std::tuple<std::string, double, std::uint32_t, std::optional<std::uint32_t>,
+                             std::optional<std::uint32_t>>;
+
+/// kind (0: constant, 1: input, 2: operation), constant, source or operation, index or parameter, and arguments; of an
+/// input the component is the only argument.
+ShaderStep step_from(const StepTuple& tuple) {
+    const auto& [kind, constant, number, parameter, arguments] = tuple;
+    ShaderStep step{};
+    if (kind == 0) {
+        step.kind = ShaderStep::Kind::constant;
+        step.constant = static_cast<float>(constant);
+    } else if (kind == 1) {
+        if (number >= kShaderSources || arguments.size() != 1) {
+            throw std::invalid_argument("steps: there is no input " + std::to_string(number));
+        }
+        step.kind = ShaderStep::Kind::input;
+        step.input = {static_cast<ShaderSource>(number), parameter, arguments[0]};
+    } else {
+        step.kind = ShaderStep::Kind::operation;
+        step.operation = number;
+        step.parameter = parameter;
+        step.arguments = arguments;
+    }
+    return step;
+}
+
+ShaderProgram program_from(const std::vector<StepTuple>& steps, const std::vector<TableTuple>& tables,
+                           std::vector<ImagePointer> images, const std::vector<std::uint32_t>& results) {
+    std::vector<ShaderStep> own_steps;
+    for (const StepTuple& step : steps) {
+        own_steps.push_back(step_from(step));
+    }
+    std::vector<ShaderTable> own_tables;
+    for (const auto& [numbers, sizes] : tables) {
+        const auto all = values(numbers);
+        own_tables.push_back({{all.begin(), all.end()}, sizes});
+    }
+    return {std::move(own_steps), std::move(own_tables), std::move(images), results};
+}
+
+/// Inputs as arrays (places, lanes): a program can be tried without a scene.
+class ArrayReader : public ShaderReader {
+  public:
+    using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
+
+    explicit ArrayReader(const std::vector<std::pair<Key, AnyArray<float>>>& inputs, std::size_t count)
+        : inputs_(&inputs), count_(count) {}
+
+    void read(const ShaderInput& input, int place, std::size_t first, std::span<float> out) const override {
+        const Key key = {static_cast<std::uint32_t>(input.source), input.index, input.component};
+        const auto found = std::find_if(inputs_->begin(), inputs_->end(), [&](const auto& own) { return own.first == key; });
+        const float* from = found == inputs_->end() ? nullptr : found->second.data();
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            out[i] = from == nullptr ? 0.0F : from[static_cast<std::size_t>(place) * count_ + first + i];
+        }
+    }
+
+  private:
+    const std::vector<std::pair<Key, AnyArray<float>>>* inputs_;
+    std::size_t count_;
+};
+
+Array<float> evaluate(const ShaderProgram& program, const std::vector<std::pair<ArrayReader::Key, AnyArray<float>>>& inputs,
+                      std::size_t count) {
+    for (const auto& [key, array] : inputs) {
+        if (static_cast<std::size_t>(array.size()) != 3 * count) {
+            throw std::invalid_argument("inputs must have shape (3, count)");
+        }
+    }
+    Array<float> out({static_cast<py::ssize_t>(program.result_count()), static_cast<py::ssize_t>(count)});
+    ShaderProgram::Registers registers;
+    program.evaluate(ArrayReader(inputs, count), count, true, registers,
+                     {out.mutable_data(), static_cast<std::size_t>(out.size())});
+    return out;
+}
+
+LobeShape shape_of(const std::string& kind, double ior) {
+    if (kind == "lambert") {
+        return LambertShape{};
+    }
+    if (kind == "ggx") {
+        return GgxShape{1, Fresnel::one};
+    }
+    if (kind == "ggx_schlick") {
+        return GgxShape{1, Fresnel::schlick};
+    }
+    if (kind == "ggx_dielectric") {
+        return GgxShape{1, Fresnel::dielectric, ior};
+    }
+    throw std::invalid_argument("lobes: there is no kind '" + kind + "'");
+}
+
+ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTuple>& lobes,
+                         std::optional<std::uint32_t> emission, std::optional<std::uint32_t> transparency,
+                         std::vector<std::string> attribute_names) {
+    auto shader = std::make_shared<SurfaceShader>(SurfaceShader{program, {}, emission, transparency});
+    for (const auto& [kind, ior, weight, alpha, normal] : lobes) {
+        shader->lobes.push_back({shape_of(kind, ior), weight, alpha, normal});
+    }
+    check_surface_shader(*shader);
+    return {std::move(shader), std::move(attribute_names)};
+}
+
+std::shared_ptr<ImageTexture> image_from(const py::object& pixels, int interpolation, int extension) {
+    const AnyArray<float> array = array_from<float>("pixels", pixels);
+    if (array.ndim() != 3 || array.shape(2) != 4 || array.size() == 0) {
+        throw std::invalid_argument("pixels must have shape (height, width, 4)");
+    }
+    std::vector<glm::vec4> own(static_cast<std::size_t>(array.shape(0) * array.shape(1)));
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        own[i] = {array.data()[4 * i], array.data()[4 * i + 1], array.data()[4 * i + 2], array.data()[4 * i + 3]};
+    }
+    return std::make_shared<ImageTexture>(
+        std::move(own), static_cast<std::uint32_t>(array.shape(1)), static_cast<std::uint32_t>(array.shape(0)),
+        static_cast<TextureInterpolation>(interpolation), static_cast<TextureExtension>(extension));
+}
+
+}  // namespace
+
+void bind_shader(py::module_& m) {
+    m.def("shader_operations", [] {
+        std::vector<std::tuple<std::string, std::size_t, std::size_t>> list;
+        for (const ShaderOperation& operation : shader_operations()) {
+            list.emplace_back(operation.name, operation.argument_count, operation.result_count);
+        }
+        return list;
+    });
+    py::class_<ImageTexture, std::shared_ptr<ImageTexture>>(m, "ImageTexture", without_constructor());
+    m.def("image_texture", &image_from, "pixels"_a, "interpolation"_a, "extension"_a);
+    py::class_<ShaderProgram>(m, "ShaderProgram", without_constructor())
+        .def("evaluate", &evaluate, "inputs"_a, "count"_a)
+        .def_property_readonly("operation_count", &ShaderProgram::operation_count);
+    m.def(
+        "shader_program",
+        [](const std::vector<StepTuple>& steps, const std::vector<TableTuple>& tables,
+           const std::vector<std::shared_ptr<ImageTexture>>& images, const std::vector<std::uint32_t>& results) {
+            return program_from(steps, tables, {images.begin(), images.end()}, results);
+        },
+        "steps"_a, "tables"_a, "images"_a, "results"_a);
+    py::class_<ShaderObject>(m, "SurfaceShader", without_constructor());
+    m.def("surface_shader", &shader_from, "program"_a, "lobes"_a, "emission"_a, "transparency"_a, "attribute_names"_a);
+}
+
+}  // namespace shlight::python

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+//
+// Shader programs as Python builds them (shlight.nodes).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "shlight/surface_shader.h"
+
+namespace shlight::python {
+
+/// A material of a program, and the names of the attributes that its inputs are numbered by.
+struct ShaderObject {
+    std::shared_ptr<const SurfaceShader> shader;
+    std::vector<std::string> attribute_names;
+};
+
+}  // namespace shlight::python
