@@ -13,7 +13,7 @@ class WarpedHarmonics : public HarmonicLobe {
         : material_(std::array{Lobe{shape, nullptr, Rgb(1), nullptr}}, order, 1) {
         constexpr std::uint32_t kOnly = 0;
         std::vector<Rgb> weights;
-        views_.assign(material_, {&cos_theta_o, 1}, material_.weights({&cos_theta_o, 1}, weights), false);
+        views_.assign(material_, {&cos_theta_o, 1}, material_.weights({&cos_theta_o, 1}, weights), {}, false);
         set(views_.lobe(0).arrays(order, {&kOnly, 1}));
     }
 

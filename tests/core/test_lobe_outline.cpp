@@ -39,7 +39,8 @@ TEST(LobeKernels, ValuesInLanesAreTheLobes) {
         const double sine = 1e-6 * shape.alpha;
         const double cosine = std::sqrt(1 - sine * sine);
         float value = 0;
-        integrate_caps(shape, {&axis.x, &axis.y, &axis.z, &cosine, &sine}, {&only, 1}, {&view.x, &view.z, true},
+        const auto width = static_cast<float>(shape.alpha);
+        integrate_caps(shape, &width, {&axis.x, &axis.y, &axis.z, &cosine, &sine}, {&only, 1}, {&view.x, &view.z, true},
                        {&only, 1}, 1, {&value, 1});
         const double area = 2 * std::numbers::pi * sine * sine / (1 + cosine);
         const double expected = lobe_value(shape, axis, view);

@@ -3,6 +3,7 @@
 // Materials: sums of coloured lobes. Immutable values, cheap to copy.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -30,6 +31,9 @@ struct Lobe {
     std::shared_ptr<const WarpedFit> fit;  ///< null for a mirror
     Rgb color;
     std::shared_ptr<const ViewWeight> weight;  ///< null: 1
+    /// Not 0: the width varies from hit to hit, and is the same for lobes of a material with the same number. The shape's
+    /// own is then that of no hit, and there is no fit.
+    std::uint32_t varying_width = 0;
 
     Rgb scale(float cos_theta_o) const { return weight ? color * (*weight)(cos_theta_o) : color; }
     /// ∫ shape dω.
@@ -39,7 +43,8 @@ struct Lobe {
 /// No float that is computed of a colour and a lobe leaves its range.
 inline constexpr float kLargestColor = 1e10F;
 
-/// A lobe narrower than this, some 1e-5 rad wide, is narrower than any pixel or light.
+/// A lobe narrower than this, some 1e-5 rad wide, is narrower than any pixel or light; where roughness varies, none is
+/// narrower.
 inline constexpr float kLeastRoughness = 0.003F;
 
 class Bsdf {

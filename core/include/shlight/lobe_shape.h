@@ -65,6 +65,8 @@ using LobeShape = std::variant<LambertShape, GgxShape>;
 
 /// Half width of the peak about the mirror direction [rad]; 1 where there is none.
 double lobe_width(const LobeShape& shape);
+/// The same shape of another width; of a shape that has only one, itself.
+LobeShape with_width(const LobeShape& shape, double width);
 /// Whether there is a peak: the lobe is shaded in a warp, and lights may spare it ("visible to glossy rays").
 bool is_glossy(const LobeShape& shape);
 /// All of its light comes from one direction, and f·cos is 0 everywhere else: the width is 0.

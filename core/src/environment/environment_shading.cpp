@@ -2,7 +2,10 @@
 #include "environment/environment_shading.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
+#include <mutex>
 #include <numbers>
 
 #include "environment/environment_map.h"
@@ -40,29 +43,94 @@ std::array<double, kMaxOrder> relative_errors(const float* lobe, double lobe_tai
     return errors;
 }
 
+double albedo_of(const MaterialLobes& material, std::size_t lobe, float width, double cos_theta_o) {
+    const Lobe& own = material.lobes()[lobe];
+    return own.varying_width != 0 ? lobe_albedo(material.shape(lobe, width), cos_theta_o) : own.albedo(cos_theta_o);
+}
+
+/// Of the logarithm of a width that varies; between steps what is reflected is linear.
+constexpr float kWidthStep = 0.125F;
+constexpr std::size_t kWidthSteps = 96;  // down to the least width
+
 }  // namespace
+
+class EnvironmentShading::WidthPlans {
+  public:
+    WidthPlans(const EnvironmentShading& shading, const LobeShape& shape) : shading_(&shading), shape_(shape) {}
+
+    PlanMix at(float width) const {
+        const float place = std::clamp(-std::log(width) / kWidthStep, 0.0F, static_cast<float>(kWidthSteps - 2));
+        const auto step = static_cast<std::size_t>(place);
+        return {{&plan(step), &plan(step + 1)}, place - static_cast<float>(step)};
+    }
+
+  private:
+    const Plan& plan(std::size_t step) const {
+        Entry& entry = entries_[step];
+        std::call_once(entry.once, [&] {
+            const double width = std::exp(-double{kWidthStep} * static_cast<double>(step));
+            entry.plan = shading_->plan(with_width(shape_, width));
+        });
+        return entry.plan;
+    }
+
+    struct Entry {
+        std::once_flag once;
+        Plan plan;
+    };
+    const EnvironmentShading* shading_;
+    LobeShape shape_;
+    mutable std::array<Entry, kWidthSteps> entries_;
+};
+
+EnvironmentShading::~EnvironmentShading() = default;
 
 EnvironmentShading::EnvironmentShading(const Environment& environment, std::span<const MaterialLobes> materials,
                                        std::size_t lobe_stride, int order, double tolerance)
-    : environment_(&environment), materials_(materials), lobe_stride_(lobe_stride) {
+    : environment_(&environment),
+      materials_(materials),
+      lobe_stride_(lobe_stride),
+      order_(order),
+      tolerance_(tolerance) {
     if (environment.map() == nullptr) {
         return;
     }
     for (const MaterialLobes& material : materials) {
         auto& plans = plans_.emplace_back();
+        auto& width_plans = width_plans_.emplace_back();
         for (const Lobe& lobe : material.lobes()) {
-            plans.push_back(plan(lobe.shape, order, tolerance));
+            const bool varies = lobe.varying_width != 0;
+            plans.push_back(varies ? Plan() : plan(lobe.shape));
+            width_plans.push_back(varies ? std::make_unique<const WidthPlans>(*this, lobe.shape) : nullptr);
         }
     }
 }
 
-EnvironmentShading::Plan EnvironmentShading::plan(const LobeShape& shape, int order, double tolerance) const {
+EnvironmentShading::PlanMix EnvironmentShading::plans(std::size_t material, std::size_t lobe, float width) const {
+    const auto& varying = width_plans_[material][lobe];
+    return varying != nullptr ? varying->at(width)
+                              : PlanMix{{&plans_[material][lobe], &plans_[material][lobe]}, 0};
+}
+
+bool EnvironmentShading::sees_texels(const LobeShape& shape) const {
+    return order_ == 0 && is_glossy(shape) && lobe_width(shape) < kTexelsPerWidth * environment_->map()->texel;
+}
+
+bool EnvironmentShading::splits(std::size_t material, std::size_t lobe, float width) const {
+    const LobeShape shape = materials_[material].shape(lobe, width);
+    return environment_->map() != nullptr && !is_mirror(shape) && !sees_texels(shape);
+}
+
+EnvironmentShading::Plan EnvironmentShading::plan(const LobeShape& shape) const {
     if (is_mirror(shape)) {
         return {};
     }
     const EnvironmentMap& map = *environment_->map();
+    const int order = order_;
+    const double tolerance = tolerance_;
     const bool may_be_narrow = order == 0 && is_glossy(shape);
-    Plan plan = {sh_projection(shape), may_be_narrow && lobe_width(shape) < kTexelsPerWidth * map.texel, {}};
+    const bool sees = sees_texels(shape);
+    Plan plan = {sh_projection(shape), {}};
     for (std::size_t node = 0; node < plan.lobe->node_count(); ++node) {
         const auto errors = relative_errors(plan.lobe->powers(node), plan.lobe->tail(node), map.coefficients);
         int chosen = order;
@@ -72,10 +140,16 @@ EnvironmentShading::Plan EnvironmentShading::plan(const LobeShape& shape, int or
             chosen = static_cast<int>(sufficient - errors.begin()) + 1;
         }
         const double error = errors[static_cast<std::size_t>(chosen - 1)];
-        const bool narrow = plan.sees_texels || (may_be_narrow && error > std::max(kDirectionError, tolerance));
+        const bool narrow = sees || (may_be_narrow && error > std::max(kDirectionError, tolerance));
         plan.choices.push_back({narrow ? kMaxOrder : chosen, narrow, error <= tolerance});
     }
     return plan;
+}
+
+EnvironmentShading::Choice EnvironmentShading::choose(const PlanMix& mix, double cos_theta_o) {
+    const Choice a = choose(*mix.plans[0], cos_theta_o);
+    const Choice b = choose(*mix.plans[1], cos_theta_o);
+    return {std::max(a.order, b.order), a.directions || b.directions, a.met && b.met};
 }
 
 EnvironmentShading::Choice EnvironmentShading::choose(const Plan& plan, double cos_theta_o) {
@@ -159,8 +233,10 @@ void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<D
         const auto lobes = materials_[points.material[point]].lobes();
         for (std::size_t i = 0; i < lobes.size(); ++i) {
             // A constant is one harmonic, and a lobe's own first coefficient its albedo.
-            const auto albedo = static_cast<float>(lobes[i].albedo(points.cos_theta_o[point]));
-            values[i * points.size() + point].smooth = albedo * environment_->radiance(points.frame[point].z);
+            const double albedo = albedo_of(materials_[points.material[point]], i, points.widths(point)[i],
+                                            points.cos_theta_o[point]);
+            values[i * points.size() + point].smooth =
+                static_cast<float>(albedo) * environment_->radiance(points.frame[point].z);
             (is_mirror(lobes[i].shape) ? report.mirror_count : report.order_counts[1]) += points.hit_count(point);
         }
     }
@@ -172,24 +248,27 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, std::span<Direct
         const std::uint32_t material = points.material[i];
         const double cosine = points.cos_theta_o[i];
         Point point(*environment_->map(), points.frame[i], cosine);
-        const auto lobes = materials_[material].lobes();
-        for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
-            const LobeShape& shape = lobes[lobe].shape;
-            const Plan& plan = plans_[material][lobe];
+        for (std::size_t lobe = 0; lobe < materials_[material].lobes().size(); ++lobe) {
+            const float width = points.widths(i)[lobe];
+            const LobeShape shape = materials_[material].shape(lobe, width);
+            const auto albedo = static_cast<float>(albedo_of(materials_[material], lobe, width, cosine));
             DirectLightParts& value = values[lobe * points.size() + i];
             if (is_mirror(shape)) {
-                value.smooth = static_cast<float>(lobes[lobe].albedo(cosine)) * point.mirrored();
+                value.smooth = albedo * point.mirrored();
                 report.mirror_count += points.hit_count(i);
                 continue;
             }
-            const Choice choice = choose(plan, cosine);
-            value.smooth = point.by_harmonics(*plan.lobe, choice.order);
-            if (!plan.sees_texels) {
+            const PlanMix mix = plans(material, lobe, width);
+            const Choice choice = choose(mix, cosine);
+            value.smooth = (1 - mix.share) * point.by_harmonics(*mix.plans[0]->lobe, choice.order);
+            if (mix.share > 0) {
+                value.smooth += mix.share * point.by_harmonics(*mix.plans[1]->lobe, choice.order);
+            }
+            if (!sees_texels(shape)) {
                 value.spots = point.spots(shape);
             }
             if (choice.directions) {
-                value.smooth +=
-                    static_cast<float>(lobes[lobe].albedo(cosine)) * point.by_directions(shape, plan.sees_texels);
+                value.smooth += albedo * point.by_directions(shape, sees_texels(shape));
             }
             value.smooth = glm::max(value.smooth, Rgb(0));
             (choice.directions ? report.cubature_count : report.order_counts[static_cast<std::size_t>(choice.order)]) +=

@@ -33,13 +33,14 @@ class EnvironmentShading {
     /// order, tolerance: of RenderSettings.
     EnvironmentShading(const Environment& environment, std::span<const MaterialLobes> materials,
                        std::size_t lobe_stride, int order, double tolerance);
+    EnvironmentShading(const EnvironmentShading&) = delete;
+    EnvironmentShading& operator=(const EnvironmentShading&) = delete;
+    ~EnvironmentShading();
 
     /// values: lobe_stride × points; adds to the report what the points' hits take.
     void shade(const ShadingPoints& points, std::vector<DirectLightParts>& values, RenderReport& report) const;
-    /// Whether spots are a part of their own for a lobe.
-    bool splits(std::size_t material, std::size_t lobe) const {
-        return !plans_.empty() && plans_[material][lobe].lobe != nullptr && !plans_[material][lobe].sees_texels;
-    }
+    /// Whether spots are a part of their own for a lobe of this width.
+    bool splits(std::size_t material, std::size_t lobe, float width) const;
 
   private:
     struct Choice {
@@ -50,20 +51,33 @@ class EnvironmentShading {
     /// How a lobe is shaded under a picture.
     struct Plan {
         std::shared_ptr<const ShProjection> lobe;  // null: a mirror
-        bool sees_texels;                          // spots too have an extent
         std::vector<Choice> choices;               // of each tabulated view
+    };
+    /// Plans of a lobe whose width varies, at even steps of its logarithm; each is made when it is first needed.
+    class WidthPlans;
+    /// A lobe's plan, or the plans between which its width lies.
+    struct PlanMix {
+        const Plan* plans[2];  // NOLINT(modernize-avoid-c-arrays)
+        float share;           // of the second
     };
     class Point;
 
-    Plan plan(const LobeShape& shape, int order, double tolerance) const;
+    Plan plan(const LobeShape& shape) const;
+    /// Whether spots, too, have an extent beside the lobe.
+    bool sees_texels(const LobeShape& shape) const;
+    PlanMix plans(std::size_t material, std::size_t lobe, float width) const;
     void shade_constant(const ShadingPoints& points, std::span<DirectLightParts> values, RenderReport& report) const;
     void shade_map(const ShadingPoints& points, std::span<DirectLightParts> values, RenderReport& report) const;
     static Choice choose(const Plan& plan, double cos_theta_o);
+    static Choice choose(const PlanMix& mix, double cos_theta_o);
 
     const Environment* environment_;
     std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
+    int order_;
+    double tolerance_;
     std::vector<std::vector<Plan>> plans_;  // of each material's lobes; empty without a picture
+    std::vector<std::vector<std::unique_ptr<const WidthPlans>>> width_plans_;  // likewise; null: the width is the same
 };
 
 }  // namespace shlight

@@ -28,7 +28,7 @@ class BellLanes {
           cos_o_(bell.cos_o),
           sin_o_(std::sqrt((1 - cos_o_) * (1 + cos_o_))),
           lobe_(lobe),
-          view_(lobe.view(D(), all(D(), cos_o_))),
+          view_(lobe.view(D(), all(D(), cos_o_), all(D(), width_))),
           rule_(*bell.rule) {}
 
     /// The angle about the bell's middle times ∫ f·cos over a radius from there to the outline.

@@ -4,6 +4,9 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -63,7 +66,38 @@ class FitTable {
 void fit_row(const LobeShape& shape, int view, FitTable& table);
 /// Fits all views of one shape.
 FitTable fit_table(const LobeShape& shape, std::span<const int> orders);
-/// The same of kWarpedOrders, interpolated over roughness. Precondition: no mirror, not Fresnel::dielectric.
-FitTable ggx_fit_table(const GgxShape& shape);
+
+/// The fits of GGX lobes of all roughnesses, which differ in nothing else: tables of some, each fitted when it is first
+/// needed, between which cubic interpolation finds all others. Any number of threads may read it.
+class FitGrid {
+  public:
+    /// Takes only Fresnel factor and ior of the shape. order: the only one, or 0 for kWarpedOrders.
+    FitGrid(const GgxShape& shape, int order);
+
+    static constexpr std::size_t kNeighbours = 4;
+    struct Neighbours {
+        std::array<const FitTable*, kNeighbours> tables;
+        std::array<float, kNeighbours> weights;
+    };
+    Neighbours neighbours(double alpha) const;
+    /// Precondition: not a mirror.
+    FitTable interpolated(double alpha) const;
+    /// Fits all; their size in bytes.
+    std::size_t complete() const;
+
+  private:
+    const FitTable& table(int roughness) const;
+
+    struct Entry {
+        std::once_flag once;
+        std::optional<FitTable> table;
+    };
+    GgxShape shape_;
+    std::vector<int> orders_;
+    mutable std::vector<Entry> entries_;
+};
+
+/// Shared by everyone who asks for the same one; the last ones asked for are kept. Thread-safe.
+std::shared_ptr<const FitGrid> fit_grid(const GgxShape& shape, int order);
 
 }  // namespace shlight

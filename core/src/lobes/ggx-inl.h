@@ -43,7 +43,7 @@ HWY_INLINE V<D> fresnel_in_lanes(D d, double ior, V<D> cosine) {
     return hn::Max(hn::Zero(d), hn::Mul(rise, all(d, 1 / (1 - head_on * head_on))));
 }
 
-/// kFresnel as in the shape. What changes from view to view is in View: so would be a roughness of each hit's own.
+/// kFresnel as in the shape. What changes from view to view is in View.
 template <Fresnel kFresnel>
 class GgxLanes {
   public:
@@ -52,11 +52,12 @@ class GgxLanes {
         V<D> cosine, alpha2, masking;  // of ω_o
     };
 
-    explicit GgxLanes(const GgxShape& shape) : alpha2_(shape.alpha * shape.alpha), ior_(shape.ior) {}
+    /// alpha of the shape is that of no view.
+    explicit GgxLanes(const GgxShape& shape) : ior_(shape.ior) {}
 
     template <class D>
-    HWY_INLINE View<D> view(D d, V<D> cos_o) const {
-        const auto alpha2 = all(d, alpha2_);
+    HWY_INLINE View<D> view(D d, V<D> cos_o, V<D> alpha) const {
+        const auto alpha2 = hn::Mul(alpha, alpha);
         return {cos_o, alpha2, masking(d, alpha2, cos_o)};
     }
 
@@ -99,7 +100,7 @@ class GgxLanes {
         }
     }
 
-    double alpha2_, ior_;
+    double ior_;
 };
 
 template <class Function>

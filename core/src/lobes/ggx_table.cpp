@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// The fits that all GGX lobes interpolate in, tabulated over roughness and view: of Fresnel factors without a
-// parameter.
+// The fits that GGX lobes interpolate in, tabulated over roughness and view.
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <mutex>
-#include <optional>
+#include <memory>
+#include <utility>
+#include <vector>
 
+#include "base/recent_values.h"
 #include "lobes/fit_table.h"
 #include "math/cubic_stencil.h"
 #include "shlight/warped_fit.h"
@@ -23,43 +23,61 @@ constexpr double kLeastTabulatedAlpha = 2e-4;
 const double kFirstLog = std::log(kLeastTabulatedAlpha + kAlphaOffset);
 const double kLogStep = (std::log(1 + kAlphaOffset) - kFirstLog) / (kRoughnesses - 1);
 
-/// The table of one roughness, fitted when a shape first needs it.
-const FitTable& tabulated(Fresnel fresnel, int roughness) {
-    struct Entry {
-        std::once_flag once;
-        std::optional<FitTable> table;
-    };
-    static std::array<std::array<Entry, kRoughnesses>, 2> entries;
-    Entry& entry = entries[fresnel == Fresnel::one ? 0 : 1][static_cast<std::size_t>(roughness)];
+}  // namespace
+
+FitGrid::FitGrid(const GgxShape& shape, int order)
+    : shape_(shape),
+      orders_(order == 0 ? std::vector<int>(kWarpedOrders.begin(), kWarpedOrders.end()) : std::vector<int>{order}),
+      entries_(kRoughnesses) {}
+
+const FitTable& FitGrid::table(int roughness) const {
+    Entry& entry = entries_[static_cast<std::size_t>(roughness)];
     std::call_once(entry.once, [&] {
         const double alpha = std::exp(kFirstLog + kLogStep * roughness) - kAlphaOffset;
-        entry.table.emplace(fit_table(GgxShape{alpha, fresnel}, kWarpedOrders));
+        entry.table.emplace(fit_table(GgxShape{alpha, shape_.fresnel, shape_.ior}, orders_));
     });
     return *entry.table;
 }
 
-}  // namespace
+FitGrid::Neighbours FitGrid::neighbours(double alpha) const {
+    const double log_alpha = std::log(std::max(alpha, kLeastTabulatedAlpha) + kAlphaOffset);
+    const CubicStencil stencil((log_alpha - kFirstLog) / kLogStep, 0, kRoughnesses);
+    Neighbours found{{}, stencil.weights};
+    for (std::size_t k = 0; k < kNeighbours; ++k) {
+        found.tables[k] = &table(stencil.first + static_cast<int>(k));
+    }
+    return found;
+}
 
-FitTable ggx_fit_table(const GgxShape& shape) {
-    const double log_alpha = std::log(std::max(shape.alpha, kLeastTabulatedAlpha) + kAlphaOffset);
-    const CubicStencil s((log_alpha - kFirstLog) / kLogStep, 0, kRoughnesses);
-    FitTable sum(kWarpedOrders);
-    for (int k = 0; k < 4; ++k) {
-        const auto from = tabulated(shape.fresnel, s.first + k).values();
+FitTable FitGrid::interpolated(double alpha) const {
+    const Neighbours between = neighbours(alpha);
+    FitTable sum(orders_);
+    for (std::size_t k = 0; k < kNeighbours; ++k) {
+        const auto from = between.tables[k]->values();
         std::transform(from.begin(), from.end(), sum.values().begin(), sum.values().begin(),
-                       [w = s.weights[k]](float value, float total) { return total + w * value; });
+                       [w = between.weights[k]](float value, float total) { return total + w * value; });
     }
     return sum;
 }
 
-std::size_t prepare_ggx_table() {
+std::size_t FitGrid::complete() const {
     std::size_t bytes = 0;
-    for (const Fresnel fresnel : {Fresnel::one, Fresnel::schlick}) {
-        for (int i = 0; i < kRoughnesses; ++i) {
-            bytes += tabulated(fresnel, i).values().size_bytes();
-        }
+    for (int i = 0; i < kRoughnesses; ++i) {
+        bytes += table(i).values().size_bytes();
     }
     return bytes;
+}
+
+std::shared_ptr<const FitGrid> fit_grid(const GgxShape& shape, int order) {
+    constexpr std::size_t kRecentGrids = 16;
+    static RecentValues<std::pair<GgxShape, int>, FitGrid> recent(kRecentGrids);
+    const bool has_ior = shape.fresnel == Fresnel::dielectric;
+    const GgxShape key = {1, shape.fresnel, has_ior ? shape.ior : GgxShape{1}.ior};
+    return recent.get({key, order}, [&] { return std::make_shared<const FitGrid>(key, order); });
+}
+
+std::size_t prepare_ggx_table() {
+    return fit_grid({1, Fresnel::one}, 0)->complete() + fit_grid({1, Fresnel::schlick}, 0)->complete();
 }
 
 }  // namespace shlight

@@ -25,7 +25,7 @@ class LambertLanes {
     struct View {};
 
     template <class D>
-    HWY_INLINE View<D> view(D /*d*/, V<D> /*cos_o*/) const {
+    HWY_INLINE View<D> view(D /*d*/, V<D> /*cos_o*/, V<D> /*alpha*/) const {
         return {};
     }
     HWY_INLINE V<Floats> value(const HalfSum& /*sum*/, V<Floats> cos_i, const View<Floats>& /*view*/) const {

@@ -3,7 +3,7 @@
 // Lobes in lanes: f·cos of many directions, with one choice of the shape for all. Included once per instruction set.
 //
 // Lanes of a shape have
-//   view(d, cos_o)                        what f·cos needs of each lane's ω_o
+//   view(d, cos_o, alpha)                 what f·cos needs of each lane's ω_o and lobe_width()
 //   value(sum, cos_i, view)               f·cos towards ω_i = sum - ω_o, both above the horizon
 //   over_bell(d, cos_i, cos_half, view)   4 f·cos / D(h): in the plane of half vectors (contour_integral.h)
 // with cos_half = ω_i·h, and D the GGX distribution of the lobe's width, which is 1/π for a lobe without a peak.

@@ -7,6 +7,14 @@ double lobe_width(const LobeShape& shape) {
     return std::visit([](const auto& s) { return s.width(); }, shape);
 }
 
+LobeShape with_width(const LobeShape& shape, double width) {
+    LobeShape result = shape;
+    if (auto* ggx = std::get_if<GgxShape>(&result)) {
+        ggx->alpha = width;
+    }
+    return result;
+}
+
 bool is_glossy(const LobeShape& shape) {
     return std::visit([](const auto& s) { return s.kGlossy; }, shape);
 }

@@ -10,6 +10,10 @@ double narrowest(const LobeShape& lobe, double cos_theta_o) {
     return is_glossy(lobe) ? std::min(1.0, 2 * lobe_width(lobe) * std::max(cos_theta_o, kLeastFittedCosine)) : 1.0;
 }
 
+bool spread_alike(const Lobe& a, const Lobe& b) {
+    return a.varying_width == b.varying_width && sampled_shape(a.shape) == sampled_shape(b.shape);
+}
+
 MaterialLobes::MaterialLobes(std::span<const Lobe> lobes, int order, double tolerance)
     : auto_order_(order == 0), tolerance_(tolerance) {
     for (const Lobe& lobe : lobes) {
@@ -17,8 +21,10 @@ MaterialLobes::MaterialLobes(std::span<const Lobe> lobes, int order, double tole
             continue;
         }
         lobes_.push_back(lobe);
+        const auto* ggx = std::get_if<GgxShape>(&lobe.shape);
+        grids_.push_back(lobe.varying_width != 0 && ggx != nullptr ? fit_grid(*ggx, order) : nullptr);
         if (!auto_order_) {
-            fits_.push_back(is_mirror(lobe.shape) ? nullptr : warped_fit(lobe.shape, order));
+            fits_.push_back(is_mirror(lobe.shape) || lobe.varying_width != 0 ? nullptr : warped_fit(lobe.shape, order));
         }
     }
 }
@@ -35,10 +41,10 @@ LobeWeights MaterialLobes::weights(std::span<const double> cos_theta_o, std::vec
     return {values, vary ? lobes_.size() : 0};
 }
 
-double MaterialLobes::narrowest(double cos_theta_o) const {
+double MaterialLobes::narrowest(double cos_theta_o, std::span<const float> widths) const {
     double least = 1;
-    for (const Lobe& lobe : lobes_) {
-        least = std::min(least, shlight::narrowest(lobe.shape, cos_theta_o));
+    for (std::size_t i = 0; i < lobes_.size(); ++i) {
+        least = std::min(least, shlight::narrowest(shape(i, widths[i]), cos_theta_o));
     }
     return least;
 }

@@ -48,13 +48,15 @@ void ViewPositions::interpolate(const FitTable& table, std::size_t column, std::
 }
 
 void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPositions& positions,
-                        const LobeWeights& weights, bool judged) {
+                        const LobeWeights& weights, const LobeWidths& widths, bool judged) {
     lobe_ = &material.lobes()[lobe];
     weights_ = weights;
     index_ = lobe;
     fit_ = material.fit(lobe);
     positions_ = &positions;
-    chooses_ = material.auto_order() && fit_ != nullptr && fit_->table() != nullptr;
+    find_widths(widths, material.grid(lobe));
+    layout_ = !neighbours_.empty() ? neighbours_.front() : fit_ != nullptr ? fit_->table() : nullptr;
+    chooses_ = material.auto_order() && layout_ != nullptr;
     judged_ = judged;
     relative_tolerance_ = 0;
     has_warps_ = false;
@@ -64,17 +66,45 @@ void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPos
     }
 }
 
+void LobeViews::find_widths(const LobeWidths& widths, const FitGrid* grid) {
+    const std::size_t count = positions_->size();
+    widths_.assign(padded_views(count), static_cast<float>(lobe_width(shape())));
+    neighbours_.clear();
+    neighbour_weights_.clear();
+    if (grid == nullptr) {
+        return;
+    }
+    for (std::size_t view = 0; view < count; ++view) {
+        widths_[view] = widths.values[view * widths.stride + index_];
+        const FitGrid::Neighbours found = grid->neighbours(double{widths_[view]});
+        neighbours_.insert(neighbours_.end(), found.tables.begin(), found.tables.end());
+        neighbour_weights_.insert(neighbour_weights_.end(), found.weights.begin(), found.weights.end());
+    }
+}
+
+void LobeViews::interpolate(std::size_t column, std::size_t width, std::span<const std::uint32_t> views, float* out,
+                            std::size_t stride) const {
+    if (neighbours_.empty()) {
+        positions_->interpolate(*layout_, column, width, views, out, stride);
+        return;
+    }
+    columns_.resize(neighbours_.size());
+    std::transform(neighbours_.begin(), neighbours_.end(), columns_.begin(),
+                   [column](const FitTable* table) { return table->values().data() + column; });
+    positions_->interpolate(TableNeighbours{columns_.data(), neighbour_weights_.data()}, layout_->row_size(), width,
+                            views, out, stride);
+}
+
 void LobeViews::find_albedos() {
     const std::size_t count = positions_->size();
     albedo_.resize(count);
-    const FitTable* table = fit_ == nullptr ? nullptr : fit_->table();
-    if (table == nullptr) {
+    if (layout_ == nullptr) {
         std::transform(positions_->cosine().begin(), positions_->cosine().end(), albedo_.begin(),
                        [&](double cosine) { return static_cast<float>(lobe_->albedo(cosine)); });
         return;
     }
     heads_.grow(count * FitTable::kHeadWidth);
-    positions_->interpolate(*table, 0, FitTable::kHeadWidth, positions_->all(), heads_.data(), FitTable::kHeadWidth);
+    interpolate(0, FitTable::kHeadWidth, positions_->all(), heads_.data(), FitTable::kHeadWidth);
     for (std::size_t view = 0; view < count; ++view) {
         albedo_[view] = heads_.data()[view * FitTable::kHeadWidth + FitTable::kAlbedo];
     }
@@ -83,8 +113,10 @@ void LobeViews::find_albedos() {
 /// allowances: how much of the material's albedo there is for each of the lobe's; infinite where it has none itself.
 void LobeViews::choose_orders(double tolerance, std::span<const float> allowances) {
     const std::size_t count = positions_->size();
-    const FitTable* table = fit_ == nullptr ? nullptr : fit_->table();
-    const int only = fit_ == nullptr ? 0 : table == nullptr || !chooses_ ? fit_->orders().front() : -1;
+    const FitTable* table = layout_;
+    const int only = table != nullptr ? (chooses_ ? -1 : table->orders().front())
+                     : fit_ != nullptr ? fit_->orders().front()
+                                       : 0;
     black_.assign(count, 0);
     within_tolerance_.assign(count, 1);
     order_.assign(count, static_cast<std::uint8_t>(std::max(only, 0)));
@@ -123,7 +155,7 @@ double LobeViews::error_of_largest_order(std::size_t view) const {
         return std::numeric_limits<double>::infinity();
     }
     const float* head = heads_.data() + view * FitTable::kHeadWidth;
-    return double{head[FitTable::kShadingErrors + fit_->table()->orders().size() - 1]} * albedo_[view];
+    return double{head[FitTable::kShadingErrors + layout_->orders().size() - 1]} * albedo_[view];
 }
 
 WarpArrays LobeViews::warp_arrays() {
@@ -134,7 +166,7 @@ WarpArrays LobeViews::warp_arrays() {
     }
     double* w = warps_.data();
     if (!has_warps_) {
-        warp_views(lobe_width(shape()), views, positions_->size(),
+        warp_views(widths_.data(), views, positions_->size(),
                    {w, w + room, w + 2 * room, w + 3 * room, w + 4 * room, w + 5 * room, w + 6 * room});
         has_warps_ = true;
     }
@@ -143,7 +175,7 @@ WarpArrays LobeViews::warp_arrays() {
 }
 
 void LobeViews::interpolate_terms(std::size_t which, std::span<const std::uint32_t> used) {
-    const FitTable& table = *fit_->table();
+    const FitTable& table = *layout_;
     if (stride_ == 0) {
         // Wide enough for any of the orders.
         for (std::size_t i = 0; i < table.orders().size(); ++i) {
@@ -159,13 +191,12 @@ void LobeViews::interpolate_terms(std::size_t which, std::span<const std::uint32
             missing_.push_back(view);
         }
     }
-    positions_->interpolate(table, table.terms(which), table.width(which), missing_, terms_.data(), stride_);
+    interpolate(table.terms(which), table.width(which), missing_, terms_.data(), stride_);
 }
 
 LobeArrays LobeViews::arrays(int order, std::span<const std::uint32_t> used) {
-    const FitTable* table = fit_->table();
-    if (table != nullptr) {
-        interpolate_terms(table->which(order), used);
+    if (layout_ != nullptr) {
+        interpolate_terms(layout_->which(order), used);
         const bool warped = is_glossy(shape());
         return {warped, warped ? warp_arrays() : WarpArrays{}, terms_.data(), positions_->size() == 1 ? 0 : stride_,
                 order};
@@ -179,7 +210,7 @@ LobeArrays LobeViews::arrays(int order, std::span<const std::uint32_t> used) {
 }
 
 void MaterialViews::assign(const MaterialLobes& material, std::span<const double> cos_theta_o,
-                           const LobeWeights& weights, bool judged) {
+                           const LobeWeights& weights, const LobeWidths& widths, bool judged) {
     const bool weighed = judged || material.auto_order();
     lobe_count_ = material.lobes().size();
     tolerance_ = material.tolerance();
@@ -193,7 +224,7 @@ void MaterialViews::assign(const MaterialLobes& material, std::span<const double
         lobes_.resize(lobe_count_);
     }
     for (std::size_t i = 0; i < lobe_count_; ++i) {
-        lobes_[i].look_up(material, i, positions_, weights, weighed);
+        lobes_[i].look_up(material, i, positions_, weights, widths, weighed);
     }
     if (weighed && lobe_count_ > 1) {
         whole_.assign(positions_.size(), Rgb(0));

@@ -32,6 +32,10 @@ class ViewPositions {
     /// `width` numbers from a column on of the rows `views`, as interpolate_views.
     void interpolate(const FitTable& table, std::size_t column, std::size_t width, std::span<const std::uint32_t> views,
                      float* out, std::size_t stride) const;
+    void interpolate(const TableNeighbours& neighbours, std::size_t row_size, std::size_t width,
+                     std::span<const std::uint32_t> views, float* out, std::size_t stride) const {
+        interpolate_views(neighbours, row_size, width, row_.data(), weights_.data(), views, out, stride);
+    }
     /// 0, 1, 2 …
     std::span<const std::uint32_t> all() const { return std::span(all_).first(size_); }
 
@@ -47,7 +51,13 @@ class ViewPositions {
 /// One lobe at these views. Keeps its memory from one assignment to the next.
 class LobeViews {
   public:
+    /// Where its width varies, that of none of the views.
     const LobeShape& shape() const { return lobe_->shape; }
+    LobeShape shape(std::size_t view) const {
+        return lobe_->varying_width != 0 ? with_width(lobe_->shape, double{widths_[view]}) : lobe_->shape;
+    }
+    /// lobe_width() at each view.
+    const float* widths() const { return widths_.data(); }
     const ViewPositions& positions() const { return *positions_; }
 
     /// Whether each light is integrated in the way that is cheapest for it, or else all by harmonics of one order.
@@ -70,26 +80,30 @@ class LobeViews {
 
     /// What suffices beside absolute_tolerance(): a share of what the light brings; 0: nothing does.
     double relative_tolerance() const { return relative_tolerance_; }
-    int largest_order() const { return fit_->table()->orders().back(); }
+    int largest_order() const { return layout_->orders().back(); }
     /// Of the radiance; only if the lobe chooses.
     double error_of_largest_order(std::size_t view) const;
 
     /// As the kernels read it. order: of those views that `used` lists.
     LobeArrays arrays(int order, std::span<const std::uint32_t> used);
-    Warp warp(std::size_t view) const { return fit_->warp(positions_->cosine()[view]); }
+    Warp warp(std::size_t view) const { return lobe_warp(shape(view), positions_->cosine()[view]); }
 
   private:
     friend class MaterialViews;
 
     void look_up(const MaterialLobes& material, std::size_t lobe, ViewPositions& positions, const LobeWeights& weights,
-                 bool judged);
+                 const LobeWidths& widths, bool judged);
+    void find_widths(const LobeWidths& widths, const FitGrid* grid);
+    void interpolate(std::size_t column, std::size_t width, std::span<const std::uint32_t> views, float* out,
+                     std::size_t stride) const;
     void find_albedos();
     void choose_orders(double tolerance, std::span<const float> allowances);
     WarpArrays warp_arrays();
     void interpolate_terms(std::size_t which, std::span<const std::uint32_t> used);
 
     const Lobe* lobe_ = nullptr;
-    const WarpedFit* fit_ = nullptr;
+    const WarpedFit* fit_ = nullptr;      // null: a mirror, or the width varies
+    const FitTable* layout_ = nullptr;    // of the fit or of the grid's tables; null: a mirror, or Lambert
     ViewPositions* positions_ = nullptr;
     bool chooses_ = false, judged_ = false, any_black_ = false;
     LobeWeights weights_{};
@@ -98,6 +112,10 @@ class LobeViews {
     std::vector<float> albedo_, tolerance_;
     std::vector<std::uint8_t> black_, order_, within_tolerance_;
     AlignedFloats heads_;
+    std::vector<float> widths_;                         // padded
+    std::vector<const FitTable*> neighbours_;           // of each view, in the grid; empty: the width is the same
+    std::vector<float> neighbour_weights_;
+    mutable std::vector<const float*> columns_;         // likewise, from a column on
 
     bool has_warps_ = false;
     std::vector<double> warps_;  // the arrays of WarpOutput
@@ -109,10 +127,9 @@ class LobeViews {
 
 class MaterialViews {
   public:
-    /// judged: whether each lobe's within_tolerance() will be asked for. material and weights are kept by
-    /// reference.
+    /// judged: whether each lobe's within_tolerance() will be asked for. material and weights are kept by reference.
     void assign(const MaterialLobes& material, std::span<const double> cos_theta_o, const LobeWeights& weights,
-                bool judged);
+                const LobeWidths& widths, bool judged);
 
     /// Chooses anew, so that each lobe's radiance under a light of this strength is wrong by no more than `error`, or
     /// the material's tolerance of that radiance. Precondition: auto_order() of the material.

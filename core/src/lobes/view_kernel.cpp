@@ -85,9 +85,9 @@ HWY_INLINE V<Floats> power_minus_two_thirds(V<Floats> x) {
 
 /// The narrowness w / (1 + w^1.5)^(2/3) of the width w = 5 α cos^0.4 θ_o, of which lobe_warp() makes its warp. A
 /// float's rounding of it is one of the warp, which all that is warped shares.
-HWY_INLINE V<Floats> narrowness_in_lanes(double alpha, V<Floats> log_cosine) {
+HWY_INLINE V<Floats> narrowness_in_lanes(V<Floats> alpha, V<Floats> log_cosine) {
     const Floats d;
-    const auto width = hn::Mul(all(d, 5 * alpha), hn::Exp(d, hn::Mul(all(d, 0.4), log_cosine)));
+    const auto width = hn::Mul(hn::Mul(all(d, 5), alpha), hn::Exp(d, hn::Mul(all(d, 0.4), log_cosine)));
     return hn::Mul(width, power_minus_two_thirds(hn::MulAdd(width, hn::Sqrt(width), all(d, 1))));
 }
 
@@ -121,7 +121,7 @@ HWY_INLINE WarpLanes<Doubles> warp_in_lanes(V<Doubles> sine, V<Doubles> cosine, 
 }
 
 /// sine, cosine: of the fitted view.
-HWY_INLINE WarpPair warps_in_lanes(double alpha, V<Floats> log_cosine, const DoublePair& sine,
+HWY_INLINE WarpPair warps_in_lanes(V<Floats> alpha, V<Floats> log_cosine, const DoublePair& sine,
                                    const DoublePair& cosine) {
     const Doubles d;
     const HalfFloats half;
@@ -165,10 +165,10 @@ HWY_INLINE void store_warp(const WarpLanes<Doubles>& warp, std::size_t i, const 
     hn::StoreU(warp.horizon_sine, d, out.horizon_sine + i);
 }
 
-void warp_views_in_lanes(double alpha, const ViewOutput& views, std::size_t count, const WarpOutput& out) {
+void warp_views_in_lanes(const float* alpha, const ViewOutput& views, std::size_t count, const WarpOutput& out) {
     for (std::size_t i = 0; i < count; i += kLanes) {
         const Neighbours from(i);
-        const WarpPair warps = warps_in_lanes(alpha, hn::LoadU(Floats(), views.log_cosine + i),
+        const WarpPair warps = warps_in_lanes(hn::LoadU(Floats(), alpha + i), hn::LoadU(Floats(), views.log_cosine + i),
                                               from.pair(views.fitted_sine), from.pair(views.fitted_cosine));
         store_warp(warps.low, i, out);
         store_warp(warps.high, i + kLaneCount<Doubles>, out);
@@ -196,6 +196,27 @@ void interpolate_in_lanes(const float* table, std::size_t row_size, std::size_t 
     }
 }
 
+void interpolate_tables_in_lanes(const TableNeighbours& neighbours, std::size_t row_size, std::size_t width,
+                                 const std::uint32_t* rows, const float* weights, std::span<const std::uint32_t> views,
+                                 float* out, std::size_t stride) {
+    const Floats d;
+    for (const std::uint32_t view : views) {
+        const float* w = weights + std::size_t{4} * view;
+        float* to = out + view * stride;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const float* from = neighbours.tables[4 * view + k] + rows[view] * row_size;
+            const auto share = hn::Set(d, neighbours.weights[4 * view + k]);
+            for (std::size_t i = 0; i < width; i += kLanes) {
+                auto sum = hn::Mul(hn::Set(d, w[0]), hn::LoadU(d, from + i));
+                for (std::size_t row = 1; row < 4; ++row) {
+                    sum = hn::MulAdd(hn::Set(d, w[row]), hn::LoadU(d, from + row * row_size + i), sum);
+                }
+                hn::Store(k == 0 ? hn::Mul(share, sum) : hn::MulAdd(share, sum, hn::Load(d, to + i)), d, to + i);
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -206,18 +227,25 @@ namespace shlight {
 HWY_EXPORT(find_views_in_lanes);
 HWY_EXPORT(warp_views_in_lanes);
 HWY_EXPORT(interpolate_in_lanes);
+HWY_EXPORT(interpolate_tables_in_lanes);
 
 void find_views(const double* cos_theta_o, std::size_t count, const ViewOutput& out) {
     HWY_DYNAMIC_DISPATCH(find_views_in_lanes)(cos_theta_o, count, out);
 }
 
-void warp_views(double alpha, const ViewOutput& views, std::size_t count, const WarpOutput& out) {
+void warp_views(const float* alpha, const ViewOutput& views, std::size_t count, const WarpOutput& out) {
     HWY_DYNAMIC_DISPATCH(warp_views_in_lanes)(alpha, views, count, out);
 }
 
 void interpolate_views(const float* table, std::size_t row_size, std::size_t width, const std::uint32_t* rows,
                        const float* weights, std::span<const std::uint32_t> views, float* out, std::size_t stride) {
     HWY_DYNAMIC_DISPATCH(interpolate_in_lanes)(table, row_size, width, rows, weights, views, out, stride);
+}
+
+void interpolate_views(const TableNeighbours& neighbours, std::size_t row_size, std::size_t width,
+                       const std::uint32_t* rows, const float* weights, std::span<const std::uint32_t> views,
+                       float* out, std::size_t stride) {
+    HWY_DYNAMIC_DISPATCH(interpolate_tables_in_lanes)(neighbours, row_size, width, rows, weights, views, out, stride);
 }
 
 }  // namespace shlight

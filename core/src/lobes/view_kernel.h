@@ -36,13 +36,22 @@ struct WarpOutput {
     double *horizon_height, *horizon_sine;
 };
 
-/// The warps of a GGX lobe at the views that find_views found: those of lobe_warp(), whose narrowness is rounded to
-/// float here.
-void warp_views(double alpha, const ViewOutput& views, std::size_t count, const WarpOutput& out);
+/// The warps of GGX lobes at the views that find_views found: those of lobe_warp(), whose narrowness is rounded to
+/// float here. alpha: of each view, as padded as the views.
+void warp_views(const float* alpha, const ViewOutput& views, std::size_t count, const WarpOutput& out);
 
 /// Interpolated rows: for each i of `views` the weighted sum of the first `width` numbers, a multiple of 16, of four
 /// rows of a table, written to out + i · stride. out: aligned to 64 bytes, stride a multiple of 16.
 void interpolate_views(const float* table, std::size_t row_size, std::size_t width, const std::uint32_t* rows,
                        const float* weights, std::span<const std::uint32_t> views, float* out, std::size_t stride);
+
+/// The same between four tables for each view: those of view i from 4 i on, with weights.
+struct TableNeighbours {
+    const float* const* tables;
+    const float* weights;
+};
+void interpolate_views(const TableNeighbours& neighbours, std::size_t row_size, std::size_t width,
+                       const std::uint32_t* rows, const float* weights, std::span<const std::uint32_t> views,
+                       float* out, std::size_t stride);
 
 }  // namespace shlight

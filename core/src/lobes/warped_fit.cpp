@@ -19,7 +19,7 @@ FitTable make_table(const LobeShape& shape, int order) {
         return fit_table(shape, std::array{order});
     }
     const auto* ggx = std::get_if<GgxShape>(&shape);
-    return ggx != nullptr && ggx->fresnel != Fresnel::dielectric ? ggx_fit_table(*ggx)
+    return ggx != nullptr && ggx->fresnel != Fresnel::dielectric ? fit_grid(*ggx, 0)->interpolated(ggx->alpha)
                                                                  : fit_table(shape, kWarpedOrders);
 }
 

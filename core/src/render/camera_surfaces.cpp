@@ -9,6 +9,8 @@
 namespace shlight {
 namespace {
 
+constexpr float kLeastWidth = kLeastRoughness * kLeastRoughness;
+
 /// Of one material.
 class PlaceReader : public ShaderReader {
   public:
@@ -137,6 +139,12 @@ Rgb CameraSurfaces::color(const Surface& surface, std::uint32_t result) const {
             std::isfinite(color.z) ? color.z : 0.0F};
 }
 
+float CameraSurfaces::width(const Surface& surface, std::uint32_t result) const {
+    const float alpha = results_[surface.results + result * surface.stride];
+    // A NaN is the least too.
+    return std::min(alpha > kLeastWidth ? alpha : kLeastWidth, 1.0F);
+}
+
 /// Emission of the surfaces met last, and what is left of the rays behind them.
 void CameraSurfaces::pass_on(std::size_t first, std::vector<RayLight>& light) {
     active_.clear();
@@ -182,9 +190,11 @@ void CameraSurfaces::add_shaded(const CameraRay& ray, const Surface& surface, co
             continue;
         }
         weights_.assign(lobes.size(), Rgb(0));
+        widths_.assign(lobes.size(), 1);
         for (std::size_t i = first; i < lobes.size(); ++i) {
             if (shares(lobes[i])) {
                 weights_[i] = surface.throughput * color(surface, lobes[i].weight);
+                widths_[i] = lobes[i].alpha ? width(surface, *lobes[i].alpha) : 1.0F;
             }
         }
         if (std::all_of(weights_.begin(), weights_.end(), [](const Rgb& weight) { return weight == Rgb(0); })) {
@@ -198,7 +208,8 @@ void CameraSurfaces::add_shaded(const CameraRay& ray, const Surface& surface, co
         }
         const ShadingFrame frame =
             shading_frame(point.position, point.shading_normal, surface.place.at[0].towards_viewer);
-        hits.add(point, frame, view_cosine(frame, surface.place.at[0].towards_viewer), weights_, ray.sample);
+        hits.add(point, frame, view_cosine(frame, surface.place.at[0].towards_viewer), weights_, widths_,
+                 ray.sample);
     }
 }
 
@@ -216,7 +227,7 @@ void CameraSurfaces::add_hit(const CameraRay& ray, const Surface& surface, Hits&
     for (const Lobe& lobe : lobes) {
         weights_.push_back(surface.throughput * lobe.scale(cosine));
     }
-    hits.add(surface.point, frame, cosine, weights_, ray.sample);
+    hits.add(surface.point, frame, cosine, weights_, {}, ray.sample);
 }
 
 }  // namespace shlight

@@ -60,6 +60,7 @@ class CameraSurfaces {
     Vec3d vector(const Surface& surface, std::uint32_t result) const;
     /// Without what is not finite.
     Rgb color(const Surface& surface, std::uint32_t result) const;
+    float width(const Surface& surface, std::uint32_t result) const;
 
     const CompiledScene* scene_;
     std::span<const MaterialLobes> materials_;
@@ -74,7 +75,7 @@ class CameraSurfaces {
     std::vector<float> results_;
     ShaderProgram::Registers registers_;
     std::vector<Rgb> weights_;
-    std::vector<float> alphas_;
+    std::vector<float> widths_;
 };
 
 }  // namespace shlight

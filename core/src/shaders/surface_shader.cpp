@@ -8,7 +8,11 @@ namespace shlight {
 std::vector<Lobe> lobes_of(const SurfaceShader& shader) {
     std::vector<Lobe> lobes;
     for (const ShadedLobe& shaded : shader.lobes) {
-        lobes.push_back(Bsdf::lobe(shaded.shape, Rgb(1)).lobes().front());
+        if (shaded.alpha) {
+            lobes.push_back({shaded.shape, nullptr, Rgb(1), nullptr, *shaded.alpha + 1});
+        } else {
+            lobes.push_back(Bsdf::lobe(shaded.shape, Rgb(1)).lobes().front());
+        }
     }
     return lobes;
 }

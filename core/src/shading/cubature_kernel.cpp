@@ -70,12 +70,12 @@ namespace {
 struct SeenCircle {
     V<Floats> x, y, z, cosine, sine;
     HalfSum half;  // axis + view, summed in double
-    V<Floats> cos_o;
+    V<Floats> cos_o, width;
 };
 
 template <class Circles, class Views>
-HWY_INLINE SeenCircle seen(const CircleArrays& circles, const ViewArrays& views, const Circles& circle,
-                           const Views& view) {
+HWY_INLINE SeenCircle seen(const CircleArrays& circles, const ViewArrays& views, const float* widths,
+                           const Circles& circle, const Views& view) {
     SeenCircle s;
     s.x = circle.load(circles.x);
     s.y = circle.load(circles.y);
@@ -86,16 +86,17 @@ HWY_INLINE SeenCircle seen(const CircleArrays& circles, const ViewArrays& views,
     s.half.y = s.y;
     s.half.z = rounded_sum(circle.pair(circles.z), view.pair(views.z));
     s.cos_o = view.load(views.z);
+    s.width = view.load(widths);
     return s;
 }
 
 /// One over the square of the least distance on which f·cos changes near a light's middle, given the sum of that and
 /// the view. On the sphere where the bell is round, (h_x/α, h_y/α, h_z) normalised, a step of the direction is at most
 /// 1/α long before normalising.
-HWY_INLINE V<Floats> squared_change(float width2, const HalfSum& half) {
+HWY_INLINE V<Floats> squared_change(V<Floats> width, const HalfSum& half) {
     const Floats d;
     const auto across = hn::MulAdd(half.x, half.x, hn::Mul(half.y, half.y));
-    return hn::Div(all(d, 1), hn::MulAdd(hn::Mul(hn::Set(d, width2), half.z), half.z, across));
+    return hn::Div(all(d, 1), hn::MulAdd(hn::Mul(hn::Mul(width, width), half.z), half.z, across));
 }
 
 /// The first rule whose error is at most the tolerance. square: of the light's size beside the lobe.
@@ -117,39 +118,39 @@ HWY_INLINE V<hn::RebindToUnsigned<Floats>> smallest_rule(const std::array<RuleEr
 }
 
 template <class Lights, class Views>
-HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(float width2, const CircleArrays& circles, const ViewArrays& views,
+HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(const float* widths, const CircleArrays& circles, const ViewArrays& views,
                                                    const Lights& light, const Views& view, V<Floats> tolerance) {
     const Floats d;
     const hn::RebindToUnsigned<Floats> du;
-    const SeenCircle s = seen(circles, views, light, view);
+    const SeenCircle s = seen(circles, views, widths, light, view);
     const auto angle = arctangent(d, s.sine, s.cosine);
-    auto rule = smallest_rule(kCapErrors, hn::Mul(hn::Mul(angle, angle), squared_change(width2, s.half)), tolerance);
+    auto rule = smallest_rule(kCapErrors, hn::Mul(hn::Mul(angle, angle), squared_change(s.width, s.half)), tolerance);
     rule = hn::IfThenElseZero(hn::RebindMask(du, hn::Ge(s.z, s.sine)), rule);
     return hn::IfThenElse(hn::RebindMask(du, hn::Le(s.z, hn::Neg(s.sine))), hn::Set(du, kHidden), rule);
 }
 
 template <class Lights, class Views>
-HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(float width2, const PolygonArrays& polygons, const ViewArrays& views,
+HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(const float* widths, const PolygonArrays& polygons, const ViewArrays& views,
                                                    const Lights& light, const Views& view, V<Floats> tolerance) {
     const Floats d;
     const hn::RebindToUnsigned<Floats> du;
     const HalfSum half = {rounded_sum(light.pair(polygons.x), view.pair(views.x)), light.load(polygons.y),
                           rounded_sum(light.pair(polygons.z), view.pair(views.z))};
     const auto angle = light.load(polygons.half_angle);
-    const auto change = hn::Max(squared_change(width2, half), all(d, kFlatness * kFlatness));
+    const auto change = hn::Max(squared_change(view.load(widths), half), all(d, kFlatness * kFlatness));
     const auto rule = smallest_rule(kPolygonErrors, hn::Mul(hn::Mul(angle, angle), change), tolerance);
     return hn::IfThenElse(hn::RebindMask(du, hn::Lt(angle, hn::Zero(d))), hn::Set(du, kHidden), rule);
 }
 
 template <class Views, class Arrays>
-void choose_rules(float width2, const Arrays& lights, const ViewArrays& views, const float* tolerances,
+void choose_rules(const float* widths, const Arrays& lights, const ViewArrays& views, const float* tolerances,
                   std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
     const hn::Rebind<std::uint8_t, Floats> d8;
     constexpr std::size_t kLanes = kLaneCount<Floats>;
     std::size_t i = 0;
     for (; i + kLanes <= rules.size(); i += kLanes) {
         const Views view(view_of.data() + i, kLanes);
-        const auto rule = rule_of(width2, lights, views, Neighbours(i), view, view.load(tolerances));
+        const auto rule = rule_of(widths, lights, views, Neighbours(i), view, view.load(tolerances));
         hn::StoreU(hn::U8FromU32(rule), d8, rules.data() + i);
     }
     if (const std::size_t rest = rules.size() - i; rest > 0) {
@@ -158,32 +159,31 @@ void choose_rules(float width2, const Arrays& lights, const ViewArrays& views, c
             last[lane] = static_cast<std::uint32_t>(i + std::min(lane, rest - 1));
         }
         const Views view(view_of.data() + i, rest);
-        const auto rule = rule_of(width2, lights, views, Scattered(last.data(), kLanes), view, view.load(tolerances));
+        const auto rule = rule_of(widths, lights, views, Scattered(last.data(), kLanes), view, view.load(tolerances));
         store_some(d8, hn::U8FromU32(rule), rest, rules.data() + i);
     }
 }
 
 template <class Arrays>
-void choose_any_rules(double width, const Arrays& lights, const ViewArrays& views, const float* tolerances,
+void choose_any_rules(const float* widths, const Arrays& lights, const ViewArrays& views, const float* tolerances,
                       std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
-    const auto width2 = static_cast<float>(width * width);
     if (views.shared) {
-        choose_rules<Same>(width2, lights, views, tolerances, view_of, rules);
+        choose_rules<Same>(widths, lights, views, tolerances, view_of, rules);
     } else {
-        choose_rules<Scattered>(width2, lights, views, tolerances, view_of, rules);
+        choose_rules<Scattered>(widths, lights, views, tolerances, view_of, rules);
     }
 }
 
-void choose_cap_rules_in_lanes(double width, const CircleArrays& circles, const ViewArrays& views,
+void choose_cap_rules_in_lanes(const float* widths, const CircleArrays& circles, const ViewArrays& views,
                                const float* tolerances, std::span<const std::uint32_t> view_of,
                                std::span<std::uint8_t> rules) {
-    choose_any_rules(width, circles, views, tolerances, view_of, rules);
+    choose_any_rules(widths, circles, views, tolerances, view_of, rules);
 }
 
-void choose_polygon_rules_in_lanes(double width, const PolygonArrays& polygons, const ViewArrays& views,
+void choose_polygon_rules_in_lanes(const float* widths, const PolygonArrays& polygons, const ViewArrays& views,
                                    const float* tolerances, std::span<const std::uint32_t> view_of,
                                    std::span<std::uint8_t> rules) {
-    choose_any_rules(width, polygons, views, tolerances, view_of, rules);
+    choose_any_rules(widths, polygons, views, tolerances, view_of, rules);
 }
 
 /// Two vectors at right angles to a unit axis, as perpendicular() chooses them.
@@ -235,7 +235,7 @@ class CapRule {
     HWY_INLINE V<Floats> integral(const Lobe& lobe, const SeenCircle& s) const {
         const Floats d;
         const auto height = hn::Div(hn::Mul(s.sine, s.sine), hn::Add(all(d, 1), s.cosine));  // 1 - cosσ
-        const auto view = lobe.view(d, s.cos_o);
+        const auto view = lobe.view(d, s.cos_o, s.width);
         const Tangents t = tangents(s);
         auto sum = hn::Zero(d);
         for (std::size_t i = 0; i < rings_.size(); ++i) {
@@ -267,27 +267,27 @@ class CapRule {
 };
 
 template <class Views, class Lobe>
-void integrate(const Lobe& lobe, const CircleArrays& circles, std::span<const std::uint32_t> circle_of,
-               const ViewArrays& views, std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
+void integrate(const Lobe& lobe, const float* widths, const CircleArrays& circles,
+               std::span<const std::uint32_t> circle_of, const ViewArrays& views, std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     const Floats d;
     constexpr std::size_t kLanes = kLaneCount<Floats>;
     const CapRule cap_rule(rule);
     for (std::size_t i = 0; i < values.size(); i += kLanes) {
         const std::size_t count = std::min(kLanes, values.size() - i);
         const SeenCircle s =
-            seen(circles, views, Scattered(circle_of.data() + i, count), Views(view_of.data() + i, count));
+            seen(circles, views, widths, Scattered(circle_of.data() + i, count), Views(view_of.data() + i, count));
         store_some(d, cap_rule.integral(lobe, s), count, values.data() + i);
     }
 }
 
-void integrate_caps_in_lanes(const LobeShape& shape, const CircleArrays& circles,
+void integrate_caps_in_lanes(const LobeShape& shape, const float* widths, const CircleArrays& circles,
                              std::span<const std::uint32_t> circle_of, const ViewArrays& views,
                              std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     with_lobe_lanes(shape, [&](const auto& lobe) {
         if (views.shared) {
-            integrate<Same>(lobe, circles, circle_of, views, view_of, rule, values);
+            integrate<Same>(lobe, widths, circles, circle_of, views, view_of, rule, values);
         } else {
-            integrate<Scattered>(lobe, circles, circle_of, views, view_of, rule, values);
+            integrate<Scattered>(lobe, widths, circles, circle_of, views, view_of, rule, values);
         }
     });
 }
@@ -303,20 +303,20 @@ HWY_EXPORT(choose_cap_rules_in_lanes);
 HWY_EXPORT(choose_polygon_rules_in_lanes);
 HWY_EXPORT(integrate_caps_in_lanes);
 
-void choose_cap_rules(double width, const CircleArrays& circles, const ViewArrays& views, const float* tolerances,
+void choose_cap_rules(const float* widths, const CircleArrays& circles, const ViewArrays& views, const float* tolerances,
                       std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
-    HWY_DYNAMIC_DISPATCH(choose_cap_rules_in_lanes)(width, circles, views, tolerances, view_of, rules);
+    HWY_DYNAMIC_DISPATCH(choose_cap_rules_in_lanes)(widths, circles, views, tolerances, view_of, rules);
 }
 
-void choose_polygon_rules(double width, const PolygonArrays& polygons, const ViewArrays& views, const float* tolerances,
+void choose_polygon_rules(const float* widths, const PolygonArrays& polygons, const ViewArrays& views, const float* tolerances,
                           std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
-    HWY_DYNAMIC_DISPATCH(choose_polygon_rules_in_lanes)(width, polygons, views, tolerances, view_of, rules);
+    HWY_DYNAMIC_DISPATCH(choose_polygon_rules_in_lanes)(widths, polygons, views, tolerances, view_of, rules);
 }
 
-void integrate_caps(const LobeShape& shape, const CircleArrays& circles, std::span<const std::uint32_t> circle_of,
+void integrate_caps(const LobeShape& shape, const float* widths, const CircleArrays& circles, std::span<const std::uint32_t> circle_of,
                     const ViewArrays& views, std::span<const std::uint32_t> view_of, int rule,
                     std::span<float> values) {
-    HWY_DYNAMIC_DISPATCH(integrate_caps_in_lanes)(shape, circles, circle_of, views, view_of, rule, values);
+    HWY_DYNAMIC_DISPATCH(integrate_caps_in_lanes)(shape, widths, circles, circle_of, views, view_of, rule, values);
 }
 
 int cap_rule_points(int rule) {

@@ -80,7 +80,12 @@ void DirectLight::shade(const ShadingPoints& points, std::span<const std::uint32
         const std::span<const Rgb> own = points.weights(point);
         weights_.insert(weights_.end(), own.begin(), own.end());
     }
-    views_.assign(material, cosines_, {weights_, lobe_stride_}, true);
+    widths_.clear();
+    for (const std::uint32_t point : material.varies() ? some : some.first(0)) {
+        const std::span<const float> own = points.widths(point);
+        widths_.insert(widths_.end(), own.begin(), own.end());
+    }
+    views_.assign(material, cosines_, {weights_, lobe_stride_}, {widths_, lobe_stride_}, true);
     tolerance_ = material.tolerance();
     if (views_.lobe_count() == 0) {
         return;
@@ -123,13 +128,13 @@ LightRadiance DirectLight::light(std::size_t index) const {
 
 void DirectLight::find_strengths(const ShadingPoints& points, std::span<const std::uint32_t> some,
                                  const FaceRadiance& faces, std::size_t light_index, std::size_t lobe) {
-    const LobeShape& shape = views_.lobe(lobe).shape();
     const float* values = values_of(light_index, lobe);
     for (std::uint32_t view = 0; view < some.size(); ++view) {
         const std::uint32_t point = some[view];
         if (!(values[point] > 0)) {
             continue;
         }
+        const LobeShape shape = views_.lobe(lobe).shape(view);
         const ShadingFrame& frame = points.frame[point];
         const Vec3d towards_viewer = views_.positions().direction(view);
         Rgb& strength = own_strengths_[own_begin_[light_index] + lobe * point_count_ + point];
@@ -172,7 +177,7 @@ void DirectLight::apply_profile(std::size_t lobe, std::size_t view, const Shadin
     // A small light's radiance keeps within the tolerance whatever its profile, but a spot's rim should look right.
     const double tolerance =
         std::min(views.absolute_tolerance(view) / double{value}, tolerance_ * profile_.range().high);
-    const double mean = profile_.mean(views.shape(), points.cos_theta_o[point], tolerance);
+    const double mean = profile_.mean(views.shape(view), points.cos_theta_o[point], tolerance);
     value = static_cast<float>(value * mean);
 }
 

@@ -71,6 +71,7 @@ class DirectLight {
     std::vector<std::uint32_t> by_material_;
     std::vector<double> cosines_;
     std::vector<Rgb> weights_;
+    std::vector<float> widths_;
     MaterialViews views_;  // of some points
     LobeBatch batch_;
     SeenLights seen_;

@@ -118,7 +118,8 @@ FarLights::FarLights(std::span<const Light> lights, std::span<const MaterialLobe
     for (const MaterialLobes& material : materials) {
         auto& lobes = lobes_.emplace_back();
         for (const Lobe& lobe : material.lobes()) {
-            lobes.emplace_back(lobe.shape);
+            // Where the width varies no one sum is reflected.
+            lobes.push_back(lobe.varying_width != 0 ? FarLobe() : FarLobe(lobe.shape));
         }
     }
 }

@@ -18,7 +18,8 @@ std::span<const TrianglePoint> polygon_rule(int number) {
 CubatureSum cap_cubature(const LobeShape& shape, const Vec3d& view, const Circle& cap, int rule_number) {
     constexpr std::uint32_t kOnly = 0;
     float value = 0;
-    integrate_caps(shape, {&cap.axis.x, &cap.axis.y, &cap.axis.z, &cap.cosine, &cap.sine}, {&kOnly, 1},
+    const auto width = static_cast<float>(lobe_width(shape));
+    integrate_caps(shape, &width, {&cap.axis.x, &cap.axis.y, &cap.axis.z, &cap.cosine, &cap.sine}, {&kOnly, 1},
                    {&view.x, &view.z, true}, {&kOnly, 1}, rule_number, {&value, 1});
     return {value, cap_rule_points(rule_number)};
 }

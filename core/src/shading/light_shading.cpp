@@ -114,7 +114,7 @@ class LightShaderWork {
             }
             cosines_.resize(view + std::size_t{1});
         }
-        views_.assign(material_, cosines_, material_.weights(cosines_, weights_), false);
+        views_.assign(material_, cosines_, material_.weights(cosines_, weights_), {}, false);
     }
 
     /// What seen_ holds.

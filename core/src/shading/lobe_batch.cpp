@@ -179,12 +179,12 @@ bool LobeBatch::shows_mirrored(const PolygonBatch& polygons, std::size_t light, 
 
 void LobeBatch::choose_rules(const LobeViews& lobe, const CircleArrays& circles,
                              std::span<const std::uint32_t> view_of) {
-    choose_cap_rules(lobe_width(lobe.shape()), circles, lobe.positions().directions(), lobe.tolerances(), view_of,
+    choose_cap_rules(lobe.widths(), circles, lobe.positions().directions(), lobe.tolerances(), view_of,
                      rules_);
 }
 
 void LobeBatch::choose_rules(const LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of) {
-    choose_polygon_rules(lobe_width(lobe.shape()), polygons.views(), lobe.positions().directions(), lobe.tolerances(),
+    choose_polygon_rules(lobe.widths(), polygons.views(), lobe.positions().directions(), lobe.tolerances(),
                          view_of, rules_);
 }
 
@@ -281,7 +281,7 @@ void LobeBatch::by_largest_order(LobeViews& lobe, const Lights& lights) {
 }
 
 void LobeBatch::by_rule(const LobeViews& lobe, const CircleArrays& circles, int rule) {
-    integrate_caps(lobe.shape(), circles, items_, lobe.positions().directions(), item_views_, rule, item_values_);
+    integrate_caps(lobe.shape(), lobe.widths(), circles, items_, lobe.positions().directions(), item_views_, rule, item_values_);
     const int points = cap_rule_points(rule);
     for (const std::uint32_t light : items_) {
         efforts_[light] = points;
@@ -290,7 +290,7 @@ void LobeBatch::by_rule(const LobeViews& lobe, const CircleArrays& circles, int 
 
 void LobeBatch::by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
-        const CubatureSum sum = polygon_cubature(lobe.shape(), lobe.positions().direction(item_views_[k]),
+        const CubatureSum sum = polygon_cubature(lobe.shape(item_views_[k]), lobe.positions().direction(item_views_[k]),
                                                  SphericalPolygon(polygons.polygon(items_[k]), true), rule);
         item_values_[k] = static_cast<float>(sum.value);
         efforts_[items_[k]] = sum.points;
@@ -316,7 +316,7 @@ void LobeBatch::by_outline(const LobeViews& lobe, const PolygonBatch& polygons) 
 void LobeBatch::integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const OutlineArc> arcs) {
     const std::uint32_t view = item_views_[item];
     const double tolerance = lobe.absolute_tolerance(view);
-    const OutlineIntegral integral = outline_integral(lobe.shape(), lobe.positions().cosine()[view], arcs, tolerance);
+    const OutlineIntegral integral = outline_integral(lobe.shape(view), lobe.positions().cosine()[view], arcs, tolerance);
     item_values_[item] = static_cast<float>(integral.value);
     efforts_[items_[item]] = integral.points;
     missed_[items_[item]] = integral.error <= tolerance ? 0 : 1;

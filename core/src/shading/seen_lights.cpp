@@ -149,7 +149,8 @@ std::uint32_t SeenLights::size_of(const Polygon& polygon, const LobeViews& lobe,
     if (!polygon.disk) {
         return polygon.size;
     }
-    const double width = narrowest(lobe.shape(), lobe.positions().cosine()[view_of[polygon.number]]);
+    const std::uint32_t view = view_of[polygon.number];
+    const double width = narrowest(lobe.shape(view), lobe.positions().cosine()[view]);
     return static_cast<std::uint32_t>(disk_polygon_size(*polygon.disk, width, std::min(tolerance, kDiskTolerance)));
 }
 

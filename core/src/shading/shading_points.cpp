@@ -17,6 +17,14 @@ Vec3d towards_viewer(const Hits& hits, std::size_t hit) {
     return std::sqrt(1 - cosine * cosine) * hits.frame[hit].x + cosine * hits.frame[hit].z;
 }
 
+double relative_difference(std::span<const float> a, std::span<const float> b) {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        largest = std::max(largest, std::abs(double{a[i]} - b[i]) / std::max(a[i], b[i]));
+    }
+    return largest;
+}
+
 double nearest(std::span<const Light> lights, const DeltaLights& deltas, const Vec3d& position) {
     double distance = deltas.changing_distance(position);
     for (const Light& light : lights) {
@@ -33,6 +41,7 @@ void ShadingPoints::clear() {
     error.clear();
     material.clear();
     lobe_weight.clear();
+    lobe_width.clear();
     of_hit.clear();
     pixel_begin.assign(1, 0);
     members_.clear();
@@ -47,7 +56,8 @@ bool ShadingPoints::joins(const Hits& hits, std::size_t hit, std::size_t point) 
     const double difference = glm::length(hits.frame[hit].z - frame[point].z) +
                               glm::length(towards_viewer(hits, hit) - members.first_towards_viewer) +
                               glm::length(hits.frame[hit].origin - frame[point].origin) / members.nearest_light;
-    return difference <= members.spread;
+    return difference + members.narrowest * relative_difference(hits.widths(hit), members.first_widths) <=
+           members.spread;
 }
 
 void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, double nearest_light,
@@ -57,8 +67,11 @@ void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes
     error.push_back(hits.error[hit]);
     material.push_back(hits.material[hit]);
     lobe_weight.resize(lobe_weight.size() + lobe_stride_, Rgb(0));
-    const double spread = std::sqrt(3 * tolerance) * std::min(kWidestSpread, lobes.narrowest(hits.cos_theta_o[hit]));
-    members_.push_back({towards_viewer(hits, hit), spread, nearest_light, Vec3d(0), Vec3d(0), Vec3d(0), 0, 0});
+    lobe_width.resize(lobe_width.size() + lobe_stride_, 0);
+    const double narrowest = lobes.narrowest(hits.cos_theta_o[hit], hits.widths(hit));
+    const double spread = std::sqrt(3 * tolerance) * std::min(kWidestSpread, narrowest);
+    members_.push_back({towards_viewer(hits, hit), hits.widths(hit), narrowest, spread, nearest_light, Vec3d(0), Vec3d(0),
+                        Vec3d(0), 0, 0});
 }
 
 void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t point) {
@@ -68,6 +81,7 @@ void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t po
     members.towards_viewer += towards_viewer(hits, hit);
     for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
         lobe_weight[point * lobe_stride_ + lobe] += hits.weight(hit, lobe);
+        lobe_width[point * lobe_stride_ + lobe] += hits.widths(hit)[lobe];
     }
     ++members.count;
     of_hit.push_back(static_cast<std::uint32_t>(point));
@@ -82,6 +96,7 @@ void ShadingPoints::finish(std::size_t point) {
         cos_theta_o[point] = view_cosine(frame[point], viewer);
         for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
             lobe_weight[point * lobe_stride_ + lobe] /= static_cast<float>(members.count);
+            lobe_width[point * lobe_stride_ + lobe] /= static_cast<float>(members.count);
         }
     }
 }

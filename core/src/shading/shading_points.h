@@ -19,9 +19,9 @@ namespace shlight {
 
 class ShadingPoints {
   public:
-    /// One point for hits of a pixel with the same material whose normal, direction to the viewer and directions to
-    /// lights differ in sum by less than √(3 tolerance) times the least distance over which the material's f·cos
-    /// changes. The mean of a lobe over so small a spread is its value at the mean up to a fraction of the tolerance:
+    /// One point for hits of a pixel with the same material whose normal, direction to the viewer, directions to lights
+    /// and widths of lobes, in units of that distance, differ in sum by less than √(3 tolerance) times the least distance
+    /// over which the material's f·cos changes. The mean of a lobe over so small a spread is its value at the mean up to a fraction of the tolerance:
     /// what is left is the second difference.
     void assign(const Hits& hits, std::span<const MaterialLobes> materials, std::span<const Light> lights,
                 const DeltaLights& deltas, double tolerance);
@@ -33,6 +33,9 @@ class ShadingPoints {
     std::span<const Rgb> weights(std::size_t point) const {
         return std::span(lobe_weight).subspan(point * lobe_stride_, lobe_stride_);
     }
+    std::span<const float> widths(std::size_t point) const {
+        return std::span(lobe_width).subspan(point * lobe_stride_, lobe_stride_);
+    }
     std::span<const std::size_t> hits_of(std::size_t point) const {
         return std::span(hits_by_point_).subspan(members_[point].first_hit, members_[point].count);
     }
@@ -42,6 +45,7 @@ class ShadingPoints {
     std::vector<double> error;  ///< see SurfacePoint
     std::vector<std::uint32_t> material;
     std::vector<Rgb> lobe_weight;       ///< the mean over the point's hits of Hits::lobe_weight, lobe_stride × points
+    std::vector<float> lobe_width;      ///< likewise of Hits::lobe_width
     std::vector<std::uint32_t> of_hit;  ///< the point of each hit
     std::vector<std::size_t> pixel_begin;  ///< pixel p has the points pixel_begin[p] … pixel_begin[p + 1] - 1
 
@@ -49,6 +53,8 @@ class ShadingPoints {
     /// The hits of a point: what the first one demands of the others, and their sum.
     struct Members {
         Vec3d first_towards_viewer;
+        std::span<const float> first_widths;
+        double narrowest;      // least distance over which f·cos changes
         double spread;         // allowed difference from the first
         double nearest_light;  // distance
         Vec3d position, normal, towards_viewer;

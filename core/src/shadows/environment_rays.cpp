@@ -47,12 +47,14 @@ EnvironmentRays::EnvironmentRays(const RayTracer& tracer, const Environment& env
     : tracer_(&tracer), environment_(&environment), lobes_(materials) {
     for (const MaterialLobes& material : materials) {
         Sets& sets = materials_.emplace_back();
-        for (const Lobe& lobe : material.lobes()) {
-            const LobeShape shape = sampled_shape(lobe.shape);
-            if (is_mirror(shape)) {
+        for (std::size_t i = 0; i < material.lobes().size(); ++i) {
+            const auto alike = [&](std::size_t other) {
+                return spread_alike(material.lobes()[other], material.lobes()[i]);
+            };
+            if (is_mirror(material.lobes()[i].shape)) {
                 sets.mirror = true;
-            } else if (std::find(sets.lobes.begin(), sets.lobes.end(), shape) == sets.lobes.end()) {
-                sets.lobes.push_back(shape);
+            } else if (std::none_of(sets.lobes.begin(), sets.lobes.end(), alike)) {
+                sets.lobes.push_back(i);
             }
         }
     }
@@ -81,7 +83,11 @@ EnvironmentRays::Run EnvironmentRays::draw(const Hits& hits, std::size_t hit, co
                                            std::uint32_t seed) {
     const Sets& sets = materials_[hits.material[hit]];
     const Vec3d view = hits.view(hit);
-    const Directions directions(sets.lobes, view, environment_->map(), hits.frame[hit]);
+    shapes_.clear();
+    for (const std::size_t lobe : sets.lobes) {
+        shapes_.push_back(sampled_shape(lobes_[hits.material[hit]].shape(lobe, hits.widths(hit)[lobe])));
+    }
+    const Directions directions(shapes_, view, environment_->map(), hits.frame[hit]);
     const RayStart start(hits.frame[hit], hits.shadow_origin[hit], Vec3d(0));
     const auto push = [&](const Vec3d& direction, double density) {
         directions_.emplace_back(direction);
@@ -117,7 +123,7 @@ bool EnvironmentRays::all_free() const {
 EnvironmentRays::Sums EnvironmentRays::sum(const Hits& hits, std::span<const std::size_t> lit, std::size_t lit_index,
                                            std::size_t lobe, bool split) const {
     const std::size_t hit = lit[lit_index];
-    const LobeShape& shape = lobes_[hits.material[hit]].lobes()[lobe].shape;
+    const LobeShape shape = lobes_[hits.material[hit]].shape(lobe, hits.widths(hit)[lobe]);
     const bool mirror = is_mirror(shape);
     const Vec3d view = hits.view(hit);
     Sums result;

@@ -45,7 +45,7 @@ class EnvironmentRays {
   private:
     /// The sets of rays that a material takes.
     struct Sets {
-        std::vector<LobeShape> lobes;  // whose directions they have
+        std::vector<std::size_t> lobes;  // whose directions they have
         bool mirror = false;
     };
     /// The rays of a hit in one phase.
@@ -63,7 +63,8 @@ class EnvironmentRays {
     std::vector<Sets> materials_;
     std::uint64_t rays_traced_ = 0;
 
-    std::vector<Ray> rays_;  // of the phase
+    std::vector<LobeShape> shapes_;  // of a hit's sets
+    std::vector<Ray> rays_;          // of the phase
     std::vector<Vec3f> directions_;
     std::vector<Rgb> weights_, spot_weights_;  // radiance ÷ density: without spots, of spots
     std::vector<std::uint8_t> blocked_;

@@ -25,6 +25,7 @@ class ShadowRays::Drawing {
   public:
     Drawing(const SeenLight& seen, const Hits& hits, std::size_t hit, const RayPhase& phase, std::uint32_t seed)
         : hit_material(hits.material[hit]),
+          widths(hits.widths(hit)),
           view(hits.view(hit)),
           profile(&seen.profile()),
           start(hits.frame[hit], hits.shadow_origin[hit], clearance(seen.light(), hits.frame[hit])),
@@ -40,6 +41,7 @@ class ShadowRays::Drawing {
     }
 
     std::uint32_t hit_material;
+    std::span<const float> widths;
     Vec3d view;
     const ProfileView* profile;
     RayStart start;
@@ -59,14 +61,14 @@ ShadowRays::ShadowRays(const RayTracer& tracer, std::span<const MaterialLobes> m
                 sets.set_of_lobe.push_back(kLightOnly);
                 continue;
             }
-            const LobeShape shape = sampled_shape(lobe.shape);
-            const auto known = std::find(sets.shapes.begin(), sets.shapes.end(), shape);
-            sets.set_of_lobe.push_back(static_cast<std::uint32_t>(known - sets.shapes.begin()));
-            if (known == sets.shapes.end()) {
-                sets.shapes.push_back(shape);
+            const auto alike = [&](std::size_t other) { return spread_alike(material.lobes()[other], lobe); };
+            const auto known = std::find_if(sets.lobes.begin(), sets.lobes.end(), alike);
+            sets.set_of_lobe.push_back(static_cast<std::uint32_t>(known - sets.lobes.begin()));
+            if (known == sets.lobes.end()) {
+                sets.lobes.push_back(sets.set_of_lobe.size() - 1);
             }
         }
-        set_stride_ = std::max(set_stride_, 1 + sets.shapes.size());
+        set_stride_ = std::max(set_stride_, 1 + sets.lobes.size());
     }
 }
 
@@ -137,8 +139,9 @@ bool ShadowRays::shines(const LitHits& lit, std::size_t lit_index, const Materia
 void ShadowRays::draw(const Drawing& drawing, const LitHits& lit, std::size_t lit_index) {
     const Material& material = materials_[drawing.hit_material];
     bool mirrors_only = !shines(lit, lit_index, material, kLightOnly);
-    for (std::uint32_t set = 0; set < material.shapes.size(); ++set) {
-        mirrors_only = mirrors_only && !(!is_mirror(material.shapes[set]) && shines(lit, lit_index, material, set));
+    for (std::uint32_t set = 0; set < material.lobes.size(); ++set) {
+        mirrors_only =
+            mirrors_only && (is_mirror(set_shape(drawing, set)) || !shines(lit, lit_index, material, set));
     }
     std::size_t begin = directions_.size();
     const auto end_run = [&] {
@@ -153,15 +156,19 @@ void ShadowRays::draw(const Drawing& drawing, const LitHits& lit, std::size_t li
     }
     end_run();
     for (std::uint32_t set = 0; set + 1 < set_stride_; ++set) {
-        if (set < material.shapes.size() && shines(lit, lit_index, material, set)) {
-            draw_lobes(drawing, lit_index, set);
+        if (set < material.lobes.size() && shines(lit, lit_index, material, set)) {
+            draw_lobes(drawing, lit_index, set, set_shape(drawing, set));
         }
         end_run();
     }
 }
 
-void ShadowRays::draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set) {
-    const LobeShape& shape = materials_[drawing.hit_material].shapes[set];
+LobeShape ShadowRays::set_shape(const Drawing& drawing, std::size_t set) const {
+    const std::size_t lobe = materials_[drawing.hit_material].lobes[set];
+    return sampled_shape(lobes_[drawing.hit_material].shape(lobe, drawing.widths[lobe]));
+}
+
+void ShadowRays::draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set, const LobeShape& shape) {
     const bool mirror = is_mirror(shape);
     const double solid_angle = light_sampler_.solid_angle();
     if (!mirror && !(solid_angle * largest_lobe_density(shape, drawing.view) > kLeastShare)) {
@@ -194,7 +201,7 @@ std::size_t ShadowRays::blocked_count() const {
 
 RaySums ShadowRays::sum(const Hits& hits, const LitHits& lit, std::size_t lit_index, std::size_t lobe) const {
     const std::size_t hit = lit.hit[lit_index];
-    const LobeShape& shape = lobes_[hits.material[hit]].lobes()[lobe].shape;
+    const LobeShape shape = lobes_[hits.material[hit]].shape(lobe, hits.widths(hit)[lobe]);
     const Material& material = materials_[hits.material[hit]];
     const std::uint32_t set = material.set_of_lobe[lobe];
     const Vec3d view = hits.view(hit);

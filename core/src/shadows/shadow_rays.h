@@ -64,8 +64,8 @@ class ShadowRays {
   private:
     /// Lobes of a material whose directions are spread alike share their rays.
     struct Material {
-        std::vector<LobeShape> shapes;           // one per set of rays
-        std::vector<std::uint32_t> set_of_lobe;  // index of shapes, kLightOnly for diffuse lobes
+        std::vector<std::size_t> lobes;          // of each set of rays one
+        std::vector<std::uint32_t> set_of_lobe;  // index of lobes, kLightOnly for diffuse lobes
     };
     /// The rays of one set of a hit.
     struct Run {
@@ -77,9 +77,11 @@ class ShadowRays {
     void follow(const MeshLight& light, std::size_t before);
     /// The radiance of the faces that the rays of the phase would meet if nothing else were there.
     void find_colors(const FaceRadiance& faces);
-    void draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set);
+    void draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set, const LobeShape& shape);
     /// layers: of the light, one behind the other, each of which the unshadowed radiance counts.
     void push(const Drawing& drawing, const Vec3d& direction, double distance, double weight, int layers);
+    /// Whose directions a set has at a hit.
+    LobeShape set_shape(const Drawing& drawing, std::size_t set) const;
     bool shines(const LitHits& lit, std::size_t lit_index, const Material& material, std::uint32_t set) const;
 
     const RayTracer* tracer_;

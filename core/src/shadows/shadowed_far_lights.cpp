@@ -102,11 +102,12 @@ float ShadowedFarLights::value(const FarLight& light, const Hits& hits, std::siz
     }
     const Vec3d direction = glm::normalize(frame.to_local(way));
     const Rgb irradiance = glm::abs(light.intensity) * static_cast<float>(light.irradiance(way));
-    const std::span<const Lobe> lobes = materials_[hits.material[first + hit]].lobes();
+    const MaterialLobes& material = materials_[hits.material[first + hit]];
     float sum = 0;
-    for (std::size_t lobe = 0; lobe < lobes.size(); ++lobe) {
+    for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
         sum += glm::dot(glm::abs(hits.weight(first + hit, lobe)), irradiance) *
-               static_cast<float>(lobe_value(lobes[lobe].shape, direction, hits.view(first + hit)));
+               static_cast<float>(lobe_value(material.shape(lobe, hits.widths(first + hit)[lobe]), direction,
+                                            hits.view(first + hit)));
     }
     return sum;
 }

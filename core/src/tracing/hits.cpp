@@ -10,6 +10,7 @@ void Hits::clear() {
     error.clear();
     material.clear();
     lobe_weight.clear();
+    lobe_width.clear();
     sample.clear();
     radiance.clear();
     noise.clear();
@@ -17,7 +18,7 @@ void Hits::clear() {
 }
 
 void Hits::add(const SurfacePoint& surface, const ShadingFrame& shading_frame, float view_cosine,
-               std::span<const Rgb> weights, std::uint32_t sample_index) {
+               std::span<const Rgb> weights, std::span<const float> widths, std::uint32_t sample_index) {
     frame.push_back(shading_frame);
     cos_theta_o.push_back(view_cosine);
     shadow_origin.push_back(surface.position + surface.error * surface.geometric_normal);
@@ -25,6 +26,8 @@ void Hits::add(const SurfacePoint& surface, const ShadingFrame& shading_frame, f
     material.push_back(surface.material);
     lobe_weight.insert(lobe_weight.end(), weights.begin(), weights.end());
     lobe_weight.resize(size() * lobe_stride, Rgb(0));
+    lobe_width.insert(lobe_width.end(), widths.begin(), widths.end());
+    lobe_width.resize(size() * lobe_stride, 1);
     sample.push_back(sample_index);
     radiance.emplace_back(0);
     noise.emplace_back(0);

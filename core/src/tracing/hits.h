@@ -29,6 +29,7 @@ struct Hits {
     /// Weight of lobe i of hit h at h · lobe_stride + i: its colour as the viewer sees it. 0 for lobes that the
     /// material does not have.
     std::vector<Rgb> lobe_weight;
+    std::vector<float> lobe_width;               ///< likewise, of lobes whose width varies
     std::vector<std::uint32_t> sample;           ///< number of the camera ray within its pixel
     std::vector<Rgb> radiance;                   ///< reflected to the camera, summed up
     std::vector<Rgb> noise;                      ///< the part of its variance that comes from shadow rays
@@ -36,6 +37,10 @@ struct Hits {
 
     std::size_t size() const { return frame.size(); }
     const Rgb& weight(std::size_t hit, std::size_t lobe) const { return lobe_weight[hit * lobe_stride + lobe]; }
+    /// The widths of all lobes of a hit, where they vary.
+    std::span<const float> widths(std::size_t hit) const {
+        return std::span(lobe_width).subspan(hit * lobe_stride, lobe_stride);
+    }
     /// ω_o of a hit, in its shading frame.
     Vec3d view(std::size_t hit) const {
         const double cosine = cos_theta_o[hit];
@@ -43,9 +48,9 @@ struct Hits {
     }
     std::size_t pixel_count() const { return pixel_begin.size() - 1; }
     void clear();
-    /// weights: of the material's lobes.
+    /// weights, widths: of the material's lobes.
     void add(const SurfacePoint& surface, const ShadingFrame& shading_frame, float view_cosine,
-             std::span<const Rgb> weights, std::uint32_t sample_index);
+             std::span<const Rgb> weights, std::span<const float> widths, std::uint32_t sample_index);
     /// The hits added since the last call are those of one pixel.
     void end_pixel() { pixel_begin.push_back(size()); }
 };
