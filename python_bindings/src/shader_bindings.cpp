@@ -109,6 +109,9 @@ LobeShape shape_of(const std::string& kind, double ior) {
     if (kind == "ggx_schlick") {
         return GgxShape{1, Fresnel::schlick};
     }
+    if (kind == "ggx_dip") {
+        return GgxShape{1, Fresnel::dip};
+    }
     if (kind == "ggx_dielectric") {
         return GgxShape{1, Fresnel::dielectric, ior};
     }

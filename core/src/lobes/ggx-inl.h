@@ -28,6 +28,10 @@ HWY_INLINE V<D> fresnel_in_lanes(D d, double ior, V<D> cosine) {
         const auto square = hn::Mul(edge, edge);
         return hn::Mul(hn::Mul(square, square), edge);
     }
+    if constexpr (kFresnel == Fresnel::dip) {
+        const auto square = hn::Mul(edge, edge);
+        return hn::Mul(hn::Mul(hn::Mul(square, square), square), hn::Sub(one, edge));
+    }
     // The exact curve less its value head-on, (a² (1 + b²) - 2 a_0²) / 2 with b = 1 + f, a = a_0 + e and f and e as
     // multiples of `edge`: no difference of nearly equal numbers is left.
     const double head_on = (ior - 1) / (ior + 1);
@@ -110,6 +114,8 @@ void with_lanes_of(const GgxShape& shape, const Function& function) {
             return function(GgxLanes<Fresnel::one>(shape));
         case Fresnel::schlick:
             return function(GgxLanes<Fresnel::schlick>(shape));
+        case Fresnel::dip:
+            return function(GgxLanes<Fresnel::dip>(shape));
         case Fresnel::dielectric:
             return function(GgxLanes<Fresnel::dielectric>(shape));
     }

@@ -33,6 +33,10 @@ double fresnel_factor(const GgxShape& shape, double cosine) {
             const double edge = 1 - cosine;
             return edge * edge * edge * edge * edge;
         }
+        case Fresnel::dip: {
+            const double edge = 1 - cosine;
+            return cosine * edge * edge * edge * edge * edge * edge;
+        }
         case Fresnel::dielectric: {
             const double head_on = fresnel_dielectric(1, shape.ior);
             return std::max(0.0, (fresnel_dielectric(cosine, shape.ior) - head_on) / (1 - head_on));

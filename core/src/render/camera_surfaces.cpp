@@ -9,6 +9,9 @@
 namespace shlight {
 namespace {
 
+/// Normals that differ by less are those of floats and doubles of the same surface.
+constexpr double kSameNormal = 1e-6;
+
 constexpr float kLeastWidth = kLeastRoughness * kLeastRoughness;
 
 /// Of one material.
@@ -181,35 +184,48 @@ void CameraSurfaces::add_hits(std::span<const CameraRay> rays, std::size_t rays_
     }
 }
 
+void CameraSurfaces::find_normals(const Surface& surface, const SurfaceShader& shader) {
+    normals_.clear();
+    for (const ShadedLobe& lobe : shader.lobes) {
+        Vec3d normal = surface.point.shading_normal;
+        if (lobe.normal) {
+            const Vec3d own = vector(surface, *lobe.normal);
+            const double length = glm::length(own);
+            const bool differs = length > 0 && std::isfinite(length) && glm::distance(own / length, normal) > kSameNormal;
+            normal = differs ? own / length : normal;
+        }
+        normals_.push_back(normal);
+    }
+}
+
 /// One hit for each normal that lobes have.
 void CameraSurfaces::add_shaded(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader, Hits& hits) {
-    const std::span<const ShadedLobe> lobes(shader.lobes);
-    for (std::size_t first = 0; first < lobes.size(); ++first) {
-        const auto shares = [&](const ShadedLobe& lobe) { return lobe.normal == lobes[first].normal; };
-        if (std::any_of(lobes.begin(), lobes.begin() + static_cast<std::ptrdiff_t>(first), shares)) {
+    find_normals(surface, shader);
+    const std::size_t count = shader.lobes.size();
+    for (std::size_t first = 0; first < count; ++first) {
+        const Vec3d& normal = normals_[first];
+        if (std::find(normals_.begin(), normals_.begin() + static_cast<std::ptrdiff_t>(first), normal) !=
+            normals_.begin() + static_cast<std::ptrdiff_t>(first)) {
             continue;
         }
-        weights_.assign(lobes.size(), Rgb(0));
-        widths_.assign(lobes.size(), 1);
-        for (std::size_t i = first; i < lobes.size(); ++i) {
-            if (shares(lobes[i])) {
-                weights_[i] = surface.throughput * color(surface, lobes[i].weight);
-                widths_[i] = lobes[i].alpha ? width(surface, *lobes[i].alpha) : 1.0F;
+        weights_.assign(count, Rgb(0));
+        widths_.assign(count, 1);
+        bool any = false;
+        for (std::size_t i = first; i < count; ++i) {
+            const ShadedLobe& lobe = shader.lobes[i];
+            if (normals_[i] == normal) {
+                weights_[i] = surface.throughput * color(surface, lobe.weight);
+                widths_[i] = lobe.alpha ? width(surface, *lobe.alpha) : 1.0F;
+                any = any || weights_[i] != Rgb(0);
             }
         }
-        if (std::all_of(weights_.begin(), weights_.end(), [](const Rgb& weight) { return weight == Rgb(0); })) {
-            continue;
+        if (any) {
+            SurfacePoint point = surface.point;
+            point.shading_normal = normal;
+            const Vec3d& towards_viewer = surface.place.at[0].towards_viewer;
+            const ShadingFrame frame = shading_frame(point.position, normal, towards_viewer);
+            hits.add(point, frame, view_cosine(frame, towards_viewer), weights_, widths_, ray.sample);
         }
-        SurfacePoint point = surface.point;
-        if (lobes[first].normal) {
-            const Vec3d normal = vector(surface, *lobes[first].normal);
-            const double length = glm::length(normal);
-            point.shading_normal = length > 0 && std::isfinite(length) ? normal / length : point.shading_normal;
-        }
-        const ShadingFrame frame =
-            shading_frame(point.position, point.shading_normal, surface.place.at[0].towards_viewer);
-        hits.add(point, frame, view_cosine(frame, surface.place.at[0].towards_viewer), weights_, widths_,
-                 ray.sample);
     }
 }
 

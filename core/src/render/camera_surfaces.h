@@ -56,6 +56,8 @@ class CameraSurfaces {
     void pass_on(std::size_t first, std::vector<RayLight>& light);
     void add_hits(std::span<const CameraRay> rays, std::size_t rays_per_pixel, Hits& hits);
     void add_hit(const CameraRay& ray, const Surface& surface, Hits& hits);
+    /// Unit normals of the lobes.
+    void find_normals(const Surface& surface, const SurfaceShader& shader);
     void add_shaded(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader, Hits& hits);
     Vec3d vector(const Surface& surface, std::uint32_t result) const;
     /// Without what is not finite.
@@ -74,6 +76,7 @@ class CameraSurfaces {
     std::vector<ShadedPlace> places_;
     std::vector<float> results_;
     ShaderProgram::Registers registers_;
+    std::vector<Vec3d> normals_;
     std::vector<Rgb> weights_;
     std::vector<float> widths_;
 };

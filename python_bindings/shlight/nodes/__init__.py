@@ -15,6 +15,7 @@ from shlight.nodes.inputs import (
     towards_viewer,
     uv,
 )
+from shlight.nodes.principled import glossy, principled
 from shlight.nodes.shader import Shader, emission, ggx, lambert, mix, transparent
 from shlight.nodes.textures import image
 from shlight.nodes.values import Color, Value, Vector
@@ -30,12 +31,14 @@ __all__ = [
     "emission",
     "geometric_normal",
     "ggx",
+    "glossy",
     "image",
     "lambert",
     "mix",
     "normal",
     "object_value",
     "position",
+    "principled",
     "towards_viewer",
     "transparent",
     "uv",

@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: MIT
+"""The Principled BSDF of Blender 4: sheets of lobes, each of which the lower ones see through."""
+
+from __future__ import annotations
+
+from shlight.nodes import energy
+from shlight.nodes.inputs import geometric_normal, normal, towards_viewer
+from shlight.nodes.shader import Lobe, Shader, emission, transparent
+from shlight.nodes.values import (
+    Color,
+    Number,
+    Value,
+    Varying,
+    Vector,
+    clamp,
+    color,
+    dot,
+    length,
+    maximum,
+    minimum,
+    number,
+    operation,
+    select,
+    sqrt,
+)
+
+# Indices of refraction between which a varying one is interpolated.
+IOR_NODES = (1.0 + 1e-4, 1.1, 1.25, 1.45, 1.7, 2.1, 2.8, 4.0, 8.0, 20.0)
+# The cosine at which a tint of metals' edges is given, and what it is multiplied with there.
+EDGE = 6.0 / 7.0
+
+
+def _as_color(v: Vector) -> Color:
+    return Color(v.x, v.y, v.z)
+
+
+def _mix(a: Vector, b: Varying, share: Varying) -> Color:
+    return _as_color(a + (color(b) - a) * share)
+
+
+def _largest(c: Vector) -> Value:
+    return maximum(maximum(c.x, c.y), c.z)
+
+
+def _clamped(c: Vector) -> Color:
+    return Color(*(clamp(component) for component in c))
+
+
+def reflecting_normal(n: Vector) -> Vector:
+    """The normal, turned towards the triangle's own until the mirror image of the viewer is above the triangle.
+
+    As Cycles turns normals of glossy reflections (`ensure_valid_specular_reflection`): the mirror image is lifted to
+    a cosine of min(0.01, 0.9 of the view's).
+    """
+    to_viewer, up = towards_viewer(), geometric_normal()
+    view_height = dot(to_viewer, up)
+    reflected_height = 2.0 * dot(n, to_viewer) * dot(n, up) - view_height
+    least = minimum(0.9 * view_height, 0.01)
+    across = n - up * dot(n, up)
+    across_length = length(across)
+    x = Vector(*(select(across_length > 0.0, a / across_length, b) for a, b in zip(across, n, strict=True)))
+    ix = dot(to_viewer, x)
+    a = ix * ix + view_height * view_height
+    b = 2.0 * (a + view_height * least)
+    c = (least + view_height) * (least + view_height)
+    root = sqrt(b * b - 4.0 * a * c)
+    height_squared = clamp(0.25 * (b + select(ix < 0.0, root, -root)) / a)
+    turned = x * sqrt(1.0 - height_squared) + up * sqrt(height_squared)
+    return Vector(*(select(reflected_height < least, t, own) for t, own in zip(turned, n, strict=True)))
+
+
+def head_on(ior: Number) -> Value:
+    """The reflectance of a dielectric for light along the normal."""
+    i = number(ior)
+    root = (i - 1.0) / (i + 1.0)
+    return root * root
+
+
+def _bounces(roughness: Value, cosine: Value, mean_fresnel: Color) -> Color:
+    """By how much light that is reflected by several microfacets brightens a lobe (Kulla & Conty 2017)."""
+    own, mean = energy.albedo(roughness, cosine), energy.mean_albedo(roughness)
+    again = mean_fresnel * mean / (1.0 - mean_fresnel * (1.0 - mean))
+    return _as_color(1.0 + again * ((1.0 - own) / own))
+
+
+def _rising_lobes(weight: Vector, ior: Value, alpha: Value, at: Vector | None) -> tuple[Lobe, ...]:
+    """Lobes of the rise of Fresnel's curve; of a varying index by interpolation."""
+    if ior.constant is not None:
+        return (Lobe("ggx_dielectric", _as_color(weight), alpha, at, max(ior.constant, 1.0 + 1e-6)),)
+    lobes = []
+    for i, node in enumerate(IOR_NODES):
+        share: Value = number(1.0)
+        if i > 0:
+            share = minimum(share, (ior - IOR_NODES[i - 1]) / (node - IOR_NODES[i - 1]))
+        if i + 1 < len(IOR_NODES):
+            share = minimum(share, (IOR_NODES[i + 1] - ior) / (IOR_NODES[i + 1] - node))
+        lobes.append(Lobe("ggx_dielectric", _as_color(weight * maximum(share, 0.0)), alpha, at, node))
+    return tuple(lobes)
+
+
+def _dielectric(
+    weight: Vector, f0: Color, ior: Value, roughness: Value, at: Vector, *, several_bounces: bool
+) -> tuple[tuple[Lobe, ...], Color]:
+    """Lobes of a dielectric interface, and the share of light that it lets through."""
+    alpha = roughness * roughness
+    cosine = clamp(dot(towards_viewer(), at), 1e-4)
+    own = _as_color(weight * 1.0)
+    dimmed = color(1.0)
+    if several_bounces:
+        mean = (ior - 1.0) / (4.08567 + 1.00071 * ior)
+        base = head_on(ior)
+        mean_fresnel = _mix(f0, 1.0, clamp((mean - base) / (1.0 - base)))
+        brighter = _bounces(roughness, cosine, mean_fresnel)
+        own = _as_color(own * brighter)
+        dimmed = _as_color(brighter * energy.albedo(roughness, cosine))
+    lobes = (Lobe("ggx", _as_color(own * f0), alpha, at), *_rising_lobes(own * (1.0 - f0), ior, alpha, at))
+    reflected = _mix(f0, 1.0, energy.rise(roughness, cosine, ior)) * dimmed
+    return lobes, color(clamp(1.0 - _largest(reflected)))
+
+
+def _metal(weight: Vector, f0: Color, edge_tint: Color, roughness: Value, at: Vector, *, several_bounces: bool) -> tuple[Lobe, ...]:
+    """Lobes of a metal: Schlick's curve, less what a tint takes away near 82° (Kutz et al. 2021)."""
+    alpha = roughness * roughness
+    schlick = _mix(f0, 1.0, EDGE**5)
+    dip = _as_color(schlick * (7.0 / EDGE**6) * (1.0 - edge_tint))
+    own = _as_color(weight * 1.0)
+    if several_bounces:
+        cosine = clamp(dot(towards_viewer(), at), 1e-4)
+        own = _as_color(own * _bounces(roughness, cosine, _as_color(_mix(f0, 1.0, 1.0 / 21.0) - dip * (1.0 / 126.0))))
+    lobes = (Lobe("ggx", _as_color(own * f0), alpha, at), Lobe("ggx_schlick", _as_color(own * (1.0 - f0)), alpha, at))
+    return lobes if dip.constant == (0.0, 0.0, 0.0) else (*lobes, Lobe("ggx_dip", _as_color(-(own * dip)), alpha, at))
+
+
+def glossy(tint: Varying, roughness: Number, *, several_bounces: bool = False, at: Vector | None = None) -> Shader:
+    """A GGX lobe without Fresnel's factor: Blender's Glossy BSDF."""
+    c = Color(*(maximum(component, 0.0) for component in color(tint, "tint")))
+    n = reflecting_normal(normal() if at is None else at)
+    r = clamp(number(roughness, "roughness"))
+    weight = c
+    if several_bounces:
+        weight = _as_color(c * _bounces(r, clamp(dot(towards_viewer(), n), 1e-4), _clamped(c)))
+    return Shader((Lobe("ggx", weight, r * r, n),))
+
+
+def principled(
+    base_color: Varying = (0.8, 0.8, 0.8),
+    *,
+    metallic: Number = 0.0,
+    roughness: Number = 0.5,
+    ior: Number = 1.5,
+    alpha: Number = 1.0,
+    specular_ior_level: Number = 0.5,
+    specular_tint: Varying = (1.0, 1.0, 1.0),
+    coat_weight: Number = 0.0,
+    coat_roughness: Number = 0.03,
+    coat_ior: Number = 1.5,
+    coat_tint: Varying = (1.0, 1.0, 1.0),
+    coat_normal: Vector | None = None,
+    transmission_weight: Number = 0.0,
+    emission_color: Varying = (1.0, 1.0, 1.0),
+    emission_strength: Number = 0.0,
+    several_bounces: bool = False,
+    at: Vector | None = None,
+) -> Shader:
+    """Blender's Principled BSDF, without sheen, anisotropy, thin film and what goes through the surface.
+
+    Arguments are the node's inputs; several_bounces: its distribution Multiscatter GGX; at: its normal.
+    """
+    base = Color(*(maximum(component, 0.0) for component in color(base_color, "base_color")))
+    f0_of_metal = _clamped(base)
+    metal = clamp(number(metallic, "metallic"))
+    rough = clamp(number(roughness, "roughness"))
+    index = maximum(number(ior, "ior"), 1e-5)
+    tint = Color(*(maximum(component, 0.0) for component in color(specular_tint, "specular_tint")))
+    opaque = clamp(number(alpha, "alpha"))
+    n = normal() if at is None else at
+    glossy_normal = reflecting_normal(n)
+
+    result = transparent(1.0 - opaque)
+    weight = color(opaque)
+    coat = maximum(number(coat_weight, "coat_weight"), 0.0)
+    if coat.constant != 0.0:
+        coat_index = maximum(number(coat_ior, "coat_ior"), 1.0)
+        coat_at = reflecting_normal(normal() if coat_normal is None else coat_normal)
+        lobes, passed = _dielectric(
+            weight * coat, color(head_on(coat_index)), coat_index, clamp(coat_roughness), coat_at, several_bounces=True
+        )
+        result += Shader(lobes)
+        # Weights of several lobes above 1 hide all that is below, as the sum of their shares does.
+        weight = _as_color(weight * clamp(1.0 - coat * (1.0 - passed.x)))
+        weight = _as_color(weight * _coat_color(color(coat_tint, "coat_tint"), coat, coat_index, coat_at))
+    result += emission(color(emission_color, "emission_color") * number(emission_strength, "emission_strength")) * weight
+
+    several = {"several_bounces": several_bounces}
+    if metal.constant != 0.0:
+        edge = Color(*(minimum(component, 1.0) for component in tint))
+        result += Shader(_metal(weight * metal, f0_of_metal, edge, rough, glossy_normal, **several))
+        weight = _as_color(weight * (1.0 - metal))
+    through = clamp(number(transmission_weight, "transmission_weight"))
+    if through.constant != 0.0:
+        f0 = _clamped(tint * head_on(index))
+        lobes, _ = _dielectric(weight * through, f0, maximum(index, 1.0 / index), rough, glossy_normal, **several)
+        result += Shader(lobes)
+        weight = _as_color(weight * (1.0 - through))
+    if weight.constant == (0.0, 0.0, 0.0):
+        return result
+    level = maximum(number(specular_ior_level, "specular_ior_level"), 0.0)
+    reflectance = head_on(index)
+    if level.constant != 0.5:
+        reflectance = reflectance * (2.0 * level)
+        root = sqrt(clamp(reflectance, 0.0, 0.99))
+        index = (1.0 + root) / (1.0 - root)
+    index = maximum(index, 1.0 / index)
+    if index.constant != 1.0:
+        f0 = _clamped(tint * reflectance)
+        lobes, passed = _dielectric(weight, f0, index, rough, glossy_normal, **several)
+        result += Shader(lobes)
+        weight = _as_color(weight * passed)
+    return result + Shader((Lobe("lambert", _as_color(weight * base), normal=at),))
+
+
+def _coat_color(tint: Color, coat: Value, index: Value, at: Vector) -> Color:
+    """What the coat lets through of each colour: its tint, along the refracted way through it."""
+    if tint.constant == (1.0, 1.0, 1.0):
+        return color(1.0)
+    cosine = dot(towards_viewer(), at)
+    inside = sqrt(1.0 - (1.0 - cosine * cosine) / (index * index))
+    passed = Color(*(operation("power", component, 1.0 / inside) for component in tint))
+    return _mix(color(1.0), passed, coat)
+
