@@ -103,6 +103,15 @@ LobeShape shape_of(const std::string& kind, double ior) {
     if (kind == "lambert") {
         return LambertShape{};
     }
+    if (kind == "oren_nayar") {
+        return DiffuseShape{Diffuse::oren_nayar};
+    }
+    if (kind == "oren_nayar_loss") {
+        return DiffuseShape{Diffuse::oren_nayar_loss};
+    }
+    if (kind == "bumped_lambert") {
+        return DiffuseShape{Diffuse::bumped};
+    }
     if (kind == "ggx") {
         return GgxShape{1, Fresnel::one};
     }
@@ -153,7 +162,10 @@ void bind_shader(py::module_& m) {
         }
         return list;
     });
-    py::class_<ImageTexture, std::shared_ptr<ImageTexture>>(m, "ImageTexture", without_constructor());
+    py::class_<ImageTexture, std::shared_ptr<ImageTexture>>(m, "ImageTexture", without_constructor())
+        .def_property_readonly(
+            "size", [](const ImageTexture& self) { return std::pair(self.width(), self.height()); },
+            "Width and height in texels.");
     m.def("image_texture", &image_from, "pixels"_a, "interpolation"_a, "extension"_a);
     py::class_<ShaderProgram>(m, "ShaderProgram", without_constructor())
         .def("evaluate", &evaluate, "inputs"_a, "count"_a)

@@ -75,19 +75,24 @@ class ExpressionReader:
     def expression(self, socket: Any, groups: tuple[Any, ...] = ()) -> Expression:
         """What an input socket receives."""
         source = origin(socket, groups)
-        if source.node is None:
-            return own_value(source.socket)
+        return own_value(source.socket) if source.node is None else self.output(source, socket)
+
+    def output(self, source: Origin, socket: Any = None) -> Expression:
+        """What a node makes; socket: the input that asks for it."""
         key = (source.node.as_pointer(), source.output.identifier, tuple(g.as_pointer() for g in source.groups))
         if key not in self._known:
             if key in self._open:
                 self.report.add(self.at(source.node), "its links run in a circle; 0 is used")
                 return number(0.0)
             self._open.add(key)
-            self._known[key] = self._read(source, socket)
+            self._known[key] = self._read(source, source.socket if socket is None else socket)
             self._open.discard(key)
         return self._known[key]
 
     def _read(self, source: Origin, socket: Any) -> Expression:
+        from .image_nodes import image_texture, tex_coord, uv_map
+
+        NODES.update({"TEX_IMAGE": image_texture, "UVMAP": uv_map, "TEX_COORD": tex_coord})
         read = NODES.get(source.node.type)
         if read is not None:
             found = read(NodeInputs(self, source.node, source.output, source.groups))

@@ -16,10 +16,10 @@ import shlight
 from ..compat import LAMPS, lamp_casts_shadows, lamp_is_normalized, lamp_tint, point_is_disk, uses_nodes
 from ..report import Effect, ExportReport
 from .nodes import RGB, rgb
+from .materials import with_light
 from .shaders import SHADERS
-from .surface import SurfaceReader
+from .surface import ShaderReader
 from .textured_lamps import UNIT_SQUARE, EvenLamp, EvenPart, even_lamp
-from .textures import UvOwner
 
 # The widest sun of Blender 3.4 [rad]: beyond, the plane that it is even on is nearly parallel to its light.
 WIDEST_TANGENT_SUN = 3.0
@@ -96,11 +96,14 @@ def _glow_of_nodes(lamp: Any, place: str, report: ExportReport) -> EvenLamp:
     output = lamp.node_tree.get_output_node("CYCLES")
     if output is None:
         return EvenLamp(np.zeros(3), [])
-    uvs_of: UvOwner | None = "area lamp" if lamp.type == "AREA" else None
-    surface = SurfaceReader(place, report, SHADERS, uvs_of=uvs_of).surface(output.inputs["Surface"])
-    if not surface.textured:
+    surface = with_light(ShaderReader(place, report, SHADERS).shader(output.inputs["Surface"]), place, report)
+    if surface.varying is None:
         return EvenLamp(surface.emission, [])
-    return even_lamp(surface, lamp.shape in ROUND_SHAPES, partial(report.add, place))
+    remark = partial(report.add, place)
+    if lamp.type == "AREA":
+        return even_lamp(surface.varying, lamp.shape in ROUND_SHAPES, remark)
+    remark("light that varies over the lamp or with the direction is not supported; that of one place is used")
+    return EvenLamp(surface.varying.radiance({}, 1)[0], [])
 
 
 def _add_point(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:

@@ -3,28 +3,43 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-import shlight
+from shlight import nodes
+from shlight.nodes import Shader
 
 from ..compat import MATERIALS, uses_nodes
 from ..report import Effect, ExportReport
-from .nodes import origin
-from .principled import untouched_principled
+from .emission import VaryingEmission
+from .nodes import RGB, origin
 from .shaders import SHADERS
-from .surface import Surface, SurfaceReader, lambert
+from .surface import ShaderReader
 
 # What Cycles draws where an object has no material.
 DEFAULT_ALBEDO = 0.8
 
 
+@dataclass(frozen=True)
+class Surface:
+    """A material's shader, and the light that it gives on both sides: a constant (RGB), or what varies."""
+
+    shader: Shader = field(default_factory=Shader)
+    emission: RGB = field(default_factory=lambda: np.zeros(3))
+    varying: VaryingEmission | None = None
+
+    def emits(self) -> bool:
+        """True if it may give light."""
+        return bool(self.emission.any()) or self.varying is not None
+
+
 def default_surface() -> Surface:
     """The surface of an object without material."""
     if MATERIALS.default_is_principled:
-        return Surface(untouched_principled(np.full(3, DEFAULT_ALBEDO)))
-    return Surface(shlight.Bsdf.lambert(DEFAULT_ALBEDO))
+        return Surface(nodes.principled(DEFAULT_ALBEDO))
+    return Surface(nodes.lambert(DEFAULT_ALBEDO))
 
 
 def read_material(material: Any, report: ExportReport) -> Surface:
@@ -32,7 +47,7 @@ def read_material(material: Any, report: ExportReport) -> Surface:
     if material is None:
         return default_surface()
     if not uses_nodes(material):
-        return Surface(lambert(np.maximum(np.array(material.diffuse_color[:3], dtype=np.float64), 0.0)))
+        return Surface(nodes.lambert(np.maximum(np.array(material.diffuse_color[:3], dtype=np.float64), 0.0)))
     place = f"Material '{material.name}'"
     output = material.node_tree.get_output_node("CYCLES")
     if output is None:
@@ -42,9 +57,22 @@ def read_material(material: Any, report: ExportReport) -> Surface:
         socket = output.inputs.get(name)
         if socket is not None and origin(socket).node is not None:
             report.add(place, f"{name.lower()} is not supported; left out")
-    surface = SurfaceReader(place, report, SHADERS, uvs_of="mesh").surface(output.inputs["Surface"])
-    factors = [surface.emission, *(glow.factor for glow in surface.textured)]
-    if not np.isfinite(factors).all():
+    reader = ShaderReader(place, report, SHADERS)
+    return with_light(reader.shader(output.inputs["Surface"]), place, report)
+
+
+def with_light(shader: Shader, place: str, report: ExportReport) -> Surface:
+    """A shader as a surface, and `report` what of its light is not supported."""
+    constant = shader.emission.constant
+    if constant is None:
+        return Surface(shader, varying=VaryingEmission(shader.emission))
+    light = np.array(constant)
+    if not np.isfinite(light).all():
         report.add(place, "the emitted light is not finite; nothing is emitted", Effect.LIGHT)
-        surface.emission, surface.textured = np.zeros(3), ()
-    return surface
+        light = np.zeros(3)
+    elif (light < 0.0).any():
+        report.add(place, "negative emission is not supported; nothing is emitted", Effect.LIGHT)
+        light = np.maximum(light, 0.0)
+    if (light != constant).any():
+        shader = replace(shader, emission=nodes.values.color(light))
+    return Surface(shader, light)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
@@ -15,9 +15,9 @@ import shlight
 
 from ..compat import slot_materials, smooth_corner_normals
 from ..report import Effect, ExportReport
-from .materials import read_material
-from .surface import Surface
-from .textured_meshes import MeshArrays, corner_uvs, with_even_emission
+from .materials import Surface, read_material
+from .mesh_attributes import mesh_attributes
+from .textured_meshes import MeshArrays, with_even_emission
 
 FloatArray = NDArray[np.float32]
 
@@ -93,17 +93,21 @@ class MeshCollector:
         materials = slot_materials(mesh_object)
         key = (mesh_object.data.as_pointer(), *(material and material.as_pointer() for material in materials))
         if key not in self._uses:
-            self._uses[key] = self._convert(mesh_object, place, materials)
+            self._uses[key] = self._convert(mesh_object, to_world, place, materials)
         use = self._uses[key]
         if use is not None:
             use.transforms.append(to_world)
 
-    def _convert(self, mesh_object: Any, place: str, materials: Sequence[Any]) -> MeshUse | None:
+    def _convert(
+        self, mesh_object: Any, to_world: NDArray[np.float64], place: str, materials: Sequence[Any]
+    ) -> MeshUse | None:
         surfaces = [self._surface(material) for material in materials or [None]]
         mesh = mesh_object.to_mesh()
         try:
             arrays = mesh_arrays(mesh)
-            uvs = {} if arrays is None else self._uvs_of(mesh, surfaces, place)
+            if arrays is not None:
+                names = dict.fromkeys(name for surface in surfaces for name in surface.shader.attribute_names)
+                arrays.attributes = mesh_attributes(mesh, names)
         finally:
             mesh_object.to_mesh_clear()
         if arrays is None:
@@ -113,22 +117,10 @@ class MeshCollector:
             return None
         if arrays.normals is not None and not np.isfinite(arrays.normals).all():
             arrays.normals = None
-        if uvs:
+        if any(surface.varying is not None for surface in surfaces):
             remark = partial(self._report.add, place)
-            arrays, surfaces = with_even_emission(arrays, surfaces, uvs, remark)
+            arrays, surfaces = with_even_emission(arrays, surfaces, to_world, remark)
         return MeshUse(place, arrays, surfaces)
-
-    def _uvs_of(self, mesh: Any, surfaces: list[Surface], place: str) -> dict[str, NDArray[np.float64]]:
-        """The UV maps that textured emission asks for; where one is missing all of it is at (0, 0), as in Cycles."""
-        textures = [texture for surface in surfaces for glow in surface.textured for texture in glow.textures]
-        uvs = {}
-        for name in dict.fromkeys(texture.uv_map for texture in textures):
-            found = corner_uvs(mesh, name)
-            if found is None:
-                self._report.add(place, f"the texture of its emission has no UV map '{name}'; one colour is used")
-                found = np.zeros((len(mesh.loop_triangles), 3, 2))
-            uvs[name] = found
-        return uvs
 
     def _surface(self, material: Any) -> Surface:
         material = self._override or material
@@ -161,7 +153,8 @@ class MeshCollector:
                 arrays.vertices,
                 arrays.triangles,
                 normals=arrays.normals,
-                bsdf=[surface.opaque_bsdf() for surface in surfaces],
+                attributes=arrays.attributes,
+                bsdf=[surface.shader for surface in surfaces],
                 emission=emission if emits else None,
                 material_indices=indices,
                 transforms=transforms,
@@ -183,6 +176,6 @@ def standing(use: MeshUse) -> list[tuple[MeshArrays, NDArray[np.float64] | None]
         vertices = use.arrays.vertices @ transform[:3, :3].T + transform[:3, 3]
         if np.linalg.matrix_rank(vertices - vertices[0]) < 2:
             continue  # a line or a point shows nothing
-        flat = MeshArrays(vertices.astype(np.float32), use.arrays.triangles, None, use.arrays.material_indices)
+        flat = replace(use.arrays, vertices=vertices.astype(np.float32), normals=None)
         parts.append((flat, None))
     return parts

@@ -1,104 +1,78 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The plain part of Principled BSDF: diffuse base, dielectric reflection, metal and emission.
-
-Blender 4: metal mixed with a dielectric layer over Lambert's reflection. Blender 3.4: one lobe for metal and
-dielectric together plus the diffuse reflection, nothing layered.
-"""
+"""Principled BSDF: that of Blender 4 is `shlight.nodes.principled`; that of Blender 3.4 is a plain sum of lobes."""
 
 from __future__ import annotations
 
-import math
-from typing import Any
-
-import numpy as np
-
-import shlight
+from shlight import nodes
+from shlight.nodes import Shader
+from shlight.nodes.shader import Lobe
+from shlight.nodes.values import Color, clamp, maximum, number, sqrt
 
 from ..compat import PRINCIPLED
 from ..report import Effect
-from .microfacets import Remark, metal_lobe
-from .nodes import RGB, rgb
-from .surface import Surface, SurfaceReader, lambert
+from .surface import ShaderInputs
 
 # Luminance with which Blender 3.4 takes the brightness out of the base colour for Specular Tint.
-TINT_LUMINANCE = np.array([0.3, 0.6, 0.1])
+TINT_LUMINANCE = (0.3, 0.6, 0.1)
 
 
-def read_principled(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> Surface:
-    """Surface of a Principled BSDF node."""
-    reader.ignore_linked(node, groups, "Normal")
+def read_principled(inputs: ShaderInputs) -> Shader:
+    """Shader of a Principled BSDF node."""
     for name, neutral in PRINCIPLED.unsupported.items():
-        reader.ignore_unless(node, groups, name, neutral)
-    glow = reader.emitter(node, PRINCIPLED.emission, "Emission Strength", groups)
-    read = _read_layered if PRINCIPLED.layered else _read_sum
-    return Surface(read(reader, node, groups)).plus(glow)
+        inputs.ignore_unless(name, neutral)
+    return _read_layered(inputs) if PRINCIPLED.layered else _read_sum(inputs)
 
 
-def untouched_principled(base: RGB) -> shlight.Bsdf | None:
-    """What a node of Blender 4 does whose inputs but the base colour are as it was made."""
-    return _dielectric_over(base, 0.5, 1.5, 0.5, np.ones(3), lambda text: None)
+def _read_layered(inputs: ShaderInputs) -> Shader:
+    if inputs.number("Transmission Weight").constant != 0.0:
+        inputs.remark("'Transmission Weight' is drawn by its reflection alone; light does not pass through")
+    if inputs.number("Subsurface Weight").constant != 0.0:
+        inputs.remark("'Subsurface Weight' is not supported; drawn as diffuse reflection")
+    return nodes.principled(
+        inputs.color("Base Color"),
+        metallic=inputs.number("Metallic"),
+        roughness=inputs.number("Roughness"),
+        ior=inputs.number("IOR"),
+        alpha=inputs.number("Alpha"),
+        diffuse_roughness=inputs.number("Diffuse Roughness") if "Diffuse Roughness" in inputs.node.inputs else 0.0,
+        specular_ior_level=inputs.number("Specular IOR Level"),
+        specular_tint=inputs.color("Specular Tint"),
+        coat_weight=inputs.number("Coat Weight"),
+        coat_roughness=inputs.number("Coat Roughness"),
+        coat_ior=inputs.number("Coat IOR"),
+        coat_tint=inputs.color("Coat Tint"),
+        coat_normal=inputs.normal("Coat Normal"),
+        transmission_weight=inputs.number("Transmission Weight"),
+        emission_color=inputs.color("Emission Color"),
+        emission_strength=inputs.number("Emission Strength"),
+        several_bounces=inputs.node.distribution == "MULTI_GGX",
+        at=inputs.normal(),
+    )
 
 
-def _read_layered(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> shlight.Bsdf | None:
-    base = reader.color(node, "Base Color", groups)
-    metallic = reader.share(node, "Metallic", groups)
-    roughness = reader.share(node, "Roughness", groups)
-    tint = reader.color(node, "Specular Tint", groups)
-    remark, slight = reader.remarks(node), reader.remarks(node, Effect.SLIGHT)
-    surface = Surface()
-    if metallic > 0.0:
-        if (tint != 1.0).any():
-            remark("'Specular Tint' of metal is not supported; white is used")
-        multiple_bounces = node.distribution == "MULTI_GGX"
-        surface = Surface(metal_lobe(np.minimum(base, 1.0), roughness, multiple_bounces, slight)).scaled(metallic)
-    if metallic < 1.0:
-        level = max(reader.number(node, "Specular IOR Level", groups), 0.0)
-        ior = reader.number(node, "IOR", groups)
-        dielectric = _dielectric_over(base, roughness, ior, level, tint, remark)
-        surface = surface.plus(Surface(dielectric).scaled(1.0 - metallic))
-    return surface.bsdf
-
-
-def _dielectric_over(
-    base: RGB, roughness: float, ior: float, level: float, tint: RGB, remark: Remark
-) -> shlight.Bsdf | None:
-    """Diffuse `base` under a dielectric interface, whose energy of further bounces is too small to matter."""
-    diffuse = lambert(base)
-    if ior < 1.0:
-        remark("an IOR below 1 is not supported; its inverse is used")
-        ior = 1.0 / max(ior, 1e-5)
-    reflectance = ((ior - 1.0) / (ior + 1.0)) ** 2
-    if level != 0.5:
-        reflectance = min(2.0 * level * reflectance, 0.99)
-        ior = (1.0 + math.sqrt(reflectance)) / (1.0 - math.sqrt(reflectance))
-    if ior == 1.0:
-        return diffuse
-    f0 = rgb(np.clip(reflectance * tint, 0.0, 1.0))
-    specular = shlight.Bsdf.ggx(roughness, f0, ior=ior)
-    return specular if diffuse is None else shlight.Bsdf.layer(specular, diffuse)
-
-
-def _read_sum(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> shlight.Bsdf | None:
-    base = reader.color(node, "Base Color", groups)
-    metallic = reader.share(node, "Metallic", groups)
-    remark = reader.remarks(node, Effect.SLIGHT)
-    roughness = reader.share(node, "Roughness", groups)
-    specular = max(reader.number(node, "Specular", groups), 0.0)
-    tint = reader.number(node, "Specular Tint", groups)
-    if node.distribution == "MULTI_GGX":
-        remark("distribution MULTI_GGX is not supported in this version of Blender; GGX is used")
-    surface = Surface()
-    if metallic < 1.0 and base.any():
-        remark("the diffuse part is drawn as Diffuse BSDF, without Principled BSDF's darker and brighter edges")
-        surface = Surface(lambert(base)).scaled(1.0 - metallic)
-    if specular == 0.0 and metallic == 0.0:
-        return surface.bsdf
-    luminance = float(base @ TINT_LUMINANCE)
-    hue = base / luminance if luminance > 0.0 else np.ones(3)
-    f0 = 0.08 * specular * (1.0 - tint + tint * hue) * (1.0 - metallic) + base * metallic
-    f0 = np.clip(f0, 0.0, 1.0)
-    root = math.sqrt(min(0.08 * specular, 0.99))
-    ior = 2.0 / (1.0 - root) - 1.0
-    if ior == 1.0:  # without an interface there is no rise towards grazing angles
-        return surface.plus(Surface(rgb(f0) * shlight.Bsdf.ggx(roughness, 1.0))).bsdf
-    return surface.plus(Surface(shlight.Bsdf.ggx(roughness, rgb(f0), ior=ior))).bsdf
+def _read_sum(inputs: ShaderInputs) -> Shader:
+    if inputs.node.distribution == "MULTI_GGX":
+        text = "distribution MULTI_GGX is not supported in this version of Blender; GGX is used"
+        inputs.remark(text, Effect.SLIGHT)
+    base = Color(*(maximum(c, 0.0) for c in inputs.color("Base Color")))
+    metallic = clamp(inputs.number("Metallic"))
+    roughness = clamp(inputs.number("Roughness"))
+    specular = maximum(inputs.number("Specular"), 0.0)
+    tint = inputs.number("Specular Tint")
+    alpha = clamp(inputs.number("Alpha"))
+    at = inputs.normal()
+    glow = nodes.emission(inputs.color("Emission") * inputs.number("Emission Strength"))
+    if metallic.constant != 1.0 and base.constant != (0.0, 0.0, 0.0):
+        text = "the diffuse part is drawn as Diffuse BSDF, without Principled BSDF's darker and brighter edges"
+        inputs.remark(text, Effect.SLIGHT)
+    surface = nodes.lambert(base * (1.0 - metallic), normal=at)
+    luminance = sum((c * w for c, w in zip(base, TINT_LUMINANCE, strict=True)), start=number(0.0))
+    hue = Color(*(nodes.values.select(luminance > 0.0, c / luminance, 1.0) for c in base))
+    f0 = (hue * tint + (1.0 - tint)) * (0.08 * specular) * (1.0 - metallic) + base * metallic
+    f0 = Color(*(clamp(c) for c in f0))
+    ior = 2.0 / (1.0 - sqrt(nodes.values.minimum(0.08 * specular, 0.99))) - 1.0
+    n = nodes.reflecting_normal(nodes.normal() if at is None else at)
+    width = roughness * roughness
+    if not (specular.constant == 0.0 and metallic.constant == 0.0):
+        surface += Shader((Lobe("ggx", f0, width, n), *nodes.rising_lobes(1.0 - f0, ior, width, n)))
+    return nodes.transparent(1.0 - alpha) + (surface + glow) * alpha

@@ -3,54 +3,64 @@
 
 from __future__ import annotations
 
-from typing import Any
+from shlight import nodes
+from shlight.nodes import Shader
+from shlight.nodes.values import Color, color, maximum, number, vector
 
-from ..report import Effect
-from .microfacets import glossy_lobe
 from .principled import read_principled
-from .surface import ReadShader, Surface, SurfaceReader, lambert
+from .surface import ReadShader, ShaderInputs
 
 
-def _diffuse(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> Surface:
-    reader.ignore_linked(node, groups, "Normal")
-    reader.ignore_unless(node, groups, "Roughness", 0.0)
-    return Surface(lambert(reader.color(node, "Color", groups)))
+def positive(c: nodes.Vector) -> Color:
+    """A colour without what is negative of it."""
+    return Color(*(maximum(component, 0.0) for component in c))
 
 
-def _glossy(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> Surface:
-    reader.ignore_linked(node, groups, "Normal", "Tangent")
-    reader.ignore_unless(node, groups, "Anisotropy", 0.0)
-    color = reader.color(node, "Color", groups)
-    if not color.any():
-        return Surface()
-    roughness = 0.0 if node.distribution == "SHARP" else reader.share(node, "Roughness", groups)
-    if node.distribution not in {"GGX", "MULTI_GGX"} and roughness > 0.0:  # all distributions end in the same mirror
-        reader.report.add(reader.at(node), f"distribution {node.distribution} is not supported; GGX is used")
-    multiple_bounces = node.distribution == "MULTI_GGX"
-    return Surface(glossy_lobe(color, roughness, multiple_bounces, reader.remarks(node, Effect.SLIGHT)))
+def _diffuse(inputs: ShaderInputs) -> Shader:
+    return nodes.oren_nayar(positive(inputs.color("Color")), inputs.number("Roughness"), at=inputs.normal())
 
 
-def _emission(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> Surface:
-    return reader.emitter(node, "Color", "Strength", groups)
+def _glossy(inputs: ShaderInputs) -> Shader:
+    inputs.ignore_unless("Anisotropy", 0.0)
+    distribution = inputs.node.distribution
+    roughness = number(0.0) if distribution == "SHARP" else inputs.number("Roughness")
+    if distribution not in {"GGX", "MULTI_GGX", "SHARP"} and roughness.constant != 0.0:
+        # All distributions end in the same mirror.
+        inputs.remark(f"distribution {distribution} is not supported; GGX is used")
+    return nodes.glossy(
+        inputs.color("Color"), roughness, several_bounces=distribution == "MULTI_GGX", at=inputs.normal()
+    )
 
 
-def _mix(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> Surface:
-    factor = reader.share(node, node.inputs[0].name, groups)
+def _emission(inputs: ShaderInputs) -> Shader:
+    return nodes.emission(inputs.color("Color") * inputs.number("Strength"))
+
+
+def _transparent(inputs: ShaderInputs) -> Shader:
+    return nodes.transparent(inputs.color("Color"))
+
+
+def _mix(inputs: ShaderInputs) -> Shader:
+    factor = inputs.number(0)
     # The two shader inputs share their name; a branch of weight 0 does not show and is not even looked at.
-    first = Surface() if factor == 1.0 else reader.surface(node.inputs[1], groups).scaled(1.0 - factor)
-    second = Surface() if factor == 0.0 else reader.surface(node.inputs[2], groups).scaled(factor)
-    return first.plus(second)
+    if factor.constant is not None and factor.constant <= 0.0:
+        return inputs.shader(1)
+    if factor.constant is not None and factor.constant >= 1.0:
+        return inputs.shader(2)
+    return nodes.mix(inputs.shader(1), inputs.shader(2), factor)
 
 
-def _add(reader: SurfaceReader, node: Any, groups: tuple[Any, ...]) -> Surface:
-    return reader.surface(node.inputs[0], groups).plus(reader.surface(node.inputs[1], groups))
+def _add(inputs: ShaderInputs) -> Shader:
+    return inputs.shader(0) + inputs.shader(1)
 
 
 SHADERS: dict[str, ReadShader] = {
     "BSDF_DIFFUSE": _diffuse,
     "BSDF_GLOSSY": _glossy,
     "BSDF_PRINCIPLED": read_principled,
+    "BSDF_TRANSPARENT": _transparent,
     "EMISSION": _emission,
     "MIX_SHADER": _mix,
     "ADD_SHADER": _add,
 }
+__all__ = ["SHADERS", "color", "positive", "vector"]

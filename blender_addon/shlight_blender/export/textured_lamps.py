@@ -14,9 +14,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compat import LAMPS
 from .even_cells import TOLERANCE, Cells, cut_square, samples_along
 from .nodes import RGB
-from .surface import Surface
+from .emission import Input, VaryingEmission
 
 Array = NDArray[np.float64]
 Remark = Callable[[str], None]
@@ -42,9 +43,9 @@ class EvenLamp(NamedTuple):
     parts: list[EvenPart]
 
 
-def even_lamp(surface: Surface, is_round: bool, remark: Remark) -> EvenLamp:
-    """A lamp that shines as `surface`, which has textures; `remark` is told what is not as in Cycles."""
-    cells = _cut_lamp(surface, is_round)
+def even_lamp(emission: VaryingEmission, is_round: bool, remark: Remark) -> EvenLamp:
+    """A lamp that shines as `emission`; `remark` is told what is not as in Cycles."""
+    cells = _cut_lamp(emission, is_round)
     left, bottom, right, top = cells.bounds.T
     mean = ((right - left) * (top - bottom)) @ cells.radiance
     if len(cells.radiance) == 1:
@@ -64,15 +65,23 @@ def _report_error(error: float, count: int, remark: Remark) -> None:
         )
 
 
-def _cut_lamp(surface: Surface, is_round: bool) -> Cells:
+def _cut_lamp(emission: VaryingEmission, is_round: bool) -> Cells:
     """The square in cells; of a round lamp, the square that becomes its disk."""
-    textures = [texture for glow in surface.textured for texture in glow.textures]
 
     def radiance(places: Array) -> Array:
-        return surface.radiance({"": disk_places(places) if is_round else places})
+        return emission.radiance(_inputs_at(disk_places(places) if is_round else places), len(places))
 
-    wide, high = np.max([samples_along(texture.texels(UNIT_SQUARE)) for texture in textures], axis=0)
+    textures = emission.texels(_inputs_at(UNIT_SQUARE), len(UNIT_SQUARE)) or [UNIT_SQUARE]
+    wide, high = np.max([samples_along(texels) for texels in textures], axis=0)
     return cut_square(radiance, (int(wide), int(high)), MOST_PARTS)
+
+
+def _inputs_at(places: Array) -> dict[Input, Array]:
+    """What a program reads at places (n, 2) of the lamp: its UV map, if it has one here, and Parametric."""
+    inputs: dict[Input, Array] = {("barycentric", 0, i): places[:, i] for i in range(2)}
+    if LAMPS.area_has_uvs:
+        inputs |= {("attribute", "", i): places[:, i] for i in range(2)}
+    return inputs
 
 
 def disk_places(places: Array) -> Array:

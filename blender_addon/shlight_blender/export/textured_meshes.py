@@ -3,15 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .emission_pieces import MOST_PIECES, TOLERANCE, Colors, Pieces, cut, sampling_levels, share_colors
-from .surface import Surface
+from .emission import Input, VaryingEmission
+from .materials import Surface
 
 FloatArray = NDArray[np.float32]
 Array = NDArray[np.float64]
@@ -20,46 +21,35 @@ Remark = Callable[[str], None]
 
 @dataclass
 class MeshArrays:
-    """A triangulated mesh in its own frame; normals (k, 3, 3) per corner, None where all faces are flat."""
+    """A triangulated mesh in its own frame; normals (k, 3, 3) per corner, None where all faces are flat.
+
+    attributes: numbers per corner (k, 3, c) by name.
+    """
 
     vertices: FloatArray
     triangles: NDArray[np.int32]
     normals: FloatArray | None
     material_indices: NDArray[np.int32]
-
-
-def corner_uvs(mesh: Any, name: str) -> Array | None:
-    """Of a mesh whose triangles are calculated, the UV map `name` ("": the one for rendering) per corner (k, 3, 2)."""
-    layer = mesh.uv_layers.get(name) if name else next((map_ for map_ in mesh.uv_layers if map_.active_render), None)
-    if layer is None:
-        return None
-    uvs = np.empty(len(mesh.loops) * 2, dtype=np.float32)
-    layer.data.foreach_get("uv", uvs)
-    loops = np.empty(len(mesh.loop_triangles) * 3, dtype=np.int32)
-    mesh.loop_triangles.foreach_get("loops", loops)
-    corners = np.nan_to_num(uvs.reshape(-1, 2)[loops].astype(np.float64), posinf=0.0, neginf=0.0)
-    return corners.reshape(-1, 3, 2)
+    attributes: dict[str, FloatArray] = field(default_factory=dict)
 
 
 def with_even_emission(
-    arrays: MeshArrays, surfaces: list[Surface], uvs: Mapping[str, Array], remark: Remark
+    arrays: MeshArrays, surfaces: list[Surface], to_world: Array, remark: Remark
 ) -> tuple[MeshArrays, list[Surface]]:
-    """The mesh with all textured emission in pieces of even light, and a surface for each colour of them.
+    """The mesh with all varying emission in pieces of even light, and a surface for each colour of them.
 
-    uvs: each UV map that `surfaces` name, (k, 3, 2).
+    to_world: where emission that depends on the place is looked up.
     """
     slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)
-    textured = [slot for slot in np.unique(slots) if surfaces[slot].textured]
-    made, parts = list(surfaces), [_chosen(arrays, ~np.isin(slots, textured), slots)]
-    for slot in textured:
-        chosen = slots == slot
-        part = _chosen(arrays, chosen, slots)
-        chosen_uvs = {name: of_all[chosen] for name, of_all in uvs.items()}
-        pieces = _cut_surface(part, surfaces[slot], chosen_uvs, MOST_PIECES // len(textured))
+    varying = [slot for slot in np.unique(slots) if surfaces[slot].varying is not None]
+    made, parts = list(surfaces), [_chosen(arrays, ~np.isin(slots, varying), slots)]
+    for slot in varying:
+        part = _chosen(arrays, slots == slot, slots)
+        pieces = _cut_surface(part, surfaces[slot].varying, to_world, MOST_PIECES // len(varying))
         colors = share_colors(pieces.radiance, pieces.area)
         _report_error(pieces, colors, remark)
         parts.append(_of_pieces(part, pieces, len(made) + colors.color_of))
-        made += [replace(surfaces[slot], emission=color, textured=()) for color in colors.radiance]
+        made += [replace(surfaces[slot], emission=color, varying=None) for color in colors.radiance]
     return _joined(parts), made
 
 
@@ -73,23 +63,49 @@ def _report_error(pieces: Pieces, colors: Colors, remark: Remark) -> None:
         )
 
 
-def _cut_surface(part: MeshArrays, surface: Surface, uvs: Mapping[str, Array], most: int) -> Pieces:
+def _cut_surface(part: MeshArrays, emission: VaryingEmission | None, to_world: Array, most: int) -> Pieces:
+    assert emission is not None
     corners = part.vertices[part.triangles].astype(np.float64)
     area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    textures = [texture for glow in surface.textured for texture in glow.textures]
-    levels = np.max([sampling_levels(texture.texels(uvs[texture.uv_map])) for texture in textures], axis=0)
-    names = list(uvs)
-    joined = np.concatenate([uvs[name] for name in names], axis=2)
+    inputs = list(dict.fromkeys(emission.inputs))
+    known = np.stack([_at_corners(part, corners, to_world, entry) for entry in inputs], axis=2)
+    count = 3 * len(corners)
+    at_corners = {entry: known[:, :, i].reshape(-1) for i, entry in enumerate(inputs)}
+    texels = [places.reshape(-1, 3, 2) for places in emission.texels(at_corners, count)]
+    levels = np.max([sampling_levels(places) for places in texels or [np.zeros((len(corners), 3, 2))]], axis=0)
 
     def radiance(places: Array) -> Array:
-        return surface.radiance({name: places[:, 2 * i : 2 * i + 2] for i, name in enumerate(names)})
+        return emission.radiance({entry: places[:, i] for i, entry in enumerate(inputs)}, len(places))
 
-    return cut(radiance, joined, levels, area, most)
+    return cut(radiance, known, levels, area, most)
+
+
+def _at_corners(part: MeshArrays, corners: Array, to_world: Array, entry: Input) -> Array:
+    """A number that a program reads, at the corners (k, 3); it is linear between them, or taken to be."""
+    source, index, component = entry
+    places = corners @ to_world[:3, :3].T + to_world[:3, 3]
+    if source == "position":
+        return places[..., component]
+    if source == "attribute":
+        values = part.attributes.get(str(index))
+        known = values is not None and component < values.shape[2]
+        return values[..., component].astype(np.float64) if known else np.zeros(corners.shape[:2])
+    if source in ("object_to_world", "world_to_object"):
+        matrix = to_world if source == "object_to_world" else np.linalg.pinv(to_world)
+        return np.full(corners.shape[:2], matrix[component // 4, component % 4])
+    if source == "barycentric":
+        return np.broadcast_to(np.eye(3)[1 + component], corners.shape[:2])
+    face = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
+    face /= np.maximum(np.linalg.norm(face, axis=1, keepdims=True), 1e-30)
+    if source in ("normal", "geometric_normal", "towards_viewer"):
+        return np.repeat(face[:, None, component], 3, axis=1)
+    return np.zeros(corners.shape[:2])
 
 
 def _chosen(arrays: MeshArrays, which: NDArray[np.bool_], slots: NDArray[Any]) -> MeshArrays:
     normals = None if arrays.normals is None else arrays.normals[which]
-    return MeshArrays(arrays.vertices, arrays.triangles[which], normals, slots[which].astype(np.int32))
+    attributes = {name: values[which] for name, values in arrays.attributes.items()}
+    return MeshArrays(arrays.vertices, arrays.triangles[which], normals, slots[which].astype(np.int32), attributes)
 
 
 def _of_pieces(part: MeshArrays, pieces: Pieces, slots: NDArray[Any]) -> MeshArrays:
@@ -102,7 +118,11 @@ def _of_pieces(part: MeshArrays, pieces: Pieces, slots: NDArray[Any]) -> MeshArr
         length = np.linalg.norm(normals, axis=2, keepdims=True)
         normals = np.where(length > 1e-6, normals / np.maximum(length, 1e-6), part.normals[pieces.triangle])
         normals = normals.astype(np.float32)
-    return MeshArrays(vertices, index.reshape(-1, 3).astype(np.int32), normals, slots.astype(np.int32))
+    attributes = {
+        name: (pieces.corners @ values[pieces.triangle].astype(np.float64)).astype(np.float32)
+        for name, values in part.attributes.items()
+    }
+    return MeshArrays(vertices, index.reshape(-1, 3).astype(np.int32), normals, slots.astype(np.int32), attributes)
 
 
 def _joined(parts: list[MeshArrays]) -> MeshArrays:
@@ -114,4 +134,5 @@ def _joined(parts: list[MeshArrays]) -> MeshArrays:
         np.concatenate(triangles),
         np.concatenate(normals) if normals else None,
         np.concatenate([part.material_indices for part in parts]),
+        {name: np.concatenate([part.attributes[name] for part in parts]) for name in parts[0].attributes},
     )

@@ -31,6 +31,35 @@ struct LambertShape {
     auto operator<=>(const LambertShape&) const = default;
 };
 
+/// Diffuse lobes that are not Lambert's, without parameters.
+enum class Diffuse {
+    /// cosθ_i (1 + t), with t = (ω_i·ω_o - cosθ_i cosθ_o), over max(cosθ_i, cosθ_o) where it is positive: what
+    /// roughness adds in the improved Oren–Nayar model of Fujii (mimosa-pudica.net/improved-oren-nayar.html).
+    oren_nayar,
+    /// cosθ_i (π/2 - 2/3 - G(cosθ_i)): what that model's first bounce loses, which further bounces give back.
+    oren_nayar_loss,
+    /// Lambert's lobe of a bump, with ω_o the smooth normal: times the share of it that the smooth surface does not
+    /// hide (Estevez, Lecocq & Stein 2019, "A Microfacet-Based Shadowing Function to Solve the Bump Terminator
+    /// Problem").
+    bumped
+};
+
+struct DiffuseShape {
+    Diffuse kind;
+
+    static constexpr bool kGlossy = false;
+    double width() const { return 1; }
+    double value(const Vec3d& wi, const Vec3d& wo) const;
+    double albedo(double cos_theta_o) const;
+    Vec3d sample(const Vec3d& wo, const glm::dvec2& point) const;
+    double density(const Vec3d& wo, const Vec3d& wi) const;
+    double largest_density(const Vec3d& wo) const;
+    LambertShape sampled() const { return {}; }
+
+    // NOLINTNEXTLINE(modernize-use-nullptr): the linter misreads <=>
+    auto operator<=>(const DiffuseShape&) const = default;
+};
+
 /// What multiplies D G / (4 cosθ_i cosθ_o).
 enum class Fresnel {
     one,        ///< 1: the part that f0 scales, and metals without Fresnel
@@ -62,7 +91,7 @@ struct GgxShape {
     auto operator<=>(const GgxShape&) const = default;
 };
 
-using LobeShape = std::variant<LambertShape, GgxShape>;
+using LobeShape = std::variant<LambertShape, DiffuseShape, GgxShape>;
 
 /// Half width of the peak about the mirror direction [rad]; 1 where there is none.
 double lobe_width(const LobeShape& shape);

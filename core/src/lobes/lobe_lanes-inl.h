@@ -20,6 +20,7 @@
 
 #include "lobes/ggx-inl.h"
 #include "lobes/lambert-inl.h"
+#include "lobes/rough_diffuse-inl.h"
 #include "shlight/lobe_shape.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -27,6 +27,8 @@ class ImageTexture {
     ImageTexture(std::vector<glm::vec4> pixels, std::uint32_t width, std::uint32_t height,
                  TextureInterpolation interpolation, TextureExtension extension);
 
+    std::uint32_t width() const { return width_; }
+    std::uint32_t height() const { return height_; }
     glm::vec4 sample(const glm::vec2& place, const TextureFootprint& footprint) const;
 
   private:

@@ -15,7 +15,8 @@ from shlight.nodes.inputs import (
     towards_viewer,
     uv,
 )
-from shlight.nodes.principled import glossy, principled
+from shlight.nodes import values
+from shlight.nodes.principled import glossy, oren_nayar, principled, reflecting_normal, rising_lobes
 from shlight.nodes.shader import Shader, emission, ggx, lambert, mix, transparent
 from shlight.nodes.textures import image
 from shlight.nodes.values import Color, Value, Vector
@@ -37,9 +38,13 @@ __all__ = [
     "mix",
     "normal",
     "object_value",
+    "oren_nayar",
     "position",
     "principled",
+    "reflecting_normal",
+    "rising_lobes",
     "towards_viewer",
     "transparent",
     "uv",
+    "values",
 ]

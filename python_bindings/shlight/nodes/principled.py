@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 from shlight.nodes import energy
 from shlight.nodes.inputs import geometric_normal, normal, towards_viewer
 from shlight.nodes.shader import Lobe, Shader, emission, transparent
@@ -83,7 +85,7 @@ def _bounces(roughness: Value, cosine: Value, mean_fresnel: Color) -> Color:
     return _as_color(1.0 + again * ((1.0 - own) / own))
 
 
-def _rising_lobes(weight: Vector, ior: Value, alpha: Value, at: Vector | None) -> tuple[Lobe, ...]:
+def rising_lobes(weight: Vector, ior: Value, alpha: Value, at: Vector | None) -> tuple[Lobe, ...]:
     """Lobes of the rise of Fresnel's curve; of a varying index by interpolation."""
     if ior.constant is not None:
         return (Lobe("ggx_dielectric", _as_color(weight), alpha, at, max(ior.constant, 1.0 + 1e-6)),)
@@ -113,7 +115,7 @@ def _dielectric(
         brighter = _bounces(roughness, cosine, mean_fresnel)
         own = _as_color(own * brighter)
         dimmed = _as_color(brighter * energy.albedo(roughness, cosine))
-    lobes = (Lobe("ggx", _as_color(own * f0), alpha, at), *_rising_lobes(own * (1.0 - f0), ior, alpha, at))
+    lobes = (Lobe("ggx", _as_color(own * f0), alpha, at), *rising_lobes(own * (1.0 - f0), ior, alpha, at))
     reflected = _mix(f0, 1.0, energy.rise(roughness, cosine, ior)) * dimmed
     return lobes, color(clamp(1.0 - _largest(reflected)))
 
@@ -142,6 +144,42 @@ def glossy(tint: Varying, roughness: Number, *, several_bounces: bool = False, a
     return Shader((Lobe("ggx", weight, r * r, n),))
 
 
+def _oren_nayar_rise(cosine: Value) -> Value:
+    """Fujii's G of the improved Oren–Nayar model."""
+    sine = sqrt(1.0 - cosine * cosine)
+    angle = operation("arccosine", cosine)
+    whole = sine * (angle - 2.0 / 3.0 - sine * cosine) + 2.0 / 3.0 * (sine / cosine) * (1.0 - sine * sine * sine)
+    return select(cosine < 1e-6, (math.pi / 2 - 2.0 / 3.0) - cosine, whole)
+
+
+def oren_nayar(albedo: Varying, sigma: Number, *, at: Vector | None = None) -> Shader:
+    """A rough diffuse surface: the improved Oren–Nayar model of Fujii with the light of several bounces (OpenPBR).
+
+    It is a sum of three shapes without parameters: Lambert's, the same times 1 + t, where t is what light and view have
+    in common along the surface, and what the model's first bounce loses. sigma: 0 … 1, clamped.
+    """
+    rho = color(albedo, "albedo")
+    rough = clamp(number(sigma, "sigma"))
+    if rough.constant == 0.0:
+        return Shader((Lobe("lambert", rho, normal=at),))
+    n = normal() if at is None else at
+    edge = math.pi / 2 - 2.0 / 3.0
+    a = 1.0 / (math.pi + rough * edge)
+    b = rough * a
+    own = a * math.pi + b * _oren_nayar_rise(maximum(dot(towards_viewer(), n), 0.0))
+    mean = a * math.pi + b * ((2.0 * math.pi - 5.6) / 3.0)
+    saturated = _clamped(rho)
+    again = saturated * saturated * ((mean / (1.0 - mean)) / math.pi) / (1.0 - saturated * (1.0 - mean))
+    varies = select(rough > 0.0, 1.0, 0.0)
+    return Shader(
+        (
+            Lobe("lambert", _as_color(rho * (a * (1.0 - rough) * math.pi)), normal=at),
+            Lobe("oren_nayar", _as_color(rho * b), normal=at),
+            Lobe("oren_nayar_loss", _as_color(rho * again * (1.0 - own) * b * varies), normal=at),
+        )
+    )
+
+
 def principled(
     base_color: Varying = (0.8, 0.8, 0.8),
     *,
@@ -149,6 +187,7 @@ def principled(
     roughness: Number = 0.5,
     ior: Number = 1.5,
     alpha: Number = 1.0,
+    diffuse_roughness: Number = 0.0,
     specular_ior_level: Number = 0.5,
     specular_tint: Varying = (1.0, 1.0, 1.0),
     coat_weight: Number = 0.0,
@@ -216,7 +255,7 @@ def principled(
         lobes, passed = _dielectric(weight, f0, index, rough, glossy_normal, **several)
         result += Shader(lobes)
         weight = _as_color(weight * passed)
-    return result + Shader((Lobe("lambert", _as_color(weight * base), normal=at),))
+    return result + oren_nayar(base, diffuse_roughness, at=at) * weight
 
 
 def _coat_color(tint: Color, coat: Value, index: Value, at: Vector) -> Color:

@@ -50,6 +50,14 @@ class ProgramBuilder:
         """What was listed."""
         return _core.shader_program(self._steps, self._tables, self._images, self._results)
 
+    def input_number(self, source: str, index: int | str) -> tuple[int, int]:
+        """How the program refers to an input."""
+        if isinstance(index, str):
+            if index not in self.attributes:
+                self.attributes.append(index)
+            index = self.attributes.index(index)
+        return SOURCES[source], index
+
     def _list(self, step: Step) -> None:
         waiting = [step]
         while waiting:
@@ -78,11 +86,7 @@ class ProgramBuilder:
             return (CONSTANT, step.data, 0, 0, []), 1
         if step.name == "input":
             source, index, component = step.data
-            if source == "attribute":
-                if index not in self.attributes:
-                    self.attributes.append(index)
-                index = self.attributes.index(index)
-            return (INPUT, 0.0, SOURCES[source], index, [component]), 1
+            return (INPUT, 0.0, *self.input_number(source, index), [component]), 1
         number, _, results = operations()[step.name]
         return (OPERATION, 0.0, number, self._resource(step.data), arguments), results
 

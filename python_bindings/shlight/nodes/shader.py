@@ -52,12 +52,17 @@ class Shader:
         return self._compiled
 
     @property
+    def attribute_names(self) -> list[str]:
+        """The attributes that it reads of a mesh."""
+        return list(self._program[2])
+
+    @property
     def operation_count(self) -> int:
         """How many operations the core runs for each hit."""
         return self._program[0].operation_count
 
     @cached_property
-    def _program(self) -> tuple[_core.ShaderProgram, _core.SurfaceShader]:
+    def _program(self) -> tuple[_core.ShaderProgram, _core.SurfaceShader, list[str]]:
         builder = ProgramBuilder()
         lobes = []
         normals: dict[int, int] = {}  # lobes with the same normal share the number of its result
@@ -70,7 +75,8 @@ class Shader:
             lobes.append((lobe.kind, lobe.ior, weight, alpha, normal))
         shown = [None if c.constant == BLACK else builder.result(tuple(c)) for c in (self.emission, self.transparency)]
         program = builder.program()
-        return program, _core.surface_shader(program, lobes, *shown, builder.attributes)
+        shader = _core.surface_shader(program, lobes, *shown, builder.attributes)
+        return program, shader, builder.attributes
 
     @cached_property
     def _compiled(self) -> _core.SurfaceShader:

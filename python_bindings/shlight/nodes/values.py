@@ -52,28 +52,28 @@ class Value:
         return float(self.step.data) if self.step.name == "constant" else None
 
     def __add__(self, other: Number) -> Value:
-        return add(self, other)
+        return add(self, other) if _is_number(other) else NotImplemented
 
     def __radd__(self, other: Number) -> Value:
-        return add(other, self)
+        return add(other, self) if _is_number(other) else NotImplemented
 
     def __sub__(self, other: Number) -> Value:
-        return subtract(self, other)
+        return subtract(self, other) if _is_number(other) else NotImplemented
 
     def __rsub__(self, other: Number) -> Value:
-        return subtract(other, self)
+        return subtract(other, self) if _is_number(other) else NotImplemented
 
     def __mul__(self, other: Number) -> Value:
-        return multiply(self, other)
+        return multiply(self, other) if _is_number(other) else NotImplemented
 
     def __rmul__(self, other: Number) -> Value:
-        return multiply(other, self)
+        return multiply(other, self) if _is_number(other) else NotImplemented
 
     def __truediv__(self, other: Number) -> Value:
-        return operation("divide", self, other)
+        return operation("divide", self, other) if _is_number(other) else NotImplemented
 
     def __rtruediv__(self, other: Number) -> Value:
-        return operation("divide", other, self)
+        return operation("divide", other, self) if _is_number(other) else NotImplemented
 
     def __neg__(self) -> Value:
         return subtract(0.0, self)
@@ -89,6 +89,11 @@ class Value:
 
     def __repr__(self) -> str:
         return f"{self.constant:g}" if self.constant is not None else f"<{self.step.name}>"
+
+
+def _is_number(value: Any) -> bool:
+    """Whether an operator of a number takes it; vectors and shaders have operators of their own."""
+    return isinstance(value, Value | float | int | np.number)
 
 
 class Vector:

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Emitted light that varies over a surface, found at any places of it: what lights are cut by."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shlight.nodes import Color, Value
+from shlight.nodes.program import ProgramBuilder
+from shlight.nodes.values import Step
+
+Array = NDArray[np.float64]
+# What an input of a program is: its source, the index or name, and the component.
+Input = tuple[str, int | str, int]
+# Texture coordinates that no picture has count as one of this size.
+NO_PICTURE = (1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class VaryingEmission:
+    """Radiance (RGB) that an expression finds at each place of a surface."""
+
+    color: Color
+
+    @cached_property
+    def _places(self) -> list[tuple[tuple[Value, Value], tuple[float, float]]]:
+        """Where pictures are looked up, and their sizes."""
+        images = [step for step in steps_of(self.color) if step.name == "image"]
+        return [((step.arguments[0], step.arguments[1]), step.data.size) for step in images]
+
+    @cached_property
+    def _program(self) -> tuple[ProgramBuilder, Any]:
+        builder = ProgramBuilder()
+        builder.result(tuple(self.color))
+        for place, _ in self._places:
+            builder.result(place)
+        return builder, builder.program()
+
+    @property
+    def inputs(self) -> list[Input]:
+        """What must be known of a place."""
+        return [step.data for step in steps_of(self.color) if step.name == "input"]
+
+    def _evaluate(self, inputs: Mapping[Input, Array], count: int) -> Array:
+        builder, program = self._program
+        given = []
+        for source, index, component in self.inputs:
+            values = np.broadcast_to(inputs.get((source, index, component), np.zeros(count)), count)
+            number = builder.input_number(source, index)
+            given.append(((*number, component), np.repeat(values[None].astype(np.float32), 3, axis=0)))
+        results: Array = program.evaluate(given, count).astype(np.float64)
+        return results
+
+    def radiance(self, inputs: Mapping[Input, Array], count: int) -> Array:
+        """Linear RGB (count, 3), never negative; `inputs` are (count,), and what is missing is 0."""
+        return np.clip(np.nan_to_num(self._evaluate(inputs, count)[:3].T), 0.0, None)
+
+    def texels(self, inputs: Mapping[Input, Array], count: int) -> list[Array]:
+        """Where pictures are looked up, in texels: for each of them (count, 2)."""
+        results = self._evaluate(inputs, count)[3:]
+        return [
+            results[2 * i : 2 * i + 2].T * size for i, (_, size) in enumerate(self._places)
+        ]
+
+
+def steps_of(color: Color) -> list[Step]:
+    """All steps of an expression, each once."""
+    waiting, seen = [value.step for value in color], {}
+    while waiting:
+        step = waiting.pop()
+        if id(step) not in seen:
+            seen[id(step)] = step
+            waiting += [argument.step for argument in step.arguments]
+    return list(seen.values())
