@@ -121,10 +121,10 @@ def use_shlight(scene: Any, options: RenderOptions) -> None:
 
 
 @contextmanager
-def few_pixels(render: Any) -> Iterator[None]:
-    """Meanwhile renders are of FEW_PIXELS on the longer side."""
+def few_pixels(render: Any, longer_side: int = FEW_PIXELS) -> Iterator[None]:
+    """Meanwhile renders are of this many pixels on the longer side."""
     size = render.resolution_x, render.resolution_y
-    render.resolution_x, render.resolution_y = (max(1, FEW_PIXELS * side // max(size)) for side in size)
+    render.resolution_x, render.resolution_y = (max(1, longer_side * side // max(size)) for side in size)
     try:
         yield
     finally:

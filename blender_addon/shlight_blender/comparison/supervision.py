@@ -21,10 +21,6 @@ TICK_SECONDS = 0.2
 LOG = "blender.log"
 
 
-class WorkerCrash(CommandError):
-    """A worker ended without an answer."""
-
-
 def check_blender() -> None:
     """Raises CommandError where a worker would find no Blender."""
     if importlib.util.find_spec("bpy") is None:
@@ -55,7 +51,7 @@ def run_worker(
     try:
         return _follow(read_end, tick, hear)
     except EOFError:
-        raise WorkerCrash(_last_words(process, folder), 1) from None
+        raise CommandError(_last_words(process, folder), 1) from None
     finally:
         os.close(read_end)
         # After its result the worker has nothing left to do but Blender's own end, which takes time and may crash.

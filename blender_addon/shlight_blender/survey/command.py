@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 import json
-import platform
 import shutil
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Generator
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from importlib import metadata
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -58,7 +57,7 @@ def find_files(folder: Path) -> list[Path]:
     return files
 
 
-class _Stopped(Exception):
+class _Stopped(Exception):  # noqa: N818
     """The survey ends, and with it the worker of the file that is being rendered."""
 
 
@@ -93,23 +92,23 @@ class _Survey:
         for record in self.records:
             print(records.line(record), flush=True)
         try:
-            for record in self._done(work):
-                self.records.append(record)
-                records.write(self._out / JSON, self.records, self._circumstances())
-                print(records.line(record), flush=True)
+            with closing(self._done(work)) as done:
+                for record in done:
+                    self.records.append(record)
+                    records.write(self._out / JSON, self.records, self._circumstances())
+                    print(records.line(record), flush=True)
         except KeyboardInterrupt:
             if not self.records:
                 raise
-            done = f"{len(self.records)} of {len(self._files)} files are done, see {self._out / JSON}"
-            raise CommandError(f"interrupted; {done}; --resume does the others", INTERRUPTED) from None
+            how_many = f"{len(self.records)} of {len(self._files)} files are done, see {self._out / JSON}"
+            raise CommandError(f"interrupted; {how_many}; --resume does the others", INTERRUPTED) from None
         strips = {record["file"]: self._picture(record["file"], PARTS[0]) for record in self.records}
         size = self._options.render["size"]
         write_sheet(self._out / SHEET, self.records, strips, size, self._options.worst)
 
-    def _done(self, work: Path) -> Iterator[Record]:
+    def _done(self, work: Path) -> Generator[Record, None, None]:
         """The records of the files that are left, in the order in which they are done."""
         known = {record["file"] for record in self.records}
-        (self._out / PICTURES).mkdir(parents=True, exist_ok=True)
         left = [file for file in self._files if str(file) not in known]
         with ThreadPoolExecutor(self._options.jobs) as pool:
             try:
@@ -154,22 +153,19 @@ class _Survey:
     def _publish(self, file: Path, work: Path) -> None:
         for part in PARTS:
             target = self._picture(str(file), part)
+            target.parent.mkdir(parents=True, exist_ok=True)
             target.unlink(missing_ok=True)
             if (work / part).is_file():
                 (work / part).replace(target)
         shutil.rmtree(work)
 
     def _picture(self, file: str, part: str) -> Path:
-        """Where a picture of a file is: all lie in one folder."""
-        return self._out / PICTURES / f"{file.replace('/', '__')}.{part.removeprefix('strip.')}"
+        """Where a picture of a file is."""
+        return self._out / PICTURES / f"{file}.{part.removeprefix('strip.')}"
 
     def _circumstances(self) -> dict[str, Any]:
-        render = {name: list(value) if isinstance(value, tuple) else value for name, value in self._options.render.items()}
-        return {
-            "folder": str(self._options.folder),
-            "options": render,
-            "versions": {"shlight": metadata.version("shlight"), "python": platform.python_version()},
-        }
+        render = self._options.render
+        return {"folder": str(self._options.folder), "options": render | {"size": list(render["size"])}}
 
 
 def _tail(log: Path) -> list[str]:

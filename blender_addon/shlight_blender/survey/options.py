@@ -70,7 +70,9 @@ def _parser() -> argparse.ArgumentParser:
         metavar="S",
         help="time for a file, which is given up after it; 0: no limit (default: %(default)g)",
     )
-    add("--samples", type=whole(1), dest="pixel_samples", metavar="N", help="camera rays of shlight per pixel, at least")
+    add(
+        "--samples", type=whole(1), dest="pixel_samples", metavar="N", help="camera rays of shlight per pixel, at least"
+    )
     add(
         "--reference-samples",
         type=whole(2),

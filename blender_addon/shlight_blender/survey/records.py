@@ -9,9 +9,10 @@ from typing import Any
 
 # What is known of one file: "file", "problem" ("" if it was measured), and the figures that its worker sent.
 Record = dict[str, Any]
+Message = dict[str, Any]  # of the report: "text" and "places"
 
 WITHIN = 1e-3  # relMSE
-FIRST_LINES, LINE_LENGTH = 2, 60  # of the report
+FIRST_LINES, LINE_LENGTH = 3, 80  # of the report
 HEADING = "relMSE     mean/ref.  shlight    Cycles  report  uses  file"
 
 
@@ -43,11 +44,13 @@ def line(record: Record) -> str:
     notes = [record["problem"]] if record["problem"] else []
     if record.get("added"):
         notes.append(f"added: {', '.join(record['added'])}")
-    notes += [_shortened(text) for text in (report or [])[:FIRST_LINES]]
+    notes += [_shortened(message) for message in (report or [])[:FIRST_LINES]]
     return f"{figures}  {count:>6}  {uses:4}  {record['file']}" + (f": {'; '.join(notes)}" if notes else "")
 
 
-def _shortened(text: str) -> str:
+def _shortened(message: Message) -> str:
+    """The message about the first thing that it holds for, without the name of the material or object that has that."""
+    text = f"{message['places'][0].split(', ')[-1]}: {message['text']}"
     return text if len(text) <= LINE_LENGTH else f"{text[: LINE_LENGTH - 1]}…"
 
 
@@ -66,9 +69,7 @@ def _counts(records: list[Record]) -> str:
     measured = [record for record in records if is_measured(record)]
     within = sum(record["rel_mse"] <= WITHIN for record in measured)
     share = f" ({within / len(records):.1%})" if records else ""
-    return (
-        f"{within} within {WITHIN:g}{share}, {len(measured) - within} not, {len(records) - len(measured)} failed"
-    )
+    return f"{within} within {WITHIN:g}{share}, {len(measured) - within} not, {len(records) - len(measured)} failed"
 
 
 def write(path: Path, records: list[Record], circumstances: dict[str, Any]) -> None:

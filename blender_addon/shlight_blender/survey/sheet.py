@@ -18,9 +18,9 @@ from .records import Record, badness, is_measured
 Pixels = npt.NDArray[np.uint8]
 LIMIT = 0.2  # relative difference at the end of the colour scale: the same for all files
 TALLEST = 192  # pixels of a strip on the sheet
-TEXT, GAP = 220, 8  # pixels: width of the text beside a strip, space between cells
+TEXT, GAP = 260, 8  # pixels: width of the text beside a strip, space between cells
 DPI, FONT_SIZE = 100, 8.5
-CHARACTERS, LINES = 34, 11
+CHARACTERS, LINES = 40, 11
 GREY = 128
 
 
@@ -75,7 +75,7 @@ def _caption(record: Record) -> str:
     lines = textwrap.wrap(record["file"], CHARACTERS)
     if is_measured(record):
         lines.append(f"relMSE {record['rel_mse']:.1e}, mean/ref. {record['mean_ratio']:.4f}")
-    extra = [record["problem"], *record.get("features", []), *(record.get("report") or [])]
-    for text in extra:
+    named = (message["text"] for message in record.get("report", []))
+    for text in (record["problem"], *record.get("features", []), *named):
         lines += textwrap.wrap(text, CHARACTERS)
     return "\n".join(lines[:LINES])

@@ -9,6 +9,7 @@ Its messages, beside those of every worker:
 from __future__ import annotations
 
 import sys
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +28,7 @@ from .sheet import strip
 from .staging import add_camera, add_lamps, open_file
 
 SEED_PROBE = 0  # a random seed that no half of the reference has
-PROBE_SAMPLES = 4
+PROBE_PIXELS, PROBE_SAMPLES = 64, 4  # on the longer side; of each pixel
 BLACK = 1e-5  # a picture whose every pixel is darker
 
 
@@ -44,13 +45,14 @@ class SurveyWorker(Worker[FileOptions]):
             raise
 
     def _figures(self) -> dict[str, Any]:
+        self._known(versions={"blender": bpy.app.version_string, "shlight": metadata.version("shlight")})
         self._stage("opening the file")
         self._prepare(open_file(Path(self._options.scene)))
         self._known(added=self._stage_scene())
         self._known(features=features_of(self._scene))
         self._stage("rendering with shlight")
-        seconds, _ = self._shlight()
-        self._known(report=record.last.report.lines(most=10), shlight_seconds=seconds)
+        seconds, warm_up_seconds = self._shlight()
+        self._known(report=record.last.messages, shlight_seconds=seconds, warm_up_seconds=warm_up_seconds)
         self._stage("rendering with Cycles")
         return self._measured()
 
@@ -69,7 +71,7 @@ class SurveyWorker(Worker[FileOptions]):
 
     def _is_black(self) -> bool:
         """True if Cycles sees nothing of the scene."""
-        with few_pixels(self._scene.render):
+        with few_pixels(self._scene.render, PROBE_PIXELS):
             self._render_cycles(PROBE_SAMPLES, SEED_PROBE)
             return not images.read_exr(self._save("probe.exr"))[..., :3].max() > BLACK
 
@@ -93,7 +95,6 @@ class SurveyWorker(Worker[FileOptions]):
             "cycles_seconds": figures["seconds"],
             "cycles_samples": figures["samples"],
             "stopped_by": figures["stopped_by"],
-            "blender": bpy.app.version_string,
         }
 
     def _known(self, **figures: Any) -> None:
