@@ -24,7 +24,13 @@ from shlight_blender.survey import command, main, records
 from shlight_blender.survey.features import features_of
 from shlight_blender.survey.staging import add_camera, add_lamps
 
-COMMAND = [sys.executable, "-c", "import sys; from shlight_blender.survey import main; sys.exit(main(sys.argv[1:]))"]
+# The command with the worker below.
+COMMAND = [
+    sys.executable,
+    "-c",
+    "import sys; from shlight_blender.survey import command; command.WORKER = 'faulty_worker'; "
+    "sys.exit(command.main(sys.argv[1:]))",
+]
 TIME_LIMIT = 8  # s: several times what a file takes
 
 # A worker that crashes or hangs where shlight renders a file of such a name.
@@ -152,7 +158,7 @@ def test_the_contact_sheet_shows_failures_first(run: SimpleNamespace) -> None:
     from matplotlib.image import imread
 
     sheet = imread(run.out / "contact_sheet.png")
-    assert np.allclose(sheet[8:56, 8:200, :3], 128 / 255, atol=1e-3)
+    assert np.allclose(sheet[30:78, 8:200, :3], 128 / 255, atol=1e-3)
     strip = imread(run.out / "pictures" / "agrees.blend.png")
     assert strip.shape[:2] == (48, 3 * 64)
 
@@ -167,7 +173,9 @@ def test_resuming_does_what_is_left(run: SimpleNamespace, tmp_path: Path, capsys
     assert survey("--size", "64x48", "--worst", "1") == 0
     said = capsys.readouterr().out
     assert next(line for line in said.splitlines() if "broken.blend" in line).startswith("failed")
-    assert json.loads((tmp_path / "survey.json").read_text())["files"][0] == run.files["agrees.blend"]
+    after = json.loads((tmp_path / "survey.json").read_text())["files"]
+    assert [record for record in after if record["file"] != "broken.blend"] == kept
+    assert len(after) == len(kept) + 1
     assert survey("--size", "64x47") == 2
     assert "other options" in capsys.readouterr().err
     (tmp_path / "survey.json").write_text("{}")
@@ -175,23 +183,26 @@ def test_resuming_does_what_is_left(run: SimpleNamespace, tmp_path: Path, capsys
 
 
 def test_interrupting_keeps_what_is_done(run: SimpleNamespace, tmp_path: Path) -> None:
-    for number in range(20):
-        os.link(run.folder / "agrees.blend", tmp_path / f"{number:02}.blend")
+    for name in ("a", "hang"):
+        os.link(run.folder / "agrees.blend", tmp_path / f"{name}.blend")
+    (tmp_path / "faulty_worker.py").write_text(FAULTY_WORKER)
     pipes: dict[str, Any] = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    path = os.pathsep.join(filter(None, (str(tmp_path), os.environ.get("PYTHONPATH"))))
     arguments = [str(tmp_path), "--out", str(tmp_path / "out"), "--size", "16x16"]
-    with subprocess.Popen([*COMMAND, *arguments], text=True, **pipes) as process:
+    with subprocess.Popen([*COMMAND, *arguments], text=True, env=os.environ | {"PYTHONPATH": path}, **pipes) as process:
         assert process.stdout is not None
         assert process.stderr is not None
-        assert any("00.blend" in line for line in process.stdout)
+        assert any("a.blend" in line for line in process.stdout)
         process.send_signal(signal.SIGINT)
         try:
             assert process.wait(timeout=10) == 130
         finally:
             process.kill()
-        assert "of 20 files are done" in process.stderr.read()
-    left = sorted(path.name for path in tmp_path.iterdir() if path.suffix != ".blend")
-    assert left == ["out"]
-    assert json.loads((tmp_path / "out" / "survey.json").read_text())["files"][0]["file"] == "00.blend"
+        assert "1 of 2 files are done" in process.stderr.read()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.blend", "faulty_worker.py", "hang.blend", "out"]
+    assert [record["file"] for record in json.loads((tmp_path / "out" / "survey.json").read_text())["files"]] == [
+        "a.blend"
+    ]
 
 
 def test_requests_that_cannot_be_met(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

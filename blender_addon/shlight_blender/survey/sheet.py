@@ -18,10 +18,13 @@ from .records import Record, badness, is_measured
 Pixels = npt.NDArray[np.uint8]
 LIMIT = 0.2  # relative difference at the end of the colour scale: the same for all files
 TALLEST = 192  # pixels of a strip on the sheet
-TEXT, GAP = 260, 8  # pixels: width of the text beside a strip, space between cells
+TEXT, GAP, HEAD = 260, 8, 22  # pixels: width of the text beside a strip, space between cells, height of the heading
 DPI, FONT_SIZE = 100, 8.5
 CHARACTERS, LINES = 40, 11
 GREY = 128
+HEADING = (
+    f"shlight, Cycles, and the difference: orange where shlight is darker, full at {LIMIT:.0%}; files, worst first"
+)
 
 
 def strip(image: npt.NDArray[np.float32], reference: npt.NDArray[np.float32]) -> Pixels:
@@ -46,11 +49,12 @@ def write_sheet(path: Path, records: list[Record], strips: dict[str, Path], size
     cell_height, cell_width = height + GAP, width + TEXT + 2 * GAP
     columns = max(round(math.sqrt(len(shown) * cell_height / cell_width)), 1)
     rows = math.ceil(len(shown) / columns)
-    sheet = np.full((rows * cell_height + GAP, columns * cell_width + GAP, 3), 255, dtype=np.uint8)
+    sheet = np.full((HEAD + rows * cell_height + GAP, columns * cell_width + GAP, 3), 255, dtype=np.uint8)
     figure = Figure(figsize=(sheet.shape[1] / DPI, sheet.shape[0] / DPI), dpi=DPI)
+    figure.text(GAP / sheet.shape[1], 1 - GAP / sheet.shape[0], HEADING, fontsize=FONT_SIZE, va="top", weight="bold")
     for number, record in enumerate(shown):
         x = GAP + number // rows * cell_width
-        y = GAP + number % rows * cell_height
+        y = HEAD + GAP + number % rows * cell_height
         pixels = _pixels(strips.get(record["file"]), step)
         sheet[y : y + height, x : x + width] = GREY if pixels is None else pixels
         at = ((x + width + GAP) / sheet.shape[1], 1 - y / sheet.shape[0])
