@@ -20,9 +20,9 @@ import bpy
 import pytest
 
 from shlight import images, metrics
+from shlight_blender.comparison.scene import LIGHT_RAYS, SceneError, open_scene, prepare, without_shadows
 from shlight_blender.preview import main, options
 from shlight_blender.preview.command import FIRST_RESULTS, RESULTS
-from shlight_blender.preview.scene import LIGHT_RAYS, SceneError, open_scene, prepare, without_shadows
 
 COMMAND = [sys.executable, "-c", "import sys; from shlight_blender.preview import main; sys.exit(main(sys.argv[1:]))"]
 QUICK = ["--size", "24x16", "--samples", "8", "--shadow-rays", "4", "--pixel-samples", "2", "--tolerance", "0.01"]

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from shlight_blender.preview import figures, picture, timing
+from shlight_blender.comparison import pictures, timing
+from shlight_blender.comparison.reference import render_halves
+from shlight_blender.preview import figures, picture
 from shlight_blender.preview.progress import Progress
-from shlight_blender.preview.reference import render_halves
 
 
 def test_calibration_finds_the_samples_in_less_than_the_time() -> None:
@@ -79,7 +80,7 @@ def test_a_terminal_shows_a_bar_that_is_full_only_at_the_end() -> None:
 
 def test_the_picture_is_bright_enough_and_its_scale_round() -> None:
     dim = np.full((10, 10, 3), 0.1, np.float32)
-    assert picture.common_exposure(dim) == pytest.approx(3)
-    assert picture.common_exposure(0 * dim) == 0
+    assert pictures.common_exposure(dim) == pytest.approx(3)
+    assert pictures.common_exposure(0 * dim) == 0
     for share, limit in ((0.012, 2.0), (0.02, 2.0), (0.049, 5.0), (0.08, 10.0), (0.0, 0.1)):
         assert picture.difference_limit(np.full((8, 8), -share)) == pytest.approx(limit)

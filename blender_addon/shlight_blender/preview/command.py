@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import sys
 from pathlib import Path
@@ -12,12 +11,14 @@ from typing import Any
 from shlight import images
 from shlight.commands import INTERRUPTED, CommandError, check_folder, run_command, work_folder
 
+from ..comparison.pictures import common_exposure
+from ..comparison.supervision import check_blender, run_worker
 from .figures import Image, add_circumstances, add_measurements, table
 from .options import Options, parse
-from .picture import common_exposure, comparison
+from .picture import comparison
 from .progress import Progress
-from .supervision import run_worker
 
+WORKER = "shlight_blender.preview.worker"
 FIRST_RESULTS = ("shlight.exr", "shlight.png")
 RESULTS = (*FIRST_RESULTS, "cycles_same_time.exr", "reference.exr", "preview.png", "figures.json")
 
@@ -43,8 +44,7 @@ def _check(options: Options, out: Path) -> None:
     with options.scene_file.open("rb"):  # missing, a folder, or not readable: an OSError with its name
         pass
     check_folder(out)
-    if importlib.util.find_spec("bpy") is None:
-        raise CommandError("the Python module bpy is missing: pip install 'shlight[blender]'", 1)
+    check_blender()
 
 
 class _Preview:
@@ -60,11 +60,10 @@ class _Preview:
     def run(self) -> dict[str, Any]:
         """Renders, measures, and puts all results in place; returns the figures."""
         try:
-            figures = run_worker(self._options, self._work, self._progress, self._show_shlight)
+            figures = run_worker(WORKER, self._options.to_data(), self._work, self._progress.tick, self._hear)
             self._progress.stage("measuring")
             self._measure(figures)
             self._publish(RESULTS[len(FIRST_RESULTS) :])
-            self._progress.end()
             return figures
         except CommandError as error:
             raise CommandError(f"{self._options.scene}: {error}", error.exit_code) from error
@@ -72,6 +71,14 @@ class _Preview:
             if self._shlight is None:
                 raise
             raise CommandError(f"interrupted; shlight's picture stays: {self._picture_path}", INTERRUPTED) from None
+        finally:
+            self._progress.end()
+
+    def _hear(self, message: dict[str, Any]) -> None:
+        if message["kind"] == "stage":
+            self._progress.stage(message["name"], message["expected_seconds"])
+        else:
+            self._show_shlight(message["seconds"])
 
     @property
     def _picture_path(self) -> Path:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from shlight import images, metrics
 
+from ..comparison.pictures import PALETTE, common_exposure
 from .figures import error_text
 
 Image = npt.NDArray[np.float32]
@@ -19,8 +20,6 @@ Image = npt.NDArray[np.float32]
 LEAST_PANEL_WIDTH, MOST_PANEL_WIDTH = 400, 960
 MARGIN, CAPTION, BAR = 12, 44, 46
 DPI = 100
-PALETTE = "PuOr"  # diverging, told apart by the colour-blind too
-WHITE_AT = 0.8  # linear value to which the brightest parts are brought
 
 
 def comparison(
@@ -74,12 +73,6 @@ def comparison(
     bar.ax.tick_params(labelsize=7, length=2, pad=1)
     canvas.draw()
     return np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[..., :3])
-
-
-def common_exposure(reference: Image) -> float:
-    """Stops by which all pictures are brightened: few of the reference's pixels are then brighter than WHITE_AT."""
-    bright = float(np.percentile(reference[..., :3].max(axis=-1), 95))
-    return math.log2(WHITE_AT / bright) if bright > 0 else 0.0
 
 
 def difference_limit(difference: npt.NDArray[np.float64]) -> float:

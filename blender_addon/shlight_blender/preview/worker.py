@@ -1,96 +1,54 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The process in which Blender renders for the preview; `command` starts it and listens to its messages.
+"""The process in which Blender renders for the preview.
 
-usage: python -m shlight_blender.preview.worker <folder> <file descriptor for messages>
-
-The folder holds request.json, the options; the pictures are written there. A message is a line of JSON:
+Its messages, beside those of every worker:
     {"kind": "stage", "name": ..., "expected_seconds": ...}
     {"kind": "shlight", "seconds": ...}: shlight.exr is there
-    {"kind": "error", "text": ..., "exit_code": ...}
-    {"kind": "result", "figures": ...}
 """
 
 from __future__ import annotations
 
-import ctypes
-import json
 import os
-import signal
 import sys
-import time
-from contextlib import nullcontext
-from pathlib import Path
 from typing import Any
 
 import bpy
-import numpy as np
-import numpy.typing as npt
 
-import shlight_blender
 from shlight import images
 
 from .. import record
+from ..comparison.scene import SceneError, open_scene
+from ..comparison.timing import SampleTime, alternate, calibrate, middle, rounds_for
+from ..comparison.worker import Worker, serve
 from .options import Options
-from .reference import render_halves
-from .scene import SceneError, few_pixels, open_scene, prepare, use_cycles, use_shlight, without_shadows
-from .timing import SampleTime, alternate, calibrate, middle, rounds_for
 
-PR_SET_PDEATHSIG = 1  # from linux/prctl.h
-
-# Random seeds: no two of the pictures of Cycles may share one.
-SEED_SAME_TIME, SEEDS_OF_HALVES = 0, (1, 2)
+SEED_SAME_TIME = 0  # a random seed that no half of the reference has
 
 
-class Worker:
-    """One preview: the scene, the folder for the pictures, and the channel to the command."""
-
-    def __init__(self, options: Options, folder: Path, channel: Any) -> None:
-        self._options = options
-        self._folder = folder
-        self._channel = channel
-        self._scene: Any = None
-
-    def run(self) -> None:
-        """Renders everything and sends the figures, or an error."""
-        try:
-            self._send(kind="result", figures=self._figures())
-        except SceneError as error:
-            self._send(kind="error", text=str(error), exit_code=2)
-        except RuntimeError as error:  # how Blender's operators fail
-            self._send(kind="error", text=_one_line(error), exit_code=1)
+class PreviewWorker(Worker[Options]):
+    """One preview."""
 
     def _figures(self) -> dict[str, Any]:
         self._stage("Opening the scene")
-        self._scene = open_scene(self._options.scene_file)
-        bpy.ops.preferences.addon_enable(module="cycles")
-        shlight_blender.register()
-        prepare(self._scene, self._options)
+        self._prepare(open_scene(self._options.scene_file))
         render = self._scene.render
         figures: dict[str, Any] = {
             "scene": {"name": self._scene.name, "frame": self._scene.frame_current},
             "size": [render.resolution_x, render.resolution_y],
             "threads": self._options.threads or len(os.sched_getaffinity(0)),
             "blender": bpy.app.version_string,
-            "shlight": self._shlight(),
+            "shlight": self._figures_of_shlight(),
         }
         time_of = self._same_time(figures)
-        figures["reference"] = self._reference(time_of)
+        figures["reference"] = self._figures_of_reference(time_of)
         return figures
 
-    def _shlight(self) -> dict[str, Any]:
-        """shlight's picture, and what it reports of it. A render of few pixels fills its tables before."""
+    def _figures_of_shlight(self) -> dict[str, Any]:
+        """shlight's picture, and what it reports of it."""
         self._stage("shlight")
-        try:
-            with few_pixels(self._scene.render):
-                warm_up_seconds = self._render_shlight()
-            seconds = self._render_shlight()
-        except RuntimeError as error:
-            if record.last.scene_error:
-                raise SceneError(record.last.scene_error) from error
-            raise
+        seconds, warm_up_seconds = self._shlight()
         if record.last.dark:
             raise SceneError(record.last.dark)
-        self._save("shlight.exr")
         self._send(kind="shlight", seconds=seconds)
         made, statistics = record.last, record.last.statistics
         return {
@@ -131,67 +89,15 @@ class Worker:
         figures["cycles_same_time"] = {"samples": samples, "seconds": middle(theirs), "times": theirs}
         return time_of
 
-    def _reference(self, time_of: SampleTime) -> dict[str, Any]:
+    def _figures_of_reference(self, time_of: SampleTime) -> dict[str, Any]:
         samples, budget = self._options.samples, self._options.reference_seconds
         expected = 2 * time_of.seconds((samples + 1) // 2)
         self._stage(f"reference, at most {samples} samples", min(expected, budget or expected))
-        halves, figures = render_halves(self._part_of_half, time_of, samples, budget)
+        halves, figures = self._reference(time_of)
         for number, half in enumerate(halves, start=1):
             images.write_exr(self._folder / f"half_{number}.exr", half)
-        return figures | {"seeds": SEEDS_OF_HALVES}
-
-    def _render_shlight(self) -> float:
-        use_shlight(self._scene, self._options)
-        return _render()
-
-    def _render_cycles(self, samples: int, seed: int, **part: int) -> float:
-        use_cycles(self._scene, samples, seed, **part)
-        with nullcontext() if self._scene.shlight.use_shadows else without_shadows():
-            return _render()
-
-    def _part_of_half(self, half: int, first: int, samples: int) -> tuple[float, npt.NDArray[np.float32]]:
-        """See reference.Render. Blender hands a picture out through a file only; its time counts too."""
-        start = time.perf_counter()
-        self._render_cycles(samples, SEEDS_OF_HALVES[half], first=first, of=(self._options.samples + 1) // 2)
-        image = images.read_exr(self._save("part.exr"))
-        return time.perf_counter() - start, image
-
-    def _save(self, name: str) -> Path:
-        path = self._folder / name
-        bpy.data.images["Render Result"].save_render(str(path), scene=self._scene)
-        return path
-
-    def _stage(self, name: str, expected_seconds: float = 0.0) -> None:
-        self._send(kind="stage", name=name, expected_seconds=expected_seconds)
-
-    def _send(self, **message: Any) -> None:
-        self._channel.write(json.dumps(message) + "\n")
-        self._channel.flush()
-
-
-def _render() -> float:
-    """Blender's own render call: wall time from the scene in Blender to the finished picture."""
-    start = time.perf_counter()
-    bpy.ops.render.render()
-    return time.perf_counter() - start
-
-
-def _one_line(error: Exception) -> str:
-    return " ".join(str(error).removeprefix("Error: ").split())
-
-
-def main(argv: list[str]) -> None:
-    """Runs the request of the folder argv[0], messages to the open file descriptor argv[1]."""
-    if sys.platform == "linux":
-        # A command that is killed cannot end the worker; then the system does.
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    folder = Path(argv[0])
-    request = json.loads((folder / "request.json").read_text(encoding="utf-8"))
-    if request["size"] is not None:
-        request["size"] = tuple(request["size"])
-    with os.fdopen(int(argv[1]), "w", encoding="utf-8") as channel:
-        Worker(Options(**request), folder, channel).run()
+        return figures
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    serve(PreviewWorker, Options, sys.argv[1:])

@@ -8,11 +8,14 @@ chunks follow each other in one sequence of samples: its error falls faster than
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+
+from shlight import metrics
 
 from .timing import SampleTime
 
@@ -23,21 +26,24 @@ Render = Callable[[int, int, int], tuple[float, Image]]
 LARGEST_SHARE = 1 / 4  # of the budget for one chunk: what a render that takes twice the foretold time overshoots
 SMALLEST_SHARE = 1 / 16  # of the budget: less is not worth another chunk
 FIXED_SHARE = 1 / 8  # of a chunk for what a render takes without samples, as far as the budget allows
+LEAST_FOR_NOISE = 16  # samples of a half from which its noise is judged
+MARGIN = 1.1  # times the samples that are foretold for a noise
 GROWTH = 4  # times the samples measured before: further the time cannot be foretold
 
 
 def render_halves(
-    render: Render, time: SampleTime, most_samples: int, budget: float
+    render: Render, time: SampleTime, most_samples: int, budget: float, noise: float = 0.0
 ) -> tuple[list[Image], dict[str, Any]]:
     """Both halves, and how they came about; at most `most_samples` in all, in about `budget` seconds (0: no limit).
 
+    noise: what `metrics.reference_rel_mse` of the halves need not fall below; 0: it is not looked at.
     Each half gets a sample at least. The times of the renders are added to `time`.
     """
     most = (most_samples + 1) // 2
     chunks: list[int] = []
     sums: list[Any] = [0.0, 0.0]
-    done, spent = 0, 0.0
-    while samples := _next_chunk(time, most - done, spent, budget):
+    done, spent, wanted = 0, 0.0, min(LEAST_FOR_NOISE, most) if noise > 0 else most
+    while samples := _next_chunk(time, wanted - done, spent, budget):
         for half in range(2):
             seconds, image = render(half, done, samples)
             sums[half] = sums[half] + samples * image.astype(np.float64)
@@ -45,12 +51,22 @@ def render_halves(
             spent += seconds
         done += samples
         chunks.append(samples)
+        if noise > 0 and done == wanted:
+            wanted = min(max(wanted, _samples_for(noise, sums, done)), most)
     return [(total / done).astype(np.float32) for total in sums], {
         "samples": 2 * done,
         "seconds": spent,
         "chunks": chunks,  # samples of each half
-        "stopped_by": "samples" if done == most else "seconds",
+        "stopped_by": "samples" if done == most else "noise" if done == wanted else "seconds",
     }
+
+
+def _samples_for(noise: float, sums: list[Any], done: int) -> int:
+    """Samples of each half after which the noise will be this low, if it falls as that of independent samples."""
+    if not sum(total[..., :3].sum() for total in sums) > 0:
+        return done  # black
+    ratio = metrics.reference_rel_mse(sums[0] / done, sums[1] / done) / noise
+    return done if ratio <= 1 else math.ceil(MARGIN * ratio * done)
 
 
 def _next_chunk(time: SampleTime, left: int, spent: float, budget: float) -> int:

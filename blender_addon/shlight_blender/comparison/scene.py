@@ -14,7 +14,7 @@ import bpy
 from ..compat import set_sample_range
 from ..export.materials import read_material
 from ..report import ExportReport
-from .options import Options
+from .options import RenderOptions
 
 DEFAULT_LONGER_SIDE = 512
 FEW_PIXELS = 16
@@ -28,7 +28,7 @@ class SceneError(Exception):
 
 def open_scene(path: Path) -> Any:
     """Opens a Blender file, or runs the function build_scene() of a Python script, and returns the scene."""
-    scene = _build(path) if path.suffix == ".py" else _open(path)
+    scene = _build(path) if path.suffix == ".py" else open_blend(path)
     if scene is None:
         raise SceneError("there is no scene in it")
     if scene.camera is None:
@@ -48,7 +48,8 @@ def _build(script: Path) -> Any:
         raise SceneError(f"{type(error).__name__}: {' '.join(str(error).split())}") from error
 
 
-def _open(path: Path) -> Any:
+def open_blend(path: Path) -> Any:
+    """Opens a Blender file and returns its scene."""
     try:
         bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False, use_scripts=False)
     except RuntimeError as error:
@@ -63,7 +64,7 @@ def _reason(error: RuntimeError) -> str:
     return f"Blender cannot read it ({words.split(' in file ')[0]})"
 
 
-def prepare(scene: Any, options: Options) -> None:
+def prepare(scene: Any, options: RenderOptions) -> None:
     """Settings that all renders share: the frame, the lamps, the size, and nothing after the renderer."""
     if options.frame is not None:
         scene.frame_set(options.frame)
@@ -104,7 +105,7 @@ def _default_size(render: Any) -> tuple[int, int]:
     return max(1, round(render.resolution_x * scale)), max(1, round(render.resolution_y * scale))
 
 
-def use_shlight(scene: Any, options: Options) -> None:
+def use_shlight(scene: Any, options: RenderOptions) -> None:
     """The next render is shlight's, with the scene's settings and what the command line changes of them."""
     scene.render.engine = "SHLIGHT"
     settings = scene.shlight
@@ -120,10 +121,10 @@ def use_shlight(scene: Any, options: Options) -> None:
 
 
 @contextmanager
-def few_pixels(render: Any) -> Iterator[None]:
-    """Meanwhile renders are of FEW_PIXELS on the longer side."""
+def few_pixels(render: Any, longer_side: int = FEW_PIXELS) -> Iterator[None]:
+    """Meanwhile renders are of this many pixels on the longer side."""
     size = render.resolution_x, render.resolution_y
-    render.resolution_x, render.resolution_y = (max(1, FEW_PIXELS * side // max(size)) for side in size)
+    render.resolution_x, render.resolution_y = (max(1, longer_side * side // max(size)) for side in size)
     try:
         yield
     finally:
@@ -162,6 +163,7 @@ def use_cycles(scene: Any, samples: int, seed: int, *, first: int = 0, of: int |
     cycles.use_animated_seed = False
     cycles.time_limit = 0.0
     cycles.max_bounces = 0
+    cycles.use_fast_gi = False
     cycles.sample_clamp_direct = 0.0
     cycles.sample_clamp_indirect = 0.0
     cycles.light_sampling_threshold = 0.0

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Starting the worker, following its messages, and ending it in every case."""
+"""Starting a worker, following its messages, and ending it in every case."""
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import os
 import select
@@ -10,30 +11,35 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from shlight.commands import CommandError
 
-from .options import Options
-from .progress import Progress
-
 TICK_SECONDS = 0.2
 LOG = "blender.log"
 
 
-def run_worker(
-    options: Options, folder: Path, progress: Progress, on_shlight: Callable[[float], None]
-) -> dict[str, Any]:
-    """Has the worker render into `folder` and returns its figures; CommandError with its reason if it fails.
+def check_blender() -> None:
+    """Raises CommandError where a worker would find no Blender."""
+    if importlib.util.find_spec("bpy") is None:
+        raise CommandError("the Python module bpy is missing: pip install 'shlight[blender]'", 1)
 
-    on_shlight(seconds) is called as soon as shlight's picture is in the folder.
+
+def run_worker(
+    module: str, request: dict[str, Any], folder: Path, tick: Callable[[], None], hear: Callable[[dict[str, Any]], None]
+) -> dict[str, Any]:
+    """Has the worker `module` render into `folder` and returns its figures; CommandError with its reason if it fails.
+
+    tick() is called a few times a second and ends the worker by raising an exception, hear(message) is told each
+    message but the last.
     """
-    (folder / "request.json").write_text(json.dumps(options.to_data()), encoding="utf-8")
+    (folder / "request.json").write_text(json.dumps(request), encoding="utf-8")
     read_end, write_end = os.pipe()
     with (folder / LOG).open("wb") as log:
         process = subprocess.Popen(
-            [sys.executable, "-m", "shlight_blender.preview.worker", str(folder), str(write_end)],
+            [sys.executable, "-m", module, str(folder), str(write_end)],
             stdin=subprocess.DEVNULL,
             stdout=log,
             stderr=subprocess.STDOUT,
@@ -43,15 +49,15 @@ def run_worker(
         )
     os.close(write_end)
     try:
-        return _follow(read_end, progress, on_shlight)
+        return _follow(read_end, tick, hear)
     except EOFError:
         raise CommandError(_last_words(process, folder), 1) from None
     finally:
         os.close(read_end)
         # After its result the worker has nothing left to do but Blender's own end, which takes time and may crash.
-        process.kill()
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)  # with what it has started itself
         process.wait()
-        progress.end()
 
 
 def _environment(folder: Path) -> dict[str, str]:
@@ -62,17 +68,14 @@ def _environment(folder: Path) -> dict[str, str]:
     }
 
 
-def _follow(read_end: int, progress: Progress, on_shlight: Callable[[float], None]) -> dict[str, Any]:
-    for message in _messages(read_end, progress.tick):
-        if message["kind"] == "stage":
-            progress.stage(message["name"], message["expected_seconds"])
-        elif message["kind"] == "shlight":
-            on_shlight(message["seconds"])
-        elif message["kind"] == "error":
+def _follow(read_end: int, tick: Callable[[], None], hear: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
+    for message in _messages(read_end, tick):
+        if message["kind"] == "error":
             raise CommandError(message["text"], message["exit_code"])
-        else:
+        if message["kind"] == "result":
             figures: dict[str, Any] = message["figures"]
             return figures
+        hear(message)
     raise EOFError
 
 
