@@ -73,14 +73,9 @@ PRINCIPLED = (
         specular="Specular IOR Level",
         emission="Emission Color",
         unsupported={
-            "Diffuse Roughness": 0.0,
-            "Subsurface Weight": 0.0,
             "Anisotropic": 0.0,
-            "Transmission Weight": 0.0,
-            "Coat Weight": 0.0,
             "Sheen Weight": 0.0,
             "Thin Film Thickness": 0.0,
-            "Alpha": 1.0,
         },
     )
     if IS_BLENDER_4
@@ -94,7 +89,6 @@ PRINCIPLED = (
             "Transmission": 0.0,
             "Clearcoat": 0.0,
             "Sheen": 0.0,
-            "Alpha": 1.0,
         },
     )
 )

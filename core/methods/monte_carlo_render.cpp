@@ -128,7 +128,7 @@ class Worker {
     std::vector<Ray> shadow_rays_;
     std::vector<Rgb> shadowed_;              // what each would bring
     std::vector<std::size_t> pixel_of_ray_;  // to which
-    std::vector<std::uint8_t> blocked_;
+    std::vector<Rgb> visible_;
 };
 
 void Worker::render(std::size_t first, std::size_t count, std::span<float> image) {
@@ -148,10 +148,10 @@ void Worker::render(std::size_t first, std::size_t count, std::span<float> image
             ++covered_[pixel_of_hit_[hit]];
             shade(hit);
         }
-        blocked_.resize(shadow_rays_.size());
-        picture_->scene.rays().occluded(shadow_rays_, blocked_);
-        for (std::size_t i = 0; i < blocked_.size(); ++i) {
-            if (blocked_[i] == 0) {
+        visible_.resize(shadow_rays_.size());
+        picture_->scene.rays().visibility(shadow_rays_, 0, visible_);
+        for (std::size_t i = 0; i < visible_.size(); ++i) {
+            if (visible_[i] != Rgb(0)) {
                 radiance_[pixel_of_ray_[i]] += Vec3d(shadowed_[i]);
             }
         }

@@ -129,8 +129,8 @@ LobeShape shape_of(const std::string& kind, double ior) {
 
 ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTuple>& lobes,
                          std::optional<std::uint32_t> emission, std::optional<std::uint32_t> transparency,
-                         std::vector<std::string> attribute_names) {
-    auto shader = std::make_shared<SurfaceShader>(SurfaceShader{program, {}, emission, transparency});
+                         const ShaderProgram& shadow_program, std::vector<std::string> attribute_names) {
+    auto shader = std::make_shared<SurfaceShader>(SurfaceShader{program, {}, emission, transparency, shadow_program});
     for (const auto& [kind, ior, weight, alpha, normal] : lobes) {
         shader->lobes.push_back({shape_of(kind, ior), weight, alpha, normal});
     }
@@ -178,7 +178,8 @@ void bind_shader(py::module_& m) {
         },
         "steps"_a, "tables"_a, "images"_a, "results"_a);
     py::class_<ShaderObject>(m, "SurfaceShader", without_constructor());
-    m.def("surface_shader", &shader_from, "program"_a, "lobes"_a, "emission"_a, "transparency"_a, "attribute_names"_a);
+    m.def("surface_shader", &shader_from, "program"_a, "lobes"_a, "emission"_a, "transparency"_a, "shadow_program"_a,
+          "attribute_names"_a);
 }
 
 }  // namespace shlight::python

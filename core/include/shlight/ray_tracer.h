@@ -30,6 +30,7 @@ struct RayHit {
     std::uint32_t instance = kNone;  ///< index of the TracedInstance, kNone for a miss
     std::uint32_t triangle = 0;
     float u = 0, v = 0;
+    float distance = 0;  ///< t of the ray
 
     bool missed() const { return instance == kNone; }
 };

@@ -15,7 +15,7 @@
 #include "shlight/environment.h"
 #include "shlight/light.h"
 #include "shlight/mesh.h"
-#include "shlight/ray_tracer.h"
+#include "shlight/scene_rays.h"
 #include "shlight/surface_point.h"
 #include "shlight/types.h"
 
@@ -53,7 +53,7 @@ class CompiledScene {
     const Environment* background() const;
     /// What lamps that the camera sees add to a camera ray, up to a surface at this distance along it, if there is one.
     Rgb lamps_along(const Ray& ray, const std::optional<double>& surface) const;
-    const RayTracer& rays() const;
+    const SceneRays& rays() const;
     /// Precondition: not hit.missed(); direction is the ray's.
     SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
     /// Where another ray meets the plane of a surface, which may be outside of its triangle; the ray is taken to be

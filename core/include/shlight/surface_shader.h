@@ -25,7 +25,8 @@ struct SurfaceShader {
     ShaderProgram program;
     std::vector<ShadedLobe> lobes;
     std::optional<std::uint32_t> emission;      ///< radiance towards the viewer
-    std::optional<std::uint32_t> transparency;  ///< share of the light that goes on straight through, 0 … 1
+    std::optional<std::uint32_t> transparency;  ///< share of the light that goes on straight through
+    ShaderProgram shadow_program;               ///< the same for shadow rays, its three results
 };
 
 /// As lobes of a Bsdf, of colour 1: what they weigh is found at each hit.

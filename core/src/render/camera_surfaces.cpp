@@ -42,9 +42,9 @@ void CameraSurfaces::trace(std::span<const CameraRay> rays, std::size_t rays_per
     std::iota(active_.begin(), active_.end(), std::size_t{0});
     segments_.clear();
     std::transform(rays.begin(), rays.end(), std::back_inserter(segments_), [](const CameraRay& r) { return r.ray; });
-    while (!active_.empty()) {
+    for (std::uint32_t depth = 0; !active_.empty(); ++depth) {
         const std::size_t first = surfaces_.size();
-        meet(rays, light);
+        meet(rays, depth, light);
         run_programs(first);
         pass_on(first, light);
     }
@@ -52,7 +52,7 @@ void CameraSurfaces::trace(std::span<const CameraRay> rays, std::size_t rays_per
 }
 
 /// The next surface of each ray, or what lies behind all of them.
-void CameraSurfaces::meet(std::span<const CameraRay> rays, std::vector<RayLight>& light) {
+void CameraSurfaces::meet(std::span<const CameraRay> rays, std::uint32_t depth, std::vector<RayLight>& light) {
     met_.resize(segments_.size());
     scene_->rays().intersect(segments_, met_);
     for (std::size_t i = 0; i < active_.size(); ++i) {
@@ -66,8 +66,11 @@ void CameraSurfaces::meet(std::span<const CameraRay> rays, std::vector<RayLight>
         Surface& surface = surfaces_.emplace_back();
         surface.ray = index;
         surface.point = scene_->surface(met_[i], ray.ray.direction);
+        surface.segment = segments_[i];
         surface.throughput = throughput_[index];
         surface.stride = 0;
+        surface.place.shadow_ray = false;
+        surface.place.transparent_depth = depth;
         const Vec3d direction = glm::normalize(Vec3d(ray.ray.direction));
         const double distance = glm::dot(surface.point.position - Vec3d(ray.ray.origin), direction);
         light[index].radiance += throughput_[index] * scene_->lamps_along(segments_[i], distance);
@@ -163,6 +166,13 @@ void CameraSurfaces::pass_on(std::size_t first, std::vector<RayLight>& light) {
         }
         if (material.shader->emission) {
             own.radiance += surface.throughput * color(surface, *material.shader->emission);
+        }
+        if (material.shader->transparency) {
+            throughput_[surface.ray] *= glm::max(color(surface, *material.shader->transparency), Rgb(0));
+            if (surface.place.transparent_depth < transparent_bounces_ && throughput_[surface.ray] != Rgb(0)) {
+                active_.push_back(surface.ray);
+                segments_.push_back(behind(surface.segment, surface.place.at[0].hit));
+            }
         }
     }
 }

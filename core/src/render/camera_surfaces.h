@@ -41,6 +41,7 @@ class CameraSurfaces {
     /// A surface that a camera ray has met.
     struct Surface {
         std::size_t ray;
+        Ray segment;  // from the surface before
         SurfacePoint point;
         ShadedPlace place;
         Rgb throughput;       // share of its light that reaches the camera
@@ -48,7 +49,7 @@ class CameraSurfaces {
         std::size_t stride;   // and from result to result; 0: it has none
     };
 
-    void meet(std::span<const CameraRay> rays, std::vector<RayLight>& light);
+    void meet(std::span<const CameraRay> rays, std::uint32_t depth, std::vector<RayLight>& light);
     void find_neighbours(const CameraRay& ray, Surface& surface) const;
     void leave_scene(const CameraRay& ray, std::size_t index, std::vector<RayLight>& light);
     void run_programs(std::size_t first);

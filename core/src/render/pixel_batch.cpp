@@ -95,12 +95,13 @@ PixelBatch::PixelBatch(const Picture& picture)
       surfaces_(*picture.scene, picture.materials, static_cast<std::uint32_t>(picture.settings.transparent_bounces)),
       hits_(picture.lobe_stride),
       far_light_sum_(picture.far, picture.materials, picture.settings.tolerance),
-      shadowed_far_lights_(picture.scene->rays(), picture.materials, picture.scene->lights()),
-      shadowed_deltas_(picture.scene->rays(), picture.materials, picture.lobe_stride),
+      tracer_(picture.scene->rays(), static_cast<std::uint32_t>(picture.settings.transparent_bounces)),
+      shadowed_far_lights_(tracer_, picture.materials, picture.scene->lights()),
+      shadowed_deltas_(tracer_, picture.materials, picture.lobe_stride),
       unshadowed_(picture.lobe_stride),
-      shadowed_(picture.scene->rays(), static_cast<std::uint32_t>(picture.settings.shadow_rays), picture.materials,
+      shadowed_(tracer_, static_cast<std::uint32_t>(picture.settings.shadow_rays), picture.materials,
                 picture.lobe_stride),
-      shadowed_environment_(picture.scene->rays(), picture.scene->environment(),
+      shadowed_environment_(tracer_, picture.scene->environment(),
                             static_cast<std::uint32_t>(picture.settings.shadow_rays), picture.materials) {}
 
 void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums) {

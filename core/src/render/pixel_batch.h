@@ -110,6 +110,7 @@ class PixelBatch {
     std::vector<const Light*> lights_;      // with extent, that are not summed up
     std::vector<const Light*> delta_list_;  // likewise, without
     std::optional<DeltaLights> deltas_;     // of these; none: all
+    ShadowTracer tracer_;
     ShadowedFarLights shadowed_far_lights_;
     ShadowedDeltas shadowed_deltas_;
     DirectLight unshadowed_;

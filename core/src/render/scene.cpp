@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <tbb/task_arena.h>
 
@@ -36,10 +37,50 @@ struct Reach {
     }
 };
 
+/// None if no material lets light through.
+std::vector<std::uint8_t> transparent_triangles(const Mesh& mesh) {
+    const auto passes = [](const MeshShader& own) { return own.shader != nullptr && own.shader->transparency; };
+    if (std::none_of(mesh.shaders.begin(), mesh.shaders.end(), passes)) {
+        return {};
+    }
+    std::vector<std::uint8_t> transparent(mesh.triangles.size());
+    for (std::size_t i = 0; i < transparent.size(); ++i) {
+        transparent[i] = passes(mesh.shaders[mesh.material_index(i)]) ? 1 : 0;
+    }
+    return transparent;
+}
+
+/// Of one material.
+class PlaceReader : public ShaderReader {
+  public:
+    PlaceReader(const PlacedMeshes& placed, const Material& material, std::span<const ShadedPlace> places)
+        : placed_(&placed), material_(&material), places_(places) {}
+
+    void read(const ShaderInput& input, int place, std::size_t first, std::span<float> out) const override {
+        placed_->read(input, material_->attributes, place, places_.subspan(first, out.size()), out);
+    }
+
+  private:
+    const PlacedMeshes* placed_;
+    const Material* material_;
+    std::span<const ShadedPlace> places_;
+};
+
 }  // namespace
 
 class CompiledScene::Impl {
   public:
+    /// Runs the programs of surfaces that shadow rays meet.
+    class Transparency : public SurfaceTransparency {
+      public:
+        explicit Transparency(const Impl& scene) : scene_(&scene) {}
+        void find(std::span<const Ray> rays, std::span<const RayHit> hits, std::uint32_t depth,
+                  std::span<Rgb> passed) const override;
+
+      private:
+        const Impl* scene_;
+    };
+
     Impl(std::vector<Light> lamps, Environment all_around, bool environment_visible)
         : lights(std::move(lamps)), environment(std::move(all_around)), has_background(environment_visible) {}
 
@@ -56,15 +97,15 @@ class CompiledScene::Impl {
         const auto first_delta =
             std::stable_partition(lights.begin(), lights.end(), [](const Light& light) { return !is_delta(light); });
         extended_light_count = static_cast<std::size_t>(first_delta - lights.begin());
-        std::vector<TracedGeometry> geometries;
+        std::vector<SceneGeometry> geometries;
         for (const TracedMesh& traced : placed.meshes()) {
-            geometries.push_back({traced.vertices(), traced.mesh->triangles});
+            geometries.push_back({traced.vertices(), traced.mesh->triangles, transparent_triangles(*traced.mesh)});
         }
         std::vector<TracedInstance> instances;
         for (const Placement& placement : placed.placements()) {
             instances.push_back({placement.mesh, placement.baked, placement.to_world});
         }
-        rays = std::make_unique<const RayTracer>(geometries, instances);
+        rays = std::make_unique<const SceneRays>(geometries, instances, transparency);
         seen_lamps = CameraVisibleLamps(lights);
     }
 
@@ -74,7 +115,8 @@ class CompiledScene::Impl {
     std::size_t extended_light_count = 0;
     Environment environment;
     bool has_background;
-    std::unique_ptr<const RayTracer> rays;
+    Transparency transparency{*this};
+    std::unique_ptr<const SceneRays> rays;
     CameraVisibleLamps seen_lamps;
 
   private:
@@ -84,6 +126,46 @@ class CompiledScene::Impl {
     void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
                         const std::vector<Rgb>& radiance);
 };
+
+void CompiledScene::Impl::Transparency::find(std::span<const Ray> rays, std::span<const RayHit> hits,
+                                             std::uint32_t depth, std::span<Rgb> passed) const {
+    std::vector<ShadedPlace> places;
+    std::vector<std::uint32_t> material, order(hits.size());
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        const SurfacePoint point = scene_->placed.surface(hits[i], rays[i].direction);
+        const Vec3d towards_viewer = -glm::normalize(Vec3d(rays[i].direction));
+        ShadedPlace& place = places.emplace_back();
+        place.at.fill({hits[i], point.position, towards_viewer});
+        place.ray_length = glm::distance(point.position, Vec3d(rays[i].origin));
+        place.shadow_ray = true;
+        place.transparent_depth = depth;
+        material.push_back(point.material);
+    }
+    std::iota(order.begin(), order.end(), 0U);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return material[a] < material[b]; });
+    std::vector<ShadedPlace> alike;
+    std::vector<float> results;
+    ShaderProgram::Registers registers;
+    for (std::size_t first = 0; first < order.size();) {
+        const Material& own = scene_->materials[material[order[first]]];
+        alike.clear();
+        std::size_t last = first;
+        for (; last < order.size() && material[order[last]] == material[order[first]]; ++last) {
+            alike.push_back(places[order[last]]);
+        }
+        const ShaderProgram& program = own.shader->shadow_program;
+        results.resize(program.result_count() * alike.size());
+        program.evaluate(PlaceReader(scene_->placed, own, alike), alike.size(), false, registers, results);
+        for (std::size_t k = 0; k < alike.size(); ++k) {
+            for (int channel = 0; channel < 3; ++channel) {
+                const float share = results[static_cast<std::size_t>(channel) * alike.size() + k];
+                passed[order[first + k]][channel] = share > 0 ? share : 0.0F;
+            }
+        }
+        first = last;
+    }
+}
 
 void CompiledScene::Impl::add_emissive_faces(const TracedMesh& traced, std::uint32_t first_placement) {
     const std::shared_ptr<const Mesh>& mesh = traced.mesh;
@@ -164,7 +246,7 @@ const Environment* CompiledScene::background() const {
 Rgb CompiledScene::lamps_along(const Ray& ray, const std::optional<double>& surface) const {
     return impl_->seen_lamps.empty() ? Rgb(0) : impl_->seen_lamps.radiance(ray, surface);
 }
-const RayTracer& CompiledScene::rays() const {
+const SceneRays& CompiledScene::rays() const {
     return *impl_->rays;
 }
 

@@ -31,6 +31,9 @@ void check_surface_shader(const SurfaceShader& shader) {
     }
     check("emission", shader.emission, 3);
     check("transparency", shader.transparency, 3);
+    if (shader.transparency && shader.shadow_program.result_count() != 3) {
+        reject("shadow_program must have three results");
+    }
 }
 
 }  // namespace shlight

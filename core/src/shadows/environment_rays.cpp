@@ -42,7 +42,7 @@ class EnvironmentRays::Directions {
     glm::dmat3 to_map_{1};  // from the shading frame
 };
 
-EnvironmentRays::EnvironmentRays(const RayTracer& tracer, const Environment& environment,
+EnvironmentRays::EnvironmentRays(const ShadowTracer& tracer, const Environment& environment,
                                  std::span<const MaterialLobes> materials)
     : tracer_(&tracer), environment_(&environment), lobes_(materials) {
     for (const MaterialLobes& material : materials) {
@@ -66,16 +66,16 @@ void EnvironmentRays::trace(const Hits& hits, std::span<const std::size_t> lit, 
         directions_.clear();
         weights_.clear();
         spot_weights_.clear();
-        blocked_.clear();
+        visible_.clear();
         runs_.clear();
     }
     rays_.clear();
-    const std::size_t before = blocked_.size();
+    const std::size_t before = visible_.size();
     for (const std::size_t hit : lit) {
         runs_.push_back(draw(hits, hit, phase, seed));
     }
-    blocked_.resize(directions_.size());
-    tracer_->occluded(rays_, std::span(blocked_).subspan(before));
+    visible_.resize(directions_.size());
+    tracer_->visibility(rays_, std::span(visible_).subspan(before));
     rays_traced_ += rays_.size();
 }
 
@@ -117,7 +117,7 @@ EnvironmentRays::Run EnvironmentRays::draw(const Hits& hits, std::size_t hit, co
 }
 
 bool EnvironmentRays::all_free() const {
-    return std::find(blocked_.begin(), blocked_.end(), 1) == blocked_.end();
+    return std::all_of(visible_.begin(), visible_.end(), [](const Rgb& visible) { return visible == Rgb(1); });
 }
 
 EnvironmentRays::Sums EnvironmentRays::sum(const Hits& hits, std::span<const std::size_t> lit, std::size_t lit_index,
@@ -128,7 +128,7 @@ EnvironmentRays::Sums EnvironmentRays::sum(const Hits& hits, std::span<const std
     const Vec3d view = hits.view(hit);
     Sums result;
     const auto add_to = [&](RaySums& sums, std::size_t ray, const Vec3d& weighted) {
-        sums.add(weighted, blocked_[ray] == 0);
+        sums.add(weighted, visible_[ray]);
     };
     const auto add = [&](std::size_t ray, double value) {
         if (split) {

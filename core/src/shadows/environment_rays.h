@@ -17,7 +17,7 @@
 #include "shadows/ray_sums.h"
 #include "shadows/shadow_policy.h"
 #include "shlight/environment.h"
-#include "shlight/ray_tracer.h"
+#include "tracing/shadow_tracer.h"
 #include "tracing/hits.h"
 
 namespace shlight {
@@ -30,7 +30,7 @@ class EnvironmentRays {
         RaySums smooth, spots;
     };
 
-    EnvironmentRays(const RayTracer& tracer, const Environment& environment, std::span<const MaterialLobes> materials);
+    EnvironmentRays(const ShadowTracer& tracer, const Environment& environment, std::span<const MaterialLobes> materials);
 
     /// lit: the hits; phase.rays_per_hit: of each set; seed: of the pixel, whose phases differ in nothing else.
     void trace(const Hits& hits, std::span<const std::size_t> lit, const RayPhase& phase, std::uint32_t seed);
@@ -57,7 +57,7 @@ class EnvironmentRays {
 
     Run draw(const Hits& hits, std::size_t hit, const RayPhase& phase, std::uint32_t seed);
 
-    const RayTracer* tracer_;
+    const ShadowTracer* tracer_;
     const Environment* environment_;
     std::span<const MaterialLobes> lobes_;
     std::vector<Sets> materials_;
@@ -67,7 +67,7 @@ class EnvironmentRays {
     std::vector<Ray> rays_;          // of the phase
     std::vector<Vec3f> directions_;
     std::vector<Rgb> weights_, spot_weights_;  // radiance ÷ density: without spots, of spots
-    std::vector<std::uint8_t> blocked_;
+    std::vector<Rgb> visible_;
     std::vector<Run> runs_;  // phases × lit hits
 };
 

@@ -12,13 +12,12 @@ namespace shlight {
 struct RaySums {
     Vec3d all{0}, seen{0}, squares{0}, seen_squares{0};
 
-    void add(const Vec3d& value, bool is_seen) {
+    /// visible: the share of it that is not hidden.
+    void add(const Vec3d& value, const Rgb& visible) {
         all += value;
         squares += value * value;
-        if (is_seen) {
-            seen += value;
-            seen_squares += value * value;
-        }
+        seen += value * Vec3d(visible);
+        seen_squares += value * value * Vec3d(visible);
     }
     RaySums& operator+=(const RaySums& other);
     /// As if each weight were multiplied.

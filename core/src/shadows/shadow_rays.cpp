@@ -52,7 +52,7 @@ class ShadowRays::Drawing {
     std::uint32_t first_point_, seed_;
 };
 
-ShadowRays::ShadowRays(const RayTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride)
+ShadowRays::ShadowRays(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride)
     : tracer_(&tracer), lobe_stride_(lobe_stride), lobes_(materials) {
     for (const MaterialLobes& material : materials) {
         Material& sets = materials_.emplace_back();
@@ -79,12 +79,12 @@ void ShadowRays::trace(const Light& light, const Hits& hits, const LitHits& lit,
         weights_.clear();
         colors_.clear();
         hidden_layers_.clear();
-        blocked_.clear();
+        visible_.clear();
         runs_.clear();
         solid_angles_.assign(lit.hit.size() * set_stride_, 0.0);
     }
     rays_.clear();
-    const std::size_t before = blocked_.size();
+    const std::size_t before = visible_.size();
     for (std::size_t i = 0; i < lit.hit.size(); ++i) {
         const std::size_t hit = lit.hit[i];
         const Drawing drawing(lit.seen[i], hits, hit, phase, seed);
@@ -95,27 +95,29 @@ void ShadowRays::trace(const Light& light, const Hits& hits, const LitHits& lit,
         }
         draw(drawing, lit, i);
     }
-    blocked_.resize(directions_.size());
+    visible_.resize(directions_.size());
     if (const auto* mesh = std::get_if<MeshLight>(&light)) {
-        follow(*mesh, before);
         if (mesh->faces != nullptr) {
             find_colors(*mesh->faces);
         }
+        follow(*mesh, before);
     } else {
-        tracer_->occluded(rays_, std::span(blocked_).subspan(before));
+        tracer_->visibility(rays_, std::span(visible_).subspan(before));
     }
     rays_traced_ += rays_.size();
 }
 
 /// What a ray meets first is the light, or in its way; what lies behind that is hidden. A ray that passes by a mesh
-/// whose outline is known no better was not stopped.
+/// whose outline is known no better was not stopped. Rays are shortened to what they meet.
 void ShadowRays::follow(const MeshLight& light, std::size_t before) {
     met_.resize(rays_.size());
-    tracer_->intersect(rays_, met_);
+    tracer_->intersect_opaque(rays_, met_);
     for (std::size_t i = 0; i < met_.size(); ++i) {
         const bool seen = hidden_layers_[before + i] == 0 && (met_[i].missed() || light.holds(met_[i]));
-        blocked_[before + i] = seen ? 0 : 1;
+        visible_[before + i] = Rgb(seen ? 1 : 0);
+        rays_[i].t_max = met_[i].missed() ? rays_[i].t_max : met_[i].distance;
     }
+    tracer_->transmittance(rays_, std::span(visible_).subspan(before));
 }
 
 void ShadowRays::find_colors(const FaceRadiance& faces) {
@@ -196,7 +198,11 @@ void ShadowRays::push(const Drawing& drawing, const Vec3d& direction, double dis
 }
 
 std::size_t ShadowRays::blocked_count() const {
-    return static_cast<std::size_t>(std::count(blocked_.begin(), blocked_.end(), 1));
+    return static_cast<std::size_t>(std::count(visible_.begin(), visible_.end(), Rgb(0)));
+}
+
+bool ShadowRays::all_free() const {
+    return std::all_of(visible_.begin(), visible_.end(), [](const Rgb& visible) { return visible == Rgb(1); });
 }
 
 RaySums ShadowRays::sum(const Hits& hits, const LitHits& lit, std::size_t lit_index, std::size_t lobe) const {
@@ -217,7 +223,7 @@ RaySums ShadowRays::sum(const Hits& hits, const LitHits& lit, std::size_t lit_in
                 value /= 1 + solid_angle * lobe_density(shape, view, direction);
             }
             const Vec3d color = colors_.empty() || mirror ? Vec3d(1) : Vec3d(colors_[i]);
-            sums.add(value * color, blocked_[i] == 0);
+            sums.add(value * color, visible_[i]);
         }
     };
     for (std::size_t base = lit_index * set_stride_; base < runs_.size(); base += solid_angles_.size()) {

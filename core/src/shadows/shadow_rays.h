@@ -18,7 +18,7 @@
 #include "shadows/ray_sums.h"
 #include "shadows/shadow_policy.h"
 #include "shlight/light.h"
-#include "shlight/ray_tracer.h"
+#include "tracing/shadow_tracer.h"
 #include "tracing/hits.h"
 
 namespace shlight {
@@ -49,14 +49,16 @@ struct LitHits {
 /// Keeps its memory from light to light; one per thread.
 class ShadowRays {
   public:
-    ShadowRays(const RayTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride);
+    ShadowRays(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride);
 
     /// seed: of the pixel and light, whose phases differ in nothing else.
     void trace(const Light& light, const Hits& hits, const LitHits& lit, const RayPhase& phase, std::uint32_t seed);
 
     /// Since the last first phase.
-    std::size_t count() const { return blocked_.size(); }
+    std::size_t count() const { return visible_.size(); }
     std::size_t blocked_count() const;
+    /// Whether nothing takes light away from any of them.
+    bool all_free() const;
     /// Of all phases; lit_index: of LitHits.
     RaySums sum(const Hits& hits, const LitHits& lit, std::size_t lit_index, std::size_t lobe) const;
     std::uint64_t rays_traced() const { return rays_traced_; }
@@ -84,7 +86,7 @@ class ShadowRays {
     LobeShape set_shape(const Drawing& drawing, std::size_t set) const;
     bool shines(const LitHits& lit, std::size_t lit_index, const Material& material, std::uint32_t set) const;
 
-    const RayTracer* tracer_;
+    const ShadowTracer* tracer_;
     std::size_t lobe_stride_;
     std::vector<Material> materials_;
     std::span<const MaterialLobes> lobes_;
@@ -98,7 +100,7 @@ class ShadowRays {
     std::vector<Vec3f> directions_;
     std::vector<float> weights_;
     std::vector<Rgb> colors_;  // factors of the weights; empty: 1
-    std::vector<std::uint8_t> blocked_;
+    std::vector<Rgb> visible_;
     std::vector<Run> runs_;             // phases × lit hits × set_stride
     std::vector<double> solid_angles_;  // lit hits × set_stride: the light's where the set's rays are drawn, else 0
 };

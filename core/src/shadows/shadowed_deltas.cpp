@@ -24,7 +24,7 @@ std::size_t range_size(std::size_t values_per_light, std::size_t lights) {
 
 }  // namespace
 
-ShadowedDeltas::ShadowedDeltas(const RayTracer& tracer, std::span<const MaterialLobes> materials,
+ShadowedDeltas::ShadowedDeltas(const ShadowTracer& tracer, std::span<const MaterialLobes> materials,
                                std::size_t lobe_stride)
     : tracer_(&tracer), materials_(materials), lobe_stride_(lobe_stride) {}
 
@@ -144,8 +144,8 @@ void ShadowedDeltas::question(const DeltaRange& range, std::size_t light, std::s
 }
 
 void ShadowedDeltas::trace() {
-    blocked_.resize(rays_.size());
-    tracer_->occluded(rays_, blocked_);
+    visible_.resize(rays_.size());
+    tracer_->visibility(rays_, visible_);
     rays_traced_ += rays_.size();
 }
 
@@ -154,17 +154,21 @@ void ShadowedDeltas::find_shares(const ShadingPoints& points, const PixelRange& 
     for (std::vector<float>* array : {&seen_r_, &seen_g_, &seen_b_}) {
         array->assign(range.count, 0.0F);
     }
-    const auto is_seen = [&](const Question& q) {
-        return q.ray == kAbove || (q.ray != kBelow && blocked_[q.ray] == 0);
+    const auto visible = [&](const Question& q) {
+        return q.ray == kAbove ? Rgb(1) : q.ray == kBelow ? Rgb(0) : visible_[q.ray];
     };
     std::size_t begin = 0;
     for (const Asked& asked : asked_) {
         const std::span<const Question> questions(&questions_[begin], asked.end - begin);
         begin = asked.end;
         const Rgb strength = lights_->strength(range.begin + asked.light);
-        const auto seen = static_cast<std::size_t>(std::count_if(questions.begin(), questions.end(), is_seen));
-        if (!asked.each_hit || seen == questions.size()) {
-            const Rgb part = strength * (static_cast<float>(seen) / static_cast<float>(questions.size()));
+        Rgb seen(0);
+        for (const Question& q : questions) {
+            seen += visible(q);
+        }
+        const auto count = static_cast<float>(questions.size());
+        if (!asked.each_hit || seen == Rgb(count)) {
+            const Rgb part = strength * (seen / count);
             seen_r_[asked.light] = part.x;
             seen_g_[asked.light] = part.y;
             seen_b_[asked.light] = part.z;
@@ -172,9 +176,10 @@ void ShadowedDeltas::find_shares(const ShadingPoints& points, const PixelRange& 
         }
         for (const Question& q : questions) {
             const auto lobes = materials_[hits.material[q.hit]].lobes();
-            for (std::size_t lobe = 0; lobe < lobes.size() && is_seen(q); ++lobe) {
+            const Rgb share = visible(q);
+            for (std::size_t lobe = 0; lobe < lobes.size() && share != Rgb(0); ++lobe) {
                 const float value = values(points.of_hit[q.hit] - pixel.first_point, lobe, range)[asked.light];
-                hits.radiance[q.hit] += hits.weight(q.hit, lobe) * strength * value;
+                hits.radiance[q.hit] += hits.weight(q.hit, lobe) * strength * share * value;
             }
         }
     }

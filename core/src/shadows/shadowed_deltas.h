@@ -15,7 +15,7 @@
 #include "lights/delta_lights.h"
 #include "lobes/material_lobes.h"
 #include "shading/shading_points.h"
-#include "shlight/ray_tracer.h"
+#include "tracing/shadow_tracer.h"
 #include "shlight/render_report.h"
 #include "tracing/hits.h"
 
@@ -24,7 +24,7 @@ namespace shlight {
 /// Keeps its memory from call to call; one per thread.
 class ShadowedDeltas {
   public:
-    ShadowedDeltas(const RayTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride);
+    ShadowedDeltas(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride);
 
     /// Adds all sources to the hits' radiance, and what the hits take to the report. shadows: whether any are cast;
     /// pixel_seeds: one per pixel. brightness: of each pixel by other lights, to which that by the sources is added, if
@@ -81,7 +81,7 @@ class ShadowedDeltas {
         return &values_[(point_in_pixel * lobe_stride_ + lobe) * range.count];
     }
 
-    const RayTracer* tracer_;
+    const ShadowTracer* tracer_;
     std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
     const DeltaLights* lights_ = nullptr;  // of the call of add()
@@ -96,7 +96,7 @@ class ShadowedDeltas {
     std::vector<Asked> asked_;
     std::vector<Question> questions_;
     std::vector<Ray> rays_;
-    std::vector<std::uint8_t> blocked_;
+    std::vector<Rgb> visible_;
     std::vector<float> seen_r_, seen_g_, seen_b_;  // by source: its strength times the share that is seen
 };
 

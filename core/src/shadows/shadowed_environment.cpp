@@ -16,7 +16,7 @@ Vec3d kept_share(const RaySums& sums, const Vec3d& otherwise) {
 
 }  // namespace
 
-ShadowedEnvironment::ShadowedEnvironment(const RayTracer& tracer, const Environment& environment,
+ShadowedEnvironment::ShadowedEnvironment(const ShadowTracer& tracer, const Environment& environment,
                                          std::uint32_t most_rays, std::span<const MaterialLobes> materials)
     : materials_(materials), most_rays_(most_rays), rays_(tracer, environment, materials) {}
 

@@ -14,7 +14,7 @@
 #include "lobes/material_lobes.h"
 #include "shadows/environment_rays.h"
 #include "shlight/environment.h"
-#include "shlight/ray_tracer.h"
+#include "tracing/shadow_tracer.h"
 #include "tracing/hits.h"
 
 namespace shlight {
@@ -23,7 +23,7 @@ namespace shlight {
 class ShadowedEnvironment {
   public:
     /// most_rays: per camera ray, of any call of add().
-    ShadowedEnvironment(const RayTracer& tracer, const Environment& environment, std::uint32_t most_rays,
+    ShadowedEnvironment(const ShadowTracer& tracer, const Environment& environment, std::uint32_t most_rays,
                         std::span<const MaterialLobes> materials);
 
     /// Adds the environment to the hits' radiance and noise. samples: what the hits are of; unshadowed: see

@@ -34,7 +34,7 @@ std::size_t lights_to_ask(float share, std::size_t hits, std::size_t lights) {
 
 }  // namespace
 
-ShadowedFarLights::ShadowedFarLights(const RayTracer& tracer, std::span<const MaterialLobes> materials,
+ShadowedFarLights::ShadowedFarLights(const ShadowTracer& tracer, std::span<const MaterialLobes> materials,
                                      std::span<const Light> lights)
     : tracer_(&tracer), materials_(materials), lights_(lights) {}
 
@@ -47,7 +47,7 @@ void ShadowedFarLights::add(const FarLightSum& far_light_sum, const ShadingPoint
             continue;
         }
         const std::size_t questions = lights_to_ask(own / brightness[pixel], hit_count, far_light_sum.size());
-        const float seen = shadows ? find_share(far_light_sum, questions, pixel_seeds[pixel], pixel, hits) : 1.0F;
+        const Rgb seen = shadows ? find_share(far_light_sum, questions, pixel_seeds[pixel], pixel, hits) : Rgb(1);
         for (std::size_t point = points.pixel_begin[pixel]; point < points.pixel_begin[pixel + 1]; ++point) {
             for (const std::size_t hit : points.hits_of(point)) {
                 hits.radiance[hit] += seen * far_light_sum.radiance(point);
@@ -56,14 +56,14 @@ void ShadowedFarLights::add(const FarLightSum& far_light_sum, const ShadingPoint
     }
 }
 
-float ShadowedFarLights::find_share(const FarLightSum& far_light_sum, std::size_t questions, std::uint32_t seed,
+Rgb ShadowedFarLights::find_share(const FarLightSum& far_light_sum, std::size_t questions, std::uint32_t seed,
                                     std::size_t pixel, const Hits& hits) {
     const std::size_t first = hits.pixel_begin[pixel];
     const auto count = static_cast<double>(hits.pixel_begin[pixel + 1] - first);
     rays_.clear();
     values_.clear();
     float all = 0;
-    float seen = 0;
+    Rgb seen(0);
     // A lattice of rank 1 over lights and hits.
     const glm::dvec2 shift(unit(hash(seed, 0)), unit(hash(seed, 1)));
     for (std::size_t i = 0; i < questions; ++i) {
@@ -82,16 +82,16 @@ float ShadowedFarLights::find_share(const FarLightSum& far_light_sum, std::size_
             rays_.push_back(ray(light, hits, first + hit));
             values_.push_back(own);
         } else {
-            seen += own;
+            seen += Rgb(own);
         }
     }
-    blocked_.resize(rays_.size());
-    tracer_->occluded(rays_, blocked_);
+    visible_.resize(rays_.size());
+    tracer_->visibility(rays_, visible_);
     rays_traced_ += rays_.size();
     for (std::size_t i = 0; i < rays_.size(); ++i) {
-        seen += blocked_[i] == 0 ? values_[i] : 0.0F;
+        seen += visible_[i] * values_[i];
     }
-    return all > 0 ? seen / all : 0.0F;
+    return all > 0 ? seen / all : Rgb(0);
 }
 
 float ShadowedFarLights::value(const FarLight& light, const Hits& hits, std::size_t first, std::size_t hit) const {

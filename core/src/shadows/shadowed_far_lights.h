@@ -11,7 +11,7 @@
 #include "lobes/material_lobes.h"
 #include "shading/far_light_sum.h"
 #include "shading/shading_points.h"
-#include "shlight/ray_tracer.h"
+#include "tracing/shadow_tracer.h"
 #include "tracing/hits.h"
 
 namespace shlight {
@@ -20,7 +20,7 @@ namespace shlight {
 class ShadowedFarLights {
   public:
     /// lights: of the picture.
-    ShadowedFarLights(const RayTracer& tracer, std::span<const MaterialLobes> materials, std::span<const Light> lights);
+    ShadowedFarLights(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::span<const Light> lights);
 
     /// Adds the sum to the hits' radiance. shadows: whether any are cast; pixel_seeds: one per pixel;
     /// brightness: of each pixel by these and all other lights, if nothing blocks. No noise is added: what few rays are
@@ -31,19 +31,19 @@ class ShadowedFarLights {
 
   private:
     /// The share that is seen from a pixel's hits.
-    float find_share(const FarLightSum& far_light_sum, std::size_t questions, std::uint32_t seed, std::size_t pixel,
+    Rgb find_share(const FarLightSum& far_light_sum, std::size_t questions, std::uint32_t seed, std::size_t pixel,
                      const Hits& hits);
     /// What a hit, the one numbered first + hit, reflects of a light, as one number.
     float value(const FarLight& light, const Hits& hits, std::size_t first, std::size_t hit) const;
     Ray ray(const FarLight& light, const Hits& hits, std::size_t hit) const;
 
-    const RayTracer* tracer_;
+    const ShadowTracer* tracer_;
     std::span<const MaterialLobes> materials_;
     std::span<const Light> lights_;
     std::uint64_t rays_traced_ = 0;
     std::vector<Ray> rays_;
     std::vector<float> values_;  // of the rays
-    std::vector<std::uint8_t> blocked_;
+    std::vector<Rgb> visible_;
 };
 
 }  // namespace shlight

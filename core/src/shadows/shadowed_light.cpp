@@ -5,7 +5,7 @@
 
 namespace shlight {
 
-ShadowedLight::ShadowedLight(const RayTracer& tracer, std::uint32_t most_rays, std::span<const MaterialLobes> materials,
+ShadowedLight::ShadowedLight(const ShadowTracer& tracer, std::uint32_t most_rays, std::span<const MaterialLobes> materials,
                              std::size_t lobe_stride)
     : materials_(materials),
       lobe_stride_(lobe_stride),
@@ -70,12 +70,11 @@ void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_
     if (shadows_) {
         const RayPhase first = first_phase(samples_, most_rays_);
         rays_.trace(light, hits, lit_, first, seed);
-        const std::size_t blocked = rays_.blocked_count();
         // Few rays may miss the part of a light that is seen, and a glossy lobe may have its peak there.
-        if (blocked > 0 && blocked == rays_.count() && !is_glossy(hits.material[lit_.hit[0]])) {
+        if (rays_.count() > 0 && rays_.blocked_count() == rays_.count() && !is_glossy(hits.material[lit_.hit[0]])) {
             return;
         }
-        if (blocked > 0) {
+        if (!rays_.all_free()) {
             rays_.trace(light, hits, lit_, second_phase(samples_, first), seed);
             shade(hits);
             return;

@@ -19,7 +19,7 @@
 #include "shadows/dim_lights.h"
 #include "shadows/shadow_rays.h"
 #include "shlight/light.h"
-#include "shlight/ray_tracer.h"
+#include "tracing/shadow_tracer.h"
 #include "tracing/hits.h"
 
 namespace shlight {
@@ -28,7 +28,7 @@ namespace shlight {
 class ShadowedLight {
   public:
     /// most_rays: per camera ray and light, of any call of add().
-    ShadowedLight(const RayTracer& tracer, std::uint32_t most_rays, std::span<const MaterialLobes> materials,
+    ShadowedLight(const ShadowTracer& tracer, std::uint32_t most_rays, std::span<const MaterialLobes> materials,
                   std::size_t lobe_stride);
     ~ShadowedLight() = default;
     // The parts refer to each other.

@@ -148,7 +148,8 @@ void RayTracer::intersect(std::span<const Ray> rays, std::span<RayHit> hits) con
         RayHit hit;
         if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
             const bool instanced = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
-            hit = {instanced ? query.hit.instID[0] : query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
+            hit = {instanced ? query.hit.instID[0] : query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v,
+                   query.ray.tfar};
         }
         hits[i] = hit;
     }

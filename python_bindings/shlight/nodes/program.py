@@ -24,10 +24,10 @@ class Table:
 
 
 class ProgramBuilder:
-    """Lists the steps of expressions."""
+    """Lists the steps of expressions; `attributes` may be shared with another program of the material."""
 
-    def __init__(self) -> None:
-        self.attributes: list[str] = []
+    def __init__(self, attributes: list[str] | None = None) -> None:
+        self.attributes: list[str] = [] if attributes is None else attributes
         self._steps: list[tuple[int, float, int, int, list[int]]] = []
         self._tables: list[tuple[Any, list[int]]] = []
         self._images: list[_core.ImageTexture] = []

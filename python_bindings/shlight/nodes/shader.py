@@ -75,7 +75,9 @@ class Shader:
             lobes.append((lobe.kind, lobe.ior, weight, alpha, normal))
         shown = [None if c.constant == BLACK else builder.result(tuple(c)) for c in (self.emission, self.transparency)]
         program = builder.program()
-        shader = _core.surface_shader(program, lobes, *shown, builder.attributes)
+        shadows = ProgramBuilder(builder.attributes)
+        shadows.result(tuple(self.transparency))
+        shader = _core.surface_shader(program, lobes, *shown, shadows.program(), builder.attributes)
         return program, shader, builder.attributes
 
     @cached_property

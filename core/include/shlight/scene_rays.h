@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+//
+// Rays through a scene whose surfaces may let light through: opaque triangles and others are traced apart, so that the
+// opaque ones do not pay for the others.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "shlight/ray_tracer.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// A mesh of the scene.
+struct SceneGeometry {
+    std::span<const Vec3f> vertices;
+    std::span<const Triangle> triangles;
+    std::vector<std::uint8_t> transparent;  ///< by triangle, or none: all are opaque
+};
+
+/// How much of the light a surface lets through.
+class SurfaceTransparency {
+  public:
+    SurfaceTransparency() = default;
+    SurfaceTransparency(const SurfaceTransparency&) = delete;
+    SurfaceTransparency& operator=(const SurfaceTransparency&) = delete;
+    virtual ~SurfaceTransparency() = default;
+    /// Where shadow rays have met surfaces that are not opaque. depth: how many of them a ray has passed before; passed:
+    /// not negative.
+    virtual void find(std::span<const Ray> rays, std::span<const RayHit> hits, std::uint32_t depth,
+                      std::span<Rgb> passed) const = 0;
+};
+
+/// What is left of a ray behind a surface that it has met.
+Ray behind(const Ray& ray, const RayHit& hit);
+
+/// Immutable; any number of threads may trace at a time.
+class SceneRays {
+  public:
+    /// Builds as RayTracer does, and throws what it throws. transparency must outlive this.
+    SceneRays(std::span<const SceneGeometry> geometries, std::span<const TracedInstance> instances,
+              const SurfaceTransparency& transparency);
+    SceneRays(const SceneRays&) = delete;
+    SceneRays& operator=(const SceneRays&) = delete;
+    ~SceneRays();
+
+    /// The first surface that each ray meets, opaque or not.
+    void intersect(std::span<const Ray> rays, std::span<RayHit> hits) const;
+    void intersect_opaque(std::span<const Ray> rays, std::span<RayHit> hits) const;
+    /// The share of light that reaches the end of each ray. transparent_bounces: surfaces that a ray passes through, at
+    /// most.
+    void visibility(std::span<const Ray> rays, std::uint32_t transparent_bounces, std::span<Rgb> visible) const;
+    /// The same of surfaces that are not opaque alone.
+    void transmittance(std::span<const Ray> rays, std::uint32_t transparent_bounces, std::span<Rgb> visible) const;
+
+  private:
+    class Part;
+    std::unique_ptr<const Part> opaque_, transparent_;  // null: there are none
+    const SurfaceTransparency* transparency_;
+};
+
+}  // namespace shlight

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+//
+// Shadow rays of a picture.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "shlight/scene_rays.h"
+
+namespace shlight {
+
+class ShadowTracer {
+  public:
+    ShadowTracer(const SceneRays& rays, std::uint32_t transparent_bounces)
+        : rays_(&rays), transparent_bounces_(transparent_bounces) {}
+
+    void visibility(std::span<const Ray> rays, std::span<Rgb> visible) const {
+        rays_->visibility(rays, transparent_bounces_, visible);
+    }
+    void transmittance(std::span<const Ray> rays, std::span<Rgb> visible) const {
+        rays_->transmittance(rays, transparent_bounces_, visible);
+    }
+    void intersect_opaque(std::span<const Ray> rays, std::span<RayHit> hits) const {
+        rays_->intersect_opaque(rays, hits);
+    }
+
+  private:
+    const SceneRays* rays_;
+    std::uint32_t transparent_bounces_;
+};
+
+}  // namespace shlight
