@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-Radiance = Callable[[Array], Array]  # of places (n, 2) in UV, linear RGB (n, 3)
+Radiance = Callable[[Array], Array]  # of places (n, c), linear RGB (n, 3)
 
 # What the pieces and then their colours may leave out: root mean square, as a part of the radiance's own.
 TOLERANCE = 0.05
@@ -96,7 +96,7 @@ def _pyramid(radiance: Radiance, uvs: Array, kept: int, finer: int) -> _Pyramid:
     mean, square = np.empty((len(parts), 3)), np.empty(len(parts))
     for first in range(0, len(parts), step):
         places = np.einsum("sj,pjk->psk", centers, parts[first : first + step])
-        found = radiance(places.reshape(-1, 2)).reshape(*places.shape[:2], 3)
+        found = radiance(places.reshape(-1, places.shape[-1])).reshape(*places.shape[:2], 3)
         mean[first : first + step] = found.mean(axis=1)
         square[first : first + step] = (found**2).sum(axis=2).mean(axis=1)
     means, squares = [mean], [square]
@@ -109,7 +109,7 @@ def _pyramid(radiance: Radiance, uvs: Array, kept: int, finer: int) -> _Pyramid:
 def cut(radiance: Radiance, uvs: Array, levels: IntArray, area: Array, most: int = MOST_PIECES) -> Pieces:
     """Cuts triangles into pieces of even light, those first whose squared deviation times area is the largest.
 
-    uvs: (n, 3, 2); levels: (n,), from `sampling_levels`; area: (n,). At most `most` pieces, or n if that is more.
+    uvs: (n, 3, c), what `radiance` is a function of at the corners; levels: (n,), from `sampling_levels`; area: (n,). At most `most` pieces, or n if that is more.
     """
     kept = np.clip(levels - FINER_LEVELS, 0, MOST_LEVELS)
     while (4.0**kept).sum() > MOST_PARTS and kept.max() > 0:

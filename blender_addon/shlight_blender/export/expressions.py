@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Values of node trees as expressions of `shlight.nodes`: constant ones are computed here, varying ones at each hit.
 
-`NODES` says what each type of node makes of its inputs. A node of another type is reported, and the constant that
-its socket holds is used in its place.
+A table says what each type of node makes of its inputs. A node of another type is reported, and the constant that its
+socket holds is used in its place.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -62,7 +62,8 @@ ReadNode = Callable[[NodeInputs], Varying]
 class ExpressionReader:
     """Follows the links of one tree; `place` names the tree's owner in the report, for instance "Material 'Wood'"."""
 
-    def __init__(self, place: str, report: ExportReport) -> None:
+    def __init__(self, place: str, report: ExportReport, read_nodes: Mapping[str, ReadNode]) -> None:
+        self._nodes = read_nodes
         self.place = place
         self.report = report
         self._known: dict[tuple[Any, ...], Expression] = {}
@@ -90,10 +91,7 @@ class ExpressionReader:
         return self._known[key]
 
     def _read(self, source: Origin, socket: Any) -> Expression:
-        from .image_nodes import image_texture, tex_coord, uv_map
-
-        NODES.update({"TEX_IMAGE": image_texture, "UVMAP": uv_map, "TEX_COORD": tex_coord})
-        read = NODES.get(source.node.type)
+        read = self._nodes.get(source.node.type)
         if read is not None:
             found = read(NodeInputs(self, source.node, source.output, source.groups))
             return found if isinstance(found, Value | Vector) else _constant(found)
@@ -117,13 +115,3 @@ def own_value(socket: Any) -> Expression:
         return number(float(value))
     kind = Color if socket.type == "RGBA" else Vector
     return kind(*(float(component) for component in value[:3]))
-
-
-def _output_value(inputs: NodeInputs) -> Expression:
-    return own_value(inputs.output)
-
-
-NODES: dict[str, ReadNode] = {
-    "VALUE": _output_value,
-    "RGB": _output_value,
-}

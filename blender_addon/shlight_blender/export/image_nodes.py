@@ -11,7 +11,7 @@ from shlight import nodes
 from shlight.nodes import Color, Value
 
 from .expressions import NodeInputs
-from .pictures import linear_from_srgb, stored_pixels
+from .pictures import linear_from_srgb
 
 _textures: dict[Any, Any] = {}
 
@@ -43,15 +43,3 @@ def image_texture(inputs: NodeInputs) -> Color | Value:
         extension=node.extension.lower(),
     )
     return c.alpha if inputs.output.name == "Alpha" else c
-
-
-def uv_map(inputs: NodeInputs) -> nodes.Vector:
-    return nodes.uv(inputs.node.uv_map)
-
-
-def tex_coord(inputs: NodeInputs) -> nodes.Vector:
-    if inputs.output.name == "UV":
-        return nodes.uv("")
-    inputs.remark(f"{inputs.output.name} not supported")
-    return nodes.uv("")
-_ = stored_pixels

@@ -65,7 +65,10 @@ def with_light(shader: Shader, place: str, report: ExportReport) -> Surface:
     """A shader as a surface, and `report` what of its light is not supported."""
     constant = shader.emission.constant
     if constant is None:
-        return Surface(shader, varying=VaryingEmission(shader.emission))
+        varying = VaryingEmission(shader.emission)
+        if varying.inputs:
+            return Surface(shader, varying=varying)
+        constant = tuple(varying.radiance({}, 1)[0])
     light = np.array(constant)
     if not np.isfinite(light).all():
         report.add(place, "the emitted light is not finite; nothing is emitted", Effect.LIGHT)

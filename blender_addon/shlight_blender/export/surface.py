@@ -12,8 +12,19 @@ from shlight.nodes import Shader, Vector
 from shlight.nodes.values import number
 
 from ..report import Effect, ExportReport
-from .expressions import ExpressionReader, NodeInputs
+from .expressions import ExpressionReader, NodeInputs, ReadNode, own_value
+from .image_nodes import image_texture
+from .input_nodes import INPUT_NODES
 from .nodes import Origin, origin
+from .value_nodes import VALUE_NODES
+
+NODES: dict[str, ReadNode] = {
+    "VALUE": lambda inputs: own_value(inputs.output),
+    "RGB": lambda inputs: own_value(inputs.output),
+    "TEX_IMAGE": image_texture,
+    **INPUT_NODES,
+    **VALUE_NODES,
+}
 
 
 @dataclass(frozen=True)
@@ -40,7 +51,7 @@ class ShaderReader(ExpressionReader):
     """Reads a tree's shaders; `shaders` says how a node of each type is read."""
 
     def __init__(self, place: str, report: ExportReport, shaders: dict[str, ReadShader]) -> None:
-        super().__init__(place, report)
+        super().__init__(place, report, NODES)
         self._shaders = shaders
         self._made: dict[tuple[Any, ...], Shader] = {}
 

@@ -15,7 +15,10 @@ from shlight.nodes.inputs import (
     towards_viewer,
     uv,
 )
-from shlight.nodes import values
+from shlight.nodes import colors, inputs, mathematics, values
+from shlight.nodes.colors import mix_color
+from shlight.nodes.mathematics import map_range, mapping
+from shlight.nodes.normals import bump, normal_map
 from shlight.nodes.principled import glossy, oren_nayar, principled, reflecting_normal, rising_lobes
 from shlight.nodes.shader import Shader, emission, ggx, lambert, mix, transparent
 from shlight.nodes.textures import image
@@ -29,14 +32,22 @@ __all__ = [
     "attribute",
     "backfacing",
     "barycentric",
+    "bump",
+    "colors",
     "emission",
     "geometric_normal",
     "ggx",
     "glossy",
     "image",
+    "inputs",
     "lambert",
+    "map_range",
+    "mapping",
+    "mathematics",
     "mix",
+    "mix_color",
     "normal",
+    "normal_map",
     "object_value",
     "oren_nayar",
     "position",

@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Nodes that make numbers, vectors and colours of others."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from shlight import nodes
+from shlight.nodes import Color, Value, Vector
+from shlight.nodes.colors import (
+    brightness_contrast,
+    gamma,
+    hsl_from_rgb,
+    hsv_from_rgb,
+    hue_saturation,
+    invert,
+    ramp,
+    rgb_from_hsl,
+    rgb_from_hsv,
+)
+from shlight.nodes.mathematics import MATH, VECTOR_MATH, clamp_range, map_range, mapping
+from shlight.nodes.program import Table
+from shlight.nodes.values import clamp, operation
+
+from .expressions import NodeInputs, ReadNode
+
+# As many entries as Cycles reads of ramps and curves.
+TABLE_SIZE = 256
+
+
+def _clamped(inputs: NodeInputs, result: Any) -> Any:
+    return clamp(result) if getattr(inputs.node, "use_clamp", False) else result
+
+
+def _math(inputs: NodeInputs) -> Value:
+    a, b, c = (inputs.number(i) for i in range(3))
+    return _clamped(inputs, MATH[inputs.node.operation](a, b, c))
+
+
+def _vector_math(inputs: NodeInputs) -> Value | Vector:
+    a, b, c = (inputs.vector(i) for i in range(3))
+    found = VECTOR_MATH[inputs.node.operation](a, b, c, inputs.number("Scale"))
+    wants_number = inputs.output.name == "Value"
+    if wants_number == isinstance(found, Value):
+        return found
+    return nodes.values.number(0.0) if wants_number else Vector(0.0, 0.0, 0.0)
+
+
+def _mix(inputs: NodeInputs) -> Value | Vector:
+    node = inputs.node
+    sockets = {socket.identifier: i for i, socket in enumerate(node.inputs)}
+    suffix = {"FLOAT": "Float", "VECTOR": "Vector", "RGBA": "Color"}.get(node.data_type)
+    if suffix is None:
+        inputs.remark(f"data type {node.data_type} is not supported; 0 is used")
+        return nodes.values.number(0.0)
+    uniform = node.data_type != "VECTOR" or node.factor_mode == "UNIFORM"
+    a, b = (sockets[f"{letter}_{suffix}"] for letter in "AB")
+    if not uniform:
+        share = inputs.vector(sockets["Factor_Vector"])
+        share = Vector(*(clamp(t) for t in share)) if node.clamp_factor else share
+        first, second = inputs.vector(a), inputs.vector(b)
+        return first * (1.0 - share) + second * share
+    factor = inputs.number(sockets["Factor_Float"])
+    factor = clamp(factor) if node.clamp_factor else factor
+    if node.data_type == "RGBA":
+        return _blended(inputs, inputs.color(a), inputs.color(b), factor, node.clamp_result)
+    if node.data_type == "VECTOR":
+        return inputs.vector(a) * (1.0 - factor) + inputs.vector(b) * factor
+    return (1.0 - factor) * inputs.number(a) + factor * inputs.number(b)
+
+
+def _mix_rgb(inputs: NodeInputs) -> Color:
+    return _blended(inputs, inputs.color(1), inputs.color(2), clamp(inputs.number(0)), inputs.node.use_clamp)
+
+
+def _blended(inputs: NodeInputs, a: Color, b: Color, factor: Value, clamped: bool) -> Color:
+    found = nodes.colors.BLENDS[inputs.node.blend_type](a, b, factor)
+    return Color(*(clamp(c) for c in found)) if clamped else found
+
+
+def _map_range(inputs: NodeInputs) -> Value | Vector:
+    node = inputs.node
+    kind = node.interpolation_type.lower()
+    if node.data_type != "FLOAT_VECTOR":
+        names = ("Value", "From Min", "From Max", "To Min", "To Max")
+        steps = inputs.number("Steps")
+        given = (inputs.number(name) for name in names)
+        return map_range(*given, interpolation=kind, steps=steps, clamped=node.clamp)
+    sockets = {socket.identifier: i for i, socket in enumerate(node.inputs)}
+    names = ("Vector", "From_Min_FLOAT3", "From_Max_FLOAT3", "To_Min_FLOAT3", "To_Max_FLOAT3", "Steps_FLOAT3")
+    columns = zip(*(inputs.vector(sockets[name]) for name in names), strict=True)
+    return Vector(*(map_range(*c[:5], interpolation=kind, steps=c[5], clamped=node.clamp) for c in columns))
+
+
+def _clamp(inputs: NodeInputs) -> Value:
+    value, low, high = (inputs.number(name) for name in ("Value", "Min", "Max"))
+    return clamp_range(value, low, high) if inputs.node.clamp_type == "RANGE" else clamp(value, low, high)
+
+
+def _color_ramp(inputs: NodeInputs) -> Color | Value:
+    band = inputs.node.color_ramp
+    table = np.array([band.evaluate(i / (TABLE_SIZE - 1)) for i in range(TABLE_SIZE)])
+    found = ramp(inputs.number("Fac"), table, interpolate=band.interpolation != "CONSTANT")
+    return found.alpha if inputs.output.name == "Alpha" else found
+
+
+def _curve(mapping_: Any, curve: Any, value: Value, low: float, high: float) -> Value:
+    """A curve over low … high, as a table; beyond its ends as the mapping extends it."""
+    table = np.array([mapping_.evaluate(curve, low + (high - low) * i / TABLE_SIZE) for i in range(TABLE_SIZE + 1)])
+    place = (value - low) / (high - low)
+    inside = operation("table1", place, data=Table(table))
+    if mapping_.extend != "EXTRAPOLATED":
+        return inside
+    first, last = float(table[1] - table[0]) * TABLE_SIZE, float(table[-1] - table[-2]) * TABLE_SIZE
+    below = float(table[0]) + place * first
+    above = float(table[-1]) + (place - 1.0) * last
+    return nodes.values.select(place < 0.0, below, nodes.values.select(place > 1.0, above, inside))
+
+
+def _curve_range(mapping_: Any, curves: Any) -> tuple[float, float]:
+    points = [point.location[0] for curve in curves for point in curve.points]
+    return min([0.0, *points]), max([1.0, *points])
+
+
+def _rgb_curves(inputs: NodeInputs) -> Color:
+    mapping_ = inputs.node.mapping
+    mapping_.initialize()
+    *channels, whole = mapping_.curves[0], mapping_.curves[1], mapping_.curves[2], mapping_.curves[3]
+    low, high = _curve_range(mapping_, mapping_.curves)
+    own, t = inputs.color("Color"), inputs.number("Fac")
+    changed = []
+    for channel, value in zip(channels, own, strict=True):
+        changed.append(_curve(mapping_, channel, _curve(mapping_, whole, value, low, high), low, high))
+    return Color(*((1.0 - t) * a + t * b for a, b in zip(own, changed, strict=True)))
+
+
+def _vector_curves(inputs: NodeInputs) -> Vector:
+    mapping_ = inputs.node.mapping
+    mapping_.initialize()
+    low, high = _curve_range(mapping_, mapping_.curves)
+    own, t = inputs.vector("Vector"), inputs.number("Fac")
+    changed = [_curve(mapping_, curve, value, low, high) for curve, value in zip(mapping_.curves, own, strict=False)]
+    return Vector(*((1.0 - t) * a + t * b for a, b in zip(own, changed, strict=True)))
+
+
+def _float_curve(inputs: NodeInputs) -> Value:
+    mapping_ = inputs.node.mapping
+    mapping_.initialize()
+    own, t = inputs.number("Value"), inputs.number("Factor")
+    low, high = _curve_range(mapping_, mapping_.curves)
+    return (1.0 - t) * own + t * _curve(mapping_, mapping_.curves[0], own, low, high)
+
+
+def _component(inputs: NodeInputs, v: Vector) -> Value:
+    index = next(i for i, output in enumerate(inputs.node.outputs) if output == inputs.output)
+    return tuple(v)[index]
+
+
+def _separate_color(inputs: NodeInputs) -> Value:
+    mode = getattr(inputs.node, "mode", "RGB")
+    own = inputs.color(0)
+    return _component(inputs, {"HSV": hsv_from_rgb, "HSL": hsl_from_rgb}.get(mode, lambda c: c)(own))
+
+
+def _combine_color(inputs: NodeInputs) -> Color:
+    mode = getattr(inputs.node, "mode", "RGB")
+    own = Color(*(inputs.number(i) for i in range(3)))
+    return {"HSV": rgb_from_hsv, "HSL": rgb_from_hsl}.get(mode, lambda c: c)(own)
+
+
+def _hue_saturation(inputs: NodeInputs) -> Color:
+    hue, saturation, value, factor = (inputs.number(name) for name in ("Hue", "Saturation", "Value", "Fac"))
+    return hue_saturation(inputs.color("Color"), hue, saturation, value, factor)
+
+
+def _normal(inputs: NodeInputs) -> Value | Vector:
+    own = nodes.values.normalize(Vector(*inputs.node.outputs["Normal"].default_value))
+    if inputs.output.name == "Normal":
+        return own
+    return nodes.values.dot(own, nodes.values.normalize(inputs.vector("Normal")))
+
+
+VALUE_NODES: dict[str, ReadNode] = {
+    "MATH": _math,
+    "VECT_MATH": _vector_math,
+    "MIX": _mix,
+    "MIX_RGB": _mix_rgb,
+    "MAP_RANGE": _map_range,
+    "CLAMP": _clamp,
+    "VALTORGB": _color_ramp,
+    "CURVE_RGB": _rgb_curves,
+    "CURVE_VEC": _vector_curves,
+    "CURVE_FLOAT": _float_curve,
+    "SEPARATE_COLOR": _separate_color,
+    "COMBINE_COLOR": _combine_color,
+    "SEPRGB": lambda inputs: _component(inputs, inputs.color(0)),
+    "COMBRGB": lambda inputs: Color(*(inputs.number(i) for i in range(3))),
+    "SEPHSV": lambda inputs: _component(inputs, hsv_from_rgb(inputs.color(0))),
+    "COMBHSV": lambda inputs: rgb_from_hsv(Vector(*(inputs.number(i) for i in range(3)))),
+    "SEPXYZ": lambda inputs: _component(inputs, inputs.vector(0)),
+    "COMBXYZ": lambda inputs: Vector(*(inputs.number(i) for i in range(3))),
+    "HUE_SAT": _hue_saturation,
+    "BRIGHTCONTRAST": lambda i: brightness_contrast(i.color("Color"), i.number("Bright"), i.number("Contrast")),
+    "GAMMA": lambda inputs: gamma(inputs.color("Color"), inputs.number("Gamma")),
+    "INVERT": lambda inputs: invert(inputs.color("Color"), inputs.number("Fac")),
+    "RGBTOBW": lambda inputs: inputs.color("Color").as_number(),
+    "NORMAL": _normal,
+    "MAPPING": lambda i: mapping(
+        i.vector("Vector"),
+        i.vector("Location") if "Location" in i.node.inputs else Vector(0.0, 0.0, 0.0),
+        i.vector("Rotation"),
+        i.vector("Scale"),
+        i.node.vector_type.lower(),
+    ),
+}

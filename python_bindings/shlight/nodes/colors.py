@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: MIT
+"""Functions of colours, as Blender's colour nodes have them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from shlight.nodes.mathematics import floor, fraction, power
+from shlight.nodes.program import Table
+from shlight.nodes.values import (
+    Color,
+    Number,
+    Value,
+    Varying,
+    Vector,
+    clamp,
+    color,
+    maximum,
+    minimum,
+    number,
+    operation,
+    select,
+)
+
+
+def _map(function: Callable[..., Value], *colors: Vector) -> Color:
+    return Color(*(function(*components) for components in zip(*colors, strict=True)))
+
+
+def _lerp(a: Vector, b: Vector, t: Value) -> Color:
+    return _map(lambda x, y: (1.0 - t) * x + t * y, a, b)
+
+
+def hsv_from_rgb(c: Vector) -> Vector:
+    """Hue, saturation and value, each 0 … 1 for colours in 0 … 1."""
+    r, g, b = c
+    high, low = maximum(r, maximum(g, b)), minimum(r, minimum(g, b))
+    span = high - low
+    saturation = select(operation("equal", high, 0.0), 0.0, span / high)
+    x, y, z = ((high - component) / span for component in (r, g, b))
+    hue = select(
+        operation("equal", r, high),
+        z - y,
+        select(operation("equal", g, high), 2.0 + x - z, 4.0 + y - x),
+    )
+    hue = hue / 6.0
+    hue = select(hue < 0.0, hue + 1.0, hue)
+    return Vector(select(operation("equal", saturation, 0.0), 0.0, hue), saturation, high)
+
+
+def rgb_from_hsv(c: Vector) -> Color:
+    """The colour of a hue, saturation and value."""
+    hue, s, v = c
+    h = select(operation("equal", hue, 1.0), 0.0, hue) * 6.0
+    sector = floor(h)
+    f = h - sector
+    p, q, t = v * (1.0 - s), v * (1.0 - s * f), v * (1.0 - s * (1.0 - f))
+
+    def chosen(*by_sector: Value) -> Value:
+        result = by_sector[-1]
+        for i, value in reversed(list(enumerate(by_sector[:-1]))):
+            result = select(operation("equal", sector, float(i)), value, result)
+        return select(operation("equal", s, 0.0), v, result)
+
+    return Color(chosen(v, q, p, p, t, v), chosen(t, v, v, q, p, p), chosen(p, p, t, v, v, q))
+
+
+def hsl_from_rgb(c: Vector) -> Vector:
+    """Hue, saturation and lightness."""
+    r, g, b = (clamp(component) for component in c)
+    high, low = maximum(r, maximum(g, b)), minimum(r, minimum(g, b))
+    span, light = high - low, minimum(1.0, (high + low) / 2.0)
+    grey = operation("equal", high, low)
+    saturation = select(light > 0.5, span / (2.0 - high - low), span / (high + low))
+    hue = select(
+        operation("equal", high, r),
+        (g - b) / span + select(g < b, 6.0, 0.0),
+        select(operation("equal", high, g), (b - r) / span + 2.0, (r - g) / span + 4.0),
+    )
+    return Vector(select(grey, 0.0, hue / 6.0), select(grey, 0.0, saturation), light)
+
+
+def rgb_from_hsl(c: Vector) -> Color:
+    """The colour of a hue, saturation and lightness."""
+    hue, s, light = c
+    chroma = (1.0 - abs(2.0 * light - 1.0)) * s
+    r = clamp(abs(hue * 6.0 - 3.0) - 1.0)
+    g = clamp(2.0 - abs(hue * 6.0 - 2.0))
+    b = clamp(2.0 - abs(hue * 6.0 - 4.0))
+    return Color(*((component - 0.5) * chroma + light for component in (r, g, b)))
+
+
+def _overlay(t: Value) -> Callable[[Value, Value], Value]:
+    rest = 1.0 - t
+    return lambda a, b: select(
+        a < 0.5, a * (rest + 2.0 * t * b), 1.0 - (rest + 2.0 * t * (1.0 - b)) * (1.0 - a)
+    )
+
+
+def _dodge(t: Value) -> Callable[[Value, Value], Value]:
+    def blended(a: Value, b: Value) -> Value:
+        below = 1.0 - t * b
+        lit = select(below > 0.0, minimum(a / below, 1.0), 1.0)
+        return select(operation("equal", a, 0.0), a, lit)
+
+    return blended
+
+
+def _burn(t: Value) -> Callable[[Value, Value], Value]:
+    def blended(a: Value, b: Value) -> Value:
+        below = (1.0 - t) + t * b
+        return select(below > 0.0, clamp(1.0 - (1.0 - a) / below), 0.0)
+
+    return blended
+
+
+def _soft(t: Value) -> Callable[[Value, Value], Value]:
+    def blended(a: Value, b: Value) -> Value:
+        screen = 1.0 - (1.0 - b) * (1.0 - a)
+        return (1.0 - t) * a + t * ((1.0 - a) * b * a + a * screen)
+
+    return blended
+
+
+def _divided(t: Value) -> Callable[[Value, Value], Value]:
+    return lambda a, b: select(operation("equal", b, 0.0), a, (1.0 - t) * a + t * a / b)
+
+
+def _hue(a: Vector, b: Vector, t: Value) -> Color:
+    of_a, of_b = hsv_from_rgb(a), hsv_from_rgb(b)
+    changed = _lerp(a, rgb_from_hsv(Vector(of_b.x, of_a.y, of_a.z)), t)
+    return _map(lambda new, old: select(operation("equal", of_b.y, 0.0), old, new), changed, a)
+
+
+def _saturation(a: Vector, b: Vector, t: Value) -> Color:
+    of_a, of_b = hsv_from_rgb(a), hsv_from_rgb(b)
+    changed = rgb_from_hsv(Vector(of_a.x, (1.0 - t) * of_a.y + t * of_b.y, of_a.z))
+    return _map(lambda new, old: select(operation("equal", of_a.y, 0.0), old, new), changed, a)
+
+
+def _value(a: Vector, b: Vector, t: Value) -> Color:
+    of_a, of_b = hsv_from_rgb(a), hsv_from_rgb(b)
+    return rgb_from_hsv(Vector(of_a.x, of_a.y, (1.0 - t) * of_a.z + t * of_b.z))
+
+
+def _color(a: Vector, b: Vector, t: Value) -> Color:
+    of_a, of_b = hsv_from_rgb(a), hsv_from_rgb(b)
+    changed = _lerp(a, rgb_from_hsv(Vector(of_b.x, of_b.y, of_a.z)), t)
+    return _map(lambda new, old: select(operation("equal", of_b.y, 0.0), old, new), changed, a)
+
+
+Blend = Callable[[Vector, Vector, Value], Color]
+# By Blender's names: how b is laid over a, by a share t.
+BLENDS: dict[str, Blend] = {
+    "MIX": _lerp,
+    "DARKEN": lambda a, b, t: _lerp(a, _map(minimum, a, b), t),
+    "MULTIPLY": lambda a, b, t: _lerp(a, _map(lambda x, y: x * y, a, b), t),
+    "BURN": lambda a, b, t: _map(_burn(t), a, b),
+    "LIGHTEN": lambda a, b, t: _lerp(a, _map(maximum, a, b), t),
+    "SCREEN": lambda a, b, t: _map(lambda x, y: 1.0 - ((1.0 - t) + t * (1.0 - y)) * (1.0 - x), a, b),
+    "DODGE": lambda a, b, t: _map(_dodge(t), a, b),
+    "ADD": lambda a, b, t: _lerp(a, _map(lambda x, y: x + y, a, b), t),
+    "OVERLAY": lambda a, b, t: _map(_overlay(t), a, b),
+    "SOFT_LIGHT": lambda a, b, t: _map(_soft(t), a, b),
+    "LINEAR_LIGHT": lambda a, b, t: _map(lambda x, y: x + t * (2.0 * y - 1.0), a, b),
+    "DIFFERENCE": lambda a, b, t: _lerp(a, _map(lambda x, y: abs(x - y), a, b), t),
+    "EXCLUSION": lambda a, b, t: _map(
+        lambda x: maximum(x, 0.0), _lerp(a, _map(lambda x, y: x + y - 2.0 * x * y, a, b), t)
+    ),
+    "SUBTRACT": lambda a, b, t: _lerp(a, _map(lambda x, y: x - y, a, b), t),
+    "DIVIDE": lambda a, b, t: _map(_divided(t), a, b),
+    "HUE": _hue,
+    "SATURATION": _saturation,
+    "COLOR": _color,
+    "VALUE": _value,
+}
+
+
+def mix_color(a: Varying, b: Varying, factor: Number, blend: str = "mix") -> Color:
+    """One colour laid over another, by a share that is clamped to 0 … 1; blend: as Blender's Mix node names it."""
+    if blend.upper() not in BLENDS:
+        raise ValueError(f"blend must be one of {', '.join(sorted(BLENDS)).lower()}, got {blend!r}")
+    return BLENDS[blend.upper()](color(a), color(b), clamp(number(factor)))
+
+
+def hue_saturation(c: Varying, hue: Number = 0.5, saturation: Number = 1.0, value: Number = 1.0, factor: Number = 1.0) -> Color:
+    """Blender's Hue/Saturation/Value node."""
+    own, t = color(c), number(factor)
+    h, s, v = hsv_from_rgb(own)
+    changed = rgb_from_hsv(Vector(fraction(h + hue + 0.5), clamp(s * saturation), v * value))
+    return _map(lambda new, old: maximum(t * new + (1.0 - t) * old, 0.0), changed, own)
+
+
+def brightness_contrast(c: Varying, brightness: Number, contrast: Number) -> Color:
+    """Blender's Brightness/Contrast node."""
+    slope = 1.0 + number(contrast)
+    shift = number(brightness) - number(contrast) * 0.5
+    return _map(lambda x: maximum(slope * x + shift, 0.0), color(c))
+
+
+def gamma(c: Varying, exponent: Number) -> Color:
+    """Blender's Gamma node; what is not positive stays."""
+    e = number(exponent)
+    return _map(lambda x: select(operation("equal", e, 0.0), 1.0, select(x > 0.0, power(x, e), x)), color(c))
+
+
+def invert(c: Varying, factor: Number = 1.0) -> Color:
+    """Blender's Invert node."""
+    t = number(factor)
+    return _map(lambda x: t * (1.0 - x) + (1.0 - t) * x, color(c))
+
+
+def ramp(factor: Number, colors: ArrayLike, *, interpolate: bool = True) -> Color:
+    """A colour by a number in 0 … 1, from (n, 4) RGBA at even steps."""
+    table = np.asarray(colors, dtype=np.float32)
+    place = clamp(number(factor))
+    if not interpolate:
+        place = floor(place * float(len(table) - 1)) / float(len(table) - 1)
+    return Color(*(operation("table1", place, data=Table(channel)) for channel in table.T))

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: MIT
+"""Normals that pictures and heights bend."""
+
+from __future__ import annotations
+
+from shlight.nodes.inputs import (
+    attribute,
+    backfacing,
+    normal,
+    normal_to_object,
+    normal_to_world,
+    position,
+)
+from shlight.nodes.mathematics import sign
+from shlight.nodes.values import (
+    Number,
+    Value,
+    Varying,
+    Vector,
+    below,
+    clamp,
+    cross,
+    dot,
+    length,
+    maximum,
+    normalize,
+    number,
+    operation,
+    right,
+    select,
+    vector,
+)
+
+
+def choose(condition: Number, if_true: Vector, if_false: Vector) -> Vector:
+    """One of two vectors, by whether a number is 0."""
+    return Vector(*(select(condition, a, b) for a, b in zip(if_true, if_false, strict=True)))
+
+
+def normal_map(color: Varying, strength: Number = 1.0, *, space: str = "tangent", tangents: str = "tangents") -> Vector:
+    """The normal that a picture holds as (n + 1) / 2.
+
+    space: "tangent", "object" or "world".
+    tangents: the mesh attribute of the tangent space: per corner the tangent and the bitangent's sign.
+    """
+    n = vector(color) * 2.0 - 1.0
+    s = number(strength)
+    flip = 1.0 - 2.0 * backfacing()
+    if space == "tangent":
+        known = attribute(tangents)
+        along = Vector(known.x, known.y, known.z)
+        up = normal_to_object(normal() * flip)
+        up = normalize(up)
+        across = cross(up, along) * known.alpha
+        height = 1.0 + clamp(s) * (n.z - 1.0)
+        bent = along * (n.x * s) + across * (n.y * s) + up * height
+        bent = normalize(normal_to_world(bent)) * flip
+        missing = operation("equal", dot(along, along), 0.0)
+        bent = choose(missing, normal(), bent)
+    else:
+        bent = normalize(normal_to_world(n) if space == "object" else n) * flip
+        bent = normalize(normal() + (bent - normal()) * maximum(s, 0.0)) if s.constant != 1.0 else bent
+    return choose(operation("equal", length(bent), 0.0), normal(), bent)
+
+
+def bump(
+    height: Number, strength: Number = 1.0, distance: Number = 1.0, *, at: Vector | None = None, invert: bool = False
+) -> Vector:
+    """The normal of a surface that is raised by height times distance [m]; strength mixes it with the one before."""
+    before = normal() if at is None else at
+    here = position()
+    dx = Vector(*(right(component) for component in here))
+    dy = Vector(*(below(component) for component in here))
+    rx, ry = cross(dy, before), cross(before, dx)
+    determinant = dot(dx, rx)
+    h = number(height)
+    slope = rx * right(h) + ry * below(h)
+    scale = -number(distance) if invert else number(distance)
+    s: Value = maximum(strength, 0.0)
+    raised = normalize(before * abs(determinant) - slope * (scale * sign(determinant)))
+    flat = operation("equal", length(raised), 0.0)
+    return choose(flat, before, normalize(raised * s + before * (1.0 - s)))
