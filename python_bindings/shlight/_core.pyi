@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: MIT
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, TypedDict, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from shlight.nodes.shader import Shader
+from shlight.nodes.values import Value, Vector
 
 _Floats = NDArray[Any]
 DEFAULT_TOLERANCE: float
@@ -27,11 +30,63 @@ def disk_coefficients(
 ) -> _Floats: ...
 def shade(light: _Floats, bsdf: _Floats, order: int, threads: int) -> _Floats: ...
 
+_Step = tuple[int, float, int, int, list[int]]
+
+class TexturePixels:
+    @property
+    def size_in_bytes(self) -> int: ...
+
+class ImageTexture:
+    @property
+    def size(self) -> tuple[int, int]: ...
+    def sample(
+        self, u: float, v: float, footprint: tuple[float, float, float, float]
+    ) -> tuple[float, float, float, float]: ...
+
+class ShaderProgram:
+    def evaluate(self, inputs: Sequence[tuple[tuple[int, int, int], _Floats]], count: int) -> NDArray[np.float32]: ...
+    @property
+    def operation_count(self) -> int: ...
+
+class SurfaceShader: ...
+
+def shader_operations() -> list[tuple[str, int, int]]: ...
+def texture_pixels(pixels: NDArray[Any], encoding: int) -> TexturePixels: ...
+def image_texture(
+    tiles: Sequence[tuple[int, int, TexturePixels]], interpolation: int, extension: int, unassociate: bool, tiled: bool
+) -> ImageTexture: ...
+def shader_program(
+    steps: Sequence[_Step],
+    tables: Sequence[tuple[_Floats, list[int]]],
+    images: Sequence[ImageTexture],
+    results: Sequence[int],
+) -> ShaderProgram: ...
+def surface_shader(
+    program: ShaderProgram,
+    lobes: Sequence[tuple[str, float, int, int | None, int | None]],
+    emission: int | None,
+    transparency: int | None,
+    shadow_program: ShaderProgram,
+    attribute_names: Sequence[str],
+) -> SurfaceShader: ...
+
 class Bsdf:
+    @overload
     @staticmethod
     def lambert(albedo: ArrayLike) -> Bsdf: ...
+    @overload
+    @staticmethod
+    def lambert(albedo: Value | Vector) -> Shader: ...
+    @overload
     @staticmethod
     def ggx(roughness: float, f0: ArrayLike, *, ior: float | None = None) -> Bsdf: ...
+    @overload
+    @staticmethod
+    def ggx(roughness: Value | float, f0: Value | Vector | ArrayLike, *, ior: float | None = None) -> Bsdf | Shader: ...
+    @staticmethod
+    def oren_nayar(albedo: Value | Vector | ArrayLike, sigma: Value | float) -> Shader: ...
+    @staticmethod
+    def principled(*positional: Any, **named: Any) -> Shader: ...
     @staticmethod
     def layer(top: Bsdf, base: Bsdf) -> Bsdf: ...
     def coefficients(self, cos_theta_o: ArrayLike, order: int) -> NDArray[np.float32]: ...
@@ -188,11 +243,14 @@ class Scene:
         triangles: ArrayLike,
         *,
         normals: ArrayLike | None = None,
-        uvs: ArrayLike | None = None,
-        bsdf: Bsdf | Sequence[Bsdf] | None = None,
+        uvs: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        colors: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        attributes: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        bsdf: Bsdf | Shader | Sequence[Bsdf | Shader] | None = None,
         emission: ArrayLike | None = None,
         material_indices: ArrayLike | None = None,
         transforms: ArrayLike | None = None,
+        object_values: ArrayLike | None = None,
     ) -> None: ...
     def add_sphere_light(
         self,

@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from shlight._arrays import checked_array, checked_number
 
-__all__ = ["linear_to_srgb8", "read_exr", "write_exr", "write_png"]
+__all__ = ["linear_to_srgb8", "read_exr", "read_texture", "write_exr", "write_png"]
 
 _CHANNEL_NAMES = {1: ("Y",), 3: ("R", "G", "B"), 4: ("R", "G", "B", "A")}
 
@@ -39,6 +39,20 @@ def read_exr(path: str | os.PathLike[str]) -> npt.NDArray[np.float32]:
 
     Raises OSError when the file is missing or cannot be read.
     """
+    return np.ascontiguousarray(_read(path, "openexr"), dtype=np.float32)
+
+
+def read_texture(path: str | os.PathLike[str]) -> npt.NDArray[Any]:
+    """Reads a picture of any format: (height, width, channels), uint8 of files of 8 bits, otherwise float32.
+
+    Raises OSError when the file is missing or cannot be read.
+    """
+    pixels = _read(path, None)
+    return np.ascontiguousarray(pixels[..., : {2: 1}.get(pixels.shape[2], 4)])
+
+
+def _read(path: str | os.PathLike[str], file_format: str | None) -> npt.NDArray[Any]:
+    """file_format: the only one that is read, as floats; None: any."""
     import OpenImageIO as oiio
 
     path = _checked_path(path)
@@ -48,13 +62,15 @@ def read_exr(path: str | os.PathLike[str]) -> npt.NDArray[np.float32]:
     if source is None:
         raise OSError(f"{path}: {oiio.geterror().strip()}")
     try:
-        pixels = source.read_image("float") if source.format_name() == "openexr" else None
+        bytes_only = file_format is None and str(source.spec().format) == "uint8"
+        suits = file_format in (None, source.format_name())
+        pixels = source.read_image("uint8" if bytes_only else "float") if suits else None
         reason = source.geterror().strip() or "not an OpenEXR image"
     finally:
         source.close()
     if pixels is None:
         raise OSError(f"{path}: {reason}")
-    return np.ascontiguousarray(np.atleast_3d(pixels), dtype=np.float32)
+    return np.atleast_3d(pixels)
 
 
 def write_png(path: str | os.PathLike[str], image_srgb_uint8: npt.ArrayLike) -> None:

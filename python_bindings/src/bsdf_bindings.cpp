@@ -158,7 +158,21 @@ Bsdf scaled(const Bsdf& bsdf, const py::object& factor) {
     return bsdf.scaled(color_from("factor", factor));
 }
 
-Bsdf ggx(const py::object& roughness, const py::object& f0, const py::object& ior) {
+/// Of shlight.nodes: a value, or a vector or colour.
+bool is_expression(const py::handle& value) {
+    return py::hasattr(value, "step") || py::hasattr(value, "as_number");
+}
+
+py::object shader_function(const char* name) {
+    return py::module_::import("shlight.nodes").attr(name);
+}
+
+py::object lambert(const py::object& albedo) {
+    return is_expression(albedo) ? shader_function("lambert")(albedo)
+                                 : py::cast(Bsdf::lambert(color_from("albedo", albedo)));
+}
+
+Bsdf constant_ggx(const py::object& roughness, const py::object& f0, const py::object& ior) {
     const auto width = static_cast<float>(real_from("roughness", roughness));
     const Rgb head_on = color_from("f0", f0);
     const double index = ior.is_none() ? 0 : real_from("ior", ior);
@@ -167,6 +181,11 @@ Bsdf ggx(const py::object& roughness, const py::object& f0, const py::object& io
     }
     const py::gil_scoped_release release;
     return Bsdf::ggx(width, head_on, index);
+}
+
+py::object ggx(const py::object& roughness, const py::object& f0, const py::object& ior) {
+    return is_expression(roughness) || is_expression(f0) ? shader_function("ggx")(roughness, f0, py::arg("ior") = ior)
+                                                         : py::cast(constant_ggx(roughness, f0, ior));
 }
 
 Bsdf layer(const py::object& top, const py::object& base) {
@@ -222,8 +241,22 @@ void bind_bsdf(py::module_& m) {
     py::class_<Bsdf> type(m, "Bsdf", kDoc, without_constructor());
     define_pickling(type, &state_of, &bsdf_from);
     type.def_static(
-            "lambert", [](const py::object& albedo) { return Bsdf::lambert(color_from("albedo", albedo)); },
-            py::arg("albedo"), "Diffuse: f·cos = albedo · cosθ_i / π. albedo: a number or RGB, ≥ 0. Order 2 is exact.")
+            "lambert", &lambert, py::arg("albedo"),
+            "Diffuse: f·cos = albedo · cosθ_i / π. albedo: a number or RGB, ≥ 0. Order 2 is exact.\n\n"
+            "Of an expression of shlight.nodes, here and below, it is a Shader, which Scene.add_mesh takes too.")
+        .def_static(
+            "oren_nayar",
+            [](const py::object& albedo, const py::object& sigma) {
+                return shader_function("oren_nayar")(albedo, sigma);
+            },
+            py::arg("albedo"), py::arg("sigma"),
+            "A Shader: diffuse of roughness sigma, 0 … 1; albedo: a number, RGB or an expression of shlight.nodes.")
+        .def_static(
+            "principled",
+            [](const py::args& positional, const py::kwargs& named) {
+                return shader_function("principled")(*positional, **named);
+            },
+            "A Shader: Blender's Principled BSDF, see shlight.nodes.principled.")
         .def_static("ggx", &ggx, py::arg("roughness"), py::arg("f0"), py::kw_only(), py::arg("ior") = py::none(),
                     R"(GGX microfacets with height-correlated Smith masking; alpha = roughness², 0 ≤ roughness ≤ 1.
 Below a roughness of 0.003 a perfect mirror: lights reflect in it, but it has no coefficients and evaluates to 0.

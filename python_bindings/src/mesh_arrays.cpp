@@ -155,15 +155,19 @@ MeshAttribute attribute_from(const std::string& name, const Mesh& mesh, const py
     const auto triangle_count = static_cast<py::ssize_t>(mesh.triangles.size());
     const bool has_rows = array.ndim() >= 1;
     const bool of_corners = array.ndim() == 3 && fits(array, {triangle_count, 3, kAny});
-    const bool of_rows = has_rows && array.ndim() <= 2 &&
-                         (array.shape(0) == vertex_count || array.shape(0) == triangle_count);
+    const bool of_rows =
+        has_rows && array.ndim() <= 2 && (array.shape(0) == vertex_count || array.shape(0) == triangle_count);
     const py::ssize_t components = array.ndim() == 1 ? 1 : has_rows ? array.shape(array.ndim() - 1) : 0;
     if (!(of_corners || of_rows) || components < 1 || components > 4) {
-        throw std::invalid_argument(name + " must have one to four numbers for each of " + std::to_string(vertex_count) +
-                                    " vertices or " + std::to_string(triangle_count) +
+        throw std::invalid_argument(name + " must have one to four numbers for each of " +
+                                    std::to_string(vertex_count) + " vertices or " + std::to_string(triangle_count) +
                                     " triangles, or shape (triangles, 3, components)");
     }
+    if (name == "uvs" && components != 2) {
+        throw std::invalid_argument("uvs must have two numbers for each vertex or corner");
+    }
     const auto all = values(array);
+    check_all_finite(name.c_str(), all);
     return {static_cast<std::uint32_t>(components), {all.begin(), all.end()}};
 }
 
@@ -293,7 +297,8 @@ Mesh mesh_from(const MeshArguments& arguments) {
         const auto count = static_cast<py::ssize_t>(mesh.transforms.size());
         const AnyArray<float> array = numbers<float>("object_values", arguments.object_values, {count, kAny});
         for (py::ssize_t i = 0; i < count; ++i) {
-            mesh.object_values.emplace_back(array.data(i, 0), array.data(i, 0) + array.shape(1));
+            const float* row = array.data() + i * array.shape(1);
+            mesh.object_values.emplace_back(row, row + array.shape(1));
         }
     }
     return mesh;

@@ -23,8 +23,8 @@ using ImagePointer = std::shared_ptr<const ImageTexture>;
 using StepTuple = std::tuple<int, double, std::uint32_t, std::uint32_t, std::vector<std::uint32_t>>;
 using TableTuple = std::tuple<AnyArray<float>, std::vector<std::uint32_t>>;
 /// kind of lobe, ior, and numbers of results: weight, alpha, normal
-using LobeTuple = std::tuple<std::string, double, std::uint32_t, std::optional<std::uint32_t>,
-                             std::optional<std::uint32_t>>;
+using LobeTuple =
+    std::tuple<std::string, double, std::uint32_t, std::optional<std::uint32_t>, std::optional<std::uint32_t>>;
 
 /// kind (0: constant, 1: input, 2: operation), constant, source or operation, index or parameter, and arguments; of an
 /// input the component is the only argument.
@@ -73,7 +73,8 @@ class ArrayReader : public ShaderReader {
 
     void read(const ShaderInput& input, int place, std::size_t first, std::span<float> out) const override {
         const Key key = {static_cast<std::uint32_t>(input.source), input.index, input.component};
-        const auto found = std::find_if(inputs_->begin(), inputs_->end(), [&](const auto& own) { return own.first == key; });
+        const auto found =
+            std::find_if(inputs_->begin(), inputs_->end(), [&](const auto& own) { return own.first == key; });
         const float* from = found == inputs_->end() ? nullptr : found->second.data();
         for (std::size_t i = 0; i < out.size(); ++i) {
             out[i] = from == nullptr ? 0.0F : from[static_cast<std::size_t>(place) * count_ + first + i];
@@ -85,8 +86,8 @@ class ArrayReader : public ShaderReader {
     std::size_t count_;
 };
 
-Array<float> evaluate(const ShaderProgram& program, const std::vector<std::pair<ArrayReader::Key, AnyArray<float>>>& inputs,
-                      std::size_t count) {
+Array<float> evaluate(const ShaderProgram& program,
+                      const std::vector<std::pair<ArrayReader::Key, AnyArray<float>>>& inputs, std::size_t count) {
     for (const auto& [key, array] : inputs) {
         if (static_cast<std::size_t>(array.size()) != 3 * count) {
             throw std::invalid_argument("inputs must have shape (3, count)");
@@ -138,18 +139,43 @@ ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTup
     return {std::move(shader), std::move(attribute_names)};
 }
 
-std::shared_ptr<ImageTexture> image_from(const py::object& pixels, int interpolation, int extension) {
-    const AnyArray<float> array = array_from<float>("pixels", pixels);
-    if (array.ndim() != 3 || array.shape(2) != 4 || array.size() == 0) {
-        throw std::invalid_argument("pixels must have shape (height, width, 4)");
+using PixelsPointer = std::shared_ptr<const TexturePixels>;
+
+/// uint8 or float; (height, width, channels), row 0 at v = 0.
+std::shared_ptr<TexturePixels> pixels_from(const py::array& pixels, int encoding) {
+    if (pixels.ndim() != 3 || pixels.size() == 0 ||
+        (pixels.shape(2) != 1 && pixels.shape(2) != 3 && pixels.shape(2) != 4)) {
+        throw std::invalid_argument("pixels must have shape (height, width, channels) with 1, 3 or 4 channels");
     }
-    std::vector<glm::vec4> own(static_cast<std::size_t>(array.shape(0) * array.shape(1)));
-    for (std::size_t i = 0; i < own.size(); ++i) {
-        own[i] = {array.data()[4 * i], array.data()[4 * i + 1], array.data()[4 * i + 2], array.data()[4 * i + 3]};
+    const auto height = static_cast<std::uint32_t>(pixels.shape(0));
+    const auto width = static_cast<std::uint32_t>(pixels.shape(1));
+    const auto channels = static_cast<int>(pixels.shape(2));
+    std::variant<TexturePixels::Bytes, TexturePixels::Floats> values;
+    if (py::isinstance<py::array_t<std::uint8_t>>(pixels)) {
+        const Array<std::uint8_t> bytes(pixels);
+        values = TexturePixels::Bytes(bytes.data(), bytes.data() + bytes.size());
+    } else {
+        const AnyArray<float> floats = array_from<float>("pixels", pixels);
+        values = TexturePixels::Floats(floats.data(), floats.data() + floats.size());
     }
-    return std::make_shared<ImageTexture>(
-        std::move(own), static_cast<std::uint32_t>(array.shape(1)), static_cast<std::uint32_t>(array.shape(0)),
-        static_cast<TextureInterpolation>(interpolation), static_cast<TextureExtension>(extension));
+    const py::gil_scoped_release release;
+    return std::make_shared<TexturePixels>(std::move(values), width, height, channels,
+                                           static_cast<TexelEncoding>(encoding));
+}
+
+/// tiles: (u, v, pixels) of each.
+std::shared_ptr<ImageTexture> image_from(
+    const std::vector<std::tuple<std::int64_t, std::int64_t, std::shared_ptr<TexturePixels>>>& tiles, int interpolation,
+    int extension, bool unassociate, bool tiled) {
+    std::vector<ImageTexture::Tile> own;
+    for (const auto& [u, v, pixels] : tiles) {
+        own.push_back({u, v, pixels});
+    }
+    if (own.empty()) {
+        throw std::invalid_argument("tiles must hold a picture");
+    }
+    return std::make_shared<ImageTexture>(std::move(own), static_cast<TextureInterpolation>(interpolation),
+                                          static_cast<TextureExtension>(extension), unassociate, tiled);
 }
 
 }  // namespace
@@ -164,9 +190,16 @@ void bind_shader(py::module_& m) {
     });
     py::class_<ImageTexture, std::shared_ptr<ImageTexture>>(m, "ImageTexture", without_constructor())
         .def_property_readonly(
-            "size", [](const ImageTexture& self) { return std::pair(self.width(), self.height()); },
-            "Width and height in texels.");
-    m.def("image_texture", &image_from, "pixels"_a, "interpolation"_a, "extension"_a);
+            "size", [](const ImageTexture& self) { return std::pair(self.pixels().width(), self.pixels().height()); },
+            "Width and height in texels.")
+        .def("sample", [](const ImageTexture& self, float u, float v, std::array<float, 4> footprint) {
+            const glm::vec4 color = self.sample({u, v}, {{footprint[0], footprint[1]}, {footprint[2], footprint[3]}});
+            return std::array{color.x, color.y, color.z, color.w};
+        });
+    py::class_<TexturePixels, std::shared_ptr<TexturePixels>>(m, "TexturePixels", without_constructor())
+        .def_property_readonly("size_in_bytes", &TexturePixels::size_in_bytes);
+    m.def("texture_pixels", &pixels_from, "pixels"_a, "encoding"_a);
+    m.def("image_texture", &image_from, "tiles"_a, "interpolation"_a, "extension"_a, "unassociate"_a, "tiled"_a);
     py::class_<ShaderProgram>(m, "ShaderProgram", without_constructor())
         .def("evaluate", &evaluate, "inputs"_a, "count"_a)
         .def_property_readonly("operation_count", &ShaderProgram::operation_count);

@@ -9,23 +9,42 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from shlight import nodes
+from shlight_blender.export.emission import VaryingEmission
 from shlight_blender.export.emission_pieces import TOLERANCE, cut, sampling_levels, share_colors
 from shlight_blender.export.materials import read_material
-from shlight_blender.export.textures import ImageTexture
 from shlight_blender.report import ExportReport
 
 Array = NDArray[np.float64]
 TRIANGLES = np.array([[(0.1, -0.2), (1.3, 0.1), (0.9, 1.15)], [(0.1, -0.2), (0.9, 1.15), (-0.3, 0.6)]])
 
 
-def cut_all(texture: Any, area: Array, most: int = 300) -> Any:
+class Picture:
+    """A picture over UV coordinates (n, 2)."""
+
+    def __init__(self, pixels: Array, interpolation: str) -> None:
+        self._glow = VaryingEmission(nodes.image(pixels, nodes.uv("Map"), interpolation=interpolation))
+
+    @staticmethod
+    def inputs(places: Array) -> Any:
+        return {("attribute", "Map", i): places[:, i] for i in range(2)}
+
+    def sample(self, places: Array) -> Array:
+        return self._glow.radiance(self.inputs(places), len(places))
+
+    def texels(self, places: Array) -> Array:
+        (found,) = self._glow.texels(self.inputs(places.reshape(-1, 2)), places.size // 2)
+        return found.reshape(places.shape)
+
+
+def cut_all(texture: Picture, area: Array, most: int = 300) -> Any:
     return cut(texture.sample, TRIANGLES, sampling_levels(texture.texels(TRIANGLES)), area, most)
 
 
-@pytest.mark.parametrize("interpolation", ["Linear", "Closest"])
+@pytest.mark.parametrize("interpolation", ["linear", "closest"])
 def test_pieces_keep_area_and_light(interpolation: str) -> None:
     pixels, area = np.random.default_rng(3).random((11, 17, 3)).astype(np.float32), np.array([2.0, 1.0])
-    texture = ImageTexture(pixels, interpolation=interpolation)
+    texture = Picture(pixels, interpolation)
     whole, pieces = cut_all(texture, area, most=1), cut_all(texture, area)
     assert 290 <= len(pieces.area) <= 300
     assert pieces.area.sum() == pytest.approx(area.sum(), rel=1e-12)
@@ -121,15 +140,17 @@ def looked_up(studio: Any, made: Any) -> tuple[Array, Array]:
     cycles.samples = 1024
     reference = studio.render("CYCLES")[::-1, :, :3].reshape(-1, 3)
     report = ExportReport()
-    (glow,) = read_material(made.data.materials[0], report).textured
+    glow = read_material(made.data.materials[0], report).varying
+    assert glow is not None
     assert not len(report)
     x, y = np.meshgrid((np.arange(80 * 12) + 0.5) / 480 - 1, (np.arange(48 * 12) + 0.5) / 480 - 0.6)
     places = np.stack([x, y, np.ones_like(x)], axis=-1).reshape(-1, 3)
-    (texture,) = glow.textures
-    layer = made.data.uv_layers[texture.uv_map or "Map"]
+    (name,) = {str(index) for _, index, _ in glow.inputs}
+    layer = made.data.uv_layers[name or "Map"]
     corners = [(*vertex.co[:2], 1) for vertex in made.data.vertices]
     to_uv = np.linalg.lstsq(np.array(corners), np.array([tuple(loop.uv) for loop in layer.data]), rcond=None)[0]
-    found = glow.radiance({texture.uv_map: places @ to_uv})
+    at = places @ to_uv
+    found = glow.radiance({("attribute", name, i): at[:, i] for i in range(2)}, len(at))
     return reference, found.reshape(48, 12, 80, 12, 3).mean(axis=(1, 3)).reshape(-1, 3)
 
 
@@ -170,21 +191,24 @@ def test_strength_from_a_picture_and_principled(studio: Any) -> None:
     tree = material.node_tree
     node, picture = tree.nodes["Emission"], tree.nodes["Image Texture"]
     tree.links.new(picture.outputs["Color"], node.inputs["Strength"])
-    place = {"": np.array([[0.3, 0.6], [0.8, 0.2]])}
-    (glow,) = read_material(material, ExportReport()).textured
-    color, strength = glow.textures
-    values = color.sample(place[""])
-    np.testing.assert_allclose(glow.radiance(place), values * (values @ (0.2126, 0.7152, 0.0722))[:, None])
-    assert strength.is_number
+    place = {("attribute", "", 0): np.array([0.3, 0.8]), ("attribute", "", 1): np.array([0.6, 0.2])}
+
+    def shown() -> Array:
+        glow = read_material(material, ExportReport()).varying
+        assert glow is not None
+        return glow.radiance(place, 2)
+
+    tinted = shown()
+    node.inputs["Strength"].default_value = 1.0
+    tree.links.remove(node.inputs["Strength"].links[0])
+    values = shown()
+    np.testing.assert_allclose(tinted, values * (values @ (0.2126729, 0.7151522, 0.072175))[:, None], rtol=1e-5)
     shader = tree.nodes.new("ShaderNodeBsdfPrincipled")
     name = "Emission Color" if "Emission Color" in shader.inputs else "Emission"
     shader.inputs["Emission Strength"].default_value = 3.0
     tree.links.new(picture.outputs["Color"], shader.inputs[name])
     tree.links.new(shader.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
-    surface = read_material(material, ExportReport())
-    assert surface.bsdf is not None
-    (glow,) = surface.textured
-    np.testing.assert_allclose(glow.radiance(place), 3.0 * values)
+    np.testing.assert_allclose(shown(), 3.0 * values, rtol=1e-5)
 
 
 def test_what_is_not_supported_is_named(studio: Any) -> None:
@@ -199,12 +223,6 @@ def test_what_is_not_supported_is_named(studio: Any) -> None:
     (line,) = studio.messages()
     assert "has no UV map" in line
     tree = made.data.materials[0].node_tree
-    picture = tree.nodes["Image Texture"]
-    picture.projection = "BOX"
-    (line,) = studio.messages()
-    assert "varying values are not supported" in line
-    picture.projection, picture.image = "FLAT", None
-    assert any("it has no image" in line for line in studio.messages())
     tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], tree.nodes["Emission"].inputs["Color"])
     assert any("node 'Noise Texture'" in line for line in studio.messages())
 

@@ -65,10 +65,13 @@ MESH = {
     "triangles": FACES,
     "normals": TRIANGLE,
     "uvs": [[0.0, 0.0]] * 3,
+    "colors": [[0.0, 0.0, 0.0]] * 3,
+    "attributes": {"height": [0.0, 1.0, 2.0]},
     "bsdf": GGX,
     "emission": RGB,
     "material_indices": [0],
     "transforms": [np.eye(4)],
+    "object_values": [[1.0, 2.0]],
 }
 RENDER = {"width": 2, "height": 2, "threads": 1, "progress": None}
 SETTINGS = {"order": "auto", "tolerance": 0.1, "pixel_samples": 1, "shadow_rays": 1, "adaptive": False}
@@ -93,6 +96,8 @@ def picture(channels: int, dtype: Any) -> Any:
 CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Bsdf.lambert": (Bsdf.lambert, {"albedo": 0.5}),
     "Bsdf.ggx": (Bsdf.ggx, {"roughness": 0.5, "f0": 0.04, "ior": 1.5}),
+    "Bsdf.oren_nayar": (Bsdf.oren_nayar, {"albedo": 0.5, "sigma": 0.5}),
+    "Bsdf.principled": (Bsdf.principled, {}),
     "Bsdf.layer": (Bsdf.layer, {"top": GGX, "base": Bsdf.lambert(1.0)}),
     "Bsdf.coefficients": (GGX.coefficients, {"cos_theta_o": 0.5, "order": 3}),
     "Bsdf.residual": (GGX.residual, {"cos_theta_o": 0.5, "order": 3}),
@@ -128,6 +133,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "render": (shlight.render, {"scene": new_scene(), **RENDER, **SETTINGS, "return_report": True}),
     "images.write_exr": (images.write_exr, {"path": "a.exr", "image": picture(4, np.float32)}),
     "images.read_exr": (images.read_exr, {"path": "missing.exr"}),
+    "images.read_texture": (images.read_texture, {"path": "missing.png"}),
     "images.write_png": (images.write_png, {"path": "a.png", "image_srgb_uint8": picture(3, np.uint8)}),
     "images.linear_to_srgb8": (images.linear_to_srgb8, {"image": picture(3, np.float32), "exposure": 1.0}),
     "methods.coefficient_methods": (methods.coefficient_methods, {}),

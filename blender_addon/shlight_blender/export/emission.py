@@ -64,9 +64,7 @@ class VaryingEmission:
     def texels(self, inputs: Mapping[Input, Array], count: int) -> list[Array]:
         """Where pictures are looked up, in texels: for each of them (count, 2)."""
         results = self._evaluate(inputs, count)[3:]
-        return [
-            results[2 * i : 2 * i + 2].T * size for i, (_, size) in enumerate(self._places)
-        ]
+        return [results[2 * i : 2 * i + 2].T * size for i, (_, size) in enumerate(self._places)]
 
 
 def steps_of(color: Color) -> list[Step]:

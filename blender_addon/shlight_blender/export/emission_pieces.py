@@ -109,7 +109,8 @@ def _pyramid(radiance: Radiance, uvs: Array, kept: int, finer: int) -> _Pyramid:
 def cut(radiance: Radiance, uvs: Array, levels: IntArray, area: Array, most: int = MOST_PIECES) -> Pieces:
     """Cuts triangles into pieces of even light, those first whose squared deviation times area is the largest.
 
-    uvs: (n, 3, c), what `radiance` is a function of at the corners; levels: (n,), from `sampling_levels`; area: (n,). At most `most` pieces, or n if that is more.
+    uvs: (n, 3, c), what `radiance` is a function of at the corners; levels: (n,), from `sampling_levels`; area: (n,).
+    At most `most` pieces, or n if that is more.
     """
     kept = np.clip(levels - FINER_LEVELS, 0, MOST_LEVELS)
     while (4.0**kept).sum() > MOST_PARTS and kept.max() > 0:

@@ -97,7 +97,9 @@ class ExpressionReader:
             return found if isinstance(found, Value | Vector) else _constant(found)
         fallback = own_value(source.socket)
         kind = source.node.bl_label or source.node.bl_idname
-        text = f"{kind} is not supported; '{socket.name}' of '{node_name(socket.node)}' uses its constant {fallback}"
+        constants = [value.constant for value in (fallback if isinstance(fallback, Vector) else (fallback,))]
+        shown = np.array2string(np.array(constants), precision=3, separator=", ")
+        text = f"{kind} is not supported; '{socket.name}' of '{node_name(socket.node)}' uses its constant {shown}"
         self.report.add(self.at(source.node), text)
         return fallback
 

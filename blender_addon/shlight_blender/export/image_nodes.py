@@ -1,45 +1,178 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Image Texture nodes."""
+"""Image Texture nodes: which picture is looked up, and where."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
-import numpy as np
+import bpy
 
 from shlight import nodes
-from shlight.nodes import Color, Value
+from shlight.nodes import Color, Value, Vector
+from shlight.nodes.values import Number, clamp, dot, operation, select, sqrt
 
+from ..report import Effect
 from .expressions import NodeInputs
-from .pictures import linear_from_srgb
+from .image_pixels import LINEAR_SPACES, associates_alpha, datablock_texture, file_texture
 
-_textures: dict[Any, Any] = {}
+INTERPOLATIONS = {"Closest": "closest", "Linear": "linear", "Cubic": "cubic", "Smart": "cubic"}
+EXTENSIONS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
+# What Cycles shows in the place of a picture that is not there.
+MISSING = (1.0, 0.0, 1.0)
+FIRST_TILE = 1001
+CHANNELS: tuple[Callable[[Color], Value], ...] = (
+    lambda c: c.x,
+    lambda c: c.y,
+    lambda c: c.z,
+    lambda c: c.alpha,
+)
 
 
 def image_texture(inputs: NodeInputs) -> Color | Value:
+    """An Image Texture node."""
     node = inputs.node
-    place = inputs.vector("Vector") if inputs.is_linked("Vector") else nodes.uv("")
-    image = node.image
-    key = (image and image.name, node.interpolation, node.extension)
-    if image is None:
-        return Color(0.0, 0.0, 0.0)
-    if key not in _textures:
-        width, height = image.size
-        if width < 1:
-            inputs.remark("missing image")
-            return Color(1.0, 0.0, 1.0)
-        flat = np.empty(width * height * image.channels, dtype=np.float32)
-        image.pixels.foreach_get(flat)
-        pixels = flat.reshape(height, width, image.channels)
-        rgba = np.ones((height, width, 4), np.float32)
-        rgba[..., : image.channels] = pixels
-        if not image.is_float and image.colorspace_settings.name == "sRGB":
-            rgba[..., :3] = linear_from_srgb(rgba[..., :3])
-        _textures[key] = rgba[::-1]
-    c = nodes.image(
-        _textures[key],
+    textures = None if node.image is None else _textures(inputs, node.image)
+    if textures is None:
+        found: Color = Color(*MISSING)
+    else:
+        place = inputs.vector("Vector") if inputs.is_linked("Vector") else nodes.uv("")
+        found = _projected(inputs, textures, place)
+    return found.alpha if inputs.output.name == "Alpha" else found
+
+
+def _textures(inputs: NodeInputs, image: Any) -> Any:
+    """The texture of an image, or several by tile; None if there are no pixels, which is reported."""
+    space = image.colorspace_settings.name
+    if not image.is_float and space not in LINEAR_SPACES and space != "sRGB":
+        inputs.remark(f"colour space {space} is not supported; taken for sRGB")
+    as_normals = space == "Non-Color" and _leads_to_normal_map(inputs)
+    if image.source == "TILED":
+        found: Any = _tiles(image, as_normals)
+    elif image.source == "SEQUENCE":
+        path = bpy.path.abspath(image.filepath_from_user(image_user=inputs.node.image_user), library=image.library)
+        found = file_texture(image, path, as_normals=as_normals)
+    else:
+        if image.source in ("MOVIE", "VIEWER"):
+            inputs.remark(f"images of the kind {image.source} are not supported; the picture in memory is used")
+        found = datablock_texture(image, as_normals=as_normals)
+    if not found:
+        inputs.remark(f"its picture '{image.filepath or image.name}' is missing; magenta is used", Effect.THING)
+        return None
+    return found
+
+
+def _leads_to_normal_map(inputs: NodeInputs) -> bool:
+    links = inputs.output.links
+    return bool(links) and all(link.to_node.type == "NORMAL_MAP" for link in links)
+
+
+def _tiles(image: Any, as_normals: bool) -> dict[tuple[int, int], Any]:
+    pattern = bpy.path.abspath(image.filepath, library=image.library)
+    found: dict[tuple[int, int], Any] = {}
+    for tile in image.tiles:
+        column, row = (tile.number - FIRST_TILE) % 10, (tile.number - FIRST_TILE) // 10
+        name = f"u{column + 1}_v{row + 1}"
+        path = pattern.replace("<UDIM>", str(tile.number)).replace("<UVTILE>", name)
+        texture = file_texture(image, path, as_normals=as_normals) if Path(path).is_file() else None
+        if texture is None and len(found) == 0 and tile == image.tiles[0]:
+            texture = datablock_texture(image, as_normals=as_normals)
+        if texture is not None:
+            found[column, row] = texture
+    return found
+
+
+def _projected(inputs: NodeInputs, textures: Any, place: Vector) -> Color:
+    projection = inputs.node.projection
+    if projection == "BOX":
+        return _box(inputs, textures, place)
+    if projection == "SPHERE":
+        place = _on_sphere(place * 2.0 - 1.0)
+    elif projection == "TUBE":
+        place = _on_tube(place * 2.0 - 1.0)
+    return _lookup(inputs, textures, place)
+
+
+def _lookup(inputs: NodeInputs, textures: Any, place: Vector) -> Color:
+    node = inputs.node
+    alpha_is_used = any(output.name == "Alpha" and output.is_linked for output in node.outputs)
+    return nodes.image(
+        textures,
         place,
-        interpolation=node.interpolation.lower() if node.interpolation.lower() in ("closest", "cubic") else "linear",
-        extension=node.extension.lower(),
+        interpolation=INTERPOLATIONS[node.interpolation],
+        extension=EXTENSIONS.get(node.extension, "repeat"),
+        unassociate=alpha_is_used and associates_alpha(node.image),
     )
-    return c.alpha if inputs.output.name == "Alpha" else c
+
+
+def _on_sphere(p: Vector) -> Vector:
+    square = dot(p, p)
+    pole = operation("equal", p.x * p.x + p.y * p.y, 0.0)
+    u = select(pole, 0.0, 0.5 - operation("arctangent2", p.x, p.y) / (2.0 * math.pi))
+    v = 1.0 - operation("arccosine", p.z / sqrt(square)) / math.pi
+    return Vector(select(square, u, 0.0), select(square, v, 0.0), 0.0)
+
+
+def _on_tube(p: Vector) -> Vector:
+    radius = sqrt(p.x * p.x + p.y * p.y)
+    u = (1.0 - operation("arctangent2", p.x, p.y) / math.pi) * 0.5
+    return Vector(select(radius, u, 0.0), select(radius, (p.z + 1.0) * 0.5, 0.0), 0.0)
+
+
+def _both(a: Value, b: Value) -> Value:
+    return a * b
+
+
+def _box(inputs: NodeInputs, textures: Any, place: Vector) -> Color:
+    """Three pictures along the axes of the object, blended where a normal lies between them."""
+    n = nodes.values.normalize(nodes.inputs.normal_to_object(nodes.normal()))
+    x, y, z = _box_weights(n, float(inputs.node.projection_blend))
+    sides = (
+        (x, Vector(select(n.x < 0.0, 1.0 - place.y, place.y), place.z, 0.0)),
+        (y, Vector(select(n.y > 0.0, 1.0 - place.x, place.x), place.z, 0.0)),
+        (z, Vector(select(n.z > 0.0, 1.0 - place.y, place.y), place.x, 0.0)),
+    )
+    looked_up = [(weight, _lookup(inputs, textures, where)) for weight, where in sides]
+
+    def blended(channel: Callable[[Color], Value]) -> Value:
+        first, second, third = (weight * channel(color) for weight, color in looked_up)
+        return first + second + third
+
+    return Color(*(blended(channel) for channel in CHANNELS))
+
+
+def _box_weights(normal: Vector, blend: float) -> tuple[Value, Value, Value]:
+    a = [abs(component) for component in normal]
+    total = a[0] + a[1] + a[2]
+    a = [component / total for component in a]
+    limit = 0.5 * (1.0 + blend)
+
+    def leads(i: int) -> Value:
+        j, k = (other for other in range(3) if other != i)
+        return _both(a[i] > limit * (a[i] + a[j]), a[i] > limit * (a[i] + a[k]))
+
+    alone = [leads(i) for i in range(3)]
+    if blend <= 0.0:
+        none = 1.0 - (alone[0] + alone[1] + alone[2])
+        return alone[0] + none, alone[1], alone[2]
+
+    def between(i: int, j: int) -> Value:
+        share = a[i] / (a[i] + a[j])
+        return clamp((share - 0.5 * (1.0 - blend)) / blend)
+
+    three = [((2.0 - limit) * component + (limit - 1.0)) / (2.0 * limit - 1.0) for component in a]
+    xy, yz, xz = between(0, 1), between(1, 2), between(0, 2)
+    cases: tuple[tuple[Value, tuple[Number, Number, Number]], ...] = (
+        (a[2] < (1.0 - limit) * (a[1] + a[0]), (xy, 1.0 - xy, 0.0)),
+        (a[0] < (1.0 - limit) * (a[1] + a[2]), (0.0, yz, 1.0 - yz)),
+        (a[1] < (1.0 - limit) * (a[0] + a[2]), (xz, 0.0, 1.0 - xz)),
+    )
+    result: list[Any] = list(three)
+    for condition, weights in reversed(cases):
+        result = [select(condition, w, r) for w, r in zip(weights, result, strict=True)]
+    for i in reversed(range(3)):
+        single = [1.0 if k == i else 0.0 for k in range(3)]
+        result = [select(alone[i], w, r) for w, r in zip(single, result, strict=True)]
+    return result[0], result[1], result[2]

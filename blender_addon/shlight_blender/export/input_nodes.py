@@ -180,8 +180,7 @@ def _blackbody(inputs: NodeInputs) -> Expression:
 def _checker(inputs: NodeInputs) -> Expression:
     place = inputs.vector("Vector") if inputs.is_linked("Vector") else nodes.attribute(GENERATED)
     floors = [
-        operation("modulo", abs(operation("floor", (c * inputs.number("Scale") + 1e-6) * 0.999999)), 2.0)
-        for c in place
+        operation("modulo", abs(operation("floor", (c * inputs.number("Scale") + 1e-6) * 0.999999)), 2.0) for c in place
     ]
     same = operation("equal", operation("equal", floors[0], floors[1]), floors[2])
     if inputs.output.name == "Fac":
@@ -222,8 +221,7 @@ def _white_noise(inputs: NodeInputs) -> Expression:
     if inputs.output.name == "Value":
         return noise()
     if count < 4:
-        others = (noise(1.0), noise(2.0)) if count != 2 else (noise(1.0), noise(2.0))
-        return Color(noise(), *others)
+        return Color(noise(), noise(1.0), noise(2.0))
     inputs.remark("the colour of white noise in four dimensions is not supported; its value is used", Effect.SLIGHT)
     return noise()
 

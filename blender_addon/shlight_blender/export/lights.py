@@ -15,8 +15,8 @@ import shlight
 
 from ..compat import LAMPS, lamp_casts_shadows, lamp_is_normalized, lamp_tint, point_is_disk, uses_nodes
 from ..report import Effect, ExportReport
-from .nodes import RGB, rgb
 from .materials import with_light
+from .nodes import RGB, rgb
 from .shaders import SHADERS
 from .surface import ShaderReader
 from .textured_lamps import UNIT_SQUARE, EvenLamp, EvenPart, even_lamp

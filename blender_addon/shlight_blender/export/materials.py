@@ -47,7 +47,7 @@ def read_material(material: Any, report: ExportReport) -> Surface:
     if material is None:
         return default_surface()
     if not uses_nodes(material):
-        return Surface(nodes.lambert(np.maximum(np.array(material.diffuse_color[:3], dtype=np.float64), 0.0)))
+        return Surface(nodes.lambert([max(c, 0.0) for c in material.diffuse_color[:3]]))
     place = f"Material '{material.name}'"
     output = material.node_tree.get_output_node("CYCLES")
     if output is None:

@@ -19,7 +19,16 @@ INSTANCE_COLOR = "color:"
 # Where a vertex lies in the mesh's texture space.
 GENERATED = "generated:"
 
-COMPONENTS = {"FLOAT": 1, "INT": 1, "INT8": 1, "BOOLEAN": 1, "FLOAT2": 2, "FLOAT_VECTOR": 3, "FLOAT_COLOR": 4, "BYTE_COLOR": 4}
+COMPONENTS = {
+    "FLOAT": 1,
+    "INT": 1,
+    "INT8": 1,
+    "BOOLEAN": 1,
+    "FLOAT2": 2,
+    "FLOAT_VECTOR": 3,
+    "FLOAT_COLOR": 4,
+    "BYTE_COLOR": 4,
+}
 
 
 class ObjectValue(IntEnum):

@@ -108,6 +108,7 @@ class MeshCollector:
             if arrays is not None:
                 names = dict.fromkeys(name for surface in surfaces for name in surface.shader.attribute_names)
                 arrays.attributes = mesh_attributes(mesh, names)
+                self._report_missing(mesh_object, [name for name in names if name not in arrays.attributes])
         finally:
             mesh_object.to_mesh_clear()
         if arrays is None:
@@ -121,6 +122,12 @@ class MeshCollector:
             remark = partial(self._report.add, place)
             arrays, surfaces = with_even_emission(arrays, surfaces, to_world, remark)
         return MeshUse(place, arrays, surfaces)
+
+    def _report_missing(self, mesh_object: Any, names: Sequence[str]) -> None:
+        for name in names:
+            what = f"attribute or UV map '{name}'" if name else "UV map"
+            text = f"it has no {what}, which its material reads; 0 is used, as in Cycles"
+            self._report.add(f"Object '{mesh_object.name}'", text, Effect.SLIGHT)
 
     def _surface(self, material: Any) -> Surface:
         material = self._override or material

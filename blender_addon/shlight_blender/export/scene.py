@@ -13,6 +13,7 @@ from ..frame import Frame, frame_of
 from ..report import Effect, ExportError, ExportReport
 from .bake import Waiting
 from .camera import set_camera
+from .image_pixels import TEXTURES
 from .lights import add_lamp
 from .meshes import MeshCollector
 from .settings import report_unsupported_settings
@@ -64,6 +65,7 @@ def export_scene(
     frame = frame or frame_of(blender_scene.render)
     camera = camera or blender_scene.camera
     report = ExportReport()
+    TEXTURES.begin_export()
     if camera is None:
         raise ExportError(f"Scene '{blender_scene.name}' has no camera")
     if camera.type != "CAMERA":

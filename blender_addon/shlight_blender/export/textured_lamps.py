@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compat import LAMPS
+from .emission import Input, VaryingEmission
 from .even_cells import TOLERANCE, Cells, cut_square, samples_along
 from .nodes import RGB
-from .emission import Input, VaryingEmission
 
 Array = NDArray[np.float64]
 Remark = Callable[[str], None]
@@ -45,6 +45,16 @@ class EvenLamp(NamedTuple):
 
 def even_lamp(emission: VaryingEmission, is_round: bool, remark: Remark) -> EvenLamp:
     """A lamp that shines as `emission`; `remark` is told what is not as in Cycles."""
+    known = _inputs_at(UNIT_SQUARE)
+    unknown = sorted(
+        {
+            f"{source} '{index}'" if source == "attribute" else source
+            for source, index, component in emission.inputs
+            if (source, index, component) not in known and component < 2
+        }
+    )
+    if unknown:
+        remark(f"what its light depends on is not known of a lamp: {', '.join(unknown)}; 0 is used")
     cells = _cut_lamp(emission, is_round)
     left, bottom, right, top = cells.bounds.T
     mean = ((right - left) * (top - bottom)) @ cells.radiance

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .emission_pieces import MOST_PIECES, TOLERANCE, Colors, Pieces, cut, sampling_levels, share_colors
 from .emission import Input, VaryingEmission
+from .emission_pieces import MOST_PIECES, TOLERANCE, Colors, Pieces, cut, sampling_levels, share_colors
 from .materials import Surface
 
 FloatArray = NDArray[np.float32]
@@ -88,8 +88,9 @@ def _at_corners(part: MeshArrays, corners: Array, to_world: Array, entry: Input)
         return places[..., component]
     if source == "attribute":
         values = part.attributes.get(str(index))
-        known = values is not None and component < values.shape[2]
-        return values[..., component].astype(np.float64) if known else np.zeros(corners.shape[:2])
+        if values is None or component >= values.shape[2]:
+            return np.zeros(corners.shape[:2])
+        return values[..., component].astype(np.float64)
     if source in ("object_to_world", "world_to_object"):
         matrix = to_world if source == "object_to_world" else np.linalg.pinv(to_world)
         return np.full(corners.shape[:2], matrix[component // 4, component % 4])

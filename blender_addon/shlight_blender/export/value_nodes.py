@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -89,8 +90,8 @@ def _map_range(inputs: NodeInputs) -> Value | Vector:
         given = (inputs.number(name) for name in names)
         return map_range(*given, interpolation=kind, steps=steps, clamped=node.clamp)
     sockets = {socket.identifier: i for i, socket in enumerate(node.inputs)}
-    names = ("Vector", "From_Min_FLOAT3", "From_Max_FLOAT3", "To_Min_FLOAT3", "To_Max_FLOAT3", "Steps_FLOAT3")
-    columns = zip(*(inputs.vector(sockets[name]) for name in names), strict=True)
+    ends = ("Vector", "From_Min_FLOAT3", "From_Max_FLOAT3", "To_Min_FLOAT3", "To_Max_FLOAT3", "Steps_FLOAT3")
+    columns = zip(*(inputs.vector(sockets[name]) for name in ends), strict=True)
     return Vector(*(map_range(*c[:5], interpolation=kind, steps=c[5], clamped=node.clamp) for c in columns))
 
 
@@ -161,13 +162,13 @@ def _component(inputs: NodeInputs, v: Vector) -> Value:
 def _separate_color(inputs: NodeInputs) -> Value:
     mode = getattr(inputs.node, "mode", "RGB")
     own = inputs.color(0)
-    return _component(inputs, {"HSV": hsv_from_rgb, "HSL": hsl_from_rgb}.get(mode, lambda c: c)(own))
+    return _component(inputs, _FROM_RGB[mode](own))
 
 
 def _combine_color(inputs: NodeInputs) -> Color:
     mode = getattr(inputs.node, "mode", "RGB")
     own = Color(*(inputs.number(i) for i in range(3)))
-    return {"HSV": rgb_from_hsv, "HSL": rgb_from_hsl}.get(mode, lambda c: c)(own)
+    return _TO_RGB[mode](own)
 
 
 def _hue_saturation(inputs: NodeInputs) -> Color:
@@ -181,6 +182,9 @@ def _normal(inputs: NodeInputs) -> Value | Vector:
         return own
     return nodes.values.dot(own, nodes.values.normalize(inputs.vector("Normal")))
 
+
+_FROM_RGB: dict[str, Callable[[Vector], Vector]] = {"RGB": lambda c: c, "HSV": hsv_from_rgb, "HSL": hsl_from_rgb}
+_TO_RGB: dict[str, Callable[[Color], Color]] = {"RGB": lambda c: c, "HSV": rgb_from_hsv, "HSL": rgb_from_hsl}
 
 VALUE_NODES: dict[str, ReadNode] = {
     "MATH": _math,

@@ -62,8 +62,8 @@ struct DiffuseShape {
 
 /// What multiplies D G / (4 cosθ_i cosθ_o).
 enum class Fresnel {
-    one,        ///< 1: the part that f0 scales, and metals without Fresnel
-    schlick,    ///< (1 - cosθ_d)⁵: the part that 1 - f0 scales
+    one,         ///< 1: the part that f0 scales, and metals without Fresnel
+    schlick,     ///< (1 - cosθ_d)⁵: the part that 1 - f0 scales
     dielectric,  ///< max(0, F(ior, cosθ_d) - F(ior, 1)) / (1 - F(ior, 1)): the same from the exact Fresnel equations
     dip          ///< cosθ_d (1 - cosθ_d)⁶: what metals' edge tint takes away (Kutz, Hašan & Edmondson 2021)
 };

@@ -28,8 +28,8 @@ class SurfaceTransparency {
     SurfaceTransparency(const SurfaceTransparency&) = delete;
     SurfaceTransparency& operator=(const SurfaceTransparency&) = delete;
     virtual ~SurfaceTransparency() = default;
-    /// Where shadow rays have met surfaces that are not opaque. depth: how many of them a ray has passed before; passed:
-    /// not negative.
+    /// Where shadow rays have met surfaces that are not opaque. depth: how many of them a ray has passed before;
+    /// passed: not negative.
     virtual void find(std::span<const Ray> rays, std::span<const RayHit> hits, std::uint32_t depth,
                       std::span<Rgb> passed) const = 0;
 };

@@ -71,8 +71,8 @@ class DiffuseLanes {
             const auto slope = hn::Div(sine, hn::Max(cosine, all(d, kGrazingLoss)));
             const auto g = hn::MulAdd(sine, hn::NegMulAdd(sine, cosine, hn::Sub(angle, all(d, 2.0 / 3))),
                                       hn::Mul(hn::Mul(all(d, 2.0 / 3), slope), hn::Sub(one, cube)));
-            const auto loss = hn::IfThenElse(hn::Lt(cosine, all(d, kGrazingLoss)), cosine,
-                                             hn::Sub(all(d, pi / 2 - 2.0 / 3), g));
+            const auto loss =
+                hn::IfThenElse(hn::Lt(cosine, all(d, kGrazingLoss)), cosine, hn::Sub(all(d, pi / 2 - 2.0 / 3), g));
             return hn::Mul(hn::Mul(all(d, pi * factor), cos_i), hn::Max(loss, zero));
         }
     }

@@ -12,6 +12,11 @@ namespace {
 /// Normals that differ by less are those of floats and doubles of the same surface.
 constexpr double kSameNormal = 1e-6;
 
+bool is_bumped(const ShadedLobe& lobe) {
+    const auto* diffuse = std::get_if<DiffuseShape>(&lobe.shape);
+    return diffuse != nullptr && diffuse->kind == Diffuse::bumped;
+}
+
 constexpr float kLeastWidth = kLeastRoughness * kLeastRoughness;
 
 /// Of one material.
@@ -45,7 +50,7 @@ void CameraSurfaces::trace(std::span<const CameraRay> rays, std::size_t rays_per
     for (std::uint32_t depth = 0; !active_.empty(); ++depth) {
         const std::size_t first = surfaces_.size();
         meet(rays, depth, light);
-        run_programs(first);
+        run_programs(rays, first);
         pass_on(first, light);
     }
     add_hits(rays, rays_per_pixel, hits);
@@ -63,32 +68,24 @@ void CameraSurfaces::meet(std::span<const CameraRay> rays, std::uint32_t depth, 
             leave_scene(ray, index, light);
             continue;
         }
-        Surface& surface = surfaces_.emplace_back();
-        surface.ray = index;
-        surface.point = scene_->surface(met_[i], ray.ray.direction);
-        surface.segment = segments_[i];
-        surface.throughput = throughput_[index];
-        surface.stride = 0;
-        surface.place.shadow_ray = false;
-        surface.place.transparent_depth = depth;
+        const SurfacePoint point = scene_->surface(met_[i], ray.ray.direction);
         const Vec3d direction = glm::normalize(Vec3d(ray.ray.direction));
-        const double distance = glm::dot(surface.point.position - Vec3d(ray.ray.origin), direction);
+        const double distance = glm::dot(point.position - Vec3d(ray.ray.origin), direction);
         light[index].radiance += throughput_[index] * scene_->lamps_along(segments_[i], distance);
-        surface.place.ray_length = distance;
-        surface.place.at.fill({met_[i], surface.point.position, -direction});
-        find_neighbours(ray, surface);
+        surfaces_.push_back(
+            {index, depth, segments_[i], met_[i], point, -direction, distance, throughput_[index], 0, 0});
     }
 }
 
-void CameraSurfaces::find_neighbours(const CameraRay& ray, Surface& surface) const {
-    const Material& material = scene_->materials()[surface.point.material];
-    if (material.shader == nullptr || !material.shader->program.takes_differences()) {
-        return;
+ShadedPlace CameraSurfaces::place_of(const Surface& surface, const CameraRay& ray, bool with_neighbours) const {
+    ShadedPlace place = {{}, surface.ray_length, false, surface.depth};
+    place.at.fill({surface.hit, surface.point.position, surface.towards_viewer});
+    if (with_neighbours) {
+        const Vec3d& normal = surface.point.geometric_normal;
+        place.at[1] = scene_->neighbour(place.at[0], normal, surface.ray_length, ray.right);
+        place.at[2] = scene_->neighbour(place.at[0], normal, surface.ray_length, ray.below);
     }
-    ShadedPlace& place = surface.place;
-    const Vec3d& normal = surface.point.geometric_normal;
-    place.at[1] = scene_->neighbour(place.at[0], normal, place.ray_length, ray.right);
-    place.at[2] = scene_->neighbour(place.at[0], normal, place.ray_length, ray.below);
+    return place;
 }
 
 void CameraSurfaces::leave_scene(const CameraRay& ray, std::size_t index, std::vector<RayLight>& light) {
@@ -100,7 +97,7 @@ void CameraSurfaces::leave_scene(const CameraRay& ray, std::size_t index, std::v
     light[index].opacity = background != nullptr ? 1.0F : 1.0F - (left.x + left.y + left.z) / 3;
 }
 
-void CameraSurfaces::run_programs(std::size_t first) {
+void CameraSurfaces::run_programs(std::span<const CameraRay> rays, std::size_t first) {
     order_.clear();
     for (std::size_t i = first; i < surfaces_.size(); ++i) {
         if (scene_->materials()[surfaces_[i].point.material].shader != nullptr) {
@@ -111,18 +108,19 @@ void CameraSurfaces::run_programs(std::size_t first) {
     std::stable_sort(order_.begin(), order_.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return material(a) < material(b); });
     for (auto begin = order_.begin(); begin != order_.end();) {
-        const auto end = std::find_if(begin, order_.end(), [&](std::uint32_t i) { return material(i) != material(*begin); });
-        run_program({begin, end});
+        const auto end =
+            std::find_if(begin, order_.end(), [&](std::uint32_t i) { return material(i) != material(*begin); });
+        run_program(rays, {begin, end});
         begin = end;
     }
 }
 
-void CameraSurfaces::run_program(std::span<const std::uint32_t> surfaces) {
+void CameraSurfaces::run_program(std::span<const CameraRay> rays, std::span<const std::uint32_t> surfaces) {
     const Material& material = scene_->materials()[surfaces_[surfaces.front()].point.material];
     const ShaderProgram& program = material.shader->program;
     places_.clear();
     for (const std::uint32_t i : surfaces) {
-        places_.push_back(surfaces_[i].place);
+        places_.push_back(place_of(surfaces_[i], rays[surfaces_[i].ray], program.takes_differences()));
     }
     const std::size_t begin = results_.size();
     results_.resize(begin + program.result_count() * surfaces.size());
@@ -169,9 +167,9 @@ void CameraSurfaces::pass_on(std::size_t first, std::vector<RayLight>& light) {
         }
         if (material.shader->transparency) {
             throughput_[surface.ray] *= glm::max(color(surface, *material.shader->transparency), Rgb(0));
-            if (surface.place.transparent_depth < transparent_bounces_ && throughput_[surface.ray] != Rgb(0)) {
+            if (surface.depth < transparent_bounces_ && throughput_[surface.ray] != Rgb(0)) {
                 active_.push_back(surface.ray);
-                segments_.push_back(behind(surface.segment, surface.place.at[0].hit));
+                segments_.push_back(behind(surface.segment, surface.hit));
             }
         }
     }
@@ -201,41 +199,50 @@ void CameraSurfaces::find_normals(const Surface& surface, const SurfaceShader& s
         if (lobe.normal) {
             const Vec3d own = vector(surface, *lobe.normal);
             const double length = glm::length(own);
-            const bool differs = length > 0 && std::isfinite(length) && glm::distance(own / length, normal) > kSameNormal;
+            const bool differs =
+                length > 0 && std::isfinite(length) && glm::distance(own / length, normal) > kSameNormal;
             normal = differs ? own / length : normal;
         }
         normals_.push_back(normal);
     }
 }
 
-/// One hit for each normal that lobes have.
+/// One hit for each normal that lobes have, and another for the lobes of bumps, whose view is the smooth normal.
 void CameraSurfaces::add_shaded(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader, Hits& hits) {
     find_normals(surface, shader);
     const std::size_t count = shader.lobes.size();
     for (std::size_t first = 0; first < count; ++first) {
-        const Vec3d& normal = normals_[first];
-        if (std::find(normals_.begin(), normals_.begin() + static_cast<std::ptrdiff_t>(first), normal) !=
-            normals_.begin() + static_cast<std::ptrdiff_t>(first)) {
-            continue;
+        const auto shares = [&](std::size_t i) {
+            return normals_[i] == normals_[first] && is_bumped(shader.lobes[i]) == is_bumped(shader.lobes[first]);
+        };
+        std::size_t earlier = 0;
+        while (earlier < first && !shares(earlier)) {
+            ++earlier;
         }
-        weights_.assign(count, Rgb(0));
-        widths_.assign(count, 1);
-        bool any = false;
-        for (std::size_t i = first; i < count; ++i) {
+        if (earlier == first) {
+            add_lobes(ray, surface, shader, shares, first, hits);
+        }
+    }
+}
+
+template <class Shares>
+void CameraSurfaces::add_lobes(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader,
+                               const Shares& shares, std::size_t first, Hits& hits) {
+    weights_.assign(shader.lobes.size(), Rgb(0));
+    widths_.assign(shader.lobes.size(), 1);
+    bool any = false;
+    for (std::size_t i = first; i < shader.lobes.size(); ++i) {
+        if (shares(i)) {
             const ShadedLobe& lobe = shader.lobes[i];
-            if (normals_[i] == normal) {
-                weights_[i] = surface.throughput * color(surface, lobe.weight);
-                widths_[i] = lobe.alpha ? width(surface, *lobe.alpha) : 1.0F;
-                any = any || weights_[i] != Rgb(0);
-            }
+            weights_[i] = surface.throughput * color(surface, lobe.weight);
+            widths_[i] = lobe.alpha ? width(surface, *lobe.alpha) : 1.0F;
+            any = any || weights_[i] != Rgb(0);
         }
-        if (any) {
-            SurfacePoint point = surface.point;
-            point.shading_normal = normal;
-            const Vec3d& towards_viewer = surface.place.at[0].towards_viewer;
-            const ShadingFrame frame = shading_frame(point.position, normal, towards_viewer);
-            hits.add(point, frame, view_cosine(frame, towards_viewer), weights_, widths_, ray.sample);
-        }
+    }
+    if (any) {
+        const Vec3d& view = is_bumped(shader.lobes[first]) ? surface.point.shading_normal : surface.towards_viewer;
+        const ShadingFrame frame = shading_frame(surface.point.position, normals_[first], view);
+        hits.add(surface.point, frame, view_cosine(frame, view), weights_, widths_, ray.sample);
     }
 }
 
@@ -247,8 +254,8 @@ void CameraSurfaces::add_hit(const CameraRay& ray, const Surface& surface, Hits&
     }
     const std::span<const Lobe> lobes = materials_[surface.point.material].lobes();
     const ShadingFrame frame =
-        shading_frame(surface.point.position, surface.point.shading_normal, surface.place.at[0].towards_viewer);
-    const float cosine = view_cosine(frame, surface.place.at[0].towards_viewer);
+        shading_frame(surface.point.position, surface.point.shading_normal, surface.towards_viewer);
+    const float cosine = view_cosine(frame, surface.towards_viewer);
     weights_.clear();
     for (const Lobe& lobe : lobes) {
         weights_.push_back(surface.throughput * lobe.scale(cosine));

@@ -31,7 +31,8 @@ struct RayLight {
 class CameraSurfaces {
   public:
     /// transparent_bounces: surfaces that a camera ray passes through, at most.
-    CameraSurfaces(const CompiledScene& scene, std::span<const MaterialLobes> materials, std::uint32_t transparent_bounces)
+    CameraSurfaces(const CompiledScene& scene, std::span<const MaterialLobes> materials,
+                   std::uint32_t transparent_bounces)
         : scene_(&scene), materials_(materials), transparent_bounces_(transparent_bounces) {}
 
     /// rays: those of a pixel, rays_per_pixel, follow each other. light: one for each ray. Clears the hits first.
@@ -41,25 +42,32 @@ class CameraSurfaces {
     /// A surface that a camera ray has met.
     struct Surface {
         std::size_t ray;
-        Ray segment;  // from the surface before
+        std::uint32_t depth;  // surfaces that the ray has passed through
+        Ray segment;          // from the surface before
+        RayHit hit;
         SurfacePoint point;
-        ShadedPlace place;
+        Vec3d towards_viewer;
+        double ray_length;
         Rgb throughput;       // share of its light that reaches the camera
         std::size_t results;  // of its program: where the first is
-        std::size_t stride;   // and from result to result; 0: it has none
+        std::size_t stride;   // and from result to result
     };
 
     void meet(std::span<const CameraRay> rays, std::uint32_t depth, std::vector<RayLight>& light);
-    void find_neighbours(const CameraRay& ray, Surface& surface) const;
     void leave_scene(const CameraRay& ray, std::size_t index, std::vector<RayLight>& light);
-    void run_programs(std::size_t first);
-    void run_program(std::span<const std::uint32_t> surfaces);
+    void run_programs(std::span<const CameraRay> rays, std::size_t first);
+    void run_program(std::span<const CameraRay> rays, std::span<const std::uint32_t> surfaces);
+    ShadedPlace place_of(const Surface& surface, const CameraRay& ray, bool with_neighbours) const;
     void pass_on(std::size_t first, std::vector<RayLight>& light);
     void add_hits(std::span<const CameraRay> rays, std::size_t rays_per_pixel, Hits& hits);
     void add_hit(const CameraRay& ray, const Surface& surface, Hits& hits);
     /// Unit normals of the lobes.
     void find_normals(const Surface& surface, const SurfaceShader& shader);
     void add_shaded(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader, Hits& hits);
+    /// Those of the lobes from `first` on that share its normal.
+    template <class Shares>
+    void add_lobes(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader, const Shares& shares,
+                   std::size_t first, Hits& hits);
     Vec3d vector(const Surface& surface, std::uint32_t result) const;
     /// Without what is not finite.
     Rgb color(const Surface& surface, std::uint32_t result) const;
@@ -68,9 +76,9 @@ class CameraSurfaces {
     const CompiledScene* scene_;
     std::span<const MaterialLobes> materials_;
     std::uint32_t transparent_bounces_;
-    std::vector<std::size_t> active_;    // rays that go on
-    std::vector<Ray> segments_;          // what is left of them
-    std::vector<Rgb> throughput_;        // of each ray
+    std::vector<std::size_t> active_;  // rays that go on
+    std::vector<Ray> segments_;        // what is left of them
+    std::vector<Rgb> throughput_;      // of each ray
     std::vector<RayHit> met_;
     std::vector<Surface> surfaces_;
     std::vector<std::uint32_t> order_;

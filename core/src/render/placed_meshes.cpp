@@ -207,7 +207,8 @@ float PlacedMeshes::number(const ShaderInput& input, const std::vector<std::uint
         case ShaderSource::barycentric:
             return component == 0 ? at.hit.u : at.hit.v;
         case ShaderSource::backfacing: {
-            const Vec3d normal = glm::cross(corner(at.hit, 1) - corner(at.hit, 0), corner(at.hit, 2) - corner(at.hit, 0));
+            const Vec3d normal =
+                glm::cross(corner(at.hit, 1) - corner(at.hit, 0), corner(at.hit, 2) - corner(at.hit, 0));
             // A mirrored instance shows its front where its corners, as they stand in the world, run clockwise.
             const bool clockwise = glm::dot(normal, place.at[0].towards_viewer) < 0;
             return clockwise != (glm::determinant(glm::dmat3(placement.to_world)) < 0) ? 1.0F : 0.0F;

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: MIT
 //
-// Pictures that are looked up at texture coordinates.
+// Pictures that are looked up at texture coordinates, filtered by how far these move from camera ray to camera ray.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <variant>
 #include <vector>
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 namespace shlight {
 
-/// How far texture coordinates move from pixel to pixel of the picture.
+/// How far texture coordinates move from a camera ray to those of the neighbours.
 struct TextureFootprint {
     glm::vec2 right{0}, below{0};
 };
@@ -21,23 +25,77 @@ enum class TextureInterpolation : std::uint8_t { closest, linear, cubic };
 /// What lies beyond 0 … 1.
 enum class TextureExtension : std::uint8_t { repeat, extend, clip, mirror };
 
+/// What the numbers of a picture mean.
+enum class TexelEncoding : std::uint8_t {
+    linear,
+    srgb,   ///< red, green and blue are encoded as sRGB
+    normal  ///< (n + 1) / 2 of unit vectors, whose means shrink as the vectors spread
+};
+
+/// Immutable; shared by all who look it up.
+class TexturePixels {
+  public:
+    using Bytes = std::vector<std::uint8_t>;
+    using Floats = std::vector<float>;
+
+    /// pixels: rows from v = 0 on, of 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. Bytes stand for
+    /// 0 … 1. What is not finite becomes 0, or the largest float.
+    TexturePixels(std::variant<Bytes, Floats> pixels, std::uint32_t width, std::uint32_t height, int channels,
+                  TexelEncoding encoding);
+
+    std::uint32_t width() const { return levels_.front().width; }
+    std::uint32_t height() const { return levels_.front().height; }
+    std::size_t level_count() const { return levels_.size(); }
+    std::size_t size_in_bytes() const;
+    TexelEncoding encoding() const { return encoding_; }
+
+    /// As stored. Precondition: inside the level.
+    glm::vec4 stored(std::size_t level, std::int64_t column, std::int64_t row) const;
+    /// In linear light.
+    glm::vec4 linear(std::size_t level, std::int64_t column, std::int64_t row) const;
+    std::int64_t width(std::size_t level) const { return levels_[level].width; }
+    std::int64_t height(std::size_t level) const { return levels_[level].height; }
+
+  private:
+    /// Half as wide and high as the one before, rounded up.
+    struct Level {
+        std::uint32_t width, height;
+        std::variant<Bytes, Floats> pixels;
+    };
+    Level halved(std::size_t level) const;
+    void store(Level& level, std::size_t texel, const glm::vec4& linear) const;
+
+    std::vector<Level> levels_;
+    int channels_;
+    TexelEncoding encoding_;
+};
+
+/// Stored values as linear light.
+glm::vec4 decoded(const glm::vec4& stored, TexelEncoding encoding);
+
 class ImageTexture {
   public:
-    /// pixels: linear RGBA of rows from v = 0 on.
-    ImageTexture(std::vector<glm::vec4> pixels, std::uint32_t width, std::uint32_t height,
-                 TextureInterpolation interpolation, TextureExtension extension);
+    struct Tile {
+        std::int64_t u, v;  ///< covers u … u + 1
+        std::shared_ptr<const TexturePixels> pixels;
+    };
+    /// tiles: one at (0, 0) that `extension` continues, or several that do not; between these is magenta.
+    /// unassociate: colours are divided by alpha.
+    ImageTexture(std::vector<Tile> tiles, TextureInterpolation interpolation, TextureExtension extension,
+                 bool unassociate, bool tiled);
 
-    std::uint32_t width() const { return width_; }
-    std::uint32_t height() const { return height_; }
+    const TexturePixels& pixels() const { return *tiles_.front().pixels; }
+    /// Linear RGBA. Without a footprint it is what the interpolation makes of the picture.
     glm::vec4 sample(const glm::vec2& place, const TextureFootprint& footprint) const;
 
   private:
-    glm::vec4 texel(std::int64_t column, std::int64_t row) const;
+    class Lookup;
+    glm::vec4 finished(const glm::vec4& stored, TexelEncoding encoding) const;
 
-    std::vector<glm::vec4> pixels_;
-    std::uint32_t width_, height_;
+    std::vector<Tile> tiles_;
     TextureInterpolation interpolation_;
     TextureExtension extension_;
+    bool unassociate_, tiled_;
 };
 
 }  // namespace shlight

@@ -17,8 +17,8 @@
 #include "shadows/ray_sums.h"
 #include "shadows/shadow_policy.h"
 #include "shlight/environment.h"
-#include "tracing/shadow_tracer.h"
 #include "tracing/hits.h"
+#include "tracing/shadow_tracer.h"
 
 namespace shlight {
 
@@ -30,7 +30,8 @@ class EnvironmentRays {
         RaySums smooth, spots;
     };
 
-    EnvironmentRays(const ShadowTracer& tracer, const Environment& environment, std::span<const MaterialLobes> materials);
+    EnvironmentRays(const ShadowTracer& tracer, const Environment& environment,
+                    std::span<const MaterialLobes> materials);
 
     /// lit: the hits; phase.rays_per_hit: of each set; seed: of the pixel, whose phases differ in nothing else.
     void trace(const Hits& hits, std::span<const std::size_t> lit, const RayPhase& phase, std::uint32_t seed);

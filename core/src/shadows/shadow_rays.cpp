@@ -142,8 +142,7 @@ void ShadowRays::draw(const Drawing& drawing, const LitHits& lit, std::size_t li
     const Material& material = materials_[drawing.hit_material];
     bool mirrors_only = !shines(lit, lit_index, material, kLightOnly);
     for (std::uint32_t set = 0; set < material.lobes.size(); ++set) {
-        mirrors_only =
-            mirrors_only && (is_mirror(set_shape(drawing, set)) || !shines(lit, lit_index, material, set));
+        mirrors_only = mirrors_only && (is_mirror(set_shape(drawing, set)) || !shines(lit, lit_index, material, set));
     }
     std::size_t begin = directions_.size();
     const auto end_run = [&] {

@@ -18,8 +18,8 @@
 #include "shadows/ray_sums.h"
 #include "shadows/shadow_policy.h"
 #include "shlight/light.h"
-#include "tracing/shadow_tracer.h"
 #include "tracing/hits.h"
+#include "tracing/shadow_tracer.h"
 
 namespace shlight {
 

@@ -15,9 +15,9 @@
 #include "lights/delta_lights.h"
 #include "lobes/material_lobes.h"
 #include "shading/shading_points.h"
-#include "tracing/shadow_tracer.h"
 #include "shlight/render_report.h"
 #include "tracing/hits.h"
+#include "tracing/shadow_tracer.h"
 
 namespace shlight {
 

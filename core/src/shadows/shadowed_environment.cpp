@@ -90,7 +90,8 @@ void ShadowedEnvironment::shade_lobe(std::size_t lobe, Hits& hits) {
     material_sums_.clear();
     for (std::size_t i = 0; i < lit_.size(); ++i) {
         if (has_lobe(i)) {
-            hit_sums_[i] = rays_.sum(hits, lit_, i, lobe, shading_->splits(material_of(i), lobe, hits.widths(lit_[i])[lobe]));
+            hit_sums_[i] =
+                rays_.sum(hits, lit_, i, lobe, shading_->splits(material_of(i), lobe, hits.widths(lit_[i])[lobe]));
             const Vec3d weight(hits.weight(lit_[i], lobe));
             hit_sums_[i].smooth *= weight;
             hit_sums_[i].spots *= weight;

@@ -14,8 +14,8 @@
 #include "lobes/material_lobes.h"
 #include "shadows/environment_rays.h"
 #include "shlight/environment.h"
-#include "tracing/shadow_tracer.h"
 #include "tracing/hits.h"
+#include "tracing/shadow_tracer.h"
 
 namespace shlight {
 

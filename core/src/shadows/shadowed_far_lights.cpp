@@ -57,7 +57,7 @@ void ShadowedFarLights::add(const FarLightSum& far_light_sum, const ShadingPoint
 }
 
 Rgb ShadowedFarLights::find_share(const FarLightSum& far_light_sum, std::size_t questions, std::uint32_t seed,
-                                    std::size_t pixel, const Hits& hits) {
+                                  std::size_t pixel, const Hits& hits) {
     const std::size_t first = hits.pixel_begin[pixel];
     const auto count = static_cast<double>(hits.pixel_begin[pixel + 1] - first);
     rays_.clear();
@@ -106,8 +106,8 @@ float ShadowedFarLights::value(const FarLight& light, const Hits& hits, std::siz
     float sum = 0;
     for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
         sum += glm::dot(glm::abs(hits.weight(first + hit, lobe)), irradiance) *
-               static_cast<float>(lobe_value(material.shape(lobe, hits.widths(first + hit)[lobe]), direction,
-                                            hits.view(first + hit)));
+               static_cast<float>(
+                   lobe_value(material.shape(lobe, hits.widths(first + hit)[lobe]), direction, hits.view(first + hit)));
     }
     return sum;
 }

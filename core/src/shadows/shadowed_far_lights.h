@@ -11,8 +11,8 @@
 #include "lobes/material_lobes.h"
 #include "shading/far_light_sum.h"
 #include "shading/shading_points.h"
-#include "tracing/shadow_tracer.h"
 #include "tracing/hits.h"
+#include "tracing/shadow_tracer.h"
 
 namespace shlight {
 
@@ -20,7 +20,8 @@ namespace shlight {
 class ShadowedFarLights {
   public:
     /// lights: of the picture.
-    ShadowedFarLights(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::span<const Light> lights);
+    ShadowedFarLights(const ShadowTracer& tracer, std::span<const MaterialLobes> materials,
+                      std::span<const Light> lights);
 
     /// Adds the sum to the hits' radiance. shadows: whether any are cast; pixel_seeds: one per pixel;
     /// brightness: of each pixel by these and all other lights, if nothing blocks. No noise is added: what few rays are
@@ -32,7 +33,7 @@ class ShadowedFarLights {
   private:
     /// The share that is seen from a pixel's hits.
     Rgb find_share(const FarLightSum& far_light_sum, std::size_t questions, std::uint32_t seed, std::size_t pixel,
-                     const Hits& hits);
+                   const Hits& hits);
     /// What a hit, the one numbered first + hit, reflects of a light, as one number.
     float value(const FarLight& light, const Hits& hits, std::size_t first, std::size_t hit) const;
     Ray ray(const FarLight& light, const Hits& hits, std::size_t hit) const;

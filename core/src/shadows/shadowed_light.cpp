@@ -5,8 +5,8 @@
 
 namespace shlight {
 
-ShadowedLight::ShadowedLight(const ShadowTracer& tracer, std::uint32_t most_rays, std::span<const MaterialLobes> materials,
-                             std::size_t lobe_stride)
+ShadowedLight::ShadowedLight(const ShadowTracer& tracer, std::uint32_t most_rays,
+                             std::span<const MaterialLobes> materials, std::size_t lobe_stride)
     : materials_(materials),
       lobe_stride_(lobe_stride),
       most_rays_(most_rays),

@@ -19,8 +19,8 @@
 #include "shadows/dim_lights.h"
 #include "shadows/shadow_rays.h"
 #include "shlight/light.h"
-#include "tracing/shadow_tracer.h"
 #include "tracing/hits.h"
+#include "tracing/shadow_tracer.h"
 
 namespace shlight {
 

@@ -107,8 +107,7 @@ void SceneRays::intersect(std::span<const Ray> rays, std::span<RayHit> hits) con
     }
 }
 
-void SceneRays::visibility(std::span<const Ray> rays, std::uint32_t transparent_bounces,
-                           std::span<Rgb> visible) const {
+void SceneRays::visibility(std::span<const Ray> rays, std::uint32_t transparent_bounces, std::span<Rgb> visible) const {
     std::array<std::uint8_t, kRaysAtOnce> blocked{};
     for (std::size_t first = 0; first < rays.size(); first += kRaysAtOnce) {
         const auto some = rays.subspan(first, std::min(kRaysAtOnce, rays.size() - first));

@@ -4,6 +4,8 @@
 What these functions return stands where a constant stood: `Bsdf.lambert(nodes.image(pixels))`.
 """
 
+from shlight.nodes import colors, inputs, mathematics, values
+from shlight.nodes.colors import mix_color
 from shlight.nodes.inputs import (
     attribute,
     backfacing,
@@ -15,8 +17,6 @@ from shlight.nodes.inputs import (
     towards_viewer,
     uv,
 )
-from shlight.nodes import colors, inputs, mathematics, values
-from shlight.nodes.colors import mix_color
 from shlight.nodes.mathematics import map_range, mapping
 from shlight.nodes.normals import bump, normal_map
 from shlight.nodes.principled import glossy, oren_nayar, principled, reflecting_normal, rising_lobes

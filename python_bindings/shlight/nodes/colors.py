@@ -95,9 +95,7 @@ def rgb_from_hsl(c: Vector) -> Color:
 
 def _overlay(t: Value) -> Callable[[Value, Value], Value]:
     rest = 1.0 - t
-    return lambda a, b: select(
-        a < 0.5, a * (rest + 2.0 * t * b), 1.0 - (rest + 2.0 * t * (1.0 - b)) * (1.0 - a)
-    )
+    return lambda a, b: select(a < 0.5, a * (rest + 2.0 * t * b), 1.0 - (rest + 2.0 * t * (1.0 - b)) * (1.0 - a))
 
 
 def _dodge(t: Value) -> Callable[[Value, Value], Value]:
@@ -186,7 +184,9 @@ def mix_color(a: Varying, b: Varying, factor: Number, blend: str = "mix") -> Col
     return BLENDS[blend.upper()](color(a), color(b), clamp(number(factor)))
 
 
-def hue_saturation(c: Varying, hue: Number = 0.5, saturation: Number = 1.0, value: Number = 1.0, factor: Number = 1.0) -> Color:
+def hue_saturation(
+    c: Varying, hue: Number = 0.5, saturation: Number = 1.0, value: Number = 1.0, factor: Number = 1.0
+) -> Color:
     """Blender's Hue/Saturation/Value node."""
     own, t = color(c), number(factor)
     h, s, v = hsv_from_rgb(own)

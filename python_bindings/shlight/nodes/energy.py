@@ -84,7 +84,12 @@ def mean_albedo_table() -> Table:
     """The same over all views, weighted by their cosine."""
     nodes, weights = np.polynomial.legendre.leggauss(24)
     cosines, weights = 0.5 * (nodes + 1.0), 0.5 * weights
-    return Table([sum(2.0 * w * c * _reflected(r, c)[2].mean() for c, w in zip(cosines, weights, strict=True)) for r in _steps(32)])
+    return Table(
+        [
+            sum(2.0 * w * c * _reflected(r, c)[2].mean() for c, w in zip(cosines, weights, strict=True))
+            for r in _steps(32)
+        ]
+    )
 
 
 @lru_cache(maxsize=1)

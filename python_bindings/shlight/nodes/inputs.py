@@ -123,7 +123,13 @@ def vector_to_object(v: Vector) -> Vector:
 
 def _columns(source: str, v: Vector) -> Vector:
     return Vector(
-        *(sum((read(source, 4 * row + c) * component for row, component in enumerate(v)), start=Value(Step("constant", (), 0.0))) for c in range(3))
+        *(
+            sum(
+                (read(source, 4 * row + c) * component for row, component in enumerate(v)),
+                start=Value(Step("constant", (), 0.0)),
+            )
+            for c in range(3)
+        )
     )
 
 

@@ -226,9 +226,7 @@ def _rotation(angles: Vector) -> tuple[Vector, Vector, Vector]:
     )
 
 
-def mapping(
-    v: Vector, location: Vector, rotation: Vector, scale: Vector, kind: str = "point"
-) -> Vector:
+def mapping(v: Vector, location: Vector, rotation: Vector, scale: Vector, kind: str = "point") -> Vector:
     """Blender's Mapping node; kind: "point", "texture", "vector" or "normal"."""
     rows = _rotation(rotation)
 

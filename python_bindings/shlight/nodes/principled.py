@@ -7,7 +7,7 @@ import math
 
 from shlight.nodes import energy
 from shlight.nodes.inputs import geometric_normal, normal, towards_viewer
-from shlight.nodes.shader import Lobe, Shader, emission, transparent
+from shlight.nodes.shader import Lobe, Shader, emission, lambert, transparent
 from shlight.nodes.values import (
     Color,
     Number,
@@ -120,7 +120,9 @@ def _dielectric(
     return lobes, color(clamp(1.0 - _largest(reflected)))
 
 
-def _metal(weight: Vector, f0: Color, edge_tint: Color, roughness: Value, at: Vector, *, several_bounces: bool) -> tuple[Lobe, ...]:
+def _metal(
+    weight: Vector, f0: Color, edge_tint: Color, roughness: Value, at: Vector, *, several_bounces: bool
+) -> tuple[Lobe, ...]:
     """Lobes of a metal: Schlick's curve, less what a tint takes away near 82° (Kutz et al. 2021)."""
     alpha = roughness * roughness
     schlick = _mix(f0, 1.0, EDGE**5)
@@ -161,7 +163,7 @@ def oren_nayar(albedo: Varying, sigma: Number, *, at: Vector | None = None) -> S
     rho = color(albedo, "albedo")
     rough = clamp(number(sigma, "sigma"))
     if rough.constant == 0.0:
-        return Shader((Lobe("lambert", rho, normal=at),))
+        return lambert(rho, at)
     n = normal() if at is None else at
     edge = math.pi / 2 - 2.0 / 3.0
     a = 1.0 / (math.pi + rough * edge)
@@ -228,7 +230,9 @@ def principled(
         # Weights of several lobes above 1 hide all that is below, as the sum of their shares does.
         weight = _as_color(weight * clamp(1.0 - coat * (1.0 - passed.x)))
         weight = _as_color(weight * _coat_color(color(coat_tint, "coat_tint"), coat, coat_index, coat_at))
-    result += emission(color(emission_color, "emission_color") * number(emission_strength, "emission_strength")) * weight
+    result += (
+        emission(color(emission_color, "emission_color") * number(emission_strength, "emission_strength")) * weight
+    )
 
     several = {"several_bounces": several_bounces}
     if metal.constant != 0.0:
@@ -266,4 +270,3 @@ def _coat_color(tint: Color, coat: Value, index: Value, at: Vector) -> Color:
     inside = sqrt(1.0 - (1.0 - cosine * cosine) / (index * index))
     passed = Color(*(operation("power", component, 1.0 / inside) for component in tint))
     return _mix(color(1.0), passed, coat)
-

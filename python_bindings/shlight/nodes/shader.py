@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from shlight import _core
+from shlight.nodes.inputs import normal as smooth_normal
 from shlight.nodes.program import ProgramBuilder
-from shlight.nodes.values import Color, Number, Value, Varying, Vector, clamp, color, number
+from shlight.nodes.values import Color, Number, Value, Varying, Vector, clamp, color, dot, normalize, number
 
 BLACK = (0.0, 0.0, 0.0)
+BUMP = math.radians(6.0)
 
 
 @dataclass(frozen=True)
@@ -73,11 +76,13 @@ class Shader:
                 normals[id(lobe.normal)] = builder.result(tuple(lobe.normal))
             normal = None if lobe.normal is None else normals[id(lobe.normal)]
             lobes.append((lobe.kind, lobe.ior, weight, alpha, normal))
-        shown = [None if c.constant == BLACK else builder.result(tuple(c)) for c in (self.emission, self.transparency)]
+        glow, through = (
+            None if c.constant == BLACK else builder.result(tuple(c)) for c in (self.emission, self.transparency)
+        )
         program = builder.program()
         shadows = ProgramBuilder(builder.attributes)
         shadows.result(tuple(self.transparency))
-        shader = _core.surface_shader(program, lobes, *shown, shadows.program(), builder.attributes)
+        shader = _core.surface_shader(program, lobes, glow, through, shadows.program(), builder.attributes)
         return program, shader, builder.attributes
 
     @cached_property
@@ -90,8 +95,21 @@ def _color(v: Vector) -> Color:
 
 
 def lambert(albedo: Varying, normal: Vector | None = None) -> Shader:
-    """Lambert's reflection."""
-    return Shader((Lobe("lambert", color(albedo, "albedo"), normal=normal),))
+    """Lambert's reflection.
+
+    A normal that leans away from the smooth one by more than `BUMP` is in the shadow that a bump throws on itself, as
+    in Cycles (Estevez, Lecocq & Stein 2019); for less the shadow hardly shows.
+    """
+    rho = color(albedo, "albedo")
+    if normal is None:
+        return Shader((Lobe("lambert", rho),))
+    leans = dot(normalize(normal), smooth_normal()) < math.cos(BUMP)
+    return Shader(
+        (
+            Lobe("lambert", _color(rho * (1.0 - leans)), normal=normal),
+            Lobe("bumped_lambert", _color(rho * leans), normal=normal),
+        )
+    )
 
 
 def ggx(roughness: Number, f0: Varying, *, ior: float | None = None, normal: Vector | None = None) -> Shader:

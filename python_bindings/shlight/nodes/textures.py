@@ -3,28 +3,74 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from shlight import _core
+from shlight import _core, images
 from shlight.nodes.inputs import uv
 from shlight.nodes.values import Color, Vector, below, right, steps
 
 INTERPOLATIONS = ("closest", "linear", "cubic")
 EXTENSIONS = ("repeat", "extend", "clip", "mirror")
+ENCODINGS = ("linear", "srgb", "normal")
+
+
+def _chosen(name: str, value: str, choices: tuple[str, ...]) -> int:
+    if value not in choices:
+        raise ValueError(f"{name} must be one of {', '.join(choices)}, got {value!r}")
+    return choices.index(value)
+
+
+def texture_pixels(pixels: Any, encoding: str = "linear") -> _core.TexturePixels:
+    """A picture made ready for lookups: with it, any number of `image` share its memory.
+
+    pixels: (height, width) or (height, width, channels), of uint8 for 0 … 1 or of floats, row 0 on top; 1, 3 or 4
+        channels: grey, RGB, or RGB times alpha and alpha. Or the path of a file.
+    encoding: "linear", "srgb", or "normal" for unit vectors n as (n + 1) / 2.
+    Raises ValueError naming the argument.
+    """
+    number = _chosen("encoding", encoding, ENCODINGS)
+    if isinstance(pixels, str | os.PathLike):
+        pixels = images.read_texture(pixels)
+    array: NDArray[Any] = np.asarray(pixels)
+    if array.ndim == 2:
+        array = array[..., None]
+    if array.ndim != 3 or array.shape[2] not in (1, 3, 4) or array.size == 0:
+        raise ValueError(f"pixels must have shape (height, width) or (height, width, 1, 3 or 4), got {array.shape}")
+    if array.dtype != np.uint8:
+        array = array.astype(np.float32)
+    return _core.texture_pixels(np.ascontiguousarray(array[::-1]), number)
 
 
 def image(
-    pixels: Any, place: Vector | None = None, *, interpolation: str = "linear", extension: str = "repeat"
+    pixels: Any,
+    place: Vector | None = None,
+    *,
+    encoding: str = "linear",
+    interpolation: str = "linear",
+    extension: str = "repeat",
+    unassociate: bool = False,
 ) -> Color:
-    """The colour of a picture, filtered by how far texture coordinates move from pixel to pixel of the render.
+    """The colour of a picture, filtered by how far texture coordinates move from camera ray to camera ray.
 
-    pixels: (height, width, 4) linear RGBA, row 0 on top.
+    pixels: as of `texture_pixels`, or what that returns, or a dict {(u, v): pixels} of pictures that cover u … u + 1
+        and v … v + 1 each (UDIM tiles).
     place: (u, v), (0, 0) at the lower left corner; None: `uv()`.
+    unassociate: divide colours by alpha.
+    Raises ValueError naming the argument.
     """
+    filtering = _chosen("interpolation", interpolation, INTERPOLATIONS)
+    beyond = _chosen("extension", extension, EXTENSIONS)
+    tiled = isinstance(pixels, Mapping)
+    tiles = [
+        (int(u), int(v), own if isinstance(own, _core.TexturePixels) else texture_pixels(own, encoding))
+        for (u, v), own in (pixels if tiled else {(0, 0): pixels}).items()
+    ]
+    texture = _core.image_texture(tiles, filtering, beyond, unassociate, tiled)
     where = uv() if place is None else place
-    rgba = np.ascontiguousarray(np.asarray(pixels, dtype=np.float32)[::-1])
-    texture = _core.image_texture(rgba, INTERPOLATIONS.index(interpolation), EXTENSIONS.index(extension))
     u, v = where.x, where.y
     return Color(*steps("image", u, v, right(u), right(v), below(u), below(v), data=texture))

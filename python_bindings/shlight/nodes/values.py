@@ -14,6 +14,7 @@ from functools import lru_cache
 from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shlight import _core
 
@@ -54,25 +55,25 @@ class Value:
     def __add__(self, other: Number) -> Value:
         return add(self, other) if _is_number(other) else NotImplemented
 
-    def __radd__(self, other: Number) -> Value:
+    def __radd__(self, other: float) -> Value:
         return add(other, self) if _is_number(other) else NotImplemented
 
     def __sub__(self, other: Number) -> Value:
         return subtract(self, other) if _is_number(other) else NotImplemented
 
-    def __rsub__(self, other: Number) -> Value:
+    def __rsub__(self, other: float) -> Value:
         return subtract(other, self) if _is_number(other) else NotImplemented
 
     def __mul__(self, other: Number) -> Value:
         return multiply(self, other) if _is_number(other) else NotImplemented
 
-    def __rmul__(self, other: Number) -> Value:
+    def __rmul__(self, other: float) -> Value:
         return multiply(other, self) if _is_number(other) else NotImplemented
 
     def __truediv__(self, other: Number) -> Value:
         return operation("divide", self, other) if _is_number(other) else NotImplemented
 
-    def __rtruediv__(self, other: Number) -> Value:
+    def __rtruediv__(self, other: float) -> Value:
         return operation("divide", other, self) if _is_number(other) else NotImplemented
 
     def __neg__(self) -> Value:
@@ -175,10 +176,22 @@ def number(value: Any, name: str = "value") -> Value:
         return value
     if isinstance(value, Vector):
         return value.as_number()
+    known = _floats(value)
+    if known is None or known.ndim != 0:
+        raise ValueError(f"{name} must be a number or an expression of shlight.nodes, got {value!r}")
+    return Value(Step("constant", (), float(known)))
+
+
+def _floats(value: Any) -> NDArray[np.float32] | None:
+    """Real numbers as the core has them, None for anything else; what is too large is infinite."""
     try:
-        return Value(Step("constant", (), float(np.float32(value))))
-    except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{name} must be a number or an expression of shlight.nodes, got {value!r}") from None
+        array = np.asarray(value)
+    except (TypeError, ValueError):
+        return None
+    if array.dtype.kind not in "fiub":
+        return None
+    with np.errstate(over="ignore"):
+        return array.astype(np.float32)
 
 
 def triple(value: Any, name: str = "value") -> tuple[Value, Value, Value]:
@@ -187,12 +200,10 @@ def triple(value: Any, name: str = "value") -> tuple[Value, Value, Value]:
         return value.x, value.y, value.z
     if isinstance(value, Value):
         return value, value, value
-    try:
-        numbers = np.broadcast_to(np.asarray(value, dtype=np.float32), (3,))
-    except (TypeError, ValueError):
-        message = f"{name} must be a number, three numbers or an expression of shlight.nodes, got {value!r}"
-        raise ValueError(message) from None
-    x, y, z = (number(component) for component in numbers)
+    known = _floats(value)
+    if known is None or known.shape not in ((), (3,)):
+        raise ValueError(f"{name} must be a number, three numbers or an expression of shlight.nodes, got {value!r}")
+    x, y, z = (number(component) for component in np.broadcast_to(known, (3,)))
     return x, y, z
 
 
@@ -229,8 +240,8 @@ DIFFERENCES = ("right", "below")
 def _computed(name: str, constants: tuple[float, ...]) -> tuple[float, ...]:
     operation_number, _, results = operations()[name]
     count = len(constants)
-    listed = [(0, constant, 0, 0, []) for constant in constants]
-    listed.append((2, 0.0, operation_number, 0, list(range(count))))  # type: ignore[arg-type]
+    listed: list[tuple[int, float, int, int, list[int]]] = [(0, constant, 0, 0, []) for constant in constants]
+    listed.append((2, 0.0, operation_number, 0, list(range(count))))
     program = _core.shader_program(listed, [], [], list(range(count, count + results)))
     return tuple(float(value) for value in program.evaluate([], 1)[:, 0])
 
