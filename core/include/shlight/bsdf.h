@@ -31,8 +31,8 @@ struct Lobe {
     std::shared_ptr<const WarpedFit> fit;  ///< null for a mirror
     Rgb color;
     std::shared_ptr<const ViewWeight> weight;  ///< null: 1
-    /// Not 0: the width varies from hit to hit, and is the same for lobes of a material with the same number. The shape's
-    /// own is then that of no hit, and there is no fit.
+    /// Not 0: the width varies from hit to hit, and is the same for lobes of a material with the same number. The
+    /// shape's own is then that of no hit, and there is no fit.
     std::uint32_t varying_width = 0;
 
     Rgb scale(float cos_theta_o) const { return weight ? color * (*weight)(cos_theta_o) : color; }

@@ -44,8 +44,8 @@ struct Mesh {
     std::vector<Triangle> triangles;  ///< vertex indices
     /// Smooth normals of any length in the mesh's frame: one per vertex, or three per triangle, or none (flat).
     std::vector<Vec3f> vertex_normals, corner_normals;
-    std::vector<Bsdf> bsdfs = {Bsdf()};                    ///< one per material, or one for all
-    std::vector<Rgb> emission = {Rgb(0)};                  ///< radiance of both sides: one per material, or one for all
+    std::vector<Bsdf> bsdfs = {Bsdf()};    ///< one per material, or one for all
+    std::vector<Rgb> emission = {Rgb(0)};  ///< radiance of both sides: one per material, or one for all
     /// One per material, or none. Emission of theirs is seen by the camera; what lights the scene is `emission`.
     std::vector<MeshShader> shaders;
     std::vector<MeshAttribute> attributes;

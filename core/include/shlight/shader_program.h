@@ -58,8 +58,8 @@ std::span<const ShaderOperation> shader_operations();
 
 /// Reads tables by linear interpolation between even steps of 0 … 1, clamped.
 struct ShaderTable {
-    std::vector<float> values;          ///< the first coordinate runs fastest
-    std::vector<std::uint32_t> sizes;   ///< of each of 1 … 3 coordinates, ≥ 1
+    std::vector<float> values;         ///< the first coordinate runs fastest
+    std::vector<std::uint32_t> sizes;  ///< of each of 1 … 3 coordinates, ≥ 1
 };
 
 struct ShaderStep {

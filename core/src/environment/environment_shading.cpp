@@ -108,8 +108,7 @@ EnvironmentShading::EnvironmentShading(const Environment& environment, std::span
 
 EnvironmentShading::PlanMix EnvironmentShading::plans(std::size_t material, std::size_t lobe, float width) const {
     const auto& varying = width_plans_[material][lobe];
-    return varying != nullptr ? varying->at(width)
-                              : PlanMix{{&plans_[material][lobe], &plans_[material][lobe]}, 0};
+    return varying != nullptr ? varying->at(width) : PlanMix{{&plans_[material][lobe], &plans_[material][lobe]}, 0};
 }
 
 bool EnvironmentShading::sees_texels(const LobeShape& shape) const {
@@ -233,8 +232,8 @@ void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<D
         const auto lobes = materials_[points.material[point]].lobes();
         for (std::size_t i = 0; i < lobes.size(); ++i) {
             // A constant is one harmonic, and a lobe's own first coefficient its albedo.
-            const double albedo = albedo_of(materials_[points.material[point]], i, points.widths(point)[i],
-                                            points.cos_theta_o[point]);
+            const double albedo =
+                albedo_of(materials_[points.material[point]], i, points.widths(point)[i], points.cos_theta_o[point]);
             values[i * points.size() + point].smooth =
                 static_cast<float>(albedo) * environment_->radiance(points.frame[point].z);
             (is_mirror(lobes[i].shape) ? report.mirror_count : report.order_counts[1]) += points.hit_count(point);

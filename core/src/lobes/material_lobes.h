@@ -53,8 +53,8 @@ class MaterialLobes {
     double tolerance() const { return tolerance_; }
     /// The lobes' weights at these views, in `values`, which is to outlive the result.
     LobeWeights weights(std::span<const double> cos_theta_o, std::vector<Rgb>& values) const;
-    /// The least distance [rad] over which f·cos changes at this view: of its narrowest lobe; 0 for a mirror. widths: of
-    /// each lobe, where it varies.
+    /// The least distance [rad] over which f·cos changes at this view: of its narrowest lobe; 0 for a mirror. widths:
+    /// of each lobe, where it varies.
     double narrowest(double cos_theta_o, std::span<const float> widths) const;
     /// A lobe's shape where its width, if it varies, is this.
     LobeShape shape(std::size_t lobe, float width) const {

@@ -114,7 +114,7 @@ void LobeViews::find_albedos() {
 void LobeViews::choose_orders(double tolerance, std::span<const float> allowances) {
     const std::size_t count = positions_->size();
     const FitTable* table = layout_;
-    const int only = table != nullptr ? (chooses_ ? -1 : table->orders().front())
+    const int only = table != nullptr  ? (chooses_ ? -1 : table->orders().front())
                      : fit_ != nullptr ? fit_->orders().front()
                                        : 0;
     black_.assign(count, 0);

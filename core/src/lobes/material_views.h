@@ -102,8 +102,8 @@ class LobeViews {
     void interpolate_terms(std::size_t which, std::span<const std::uint32_t> used);
 
     const Lobe* lobe_ = nullptr;
-    const WarpedFit* fit_ = nullptr;      // null: a mirror, or the width varies
-    const FitTable* layout_ = nullptr;    // of the fit or of the grid's tables; null: a mirror, or Lambert
+    const WarpedFit* fit_ = nullptr;    // null: a mirror, or the width varies
+    const FitTable* layout_ = nullptr;  // of the fit or of the grid's tables; null: a mirror, or Lambert
     ViewPositions* positions_ = nullptr;
     bool chooses_ = false, judged_ = false, any_black_ = false;
     LobeWeights weights_{};
@@ -112,10 +112,10 @@ class LobeViews {
     std::vector<float> albedo_, tolerance_;
     std::vector<std::uint8_t> black_, order_, within_tolerance_;
     AlignedFloats heads_;
-    std::vector<float> widths_;                         // padded
-    std::vector<const FitTable*> neighbours_;           // of each view, in the grid; empty: the width is the same
+    std::vector<float> widths_;                // padded
+    std::vector<const FitTable*> neighbours_;  // of each view, in the grid; empty: the width is the same
     std::vector<float> neighbour_weights_;
-    mutable std::vector<const float*> columns_;         // likewise, from a column on
+    mutable std::vector<const float*> columns_;  // likewise, from a column on
 
     bool has_warps_ = false;
     std::vector<double> warps_;  // the arrays of WarpOutput

@@ -185,9 +185,18 @@ constexpr std::array kOperations = {
     elementwise<1, [](float a) { return std::cosh(a); }>("cosh"),
     elementwise<1, [](float a) { return std::tanh(a); }>("tanh"),
     elementwise<1, [](float a) { return hash_to_float(std::array{a}); }>("hash1"),
-    elementwise<2, [](float a, float b) { return hash_to_float(std::array{a, b}); }>("hash2"),
-    elementwise<3, [](float a, float b, float c) { return hash_to_float(std::array{a, b, c}); }>("hash3"),
-    elementwise<4, [](float a, float b, float c, float d) { return hash_to_float(std::array{a, b, c, d}); }>("hash4"),
+    elementwise<2,
+                [](float a, float b) {
+                    return hash_to_float(std::array{a, b});
+                }>("hash2"),
+    elementwise<3,
+                [](float a, float b, float c) {
+                    return hash_to_float(std::array{a, b, c});
+                }>("hash3"),
+    elementwise<4,
+                [](float a, float b, float c, float d) {
+                    return hash_to_float(std::array{a, b, c, d});
+                }>("hash4"),
     Operation{{"table1", 1, 1, Parameter::table}, &look_up<1>},
     Operation{{"table2", 2, 1, Parameter::table}, &look_up<2>},
     Operation{{"table3", 3, 1, Parameter::table}, &look_up<3>},

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <utility>
 
@@ -105,8 +105,7 @@ void ShaderProgram::find_places() {
     for (std::size_t s = steps_.size(); s-- > 0;) {
         const ShaderStep& step = steps_[s];
         const auto own = std::span(values_).subspan(first_value_[s], shlight::result_count(step));
-        bool everywhere =
-            std::any_of(own.begin(), own.end(), [](const Value& value) { return value.everywhere; });
+        bool everywhere = std::any_of(own.begin(), own.end(), [](const Value& value) { return value.everywhere; });
         if (is_difference(step)) {
             takes_differences_ = true;
             values_[step.arguments[0]].everywhere = true;

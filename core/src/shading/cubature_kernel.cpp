@@ -118,8 +118,9 @@ HWY_INLINE V<hn::RebindToUnsigned<Floats>> smallest_rule(const std::array<RuleEr
 }
 
 template <class Lights, class Views>
-HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(const float* widths, const CircleArrays& circles, const ViewArrays& views,
-                                                   const Lights& light, const Views& view, V<Floats> tolerance) {
+HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(const float* widths, const CircleArrays& circles,
+                                                   const ViewArrays& views, const Lights& light, const Views& view,
+                                                   V<Floats> tolerance) {
     const Floats d;
     const hn::RebindToUnsigned<Floats> du;
     const SeenCircle s = seen(circles, views, widths, light, view);
@@ -130,8 +131,9 @@ HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(const float* widths, const Ci
 }
 
 template <class Lights, class Views>
-HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(const float* widths, const PolygonArrays& polygons, const ViewArrays& views,
-                                                   const Lights& light, const Views& view, V<Floats> tolerance) {
+HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(const float* widths, const PolygonArrays& polygons,
+                                                   const ViewArrays& views, const Lights& light, const Views& view,
+                                                   V<Floats> tolerance) {
     const Floats d;
     const hn::RebindToUnsigned<Floats> du;
     const HalfSum half = {rounded_sum(light.pair(polygons.x), view.pair(views.x)), light.load(polygons.y),
@@ -268,7 +270,8 @@ class CapRule {
 
 template <class Views, class Lobe>
 void integrate(const Lobe& lobe, const float* widths, const CircleArrays& circles,
-               std::span<const std::uint32_t> circle_of, const ViewArrays& views, std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
+               std::span<const std::uint32_t> circle_of, const ViewArrays& views,
+               std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     const Floats d;
     constexpr std::size_t kLanes = kLaneCount<Floats>;
     const CapRule cap_rule(rule);
@@ -303,19 +306,20 @@ HWY_EXPORT(choose_cap_rules_in_lanes);
 HWY_EXPORT(choose_polygon_rules_in_lanes);
 HWY_EXPORT(integrate_caps_in_lanes);
 
-void choose_cap_rules(const float* widths, const CircleArrays& circles, const ViewArrays& views, const float* tolerances,
-                      std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
+void choose_cap_rules(const float* widths, const CircleArrays& circles, const ViewArrays& views,
+                      const float* tolerances, std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
     HWY_DYNAMIC_DISPATCH(choose_cap_rules_in_lanes)(widths, circles, views, tolerances, view_of, rules);
 }
 
-void choose_polygon_rules(const float* widths, const PolygonArrays& polygons, const ViewArrays& views, const float* tolerances,
-                          std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
+void choose_polygon_rules(const float* widths, const PolygonArrays& polygons, const ViewArrays& views,
+                          const float* tolerances, std::span<const std::uint32_t> view_of,
+                          std::span<std::uint8_t> rules) {
     HWY_DYNAMIC_DISPATCH(choose_polygon_rules_in_lanes)(widths, polygons, views, tolerances, view_of, rules);
 }
 
-void integrate_caps(const LobeShape& shape, const float* widths, const CircleArrays& circles, std::span<const std::uint32_t> circle_of,
-                    const ViewArrays& views, std::span<const std::uint32_t> view_of, int rule,
-                    std::span<float> values) {
+void integrate_caps(const LobeShape& shape, const float* widths, const CircleArrays& circles,
+                    std::span<const std::uint32_t> circle_of, const ViewArrays& views,
+                    std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     HWY_DYNAMIC_DISPATCH(integrate_caps_in_lanes)(shape, widths, circles, circle_of, views, view_of, rule, values);
 }
 

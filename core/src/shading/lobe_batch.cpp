@@ -179,13 +179,12 @@ bool LobeBatch::shows_mirrored(const PolygonBatch& polygons, std::size_t light, 
 
 void LobeBatch::choose_rules(const LobeViews& lobe, const CircleArrays& circles,
                              std::span<const std::uint32_t> view_of) {
-    choose_cap_rules(lobe.widths(), circles, lobe.positions().directions(), lobe.tolerances(), view_of,
-                     rules_);
+    choose_cap_rules(lobe.widths(), circles, lobe.positions().directions(), lobe.tolerances(), view_of, rules_);
 }
 
 void LobeBatch::choose_rules(const LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of) {
-    choose_polygon_rules(lobe.widths(), polygons.views(), lobe.positions().directions(), lobe.tolerances(),
-                         view_of, rules_);
+    choose_polygon_rules(lobe.widths(), polygons.views(), lobe.positions().directions(), lobe.tolerances(), view_of,
+                         rules_);
 }
 
 template <class Lights>
@@ -281,7 +280,8 @@ void LobeBatch::by_largest_order(LobeViews& lobe, const Lights& lights) {
 }
 
 void LobeBatch::by_rule(const LobeViews& lobe, const CircleArrays& circles, int rule) {
-    integrate_caps(lobe.shape(), lobe.widths(), circles, items_, lobe.positions().directions(), item_views_, rule, item_values_);
+    integrate_caps(lobe.shape(), lobe.widths(), circles, items_, lobe.positions().directions(), item_views_, rule,
+                   item_values_);
     const int points = cap_rule_points(rule);
     for (const std::uint32_t light : items_) {
         efforts_[light] = points;
@@ -316,7 +316,8 @@ void LobeBatch::by_outline(const LobeViews& lobe, const PolygonBatch& polygons) 
 void LobeBatch::integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const OutlineArc> arcs) {
     const std::uint32_t view = item_views_[item];
     const double tolerance = lobe.absolute_tolerance(view);
-    const OutlineIntegral integral = outline_integral(lobe.shape(view), lobe.positions().cosine()[view], arcs, tolerance);
+    const OutlineIntegral integral =
+        outline_integral(lobe.shape(view), lobe.positions().cosine()[view], arcs, tolerance);
     item_values_[item] = static_cast<float>(integral.value);
     efforts_[items_[item]] = integral.points;
     missed_[items_[item]] = integral.error <= tolerance ? 0 : 1;

@@ -70,8 +70,8 @@ void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes
     lobe_width.resize(lobe_width.size() + lobe_stride_, 0);
     const double narrowest = lobes.narrowest(hits.cos_theta_o[hit], hits.widths(hit));
     const double spread = std::sqrt(3 * tolerance) * std::min(kWidestSpread, narrowest);
-    members_.push_back({towards_viewer(hits, hit), hits.widths(hit), narrowest, spread, nearest_light, Vec3d(0), Vec3d(0),
-                        Vec3d(0), 0, 0});
+    members_.push_back({towards_viewer(hits, hit), hits.widths(hit), narrowest, spread, nearest_light, Vec3d(0),
+                        Vec3d(0), Vec3d(0), 0, 0});
 }
 
 void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t point) {

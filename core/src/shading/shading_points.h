@@ -20,9 +20,9 @@ namespace shlight {
 class ShadingPoints {
   public:
     /// One point for hits of a pixel with the same material whose normal, direction to the viewer, directions to lights
-    /// and widths of lobes, in units of that distance, differ in sum by less than √(3 tolerance) times the least distance
-    /// over which the material's f·cos changes. The mean of a lobe over so small a spread is its value at the mean up to a fraction of the tolerance:
-    /// what is left is the second difference.
+    /// and widths of lobes, in units of that distance, differ in sum by less than √(3 tolerance) times the least
+    /// distance over which the material's f·cos changes. The mean of a lobe over so small a spread is its value at the
+    /// mean up to a fraction of the tolerance: what is left is the second difference.
     void assign(const Hits& hits, std::span<const MaterialLobes> materials, std::span<const Light> lights,
                 const DeltaLights& deltas, double tolerance);
 

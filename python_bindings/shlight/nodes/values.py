@@ -178,7 +178,7 @@ def number(value: Any, name: str = "value") -> Value:
         return value.as_number()
     known = _floats(value)
     if known is None or known.ndim != 0:
-        raise ValueError(f"{name} must be a number or an expression of shlight.nodes, got {value!r}")
+        raise ValueError(f"{name} must be a number or an expression of shlight.nodes, got {type(value).__name__}")
     return Value(Step("constant", (), float(known)))
 
 
@@ -202,7 +202,9 @@ def triple(value: Any, name: str = "value") -> tuple[Value, Value, Value]:
         return value, value, value
     known = _floats(value)
     if known is None or known.shape not in ((), (3,)):
-        raise ValueError(f"{name} must be a number, three numbers or an expression of shlight.nodes, got {value!r}")
+        raise ValueError(
+            f"{name} must be a number, three numbers or an expression of shlight.nodes, got {type(value).__name__}"
+        )
     x, y, z = (number(component) for component in np.broadcast_to(known, (3,)))
     return x, y, z
 

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: MIT
+"""Shader programs: what varies equals what is constant there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import shlight
+from shlight import nodes
+
+STRIPS = np.linspace(0.05, 1.0, 6)
+
+
+def floor(bsdf: Any, light: str, indices: Any = None) -> Any:
+    """A floor of strips with a material or a texture coordinate each, under one light without shadows."""
+    count = len(STRIPS)
+    left = -2 + 4 * np.arange(count) / count
+    x = np.stack([left, left + 4 / count, left + 4 / count, left], axis=1).ravel()
+    vertices = np.stack([x, np.tile([-2.0, -2.0, 2.0, 2.0], count), np.zeros(4 * count)], axis=1)
+    first = 4 * np.arange(count)[:, None]
+    triangles = np.concatenate([[*first, 0, 1, 2], [*first, 0, 2, 3]], axis=1).reshape(-1, 3)
+    uvs = np.stack([np.repeat(STRIPS, 4), np.zeros(4 * count)], axis=1)
+    scene = shlight.Scene()
+    scene.add_mesh(vertices, triangles, uvs=uvs, bsdf=bsdf, material_indices=indices)
+    if light == "sphere":
+        scene.add_sphere_light((0.3, 1, 1.5), 0.4, (5, 5, 5))
+    elif light == "polygon":
+        scene.add_polygon_light([[-1, 2, 0.5], [1, 2, 0.5], [1, 2, 2], [-1, 2, 2]], (5, 4, 3))
+    elif light == "point":
+        scene.add_point_light((0, 1, 1), (3, 3, 3))
+    else:
+        scene.set_environment(np.random.default_rng(1).uniform(0, 1, (16, 32, 3)))
+    pose = np.eye(4)
+    pose[1:3, 1:3] = [[np.cos(1.0), -np.sin(1.0)], [np.sin(1.0), np.cos(1.0)]]
+    pose[:3, 3] = 0, -5, 3.2
+    scene.set_camera(pose, 0.8)
+    return shlight.render(scene, 48, 32, pixel_samples=4, shadow_rays=0)
+
+
+@pytest.mark.parametrize("ior", [None, 1.5])
+@pytest.mark.parametrize("light", ["sphere", "polygon", "point", "environment"])
+def test_a_width_that_varies(light: str, ior: float | None) -> None:
+    base = shlight.Bsdf.lambert((0.1, 0.2, 0.3))
+    f0 = (0.5, 0.3, 0.1)
+    constant = floor(
+        [shlight.Bsdf.ggx(float(r), f0, ior=ior) + base for r in STRIPS], light, np.repeat(np.arange(len(STRIPS)), 2)
+    )
+    varying = floor(nodes.ggx(nodes.uv().x, f0, ior=ior) + nodes.lambert((0.1, 0.2, 0.3)), light)
+    error = np.abs(varying - constant)[..., :3] / (constant[..., :3] + 0.1 * constant[..., :3].mean())
+    # Environments are blurred for steps of the width, between which they are linear.
+    assert error.max() <= (2e-3 if light == "environment" else 1e-3)
+
+
+def test_a_program_is_as_long_as_what_varies() -> None:
+    half = nodes.values.number(0.5)
+    assert nodes.lambert(nodes.mix_color((1, 0, 0), (0, 1, 0), half * half, "overlay")).operation_count == 0
+    u = nodes.uv().x
+    assert nodes.lambert(u * 2.0 + u * 2.0).operation_count == 2
+    deep = u
+    for _ in range(5000):
+        deep = deep + 1.0
+    assert nodes.lambert(deep).operation_count == 5000
+
+
+def test_light_that_passes_through() -> None:
+    # A lamp above a pane that passes a quarter of red and all of green, over a floor.
+    square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], dtype=float) * 3
+    faces = [[0, 1, 2], [0, 2, 3]]
+
+    def lit(pane: Any) -> Any:
+        scene = shlight.Scene()
+        scene.add_mesh(square, faces, bsdf=shlight.Bsdf.lambert(0.8))
+        if pane is not None:
+            scene.add_mesh((*square, 0, 0, 1), faces, bsdf=pane)
+        scene.add_sphere_light((0, 0, 3), 0.3, (5, 5, 5))
+        pose = np.eye(4)
+        pose[:3, 3] = 0, 0, 0.8
+        scene.set_camera(pose, 1.0)
+        return shlight.render(scene, 8, 8, pixel_samples=1)
+
+    np.testing.assert_allclose(
+        lit(nodes.transparent((0.25, 1.0, 0.0)))[..., :3], lit(None)[..., :3] * (0.25, 1.0, 0.0), rtol=1e-4, atol=1e-7
+    )
+
+
+@pytest.mark.parametrize("extension", ["repeat", "extend", "clip", "mirror"])
+def test_a_picture_far_away_is_its_mean(extension: str) -> None:
+    pixels = np.random.default_rng(2).uniform(0, 1, (13, 21, 3)).astype(np.float32)
+    texture = nodes.image(pixels, extension=extension).x.step.data
+    found = texture.sample(0.5, 0.5, (1.0, 0.0, 0.0, 1.0))
+    if extension in ("repeat", "mirror"):
+        np.testing.assert_allclose(found[:3], pixels.mean(axis=(0, 1)), rtol=0.1)
+    assert np.isfinite(found).all()
+    for place in (np.nan, np.inf, -1e30, 1e9):
+        assert np.isfinite(texture.sample(place, 0.2, (0.0, 0.0, 0.0, 0.0))).all()
+    # Without a footprint it is bilinear between the centres of texels.
+    x, y = 4.25, 6.5
+    found = texture.sample(x / 21, y / 13, (0.0, 0.0, 0.0, 0.0))
+    rows = pixels[::-1]
+    expected = 0.25 * rows[6, 3] + 0.75 * rows[6, 4]
+    np.testing.assert_allclose(found[:3], expected, rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("call", "named"),
+    [
+        (lambda: nodes.image(np.ones((2, 2, 5))), "pixels"),
+        (lambda: nodes.image(np.ones((2, 2, 3)), interpolation="nearest"), "interpolation"),
+        (lambda: nodes.lambert("red"), "albedo"),
+        (lambda: nodes.mix_color(1, 0, 0.5, "over"), "blend"),
+    ],
+)
+def test_bad_arguments_are_named(call: Any, named: str) -> None:
+    with pytest.raises(ValueError, match=named):
+        call()
