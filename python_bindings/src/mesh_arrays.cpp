@@ -183,7 +183,9 @@ void add_attributes(Mesh& mesh, AttributeNames& names, const std::string& argume
     }
     for (const auto& [key, array] : value.cast<py::dict>()) {
         const auto name = py::str(key).cast<std::string>();
-        mesh.attributes.push_back(attribute_from(argument + "['" + name + "']", mesh, array));
+        std::string place = argument;
+        place.append("['").append(name).append("']");
+        mesh.attributes.push_back(attribute_from(place, mesh, array));
         names.push_back(name);
     }
 }

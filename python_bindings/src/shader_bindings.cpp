@@ -3,6 +3,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <tuple>
@@ -51,11 +52,10 @@ ShaderStep step_from(const StepTuple& tuple) {
 
 ShaderProgram program_from(const std::vector<StepTuple>& steps, const std::vector<TableTuple>& tables,
                            std::vector<ImagePointer> images, const std::vector<std::uint32_t>& results) {
-    std::vector<ShaderStep> own_steps;
-    for (const StepTuple& step : steps) {
-        own_steps.push_back(step_from(step));
-    }
+    std::vector<ShaderStep> own_steps(steps.size());
+    std::transform(steps.begin(), steps.end(), own_steps.begin(), step_from);
     std::vector<ShaderTable> own_tables;
+    own_tables.reserve(tables.size());
     for (const auto& [numbers, sizes] : tables) {
         const auto all = values(numbers);
         own_tables.push_back({{all.begin(), all.end()}, sizes});
@@ -168,6 +168,7 @@ std::shared_ptr<ImageTexture> image_from(
     const std::vector<std::tuple<std::int64_t, std::int64_t, std::shared_ptr<TexturePixels>>>& tiles, int interpolation,
     int extension, bool unassociate, bool tiled) {
     std::vector<ImageTexture::Tile> own;
+    own.reserve(tiles.size());
     for (const auto& [u, v, pixels] : tiles) {
         own.push_back({u, v, pixels});
     }
@@ -210,7 +211,7 @@ void bind_shader(py::module_& m) {
             return program_from(steps, tables, {images.begin(), images.end()}, results);
         },
         "steps"_a, "tables"_a, "images"_a, "results"_a);
-    py::class_<ShaderObject>(m, "SurfaceShader", without_constructor());
+    const py::class_<ShaderObject> shader(m, "SurfaceShader", without_constructor());
     m.def("surface_shader", &shader_from, "program"_a, "lobes"_a, "emission"_a, "transparency"_a, "shadow_program"_a,
           "attribute_names"_a);
 }

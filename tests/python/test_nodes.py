@@ -21,7 +21,7 @@ def floor(bsdf: Any, light: str, indices: Any = None) -> Any:
     x = np.stack([left, left + 4 / count, left + 4 / count, left], axis=1).ravel()
     vertices = np.stack([x, np.tile([-2.0, -2.0, 2.0, 2.0], count), np.zeros(4 * count)], axis=1)
     first = 4 * np.arange(count)[:, None]
-    triangles = np.concatenate([[*first, 0, 1, 2], [*first, 0, 2, 3]], axis=1).reshape(-1, 3)
+    triangles = np.concatenate([np.add(first, [0, 1, 2]), np.add(first, [0, 2, 3])], axis=1).reshape(-1, 3)
     uvs = np.stack([np.repeat(STRIPS, 4), np.zeros(4 * count)], axis=1)
     scene = shlight.Scene()
     scene.add_mesh(vertices, triangles, uvs=uvs, bsdf=bsdf, material_indices=indices)
@@ -74,7 +74,7 @@ def test_light_that_passes_through() -> None:
         scene = shlight.Scene()
         scene.add_mesh(square, faces, bsdf=shlight.Bsdf.lambert(0.8))
         if pane is not None:
-            scene.add_mesh((*square, 0, 0, 1), faces, bsdf=pane)
+            scene.add_mesh(np.add(square, (0, 0, 1)), faces, bsdf=pane)
         scene.add_sphere_light((0, 0, 3), 0.3, (5, 5, 5))
         pose = np.eye(4)
         pose[:3, 3] = 0, 0, 0.8

@@ -48,9 +48,9 @@ struct ShaderInput {
 /// An operation on floats. Those that are undefined at some arguments say what they make of them.
 struct ShaderOperation {
     std::string_view name;
-    std::size_t argument_count, result_count;
+    std::size_t argument_count = 0, result_count = 0;
     /// Whether the step's `parameter` numbers a table, or an image; otherwise it must be 0.
-    enum class Parameter : std::uint8_t { none, table, image } parameter;
+    enum class Parameter : std::uint8_t { none, table, image } parameter{};
 };
 
 /// All operations but constants and inputs, which have no arguments. A step refers to its operation by number.

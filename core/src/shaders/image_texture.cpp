@@ -106,7 +106,7 @@ glm::vec4 TexturePixels::linear(std::size_t level, std::int64_t column, std::int
     if (encoding_ == TexelEncoding::srgb) {
         if (std::holds_alternative<Bytes>(levels_[level].pixels)) {
             const auto& table = srgb_bytes();
-            const auto at = [&](float x) { return table[static_cast<std::size_t>(x * 255 + 0.5F)]; };
+            const auto at = [&](float x) { return table[static_cast<std::size_t>(std::lround(x * 255))]; };
             return {at(texel.x), at(texel.y), at(texel.z), texel.w};
         }
         return decoded(texel, encoding_);
@@ -124,7 +124,7 @@ void TexturePixels::store(Level& level, std::size_t texel, const glm::vec4& line
     for (int i = 0; i < channels_; ++i) {
         const std::size_t at = texel * static_cast<std::size_t>(channels_) + static_cast<std::size_t>(i);
         if (auto* bytes = std::get_if<Bytes>(&level.pixels)) {
-            (*bytes)[at] = static_cast<std::uint8_t>(std::clamp(value[i], 0.0F, 1.0F) * 255 + 0.5F);
+            (*bytes)[at] = static_cast<std::uint8_t>(std::lround(std::clamp(value[i], 0.0F, 1.0F) * 255));
         } else {
             std::get<Floats>(level.pixels)[at] = value[i];
         }
@@ -218,7 +218,7 @@ class ImageTexture::Lookup {
     }
     /// In linear light, between two levels; place: 0 … 1 over the picture.
     glm::vec4 trilinear(float level, const glm::vec2& place) const {
-        const float top = static_cast<float>(pixels_->level_count() - 1);
+        const auto top = static_cast<float>(pixels_->level_count() - 1);
         const float clamped = std::clamp(level, 0.0F, top);
         const auto low = static_cast<std::size_t>(clamped);
         const float share = clamped - static_cast<float>(low);
@@ -276,11 +276,11 @@ glm::vec4 ImageTexture::finished(const glm::vec4& stored, TexelEncoding encoding
     return decoded(color, encoding);
 }
 
-glm::vec4 ImageTexture::sample(const glm::vec2& where, const TextureFootprint& footprint) const {
+glm::vec4 ImageTexture::sample(const glm::vec2& place, const TextureFootprint& footprint) const {
     const Tile* tile = &tiles_.front();
-    glm::vec2 place = where;
+    glm::vec2 inside = place;
     if (tiled_) {
-        const glm::vec2 number = glm::floor(place);
+        const glm::vec2 number = glm::floor(inside);
         const auto found = std::find_if(tiles_.begin(), tiles_.end(), [&](const Tile& own) {
             return static_cast<float>(own.u) == number.x && static_cast<float>(own.v) == number.y;
         });
@@ -288,14 +288,14 @@ glm::vec4 ImageTexture::sample(const glm::vec2& where, const TextureFootprint& f
             return kMissing;
         }
         tile = &*found;
-        place -= number;
+        inside -= number;
     }
     const Lookup lookup(*tile->pixels, extension_);
     const TexelEncoding encoding = tile->pixels->encoding();
     const glm::vec2 size = lookup.size(0);
-    glm::vec2 texels = place * size;
+    glm::vec2 texels = inside * size;
     if (!(std::abs(texels.x) < kFarthest && std::abs(texels.y) < kFarthest)) {
-        texels = place = glm::vec2(0);
+        texels = inside = glm::vec2(0);
     }
     glm::vec2 along = footprint.right * size;
     glm::vec2 across = footprint.below * size;
@@ -318,7 +318,7 @@ glm::vec4 ImageTexture::sample(const glm::vec2& where, const TextureFootprint& f
     glm::vec4 sum(0);
     for (int i = 0; i < probes; ++i) {
         sum +=
-            lookup.trilinear(level, place + (static_cast<float>(i) + 0.5F - 0.5F * static_cast<float>(probes)) * step);
+            lookup.trilinear(level, inside + (static_cast<float>(i) + 0.5F - 0.5F * static_cast<float>(probes)) * step);
     }
     sum /= static_cast<float>(probes);
     if (unassociate_ && sum.w > 0) {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <utility>
-#include <vector>
 
 #include "shaders/image_texture.h"
 
@@ -206,22 +205,19 @@ constexpr std::array kOperations = {
 }  // namespace
 
 std::span<const ShaderOperation> shader_operations() {
-    static const std::vector<ShaderOperation> all = [] {
-        std::vector<ShaderOperation> list;
-        for (const Operation& operation : kOperations) {
-            list.push_back(operation.about);
-        }
+    static const auto all = [] {
+        std::array<ShaderOperation, kOperations.size()> list{};
+        std::transform(kOperations.begin(), kOperations.end(), list.begin(),
+                       [](const Operation& o) { return o.about; });
         return list;
     }();
     return all;
 }
 
 std::span<const OperationLoop> operation_loops() {
-    static const std::vector<OperationLoop> all = [] {
-        std::vector<OperationLoop> list;
-        for (const Operation& operation : kOperations) {
-            list.push_back(operation.loop);
-        }
+    static const auto all = [] {
+        std::array<OperationLoop, kOperations.size()> list{};
+        std::transform(kOperations.begin(), kOperations.end(), list.begin(), [](const Operation& o) { return o.loop; });
         return list;
     }();
     return all;

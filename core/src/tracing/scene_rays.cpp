@@ -20,7 +20,7 @@ class SceneRays::Part {
   public:
     static std::unique_ptr<const Part> make(std::span<const SceneGeometry> geometries,
                                             std::span<const TracedInstance> instances, bool transparent) {
-        auto part = std::unique_ptr<Part>(new Part);
+        auto part = std::make_unique<Part>();
         std::vector<std::vector<Triangle>> chosen(geometries.size());
         std::vector<TracedGeometry> traced;
         for (std::size_t i = 0; i < geometries.size(); ++i) {
