@@ -172,11 +172,11 @@ def test_what_is_not_supported_is_named(studio: Any) -> None:
     assert "Light 'Area': its texture is drawn as" in line
     place(node, "ShaderNodeUVMap", "UV", uv_map="Other")
     (line,) = studio.messages()
-    assert "not known of a lamp: attribute 'Other'" in line
+    assert "a lamp has no UV map 'Other'" in line
     for output in ("Object", "Generated"):
         place(node, "ShaderNodeTexCoord", output)
         (line,) = studio.messages()
-        assert "Light 'Area': what its light depends on is not known of a lamp" in line
+        assert "Light 'Area': a lamp has no" in line
     place(node, *UV)
     tree = lamp.data.node_tree
     emission = next(node for node in tree.nodes if node.type == "EMISSION")

@@ -45,16 +45,9 @@ class EvenLamp(NamedTuple):
 
 def even_lamp(emission: VaryingEmission, is_round: bool, remark: Remark) -> EvenLamp:
     """A lamp that shines as `emission`; `remark` is told what is not as in Cycles."""
-    known = _inputs_at(UNIT_SQUARE)
-    unknown = sorted(
-        {
-            f"{source} '{index}'" if source == "attribute" else source
-            for source, index, component in emission.inputs
-            if (source, index, component) not in known and component < 2
-        }
-    )
-    if unknown:
-        remark(f"what its light depends on is not known of a lamp: {', '.join(unknown)}; 0 is used")
+    lacking = sorted({_name_of(entry) for entry in emission.inputs if entry[2] < 2} - {""})
+    if lacking:
+        remark(f"a lamp has no {', '.join(lacking)}; one colour of its texture is used")
     cells = _cut_lamp(emission, is_round)
     left, bottom, right, top = cells.bounds.T
     mean = ((right - left) * (top - bottom)) @ cells.radiance
@@ -84,6 +77,16 @@ def _cut_lamp(emission: VaryingEmission, is_round: bool) -> Cells:
     textures = emission.texels(_inputs_at(UNIT_SQUARE), len(UNIT_SQUARE)) or [UNIT_SQUARE]
     wide, high = np.max([samples_along(texels) for texels in textures], axis=0)
     return cut_square(radiance, (int(wide), int(high)), MOST_PARTS)
+
+
+def _name_of(entry: Input) -> str:
+    """What a program reads and a lamp does not have, "" if it has it."""
+    if entry in _inputs_at(UNIT_SQUARE):
+        return ""
+    source, index, _ = entry
+    if source != "attribute" or str(index).endswith(":"):
+        return f"coordinates of the kind '{str(index).rstrip(':') or source}'" if index else f"'{source}'"
+    return f"UV map '{index}'" if index else "UV map in this version of Blender"
 
 
 def _inputs_at(places: Array) -> dict[Input, Array]:
