@@ -35,6 +35,8 @@ pixel_samples: camera rays per pixel, over a box of one pixel; rounded up to a p
 adaptive: take up to 16 times as many where they disagree, as at edges, unless pixel_samples is 1.
 shadow_rays: per camera ray and light, at most, and again for each roughness of the material's glossy lobes; a quarter
     of them where light and shadow are plain. 0: no shadows.
+transparent_bounces: surfaces that let light through which a shadow ray passes, at most, 0 ... 1024; a camera ray
+    passes one more.
 threads: at most; 0: all cores. The image does not depend on it.
 progress: is called with the finished share, 0 ... 1, about every 50 ms; returning False cancels. What it raises ends
     the render and is raised here.
@@ -114,15 +116,17 @@ int order_from(const py::object& order) {
 
 py::object render_scene(const py::object& scene_object, const py::object& width, const py::object& height,
                         const py::object& order, const py::object& tolerance, const py::object& pixel_samples,
-                        const py::object& shadow_rays, const py::object& threads, const py::object& progress,
-                        const py::object& adaptive, const py::object& return_report) {
+                        const py::object& shadow_rays, const py::object& transparent_bounces,
+                        const py::object& threads, const py::object& progress, const py::object& adaptive,
+                        const py::object& return_report) {
     auto& scene = object_from<SceneObject>("scene", scene_object, "Scene");
     const RenderSettings settings = {order_from(order),
                                      real_from("tolerance", tolerance),
                                      int_from("pixel_samples", pixel_samples),
                                      int_from("shadow_rays", shadow_rays),
                                      int_from("threads", threads),
-                                     flag_from("adaptive", adaptive)};
+                                     flag_from("adaptive", adaptive),
+                                     int_from("transparent_bounces", transparent_bounces)};
     const int columns = int_from("width", width);
     const int rows = int_from("height", height);
     const bool with_report = flag_from("return_report", return_report);
@@ -172,8 +176,8 @@ void bind_render(py::module_& m) {
                                "light, without shadows; shadows; pixels, adding up.")
         .def("__repr__", &Report::repr);
     m.def("render", &render_scene, kRenderDoc, "scene"_a, "width"_a, "height"_a, py::kw_only(), "order"_a = "auto",
-          "tolerance"_a = kDefaultTolerance, "pixel_samples"_a = 16, "shadow_rays"_a = 16, "threads"_a = 0,
-          "progress"_a = py::none(), "adaptive"_a = true, "return_report"_a = false);
+          "tolerance"_a = kDefaultTolerance, "pixel_samples"_a = 16, "shadow_rays"_a = 16, "transparent_bounces"_a = 8,
+          "threads"_a = 0, "progress"_a = py::none(), "adaptive"_a = true, "return_report"_a = false);
 }
 
 }  // namespace shlight::python

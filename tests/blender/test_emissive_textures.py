@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from shlight import nodes
 from shlight_blender.export.emission import VaryingEmission
 from shlight_blender.export.emission_pieces import TOLERANCE, cut, sampling_levels, share_colors
+from shlight_blender.export.expressions import Surroundings
 from shlight_blender.export.materials import read_material
 from shlight_blender.report import ExportReport
 
@@ -140,7 +141,7 @@ def looked_up(studio: Any, made: Any) -> tuple[Array, Array]:
     cycles.samples = 1024
     reference = studio.render("CYCLES")[::-1, :, :3].reshape(-1, 3)
     report = ExportReport()
-    glow = read_material(made.data.materials[0], report).varying
+    glow = read_material(made.data.materials[0], report, Surroundings()).varying
     assert glow is not None
     assert not len(report)
     x, y = np.meshgrid((np.arange(80 * 12) + 0.5) / 480 - 1, (np.arange(48 * 12) + 0.5) / 480 - 0.6)
@@ -194,7 +195,7 @@ def test_strength_from_a_picture_and_principled(studio: Any) -> None:
     place = {("attribute", "", 0): np.array([0.3, 0.8]), ("attribute", "", 1): np.array([0.6, 0.2])}
 
     def shown() -> Array:
-        glow = read_material(material, ExportReport()).varying
+        glow = read_material(material, ExportReport(), Surroundings()).varying
         assert glow is not None
         return glow.radiance(place, 2)
 

@@ -185,6 +185,7 @@ def test_settings_reach_the_renderer(studio: Any, monkeypatch: pytest.MonkeyPatc
     scene.shlight.order = "12"
     scene.shlight.tolerance = 0.02
     scene.shlight.shadow_rays = 3
+    scene.cycles.transparent_max_bounces = 5
     scene.render.threads_mode, scene.render.threads = "FIXED", 1
     studio.render("SHLIGHT")
     passed = {name: value for name, value in given.items() if name not in {"progress", "return_report"}}
@@ -194,6 +195,7 @@ def test_settings_reach_the_renderer(studio: Any, monkeypatch: pytest.MonkeyPatc
         "tolerance": pytest.approx(0.02),
         "pixel_samples": 1,
         "shadow_rays": 3,
+        "transparent_bounces": 5,
         "threads": 1,
     }
     scene.shlight.order, scene.shlight.use_shadows, scene.render.threads_mode = "AUTO", False, "AUTO"

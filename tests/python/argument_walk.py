@@ -74,7 +74,14 @@ MESH = {
     "object_values": [[1.0, 2.0]],
 }
 RENDER = {"width": 2, "height": 2, "threads": 1, "progress": None}
-SETTINGS = {"order": "auto", "tolerance": 0.1, "pixel_samples": 1, "shadow_rays": 1, "adaptive": False}
+SETTINGS = {
+    "order": "auto",
+    "tolerance": 0.1,
+    "pixel_samples": 1,
+    "shadow_rays": 1,
+    "transparent_bounces": 1,
+    "adaptive": False,
+}
 
 
 def new_scene() -> shlight.Scene:

@@ -12,6 +12,7 @@ from typing import Any
 import bpy
 
 from ..compat import set_sample_range
+from ..export.expressions import Surroundings
 from ..export.materials import read_material
 from ..report import ExportReport
 from .options import RenderOptions
@@ -147,7 +148,7 @@ def without_shadows() -> Iterator[None]:
 
 def _glows(seen: Any) -> bool:
     materials = (slot.material for slot in seen.material_slots)
-    return any(read_material(material, ExportReport()).emits() for material in materials)
+    return any(read_material(material, ExportReport(), Surroundings()).emits() for material in materials)
 
 
 def use_cycles(scene: Any, samples: int, seed: int, *, first: int = 0, of: int | None = None) -> None:

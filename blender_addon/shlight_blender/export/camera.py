@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import shlight
 
@@ -13,9 +15,23 @@ from ..frame import Frame
 from ..report import ExportError, ExportReport
 
 
+@dataclass(frozen=True)
+class View:
+    """How the camera sees the world.
+
+    to_camera (3, 4): to x to the right, y up and z forward.
+    slope, offset: x/z slope[0] + offset[0] is -1 … 1 over the picture, and so is y/z; x and y where it is orthographic.
+    """
+
+    to_camera: NDArray[np.float64]
+    slope: tuple[float, float]
+    offset: tuple[float, float]
+    orthographic: bool
+
+
 def set_camera(
     scene: shlight.Scene, camera: Any, depsgraph: Any, frame: Frame, render: Any, report: ExportReport
-) -> None:
+) -> View:
     """Gives `scene` the evaluated object `camera`, looking at `frame`; ExportError for one without a picture plane."""
     lens = camera.data
     place = f"Camera '{camera.name}'"
@@ -30,7 +46,8 @@ def set_camera(
     if not np.isfinite(to_world).all() or not scale.all():
         raise ExportError(f"{place}: its transform is not finite or has scale 0")
     to_world[:3, :3] /= scale  # a camera's scale means nothing
-    left, right, bottom, top = camera_window(camera, depsgraph, frame, render)
+    projection = _projection(camera, depsgraph, frame, render)
+    left, right, bottom, top = _window(projection, frame, orthographic=lens.type == "ORTHO")
     scene.set_camera_window(
         to_world,
         left,
@@ -41,11 +58,11 @@ def set_camera(
         clip_start=float(lens.clip_start),
         clip_end=float(lens.clip_end),
     )
+    return _view(to_world, projection, orthographic=lens.type == "ORTHO")
 
 
-def camera_window(camera: Any, depsgraph: Any, frame: Frame, render: Any) -> tuple[float, float, float, float]:
-    """(left, right, bottom, top) of `frame` on the plane z = -1 of the camera, or in metres if it is orthographic."""
-    projection = np.array(
+def _projection(camera: Any, depsgraph: Any, frame: Frame, render: Any) -> NDArray[np.float64]:
+    return np.array(
         camera.calc_matrix_camera(
             depsgraph,
             x=frame.full_width,
@@ -55,9 +72,24 @@ def camera_window(camera: Any, depsgraph: Any, frame: Frame, render: Any) -> tup
         ),
         dtype=np.float64,
     )
+
+
+def _view(to_world: NDArray[np.float64], projection: NDArray[np.float64], *, orthographic: bool) -> View:
+    to_camera = np.linalg.inv(to_world)[:3] * np.array([[1.0], [1.0], [-1.0]])
+    offset = projection[:2, 3] if orthographic else -projection[:2, 2]
+    return View(
+        to_camera,
+        (float(projection[0, 0]), float(projection[1, 1])),
+        (float(offset[0]), float(offset[1])),
+        orthographic,
+    )
+
+
+def _window(projection: NDArray[np.float64], frame: Frame, *, orthographic: bool) -> tuple[float, float, float, float]:
+    """(left, right, bottom, top) of `frame` on the plane z = -1 of the camera, or in metres if it is orthographic."""
     # Normalized coordinates are (P00 x + P02 z) / -z, or P00 x + P03 for the orthographic camera; same for y.
-    column = 3 if camera.data.type == "ORTHO" else 2
-    sign = -1.0 if camera.data.type == "ORTHO" else 1.0
+    column = 3 if orthographic else 2
+    sign = -1.0 if orthographic else 1.0
 
     def window(axis: int, pixel: int, size: int) -> float:
         normalized = 2.0 * pixel / size - 1.0

@@ -8,7 +8,7 @@ socket holds is used in its place.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -17,9 +17,20 @@ from shlight.nodes import Color, Value, Vector
 from shlight.nodes.values import Varying, color, number, vector
 
 from ..report import Effect, ExportReport
+from .camera import View
 from .nodes import Origin, node_name, origin
+from .object_values import ObjectValues
 
 Expression = Value | Vector  # a Color is a Vector that counts with its luminance
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What nodes may ask for beside the surface: the camera, the depsgraph, and numbers of objects."""
+
+    view: View | None = None
+    depsgraph: Any = None
+    object_values: ObjectValues = field(default_factory=ObjectValues)
 
 
 @dataclass(frozen=True)
@@ -31,13 +42,24 @@ class NodeInputs:
     output: Any
     groups: tuple[Any, ...]
 
+    def socket(self, name: str | int) -> Any:
+        """An input by number, identifier or name, also if the node's mode hides it; None if there is none."""
+        sockets = self.node.inputs
+        if isinstance(name, int):
+            return sockets[name] if name < len(sockets) else None
+        return next((own for own in sockets if own.identifier == name), None) or next(
+            (own for own in sockets if own.name == name), None
+        )
+
     def is_linked(self, name: str | int) -> bool:
         """True if another node makes the value of an input."""
-        return origin(self.node.inputs[name], self.groups).node is not None
+        socket = self.socket(name)
+        return socket is not None and origin(socket, self.groups).node is not None
 
     def expression(self, name: str | int) -> Expression:
-        """An input as its link or socket has it."""
-        return self.reader.expression(self.node.inputs[name], self.groups)
+        """An input as its link or socket has it; 0 if this version of Blender has no such input."""
+        socket = self.socket(name)
+        return number(0.0) if socket is None else self.reader.expression(socket, self.groups)
 
     def number(self, name: str | int) -> Value:
         """An input as a number."""
@@ -60,10 +82,19 @@ ReadNode = Callable[[NodeInputs], Varying]
 
 
 class ExpressionReader:
-    """Follows the links of one tree; `place` names the tree's owner in the report, for instance "Material 'Wood'"."""
+    """Follows the links of the tree of `owner`; `place` names it in the report, for instance "Material 'Wood'"."""
 
-    def __init__(self, place: str, report: ExportReport, read_nodes: Mapping[str, ReadNode]) -> None:
+    def __init__(
+        self,
+        owner: Any,
+        place: str,
+        report: ExportReport,
+        surroundings: Surroundings,
+        read_nodes: Mapping[str, ReadNode],
+    ) -> None:
         self._nodes = read_nodes
+        self.owner = owner
+        self.surroundings = surroundings
         self.place = place
         self.report = report
         self._known: dict[tuple[Any, ...], Expression] = {}

@@ -7,33 +7,13 @@ import math
 
 from shlight import nodes
 from shlight.nodes import Color, Value, Vector
-from shlight.nodes.mathematics import reflect
-from shlight.nodes.values import clamp, dot, maximum, minimum, number, operation, select, sqrt
+from shlight.nodes.values import clamp, dot, maximum, number, operation, select, sqrt
 
-from ..report import Effect
 from .blackbody import blackbody_rgb
 from .expressions import Expression, NodeInputs, ReadNode
-from .mesh_attributes import GENERATED, INSTANCE_COLOR, TANGENT, ObjectValue
-
-
-def _texture_coordinate(inputs: NodeInputs) -> Expression:
-    name = inputs.output.name
-    if inputs.node.from_instancer and name in ("Generated", "UV"):
-        inputs.remark("'From Instancer' is not supported; the object's own coordinates are used")
-    if name == "UV":
-        return nodes.uv("")
-    if name == "Generated":
-        return nodes.attribute(GENERATED)
-    if name == "Normal":
-        return nodes.values.normalize(nodes.inputs.normal_to_object(nodes.normal()))
-    if name == "Object":
-        if inputs.node.object is not None:
-            inputs.remark("the coordinates of another object are not supported; the object's own are used")
-        return nodes.inputs.point_to_object(nodes.position())
-    if name == "Reflection":
-        return -reflect(nodes.towards_viewer() * -1.0, nodes.normal()) * -1.0
-    inputs.remark(f"'{name}' coordinates are not supported; (0, 0, 0) is used")
-    return Vector(0.0, 0.0, 0.0)
+from .frame_nodes import around
+from .mesh_attributes import COLOR, GENERATED, TANGENT
+from .object_values import RANDOM, property_color
 
 
 def _uv_map(inputs: NodeInputs) -> Vector:
@@ -43,25 +23,37 @@ def _uv_map(inputs: NodeInputs) -> Vector:
 
 
 def _attribute(inputs: NodeInputs) -> Expression:
-    node = inputs.node
-    if node.attribute_type != "GEOMETRY":
-        inputs.remark(f"attributes of the type {node.attribute_type} are not supported; 0 is used")
+    node, around = inputs.node, inputs.reader.surroundings
+    name, kind = node.attribute_name, node.attribute_type
+    if not name:
         return number(0.0)
-    return _of_attribute(inputs, node.attribute_name) if node.attribute_name else number(0.0)
+    if kind == "GEOMETRY":
+        return _channel(inputs, nodes.attribute(name), nodes.inputs.attribute_mean(name))
+    if kind == "VIEW_LAYER":
+        graph = around.depsgraph
+        owners = [] if graph is None else [graph.view_layer_eval, graph.scene_eval, graph.scene_eval.world]
+        return _channel(inputs, Color(*property_color(owners, name)))
+    return _channel(inputs, _of_object(inputs, kind, name))
 
 
-def _of_attribute(inputs: NodeInputs, name: str) -> Expression:
-    found = nodes.attribute(name)
+def _of_object(inputs: NodeInputs, kind: str, name: str) -> Color:
+    first = inputs.reader.surroundings.object_values.first(kind, name)
+    return Color(*(nodes.object_value(first + i) for i in range(4)))
+
+
+def _channel(inputs: NodeInputs, found: Color, mean: Value | None = None) -> Expression:
     output = inputs.output.name
     if output == "Alpha":
         return found.alpha
     if output == "Vector":
         return Vector(*found)
-    return found.as_number() if output == "Fac" else found
+    if output == "Fac":
+        return (found.x + found.y + found.z) * (1.0 / 3.0) if mean is None else mean
+    return found
 
 
 def _color_attribute(inputs: NodeInputs) -> Expression:
-    found = nodes.attribute(f"{INSTANCE_COLOR}{inputs.node.layer_name}")
+    found = nodes.attribute(f"{COLOR}{inputs.node.layer_name}")
     return found.alpha if inputs.output.name == "Alpha" else found
 
 
@@ -78,24 +70,22 @@ def _geometry(inputs: NodeInputs) -> Expression:
     if name == "Backfacing":
         return nodes.backfacing()
     if name == "Parametric":
-        return nodes.barycentric()
-    inputs.remark(f"'{name}' is not supported; 0 is used")
-    return number(0.0)
+        return Vector(1.0 - nodes.barycentric().x - nodes.barycentric().y, nodes.barycentric().x, 0.0)
+    if name == "Tangent":
+        return around("Z")
+    return nodes.attribute(f"{name.lower()}:").x
 
 
 def _object_info(inputs: NodeInputs) -> Expression:
     name = inputs.output.name
     if name == "Location":
         return Vector(*(nodes.inputs.read("object_to_world", 4 * row + 3) for row in range(3)))
-    if name == "Color":
-        return Color(*(nodes.object_value(ObjectValue.RED + i) for i in range(3)))
-    index = {
-        "Alpha": ObjectValue.ALPHA,
-        "Object Index": ObjectValue.OBJECT_INDEX,
-        "Material Index": ObjectValue.MATERIAL_INDEX,
-        "Random": ObjectValue.RANDOM,
-    }[name]
-    return nodes.object_value(index)
+    if name == "Material Index":
+        return number(float(getattr(inputs.reader.owner, "pass_index", 0)))
+    if name == "Random":
+        return _of_object(inputs, RANDOM, "").x
+    found = _of_object(inputs, "OBJECT", "pass_index" if name == "Object Index" else "color")
+    return found.alpha if name == "Alpha" else found if name == "Color" else found.x
 
 
 def _fresnel_of(cosine: Value, ior: Value) -> Value:
@@ -141,15 +131,6 @@ def _light_path(inputs: NodeInputs) -> Value:
     if name == "Transparent Depth":
         return nodes.inputs.transparent_depth()
     return number(0.0)
-
-
-def _tangent(inputs: NodeInputs) -> Vector:
-    node = inputs.node
-    if node.direction_type != "UV_MAP":
-        inputs.remark("radial tangents are not supported; 0 is used")
-        return Vector(0.0, 0.0, 0.0)
-    known = nodes.attribute(f"{TANGENT}{node.uv_map}")
-    return nodes.values.normalize(nodes.inputs.vector_to_world(Vector(*known)))
 
 
 def _normal_map(inputs: NodeInputs) -> Vector:
@@ -211,9 +192,9 @@ def _gradient(inputs: NodeInputs) -> Expression:
 
 def _white_noise(inputs: NodeInputs) -> Expression:
     count = int(inputs.node.noise_dimensions[0])
-    w = [inputs.number("W")] if count in (1, 4) else []
+    along = [inputs.number("W")] if count in (1, 4) else []
     place = inputs.vector("Vector") if count > 1 and inputs.is_linked("Vector") else nodes.position()
-    key = ([*place][: min(count, 3)] if count > 1 else []) + w
+    key = ([*place][: min(count, 3)] if count > 1 else []) + along
 
     def noise(*more: float) -> Value:
         return operation(f"hash{len(key) + len(more)}", *key, *more)
@@ -222,12 +203,11 @@ def _white_noise(inputs: NodeInputs) -> Expression:
         return noise()
     if count < 4:
         return Color(noise(), noise(1.0), noise(2.0))
-    inputs.remark("the colour of white noise in four dimensions is not supported; its value is used", Effect.SLIGHT)
-    return noise()
+    x, y, z, w = key
+    return Color(noise(), operation("hash4", z, x, w, y), operation("hash4", w, z, y, x))
 
 
 INPUT_NODES: dict[str, ReadNode] = {
-    "TEX_COORD": _texture_coordinate,
     "UVMAP": _uv_map,
     "ATTRIBUTE": _attribute,
     "VERTEX_COLOR": _color_attribute,
@@ -236,7 +216,6 @@ INPUT_NODES: dict[str, ReadNode] = {
     "FRESNEL": _fresnel,
     "LAYER_WEIGHT": _layer_weight,
     "LIGHT_PATH": _light_path,
-    "TANGENT": _tangent,
     "NORMAL_MAP": _normal_map,
     "BUMP": _bump,
     "BLACKBODY": _blackbody,
@@ -244,4 +223,3 @@ INPUT_NODES: dict[str, ReadNode] = {
     "TEX_GRADIENT": _gradient,
     "TEX_WHITE_NOISE": _white_noise,
 }
-__all__ = ["INPUT_NODES", "minimum"]

@@ -15,6 +15,7 @@ import shlight
 
 from ..compat import LAMPS, lamp_casts_shadows, lamp_is_normalized, lamp_tint, point_is_disk, uses_nodes
 from ..report import Effect, ExportReport
+from .expressions import Surroundings
 from .materials import with_light
 from .nodes import RGB, rgb
 from .shaders import SHADERS
@@ -57,6 +58,7 @@ def add_lamp(
     lamp_object: Any,
     to_world: NDArray[np.float64],
     report: ExportReport,
+    surroundings: Surroundings,
     instancer: Any = None,
 ) -> bool:
     """Adds a lamp to `scene`; False if it gives no light (switched off, or not supported and reported).
@@ -68,7 +70,7 @@ def add_lamp(
     if lamp.type == "AREA" and getattr(getattr(lamp, "cycles", None), "is_portal", False):
         return False  # guides Cycles' sampling of the world, emits nothing
     unit = float(lamp.energy) * lamp_tint(lamp)
-    glow = _glow_of_nodes(lamp, place, report)
+    glow = _glow_of_nodes(lamp, place, report, surroundings)
     power = unit * glow.mean
     if not np.isfinite(power).all() or not np.isfinite(to_world).all():
         report.add(place, "its power or its transform is not finite; left out", Effect.LIGHT)
@@ -89,14 +91,15 @@ def add_lamp(
     return LAMP_TYPES[lamp.type](scene, Lamp(lamp, power, parts, to_world, place, traits), report)
 
 
-def _glow_of_nodes(lamp: Any, place: str, report: ExportReport) -> EvenLamp:
+def _glow_of_nodes(lamp: Any, place: str, report: ExportReport, surroundings: Surroundings) -> EvenLamp:
     """RGB factors from the lamp's node tree: the emission of its shader, 1 without nodes."""
     if not uses_nodes(lamp):
         return EvenLamp(np.ones(3), [])
     output = lamp.node_tree.get_output_node("CYCLES")
     if output is None:
         return EvenLamp(np.zeros(3), [])
-    surface = with_light(ShaderReader(place, report, SHADERS).shader(output.inputs["Surface"]), place, report)
+    reader = ShaderReader(lamp, place, report, surroundings, SHADERS)
+    surface = with_light(reader.shader(output.inputs["Surface"]), place, report)
     if surface.varying is None:
         return EvenLamp(surface.emission, [])
     remark = partial(report.add, place)

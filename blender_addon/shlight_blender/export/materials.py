@@ -14,6 +14,7 @@ from shlight.nodes import Shader
 from ..compat import MATERIALS, uses_nodes
 from ..report import Effect, ExportReport
 from .emission import VaryingEmission
+from .expressions import Surroundings
 from .nodes import RGB, origin
 from .shaders import SHADERS
 from .surface import ShaderReader
@@ -42,7 +43,7 @@ def default_surface() -> Surface:
     return Surface(nodes.lambert(DEFAULT_ALBEDO))
 
 
-def read_material(material: Any, report: ExportReport) -> Surface:
+def read_material(material: Any, report: ExportReport, surroundings: Surroundings) -> Surface:
     """The surface of a material (None: the default); `report` receives whatever of it is not supported."""
     if material is None:
         return default_surface()
@@ -57,7 +58,7 @@ def read_material(material: Any, report: ExportReport) -> Surface:
         socket = output.inputs.get(name)
         if socket is not None and origin(socket).node is not None:
             report.add(place, f"{name.lower()} is not supported; left out")
-    reader = ShaderReader(place, report, SHADERS)
+    reader = ShaderReader(material, place, report, surroundings, SHADERS)
     return with_light(reader.shader(output.inputs["Surface"]), place, report)
 
 

@@ -3,21 +3,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from enum import IntEnum
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from .mesh_shape import pointiness, random_per_island
 
 Array = NDArray[np.float32]
 
 # Prefix of the tangents of a UV map: xyz and the sign of the bitangent, per corner.
 TANGENT = "tangent:"
 # Prefix of a colour attribute; without a name, the one for rendering.
-INSTANCE_COLOR = "color:"
+COLOR = "color:"
 # Where a vertex lies in the mesh's texture space.
 GENERATED = "generated:"
+
+# Numbers that the mesh's shape gives.
+SHAPES: dict[str, Callable[[Any], NDArray[np.float64]]] = {
+    "pointiness:": pointiness,
+    "random per island:": random_per_island,
+}
 
 COMPONENTS = {
     "FLOAT": 1,
@@ -29,12 +36,6 @@ COMPONENTS = {
     "FLOAT_COLOR": 4,
     "BYTE_COLOR": 4,
 }
-
-
-class ObjectValue(IntEnum):
-    """Numbers of an instance, as `nodes.object_value` counts them."""
-
-    RED, GREEN, BLUE, ALPHA, OBJECT_INDEX, MATERIAL_INDEX, RANDOM = range(7)
 
 
 def mesh_attributes(mesh: Any, names: Iterable[str]) -> dict[str, Array]:
@@ -53,10 +54,12 @@ def mesh_attributes(mesh: Any, names: Iterable[str]) -> dict[str, Array]:
 def _attribute(mesh: Any, name: str) -> Array | None:
     if name.startswith(TANGENT):
         return _tangents(mesh, name.removeprefix(TANGENT))
-    if name.startswith(INSTANCE_COLOR):
-        return _color(mesh, name.removeprefix(INSTANCE_COLOR))
+    if name.startswith(COLOR):
+        return _color(mesh, name.removeprefix(COLOR))
     if name == GENERATED:
         return _generated(mesh)
+    if name in SHAPES:
+        return SHAPES[name](mesh).astype(np.float32)[_corners(mesh, "vertices")][..., None]
     uvs = _uvs(mesh, name)
     if uvs is not None:
         return uvs
@@ -136,6 +139,12 @@ def _generated(mesh: Any) -> Array:
     return unit.astype(np.float32)[_corners(mesh, "vertices")]
 
 
-def object_values(instance: Any, seen: Any) -> list[float]:
-    """The numbers of `ObjectValue` of an instance of the depsgraph; the material's number is not known here."""
-    return [*seen.color, float(seen.pass_index), 0.0, float(instance.random_id & 0xFFFFFFFF) / 0xFFFFFFFF]
+def attribute_component(values: Array, component: int) -> Array:
+    """A component of numbers (…, c) as programs read it: RGBA, and the mean of RGB; one number is a grey."""
+    count = values.shape[-1]
+    if component == 4:
+        return values[..., 0] if count == 1 else values[..., :3].sum(axis=-1) / 3.0
+    if component < count:
+        return values[..., component]
+    grey = count == 1 and component < 3
+    return values[..., 0] if grey else np.full(values.shape[:-1], float(component == 3), dtype=np.float32)

@@ -15,8 +15,9 @@ import shlight
 
 from ..compat import slot_materials, smooth_corner_normals
 from ..report import Effect, ExportReport
+from .expressions import Surroundings
 from .materials import Surface, read_material
-from .mesh_attributes import mesh_attributes
+from .mesh_attributes import COLOR, mesh_attributes
 from .textured_meshes import MeshArrays, with_even_emission
 
 FloatArray = NDArray[np.float32]
@@ -35,6 +36,7 @@ class MeshUse:
     arrays: MeshArrays
     surfaces: list[Surface]
     transforms: list[NDArray[np.float64]] = field(default_factory=list)
+    object_values: list[list[float]] = field(default_factory=list)
 
 
 def mesh_arrays(mesh: Any) -> MeshArrays | None:
@@ -78,14 +80,16 @@ def _repaired(normals: FloatArray, vertices: FloatArray, triangles: NDArray[np.i
 class MeshCollector:
     """Gathers the meshes of a depsgraph and hands them to a scene."""
 
-    def __init__(self, report: ExportReport, material_override: Any = None) -> None:
+    def __init__(self, report: ExportReport, surroundings: Surroundings, material_override: Any = None) -> None:
         self._report = report
+        self._surroundings = surroundings
         self._override = material_override
         self._uses: dict[tuple[Any, ...], MeshUse | None] = {}
         self._surfaces: dict[Any, Surface] = {}
 
-    def add(self, mesh_object: Any, to_world: NDArray[np.float64]) -> None:
-        """Notes one evaluated mesh object (or instance) at `to_world`."""
+    def add(self, instance: Any, to_world: NDArray[np.float64]) -> None:
+        """Notes one instance of the depsgraph that shows a mesh, at `to_world`."""
+        mesh_object = instance.object
         place = f"Object '{mesh_object.name}'"
         if not np.isfinite(to_world).all():
             self._report.add(place, "its transform is not finite; left out", Effect.THING)
@@ -93,14 +97,16 @@ class MeshCollector:
         materials = slot_materials(mesh_object)
         key = (mesh_object.data.as_pointer(), *(material and material.as_pointer() for material in materials))
         if key not in self._uses:
-            self._uses[key] = self._convert(mesh_object, to_world, place, materials)
+            self._uses[key] = self._convert(instance, to_world, place, materials)
         use = self._uses[key]
         if use is not None:
             use.transforms.append(to_world)
+            use.object_values.append(self._surroundings.object_values.of(instance))
 
     def _convert(
-        self, mesh_object: Any, to_world: NDArray[np.float64], place: str, materials: Sequence[Any]
+        self, instance: Any, to_world: NDArray[np.float64], place: str, materials: Sequence[Any]
     ) -> MeshUse | None:
+        mesh_object = instance.object
         surfaces = [self._surface(material) for material in materials or [None]]
         mesh = mesh_object.to_mesh()
         try:
@@ -108,7 +114,11 @@ class MeshCollector:
             if arrays is not None:
                 names = dict.fromkeys(name for surface in surfaces for name in surface.shader.attribute_names)
                 arrays.attributes = mesh_attributes(mesh, names)
-                self._report_missing(mesh_object, [name for name in names if name not in arrays.attributes])
+                missing = [name for name in names if name not in arrays.attributes]
+                self._report_missing(mesh_object, missing)
+                # A missing colour is transparent black, other missing attributes have an alpha of 1.
+                black = np.zeros((len(arrays.triangles), 3, 4), dtype=np.float32)
+                arrays.attributes |= {name: black for name in missing if name.startswith(COLOR)}
         finally:
             mesh_object.to_mesh_clear()
         if arrays is None:
@@ -120,7 +130,9 @@ class MeshCollector:
             arrays.normals = None
         if any(surface.varying is not None for surface in surfaces):
             remark = partial(self._report.add, place)
-            arrays, surfaces = with_even_emission(arrays, surfaces, to_world, remark)
+            arrays, surfaces = with_even_emission(
+                arrays, surfaces, to_world, self._surroundings.object_values.of(instance), remark
+            )
         return MeshUse(place, arrays, surfaces)
 
     def _report_missing(self, mesh_object: Any, names: Sequence[str]) -> None:
@@ -133,7 +145,7 @@ class MeshCollector:
         material = self._override or material
         key = material and material.as_pointer()
         if key not in self._surfaces:
-            self._surfaces[key] = read_material(material, self._report)
+            self._surfaces[key] = read_material(material, self._report, self._surroundings)
         return self._surfaces[key]
 
     def hand_over(self, scene: shlight.Scene) -> bool:
@@ -155,7 +167,7 @@ class MeshCollector:
         if lights >= MANY_EMITTERS:
             text = f"its emissive faces are up to {lights} lights, which take long to render"
             self._report.add(use.place, text, Effect.SLIGHT)
-        for arrays, transforms in standing(use):
+        for arrays, transforms, values in standing(use):
             scene.add_mesh(
                 arrays.vertices,
                 arrays.triangles,
@@ -165,24 +177,31 @@ class MeshCollector:
                 emission=emission if emits else None,
                 material_indices=indices,
                 transforms=transforms,
+                object_values=values,
             )
         return emits
 
 
-def standing(use: MeshUse) -> list[tuple[MeshArrays, NDArray[np.float64] | None]]:
-    """A mesh with its transforms, and one flattened copy for each transform without inverse (an axis of scale 0)."""
+Standing = tuple[MeshArrays, NDArray[np.float64] | None, NDArray[np.float64] | None]
+
+
+def standing(use: MeshUse) -> list[Standing]:
+    """A mesh with its transforms and their object values, and one flattened copy for each transform without inverse."""
+    most = max(len(values) for values in use.object_values)
+    values = np.array([[*own, *[0.0] * (most - len(own))] for own in use.object_values]) if most else None
     transforms = np.array(use.transforms)
     linear = transforms[:, :3, :3]
     volume = np.abs(np.linalg.det(linear))
     size = np.linalg.norm(linear, axis=1).max(axis=1)
     regular = volume > 1e-9 * size**3
-    parts: list[tuple[MeshArrays, NDArray[np.float64] | None]] = []
+    parts: list[Standing] = []
     if regular.any():
-        parts.append((use.arrays, transforms[regular]))
-    for transform in transforms[~regular]:
+        parts.append((use.arrays, transforms[regular], None if values is None else values[regular]))
+    for i in np.flatnonzero(~regular):
+        transform = transforms[i]
         vertices = use.arrays.vertices @ transform[:3, :3].T + transform[:3, 3]
         if np.linalg.matrix_rank(vertices - vertices[0]) < 2:
             continue  # a line or a point shows nothing
         flat = replace(use.arrays, vertices=vertices.astype(np.float32), normals=None)
-        parts.append((flat, None))
+        parts.append((flat, None, None if values is None else values[i : i + 1]))
     return parts

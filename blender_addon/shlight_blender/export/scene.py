@@ -13,6 +13,7 @@ from ..frame import Frame, frame_of
 from ..report import Effect, ExportError, ExportReport
 from .bake import Waiting
 from .camera import set_camera
+from .expressions import Surroundings
 from .image_pixels import TEXTURES
 from .lights import add_lamp
 from .meshes import MeshCollector
@@ -71,10 +72,10 @@ def export_scene(
     if camera.type != "CAMERA":
         raise ExportError(f"the active camera of scene '{blender_scene.name}', '{camera.name}', is not a camera")
     scene = shlight.Scene()
-    set_camera(scene, camera.evaluated_get(depsgraph), depsgraph, frame, blender_scene.render, report)
+    view = set_camera(scene, camera.evaluated_get(depsgraph), depsgraph, frame, blender_scene.render, report)
     report_unsupported_settings(blender_scene, depsgraph.view_layer_eval, report)
     lit = add_world(scene, blender_scene, depsgraph.view_layer_eval, report, waiting)
-    lit |= _add_objects(scene, depsgraph, report)
+    lit |= _add_objects(scene, depsgraph, Surroundings(view, depsgraph), report)
     return ExportedScene(scene, report, "" if lit else _report_darkness(blender_scene, report))
 
 
@@ -87,9 +88,9 @@ def _report_darkness(blender_scene: Any, report: ExportReport) -> str:
     return f"{place}: {text}"
 
 
-def _add_objects(scene: shlight.Scene, depsgraph: Any, report: ExportReport) -> bool:
+def _add_objects(scene: shlight.Scene, depsgraph: Any, surroundings: Surroundings, report: ExportReport) -> bool:
     """Adds all meshes and lamps; True if something gives light."""
-    meshes = MeshCollector(report, depsgraph.view_layer_eval.material_override)
+    meshes = MeshCollector(report, surroundings, depsgraph.view_layer_eval.material_override)
     lit = False
     for instance in depsgraph.object_instances:
         seen = instance.object
@@ -99,10 +100,10 @@ def _add_objects(scene: shlight.Scene, depsgraph: Any, report: ExportReport) -> 
         instancer = instance.parent if instance.is_instance else None
         if seen.type == "LIGHT":
             _report_light_linking((seen, instancer), f"Light '{seen.name}'", report)
-            lit |= add_lamp(scene, seen, to_world, report, instancer)
+            lit |= add_lamp(scene, seen, to_world, report, surroundings, instancer)
         elif seen.type == "MESH":
             _report_object(seen, instancer, report)
-            meshes.add(seen, to_world)
+            meshes.add(instance, to_world)
         elif seen.type in UNSUPPORTED_TYPES:
             text = f"{UNSUPPORTED_TYPES[seen.type]} are not supported; left out"
             report.add(f"Object '{seen.name}'", text, Effect.THING)

@@ -22,6 +22,7 @@ class RenderSettings:
     tolerance: float
     pixel_samples: int
     shadow_rays: int
+    transparent_bounces: int
     threads: int
 
     def arguments(self) -> dict[str, Any]:
@@ -38,6 +39,7 @@ def render_settings(scene: Any) -> RenderSettings:
         tolerance=float(settings.tolerance),
         pixel_samples=int(settings.pixel_samples),
         shadow_rays=int(settings.shadow_rays) if settings.use_shadows else 0,
+        transparent_bounces=int(scene.cycles.transparent_max_bounces) if hasattr(scene, "cycles") else 8,
         threads=int(render.threads) if render.threads_mode == "FIXED" else 0,
     )
 

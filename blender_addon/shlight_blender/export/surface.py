@@ -12,7 +12,8 @@ from shlight.nodes import Shader, Vector
 from shlight.nodes.values import number
 
 from ..report import Effect, ExportReport
-from .expressions import ExpressionReader, NodeInputs, ReadNode, own_value
+from .expressions import ExpressionReader, NodeInputs, ReadNode, Surroundings, own_value
+from .frame_nodes import FRAME_NODES
 from .image_nodes import image_texture
 from .input_nodes import INPUT_NODES
 from .nodes import Origin, origin
@@ -22,6 +23,7 @@ NODES: dict[str, ReadNode] = {
     "VALUE": lambda inputs: own_value(inputs.output),
     "RGB": lambda inputs: own_value(inputs.output),
     "TEX_IMAGE": image_texture,
+    **FRAME_NODES,
     **INPUT_NODES,
     **VALUE_NODES,
 }
@@ -50,8 +52,15 @@ class ShaderInputs(NodeInputs):
 class ShaderReader(ExpressionReader):
     """Reads a tree's shaders; `shaders` says how a node of each type is read."""
 
-    def __init__(self, place: str, report: ExportReport, shaders: dict[str, ReadShader]) -> None:
-        super().__init__(place, report, NODES)
+    def __init__(
+        self,
+        owner: Any,
+        place: str,
+        report: ExportReport,
+        surroundings: Surroundings,
+        shaders: dict[str, ReadShader],
+    ) -> None:
+        super().__init__(owner, place, report, surroundings, NODES)
         self._shaders = shaders
         self._made: dict[tuple[Any, ...], Shader] = {}
 

@@ -91,7 +91,9 @@ def _name_of(entry: Input) -> str:
 
 def _inputs_at(places: Array) -> dict[Input, Array]:
     """What a program reads at places (n, 2) of the lamp: its UV map, if it has one here, and Parametric."""
-    inputs: dict[Input, Array] = {("barycentric", 0, i): places[:, i] for i in range(2)}
+    x, y = places.T
+    # As if the lamp were a triangle whose corners 0 and 1 lie along its x and y.
+    inputs: dict[Input, Array] = {("barycentric", 0, 0): y, ("barycentric", 0, 1): 1.0 - x - y}
     if LAMPS.area_has_uvs:
         inputs |= {("attribute", "", i): places[:, i] for i in range(2)}
     return inputs

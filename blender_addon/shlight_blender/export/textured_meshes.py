@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from .emission import Input, VaryingEmission
 from .emission_pieces import MOST_PIECES, TOLERANCE, Colors, Pieces, cut, sampling_levels, share_colors
 from .materials import Surface
+from .mesh_attributes import attribute_component
 
 FloatArray = NDArray[np.float32]
 Array = NDArray[np.float64]
@@ -34,18 +35,18 @@ class MeshArrays:
 
 
 def with_even_emission(
-    arrays: MeshArrays, surfaces: list[Surface], to_world: Array, remark: Remark
+    arrays: MeshArrays, surfaces: list[Surface], to_world: Array, object_values: Sequence[float], remark: Remark
 ) -> tuple[MeshArrays, list[Surface]]:
     """The mesh with all varying emission in pieces of even light, and a surface for each colour of them.
 
-    to_world: where emission that depends on the place is looked up.
+    to_world, object_values: of the instance where emission that depends on the place or the object is looked up.
     """
     slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)
     varying = [slot for slot in np.unique(slots) if surfaces[slot].varying is not None]
     made, parts = list(surfaces), [_chosen(arrays, ~np.isin(slots, varying), slots)]
     for slot in varying:
         part = _chosen(arrays, slots == slot, slots)
-        pieces = _cut_surface(part, surfaces[slot].varying, to_world, MOST_PIECES // len(varying))
+        pieces = _cut_surface(part, surfaces[slot].varying, to_world, object_values, MOST_PIECES // len(varying))
         colors = share_colors(pieces.radiance, pieces.area)
         _report_error(pieces, colors, remark)
         parts.append(_of_pieces(part, pieces, len(made) + colors.color_of))
@@ -63,12 +64,14 @@ def _report_error(pieces: Pieces, colors: Colors, remark: Remark) -> None:
         )
 
 
-def _cut_surface(part: MeshArrays, emission: VaryingEmission | None, to_world: Array, most: int) -> Pieces:
+def _cut_surface(
+    part: MeshArrays, emission: VaryingEmission | None, to_world: Array, object_values: Sequence[float], most: int
+) -> Pieces:
     assert emission is not None
     corners = part.vertices[part.triangles].astype(np.float64)
     area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     inputs = list(dict.fromkeys(emission.inputs))
-    known = np.stack([_at_corners(part, corners, to_world, entry) for entry in inputs], axis=2)
+    known = np.stack([_at_corners(part, corners, to_world, object_values, entry) for entry in inputs], axis=2)
     count = 3 * len(corners)
     at_corners = {entry: known[:, :, i].reshape(-1) for i, entry in enumerate(inputs)}
     texels = [places.reshape(-1, 3, 2) for places in emission.texels(at_corners, count)]
@@ -80,7 +83,9 @@ def _cut_surface(part: MeshArrays, emission: VaryingEmission | None, to_world: A
     return cut(radiance, known, levels, area, most)
 
 
-def _at_corners(part: MeshArrays, corners: Array, to_world: Array, entry: Input) -> Array:
+def _at_corners(
+    part: MeshArrays, corners: Array, to_world: Array, object_values: Sequence[float], entry: Input
+) -> Array:
     """A number that a program reads, at the corners (k, 3); it is linear between them, or taken to be."""
     source, index, component = entry
     places = corners @ to_world[:3, :3].T + to_world[:3, 3]
@@ -88,14 +93,16 @@ def _at_corners(part: MeshArrays, corners: Array, to_world: Array, entry: Input)
         return places[..., component]
     if source == "attribute":
         values = part.attributes.get(str(index))
-        if values is None or component >= values.shape[2]:
+        if values is None:
             return np.zeros(corners.shape[:2])
-        return values[..., component].astype(np.float64)
+        return np.broadcast_to(attribute_component(values, component).astype(np.float64), corners.shape[:2])
     if source in ("object_to_world", "world_to_object"):
         matrix = to_world if source == "object_to_world" else np.linalg.pinv(to_world)
         return np.full(corners.shape[:2], matrix[component // 4, component % 4])
     if source == "barycentric":
         return np.broadcast_to(np.eye(3)[1 + component], corners.shape[:2])
+    if source == "object_value" and int(index) < len(object_values):
+        return np.full(corners.shape[:2], object_values[int(index)])
     face = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
     face /= np.maximum(np.linalg.norm(face, axis=1, keepdims=True), 1e-30)
     if source in ("normal", "geometric_normal", "towards_viewer"):

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -21,14 +23,14 @@ from shlight.nodes.colors import (
     rgb_from_hsl,
     rgb_from_hsv,
 )
-from shlight.nodes.mathematics import MATH, VECTOR_MATH, clamp_range, map_range, mapping
+from shlight.nodes.mathematics import MATH, VECTOR_MATH, clamp_range, map_range, mapping, rotate, rotate_euler
 from shlight.nodes.program import Table
 from shlight.nodes.values import clamp, operation
 
 from .expressions import NodeInputs, ReadNode
 
 # As many entries as Cycles reads of ramps and curves.
-TABLE_SIZE = 256
+TABLE_SIZE = 257
 
 
 def _clamped(inputs: NodeInputs, result: Any) -> Any:
@@ -51,19 +53,18 @@ def _vector_math(inputs: NodeInputs) -> Value | Vector:
 
 def _mix(inputs: NodeInputs) -> Value | Vector:
     node = inputs.node
-    sockets = {socket.identifier: i for i, socket in enumerate(node.inputs)}
     suffix = {"FLOAT": "Float", "VECTOR": "Vector", "RGBA": "Color"}.get(node.data_type)
     if suffix is None:
         inputs.remark(f"data type {node.data_type} is not supported; 0 is used")
         return nodes.values.number(0.0)
     uniform = node.data_type != "VECTOR" or node.factor_mode == "UNIFORM"
-    a, b = (sockets[f"{letter}_{suffix}"] for letter in "AB")
+    a, b = (f"{letter}_{suffix}" for letter in "AB")
     if not uniform:
-        share = inputs.vector(sockets["Factor_Vector"])
+        share = inputs.vector("Factor_Vector")
         share = Vector(*(clamp(t) for t in share)) if node.clamp_factor else share
         first, second = inputs.vector(a), inputs.vector(b)
         return first * (1.0 - share) + second * share
-    factor = inputs.number(sockets["Factor_Float"])
+    factor = inputs.number("Factor_Float")
     factor = clamp(factor) if node.clamp_factor else factor
     if node.data_type == "RGBA":
         return _blended(inputs, inputs.color(a), inputs.color(b), factor, node.clamp_result)
@@ -89,9 +90,8 @@ def _map_range(inputs: NodeInputs) -> Value | Vector:
         steps = inputs.number("Steps")
         given = (inputs.number(name) for name in names)
         return map_range(*given, interpolation=kind, steps=steps, clamped=node.clamp)
-    sockets = {socket.identifier: i for i, socket in enumerate(node.inputs)}
     ends = ("Vector", "From_Min_FLOAT3", "From_Max_FLOAT3", "To_Min_FLOAT3", "To_Max_FLOAT3", "Steps_FLOAT3")
-    columns = zip(*(inputs.vector(sockets[name]) for name in ends), strict=True)
+    columns = zip(*(inputs.vector(name) for name in ends), strict=True)
     return Vector(*(map_range(*c[:5], interpolation=kind, steps=c[5], clamped=node.clamp) for c in columns))
 
 
@@ -107,51 +107,64 @@ def _color_ramp(inputs: NodeInputs) -> Color | Value:
     return found.alpha if inputs.output.name == "Alpha" else found
 
 
-def _curve(mapping_: Any, curve: Any, value: Value, low: float, high: float) -> Value:
-    """A curve over low … high, as a table; beyond its ends as the mapping extends it."""
-    table = np.array([mapping_.evaluate(curve, low + (high - low) * i / TABLE_SIZE) for i in range(TABLE_SIZE + 1)])
-    place = (value - low) / (high - low)
-    inside = operation("table1", place, data=Table(table))
-    if mapping_.extend != "EXTRAPOLATED":
-        return inside
-    first, last = float(table[1] - table[0]) * TABLE_SIZE, float(table[-1] - table[-2]) * TABLE_SIZE
-    below = float(table[0]) + place * first
-    above = float(table[-1]) + (place - 1.0) * last
-    return nodes.values.select(place < 0.0, below, nodes.values.select(place > 1.0, above, inside))
+Function = Callable[[float], float]
 
 
-def _curve_range(mapping_: Any, curves: Any) -> tuple[float, float]:
-    points = [point.location[0] for curve in curves for point in curve.points]
-    return min([0.0, *points]), max([1.0, *points])
+@dataclass(frozen=True)
+class CurveRange:
+    """The interval in which Cycles tabulates the curves of a node, and how they go on beyond it."""
+
+    low: float
+    high: float
+    extrapolates: bool
+
+    def curve(self, evaluate: Function, value: Value) -> Value:
+        """A function of one number as a table."""
+        steps = TABLE_SIZE - 1
+        table = np.array([evaluate(float(x)) for x in np.linspace(self.low, self.high, TABLE_SIZE)])
+        place = (value - self.low) / (self.high - self.low)
+        inside = operation("table1", place, data=Table(table))
+        if not self.extrapolates:
+            return inside
+        below = float(table[0]) + place * (float(table[1] - table[0]) * steps)
+        above = float(table[-1]) + (place - 1.0) * (float(table[-1] - table[-2]) * steps)
+        return nodes.values.select(place < 0.0, below, nodes.values.select(place > 1.0, above, inside))
+
+
+def _curves(inputs: NodeInputs) -> tuple[CurveRange, list[Function]]:
+    """The range and the functions of a node's curves."""
+    mapping_ = inputs.node.mapping
+    mapping_.initialize()
+    ends = [curve.points[i].location[0] for curve in mapping_.curves for i in (0, len(curve.points) - 1)]
+    low, high = min(ends), max(ends)
+    if not low < high:
+        low, high = 0.0, 1.0
+    functions: list[Function] = [partial(mapping_.evaluate, curve) for curve in mapping_.curves]
+    return CurveRange(low, high, mapping_.extend == "EXTRAPOLATED"), functions
+
+
+def _after(second: Function, first: Function) -> Function:
+    return lambda x: second(first(x))
 
 
 def _rgb_curves(inputs: NodeInputs) -> Color:
-    mapping_ = inputs.node.mapping
-    mapping_.initialize()
-    *channels, whole = mapping_.curves[0], mapping_.curves[1], mapping_.curves[2], mapping_.curves[3]
-    low, high = _curve_range(mapping_, mapping_.curves)
+    spread, (*channels, whole) = _curves(inputs)
     own, t = inputs.color("Color"), inputs.number("Fac")
-    changed = []
-    for channel, value in zip(channels, own, strict=True):
-        changed.append(_curve(mapping_, channel, _curve(mapping_, whole, value, low, high), low, high))
+    changed = [spread.curve(_after(f, whole), value) for f, value in zip(channels, own, strict=True)]
     return Color(*((1.0 - t) * a + t * b for a, b in zip(own, changed, strict=True)))
 
 
 def _vector_curves(inputs: NodeInputs) -> Vector:
-    mapping_ = inputs.node.mapping
-    mapping_.initialize()
-    low, high = _curve_range(mapping_, mapping_.curves)
+    spread, functions = _curves(inputs)
     own, t = inputs.vector("Vector"), inputs.number("Fac")
-    changed = [_curve(mapping_, curve, value, low, high) for curve, value in zip(mapping_.curves, own, strict=False)]
+    changed = [spread.curve(f, value) for f, value in zip(functions[:3], own, strict=True)]
     return Vector(*((1.0 - t) * a + t * b for a, b in zip(own, changed, strict=True)))
 
 
 def _float_curve(inputs: NodeInputs) -> Value:
-    mapping_ = inputs.node.mapping
-    mapping_.initialize()
+    spread, functions = _curves(inputs)
     own, t = inputs.number("Value"), inputs.number("Factor")
-    low, high = _curve_range(mapping_, mapping_.curves)
-    return (1.0 - t) * own + t * _curve(mapping_, mapping_.curves[0], own, low, high)
+    return (1.0 - t) * own + t * spread.curve(functions[0], own)
 
 
 def _component(inputs: NodeInputs, v: Vector) -> Value:
@@ -169,6 +182,16 @@ def _combine_color(inputs: NodeInputs) -> Color:
     mode = getattr(inputs.node, "mode", "RGB")
     own = Color(*(inputs.number(i) for i in range(3)))
     return _TO_RGB[mode](own)
+
+
+def _vector_rotate(inputs: NodeInputs) -> Vector:
+    node, v, center = inputs.node, inputs.vector("Vector"), inputs.vector("Center")
+    if node.rotation_type == "EULER_XYZ":
+        return rotate_euler(v - center, inputs.vector("Rotation"), invert=node.invert) + center
+    axes = {"X_AXIS": Vector(1.0, 0.0, 0.0), "Y_AXIS": Vector(0.0, 1.0, 0.0), "Z_AXIS": Vector(0.0, 0.0, 1.0)}
+    axis = axes.get(node.rotation_type) or inputs.vector("Axis")
+    angle = inputs.number("Angle")
+    return rotate(v - center, axis, -angle if node.invert else angle) + center
 
 
 def _hue_saturation(inputs: NodeInputs) -> Color:
@@ -211,6 +234,7 @@ VALUE_NODES: dict[str, ReadNode] = {
     "INVERT": lambda inputs: invert(inputs.color("Color"), inputs.number("Fac")),
     "RGBTOBW": lambda inputs: inputs.color("Color").as_number(),
     "NORMAL": _normal,
+    "VECTOR_ROTATE": _vector_rotate,
     "MAPPING": lambda i: mapping(
         i.vector("Vector"),
         i.vector("Location") if "Location" in i.node.inputs else Vector(0.0, 0.0, 0.0),

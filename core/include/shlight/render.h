@@ -27,14 +27,13 @@ struct RenderSettings {
     /// %, or where a neighbour saw something that may have been missed. One ray per pixel cannot disagree and stays
     /// one.
     bool adaptive = true;
-    /// Surfaces that a ray passes through as far as they are transparent, at most; the next one ends it.
+    /// Surfaces that a shadow ray passes through as far as they are transparent, at most; a camera ray passes one more.
     int transparent_bounces = 8;
 };
 
 /// Throws std::invalid_argument naming the member or argument: order outside 0 … 64, tolerance ≤ 0 or not finite,
 /// pixel_samples outside 1 … 2^20, shadow_rays outside 0 … 2^20, more than 2^22 of both per pixel, transparent_bounces
-/// outside 0 … 1024, threads < 0,
-/// width or height < 1, or more than 2^28 pixels.
+/// outside 0 … 1024, threads < 0, width or height < 1, or more than 2^28 pixels.
 void check_render(const RenderSettings& settings, int width, int height);
 
 /// image: height × width × RGBA, row 0 on top, linear, premultiplied, the mean of all camera rays of each pixel; alpha

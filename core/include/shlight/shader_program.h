@@ -26,17 +26,19 @@ enum class ShaderSource : std::uint8_t {
     normal,            ///< 3: the smooth normal
     geometric_normal,  ///< 3
     towards_viewer,    ///< 3: unit
-    attribute,         ///< up to 4: the mesh attribute that the material binds to `index`; 0 if there is none
+    attribute,         ///< 4: the mesh attribute that the material binds to `index` as RGBA, and the mean of RGB; black if there is none
     object_to_world,   ///< 12: the first three rows of the instance's matrix
     world_to_object,   ///< 12
     object_value,      ///< 1: number `index` of the instance; 0 if there is none
     barycentric,       ///< 2: u and v of RayHit
     backfacing,        ///< 1: 1 where the triangle's corners run clockwise, else 0
-    ray_length,        ///< 1: from the start of the ray
+    ray_length,        ///< 1: from where the ray begins, of a camera ray its near plane
     shadow_ray,        ///< 1: 1 for rays from a surface to a light, 0 for camera rays
     transparent_depth  ///< 1: surfaces that the ray has passed through
 };
 inline constexpr int kShaderSources = 13;
+/// Component of an attribute: the mean of its RGB, and of one number that number.
+inline constexpr std::uint32_t kAttributeMean = 4;
 
 struct ShaderInput {
     ShaderSource source;

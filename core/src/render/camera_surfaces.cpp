@@ -78,7 +78,7 @@ void CameraSurfaces::meet(std::span<const CameraRay> rays, std::uint32_t depth, 
 }
 
 ShadedPlace CameraSurfaces::place_of(const Surface& surface, const CameraRay& ray, bool with_neighbours) const {
-    ShadedPlace place = {{}, surface.ray_length, false, surface.depth};
+    ShadedPlace place = {{}, surface.ray_length - ray.ray.t_min, false, surface.depth};
     place.at.fill({surface.hit, surface.point.position, surface.towards_viewer});
     if (with_neighbours) {
         const Vec3d& normal = surface.point.geometric_normal;
@@ -167,7 +167,7 @@ void CameraSurfaces::pass_on(std::size_t first, std::vector<RayLight>& light) {
         }
         if (material.shader->transparency) {
             throughput_[surface.ray] *= glm::max(color(surface, *material.shader->transparency), Rgb(0));
-            if (surface.depth < transparent_bounces_ && throughput_[surface.ray] != Rgb(0)) {
+            if (surface.depth <= transparent_bounces_ && throughput_[surface.ray] != Rgb(0)) {
                 active_.push_back(surface.ray);
                 segments_.push_back(behind(surface.segment, surface.hit));
             }
@@ -247,6 +247,9 @@ void CameraSurfaces::add_lobes(const CameraRay& ray, const Surface& surface, con
 }
 
 void CameraSurfaces::add_hit(const CameraRay& ray, const Surface& surface, Hits& hits) {
+    if (surface.depth > transparent_bounces_) {
+        return;
+    }
     const Material& material = scene_->materials()[surface.point.material];
     if (material.shader != nullptr) {
         add_shaded(ray, surface, *material.shader, hits);

@@ -30,7 +30,8 @@ struct RayLight {
 /// Keeps its memory from batch to batch; one per thread.
 class CameraSurfaces {
   public:
-    /// transparent_bounces: surfaces that a camera ray passes through, at most.
+    /// transparent_bounces: as Cycles counts them, a camera ray passes through one surface more, and of the next one
+    /// it sees the emission alone.
     CameraSurfaces(const CompiledScene& scene, std::span<const MaterialLobes> materials,
                    std::uint32_t transparent_bounces)
         : scene_(&scene), materials_(materials), transparent_bounces_(transparent_bounces) {}

@@ -32,6 +32,9 @@ std::vector<Vec3f> moved(const std::vector<Vec3f>& vertices, const glm::dmat4& t
     return result;
 }
 
+/// Component of an attribute as RGBA; 1 where it is not given.
+constexpr int kAlpha = 3;
+
 Vec3d normalized_or(const Vec3d& v, const Vec3d& fallback) {
     const double length = glm::length(v);
     return length > 0 && std::isfinite(length) ? v / length : fallback;
@@ -149,14 +152,19 @@ SurfacePlace PlacedMeshes::neighbour(const SurfacePlace& place, const Vec3d& nor
 }
 
 float PlacedMeshes::attribute(const MeshAttribute& attribute, std::uint32_t component, const RayHit& hit) const {
+    if (component == kAttributeMean) {
+        const auto at = [&](std::uint32_t i) { return this->attribute(attribute, i, hit); };
+        return attribute.components == 1 ? at(0) : (at(0) + at(1) + at(2)) * (1 / 3.0F);
+    }
     const Mesh& mesh = *meshes_[placements_[hit.instance].mesh].mesh;
     const std::size_t count = attribute.values.size() / attribute.components;
-    const auto value = [&](std::size_t index) { return attribute.values[index * attribute.components + component]; };
+    const std::uint32_t own = attribute.components == 1 && component < 3 ? 0 : component;
+    const auto value = [&](std::size_t index) { return attribute.values[index * attribute.components + own]; };
     const std::size_t triangle = hit.triangle;
     const Triangle& vertices = mesh.triangles[triangle];
     const std::array<double, 3> weights = weights_of(hit);
-    if (component >= attribute.components || count == 0) {
-        return 0;
+    if (own >= attribute.components || count == 0) {
+        return component == kAlpha ? 1.0F : 0.0F;
     }
     double sum = 0;
     if (count == 3 * mesh.triangles.size()) {
@@ -192,8 +200,10 @@ float PlacedMeshes::number(const ShaderInput& input, const std::vector<std::uint
         case ShaderSource::attribute: {
             const std::uint32_t index =
                 input.index < attributes.size() ? attributes[input.index] : MeshShader::kNoAttribute;
-            return index == MeshShader::kNoAttribute ? 0.0F
-                                                     : attribute(mesh.attributes[index], input.component, at.hit);
+            if (index == MeshShader::kNoAttribute) {
+                return component == kAlpha ? 1.0F : 0.0F;
+            }
+            return attribute(mesh.attributes[index], input.component, at.hit);
         }
         case ShaderSource::object_to_world:
             return matrix_number(placement.to_world, input.component);

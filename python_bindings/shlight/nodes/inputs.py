@@ -58,8 +58,13 @@ def uv(name: str = "uvs") -> Vector:
 
 
 def attribute(name: str) -> Color:
-    """The numbers that `Scene.add_mesh` got under this name as a colour; 0 if there are none. One number is its red."""
+    """The numbers that `Scene.add_mesh` got under this name as a colour: one number is a grey, none are black."""
     return Color(*(read("attribute", component, name) for component in range(4)))
+
+
+def attribute_mean(name: str) -> Value:
+    """The mean of an attribute's first three numbers; one number as it is."""
+    return read("attribute", 4, name)
 
 
 def object_value(index: int) -> Value:

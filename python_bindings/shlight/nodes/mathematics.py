@@ -226,18 +226,27 @@ def _rotation(angles: Vector) -> tuple[Vector, Vector, Vector]:
     )
 
 
+def rotate_euler(v: Vector, angles: Vector, *, invert: bool = False) -> Vector:
+    """A vector, turned about x, then y, then z; or back."""
+    rows = _rotation(angles)
+    turned = zip(*rows, strict=True) if invert else rows
+    return Vector(*(dot(Vector(*row), v) for row in turned))
+
+
+def rotate(v: Vector, axis: Vector, angle: Number) -> Vector:
+    """A vector, turned about an axis of any length (Rodrigues); as it is where the axis is 0."""
+    size = length(axis)
+    k = axis / size
+    c, s = operation("cosine", angle), operation("sine", angle)
+    turned = v * c + cross(k, v) * s + k * (dot(k, v) * (1.0 - c))
+    return Vector(*(select(size, a, b) for a, b in zip(turned, v, strict=True)))
+
+
 def mapping(v: Vector, location: Vector, rotation: Vector, scale: Vector, kind: str = "point") -> Vector:
     """Blender's Mapping node; kind: "point", "texture", "vector" or "normal"."""
-    rows = _rotation(rotation)
-
-    def turned(w: Vector) -> Vector:
-        return Vector(*(dot(row, w) for row in rows))
-
     if kind == "texture":
-        w = v - location
-        columns = zip(*rows, strict=True)
-        return Vector(*(dot(Vector(*column), w) for column in columns)) / scale
+        return rotate_euler(v - location, rotation, invert=True) / scale
     if kind == "normal":
-        return normalize(turned(v / scale))
-    placed = turned(v * scale)
+        return normalize(rotate_euler(v / scale, rotation))
+    placed = rotate_euler(v * scale, rotation)
     return placed + location if kind == "point" else placed

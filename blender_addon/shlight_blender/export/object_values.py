@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Numbers of instances that materials read: custom properties, properties of objects, and what Object Info says."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .random_numbers import ALL_BITS, hashed, hashed_text, share
+
+RANDOM = "random"
+COUNT = 4  # numbers of a property: RGBA
+
+
+class ObjectValues:
+    """The properties that the materials of an export ask for; each is `COUNT` values of `nodes.object_value`."""
+
+    def __init__(self) -> None:
+        self._asked: list[tuple[str, str]] = []
+
+    def first(self, kind: str, name: str) -> int:
+        """The number of the first value of a property; kind: as an Attribute node's, or RANDOM."""
+        key = (kind, name)
+        if key not in self._asked:
+            self._asked.append(key)
+        return COUNT * self._asked.index(key)
+
+    def of(self, instance: Any) -> list[float]:
+        """All values of an instance of the depsgraph."""
+        return [value for kind, name in self._asked for value in _values(instance, kind, name)]
+
+
+def _values(instance: Any, kind: str, name: str) -> tuple[float, ...]:
+    if kind == RANDOM:
+        own = hashed(hashed_text(instance.object.name), 0)
+        return (share(instance.random_id & ALL_BITS if instance.is_instance else own), 0.0, 0.0, 0.0)
+    owners = [instance.object, instance.object.data]
+    if kind == "INSTANCER" and instance.is_instance:
+        owners.insert(0, instance.parent)
+    return property_color(owners, name)
+
+
+def property_color(owners: list[Any], name: str) -> tuple[float, float, float, float]:
+    """A property of the first owner that has it, as RGBA: a custom property or a path; 0 if there is none."""
+    for owner in owners:
+        found = _as_color(_property(owner, name))
+        if found is not None:
+            return found
+    return (0.0, 0.0, 0.0, 0.0)
+
+
+def _property(owner: Any, name: str) -> Any:
+    if owner is None:
+        return None
+    try:
+        return owner[name]
+    except (KeyError, TypeError):
+        pass
+    try:
+        return owner.path_resolve(name)
+    except (ValueError, AttributeError):
+        return None
+
+
+def _as_color(value: Any) -> tuple[float, float, float, float] | None:
+    if value is None or isinstance(value, str):
+        return None
+    try:
+        numbers = np.nan_to_num(np.asarray(value, dtype=np.float64)).ravel()
+    except (TypeError, ValueError):
+        return None
+    if len(numbers) == 0:
+        return None
+    if len(numbers) == 1:
+        return (float(numbers[0]),) * 3 + (1.0,)
+    padded = [*(float(n) for n in numbers[:4]), 0.0][: max(len(numbers), 3)]
+    return (padded[0], padded[1], padded[2], padded[3] if len(numbers) > 3 else 1.0)

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces that let light through, beside Cycles."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+
+def curtain(studio: Any, color: Any, share: float) -> Any:
+    """A material that lets light of `color` pass where it is not diffuse."""
+    made = studio.material("ShaderNodeBsdfTransparent", Color=color)
+    tree = made.node_tree
+    clear, output = tree.nodes["Transparent BSDF"], tree.nodes["Material Output"]
+    mixed, cloth = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeBsdfDiffuse")
+    mixed.inputs[0].default_value = share
+    for i, shader in enumerate((clear, cloth), start=1):
+        tree.links.new(shader.outputs[0], mixed.inputs[i])
+    tree.links.new(mixed.outputs[0], output.inputs["Surface"])
+    return made
+
+
+@pytest.mark.parametrize("bounces", [0, 1, 2, 8])
+def test_layers_seen_up_to_the_limit(studio: Any, bounces: int) -> None:
+    """Five layers before a light surface, of which a camera ray passes as many as Cycles lets it."""
+    own = curtain(studio, (0.9, 0.7, 0.5), 0.3)
+    for i in range(5):
+        studio.plane(2.0, own, location=(0, 0, 0.3 * i))
+    studio.plane(1.0, studio.material("ShaderNodeEmission", Color=(0.2, 0.6, 0.9)), location=(0, 0, -0.3))
+    studio.lamp("POINT", 100, (0.5, -2, 4.0), shadow_soft_size=0.1, use_shadow=False)
+    studio.camera((0, -0.5, 6), (0, 0, 0.4))
+    studio.scene.cycles.transparent_max_bounces = bounces
+    studio.compare(mean=5e-3, error=2e-3)
+
+
+@pytest.mark.parametrize("bounces", [0, 1, 8])
+def test_coloured_shadows(studio: Any, bounces: int) -> None:
+    studio.plane(material=studio.material())
+    for i in range(3):
+        color = np.roll((0.9, 0.6, 0.2), i)
+        studio.plane(1.0, curtain(studio, tuple(color), 0.2), location=(0.2 * i, 0, 1.0 + 0.2 * i))
+    studio.area(150, (0.5, -0.5, 4.0), size=0.5)
+    studio.camera((0, -7, 2.5), (0, 0, 0))
+    studio.scene.cycles.transparent_max_bounces = bounces
+    studio.compare(mean=5e-3, error=2e-3)
