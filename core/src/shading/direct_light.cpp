@@ -145,7 +145,8 @@ void DirectLight::find_strengths(const ShadingPoints& points, std::span<const st
             faces.along({&ray, 1}, met_);
             strength = met_.front();
         } else {
-            strength = face_mean_.of(faces, shape, towards_viewer, frame, values[point], kMeanTolerance * tolerance_);
+            const double tolerance = std::max(tolerance_, views_.lobe(lobe).absolute_tolerance(view) / values[point]);
+            strength = face_mean_.of(faces, shape, towards_viewer, frame, values[point], kMeanTolerance * tolerance);
         }
     }
 }
