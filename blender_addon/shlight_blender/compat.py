@@ -119,6 +119,12 @@ def slot_materials(evaluated: Any) -> tuple[Any, ...]:
 REC709 = "Linear Rec.709"
 
 
+def lets_light_through(material: Any) -> bool:
+    """Whether shadow rays pass a material where it is transparent; otherwise only camera rays do."""
+    owner = material if hasattr(material, "use_transparent_shadow") else getattr(material, "cycles", None)
+    return bool(getattr(owner, "use_transparent_shadow", True))
+
+
 def working_space() -> str:
     """What the file's colours are relative to: since Blender 5.0 it may be another space than Rec. 709."""
     colors = getattr(bpy.data, "colorspace", None)

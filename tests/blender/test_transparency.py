@@ -35,12 +35,13 @@ def test_layers_seen_up_to_the_limit(studio: Any, bounces: int) -> None:
     studio.compare(mean=5e-3, error=2e-3)
 
 
-@pytest.mark.parametrize("bounces", [0, 1, 8])
-def test_coloured_shadows(studio: Any, bounces: int) -> None:
+@pytest.mark.parametrize(("bounces", "is_passed"), [(0, True), (1, True), (8, True), (8, False)])
+def test_coloured_shadows(studio: Any, bounces: int, is_passed: bool) -> None:
     studio.plane(material=studio.material())
     for i in range(3):
-        color = np.roll((0.9, 0.6, 0.2), i)
-        studio.plane(1.0, curtain(studio, tuple(color), 0.2), location=(0.2 * i, 0, 1.0 + 0.2 * i))
+        own = curtain(studio, tuple(np.roll((0.9, 0.6, 0.2), i)), 0.2)
+        setattr(own if hasattr(own, "use_transparent_shadow") else own.cycles, "use_transparent_shadow", is_passed)
+        studio.plane(1.0, own, location=(0.2 * i, 0, 1.0 + 0.2 * i))
     studio.area(150, (0.5, -0.5, 4.0), size=0.5)
     studio.camera((0, -7, 2.5), (0, 0, 0))
     studio.scene.cycles.transparent_max_bounces = bounces

@@ -11,7 +11,7 @@ import numpy as np
 from shlight import nodes
 from shlight.nodes import Shader
 
-from ..compat import MATERIALS, uses_nodes
+from ..compat import MATERIALS, lets_light_through, uses_nodes
 from ..report import Effect, ExportReport
 from .emission import VaryingEmission
 from .expressions import Surroundings
@@ -59,7 +59,11 @@ def read_material(material: Any, report: ExportReport, surroundings: Surrounding
         if socket is not None and origin(socket).node is not None:
             report.add(place, f"{name.lower()} is not supported; left out")
     reader = ShaderReader(material, place, report, surroundings, SHADERS)
-    return with_light(reader.shader(output.inputs["Surface"]), place, report)
+    shader = reader.shader(output.inputs["Surface"])
+    if not lets_light_through(material):
+        camera_ray = 1.0 - nodes.inputs.shadow_ray()
+        shader = replace(shader, transparency=nodes.values.color(shader.transparency * camera_ray))
+    return with_light(shader, place, report)
 
 
 def with_light(shader: Shader, place: str, report: ExportReport) -> Surface:
