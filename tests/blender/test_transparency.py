@@ -40,9 +40,24 @@ def test_coloured_shadows(studio: Any, bounces: int, is_passed: bool) -> None:
     studio.plane(material=studio.material())
     for i in range(3):
         own = curtain(studio, tuple(np.roll((0.9, 0.6, 0.2), i)), 0.2)
-        setattr(own if hasattr(own, "use_transparent_shadow") else own.cycles, "use_transparent_shadow", is_passed)
+        switch = own if hasattr(own, "use_transparent_shadow") else own.cycles
+        switch.use_transparent_shadow = is_passed
         studio.plane(1.0, own, location=(0.2 * i, 0, 1.0 + 0.2 * i))
     studio.area(150, (0.5, -0.5, 4.0), size=0.5)
     studio.camera((0, -7, 2.5), (0, 0, 0))
     studio.scene.cycles.transparent_max_bounces = bounces
     studio.compare(mean=5e-3, error=2e-3)
+
+
+def test_light_that_only_the_camera_sees(studio: Any) -> None:
+    """A mixture by Is Camera Ray: the plate glows but lights nothing, and casts no shadow."""
+    studio.lit_floor()
+    made = studio.material("ShaderNodeEmission", Color=(0.9, 0.5, 0.1), Strength=3.0)
+    tree = made.node_tree
+    mixed, clear = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeBsdfTransparent")
+    tree.links.new(tree.nodes.new("ShaderNodeLightPath").outputs["Is Camera Ray"], mixed.inputs[0])
+    tree.links.new(clear.outputs[0], mixed.inputs[1])
+    tree.links.new(tree.nodes["Emission"].outputs[0], mixed.inputs[2])
+    tree.links.new(mixed.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+    studio.plane(1.0, made, location=(0, 0, 0.5))
+    studio.compare()

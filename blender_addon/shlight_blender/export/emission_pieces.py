@@ -24,8 +24,6 @@ Radiance = Callable[[Array], Array]  # of places (n, c), linear RGB (n, 3)
 # What the pieces and then their colours may leave out: root mean square, as a part of the radiance's own.
 TOLERANCE = 0.05
 MOST_PIECES = 256
-# Of the squared deviation that so many pieces leave: as much more is left where fewer do, for noise no number resolves.
-WORTH = 1.2
 MOST_COLORS = 12
 # Quarterings into parts whose means are kept, at most, and how many more there are to the samples of each mean.
 MOST_LEVELS = 7
@@ -112,7 +110,7 @@ def cut(radiance: Radiance, uvs: Array, levels: IntArray, area: Array, most: int
     """Cuts triangles into pieces of even light, those first whose squared deviation times area is the largest.
 
     uvs: (n, 3, c), what `radiance` is a function of at the corners; levels: (n,), from `sampling_levels`; area: (n,).
-    At most `most` pieces, or n if that is more, and no more than make it much better.
+    At most `most` pieces, or n if that is more.
     """
     kept = np.clip(levels - FINER_LEVELS, 0, MOST_LEVELS)
     while (4.0**kept).sum() > MOST_PARTS and kept.max() > 0:
@@ -122,30 +120,16 @@ def cut(radiance: Radiance, uvs: Array, levels: IntArray, area: Array, most: int
         for triangle, keep, level in zip(uvs, kept, levels, strict=True)
     ]
 
-    whole = sum(a * float(pyramid.squares[0][0]) for a, pyramid in zip(area, pyramids, strict=True))
-    least = TOLERANCE**2 * whole
-    _, left = _quartered(pyramids, area, kept, most, least)
-    places, left = _quartered(pyramids, area, kept, most, max(least, WORTH * left))
-    return _gathered(sorted(places), pyramids, area, _part(left, whole))
-
-
-Place = tuple[int, int, int]  # triangle, level, part
-
-
-def _quartered(
-    pyramids: list[_Pyramid], area: Array, kept: IntArray, most: int, enough: float
-) -> tuple[list[Place], float]:
-    """At most `most` parts, and their squared deviation; no more than bring that down to `enough`."""
-
     def entry(triangle: int, level: int, part: int) -> tuple[float, int, int, int]:
         return (-area[triangle] / 4.0**level * pyramids[triangle].variance(level, part), triangle, level, part)
 
-    waiting = [entry(triangle, 0, 0) for triangle in range(len(pyramids))]
-    heapq.heapify(waiting)
-    left = -sum(piece[0] for piece in waiting)
+    open_pieces = [entry(triangle, 0, 0) for triangle in range(len(uvs))]
+    heapq.heapify(open_pieces)
+    whole = sum(a * float(pyramid.squares[0][0]) for a, pyramid in zip(area, pyramids, strict=True))
+    left = -sum(piece[0] for piece in open_pieces)
     done: list[tuple[float, int, int, int]] = []
-    while waiting and left > enough and len(waiting) + len(done) + 3 <= most:
-        worst, triangle, level, part = heapq.heappop(waiting)
+    while open_pieces and left > TOLERANCE**2 * whole and len(open_pieces) + len(done) + 3 <= most:
+        worst, triangle, level, part = heapq.heappop(open_pieces)
         if level == kept[triangle] or worst == 0.0:
             done.append((worst, triangle, level, part))
             continue
@@ -153,11 +137,11 @@ def _quartered(
         for quarter in range(4 * part, 4 * part + 4):
             piece = entry(triangle, level + 1, quarter)
             left -= piece[0]
-            heapq.heappush(waiting, piece)
-    return [piece[1:] for piece in done + waiting], left
+            heapq.heappush(open_pieces, piece)
+    return _gathered(sorted(piece[1:] for piece in done + open_pieces), pyramids, area, _part(left, whole))
 
 
-def _gathered(places: list[Place], pyramids: list[_Pyramid], area: Array, error: float) -> Pieces:
+def _gathered(places: list[tuple[int, int, int]], pyramids: list[_Pyramid], area: Array, error: float) -> Pieces:
     tables = [corners_at(level) for level in range(1 + max(level for _, level, _ in places))]
     triangles = np.array([triangle for triangle, _, _ in places], dtype=np.int64)
     return Pieces(

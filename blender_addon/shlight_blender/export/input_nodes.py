@@ -121,11 +121,10 @@ def _layer_weight(inputs: NodeInputs) -> Value:
 
 def _light_path(inputs: NodeInputs) -> Value:
     name = inputs.output.name
-    shadow = nodes.inputs.shadow_ray()
     if name == "Is Camera Ray":
-        return 1.0 - shadow
+        return nodes.rays.camera_ray()
     if name == "Is Shadow Ray":
-        return shadow
+        return nodes.rays.shadow_ray()
     if name == "Ray Length":
         return nodes.inputs.ray_length()
     if name == "Transparent Depth":

@@ -10,6 +10,7 @@ import numpy as np
 
 from shlight import nodes
 from shlight.nodes import Shader
+from shlight.nodes.rays import Ray, color_on_ray
 
 from ..compat import MATERIALS, lets_light_through, uses_nodes
 from ..report import Effect, ExportReport
@@ -30,6 +31,13 @@ class Surface:
     shader: Shader = field(default_factory=Shader)
     emission: RGB = field(default_factory=lambda: np.zeros(3))
     varying: VaryingEmission | None = None
+
+    @property
+    def attribute_names(self) -> list[str]:
+        """The mesh attributes that it reads."""
+        given = [] if self.varying is None else self.varying.inputs
+        light = [str(index) for source, index, _ in given if source == "attribute"]
+        return list(dict.fromkeys([*self.shader.attribute_names, *light]))
 
     def emits(self) -> bool:
         """True if it may give light."""
@@ -61,26 +69,26 @@ def read_material(material: Any, report: ExportReport, surroundings: Surrounding
     reader = ShaderReader(material, place, report, surroundings, SHADERS)
     shader = reader.shader(output.inputs["Surface"])
     if not lets_light_through(material):
-        camera_ray = 1.0 - nodes.inputs.shadow_ray()
-        shader = replace(shader, transparency=nodes.values.color(shader.transparency * camera_ray))
+        passes = shader.transparency * (1.0 - nodes.rays.shadow_ray())
+        shader = replace(shader, transparency=nodes.values.color(passes))
     return with_light(shader, place, report)
 
 
 def with_light(shader: Shader, place: str, report: ExportReport) -> Surface:
     """A shader as a surface, and `report` what of its light is not supported."""
-    constant = shader.emission.constant
+    emitted = color_on_ray(shader.emission, Ray.LIGHT)
+    constant = emitted.constant
     if constant is None:
-        varying = VaryingEmission(shader.emission)
+        varying = VaryingEmission(emitted)
         if varying.inputs:
             return Surface(shader, varying=varying)
         constant = tuple(varying.radiance({}, 1)[0])
     light = np.array(constant)
     if not np.isfinite(light).all():
         report.add(place, "the emitted light is not finite; nothing is emitted", Effect.LIGHT)
-        light = np.zeros(3)
     elif (light < 0.0).any():
         report.add(place, "negative emission is not supported; nothing is emitted", Effect.LIGHT)
-        light = np.maximum(light, 0.0)
-    if (light != constant).any():
-        shader = replace(shader, emission=nodes.values.color(light))
-    return Surface(shader, light)
+    else:
+        return Surface(shader, light)
+    light = np.maximum(light, 0.0) if np.isfinite(light).all() else np.zeros(3)
+    return Surface(replace(shader, emission=nodes.values.color(light)), light)

@@ -112,7 +112,7 @@ class MeshCollector:
         try:
             arrays = mesh_arrays(mesh)
             if arrays is not None:
-                names = dict.fromkeys(name for surface in surfaces for name in surface.shader.attribute_names)
+                names = dict.fromkeys(name for surface in surfaces for name in surface.attribute_names)
                 arrays.attributes = mesh_attributes(mesh, names)
                 missing = [name for name in names if name not in arrays.attributes]
                 self._report_missing(mesh_object, missing)

@@ -32,7 +32,6 @@ struct SurfacePlace {
 struct ShadedPlace {
     std::array<SurfacePlace, 3> at;  ///< the hit, to the right, below
     double ray_length;
-    bool shadow_ray;
     std::uint32_t transparent_depth;
 };
 

@@ -33,10 +33,9 @@ enum class ShaderSource : std::uint8_t {
     barycentric,       ///< 2: u and v of RayHit
     backfacing,        ///< 1: 1 where the triangle's corners run clockwise, else 0
     ray_length,        ///< 1: from where the ray begins, of a camera ray its near plane
-    shadow_ray,        ///< 1: 1 for rays from a surface to a light, 0 for camera rays
     transparent_depth  ///< 1: surfaces that the ray has passed through
 };
-inline constexpr int kShaderSources = 13;
+inline constexpr int kShaderSources = 12;
 /// Component of an attribute: the mean of its RGB, and of one number that number.
 inline constexpr std::uint32_t kAttributeMean = 4;
 

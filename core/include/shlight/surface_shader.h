@@ -25,7 +25,7 @@ struct SurfaceShader {
     ShaderProgram program;
     std::vector<ShadedLobe> lobes;
     std::optional<std::uint32_t> emission;      ///< radiance towards the viewer
-    std::optional<std::uint32_t> transparency;  ///< share of the light that goes on straight through
+    std::optional<std::uint32_t> transparency;  ///< share of the light that goes on straight through; none: opaque
     ShaderProgram shadow_program;               ///< the same for shadow rays, its three results
 };
 

@@ -78,7 +78,7 @@ void CameraSurfaces::meet(std::span<const CameraRay> rays, std::uint32_t depth, 
 }
 
 ShadedPlace CameraSurfaces::place_of(const Surface& surface, const CameraRay& ray, bool with_neighbours) const {
-    ShadedPlace place = {{}, surface.ray_length - ray.ray.t_min, false, surface.depth};
+    ShadedPlace place = {{}, surface.ray_length - ray.ray.t_min, surface.depth};
     place.at.fill({surface.hit, surface.point.position, surface.towards_viewer});
     if (with_neighbours) {
         const Vec3d& normal = surface.point.geometric_normal;

@@ -225,8 +225,6 @@ float PlacedMeshes::number(const ShaderInput& input, const std::vector<std::uint
         }
         case ShaderSource::ray_length:
             return static_cast<float>(place.ray_length);
-        case ShaderSource::shadow_ray:
-            return place.shadow_ray ? 1.0F : 0.0F;
         case ShaderSource::transparent_depth:
             return static_cast<float>(place.transparent_depth);
     }

@@ -137,7 +137,6 @@ void CompiledScene::Impl::Transparency::find(std::span<const Ray> rays, std::spa
         ShadedPlace& place = places.emplace_back();
         place.at.fill({hits[i], point.position, towards_viewer});
         place.ray_length = glm::distance(point.position, Vec3d(rays[i].origin));
-        place.shadow_ray = true;
         place.transparent_depth = depth;
         material.push_back(point.material);
     }

@@ -4,7 +4,7 @@
 What these functions return stands where a constant stood: `Bsdf.lambert(nodes.image(pixels))`.
 """
 
-from shlight.nodes import colors, inputs, mathematics, values
+from shlight.nodes import colors, inputs, mathematics, rays, values
 from shlight.nodes.colors import mix_color
 from shlight.nodes.inputs import (
     attribute,
@@ -52,6 +52,7 @@ __all__ = [
     "oren_nayar",
     "position",
     "principled",
+    "rays",
     "reflecting_normal",
     "rising_lobes",
     "towards_viewer",

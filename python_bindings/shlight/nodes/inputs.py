@@ -18,8 +18,7 @@ SOURCES = {
     "barycentric": 8,
     "backfacing": 9,
     "ray_length": 10,
-    "shadow_ray": 11,
-    "transparent_depth": 12,
+    "transparent_depth": 11,
 }
 
 
@@ -85,11 +84,6 @@ def backfacing() -> Value:
 def ray_length() -> Value:
     """How far the ray has come."""
     return read("ray_length")
-
-
-def shadow_ray() -> Value:
-    """1 for rays between a surface and a light, 0 for camera rays."""
-    return read("shadow_ray")
 
 
 def transparent_depth() -> Value:

@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from shlight import _core
 from shlight.nodes.inputs import normal as smooth_normal
 from shlight.nodes.program import ProgramBuilder
+from shlight.nodes.rays import Ray, color_on_ray, on_ray
 from shlight.nodes.values import Color, Number, Value, Varying, Vector, clamp, color, dot, normalize, number
 
 BLACK = (0.0, 0.0, 0.0)
@@ -64,25 +66,39 @@ class Shader:
         """How many operations the core runs for each hit."""
         return self._program[0].operation_count
 
+    def _lobes_for_camera(self) -> Iterator[Lobe]:
+        normals: dict[int, Vector] = {}
+        for lobe in self.lobes:
+            weight = color_on_ray(lobe.weight, Ray.CAMERA)
+            if weight.constant == BLACK:
+                continue
+            normal = lobe.normal
+            if normal is not None:
+                normal = normals.setdefault(id(normal), Vector(*on_ray(normal, Ray.CAMERA)))
+            alpha = None if lobe.alpha is None else on_ray([lobe.alpha], Ray.CAMERA)[0]
+            yield replace(lobe, weight=weight, alpha=alpha, normal=normal)
+
     @cached_property
     def _program(self) -> tuple[_core.ShaderProgram, _core.SurfaceShader, list[str]]:
         builder = ProgramBuilder()
         lobes = []
         normals: dict[int, int] = {}  # lobes with the same normal share the number of its result
-        for lobe in (lobe for lobe in self.lobes if lobe.weight.constant != BLACK):
+        for lobe in self._lobes_for_camera():
             weight = builder.result(tuple(lobe.weight))
             alpha = None if lobe.alpha is None else builder.result([lobe.alpha])
             if lobe.normal is not None and id(lobe.normal) not in normals:
                 normals[id(lobe.normal)] = builder.result(tuple(lobe.normal))
             normal = None if lobe.normal is None else normals[id(lobe.normal)]
             lobes.append((lobe.kind, lobe.ior, weight, alpha, normal))
-        glow, through = (
-            None if c.constant == BLACK else builder.result(tuple(c)) for c in (self.emission, self.transparency)
-        )
+        glow = color_on_ray(self.emission, Ray.CAMERA)
+        seen, lit = (color_on_ray(self.transparency, kind) for kind in (Ray.CAMERA, Ray.SHADOW))
+        glow_result = None if glow.constant == BLACK else builder.result(tuple(glow))
+        is_opaque = seen.constant == lit.constant == BLACK
+        through = None if is_opaque else builder.result(tuple(seen))
         program = builder.program()
         shadows = ProgramBuilder(builder.attributes)
-        shadows.result(tuple(self.transparency))
-        shader = _core.surface_shader(program, lobes, glow, through, shadows.program(), builder.attributes)
+        shadows.result(tuple(lit))
+        shader = _core.surface_shader(program, lobes, glow_result, through, shadows.program(), builder.attributes)
         return program, shader, builder.attributes
 
     @cached_property

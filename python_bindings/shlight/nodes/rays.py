@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: MIT
+"""Kinds of rays, which materials may tell apart: an expression is rebuilt for each kind before the core gets it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from enum import IntEnum
+
+from shlight.nodes.values import Color, Step, Value, arithmetic, number, select, steps
+
+
+class Ray(IntEnum):
+    """CAMERA: from the camera. SHADOW: from a surface to a light. LIGHT: along which an emitter lights a surface."""
+
+    CAMERA, SHADOW, LIGHT = range(3)
+
+
+def _kind(kind: Ray) -> Value:
+    return Value(Step("ray", (), kind))
+
+
+def camera_ray() -> Value:
+    """1 for rays from the camera, else 0."""
+    return _kind(Ray.CAMERA)
+
+
+def shadow_ray() -> Value:
+    """1 for rays between a surface and a light, else 0."""
+    return _kind(Ray.SHADOW)
+
+
+def on_ray(values: Iterable[Value], kind: Ray) -> list[Value]:
+    """Expressions as a ray of this kind finds them."""
+    wanted = list(values)
+    found: dict[int, tuple[Value, ...] | None] = {}  # by id of a step: its results, None where nothing changes
+    waiting = [value.step for value in wanted]
+    while waiting:
+        step = waiting[-1]
+        missing = [a.step for a in step.arguments if id(a.step) not in found]
+        if missing:
+            waiting += missing
+            continue
+        waiting.pop()
+        if id(step) not in found:
+            found[id(step)] = _rebuilt(step, found, kind)
+    return [_result(value, found) for value in wanted]
+
+
+def color_on_ray(color: Color, kind: Ray) -> Color:
+    """A colour as a ray of this kind finds it."""
+    return Color(*on_ray((*color, color.alpha), kind))
+
+
+def _result(value: Value, found: dict[int, tuple[Value, ...] | None]) -> Value:
+    results = found[id(value.step)]
+    return value if results is None else results[value.output]
+
+
+def _rebuilt(step: Step, found: dict[int, tuple[Value, ...] | None], kind: Ray) -> tuple[Value, ...] | None:
+    if step.name == "ray":
+        return (number(float(step.data == kind)),)
+    if all(found[id(a.step)] is None for a in step.arguments):
+        return None
+    arguments = [_result(a, found) for a in step.arguments]
+    if step.name == "select":
+        return (select(*arguments),)
+    if step.name in ("add", "subtract", "multiply"):
+        return (arithmetic(step.name, *arguments),)
+    return steps(step.name, *arguments, data=step.data)
