@@ -37,8 +37,8 @@ class PlaceReader : public ShaderReader {
 
 }  // namespace
 
-void CameraSurfaces::trace(std::span<const CameraRay> rays, std::size_t rays_per_pixel, Hits& hits,
-                           std::vector<RayLight>& light) {
+void CameraSurfaces::trace(std::span<const CameraRay> rays, std::span<const NeighbourRays> neighbours,
+                           std::size_t rays_per_pixel, Hits& hits, std::vector<RayLight>& light) {
     surfaces_.clear();
     results_.clear();
     light.assign(rays.size(), {});
@@ -50,8 +50,8 @@ void CameraSurfaces::trace(std::span<const CameraRay> rays, std::size_t rays_per
     for (std::uint32_t depth = 0; !active_.empty(); ++depth) {
         const std::size_t first = surfaces_.size();
         meet(rays, depth, light);
-        run_programs(rays, first);
-        pass_on(first, light);
+        run_programs(neighbours, first);
+        pass_on(rays, first, light);
     }
     add_hits(rays, rays_per_pixel, hits);
 }
@@ -73,17 +73,17 @@ void CameraSurfaces::meet(std::span<const CameraRay> rays, std::uint32_t depth, 
         const double distance = glm::dot(point.position - Vec3d(ray.ray.origin), direction);
         light[index].radiance += throughput_[index] * scene_->lamps_along(segments_[i], distance);
         surfaces_.push_back(
-            {index, depth, segments_[i], met_[i], point, -direction, distance, throughput_[index], 0, 0});
+            {index, depth, met_[i], point, -direction, distance, distance - ray.ray.t_min, throughput_[index], 0, 0});
     }
 }
 
-ShadedPlace CameraSurfaces::place_of(const Surface& surface, const CameraRay& ray, bool with_neighbours) const {
-    ShadedPlace place = {{}, surface.ray_length - ray.ray.t_min, surface.depth};
+ShadedPlace CameraSurfaces::place_of(const Surface& surface, const NeighbourRays* neighbours) const {
+    ShadedPlace place = {{}, surface.ray_length, surface.depth};
     place.at.fill({surface.hit, surface.point.position, surface.towards_viewer});
-    if (with_neighbours) {
+    if (neighbours != nullptr) {
         const Vec3d& normal = surface.point.geometric_normal;
-        place.at[1] = scene_->neighbour(place.at[0], normal, surface.ray_length, ray.right);
-        place.at[2] = scene_->neighbour(place.at[0], normal, surface.ray_length, ray.below);
+        place.at[1] = scene_->neighbour(place.at[0], normal, surface.distance, neighbours->right);
+        place.at[2] = scene_->neighbour(place.at[0], normal, surface.distance, neighbours->below);
     }
     return place;
 }
@@ -97,7 +97,7 @@ void CameraSurfaces::leave_scene(const CameraRay& ray, std::size_t index, std::v
     light[index].opacity = background != nullptr ? 1.0F : 1.0F - (left.x + left.y + left.z) / 3;
 }
 
-void CameraSurfaces::run_programs(std::span<const CameraRay> rays, std::size_t first) {
+void CameraSurfaces::run_programs(std::span<const NeighbourRays> neighbours, std::size_t first) {
     order_.clear();
     for (std::size_t i = first; i < surfaces_.size(); ++i) {
         if (scene_->materials()[surfaces_[i].point.material].shader != nullptr) {
@@ -110,17 +110,18 @@ void CameraSurfaces::run_programs(std::span<const CameraRay> rays, std::size_t f
     for (auto begin = order_.begin(); begin != order_.end();) {
         const auto end =
             std::find_if(begin, order_.end(), [&](std::uint32_t i) { return material(i) != material(*begin); });
-        run_program(rays, {begin, end});
+        run_program(neighbours, {begin, end});
         begin = end;
     }
 }
 
-void CameraSurfaces::run_program(std::span<const CameraRay> rays, std::span<const std::uint32_t> surfaces) {
+void CameraSurfaces::run_program(std::span<const NeighbourRays> neighbours, std::span<const std::uint32_t> surfaces) {
     const Material& material = scene_->materials()[surfaces_[surfaces.front()].point.material];
     const ShaderProgram& program = material.shader->program;
     places_.clear();
     for (const std::uint32_t i : surfaces) {
-        places_.push_back(place_of(surfaces_[i], rays[surfaces_[i].ray], program.takes_differences()));
+        places_.push_back(
+            place_of(surfaces_[i], program.takes_differences() ? &neighbours[surfaces_[i].ray] : nullptr));
     }
     const std::size_t begin = results_.size();
     results_.resize(begin + program.result_count() * surfaces.size());
@@ -150,7 +151,7 @@ float CameraSurfaces::width(const Surface& surface, std::uint32_t result) const 
 }
 
 /// Emission of the surfaces met last, and what is left of the rays behind them.
-void CameraSurfaces::pass_on(std::size_t first, std::vector<RayLight>& light) {
+void CameraSurfaces::pass_on(std::span<const CameraRay> rays, std::size_t first, std::vector<RayLight>& light) {
     active_.clear();
     segments_.clear();
     for (std::size_t i = first; i < surfaces_.size(); ++i) {
@@ -169,7 +170,7 @@ void CameraSurfaces::pass_on(std::size_t first, std::vector<RayLight>& light) {
             throughput_[surface.ray] *= glm::max(color(surface, *material.shader->transparency), Rgb(0));
             if (surface.depth <= transparent_bounces_ && throughput_[surface.ray] != Rgb(0)) {
                 active_.push_back(surface.ray);
-                segments_.push_back(behind(surface.segment, surface.hit));
+                segments_.push_back(behind(rays[surface.ray].ray, surface.hit));
             }
         }
     }
@@ -179,9 +180,9 @@ void CameraSurfaces::add_hits(std::span<const CameraRay> rays, std::size_t rays_
     hits.clear();
     order_.resize(surfaces_.size());
     std::iota(order_.begin(), order_.end(), 0U);
-    const auto by_ray = [&](std::uint32_t a, std::uint32_t b) { return surfaces_[a].ray < surfaces_[b].ray; };
-    if (!std::is_sorted(order_.begin(), order_.end(), by_ray)) {
-        std::stable_sort(order_.begin(), order_.end(), by_ray);
+    if (!surfaces_.empty() && surfaces_.back().depth > 0) {
+        std::stable_sort(order_.begin(), order_.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return surfaces_[a].ray < surfaces_[b].ray; });
     }
     auto next = order_.begin();
     for (std::size_t end = rays_per_pixel; end <= rays.size(); end += rays_per_pixel) {

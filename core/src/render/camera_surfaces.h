@@ -17,8 +17,13 @@ namespace shlight {
 
 /// A camera ray, and those of its neighbours in the picture.
 struct CameraRay {
-    Ray ray, right, below;
+    Ray ray;
     std::uint32_t sample;  ///< its number within its pixel
+};
+
+/// Camera rays beside another, as far away as its share of the pixel is wide.
+struct NeighbourRays {
+    Ray right, below;
 };
 
 /// What a camera ray brings besides what surfaces reflect: their emission, lamps, and the background.
@@ -36,19 +41,21 @@ class CameraSurfaces {
                    std::uint32_t transparent_bounces)
         : scene_(&scene), materials_(materials), transparent_bounces_(transparent_bounces) {}
 
-    /// rays: those of a pixel, rays_per_pixel, follow each other. light: one for each ray. Clears the hits first.
-    void trace(std::span<const CameraRay> rays, std::size_t rays_per_pixel, Hits& hits, std::vector<RayLight>& light);
+    /// rays: those of a pixel, rays_per_pixel, follow each other. neighbours: of each ray, or none if no program takes
+    /// differences. light: one for each ray. Clears the hits first.
+    void trace(std::span<const CameraRay> rays, std::span<const NeighbourRays> neighbours, std::size_t rays_per_pixel,
+               Hits& hits, std::vector<RayLight>& light);
 
   private:
     /// A surface that a camera ray has met.
     struct Surface {
         std::size_t ray;
         std::uint32_t depth;  // surfaces that the ray has passed through
-        Ray segment;          // from the surface before
         RayHit hit;
         SurfacePoint point;
         Vec3d towards_viewer;
-        double ray_length;
+        double distance;      // from the ray's origin
+        double ray_length;    // from its beginning
         Rgb throughput;       // share of its light that reaches the camera
         std::size_t results;  // of its program: where the first is
         std::size_t stride;   // and from result to result
@@ -56,10 +63,11 @@ class CameraSurfaces {
 
     void meet(std::span<const CameraRay> rays, std::uint32_t depth, std::vector<RayLight>& light);
     void leave_scene(const CameraRay& ray, std::size_t index, std::vector<RayLight>& light);
-    void run_programs(std::span<const CameraRay> rays, std::size_t first);
-    void run_program(std::span<const CameraRay> rays, std::span<const std::uint32_t> surfaces);
-    ShadedPlace place_of(const Surface& surface, const CameraRay& ray, bool with_neighbours) const;
-    void pass_on(std::size_t first, std::vector<RayLight>& light);
+    void run_programs(std::span<const NeighbourRays> neighbours, std::size_t first);
+    void run_program(std::span<const NeighbourRays> neighbours, std::span<const std::uint32_t> surfaces);
+    /// neighbours: null where the program takes no differences.
+    ShadedPlace place_of(const Surface& surface, const NeighbourRays* neighbours) const;
+    void pass_on(std::span<const CameraRay> rays, std::size_t first, std::vector<RayLight>& light);
     void add_hits(std::span<const CameraRay> rays, std::size_t rays_per_pixel, Hits& hits);
     void add_hit(const CameraRay& ray, const Surface& surface, Hits& hits);
     /// Unit normals of the lobes.

@@ -153,22 +153,20 @@ Ray PixelBatch::camera_ray(double column, double row) const {
 
 void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples) {
     rays_.clear();
+    neighbours_.clear();
     // The rays of a pixel share its area.
     const double step = 1 / std::sqrt(samples.first + samples.count);
     for (const Pixel& pixel : pixels) {
         for (std::uint32_t i = samples.first; i < samples.first + samples.count; ++i) {
             const double column = pixel.column + picture_->pixel_points[i].x;
             const double row = pixel.row + picture_->pixel_points[i].y;
-            CameraRay& ray = rays_.emplace_back();
-            ray.ray = camera_ray(column, row);
-            ray.sample = i;
+            rays_.push_back({camera_ray(column, row), i});
             if (picture_->takes_differences) {
-                ray.right = camera_ray(column + step, row);
-                ray.below = camera_ray(column, row + step);
+                neighbours_.push_back({camera_ray(column + step, row), camera_ray(column, row + step)});
             }
         }
     }
-    surfaces_.trace(rays_, samples.count, hits_, ray_light_);
+    surfaces_.trace(rays_, neighbours_, samples.count, hits_, ray_light_);
     report_.hits += hits_.size();
 }
 
@@ -261,16 +259,19 @@ void PixelBatch::seed_pixels(std::span<const Pixel> pixels, std::uint32_t light)
 void PixelBatch::add_up(const SampleRange& samples, std::span<PixelSums> sums) const {
     const auto from_center = [&](std::uint32_t sample) { return picture_->pixel_points[sample] - 0.5; };
     std::size_t hit = 0;
-    for (std::size_t i = 0; i < rays_.size(); ++i) {
-        Rgb radiance = ray_light_[i].radiance;
-        Rgb noise(0);
-        const std::size_t pixel = i / samples.count;
-        for (; hit < hits_.pixel_begin[pixel + 1] && hits_.sample[hit] == rays_[i].sample; ++hit) {
-            radiance += hits_.radiance[hit];
-            noise += hits_.noise[hit];
+    std::size_t ray = 0;
+    for (std::size_t pixel = 0; pixel < hits_.pixel_count(); ++pixel) {
+        const std::size_t end = hits_.pixel_begin[pixel + 1];
+        for (std::uint32_t i = 0; i < samples.count; ++i, ++ray) {
+            Rgb radiance = ray_light_[ray].radiance;
+            Rgb noise(0);
+            for (; hit < end && hits_.sample[hit] == rays_[ray].sample; ++hit) {
+                radiance += hits_.radiance[hit];
+                noise += hits_.noise[hit];
+            }
+            sums[pixel].add(radiance, noise, from_center(rays_[ray].sample), ray_light_[ray].opacity);
         }
-        ++sums[pixel].rays;
-        sums[pixel].add(radiance, noise, from_center(rays_[i].sample), ray_light_[i].opacity);
+        sums[pixel].rays += samples.count;
     }
 }
 

@@ -102,6 +102,7 @@ class PixelBatch {
     const Picture* picture_;
     RenderReport report_;
     std::vector<CameraRay> rays_;
+    std::vector<NeighbourRays> neighbours_;
     std::vector<RayLight> ray_light_;  // one for each
     CameraSurfaces surfaces_;
     Hits hits_;

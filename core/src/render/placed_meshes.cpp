@@ -63,11 +63,19 @@ const TracedMesh& PlacedMeshes::add(const std::shared_ptr<const Mesh>& mesh, std
     return meshes_.back();
 }
 
-Vec3d PlacedMeshes::corner(const RayHit& hit, int corner) const {
+std::array<Vec3d, 3> PlacedMeshes::corners(const RayHit& hit) const {
     const Placement& placement = placements_[hit.instance];
     const TracedMesh& traced = meshes_[placement.mesh];
-    const Vec3d local(traced.vertices()[traced.mesh->triangles[hit.triangle][corner]]);
-    return placement.baked ? local : transform_point(placement.to_world, local);
+    const std::span<const Vec3f> vertices = traced.vertices();
+    const Triangle& triangle = traced.mesh->triangles[hit.triangle];
+    std::array<Vec3d, 3> result = {Vec3d(vertices[triangle.x]), Vec3d(vertices[triangle.y]),
+                                   Vec3d(vertices[triangle.z])};
+    if (!placement.baked) {
+        for (Vec3d& own : result) {
+            own = transform_point(placement.to_world, own);
+        }
+    }
+    return result;
 }
 
 bool PlacedMeshes::smooth_normal(const RayHit& hit, Vec3d& normal) const {
@@ -93,12 +101,8 @@ SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) co
     const Placement& placement = placements_[hit.instance];
     const TracedMesh& traced = meshes_[placement.mesh];
     const std::array<double, 3> weights = weights_of(hit);
-    std::array<Vec3d, 3> corners{};
-    Vec3d position(0);
-    for (int i = 0; i < 3; ++i) {
-        corners[static_cast<std::size_t>(i)] = corner(hit, i);
-        position += weights[static_cast<std::size_t>(i)] * corners[static_cast<std::size_t>(i)];
-    }
+    const std::array<Vec3d, 3> corners = this->corners(hit);
+    const Vec3d position = weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
     // From the corners in double, and not along the ray, the point lies in the triangle's plane to double precision.
     const Vec3d towards_viewer = -Vec3d(direction);
     Vec3d geometric =
@@ -133,9 +137,9 @@ SurfacePlace PlacedMeshes::neighbour(const SurfacePlace& place, const Vec3d& nor
     const double most = 2 * length;
     const double t = away * approach > 0 && away / approach < most ? away / approach : most;
     const Vec3d position = origin + t * direction;
-    const Vec3d first = corner(place.hit, 0);
-    const Vec3d u = corner(place.hit, 1) - first;
-    const Vec3d v = corner(place.hit, 2) - first;
+    const std::array<Vec3d, 3> corners = this->corners(place.hit);
+    const Vec3d u = corners[1] - corners[0];
+    const Vec3d v = corners[2] - corners[0];
     const Vec3d step = position - place.position;
     const double uu = glm::dot(u, u);
     const double uv = glm::dot(u, v);
@@ -217,8 +221,8 @@ float PlacedMeshes::number(const ShaderInput& input, const std::vector<std::uint
         case ShaderSource::barycentric:
             return component == 0 ? at.hit.u : at.hit.v;
         case ShaderSource::backfacing: {
-            const Vec3d normal =
-                glm::cross(corner(at.hit, 1) - corner(at.hit, 0), corner(at.hit, 2) - corner(at.hit, 0));
+            const std::array<Vec3d, 3> corners = this->corners(at.hit);
+            const Vec3d normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
             // A mirrored instance shows its front where its corners, as they stand in the world, run clockwise.
             const bool clockwise = glm::dot(normal, place.at[0].towards_viewer) < 0;
             return clockwise != (glm::determinant(glm::dmat3(placement.to_world)) < 0) ? 1.0F : 0.0F;

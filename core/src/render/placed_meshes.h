@@ -3,6 +3,7 @@
 // Meshes where they stand in a scene: what a ray meets there, as shading wants it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -56,8 +57,8 @@ class PlacedMeshes {
   private:
     /// The mesh's own, of no particular length; false: it is flat there.
     bool smooth_normal(const RayHit& hit, Vec3d& normal) const;
-    Vec3d geometric_normal(const RayHit& hit) const;
-    Vec3d corner(const RayHit& hit, int corner) const;
+    /// Of the triangle, in the world.
+    std::array<Vec3d, 3> corners(const RayHit& hit) const;
     float number(const ShaderInput& input, const std::vector<std::uint32_t>& attributes, const ShadedPlace& place,
                  const SurfacePlace& at) const;
     float attribute(const MeshAttribute& attribute, std::uint32_t component, const RayHit& hit) const;

@@ -16,8 +16,13 @@ struct RaySums {
     void add(const Vec3d& value, const Rgb& visible) {
         all += value;
         squares += value * value;
-        seen += value * Vec3d(visible);
-        seen_squares += value * value * Vec3d(visible);
+        if (visible == Rgb(1)) {
+            seen += value;
+            seen_squares += value * value;
+        } else if (visible != Rgb(0)) {
+            seen += value * Vec3d(visible);
+            seen_squares += value * value * Vec3d(visible);
+        }
     }
     RaySums& operator+=(const RaySums& other);
     /// As if each weight were multiplied.

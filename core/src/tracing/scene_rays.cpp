@@ -38,13 +38,16 @@ class SceneRays::Part {
         if (placed.empty()) {
             return nullptr;
         }
+        part->renumbered_ = placed.size() != instances.size() ||
+                            std::any_of(part->triangles_.begin(), part->triangles_.end(),
+                                        [](const std::vector<std::uint32_t>& numbers) { return !numbers.empty(); });
         part->tracer_ = std::make_unique<const RayTracer>(traced, placed);
         return part;
     }
 
     void intersect(std::span<const Ray> rays, std::span<RayHit> hits) const {
         tracer_->intersect(rays, hits);
-        for (RayHit& hit : hits) {
+        for (RayHit& hit : renumbered_ ? hits : hits.first(0)) {
             if (!hit.missed()) {
                 const std::vector<std::uint32_t>& numbers = triangles_[geometry_of_[hit.instance]];
                 hit.instance = instances_[hit.instance];
@@ -74,6 +77,7 @@ class SceneRays::Part {
     std::unique_ptr<const RayTracer> tracer_;
     std::vector<std::vector<std::uint32_t>> triangles_;  // of each geometry; empty: all of them
     std::vector<std::uint32_t> instances_, geometry_of_;
+    bool renumbered_ = false;  // or else all instances and triangles are those of the scene
 };
 
 SceneRays::SceneRays(std::span<const SceneGeometry> geometries, std::span<const TracedInstance> instances,
@@ -85,9 +89,10 @@ SceneRays::SceneRays(std::span<const SceneGeometry> geometries, std::span<const 
 SceneRays::~SceneRays() = default;
 
 void SceneRays::intersect_opaque(std::span<const Ray> rays, std::span<RayHit> hits) const {
-    std::fill(hits.begin(), hits.end(), RayHit());
     if (opaque_ != nullptr) {
         opaque_->intersect(rays, hits);
+    } else {
+        std::fill(hits.begin(), hits.end(), RayHit());
     }
 }
 
