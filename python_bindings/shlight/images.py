@@ -42,25 +42,38 @@ def read_exr(path: str | os.PathLike[str]) -> npt.NDArray[np.float32]:
     return np.ascontiguousarray(_read(path, "openexr"), dtype=np.float32)
 
 
-def read_texture(path: str | os.PathLike[str]) -> npt.NDArray[Any]:
+def read_texture(path: str | os.PathLike[str], *, associate: bool = True) -> npt.NDArray[Any]:
     """Reads a picture of any format: (height, width, channels), uint8 of files of 8 bits, otherwise float32.
 
+    associate: colours are multiplied with alpha; or else they are as the file has them.
     Raises OSError when the file is missing or cannot be read.
     """
-    pixels = _read(path, None)
+    pixels = _read(path, None, associate=associate)
     return np.ascontiguousarray(pixels[..., : {2: 1}.get(pixels.shape[2], 4)])
 
 
-def _read(path: str | os.PathLike[str], file_format: str | None) -> npt.NDArray[Any]:
-    """file_format: the only one that is read, as floats; None: any."""
+def check_texture(path: str | os.PathLike[str]) -> None:
+    """Raises OSError if `read_texture` does not know a file's format, or the file is missing."""
+    _opened(path).close()
+
+
+def _opened(path: str | os.PathLike[str], *, associate: bool = True) -> Any:
     import OpenImageIO as oiio
 
     path = _checked_path(path)
     with path.open("rb"):  # the usual FileNotFoundError, PermissionError or IsADirectoryError
         pass
-    source = oiio.ImageInput.open(str(path))
+    wishes = oiio.ImageSpec()
+    wishes["oiio:UnassociatedAlpha"] = 0 if associate else 1
+    source = oiio.ImageInput.open(str(path), wishes)
     if source is None:
         raise OSError(f"{path}: {oiio.geterror().strip()}")
+    return source
+
+
+def _read(path: str | os.PathLike[str], file_format: str | None, *, associate: bool = True) -> npt.NDArray[Any]:
+    """file_format: the only one that is read, as floats; None: any."""
+    source = _opened(path, associate=associate)
     try:
         bytes_only = file_format is None and str(source.spec().format) == "uint8"
         suits = file_format in (None, source.format_name())

@@ -32,7 +32,7 @@ class VaryingEmission:
     def _places(self) -> list[tuple[tuple[Value, Value], tuple[float, float]]]:
         """Where pictures are looked up, and their sizes."""
         images = [step for step in steps_of(self.color) if step.name == "image"]
-        return [((step.arguments[0], step.arguments[1]), step.data.size) for step in images]
+        return [((step.arguments[0], step.arguments[1]), step.data.core.size) for step in images]
 
     @cached_property
     def _program(self) -> tuple[ProgramBuilder, Any]:

@@ -16,12 +16,10 @@ from shlight.nodes.values import Number, clamp, dot, operation, select, sqrt
 
 from ..report import Effect
 from .expressions import NodeInputs
-from .image_pixels import LINEAR_SPACES, associates_alpha, datablock_texture, file_texture
+from .image_pixels import LINEAR_SPACES, MISSING, associates_alpha, datablock_texture, file_texture, has_plain_file
 
 INTERPOLATIONS = {"Closest": "closest", "Linear": "linear", "Cubic": "cubic", "Smart": "cubic"}
 EXTENSIONS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
-# What Cycles shows in the place of a picture that is not there.
-MISSING = (1.0, 0.0, 1.0)
 FIRST_TILE = 1001
 CHANNELS: tuple[Callable[[Color], Value], ...] = (
     lambda c: c.x,
@@ -46,7 +44,7 @@ def image_texture(inputs: NodeInputs) -> Color | Value:
 def _textures(inputs: NodeInputs, image: Any) -> Any:
     """The texture of an image, or several by tile; None if there are no pixels, which is reported."""
     space = image.colorspace_settings.name
-    if not image.is_float and space not in LINEAR_SPACES and space != "sRGB":
+    if space not in LINEAR_SPACES and space != "sRGB":
         inputs.remark(f"colour space {space} is not supported; taken for sRGB")
     as_normals = space == "Non-Color" and _leads_to_normal_map(inputs)
     if image.source == "TILED":
@@ -55,9 +53,13 @@ def _textures(inputs: NodeInputs, image: Any) -> Any:
         path = bpy.path.abspath(image.filepath_from_user(image_user=inputs.node.image_user), library=image.library)
         found = file_texture(image, path, as_normals=as_normals)
     else:
+        found = None
+        if has_plain_file(image):
+            path = bpy.path.abspath(image.filepath, library=image.library)
+            found = file_texture(image, path, as_normals=as_normals)
         if image.source in ("MOVIE", "VIEWER"):
             inputs.remark(f"images of the kind {image.source} are not supported; the picture in memory is used")
-        found = datablock_texture(image, as_normals=as_normals)
+        found = found or datablock_texture(image, as_normals=as_normals)
     if not found:
         inputs.remark(f"its picture '{image.filepath or image.name}' is missing; magenta is used", Effect.THING)
         return None

@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple, TypeAlias
 
 import bpy
 import numpy as np
@@ -15,15 +17,24 @@ from shlight.nodes.textures import texture_pixels
 
 # Names of colour spaces whose bytes stand for linear light, or are no colours.
 LINEAR_SPACES = {"Non-Color", "Raw", "Linear", "Linear Rec.709"}
+# What Cycles shows in the place of a picture that is not there.
+MISSING = (1.0, 0.0, 1.0)
+# Files that are read at a time; each takes memory for its pixels twice.
+MOST_READERS = 4
 KEPT_EXPORTS = 2  # textures that so many exports have not asked for are dropped
+
+
+Texture: TypeAlias = "_core.TexturePixels | Future[_core.TexturePixels]"
 
 
 class TextureCache:
     """Textures by what their pixels depend on."""
 
     def __init__(self) -> None:
-        self._textures: dict[tuple[Any, ...], tuple[_core.TexturePixels, int]] = {}
+        self._textures: dict[tuple[Any, ...], tuple[Texture, int]] = {}
         self._export = 0
+        self._readers = ThreadPoolExecutor(MOST_READERS, thread_name_prefix="shlight textures")
+        self.unreadable: set[str] = set()  # files that turned out to be broken
 
     def begin_export(self) -> None:
         """Drops what has not been asked for lately."""
@@ -34,22 +45,38 @@ class TextureCache:
     def clear(self) -> None:
         """Drops everything."""
         self._textures.clear()
+        self.unreadable.clear()
 
-    def get(self, key: tuple[Any, ...], read: Any) -> _core.TexturePixels | None:
-        """The texture of this key; `read()` makes its (pixels, encoding), or None if there are none."""
+    def get(self, key: tuple[Any, ...], make: Callable[[], Texture | None]) -> Texture | None:
+        """The texture of this key; `make()` makes it, or None."""
         if key not in self._textures:
-            made = read()
+            made = make()
             if made is None:
                 return None
-            self._textures[key] = (texture_pixels(*made), self._export)
+            self._textures[key] = (made, self._export)
         texture = self._textures[key][0]
         self._textures[key] = (texture, self._export)
         return texture
 
+    def read(self, path: str, make: Callable[[], _core.TexturePixels]) -> Future[_core.TexturePixels]:
+        """A texture that is made of a file while others are; magenta if that fails."""
+
+        def made() -> _core.TexturePixels:
+            try:
+                texture = make()
+            except (OSError, ValueError):
+                self.unreadable.add(path)
+                return texture_pixels(np.array([[MISSING]], dtype=np.float32))
+            self.unreadable.discard(path)
+            return texture
+
+        return self._readers.submit(made)
+
     @property
     def size_in_bytes(self) -> int:
         """Memory that the textures take."""
-        return sum(texture.size_in_bytes for texture, _ in self._textures.values())
+        textures = (own.result() if isinstance(own, Future) else own for own, _ in self._textures.values())
+        return sum(texture.size_in_bytes for texture in textures)
 
 
 TEXTURES = TextureCache()
@@ -73,7 +100,15 @@ def encoding_of(image: Any, *, as_normals: bool) -> str:
     return "srgb" if encoded else "linear"
 
 
-def datablock_texture(image: Any, *, as_normals: bool) -> _core.TexturePixels | None:
+class FileSettings(NamedTuple):
+    """What of an image's settings changes the pixels of its files."""
+
+    encoded: bool  # as sRGB
+    associate: bool
+    alpha_mode: str
+
+
+def datablock_texture(image: Any, *, as_normals: bool) -> Texture | None:
     """The texture of an image with one picture; None if it has no pixels."""
     width, height = image.size
     if width < 1 or height < 1:
@@ -85,17 +120,26 @@ def datablock_texture(image: Any, *, as_normals: bool) -> _core.TexturePixels | 
     )
     if image.is_dirty:
         key = (*key, TEXTURES._export)  # painted pixels have no stamp
-    return TEXTURES.get(key, lambda: (_pixels(image), encoding_of(image, as_normals=as_normals)))
+    return TEXTURES.get(key, lambda: texture_pixels(_pixels(image), encoding_of(image, as_normals=as_normals)))
 
 
-def file_texture(image: Any, path: str, *, as_normals: bool) -> _core.TexturePixels | None:
-    """The texture of a file that belongs to an image with several; None if it cannot be read."""
+def file_texture(image: Any, path: str, *, as_normals: bool) -> Texture | None:
+    """The texture of a file that belongs to an image, being read; None if it is missing or of an unknown format."""
     try:
         stamp = Path(path).stat().st_mtime_ns
-        key = (path, stamp, image.colorspace_settings.name, image.alpha_mode, as_normals)
-        return TEXTURES.get(key, lambda: _file_pixels(image, path, as_normals))
+        images.check_texture(path)
     except (OSError, ValueError):
         return None
+    settings = FileSettings(
+        image.colorspace_settings.name not in LINEAR_SPACES, associates_alpha(image), image.alpha_mode
+    )
+    key = (path, stamp, settings, as_normals)
+    return TEXTURES.get(key, lambda: TEXTURES.read(path, lambda: _read_file(path, settings, as_normals)))
+
+
+def has_plain_file(image: Any) -> bool:
+    """True if its pixels are those of one file."""
+    return image.source == "FILE" and image.packed_file is None and bool(image.filepath) and not image.is_dirty
 
 
 def _stamp(image: Any) -> tuple[Any, ...]:
@@ -117,17 +161,16 @@ def _pixels(image: Any) -> NDArray[Any]:
     pixels: NDArray[Any] = flat.reshape(height, width, channels)[::-1]
     if not image.is_float:
         pixels = np.rint(np.clip(pixels, 0.0, 1.0) * 255.0).astype(np.uint8)
-    return _with_alpha(image, pixels, straight=not image.is_float)
+    return _with_alpha(pixels, associate=associates_alpha(image) and not image.is_float, mode=image.alpha_mode)
 
 
-def _file_pixels(image: Any, path: str, as_normals: bool) -> tuple[NDArray[Any], str]:
-    pixels = images.read_texture(path)
-    encoded = pixels.dtype == np.uint8 and image.colorspace_settings.name not in LINEAR_SPACES
-    encoding = "normal" if as_normals else "srgb" if encoded else "linear"
-    return _with_alpha(image, pixels, straight=False), encoding  # OpenImageIO has multiplied it with alpha
+def _read_file(path: str, settings: FileSettings, as_normals: bool) -> _core.TexturePixels:
+    pixels = images.read_texture(path, associate=False)
+    encoding = "normal" if as_normals else "srgb" if settings.encoded else "linear"
+    return texture_pixels(_with_alpha(pixels, associate=settings.associate, mode=settings.alpha_mode), encoding)
 
 
-def _with_alpha(image: Any, pixels: NDArray[Any], *, straight: bool) -> NDArray[Any]:
+def _with_alpha(pixels: NDArray[Any], *, associate: bool, mode: str) -> NDArray[Any]:
     """Colours times alpha where Cycles takes them so; as few channels as say the same."""
     channels = pixels.shape[2]
     if channels == 2:
@@ -135,9 +178,9 @@ def _with_alpha(image: Any, pixels: NDArray[Any], *, straight: bool) -> NDArray[
     if channels != 4:
         return pixels[..., :3]
     opaque = 255 if pixels.dtype == np.uint8 else 1.0
-    if image.alpha_mode == "NONE" or (pixels[..., 3] == opaque).all():
+    if mode == "NONE" or (pixels[..., 3] == opaque).all():
         return pixels[..., :3]
-    if not (straight and associates_alpha(image) and image.alpha_mode == "STRAIGHT"):
+    if not (associate and mode == "STRAIGHT"):
         return pixels
     alpha = pixels[..., 3:]
     if pixels.dtype == np.uint8:  # Cycles rounds the product of bytes down

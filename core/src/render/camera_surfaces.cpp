@@ -78,7 +78,8 @@ void CameraSurfaces::meet(std::span<const CameraRay> rays, std::uint32_t depth, 
 }
 
 ShadedPlace CameraSurfaces::place_of(const Surface& surface, const NeighbourRays* neighbours) const {
-    ShadedPlace place = {{}, surface.ray_length, surface.depth};
+    ShadedPlace place = {
+        {}, surface.point.shading_normal, surface.point.geometric_normal, surface.ray_length, surface.depth};
     place.at.fill({surface.hit, surface.point.position, surface.towards_viewer});
     if (neighbours != nullptr) {
         const Vec3d& normal = surface.point.geometric_normal;

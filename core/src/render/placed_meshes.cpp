@@ -185,61 +185,81 @@ float PlacedMeshes::attribute(const MeshAttribute& attribute, std::uint32_t comp
     return static_cast<float>(sum);
 }
 
-float PlacedMeshes::number(const ShaderInput& input, const std::vector<std::uint32_t>& attributes,
-                           const ShadedPlace& place, const SurfacePlace& at) const {
-    const Placement& placement = placements_[at.hit.instance];
-    const Mesh& mesh = *meshes_[placement.mesh].mesh;
-    const auto component = static_cast<int>(input.component);
-    switch (input.source) {
-        case ShaderSource::position:
-            return static_cast<float>(at.position[component]);
-        case ShaderSource::normal:
-        case ShaderSource::geometric_normal: {
-            const SurfacePoint point = surface(at.hit, Vec3f(-place.at[0].towards_viewer));
-            const bool smooth = input.source == ShaderSource::normal;
-            return static_cast<float>((smooth ? point.shading_normal : point.geometric_normal)[component]);
-        }
-        case ShaderSource::towards_viewer:
-            return static_cast<float>(at.towards_viewer[component]);
-        case ShaderSource::attribute: {
-            const std::uint32_t index =
-                input.index < attributes.size() ? attributes[input.index] : MeshShader::kNoAttribute;
-            if (index == MeshShader::kNoAttribute) {
-                return component == kAlpha ? 1.0F : 0.0F;
-            }
-            return attribute(mesh.attributes[index], input.component, at.hit);
-        }
-        case ShaderSource::object_to_world:
-            return matrix_number(placement.to_world, input.component);
-        case ShaderSource::world_to_object:
-            return matrix_number(placement.to_object, input.component);
-        case ShaderSource::object_value: {
-            const bool known = placement.number < mesh.object_values.size() &&
-                               input.index < mesh.object_values[placement.number].size();
-            return known ? mesh.object_values[placement.number][input.index] : 0.0F;
-        }
-        case ShaderSource::barycentric:
-            return component == 0 ? at.hit.u : at.hit.v;
-        case ShaderSource::backfacing: {
-            const std::array<Vec3d, 3> corners = this->corners(at.hit);
-            const Vec3d normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-            // A mirrored instance shows its front where its corners, as they stand in the world, run clockwise.
-            const bool clockwise = glm::dot(normal, place.at[0].towards_viewer) < 0;
-            return clockwise != (glm::determinant(glm::dmat3(placement.to_world)) < 0) ? 1.0F : 0.0F;
-        }
-        case ShaderSource::ray_length:
-            return static_cast<float>(place.ray_length);
-        case ShaderSource::transparent_depth:
-            return static_cast<float>(place.transparent_depth);
+Vec3d PlacedMeshes::normal_at(const ShadedPlace& shaded, int place, bool smooth) const {
+    if (place == 0) {
+        return smooth ? shaded.shading_normal : shaded.geometric_normal;
     }
-    return 0;
+    const SurfacePlace& at = shaded.at[static_cast<std::size_t>(place)];
+    const SurfacePoint point = surface(at.hit, Vec3f(-shaded.at[0].towards_viewer));
+    return smooth ? point.shading_normal : point.geometric_normal;
+}
+
+float PlacedMeshes::object_value(const Placement& placement, std::uint32_t index) const {
+    const std::vector<std::vector<float>>& values = meshes_[placement.mesh].mesh->object_values;
+    const bool known = placement.number < values.size() && index < values[placement.number].size();
+    return known ? values[placement.number][index] : 0.0F;
+}
+
+bool PlacedMeshes::is_back(const RayHit& hit, const Vec3d& towards_viewer) const {
+    const std::array<Vec3d, 3> corners = this->corners(hit);
+    const Vec3d normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    // A mirrored instance shows its front where its corners, as they stand in the world, run clockwise.
+    const bool mirrored = glm::determinant(glm::dmat3(placements_[hit.instance].to_world)) < 0;
+    return (glm::dot(normal, towards_viewer) < 0) != mirrored;
 }
 
 void PlacedMeshes::read(const ShaderInput& input, const std::vector<std::uint32_t>& attributes, int place,
                         std::span<const ShadedPlace> places, std::span<float> out) const {
-    std::transform(places.begin(), places.end(), out.begin(), [&](const ShadedPlace& shaded) {
-        return number(input, attributes, shaded, shaded.at[static_cast<std::size_t>(place)]);
-    });
+    const auto fill = [&](const auto& number) {
+        std::transform(places.begin(), places.end(), out.begin(), [&](const ShadedPlace& shaded) {
+            return static_cast<float>(number(shaded, shaded.at[static_cast<std::size_t>(place)]));
+        });
+    };
+    const auto component = static_cast<int>(input.component);
+    const auto placement = [&](const SurfacePlace& at) -> const Placement& { return placements_[at.hit.instance]; };
+    switch (input.source) {
+        case ShaderSource::position:
+            return fill([&](const auto&, const SurfacePlace& at) { return at.position[component]; });
+        case ShaderSource::normal:
+        case ShaderSource::geometric_normal:
+            return fill([&](const ShadedPlace& shaded, const SurfacePlace&) {
+                return normal_at(shaded, place, input.source == ShaderSource::normal)[component];
+            });
+        case ShaderSource::towards_viewer:
+            return fill([&](const auto&, const SurfacePlace& at) { return at.towards_viewer[component]; });
+        case ShaderSource::attribute: {
+            const std::uint32_t index =
+                input.index < attributes.size() ? attributes[input.index] : MeshShader::kNoAttribute;
+            if (index == MeshShader::kNoAttribute) {
+                std::fill(out.begin(), out.end(), component == kAlpha ? 1.0F : 0.0F);
+                return;
+            }
+            return fill([&](const auto&, const SurfacePlace& at) {
+                return attribute(meshes_[placement(at).mesh].mesh->attributes[index], input.component, at.hit);
+            });
+        }
+        case ShaderSource::object_to_world:
+            return fill([&](const auto&, const SurfacePlace& at) {
+                return matrix_number(placement(at).to_world, input.component);
+            });
+        case ShaderSource::world_to_object:
+            return fill([&](const auto&, const SurfacePlace& at) {
+                return matrix_number(placement(at).to_object, input.component);
+            });
+        case ShaderSource::object_value:
+            return fill(
+                [&](const auto&, const SurfacePlace& at) { return object_value(placement(at), input.index); });
+        case ShaderSource::barycentric:
+            return fill([&](const auto&, const SurfacePlace& at) { return component == 0 ? at.hit.u : at.hit.v; });
+        case ShaderSource::backfacing:
+            return fill([&](const ShadedPlace& shaded, const SurfacePlace& at) {
+                return is_back(at.hit, shaded.at[0].towards_viewer) ? 1 : 0;
+            });
+        case ShaderSource::ray_length:
+            return fill([](const ShadedPlace& shaded, const auto&) { return shaded.ray_length; });
+        case ShaderSource::transparent_depth:
+            return fill([](const ShadedPlace& shaded, const auto&) { return shaded.transparent_depth; });
+    }
 }
 
 }  // namespace shlight

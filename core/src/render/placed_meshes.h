@@ -59,8 +59,10 @@ class PlacedMeshes {
     bool smooth_normal(const RayHit& hit, Vec3d& normal) const;
     /// Of the triangle, in the world.
     std::array<Vec3d, 3> corners(const RayHit& hit) const;
-    float number(const ShaderInput& input, const std::vector<std::uint32_t>& attributes, const ShadedPlace& place,
-                 const SurfacePlace& at) const;
+    /// place: as of ShaderReader.
+    Vec3d normal_at(const ShadedPlace& shaded, int place, bool smooth) const;
+    float object_value(const Placement& placement, std::uint32_t index) const;
+    bool is_back(const RayHit& hit, const Vec3d& towards_viewer) const;
     float attribute(const MeshAttribute& attribute, std::uint32_t component, const RayHit& hit) const;
 
     std::vector<TracedMesh> meshes_;

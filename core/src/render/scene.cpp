@@ -136,6 +136,8 @@ void CompiledScene::Impl::Transparency::find(std::span<const Ray> rays, std::spa
         const Vec3d towards_viewer = -glm::normalize(Vec3d(rays[i].direction));
         ShadedPlace& place = places.emplace_back();
         place.at.fill({hits[i], point.position, towards_viewer});
+        place.shading_normal = point.shading_normal;
+        place.geometric_normal = point.geometric_normal;
         place.ray_length = glm::distance(point.position, Vec3d(rays[i].origin));
         place.transparent_depth = depth;
         material.push_back(point.material);

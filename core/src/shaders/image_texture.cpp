@@ -28,14 +28,24 @@ float srgb_from_linear(float linear) {
     return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1 / 2.4F) - 0.055F;
 }
 
-const std::array<float, 256>& srgb_bytes() {
-    static const std::array<float, 256> table = [] {
-        std::array<float, 256> values{};
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            values[i] = linear_from_srgb(static_cast<float>(i) / 255);
-        }
-        return values;
-    }();
+using ByteTable = std::array<float, 256>;
+
+/// What bytes stand for.
+template <class Function>
+ByteTable byte_table(const Function& function) {
+    ByteTable values{};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] = function(static_cast<float>(i) / 255);
+    }
+    return values;
+}
+
+const ByteTable& bytes_as_stored() {
+    static const ByteTable table = byte_table([](float x) { return x; });
+    return table;
+}
+const ByteTable& bytes_from_srgb() {
+    static const ByteTable table = byte_table(linear_from_srgb);
     return table;
 }
 
@@ -65,6 +75,21 @@ glm::vec4 decoded(const glm::vec4& stored, TexelEncoding encoding) {
                                                        linear_from_srgb(stored.z), stored.w);
 }
 
+glm::vec4 Texels::of_floats(const float* texel) const {
+    if (channels_ == 1) {
+        const float grey = from_srgb_ ? linear_from_srgb(texel[0]) : texel[0];
+        return glm::vec4(glm::vec3(grey), 1);
+    }
+    const glm::vec4 color(texel[0], texel[1], texel[2], channels_ == 4 ? texel[3] : 1.0F);
+    return from_srgb_ ? decoded(color, TexelEncoding::srgb) : of_unit_vectors_ ? unit(color) : color;
+}
+
+glm::vec4 Texels::unit(const glm::vec4& color) {
+    const glm::vec3 n = glm::vec3(color) * 2.0F - 1.0F;
+    const float length = glm::length(n);
+    return length > 0 ? glm::vec4(n / length * 0.5F + 0.5F, color.w) : color;
+}
+
 TexturePixels::TexturePixels(std::variant<Bytes, Floats> pixels, std::uint32_t width, std::uint32_t height,
                              int channels, TexelEncoding encoding)
     : channels_(channels), encoding_(encoding) {
@@ -86,37 +111,31 @@ std::size_t TexturePixels::size_in_bytes() const {
     return bytes;
 }
 
-glm::vec4 TexturePixels::stored(std::size_t level, std::int64_t column, std::int64_t row) const {
+Texels TexturePixels::texels(std::size_t level, const ByteTable& bytes) const {
     const Level& own = levels_[level];
-    const auto count = static_cast<std::size_t>(channels_);
-    const std::size_t first = (static_cast<std::size_t>(row) * own.width + static_cast<std::size_t>(column)) * count;
-    const auto value = [&](std::size_t i) {
-        const auto* bytes = std::get_if<Bytes>(&own.pixels);
-        return bytes != nullptr ? static_cast<float>((*bytes)[first + i]) * (1 / 255.0F)
-                                : std::get<Floats>(own.pixels)[first + i];
-    };
-    if (count == 1) {
-        return glm::vec4(glm::vec3(value(0)), 1);
+    Texels result{};
+    result.width = own.width;
+    result.height = own.height;
+    if (const auto* own_bytes = std::get_if<Bytes>(&own.pixels)) {
+        result.bytes_ = own_bytes->data();
+        result.table_ = bytes.data();
+    } else {
+        result.floats_ = std::get<Floats>(own.pixels).data();
     }
-    return {value(0), value(1), value(2), count == 4 ? value(3) : 1.0F};
+    result.channels_ = channels_;
+    return result;
 }
 
-glm::vec4 TexturePixels::linear(std::size_t level, std::int64_t column, std::int64_t row) const {
-    const glm::vec4 texel = stored(level, column, row);
-    if (encoding_ == TexelEncoding::srgb) {
-        if (std::holds_alternative<Bytes>(levels_[level].pixels)) {
-            const auto& table = srgb_bytes();
-            const auto at = [&](float x) { return table[static_cast<std::size_t>(std::lround(x * 255))]; };
-            return {at(texel.x), at(texel.y), at(texel.z), texel.w};
-        }
-        return decoded(texel, encoding_);
-    }
-    if (encoding_ == TexelEncoding::normal && level == 0) {
-        const glm::vec3 n = glm::vec3(texel) * 2.0F - 1.0F;
-        const float length = glm::length(n);
-        return length > 0 ? glm::vec4(n / length * 0.5F + 0.5F, texel.w) : texel;
-    }
-    return texel;
+Texels TexturePixels::stored(std::size_t level) const {
+    return texels(level, bytes_as_stored());
+}
+
+Texels TexturePixels::linear(std::size_t level) const {
+    Texels result = texels(level, encoding_ == TexelEncoding::srgb ? bytes_from_srgb() : bytes_as_stored());
+    result.from_srgb_ = encoding_ == TexelEncoding::srgb;
+    // Means of unit vectors are shorter, and say by that how these spread.
+    result.of_unit_vectors_ = encoding_ == TexelEncoding::normal && level == 0;
+    return result;
 }
 
 void TexturePixels::store(Level& level, std::size_t texel, const glm::vec4& linear) const {
@@ -161,6 +180,7 @@ TexturePixels::Level TexturePixels::halved(std::size_t level) const {
     for (std::uint32_t x = 0; x < to.width; ++x) {
         columns.push_back(cover(x, to.width, from.width));
     }
+    const Texels texels = linear(level);
     for (std::uint32_t y = 0; y < to.height; ++y) {
         const Cover rows = cover(y, to.height, from.height);
         for (std::uint32_t x = 0; x < to.width; ++x) {
@@ -170,7 +190,7 @@ TexturePixels::Level TexturePixels::halved(std::size_t level) const {
                     const float weight =
                         rows.weights[static_cast<std::size_t>(j)] * columns[x].weights[static_cast<std::size_t>(i)];
                     if (weight > 1e-6F) {
-                        sum += weight * linear(level, std::min<std::int64_t>(columns[x].first + i, from.width - 1),
+                        sum += weight * texels(std::min<std::int64_t>(columns[x].first + i, from.width - 1),
                                                std::min<std::int64_t>(rows.first + j, from.height - 1));
                     }
                 }
@@ -181,67 +201,74 @@ TexturePixels::Level TexturePixels::halved(std::size_t level) const {
     return to;
 }
 
-/// One picture, continued beyond its edges.
+/// One picture, continued beyond its edges. Places are in texels of the level.
 class ImageTexture::Lookup {
   public:
     Lookup(const TexturePixels& pixels, TextureExtension extension) : pixels_(&pixels), extension_(extension) {}
 
-    /// As stored, at a place in texels of the base.
-    glm::vec4 closest(const glm::vec2& texels) const {
-        return texel<false>(0, static_cast<std::int64_t>(std::floor(texels.x)),
-                            static_cast<std::int64_t>(std::floor(texels.y)));
+    /// As stored.
+    glm::vec4 closest(const glm::vec2& place) const {
+        return texel(pixels_->stored(0), static_cast<std::int64_t>(std::floor(place.x)),
+                     static_cast<std::int64_t>(std::floor(place.y)));
     }
-    glm::vec4 cubic(const glm::vec2& texels) const {
-        const glm::vec2 corner = glm::floor(texels - 0.5F);
-        const glm::vec2 t = texels - 0.5F - corner;
-        const std::array<float, 4> wx = cubic_weights(t.x);
-        const std::array<float, 4> wy = cubic_weights(t.y);
+    glm::vec4 cubic(const glm::vec2& place) const {
+        const Texels texels = pixels_->stored(0);
+        const Corner corner(place);
+        const std::array<float, 4> wx = cubic_weights(corner.share.x);
+        const std::array<float, 4> wy = cubic_weights(corner.share.y);
         glm::vec4 sum(0);
         for (int j = 0; j < 4; ++j) {
             for (int i = 0; i < 4; ++i) {
                 sum += wx[static_cast<std::size_t>(i)] * wy[static_cast<std::size_t>(j)] *
-                       texel<false>(0, static_cast<std::int64_t>(corner.x) + i - 1,
-                                    static_cast<std::int64_t>(corner.y) + j - 1);
+                       texel(texels, corner.x + i - 1, corner.y + j - 1);
             }
         }
         return sum;
     }
-    /// kLinear: in linear light, or else as stored.
-    template <bool kLinear>
-    glm::vec4 bilinear(std::size_t level, const glm::vec2& texels) const {
-        const glm::vec2 corner = glm::floor(texels - 0.5F);
-        const glm::vec2 t = texels - 0.5F - corner;
-        const auto x = static_cast<std::int64_t>(corner.x);
-        const auto y = static_cast<std::int64_t>(corner.y);
-        return glm::mix(glm::mix(texel<kLinear>(level, x, y), texel<kLinear>(level, x + 1, y), t.x),
-                        glm::mix(texel<kLinear>(level, x, y + 1), texel<kLinear>(level, x + 1, y + 1), t.x), t.y);
-    }
+    glm::vec4 bilinear(const glm::vec2& place) const { return bilinear(pixels_->stored(0), place); }
     /// In linear light, between two levels; place: 0 … 1 over the picture.
     glm::vec4 trilinear(float level, const glm::vec2& place) const {
         const auto top = static_cast<float>(pixels_->level_count() - 1);
         const float clamped = std::clamp(level, 0.0F, top);
         const auto low = static_cast<std::size_t>(clamped);
         const float share = clamped - static_cast<float>(low);
-        const glm::vec4 fine = bilinear<true>(low, place * size(low));
-        return share > 0 ? glm::mix(fine, bilinear<true>(low + 1, place * size(low + 1)), share) : fine;
-    }
-    glm::vec2 size(std::size_t level) const {
-        return {static_cast<float>(pixels_->width(level)), static_cast<float>(pixels_->height(level))};
+        const glm::vec4 fine = bilinear_at(low, place);
+        return share > 0 ? glm::mix(fine, bilinear_at(low + 1, place), share) : fine;
     }
 
   private:
-    template <bool kLinear>
-    glm::vec4 texel(std::size_t level, std::int64_t column, std::int64_t row) const {
-        const std::int64_t width = pixels_->width(level);
-        const std::int64_t height = pixels_->height(level);
-        if (column < 0 || column >= width || row < 0 || row >= height) {
+    /// The texel to the lower left of a place, and the shares of those to the right and above.
+    struct Corner {
+        explicit Corner(const glm::vec2& place) {
+            const glm::vec2 low = glm::floor(place - 0.5F);
+            share = place - 0.5F - low;
+            x = static_cast<std::int64_t>(low.x);
+            y = static_cast<std::int64_t>(low.y);
+        }
+        std::int64_t x, y;
+        glm::vec2 share{};
+    };
+
+    glm::vec4 bilinear_at(std::size_t level, const glm::vec2& place) const {
+        const Texels texels = pixels_->linear(level);
+        return bilinear(texels, place * glm::vec2(texels.width, texels.height));
+    }
+    glm::vec4 bilinear(const Texels& texels, const glm::vec2& place) const {
+        const Corner c(place);
+        const bool inside = c.x >= 0 && c.y >= 0 && c.x + 1 < texels.width && c.y + 1 < texels.height;
+        const auto read = [&](std::int64_t x, std::int64_t y) { return inside ? texels(x, y) : texel(texels, x, y); };
+        return glm::mix(glm::mix(read(c.x, c.y), read(c.x + 1, c.y), c.share.x),
+                        glm::mix(read(c.x, c.y + 1), read(c.x + 1, c.y + 1), c.share.x), c.share.y);
+    }
+    glm::vec4 texel(const Texels& texels, std::int64_t column, std::int64_t row) const {
+        if (column < 0 || column >= texels.width || row < 0 || row >= texels.height) {
             if (extension_ == TextureExtension::clip) {
                 return glm::vec4(0);
             }
-            column = wrapped(column, width);
-            row = wrapped(row, height);
+            column = wrapped(column, texels.width);
+            row = wrapped(row, texels.height);
         }
-        return kLinear ? pixels_->linear(level, column, row) : pixels_->stored(level, column, row);
+        return texels(column, row);
     }
     std::int64_t wrapped(std::int64_t i, std::int64_t size) const {
         if (extension_ == TextureExtension::repeat) {
@@ -292,7 +319,7 @@ glm::vec4 ImageTexture::sample(const glm::vec2& place, const TextureFootprint& f
     }
     const Lookup lookup(*tile->pixels, extension_);
     const TexelEncoding encoding = tile->pixels->encoding();
-    const glm::vec2 size = lookup.size(0);
+    const glm::vec2 size(tile->pixels->width(), tile->pixels->height());
     glm::vec2 texels = inside * size;
     if (!(std::abs(texels.x) < kFarthest && std::abs(texels.y) < kFarthest)) {
         texels = inside = glm::vec2(0);
@@ -305,7 +332,7 @@ glm::vec4 ImageTexture::sample(const glm::vec2& place, const TextureFootprint& f
     const float longest = glm::length(along);
     if (!(longest > 1)) {
         const glm::vec4 stored = interpolation_ == TextureInterpolation::closest  ? lookup.closest(texels)
-                                 : interpolation_ == TextureInterpolation::linear ? lookup.bilinear<false>(0, texels)
+                                 : interpolation_ == TextureInterpolation::linear ? lookup.bilinear(texels)
                                                                                   : lookup.cubic(texels);
         return finished(stored, encoding);
     }

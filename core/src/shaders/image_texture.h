@@ -3,6 +3,7 @@
 // Pictures that are looked up at texture coordinates, filtered by how far these move from camera ray to camera ray.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -32,6 +33,40 @@ enum class TexelEncoding : std::uint8_t {
     normal  ///< (n + 1) / 2 of unit vectors, whose means shrink as the vectors spread
 };
 
+/// RGBA of the texels of one level, which must outlive this.
+class Texels {
+  public:
+    std::int64_t width, height;
+
+    /// Precondition: inside.
+    glm::vec4 operator()(std::int64_t column, std::int64_t row) const {
+        const std::int64_t first = (row * width + column) * channels_;
+        return bytes_ != nullptr ? of_bytes(bytes_ + first) : of_floats(floats_ + first);
+    }
+
+  private:
+    friend class TexturePixels;
+
+    glm::vec4 of_bytes(const std::uint8_t* texel) const {
+        const float* table = table_;
+        if (channels_ == 1) {
+            return glm::vec4(glm::vec3(table[texel[0]]), 1);
+        }
+        const glm::vec4 color(table[texel[0]], table[texel[1]], table[texel[2]],
+                              channels_ == 4 ? static_cast<float>(texel[3]) / 255 : 1.0F);
+        return of_unit_vectors_ ? unit(color) : color;
+    }
+    glm::vec4 of_floats(const float* texel) const;
+    /// Of (n + 1) / 2, with n of length 1.
+    static glm::vec4 unit(const glm::vec4& color);
+
+    const std::uint8_t* bytes_;  // or null
+    const float* floats_;
+    const float* table_;  // what bytes stand for
+    std::int64_t channels_;
+    bool of_unit_vectors_, from_srgb_;
+};
+
 /// Immutable; shared by all who look it up.
 class TexturePixels {
   public:
@@ -49,12 +84,9 @@ class TexturePixels {
     std::size_t size_in_bytes() const;
     TexelEncoding encoding() const { return encoding_; }
 
-    /// As stored. Precondition: inside the level.
-    glm::vec4 stored(std::size_t level, std::int64_t column, std::int64_t row) const;
-    /// In linear light.
-    glm::vec4 linear(std::size_t level, std::int64_t column, std::int64_t row) const;
-    std::int64_t width(std::size_t level) const { return levels_[level].width; }
-    std::int64_t height(std::size_t level) const { return levels_[level].height; }
+    /// The texels of a level: as stored, or in linear light.
+    Texels stored(std::size_t level) const;
+    Texels linear(std::size_t level) const;
 
   private:
     /// Half as wide and high as the one before, rounded up.
@@ -62,6 +94,7 @@ class TexturePixels {
         std::uint32_t width, height;
         std::variant<Bytes, Floats> pixels;
     };
+    Texels texels(std::size_t level, const std::array<float, 256>& bytes) const;
     Level halved(std::size_t level) const;
     void store(Level& level, std::size_t texel, const glm::vec4& linear) const;
 

@@ -53,9 +53,12 @@ bool ShadingPoints::joins(const Hits& hits, std::size_t hit, std::size_t point) 
     }
     // The point's frame is that of its first hit until all are known.
     const Members& members = members_[point];
-    const double difference = glm::length(hits.frame[hit].z - frame[point].z) +
-                              glm::length(towards_viewer(hits, hit) - members.first_towards_viewer) +
-                              glm::length(hits.frame[hit].origin - frame[point].origin) / members.nearest_light;
+    double difference = glm::length(hits.frame[hit].z - frame[point].z);
+    if (difference > members.spread) {
+        return false;
+    }
+    difference += glm::length(towards_viewer(hits, hit) - members.first_towards_viewer) +
+                  glm::length(hits.frame[hit].origin - frame[point].origin) / members.nearest_light;
     return difference + members.narrowest * relative_difference(hits.widths(hit), members.first_widths) <=
            members.spread;
 }

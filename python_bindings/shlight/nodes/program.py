@@ -99,5 +99,5 @@ class ProgramBuilder:
                 self._tables.append((data.values, data.sizes))
             else:
                 self._resources[id(data)] = len(self._images)
-                self._images.append(data)
+                self._images.append(data.core)
         return self._resources[id(data)]

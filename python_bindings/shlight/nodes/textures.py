@@ -5,6 +5,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from concurrent.futures import Future
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -46,6 +49,23 @@ def texture_pixels(pixels: Any, encoding: str = "linear") -> _core.TexturePixels
     return _core.texture_pixels(np.ascontiguousarray(array[::-1]), number)
 
 
+@dataclass(frozen=True, eq=False)
+class ImageLookup:
+    """A picture and how it is looked up; made for the core when a program needs it."""
+
+    tiles: list[tuple[int, int, _core.TexturePixels | Future[_core.TexturePixels]]]
+    interpolation: int
+    extension: int
+    unassociate: bool
+    tiled: bool
+
+    @cached_property
+    def core(self) -> _core.ImageTexture:
+        """What the core looks up."""
+        tiles = [(u, v, own.result() if isinstance(own, Future) else own) for u, v, own in self.tiles]
+        return _core.image_texture(tiles, self.interpolation, self.extension, self.unassociate, self.tiled)
+
+
 def image(
     pixels: Any,
     place: Vector | None = None,
@@ -57,8 +77,8 @@ def image(
 ) -> Color:
     """The colour of a picture, filtered by how far texture coordinates move from camera ray to camera ray.
 
-    pixels: as of `texture_pixels`, or what that returns, or a dict {(u, v): pixels} of pictures that cover u … u + 1
-        and v … v + 1 each (UDIM tiles).
+    pixels: as of `texture_pixels`, or what that returns, or a Future of it, or a dict {(u, v): pixels} of pictures
+        that cover u … u + 1 and v … v + 1 each (UDIM tiles).
     place: (u, v), (0, 0) at the lower left corner; None: `uv()`.
     unassociate: divide colours by alpha.
     Raises ValueError naming the argument.
@@ -67,10 +87,10 @@ def image(
     beyond = _chosen("extension", extension, EXTENSIONS)
     tiled = isinstance(pixels, Mapping)
     tiles = [
-        (int(u), int(v), own if isinstance(own, _core.TexturePixels) else texture_pixels(own, encoding))
+        (int(u), int(v), own if isinstance(own, _core.TexturePixels | Future) else texture_pixels(own, encoding))
         for (u, v), own in (pixels if tiled else {(0, 0): pixels}).items()
     ]
-    texture = _core.image_texture(tiles, filtering, beyond, unassociate, tiled)
+    texture = ImageLookup(tiles, filtering, beyond, unassociate, tiled)
     where = uv() if place is None else place
     u, v = where.x, where.y
     return Color(*steps("image", u, v, right(u), right(v), below(u), below(v), data=texture))
