@@ -46,7 +46,7 @@ def _textures(inputs: NodeInputs, image: Any) -> Any:
     space = image.colorspace_settings.name
     if space not in LINEAR_SPACES and space != "sRGB":
         inputs.remark(f"colour space {space} is not supported; taken for sRGB")
-    as_normals = space == "Non-Color" and _leads_to_normal_map(inputs)
+    as_normals = holds_normals(inputs)
     if image.source == "TILED":
         found: Any = _tiles(image, as_normals)
     elif image.source == "SEQUENCE":
@@ -66,9 +66,15 @@ def _textures(inputs: NodeInputs, image: Any) -> Any:
     return found
 
 
-def _leads_to_normal_map(inputs: NodeInputs) -> bool:
-    links = inputs.output.links
-    return bool(links) and all(link.to_node.type == "NORMAL_MAP" for link in links)
+def holds_normals(inputs: NodeInputs) -> bool:
+    """True if the picture is one of normals in the tangent space, and nothing else is made of it."""
+    node = inputs.node
+    links = [link for output in node.outputs for link in output.links]
+    is_read = bool(links) and all(
+        link.to_node.type == "NORMAL_MAP" and link.to_node.space == "TANGENT" and link.from_socket.name == "Color"
+        for link in links
+    )
+    return is_read and node.image.colorspace_settings.name == "Non-Color" and node.projection != "BOX"
 
 
 def _tiles(image: Any, as_normals: bool) -> dict[tuple[int, int], Any]:
@@ -106,6 +112,7 @@ def _lookup(inputs: NodeInputs, textures: Any, place: Vector) -> Color:
         interpolation=INTERPOLATIONS[node.interpolation],
         extension=EXTENSIONS.get(node.extension, "repeat"),
         unassociate=alpha_is_used and associates_alpha(node.image),
+        encoding="normal" if holds_normals(inputs) else "linear",
     )
 
 

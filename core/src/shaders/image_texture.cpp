@@ -61,6 +61,14 @@ glm::vec4 encoded(const glm::vec4& linear, TexelEncoding encoding) {
                                                        srgb_from_linear(linear.z), linear.w);
 }
 
+/// Of the mean of unit vectors, as (n + 1) / 2.
+glm::vec4 unit_with_spread(const glm::vec4& mean) {
+    const glm::vec3 n = glm::vec3(mean) * 2.0F - 1.0F;
+    const float length = glm::length(n);
+    return length > 0 ? glm::vec4(n / length * 0.5F + 0.5F, std::sqrt(std::max(1 - length, 0.0F)))
+                      : glm::vec4(0.5F, 0.5F, 1, 1);
+}
+
 /// Of a uniform cubic B-spline.
 std::array<float, 4> cubic_weights(float t) {
     const float s = 1 - t;
@@ -81,22 +89,23 @@ glm::vec4 Texels::of_floats(const float* texel) const {
         return glm::vec4(glm::vec3(grey), 1);
     }
     const glm::vec4 color(texel[0], texel[1], texel[2], channels_ == 4 ? texel[3] : 1.0F);
-    return from_srgb_ ? decoded(color, TexelEncoding::srgb) : of_unit_vectors_ ? unit(color) : color;
+    return from_srgb_ ? decoded(color, TexelEncoding::srgb) : of_vectors_ ? vector(color) : color;
 }
 
-glm::vec4 Texels::unit(const glm::vec4& color) {
+glm::vec4 Texels::vector(const glm::vec4& color) const {
     const glm::vec3 n = glm::vec3(color) * 2.0F - 1.0F;
     const float length = glm::length(n);
-    return length > 0 ? glm::vec4(n / length * 0.5F + 0.5F, color.w) : color;
+    const float wanted = are_means_ ? 1 - color.w * color.w : 1.0F;
+    return length > 0 ? glm::vec4(n * (wanted / length) * 0.5F + 0.5F, wanted) : color;
 }
 
 TexturePixels::TexturePixels(std::variant<Bytes, Floats> pixels, std::uint32_t width, std::uint32_t height,
                              int channels, TexelEncoding encoding)
-    : channels_(channels), encoding_(encoding) {
+    : encoding_(encoding == TexelEncoding::normal && channels < 3 ? TexelEncoding::linear : encoding) {
     if (auto* floats = std::get_if<Floats>(&pixels)) {
         std::transform(floats->begin(), floats->end(), floats->begin(), finite);
     }
-    levels_.push_back({width, height, std::move(pixels)});
+    levels_.push_back({width, height, channels, std::move(pixels)});
     while (levels_.back().width > 1 || levels_.back().height > 1) {
         levels_.push_back(halved(levels_.size() - 1));
     }
@@ -122,7 +131,7 @@ Texels TexturePixels::texels(std::size_t level, const ByteTable& bytes) const {
     } else {
         result.floats_ = std::get<Floats>(own.pixels).data();
     }
-    result.channels_ = channels_;
+    result.channels_ = own.channels;
     return result;
 }
 
@@ -133,15 +142,15 @@ Texels TexturePixels::stored(std::size_t level) const {
 Texels TexturePixels::linear(std::size_t level) const {
     Texels result = texels(level, encoding_ == TexelEncoding::srgb ? bytes_from_srgb() : bytes_as_stored());
     result.from_srgb_ = encoding_ == TexelEncoding::srgb;
-    // Means of unit vectors are shorter, and say by that how these spread.
-    result.of_unit_vectors_ = encoding_ == TexelEncoding::normal && level == 0;
+    result.of_vectors_ = encoding_ == TexelEncoding::normal;
+    result.are_means_ = result.of_vectors_ && level > 0;
     return result;
 }
 
 void TexturePixels::store(Level& level, std::size_t texel, const glm::vec4& linear) const {
-    const glm::vec4 value = encoded(linear, encoding_);
-    for (int i = 0; i < channels_; ++i) {
-        const std::size_t at = texel * static_cast<std::size_t>(channels_) + static_cast<std::size_t>(i);
+    const glm::vec4 value = encoding_ == TexelEncoding::normal ? unit_with_spread(linear) : encoded(linear, encoding_);
+    for (int i = 0; i < level.channels; ++i) {
+        const std::size_t at = texel * static_cast<std::size_t>(level.channels) + static_cast<std::size_t>(i);
         if (auto* bytes = std::get_if<Bytes>(&level.pixels)) {
             (*bytes)[at] = static_cast<std::uint8_t>(std::lround(std::clamp(value[i], 0.0F, 1.0F) * 255));
         } else {
@@ -153,8 +162,8 @@ void TexturePixels::store(Level& level, std::size_t texel, const glm::vec4& line
 /// Each texel is the mean over its share of the area, also where a side is odd.
 TexturePixels::Level TexturePixels::halved(std::size_t level) const {
     const Level& from = levels_[level];
-    Level to = {(from.width + 1) / 2, (from.height + 1) / 2, {}};
-    const std::size_t count = std::size_t{to.width} * to.height * static_cast<std::size_t>(channels_);
+    Level to = {(from.width + 1) / 2, (from.height + 1) / 2, encoding_ == TexelEncoding::normal ? 4 : from.channels, {}};
+    const std::size_t count = std::size_t{to.width} * to.height * static_cast<std::size_t>(to.channels);
     if (std::holds_alternative<Bytes>(from.pixels)) {
         to.pixels = Bytes(count);
     } else {
@@ -300,7 +309,8 @@ glm::vec4 ImageTexture::finished(const glm::vec4& stored, TexelEncoding encoding
     if (unassociate_ && color.w != 0 && color.w != 1) {
         color = {color.x / color.w, color.y / color.w, color.z / color.w, color.w};
     }
-    return decoded(color, encoding);
+    // What is magnified does not spread.
+    return encoding == TexelEncoding::normal ? glm::vec4(glm::vec3(color), 1) : decoded(color, encoding);
 }
 
 glm::vec4 ImageTexture::sample(const glm::vec2& place, const TextureFootprint& footprint) const {
@@ -348,6 +358,10 @@ glm::vec4 ImageTexture::sample(const glm::vec2& place, const TextureFootprint& f
             lookup.trilinear(level, inside + (static_cast<float>(i) + 0.5F - 0.5F * static_cast<float>(probes)) * step);
     }
     sum /= static_cast<float>(probes);
+    if (encoding == TexelEncoding::normal) {
+        const float mean_length = std::min(glm::length(glm::vec3(sum) * 2.0F - 1.0F), 1.0F);
+        sum.w = glm::mix(1.0F, mean_length, std::min(longest - 1, 1.0F));
+    }
     if (unassociate_ && sum.w > 0) {
         sum = glm::vec4(glm::vec3(sum) / sum.w, sum.w);
     }

@@ -30,10 +30,10 @@ enum class TextureExtension : std::uint8_t { repeat, extend, clip, mirror };
 enum class TexelEncoding : std::uint8_t {
     linear,
     srgb,   ///< red, green and blue are encoded as sRGB
-    normal  ///< (n + 1) / 2 of unit vectors, whose means shrink as the vectors spread
+    normal  ///< (n + 1) / 2 of unit vectors of three channels or more; alpha is the length of their mean
 };
 
-/// RGBA of the texels of one level, which must outlive this.
+/// RGBA of the texels of one level, which must outlive this. Of unit vectors each is as long as the mean that it is.
 class Texels {
   public:
     std::int64_t width, height;
@@ -54,17 +54,17 @@ class Texels {
         }
         const glm::vec4 color(table[texel[0]], table[texel[1]], table[texel[2]],
                               channels_ == 4 ? static_cast<float>(texel[3]) / 255 : 1.0F);
-        return of_unit_vectors_ ? unit(color) : color;
+        return of_vectors_ ? vector(color) : color;
     }
     glm::vec4 of_floats(const float* texel) const;
-    /// Of (n + 1) / 2, with n of length 1.
-    static glm::vec4 unit(const glm::vec4& color);
+    /// (n + 1) / 2 with n as long as it is to be.
+    glm::vec4 vector(const glm::vec4& color) const;
 
     const std::uint8_t* bytes_;  // or null
     const float* floats_;
     const float* table_;  // what bytes stand for
     std::int64_t channels_;
-    bool of_unit_vectors_, from_srgb_;
+    bool from_srgb_, of_vectors_, are_means_;
 };
 
 /// Immutable; shared by all who look it up.
@@ -92,6 +92,9 @@ class TexturePixels {
     /// Half as wide and high as the one before, rounded up.
     struct Level {
         std::uint32_t width, height;
+        /// Means of unit vectors have length 1 and √(1 - their length) as a fourth channel, which bytes resolve where
+        /// the length is near 1.
+        int channels;
         std::variant<Bytes, Floats> pixels;
     };
     Texels texels(std::size_t level, const std::array<float, 256>& bytes) const;
@@ -99,7 +102,6 @@ class TexturePixels {
     void store(Level& level, std::size_t texel, const glm::vec4& linear) const;
 
     std::vector<Level> levels_;
-    int channels_;
     TexelEncoding encoding_;
 };
 

@@ -12,10 +12,24 @@ from shlight import _core
 from shlight.nodes.inputs import normal as smooth_normal
 from shlight.nodes.program import ProgramBuilder
 from shlight.nodes.rays import Ray, color_on_ray, on_ray
-from shlight.nodes.values import Color, Number, Value, Varying, Vector, clamp, color, dot, normalize, number
+from shlight.nodes.values import (
+    Color,
+    Normal,
+    Number,
+    Value,
+    Varying,
+    Vector,
+    clamp,
+    color,
+    dot,
+    normalize,
+    number,
+    sqrt,
+)
 
 BLACK = (0.0, 0.0, 0.0)
 BUMP = math.radians(6.0)
+LEAST_MEAN = 0.5  # length of the mean of normals; less is as rough as can be
 
 
 @dataclass(frozen=True)
@@ -68,7 +82,7 @@ class Shader:
 
     def _lobes_for_camera(self) -> Iterator[Lobe]:
         normals: dict[int, Vector] = {}
-        for lobe in self.lobes:
+        for lobe in map(_spread, self.lobes):
             weight = color_on_ray(lobe.weight, Ray.CAMERA)
             if weight.constant == BLACK:
                 continue
@@ -104,6 +118,23 @@ class Shader:
     @cached_property
     def _compiled(self) -> _core.SurfaceShader:
         return self._program[1]
+
+
+def _spread(lobe: Lobe) -> Lobe:
+    """A lobe of a normal that stands for many.
+
+    Slopes of variance s² along each axis shorten the mean of the normals to about 1 - s², and give a microfacet lobe
+    alpha² + 2 s² (Toksvig 2005; Olano & Baker 2010, "LEAN Mapping"). What a diffuse lobe reflects is about linear in
+    the normal, so the shorter mean reflects less. A mirror stays one.
+    """
+    if not isinstance(lobe.normal, Normal) or lobe.normal.mean_length.constant == 1.0:
+        return lobe
+    mean_length = clamp(lobe.normal.mean_length, LEAST_MEAN, 1.0)
+    if lobe.alpha is None:
+        return replace(lobe, weight=_color(lobe.weight * mean_length))
+    if lobe.alpha.constant == 0.0:
+        return lobe
+    return replace(lobe, alpha=sqrt(lobe.alpha * lobe.alpha + 2.0 * (1.0 - mean_length) / mean_length))
 
 
 def _color(v: Vector) -> Color:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from shlight import _core, images
 from shlight.nodes.inputs import uv
-from shlight.nodes.values import Color, Vector, below, right, steps
+from shlight.nodes.values import Color, NormalColor, Vector, below, right, steps
 
 INTERPOLATIONS = ("closest", "linear", "cubic")
 EXTENSIONS = ("repeat", "extend", "clip", "mirror")
@@ -33,7 +33,7 @@ def texture_pixels(pixels: Any, encoding: str = "linear") -> _core.TexturePixels
 
     pixels: (height, width) or (height, width, channels), of uint8 for 0 … 1 or of floats, row 0 on top; 1, 3 or 4
         channels: grey, RGB, or RGB times alpha and alpha. Or the path of a file.
-    encoding: "linear", "srgb", or "normal" for unit vectors n as (n + 1) / 2.
+    encoding: "linear", "srgb", or "normal" for unit vectors n as (n + 1) / 2, which `normal_map` takes.
     Raises ValueError naming the argument.
     """
     number = _chosen("encoding", encoding, ENCODINGS)
@@ -79,6 +79,7 @@ def image(
 
     pixels: as of `texture_pixels`, or what that returns, or a Future of it, or a dict {(u, v): pixels} of pictures
         that cover u … u + 1 and v … v + 1 each (UDIM tiles).
+    encoding: as of `texture_pixels`, also where that has made the pixels.
     place: (u, v), (0, 0) at the lower left corner; None: `uv()`.
     unassociate: divide colours by alpha.
     Raises ValueError naming the argument.
@@ -93,4 +94,5 @@ def image(
     texture = ImageLookup(tiles, filtering, beyond, unassociate, tiled)
     where = uv() if place is None else place
     u, v = where.x, where.y
-    return Color(*steps("image", u, v, right(u), right(v), below(u), below(v), data=texture))
+    kind = NormalColor if encoding == "normal" else Color
+    return kind(*steps("image", u, v, right(u), right(v), below(u), below(v), data=texture))

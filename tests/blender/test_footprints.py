@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Floors whose pictures are far smaller than a pixel, beside Cycles at thousands of samples."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter
+
+from shlight.metrics import mean_ratio, rel_mse
+
+
+def textured(studio: Any, material: Any, pixels: Any, *, color: bool) -> Any:
+    """An Image Texture node of a material, repeated over the floor."""
+    tree = material.node_tree
+    node, scaled = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeMapping")
+    node.image = studio.picture(pixels, is_float=False)
+    node.image.pack()  # or else it is made anew with its colour space
+    node.image.colorspace_settings.name = "sRGB" if color else "Non-Color"
+    scaled.inputs["Scale"].default_value = (60.0,) * 3
+    tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["UV"], scaled.inputs["Vector"])
+    tree.links.new(scaled.outputs["Vector"], node.inputs["Vector"])
+    return node
+
+
+def floor(studio: Any, material: Any) -> None:
+    plane = studio.plane(60.0, material)
+    corners = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    for loop, place in zip(plane.data.uv_layers.new(name="UVMap").data, corners, strict=True):
+        loop.uv = place
+    studio.area(3000, (0, 8, 5), size=4.0, rotation_euler=(-0.6, 0, 0))
+    studio.lamp("SUN", 1.0, (0, 0, 3), rotation_euler=(0.5, 0.3, 0.0), angle=0.2)
+
+
+def checkered(studio: Any) -> None:
+    material = studio.material()
+    pixels = np.kron([[0.2, 0.9], [0.9, 0.2]], np.ones((32, 32)))[..., None] * (1.0, 0.9, 0.8)
+    node = textured(studio, material, pixels, color=True)
+    material.node_tree.links.new(node.outputs["Color"], material.node_tree.nodes["Diffuse BSDF"].inputs["Color"])
+    floor(studio, material)
+    studio.camera((0, -12, 1.2), (0, 0, 0.8))
+
+
+def bumpy(studio: Any) -> None:
+    """Waves whose normals lean by some 8°, and a glossy coat that sparkles where no filter widens it."""
+    material = studio.material("ShaderNodeBsdfPrincipled", Base_Color=(0.2, 0.2, 0.25), Roughness=0.3)
+    height = gaussian_filter(np.random.default_rng(5).normal(size=(128, 128)), 2.0, mode="wrap")
+    slopes = np.gradient(height / height.std() * 0.35)
+    normals = np.dstack([-slopes[1], -slopes[0], np.ones_like(height)])
+    normals /= np.linalg.norm(normals, axis=2, keepdims=True)
+    tree = material.node_tree
+    node, bent = textured(studio, material, 0.5 * normals + 0.5, color=False), tree.nodes.new("ShaderNodeNormalMap")
+    tree.links.new(node.outputs["Color"], bent.inputs["Color"])
+    tree.links.new(bent.outputs["Normal"], tree.nodes["Principled BSDF"].inputs["Normal"])
+    floor(studio, material)
+    studio.camera((0, -9, 5), (0, 0, 0))
+
+
+@pytest.mark.parametrize("build", [checkered, bumpy])
+def test_one_ray_is_smooth_and_many_are_right(studio: Any, build: Any) -> None:
+    build(studio)
+    studio.scene.render.resolution_x, studio.scene.render.resolution_y = 96, 64
+    cycles, own = studio.scene.cycles, studio.scene.shlight
+
+    def cycles_at(samples: int) -> Any:
+        cycles.samples = samples
+        return studio.render("CYCLES", seed=3)
+
+    def ours_at(samples: int) -> Any:
+        own.pixel_samples = samples
+        return studio.render("SHLIGHT")
+
+    reference = cycles_at(4096)
+    single, many, noisy = ours_at(1), ours_at(64), cycles_at(1)
+    errors = {name: rel_mse(p, reference) for name, p in (("one", single), ("many", many), ("Cycles", noisy))}
+    print(errors, f"mean {mean_ratio(single, reference):.4f} {mean_ratio(many, reference):.4f}")
+    assert errors["one"] <= errors["Cycles"] / 20
+    assert errors["many"] <= 1e-3
