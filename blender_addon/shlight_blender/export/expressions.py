@@ -81,6 +81,33 @@ class NodeInputs:
 ReadNode = Callable[[NodeInputs], Varying]
 
 
+# Nodes that are read inside each other, at most.
+DEEPEST = 50
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Something of a tree that is to be found, and kept in `known` by `key`."""
+
+    known: dict[Any, Any]
+    key: Any
+    read: Callable[[], Any]
+    in_circle: Callable[[], Any]
+
+    @property
+    def mark(self) -> tuple[int, Any]:
+        """Its name among all that is asked for."""
+        return id(self.known), self.key
+
+
+class TooDeepError(Exception):
+    """Another node has to be read first."""
+
+    def __init__(self, asked: Asked) -> None:
+        super().__init__("nodes lie too deep")
+        self.asked = asked
+
+
 class ExpressionReader:
     """Follows the links of the tree of `owner`; `place` names it in the report, for instance "Material 'Wood'"."""
 
@@ -111,15 +138,48 @@ class ExpressionReader:
 
     def output(self, source: Origin, socket: Any = None) -> Expression:
         """What a node makes; socket: the input that asks for it."""
-        key = (source.node.as_pointer(), source.output.identifier, tuple(g.as_pointer() for g in source.groups))
-        if key not in self._known:
-            if key in self._open:
-                self.report.add(self.at(source.node), "its links run in a circle; 0 is used")
-                return number(0.0)
-            self._open.add(key)
-            self._known[key] = self._read(source, source.socket if socket is None else socket)
-            self._open.discard(key)
-        return self._known[key]
+
+        def in_circle() -> Expression:
+            self.report.add(self.at(source.node), "its links run in a circle; 0 is used")
+            return number(0.0)
+
+        asking = source.socket if socket is None else socket
+        return self.once(self._known, source, lambda: self._read(source, asking), in_circle)
+
+    def once(self, known: dict[Any, Any], source: Origin, read: Callable[[], Any], in_circle: Callable[[], Any]) -> Any:
+        """`known` of a source; `read()` finds it, perhaps by asking for others, and `in_circle()` if it is one of them.
+
+        What lies too deep is read first, from the bottom up, so that trees of any depth fit Python's stack.
+        """
+        asked = Asked(known, source.key, read, in_circle)
+        if asked.key in known:
+            return known[asked.key]
+        if asked.mark in self._open:
+            return in_circle()
+        if len(self._open) >= DEEPEST:
+            raise TooDeepError(asked)
+        if self._open:
+            self._find(asked)
+            return known[asked.key]
+        waiting = [asked]
+        while waiting:
+            try:
+                self._find(waiting[-1])
+                waiting.pop()
+            except TooDeepError as deep:
+                deeper = deep.asked
+                if any(own.mark == deeper.mark for own in waiting):
+                    deeper.known[deeper.key] = deeper.in_circle()
+                else:
+                    waiting.append(deeper)
+        return known[asked.key]
+
+    def _find(self, asked: Asked) -> None:
+        self._open.add(asked.mark)
+        try:
+            asked.known[asked.key] = asked.read()
+        finally:
+            self._open.discard(asked.mark)
 
     def _read(self, source: Origin, socket: Any) -> Expression:
         read = self._nodes.get(source.node.type)

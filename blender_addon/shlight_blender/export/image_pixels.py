@@ -34,18 +34,20 @@ class TextureCache:
         self._textures: dict[tuple[Any, ...], tuple[Texture, int]] = {}
         self._export = 0
         self._readers = ThreadPoolExecutor(MOST_READERS, thread_name_prefix="shlight textures")
-        self.unreadable: set[str] = set()  # files that turned out to be broken
+        self._asked: set[str] = set()  # files of this export
+        self._broken: set[str] = set()
 
     def begin_export(self) -> None:
         """Drops what has not been asked for lately."""
         self._export += 1
+        self._asked.clear()
         limit = self._export - KEPT_EXPORTS
         self._textures = {key: entry for key, entry in self._textures.items() if entry[1] >= limit}
 
     def clear(self) -> None:
         """Drops everything."""
         self._textures.clear()
-        self.unreadable.clear()
+        self._broken.clear()
 
     def get(self, key: tuple[Any, ...], make: Callable[[], Texture | None]) -> Texture | None:
         """The texture of this key; `make()` makes it, or None."""
@@ -58,19 +60,27 @@ class TextureCache:
         self._textures[key] = (texture, self._export)
         return texture
 
-    def read(self, path: str, make: Callable[[], _core.TexturePixels]) -> Future[_core.TexturePixels]:
-        """A texture that is made of a file while others are; magenta if that fails."""
-
+    def _read(self, path: str, make: Callable[[], _core.TexturePixels]) -> Future[_core.TexturePixels]:
         def made() -> _core.TexturePixels:
             try:
                 texture = make()
             except (OSError, ValueError):
-                self.unreadable.add(path)
+                self._broken.add(path)
                 return texture_pixels(np.array([[MISSING]], dtype=np.float32))
-            self.unreadable.discard(path)
+            self._broken.discard(path)
             return texture
 
         return self._readers.submit(made)
+
+    def from_file(self, key: tuple[Any, ...], path: str, make: Callable[[], _core.TexturePixels]) -> Texture | None:
+        """The texture of this key, which `make()` makes of a file while others are read; magenta if that fails."""
+        self._asked.add(path)
+        return self.get(key, lambda: self._read(path, make))
+
+    @property
+    def unreadable(self) -> list[str]:
+        """Files of this export that turned out to be broken; complete when all its programs are made."""
+        return sorted(self._asked & self._broken)
 
     @property
     def size_in_bytes(self) -> int:
@@ -134,7 +144,7 @@ def file_texture(image: Any, path: str, *, as_normals: bool) -> Texture | None:
         image.colorspace_settings.name not in LINEAR_SPACES, associates_alpha(image), image.alpha_mode
     )
     key = (path, stamp, settings, as_normals)
-    return TEXTURES.get(key, lambda: TEXTURES.read(path, lambda: _read_file(path, settings, as_normals)))
+    return TEXTURES.from_file(key, path, lambda: _read_file(path, settings, as_normals))
 
 
 def has_plain_file(image: Any) -> bool:

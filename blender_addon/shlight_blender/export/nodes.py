@@ -34,6 +34,11 @@ class Origin:
     output: Any = None
     groups: tuple[Any, ...] = ()
 
+    @property
+    def key(self) -> tuple[Any, ...]:
+        """The same for the same output in the same groups."""
+        return self.node.as_pointer(), self.output.identifier, tuple(group.as_pointer() for group in self.groups)
+
 
 def _active_group_output(tree: Any) -> Any:
     outputs = [node for node in tree.nodes if node.type == "GROUP_OUTPUT"]
@@ -49,8 +54,13 @@ def _muted_input(node: Any, output: Any) -> Any:
 
 
 def origin(socket: Any, groups: tuple[Any, ...] = ()) -> Origin:
-    """Follows an input socket's link to the node that makes its value."""
+    """Follows an input socket's link to the node that makes its value; a circle of muted nodes makes none."""
+    passed = set()
     while True:
+        place = (socket.as_pointer(), tuple(group.as_pointer() for group in groups))
+        if place in passed:
+            return Origin(socket, groups=groups)
+        passed.add(place)
         link = socket.links[0] if socket.is_linked and socket.links else None
         if link is None or link.is_muted:
             return Origin(socket, groups=groups)

@@ -76,7 +76,7 @@ def export_scene(
     report_unsupported_settings(blender_scene, depsgraph.view_layer_eval, report)
     lit = add_world(scene, blender_scene, depsgraph.view_layer_eval, report, waiting)
     lit |= _add_objects(scene, depsgraph, Surroundings(view, depsgraph), report)
-    for path in sorted(TEXTURES.unreadable):
+    for path in TEXTURES.unreadable:
         report.add(f"File '{path}'", "it cannot be read; magenta is used in the place of its picture", Effect.THING)
     return ExportedScene(scene, report, "" if lit else _report_darkness(blender_scene, report))
 

@@ -69,11 +69,8 @@ class ShaderReader(ExpressionReader):
         source = origin(socket, groups)
         if source.node is None:
             return Shader()
-        key = (source.node.as_pointer(), source.output.identifier, tuple(g.as_pointer() for g in source.groups))
-        if key not in self._made:
-            self._made[key] = Shader()  # what a circle of links receives
-            self._made[key] = self._read_shader(source)
-        return self._made[key]
+        made: Shader = self.once(self._made, source, lambda: self._read_shader(source), Shader)
+        return made
 
     def _read_shader(self, source: Origin) -> Shader:
         inputs = ShaderInputs(self, source.node, source.output, source.groups)

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 from shlight import _core
 from shlight.nodes.inputs import normal as smooth_normal
@@ -54,7 +54,7 @@ class Shader:
 
     def __add__(self, other: Shader) -> Shader:
         return Shader(
-            self.lobes + other.lobes,
+            _merged(self.lobes + other.lobes),
             _color(self.emission + other.emission),
             _color(self.transparency + other.transparency),
         )
@@ -80,8 +80,10 @@ class Shader:
         """How many operations the core runs for each hit."""
         return self._program[0].operation_count
 
-    def _lobes_for_camera(self) -> Iterator[Lobe]:
+    def _lobes_for_camera(self) -> list[Lobe]:
+        """Lobes that show."""
         normals: dict[int, Vector] = {}
+        found = []
         for lobe in map(_spread, self.lobes):
             weight = color_on_ray(lobe.weight, Ray.CAMERA)
             if weight.constant == BLACK:
@@ -90,7 +92,8 @@ class Shader:
             if normal is not None:
                 normal = normals.setdefault(id(normal), Vector(*on_ray(normal, Ray.CAMERA)))
             alpha = None if lobe.alpha is None else on_ray([lobe.alpha], Ray.CAMERA)[0]
-            yield replace(lobe, weight=weight, alpha=alpha, normal=normal)
+            found.append(replace(lobe, weight=weight, alpha=alpha, normal=normal))
+        return found
 
     @cached_property
     def _program(self) -> tuple[_core.ShaderProgram, _core.SurfaceShader, list[str]]:
@@ -118,6 +121,23 @@ class Shader:
     @cached_property
     def _compiled(self) -> _core.SurfaceShader:
         return self._program[1]
+
+
+def _merged(lobes: tuple[Lobe, ...]) -> tuple[Lobe, ...]:
+    """The same with one lobe for each shape and normal."""
+    found: dict[tuple[Any, ...], Lobe] = {}
+    for lobe in lobes:
+        key = (lobe.kind, lobe.ior, id(lobe.normal), _identity(lobe.alpha))
+        same = found.get(key)
+        found[key] = lobe if same is None else replace(lobe, weight=_color(same.weight + lobe.weight))
+    return tuple(found.values())
+
+
+def _identity(value: Value | None) -> Any:
+    """Equal for numbers that are known to be equal."""
+    if value is None:
+        return None
+    return value.constant if value.constant is not None else (id(value.step), value.output)
 
 
 def _spread(lobe: Lobe) -> Lobe:
