@@ -116,9 +116,8 @@ int order_from(const py::object& order) {
 
 py::object render_scene(const py::object& scene_object, const py::object& width, const py::object& height,
                         const py::object& order, const py::object& tolerance, const py::object& pixel_samples,
-                        const py::object& shadow_rays, const py::object& transparent_bounces,
-                        const py::object& threads, const py::object& progress, const py::object& adaptive,
-                        const py::object& return_report) {
+                        const py::object& shadow_rays, const py::object& transparent_bounces, const py::object& threads,
+                        const py::object& progress, const py::object& adaptive, const py::object& return_report) {
     auto& scene = object_from<SceneObject>("scene", scene_object, "Scene");
     const RenderSettings settings = {order_from(order),
                                      real_from("tolerance", tolerance),

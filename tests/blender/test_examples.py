@@ -44,3 +44,18 @@ def test_render_from_python_shows_a_lit_ball(tmp_path: Path) -> None:
     assert red > 2 * blue > 0
     assert image[28, 4, 1] == pytest.approx(image[28, 4, 0], rel=0.3)  # the grey floor
     images.write_png(tmp_path / "a.png", images.linear_to_srgb8(image))
+
+
+def test_textured_obj_shows_its_picture(tmp_path: Path) -> None:
+    (tmp_path / "a.obj").write_text(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"
+    )
+    halves = np.zeros((4, 4, 3), dtype=np.uint8)
+    halves[:, :2, 0] = halves[:, 2:, 2] = 200
+    images.write_png(tmp_path / "a.png", halves)
+    arguments = [tmp_path / "a.obj", tmp_path / "a.png", tmp_path / "b.png"]
+    subprocess.run([sys.executable, EXAMPLES / "textured_obj.py", *arguments], check=True, timeout=120)
+    picture = images.read_texture(tmp_path / "b.png")
+    left, right = (picture[200, column, :3].astype(int) for column in (120, 280))
+    assert left[0] > 2 * left[2]
+    assert right[2] > 2 * right[0]

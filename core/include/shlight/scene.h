@@ -30,7 +30,7 @@ struct SurfacePlace {
 
 /// The same, and the surface's neighbours in the picture (see shader_program.h).
 struct ShadedPlace {
-    std::array<SurfacePlace, 3> at;  ///< the hit, to the right, below
+    std::array<SurfacePlace, 3> at;          ///< the hit, to the right, below
     Vec3d shading_normal, geometric_normal;  ///< at the hit
     double ray_length;
     std::uint32_t transparent_depth;

@@ -26,7 +26,8 @@ enum class ShaderSource : std::uint8_t {
     normal,            ///< 3: the smooth normal
     geometric_normal,  ///< 3
     towards_viewer,    ///< 3: unit
-    attribute,         ///< 4: the mesh attribute that the material binds to `index` as RGBA, and the mean of RGB; black if there is none
+    attribute,  ///< 4: the mesh attribute that the material binds to `index` as RGBA, and the mean of RGB; black if
+                ///< there is none
     object_to_world,   ///< 12: the first three rows of the instance's matrix
     world_to_object,   ///< 12
     object_value,      ///< 1: number `index` of the instance; 0 if there is none

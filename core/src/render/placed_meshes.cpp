@@ -247,8 +247,7 @@ void PlacedMeshes::read(const ShaderInput& input, const std::vector<std::uint32_
                 return matrix_number(placement(at).to_object, input.component);
             });
         case ShaderSource::object_value:
-            return fill(
-                [&](const auto&, const SurfacePlace& at) { return object_value(placement(at), input.index); });
+            return fill([&](const auto&, const SurfacePlace& at) { return object_value(placement(at), input.index); });
         case ShaderSource::barycentric:
             return fill([&](const auto&, const SurfacePlace& at) { return component == 0 ? at.hit.u : at.hit.v; });
         case ShaderSource::backfacing:

@@ -162,7 +162,8 @@ void TexturePixels::store(Level& level, std::size_t texel, const glm::vec4& line
 /// Each texel is the mean over its share of the area, also where a side is odd.
 TexturePixels::Level TexturePixels::halved(std::size_t level) const {
     const Level& from = levels_[level];
-    Level to = {(from.width + 1) / 2, (from.height + 1) / 2, encoding_ == TexelEncoding::normal ? 4 : from.channels, {}};
+    Level to = {
+        (from.width + 1) / 2, (from.height + 1) / 2, encoding_ == TexelEncoding::normal ? 4 : from.channels, {}};
     const std::size_t count = std::size_t{to.width} * to.height * static_cast<std::size_t>(to.channels);
     if (std::holds_alternative<Bytes>(from.pixels)) {
         to.pixels = Bytes(count);
