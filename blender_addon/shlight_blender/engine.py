@@ -79,6 +79,8 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             record.last.report.extend(exported.report)
             record.last.dark = exported.dark or record.last.dark
             record.last.settings = settings
+            record.last.operations.update(exported.operations)
+            record.last.texture_bytes = exported.texture_bytes
             self._show(record.last.report.lines())
             self._check("Rendering")
             image, record.last.statistics = shlight.render(

@@ -17,6 +17,8 @@ class RenderRecord:
     report: ExportReport = field(default_factory=ExportReport)  # of all view layers
     export_seconds: float = 0.0
     statistics: Any = None  # the report of shlight.render
+    operations: dict[str, int] = field(default_factory=dict)  # for a hit on each material whose values vary
+    texture_bytes: int = 0
     scene_error: str = ""  # why the scene cannot be rendered at all
     dark: str = ""  # why the picture of a view layer is black: the message that nothing gives light
 

@@ -82,10 +82,11 @@ class MeshCollector:
 
     def __init__(self, report: ExportReport, surroundings: Surroundings, material_override: Any = None) -> None:
         self._report = report
-        self._surroundings = surroundings
+        self.surroundings = surroundings
         self._override = material_override
         self._uses: dict[tuple[Any, ...], MeshUse | None] = {}
         self._surfaces: dict[Any, Surface] = {}
+        self.operations: dict[str, int] = {}  # by the name of a material whose values vary
 
     def add(self, instance: Any, to_world: NDArray[np.float64]) -> None:
         """Notes one instance of the depsgraph that shows a mesh, at `to_world`."""
@@ -101,7 +102,7 @@ class MeshCollector:
         use = self._uses[key]
         if use is not None:
             use.transforms.append(to_world)
-            use.object_values.append(self._surroundings.object_values.of(instance))
+            use.object_values.append(self.surroundings.object_values.of(instance))
 
     def _convert(
         self, instance: Any, to_world: NDArray[np.float64], place: str, materials: Sequence[Any]
@@ -131,7 +132,7 @@ class MeshCollector:
         if any(surface.varying is not None for surface in surfaces):
             remark = partial(self._report.add, place)
             arrays, surfaces = with_even_emission(
-                arrays, surfaces, to_world, self._surroundings.object_values.of(instance), remark
+                arrays, surfaces, to_world, self.surroundings.object_values.of(instance), remark
             )
         return MeshUse(place, arrays, surfaces)
 
@@ -145,7 +146,9 @@ class MeshCollector:
         material = self._override or material
         key = material and material.as_pointer()
         if key not in self._surfaces:
-            self._surfaces[key] = read_material(material, self._report, self._surroundings)
+            surface = self._surfaces[key] = read_material(material, self._report, self.surroundings)
+            if material is not None and surface.shader.operation_count > 0:
+                self.operations[material.name] = surface.shader.operation_count
         return self._surfaces[key]
 
     def hand_over(self, scene: shlight.Scene) -> bool:

@@ -47,6 +47,8 @@ class ExportedScene(NamedTuple):
     scene: shlight.Scene
     report: ExportReport  # what of the Blender scene is not supported
     dark: str  # what the report says if nothing gives light, else ""
+    operations: dict[str, int]  # of the program of each material whose values vary, for a hit
+    texture_bytes: int  # of all textures that are kept
 
 
 def export_scene(
@@ -75,10 +77,12 @@ def export_scene(
     view = set_camera(scene, camera.evaluated_get(depsgraph), depsgraph, frame, blender_scene.render, report)
     report_unsupported_settings(blender_scene, depsgraph.view_layer_eval, report)
     lit = add_world(scene, blender_scene, depsgraph.view_layer_eval, report, waiting)
-    lit |= _add_objects(scene, depsgraph, Surroundings(view, depsgraph), report)
+    meshes = MeshCollector(report, Surroundings(view, depsgraph), depsgraph.view_layer_eval.material_override)
+    lit |= _add_objects(scene, depsgraph, meshes, report)
     for path in TEXTURES.unreadable:
         report.add(f"File '{path}'", "it cannot be read; magenta is used in the place of its picture", Effect.THING)
-    return ExportedScene(scene, report, "" if lit else _report_darkness(blender_scene, report))
+    dark = "" if lit else _report_darkness(blender_scene, report)
+    return ExportedScene(scene, report, dark, meshes.operations, TEXTURES.size_in_bytes)
 
 
 def _report_darkness(blender_scene: Any, report: ExportReport) -> str:
@@ -90,9 +94,8 @@ def _report_darkness(blender_scene: Any, report: ExportReport) -> str:
     return f"{place}: {text}"
 
 
-def _add_objects(scene: shlight.Scene, depsgraph: Any, surroundings: Surroundings, report: ExportReport) -> bool:
+def _add_objects(scene: shlight.Scene, depsgraph: Any, meshes: MeshCollector, report: ExportReport) -> bool:
     """Adds all meshes and lamps; True if something gives light."""
-    meshes = MeshCollector(report, surroundings, depsgraph.view_layer_eval.material_override)
     lit = False
     for instance in depsgraph.object_instances:
         seen = instance.object
@@ -102,7 +105,7 @@ def _add_objects(scene: shlight.Scene, depsgraph: Any, surroundings: Surrounding
         instancer = instance.parent if instance.is_instance else None
         if seen.type == "LIGHT":
             _report_light_linking((seen, instancer), f"Light '{seen.name}'", report)
-            lit |= add_lamp(scene, seen, to_world, report, surroundings, instancer)
+            lit |= add_lamp(scene, seen, to_world, report, meshes.surroundings, instancer)
         elif seen.type == "MESH":
             _report_object(seen, instancer, report)
             meshes.add(instance, to_world)

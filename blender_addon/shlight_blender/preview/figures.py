@@ -102,6 +102,12 @@ def _details(shlight: dict[str, Any]) -> list[str]:
     shares += [("cubature", shlight["cubature_share"]), ("mirrors", shlight["mirror_share"])]
     shaded = ", ".join(f"{name}: {share:.1%}" for name, share in shares if share > 0)
     lines = [f"shaded by {shaded or 'nothing'}; over tolerance: {shlight['over_tolerance']:.2%}"]
+    if shlight.get("operations"):
+        most = max(shlight["operations"], key=shlight["operations"].get)
+        lines.append(
+            f"materials that vary: {len(shlight['operations'])}, at most {shlight['operations'][most]} operations a hit"
+            f" ('{most}'); textures: {shlight['texture_bytes'] / 1e6:.0f} MB"
+        )
     if shlight["summed_lights"] > 0:
         lines.append(f"dim lights summed up from afar, per hit: {shlight['summed_lights']:.0f}")
     if shlight["unsupported"]:

@@ -67,6 +67,8 @@ class PreviewWorker(Worker[Options]):
             "summed_lights": statistics.summed_lights,
             "hits": statistics.hits,
             "shadow_rays": statistics.shadow_rays,
+            "operations": made.operations,
+            "texture_bytes": made.texture_bytes,
         }
 
     def _same_time(self, figures: dict[str, Any]) -> SampleTime:
