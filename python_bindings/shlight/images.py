@@ -46,9 +46,11 @@ def read_texture(path: str | os.PathLike[str], *, associate: bool = True) -> npt
     """Reads a picture of any format: (height, width, channels), uint8 of files of 8 bits, otherwise float32.
 
     associate: colours are multiplied with alpha; or else they are as the file has them.
-    Raises OSError when the file is missing or cannot be read.
+    Raises ValueError naming the argument, OSError when the file is missing or cannot be read.
     """
-    pixels = _read(path, None, associate=associate)
+    if not isinstance(associate, bool | np.bool_):
+        raise ValueError(f"associate must be True or False, got {associate!r}")
+    pixels = _read(path, None, associate=bool(associate))
     return np.ascontiguousarray(pixels[..., : {2: 1}.get(pixels.shape[2], 4)])
 
 

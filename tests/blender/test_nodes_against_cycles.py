@@ -112,7 +112,7 @@ def colors() -> list[Case]:
         Case("ShaderNodeBrightContrast", {"Color": "e", "Bright": "x", "Contrast": "y"}),
         Case("ShaderNodeGamma", {"Color": "e", "Gamma": "w"}),
         Case("ShaderNodeInvert", {"Color": "e", "Fac": "t"}),
-        Case("ShaderNodeRGBToBW", {"Color": "e"}),
+        Case("ShaderNodeRGBToBW", {"Color": "e"}, tolerance=1e-4),
         Case("ShaderNodeBlackbody", {"Temperature": 3456.0}, tolerance=1e-3),
         Case("ShaderNodeValToRGB", {"Fac": "s"}, "Color", {}, ramp("LINEAR")),
         Case("ShaderNodeValToRGB", {"Fac": "s"}, "Color", {}, ramp("EASE")),
@@ -181,9 +181,8 @@ def vectors() -> list[Case]:
         inputs |= {"W": "x"} if count == "4" else {}
         made.append(Case("ShaderNodeTexWhiteNoise", inputs, output, {"noise_dimensions": f"{count}D"}))
     for space in choices("ShaderNodeNormalMap", "space"):
-        made.append(
-            Case("ShaderNodeNormalMap", {"Strength": "w", "Color": "c"}, 0, {"space": space, "uv_map": "UVMap"})
-        )
+        properties = {"space": space, "uv_map": "UVMap"}
+        made.append(Case("ShaderNodeNormalMap", {"Strength": "w", "Color": "c"}, 0, properties, tolerance=2e-5))
     return made
 
 
@@ -206,7 +205,7 @@ def places() -> list[Case]:
     ]
     made += [Case("ShaderNodeTangent", {}, 0, {"direction_type": "RADIAL", "axis": axis}) for axis in "XYZ"]
     for case in made:  # across a hundredth of a pixel
-        case.tolerance = 5e-5 if case.inputs else 5e-4
+        case.tolerance = 5e-5 if case.inputs else 1e-3
     for name, output in itertools.product(("a", "x", "Col", "absent"), ("Color", "Vector", "Fac", "Alpha")):
         made.append(Case("ShaderNodeAttribute", {}, output, {"attribute_name": name}))
     for kind, output in itertools.product(("OBJECT", "INSTANCER", "VIEW_LAYER"), ("Color", "Fac", "Alpha")):

@@ -140,7 +140,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "render": (shlight.render, {"scene": new_scene(), **RENDER, **SETTINGS, "return_report": True}),
     "images.write_exr": (images.write_exr, {"path": "a.exr", "image": picture(4, np.float32)}),
     "images.read_exr": (images.read_exr, {"path": "missing.exr"}),
-    "images.read_texture": (images.read_texture, {"path": "missing.png"}),
+    "images.read_texture": (images.read_texture, {"path": "missing.png", "associate": False}),
     "images.write_png": (images.write_png, {"path": "a.png", "image_srgb_uint8": picture(3, np.uint8)}),
     "images.linear_to_srgb8": (images.linear_to_srgb8, {"image": picture(3, np.float32), "exposure": 1.0}),
     "methods.coefficient_methods": (methods.coefficient_methods, {}),

@@ -42,7 +42,7 @@ def _in_window(view: View) -> Vector:
 
 
 def _texture_coordinate(inputs: NodeInputs) -> Expression:
-    name, view = inputs.output.name, inputs.reader.surroundings.view
+    name, view = inputs.output.identifier, inputs.reader.surroundings.view
     if inputs.node.from_instancer and name in ("Generated", "UV"):
         inputs.remark("'From Instancer' is not supported; the object's own coordinates are used")
     if name == "UV":
@@ -75,7 +75,7 @@ def _camera_data(inputs: NodeInputs) -> Expression:
         "View Z Depth": place.z,
         "View Distance": length(place),
     }
-    return outputs[inputs.output.name]
+    return outputs[inputs.output.identifier]
 
 
 Move = Callable[[Vector], Vector]

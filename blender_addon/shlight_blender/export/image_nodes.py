@@ -38,7 +38,7 @@ def image_texture(inputs: NodeInputs) -> Color | Value:
     else:
         place = inputs.vector("Vector") if inputs.is_linked("Vector") else nodes.uv("")
         found = _projected(inputs, textures, place)
-    return found.alpha if inputs.output.name == "Alpha" else found
+    return found.alpha if inputs.output.identifier == "Alpha" else found
 
 
 def _textures(inputs: NodeInputs, image: Any) -> Any:

@@ -42,7 +42,7 @@ def _of_object(inputs: NodeInputs, kind: str, name: str) -> Color:
 
 
 def _channel(inputs: NodeInputs, found: Color, mean: Value | None = None) -> Expression:
-    output = inputs.output.name
+    output = inputs.output.identifier
     if output == "Alpha":
         return found.alpha
     if output == "Vector":
@@ -54,11 +54,11 @@ def _channel(inputs: NodeInputs, found: Color, mean: Value | None = None) -> Exp
 
 def _color_attribute(inputs: NodeInputs) -> Expression:
     found = nodes.attribute(f"{COLOR}{inputs.node.layer_name}")
-    return found.alpha if inputs.output.name == "Alpha" else found
+    return found.alpha if inputs.output.identifier == "Alpha" else found
 
 
 def _geometry(inputs: NodeInputs) -> Expression:
-    name = inputs.output.name
+    name = inputs.output.identifier
     if name == "Position":
         return nodes.position()
     if name == "Normal":
@@ -77,7 +77,7 @@ def _geometry(inputs: NodeInputs) -> Expression:
 
 
 def _object_info(inputs: NodeInputs) -> Expression:
-    name = inputs.output.name
+    name = inputs.output.identifier
     if name == "Location":
         return Vector(*(nodes.inputs.read("object_to_world", 4 * row + 3) for row in range(3)))
     if name == "Material Index":
@@ -111,7 +111,7 @@ def _fresnel(inputs: NodeInputs) -> Value:
 def _layer_weight(inputs: NodeInputs) -> Value:
     blend = inputs.number("Blend")
     cosine = dot(nodes.towards_viewer(), _own_normal(inputs))
-    if inputs.output.name == "Fresnel":
+    if inputs.output.identifier == "Fresnel":
         ior = maximum(1.0 - blend, 1e-5)
         return _fresnel_of(cosine, select(nodes.backfacing(), ior, 1.0 / ior))
     share = clamp(blend, 0.0, 1.0 - 1e-5)
@@ -120,7 +120,7 @@ def _layer_weight(inputs: NodeInputs) -> Value:
 
 
 def _light_path(inputs: NodeInputs) -> Value:
-    name = inputs.output.name
+    name = inputs.output.identifier
     if name == "Is Camera Ray":
         return nodes.rays.camera_ray()
     if name == "Is Shadow Ray":
@@ -163,7 +163,7 @@ def _checker(inputs: NodeInputs) -> Expression:
         operation("modulo", abs(operation("floor", (c * inputs.number("Scale") + 1e-6) * 0.999999)), 2.0) for c in place
     ]
     same = operation("equal", operation("equal", floors[0], floors[1]), floors[2])
-    if inputs.output.name == "Fac":
+    if inputs.output.identifier == "Fac":
         return same
     first, second = inputs.color("Color1"), inputs.color("Color2")
     return Color(*(select(same, a, b) for a, b in zip(first, second, strict=True)))
@@ -198,7 +198,7 @@ def _white_noise(inputs: NodeInputs) -> Expression:
     def noise(*more: float) -> Value:
         return operation(f"hash{len(key) + len(more)}", *key, *more)
 
-    if inputs.output.name == "Value":
+    if inputs.output.identifier == "Value":
         return noise()
     if count < 4:
         return Color(noise(), noise(1.0), noise(2.0))

@@ -45,7 +45,7 @@ def _math(inputs: NodeInputs) -> Value:
 def _vector_math(inputs: NodeInputs) -> Value | Vector:
     a, b, c = (inputs.vector(i) for i in range(3))
     found = VECTOR_MATH[inputs.node.operation](a, b, c, inputs.number("Scale"))
-    wants_number = inputs.output.name == "Value"
+    wants_number = inputs.output.identifier == "Value"
     if wants_number == isinstance(found, Value):
         return found
     return nodes.values.number(0.0) if wants_number else Vector(0.0, 0.0, 0.0)
@@ -104,7 +104,7 @@ def _color_ramp(inputs: NodeInputs) -> Color | Value:
     band = inputs.node.color_ramp
     table = np.array([band.evaluate(i / (TABLE_SIZE - 1)) for i in range(TABLE_SIZE)])
     found = ramp(inputs.number("Fac"), table, interpolate=band.interpolation != "CONSTANT")
-    return found.alpha if inputs.output.name == "Alpha" else found
+    return found.alpha if inputs.output.identifier == "Alpha" else found
 
 
 Function = Callable[[float], float]
@@ -201,7 +201,7 @@ def _hue_saturation(inputs: NodeInputs) -> Color:
 
 def _normal(inputs: NodeInputs) -> Value | Vector:
     own = nodes.values.normalize(Vector(*inputs.node.outputs["Normal"].default_value))
-    if inputs.output.name == "Normal":
+    if inputs.output.identifier == "Normal":
         return own
     return nodes.values.dot(own, nodes.values.normalize(inputs.vector("Normal")))
 
