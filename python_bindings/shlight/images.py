@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from shlight._arrays import checked_array, checked_number
+from shlight._arrays import checked_array, checked_flag, checked_number
 
 __all__ = ["linear_to_srgb8", "read_exr", "read_texture", "write_exr", "write_png"]
 
@@ -48,9 +48,7 @@ def read_texture(path: str | os.PathLike[str], *, associate: bool = True) -> npt
     associate: colours are multiplied with alpha; or else they are as the file has them.
     Raises ValueError naming the argument, OSError when the file is missing or cannot be read.
     """
-    if not isinstance(associate, bool | np.bool_):
-        raise ValueError(f"associate must be True or False, got {associate!r}")
-    pixels = _read(path, None, associate=bool(associate))
+    pixels = _read(path, None, associate=checked_flag("associate", associate))
     return np.ascontiguousarray(pixels[..., : {2: 1}.get(pixels.shape[2], 4)])
 
 

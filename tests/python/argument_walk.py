@@ -13,6 +13,7 @@ import tempfile
 import warnings
 from collections.abc import Callable
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -73,6 +74,7 @@ MESH = {
     "transforms": [np.eye(4)],
     "object_values": [[1.0, 2.0]],
 }
+PICTURE = Path(__file__).parents[2] / "docs" / "images" / "preview.png"
 RENDER = {"width": 2, "height": 2, "threads": 1, "progress": None}
 SETTINGS = {
     "order": "auto",
@@ -140,7 +142,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "render": (shlight.render, {"scene": new_scene(), **RENDER, **SETTINGS, "return_report": True}),
     "images.write_exr": (images.write_exr, {"path": "a.exr", "image": picture(4, np.float32)}),
     "images.read_exr": (images.read_exr, {"path": "missing.exr"}),
-    "images.read_texture": (images.read_texture, {"path": "missing.png", "associate": False}),
+    "images.read_texture": (images.read_texture, {"path": PICTURE, "associate": False}),
     "images.write_png": (images.write_png, {"path": "a.png", "image_srgb_uint8": picture(3, np.uint8)}),
     "images.linear_to_srgb8": (images.linear_to_srgb8, {"image": picture(3, np.float32), "exposure": 1.0}),
     "methods.coefficient_methods": (methods.coefficient_methods, {}),
