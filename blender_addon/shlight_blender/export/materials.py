@@ -47,7 +47,7 @@ class Surface:
 def default_surface() -> Surface:
     """The surface of an object without material."""
     if MATERIALS.default_is_principled:
-        return Surface(nodes.principled(DEFAULT_ALBEDO))
+        return Surface(nodes.principled(DEFAULT_ALBEDO, several_bounces=True))
     return Surface(nodes.lambert(DEFAULT_ALBEDO))
 
 
