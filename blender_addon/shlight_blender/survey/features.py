@@ -46,16 +46,16 @@ def features_of(scene: Any) -> list[str]:
 
 def _nodes_in_use(tree: Any) -> Iterator[Any]:
     """The nodes from which the tree's output gets something, and all nodes of the groups among them."""
-    todo, known = [tree.get_output_node("CYCLES")], set()
-    while todo:
-        node = todo.pop()
+    waiting, known = [tree.get_output_node("CYCLES")], set()
+    while waiting:
+        node = waiting.pop()
         if node is None or node.name in known:
             continue
         known.add(node.name)
         yield node
         if node.type == "GROUP" and node.node_tree is not None:
             yield from all_nodes(node.node_tree)
-        todo += [link.from_node for socket in node.inputs for link in socket.links if not link.is_muted]
+        waiting += [link.from_node for socket in node.inputs for link in socket.links if not link.is_muted]
 
 
 def _features_of_node(node: Any) -> set[str]:
