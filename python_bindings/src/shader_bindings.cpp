@@ -139,8 +139,6 @@ ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTup
     return {std::move(shader), std::move(attribute_names)};
 }
 
-using PixelsPointer = std::shared_ptr<const TexturePixels>;
-
 /// uint8 or float; (height, width, channels), row 0 at v = 0.
 std::shared_ptr<TexturePixels> pixels_from(const py::array& pixels, int encoding) {
     if (pixels.ndim() != 3 || pixels.size() == 0 ||

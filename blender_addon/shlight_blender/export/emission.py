@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from shlight.nodes import Color, Value
 from shlight.nodes.program import ProgramBuilder
-from shlight.nodes.values import Step
+from shlight.nodes.values import Step, in_order
 
 Array = NDArray[np.float64]
 # What an input of a program is: its source, the index or name, and the component.
@@ -29,9 +29,13 @@ class VaryingEmission:
     color: Color
 
     @cached_property
+    def _steps(self) -> list[Step]:
+        return list(in_order(value.step for value in self.color))
+
+    @cached_property
     def _places(self) -> list[tuple[tuple[Value, Value], tuple[float, float]]]:
         """Where pictures are looked up, and their sizes."""
-        images = [step for step in steps_of(self.color) if step.name == "image"]
+        images = [step for step in self._steps if step.name == "image"]
         return [((step.arguments[0], step.arguments[1]), step.data.core.size) for step in images]
 
     @cached_property
@@ -45,7 +49,7 @@ class VaryingEmission:
     @property
     def inputs(self) -> list[Input]:
         """What must be known of a place."""
-        return [step.data for step in steps_of(self.color) if step.name == "input"]
+        return [step.data for step in self._steps if step.name == "input"]
 
     def _evaluate(self, inputs: Mapping[Input, Array], count: int) -> Array:
         builder, program = self._program
@@ -65,14 +69,3 @@ class VaryingEmission:
         """Where pictures are looked up, in texels: for each of them (count, 2)."""
         results = self._evaluate(inputs, count)[3:]
         return [results[2 * i : 2 * i + 2].T * size for i, (_, size) in enumerate(self._places)]
-
-
-def steps_of(color: Color) -> list[Step]:
-    """All steps of an expression, each once."""
-    waiting, seen = [value.step for value in color], {}
-    while waiting:
-        step = waiting.pop()
-        if id(step) not in seen:
-            seen[id(step)] = step
-            waiting += [argument.step for argument in step.arguments]
-    return list(seen.values())

@@ -61,6 +61,10 @@ class NodeInputs:
         socket = self.socket(name)
         return number(0.0) if socket is None else self.reader.expression(socket, self.groups)
 
+    def linked_vector(self, name: str | int) -> Vector | None:
+        """An input as a vector if another node makes it, else None: what the node itself takes in its place."""
+        return self.vector(name) if self.is_linked(name) else None
+
     def number(self, name: str | int) -> Value:
         """An input as a number."""
         return number(self.expression(name))

@@ -36,7 +36,7 @@ def image_texture(inputs: NodeInputs) -> Color | Value:
     if textures is None:
         found: Color = Color(*MISSING)
     else:
-        place = inputs.vector("Vector") if inputs.is_linked("Vector") else nodes.uv("")
+        place = inputs.linked_vector("Vector") or nodes.uv("")
         found = _projected(inputs, textures, place)
     return found.alpha if inputs.output.identifier == "Alpha" else found
 
@@ -130,10 +130,6 @@ def _on_tube(p: Vector) -> Vector:
     return Vector(select(radius, u, 0.0), select(radius, (p.z + 1.0) * 0.5, 0.0), 0.0)
 
 
-def _both(a: Value, b: Value) -> Value:
-    return a * b
-
-
 def _box(inputs: NodeInputs, textures: Any, place: Vector) -> Color:
     """Three pictures along the axes of the object, blended where a normal lies between them."""
     n = nodes.values.normalize(nodes.inputs.normal_to_object(nodes.normal()))
@@ -160,7 +156,7 @@ def _box_weights(normal: Vector, blend: float) -> tuple[Value, Value, Value]:
 
     def leads(i: int) -> Value:
         j, k = (other for other in range(3) if other != i)
-        return _both(a[i] > limit * (a[i] + a[j]), a[i] > limit * (a[i] + a[k]))
+        return (a[i] > limit * (a[i] + a[j])) * (a[i] > limit * (a[i] + a[k]))
 
     alone = [leads(i) for i in range(3)]
     if blend <= 0.0:

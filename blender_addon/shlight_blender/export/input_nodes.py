@@ -99,7 +99,7 @@ def _fresnel_of(cosine: Value, ior: Value) -> Value:
 
 
 def _own_normal(inputs: NodeInputs) -> Vector:
-    return inputs.vector("Normal") if inputs.is_linked("Normal") else nodes.normal()
+    return inputs.linked_vector("Normal") or nodes.normal()
 
 
 def _fresnel(inputs: NodeInputs) -> Value:
@@ -142,7 +142,7 @@ def _normal_map(inputs: NodeInputs) -> Vector:
 
 
 def _bump(inputs: NodeInputs) -> Vector:
-    at = inputs.vector("Normal") if inputs.is_linked("Normal") else None
+    at = inputs.linked_vector("Normal")
     height, strength, distance = (inputs.number(name) for name in ("Height", "Strength", "Distance"))
     if not inputs.is_linked("Height"):
         return nodes.normal() if at is None else at
@@ -158,7 +158,7 @@ def _blackbody(inputs: NodeInputs) -> Expression:
 
 
 def _checker(inputs: NodeInputs) -> Expression:
-    place = inputs.vector("Vector") if inputs.is_linked("Vector") else nodes.attribute(GENERATED)
+    place = inputs.linked_vector("Vector") or nodes.attribute(GENERATED)
     floors = [
         operation("modulo", abs(operation("floor", (c * inputs.number("Scale") + 1e-6) * 0.999999)), 2.0) for c in place
     ]
@@ -170,7 +170,7 @@ def _checker(inputs: NodeInputs) -> Expression:
 
 
 def _gradient(inputs: NodeInputs) -> Expression:
-    place = inputs.vector("Vector") if inputs.is_linked("Vector") else nodes.attribute(GENERATED)
+    place = inputs.linked_vector("Vector") or nodes.attribute(GENERATED)
     x, y, _ = place
     kind = inputs.node.gradient_type
     if kind == "RADIAL":

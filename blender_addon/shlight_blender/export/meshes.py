@@ -86,7 +86,7 @@ class MeshCollector:
         self._override = material_override
         self._uses: dict[tuple[Any, ...], MeshUse | None] = {}
         self._surfaces: dict[Any, Surface] = {}
-        self.operations: dict[str, int] = {}  # by the name of a material whose values vary
+        self._names: dict[Any, str] = {}  # of the materials of these
 
     def add(self, instance: Any, to_world: NDArray[np.float64]) -> None:
         """Notes one instance of the depsgraph that shows a mesh, at `to_world`."""
@@ -146,10 +146,14 @@ class MeshCollector:
         material = self._override or material
         key = material and material.as_pointer()
         if key not in self._surfaces:
-            surface = self._surfaces[key] = read_material(material, self._report, self.surroundings)
-            if material is not None and surface.shader.operation_count > 0:
-                self.operations[material.name] = surface.shader.operation_count
+            self._surfaces[key] = read_material(material, self._report, self.surroundings)
+            self._names[key] = "" if material is None else material.name
         return self._surfaces[key]
+
+    def operations(self) -> dict[str, int]:
+        """How many operations a hit takes, by the name of each material whose values vary."""
+        counts = {self._names[key]: surface.shader.operation_count for key, surface in self._surfaces.items()}
+        return {name: count for name, count in counts.items() if name and count > 0}
 
     def hand_over(self, scene: shlight.Scene) -> bool:
         """Adds everything to `scene`; True if some of it emits light."""

@@ -34,19 +34,19 @@ def _read_layered(inputs: ShaderInputs) -> Shader:
         roughness=inputs.number("Roughness"),
         ior=inputs.number("IOR"),
         alpha=inputs.number("Alpha"),
-        diffuse_roughness=inputs.number("Diffuse Roughness") if "Diffuse Roughness" in inputs.node.inputs else 0.0,
+        diffuse_roughness=inputs.number("Diffuse Roughness"),
         specular_ior_level=inputs.number("Specular IOR Level"),
         specular_tint=inputs.color("Specular Tint"),
         coat_weight=inputs.number("Coat Weight"),
         coat_roughness=inputs.number("Coat Roughness"),
         coat_ior=inputs.number("Coat IOR"),
         coat_tint=inputs.color("Coat Tint"),
-        coat_normal=inputs.normal("Coat Normal"),
+        coat_normal=inputs.linked_vector("Coat Normal"),
         transmission_weight=inputs.number("Transmission Weight"),
         emission_color=inputs.color("Emission Color"),
         emission_strength=inputs.number("Emission Strength"),
         several_bounces=inputs.node.distribution == "MULTI_GGX",
-        at=inputs.normal(),
+        at=inputs.linked_vector("Normal"),
     )
 
 
@@ -60,7 +60,7 @@ def _read_sum(inputs: ShaderInputs) -> Shader:
     specular = maximum(inputs.number("Specular"), 0.0)
     tint = inputs.number("Specular Tint")
     alpha = clamp(inputs.number("Alpha"))
-    at = inputs.normal()
+    at = inputs.linked_vector("Normal")
     glow = nodes.emission(inputs.color("Emission") * inputs.number("Emission Strength"))
     if metallic.constant != 1.0 and base.constant != (0.0, 0.0, 0.0):
         text = "the diffuse part is drawn as Diffuse BSDF, without Principled BSDF's darker and brighter edges"

@@ -82,7 +82,7 @@ def export_scene(
     for path in TEXTURES.unreadable:
         report.add(f"File '{path}'", "it cannot be read; magenta is used in the place of its picture", Effect.THING)
     dark = "" if lit else _report_darkness(blender_scene, report)
-    return ExportedScene(scene, report, dark, meshes.operations, TEXTURES.size_in_bytes)
+    return ExportedScene(scene, report, dark, meshes.operations(), TEXTURES.size_in_bytes)
 
 
 def _report_darkness(blender_scene: Any, report: ExportReport) -> str:

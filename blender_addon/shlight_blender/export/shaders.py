@@ -17,7 +17,9 @@ def positive(c: nodes.Vector) -> Color:
 
 
 def _diffuse(inputs: ShaderInputs) -> Shader:
-    return nodes.oren_nayar(positive(inputs.color("Color")), inputs.number("Roughness"), at=inputs.normal())
+    return nodes.oren_nayar(
+        positive(inputs.color("Color")), inputs.number("Roughness"), at=inputs.linked_vector("Normal")
+    )
 
 
 def _glossy(inputs: ShaderInputs) -> Shader:
@@ -28,7 +30,7 @@ def _glossy(inputs: ShaderInputs) -> Shader:
         # All distributions end in the same mirror.
         inputs.remark(f"distribution {distribution} is not supported; GGX is used")
     return nodes.glossy(
-        inputs.color("Color"), roughness, several_bounces=distribution == "MULTI_GGX", at=inputs.normal()
+        inputs.color("Color"), roughness, several_bounces=distribution == "MULTI_GGX", at=inputs.linked_vector("Normal")
     )
 
 

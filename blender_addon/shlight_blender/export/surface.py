@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from shlight import nodes
-from shlight.nodes import Shader, Vector
-from shlight.nodes.values import number
+from shlight.nodes import Shader
 
 from ..report import Effect, ExportReport
 from .expressions import ExpressionReader, NodeInputs, ReadNode, Surroundings, own_value
@@ -38,10 +37,6 @@ class ShaderInputs(NodeInputs):
     def shader(self, name: str | int) -> Shader:
         """The shader that an input receives."""
         return self.reader.shader(self.node.inputs[name], self.groups)
-
-    def normal(self, name: str = "Normal") -> Vector | None:
-        """The normal that an input receives; None if nothing is linked."""
-        return self.vector(name) if name in self.node.inputs and self.is_linked(name) else None
 
     def ignore_unless(self, name: str, neutral: float) -> None:
         """Reports an input that is not supported, unless it has the value at which it does nothing."""
@@ -89,8 +84,3 @@ class ShaderReader(ExpressionReader):
 
 
 ReadShader = Callable[[ShaderInputs], Shader]
-
-
-def share(value: Any) -> nodes.Value:
-    """A number clamped to 0 … 1."""
-    return nodes.values.clamp(number(value))

@@ -237,7 +237,7 @@ VALUE_NODES: dict[str, ReadNode] = {
     "VECTOR_ROTATE": _vector_rotate,
     "MAPPING": lambda i: mapping(
         i.vector("Vector"),
-        i.vector("Location") if "Location" in i.node.inputs else Vector(0.0, 0.0, 0.0),
+        i.vector("Location"),
         i.vector("Rotation"),
         i.vector("Scale"),
         i.node.vector_type.lower(),

@@ -15,7 +15,7 @@
 
 namespace shlight {
 
-/// A camera ray, and those of its neighbours in the picture.
+/// A camera ray of a picture.
 struct CameraRay {
     Ray ray;
     std::uint32_t sample;  ///< its number within its pixel

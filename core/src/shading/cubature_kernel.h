@@ -19,8 +19,8 @@ inline constexpr std::uint8_t kHidden = 255;
 
 /// The smallest rule for each light that keeps within its view's tolerance, absolute in units of the lobe's albedo and
 /// relative to the light's own value. Light i is seen by view view_of[i].
-/// Rules of caps: 1, 4, 7, 24 points; of polygons: 3, 7, 16, 25 points a triangle. widths: of the lobe at each view, >
-/// 0.
+/// Rules of caps: 1, 4, 7, 24 points; of polygons: 3, 7, 16, 25 points a triangle. widths: of the lobe at each view,
+/// positive.
 void choose_cap_rules(const float* widths, const CircleArrays& circles, const ViewArrays& views,
                       const float* tolerances, std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules);
 void choose_polygon_rules(const float* widths, const PolygonArrays& polygons, const ViewArrays& views,

@@ -33,12 +33,8 @@ IOR_NODES = (1.0 + 1e-4, 1.1, 1.25, 1.45, 1.7, 2.1, 2.8, 4.0, 8.0, 20.0)
 EDGE = 6.0 / 7.0
 
 
-def _as_color(v: Vector) -> Color:
-    return Color(v.x, v.y, v.z)
-
-
 def _mix(a: Vector, b: Varying, share: Varying) -> Color:
-    return _as_color(a + (color(b) - a) * share)
+    return color(a + (color(b) - a) * share)
 
 
 def _largest(c: Vector) -> Value:
@@ -84,13 +80,13 @@ def _bounces(roughness: Value, cosine: Value, mean_fresnel: Color) -> Color:
     """By how much light that is reflected by several microfacets brightens a lobe (Kulla & Conty 2017)."""
     own, mean = energy.albedo(roughness, cosine), energy.mean_albedo(roughness)
     again = mean_fresnel * mean / (1.0 - mean_fresnel * (1.0 - mean))
-    return _as_color(1.0 + again * ((1.0 - own) / own))
+    return color(1.0 + again * ((1.0 - own) / own))
 
 
 def rising_lobes(weight: Vector, ior: Value, alpha: Value, at: Vector | None) -> tuple[Lobe, ...]:
     """Lobes of the rise of Fresnel's curve; of a varying index by interpolation."""
     if ior.constant is not None:
-        return (Lobe("ggx_dielectric", _as_color(weight), alpha, at, max(ior.constant, 1.0 + 1e-6)),)
+        return (Lobe("ggx_dielectric", color(weight), alpha, at, max(ior.constant, 1.0 + 1e-6)),)
     lobes = []
     for i, node in enumerate(IOR_NODES):
         share: Value = number(1.0)
@@ -98,7 +94,7 @@ def rising_lobes(weight: Vector, ior: Value, alpha: Value, at: Vector | None) ->
             share = minimum(share, (ior - IOR_NODES[i - 1]) / (node - IOR_NODES[i - 1]))
         if i + 1 < len(IOR_NODES):
             share = minimum(share, (IOR_NODES[i + 1] - ior) / (IOR_NODES[i + 1] - node))
-        lobes.append(Lobe("ggx_dielectric", _as_color(weight * maximum(share, 0.0)), alpha, at, node))
+        lobes.append(Lobe("ggx_dielectric", color(weight * maximum(share, 0.0)), alpha, at, node))
     return tuple(lobes)
 
 
@@ -108,16 +104,16 @@ def _dielectric(
     """Lobes of a dielectric interface, and the share of light that it lets through."""
     alpha = roughness * roughness
     cosine = clamp(dot(towards_viewer(), at), 1e-4)
-    own = _as_color(weight * 1.0)
+    own = color(weight * 1.0)
     dimmed = color(1.0)
     if several_bounces:
         mean = (ior - 1.0) / (4.08567 + 1.00071 * ior)
         base = head_on(ior)
         mean_fresnel = _mix(f0, 1.0, clamp((mean - base) / (1.0 - base)))
         brighter = _bounces(roughness, cosine, mean_fresnel)
-        own = _as_color(own * brighter)
-        dimmed = _as_color(brighter * energy.albedo(roughness, cosine))
-    lobes = (Lobe("ggx", _as_color(own * f0), alpha, at), *rising_lobes(own * (1.0 - f0), ior, alpha, at))
+        own = color(own * brighter)
+        dimmed = color(brighter * energy.albedo(roughness, cosine))
+    lobes = (Lobe("ggx", color(own * f0), alpha, at), *rising_lobes(own * (1.0 - f0), ior, alpha, at))
     reflected = _mix(f0, 1.0, energy.rise(roughness, cosine, ior)) * dimmed
     return lobes, color(clamp(1.0 - _largest(reflected)))
 
@@ -128,13 +124,13 @@ def _metal(
     """Lobes of a metal: Schlick's curve, less what a tint takes away near 82° (Kutz et al. 2021)."""
     alpha = roughness * roughness
     schlick = _mix(f0, 1.0, EDGE**5)
-    dip = _as_color(schlick * (7.0 / EDGE**6) * (1.0 - edge_tint))
-    own = _as_color(weight * 1.0)
+    dip = color(schlick * (7.0 / EDGE**6) * (1.0 - edge_tint))
+    own = color(weight * 1.0)
     if several_bounces:
         cosine = clamp(dot(towards_viewer(), at), 1e-4)
-        own = _as_color(own * _bounces(roughness, cosine, _as_color(_mix(f0, 1.0, 1.0 / 21.0) - dip * (1.0 / 126.0))))
-    lobes = (Lobe("ggx", _as_color(own * f0), alpha, at), Lobe("ggx_schlick", _as_color(own * (1.0 - f0)), alpha, at))
-    return lobes if dip.constant == (0.0, 0.0, 0.0) else (*lobes, Lobe("ggx_dip", _as_color(-(own * dip)), alpha, at))
+        own = color(own * _bounces(roughness, cosine, color(_mix(f0, 1.0, 1.0 / 21.0) - dip * (1.0 / 126.0))))
+    lobes = (Lobe("ggx", color(own * f0), alpha, at), Lobe("ggx_schlick", color(own * (1.0 - f0)), alpha, at))
+    return lobes if dip.constant == (0.0, 0.0, 0.0) else (*lobes, Lobe("ggx_dip", color(-(own * dip)), alpha, at))
 
 
 def glossy(tint: Varying, roughness: Number, *, several_bounces: bool = False, at: Vector | None = None) -> Shader:
@@ -144,7 +140,7 @@ def glossy(tint: Varying, roughness: Number, *, several_bounces: bool = False, a
     r = clamp(number(roughness, "roughness"))
     weight = c
     if several_bounces:
-        weight = _as_color(c * _bounces(r, clamp(dot(towards_viewer(), n), 1e-4), _clamped(c)))
+        weight = color(c * _bounces(r, clamp(dot(towards_viewer(), n), 1e-4), _clamped(c)))
     return Shader((Lobe("ggx", weight, r * r, n),))
 
 
@@ -177,9 +173,9 @@ def oren_nayar(albedo: Varying, sigma: Number, *, at: Vector | None = None) -> S
     varies = select(rough > 0.0, 1.0, 0.0)
     return Shader(
         (
-            Lobe("lambert", _as_color(rho * (a * (1.0 - rough) * math.pi)), normal=at),
-            Lobe("oren_nayar", _as_color(rho * b), normal=at),
-            Lobe("oren_nayar_loss", _as_color(rho * again * (1.0 - own) * b * varies), normal=at),
+            Lobe("lambert", color(rho * (a * (1.0 - rough) * math.pi)), normal=at),
+            Lobe("oren_nayar", color(rho * b), normal=at),
+            Lobe("oren_nayar_loss", color(rho * again * (1.0 - own) * b * varies), normal=at),
         )
     )
 
@@ -230,8 +226,8 @@ def principled(
         )
         result += Shader(lobes)
         # Weights of several lobes above 1 hide all that is below, as the sum of their shares does.
-        weight = _as_color(weight * clamp(1.0 - coat * (1.0 - passed.x)))
-        weight = _as_color(weight * _coat_color(color(coat_tint, "coat_tint"), coat, coat_index, coat_at))
+        weight = color(weight * clamp(1.0 - coat * (1.0 - passed.x)))
+        weight = color(weight * _coat_color(color(coat_tint, "coat_tint"), coat, coat_index, coat_at))
     result += (
         emission(color(emission_color, "emission_color") * number(emission_strength, "emission_strength")) * weight
     )
@@ -240,13 +236,13 @@ def principled(
     if metal.constant != 0.0:
         edge = Color(*(minimum(component, 1.0) for component in tint))
         result += Shader(_metal(weight * metal, f0_of_metal, edge, rough, glossy_normal, **several))
-        weight = _as_color(weight * (1.0 - metal))
+        weight = color(weight * (1.0 - metal))
     through = clamp(number(transmission_weight, "transmission_weight"))
     if through.constant != 0.0:
         f0 = _clamped(tint * head_on(index))
         lobes, _ = _dielectric(weight * through, f0, maximum(index, 1.0 / index), rough, glossy_normal, **several)
         result += Shader(lobes)
-        weight = _as_color(weight * (1.0 - through))
+        weight = color(weight * (1.0 - through))
     if weight.constant == (0.0, 0.0, 0.0):
         return result
     level = maximum(number(specular_ior_level, "specular_ior_level"), 0.0)
@@ -260,7 +256,7 @@ def principled(
         f0 = _clamped(tint * reflectance)
         lobes, passed = _dielectric(weight, f0, index, rough, glossy_normal, **several)
         result += Shader(lobes)
-        weight = _as_color(weight * passed)
+        weight = color(weight * passed)
     return result + oren_nayar(base, diffuse_roughness, at=at) * weight
 
 

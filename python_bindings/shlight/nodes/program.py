@@ -10,7 +10,7 @@ import numpy as np
 
 from shlight import _core
 from shlight.nodes.inputs import SOURCES
-from shlight.nodes.values import Step, Value, operations
+from shlight.nodes.values import Step, Value, in_order, operations
 
 CONSTANT, INPUT, OPERATION = 0, 1, 2
 
@@ -42,7 +42,9 @@ class ProgramBuilder:
         """Makes values results of the program; the number of the first."""
         first = len(self._results)
         for value in values:
-            self._list(value.step)
+            for step in in_order([value.step], self._numbers):
+                self._kept.append(step)
+                self._numbers[id(step)] = self._add(step)
             self._results.append(self._numbers[id(value.step)] + value.output)
         return first
 
@@ -57,19 +59,6 @@ class ProgramBuilder:
                 self.attributes.append(index)
             index = self.attributes.index(index)
         return SOURCES[source], index
-
-    def _list(self, step: Step) -> None:
-        waiting = [step]
-        while waiting:
-            top = waiting[-1]
-            missing = [a.step for a in top.arguments if id(a.step) not in self._numbers]
-            if missing:
-                waiting += missing
-                continue
-            waiting.pop()
-            if id(top) not in self._numbers:
-                self._kept.append(top)
-                self._numbers[id(top)] = self._add(top)
 
     def _add(self, step: Step) -> int:
         arguments = [self._numbers[id(a.step)] + a.output for a in step.arguments]

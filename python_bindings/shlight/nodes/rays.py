@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from enum import IntEnum
 
-from shlight.nodes.values import Color, Step, Value, arithmetic, number, select, steps
+from shlight.nodes.values import Color, Step, Value, arithmetic, in_order, number, select, steps
 
 
 class Ray(IntEnum):
@@ -33,16 +33,8 @@ def on_ray(values: Iterable[Value], kind: Ray) -> list[Value]:
     """Expressions as a ray of this kind finds them."""
     wanted = list(values)
     found: dict[int, tuple[Value, ...] | None] = {}  # by id of a step: its results, None where nothing changes
-    waiting = [value.step for value in wanted]
-    while waiting:
-        step = waiting[-1]
-        missing = [a.step for a in step.arguments if id(a.step) not in found]
-        if missing:
-            waiting += missing
-            continue
-        waiting.pop()
-        if id(step) not in found:
-            found[id(step)] = _rebuilt(step, found, kind)
+    for step in in_order(value.step for value in wanted):
+        found[id(step)] = _rebuilt(step, found, kind)
     return [_result(value, found) for value in wanted]
 
 

@@ -37,7 +37,7 @@ class Lobe:
     """A part of a material: `weight` times a shape of the core."""
 
     kind: str  # "lambert", "ggx" with Fresnel factor 1, or the part of it that rises towards grazing angles:
-    # "ggx_schlick", "ggx_dielectric"
+    # "ggx_schlick", "ggx_dielectric"; "ggx_dip", "bumped_lambert", "oren_nayar", "oren_nayar_loss"
     weight: Color
     alpha: Value | None = None  # roughness², of GGX
     normal: Vector | None = None  # None: the smooth one
@@ -55,20 +55,20 @@ class Shader:
     def __add__(self, other: Shader) -> Shader:
         return Shader(
             _merged(self.lobes + other.lobes),
-            _color(self.emission + other.emission),
-            _color(self.transparency + other.transparency),
+            color(self.emission + other.emission),
+            color(self.transparency + other.transparency),
         )
 
     def __mul__(self, factor: Varying) -> Shader:
         by = color(factor, "factor")
-        lobes = tuple(replace(lobe, weight=_color(lobe.weight * by)) for lobe in self.lobes)
-        return Shader(lobes, _color(self.emission * by), _color(self.transparency * by))
+        lobes = tuple(replace(lobe, weight=color(lobe.weight * by)) for lobe in self.lobes)
+        return Shader(lobes, color(self.emission * by), color(self.transparency * by))
 
     __rmul__ = __mul__
 
     def compiled(self) -> _core.SurfaceShader:
         """The program that the core runs."""
-        return self._compiled
+        return self._program[1]
 
     @property
     def attribute_names(self) -> list[str]:
@@ -118,10 +118,6 @@ class Shader:
         shader = _core.surface_shader(program, lobes, glow_result, through, shadows.program(), builder.attributes)
         return program, shader, builder.attributes
 
-    @cached_property
-    def _compiled(self) -> _core.SurfaceShader:
-        return self._program[1]
-
 
 def _merged(lobes: tuple[Lobe, ...]) -> tuple[Lobe, ...]:
     """The same with one lobe for each shape and normal."""
@@ -129,7 +125,7 @@ def _merged(lobes: tuple[Lobe, ...]) -> tuple[Lobe, ...]:
     for lobe in lobes:
         key = (lobe.kind, lobe.ior, id(lobe.normal), _identity(lobe.alpha))
         same = found.get(key)
-        found[key] = lobe if same is None else replace(lobe, weight=_color(same.weight + lobe.weight))
+        found[key] = lobe if same is None else replace(lobe, weight=color(same.weight + lobe.weight))
     return tuple(found.values())
 
 
@@ -151,14 +147,10 @@ def _spread(lobe: Lobe) -> Lobe:
         return lobe
     mean_length = clamp(lobe.normal.mean_length, LEAST_MEAN, 1.0)
     if lobe.alpha is None:
-        return replace(lobe, weight=_color(lobe.weight * mean_length))
+        return replace(lobe, weight=color(lobe.weight * mean_length))
     if lobe.alpha.constant == 0.0:
         return lobe
     return replace(lobe, alpha=sqrt(lobe.alpha * lobe.alpha + 2.0 * (1.0 - mean_length) / mean_length))
-
-
-def _color(v: Vector) -> Color:
-    return v if isinstance(v, Color) else Color(v.x, v.y, v.z)
 
 
 def lambert(albedo: Varying, normal: Vector | None = None) -> Shader:
@@ -173,8 +165,8 @@ def lambert(albedo: Varying, normal: Vector | None = None) -> Shader:
     leans = dot(normalize(normal), smooth_normal()) < math.cos(BUMP)
     return Shader(
         (
-            Lobe("lambert", _color(rho * (1.0 - leans)), normal=normal),
-            Lobe("bumped_lambert", _color(rho * leans), normal=normal),
+            Lobe("lambert", color(rho * (1.0 - leans)), normal=normal),
+            Lobe("bumped_lambert", color(rho * leans), normal=normal),
         )
     )
 
@@ -184,7 +176,7 @@ def ggx(roughness: Number, f0: Varying, *, ior: float | None = None, normal: Vec
     f0_color = color(f0, "f0")
     r = number(roughness, "roughness")
     edge = "ggx_schlick" if ior is None else "ggx_dielectric"
-    rest = _color(1.0 - f0_color)
+    rest = color(1.0 - f0_color)
     return Shader(
         (
             Lobe("ggx", f0_color, r * r, normal),

@@ -8,7 +8,7 @@ for many hits at once. What has constant arguments only is computed at once and 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, TypeAlias
@@ -335,6 +335,22 @@ def length(a: Vector) -> Value:
 def normalize(a: Vector) -> Vector:
     """The unit vector along a vector; 0 for 0."""
     return a / length(a)
+
+
+def in_order(wanted: Iterable[Step], known: Container[int] = ()) -> Iterator[Step]:
+    """All steps of expressions, each once and after its arguments; `known`: ids of steps that are left out."""
+    seen: set[int] = set()
+    waiting = list(wanted)
+    while waiting:
+        step = waiting[-1]
+        missing = [a.step for a in step.arguments if id(a.step) not in seen and id(a.step) not in known]
+        if missing:
+            waiting += missing
+            continue
+        waiting.pop()
+        if id(step) not in seen and id(step) not in known:
+            seen.add(id(step))
+            yield step
 
 
 def right(value: Number) -> Value:
