@@ -15,8 +15,9 @@ from shlight.nodes import Color, Value, Vector
 from shlight.nodes.values import Number, clamp, dot, operation, select, sqrt
 
 from ..report import Effect
+from .color_spaces import is_known
 from .expressions import NodeInputs
-from .image_pixels import LINEAR_SPACES, MISSING, associates_alpha, datablock_texture, file_texture, has_plain_file
+from .image_pixels import MISSING, associates_alpha, datablock_texture, file_texture, has_plain_file
 
 INTERPOLATIONS = {"Closest": "closest", "Linear": "linear", "Cubic": "cubic", "Smart": "cubic"}
 EXTENSIONS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
@@ -44,8 +45,8 @@ def image_texture(inputs: NodeInputs) -> Color | Value:
 def _textures(inputs: NodeInputs, image: Any) -> Any:
     """The texture of an image, or several by tile; None if there are no pixels, which is reported."""
     space = image.colorspace_settings.name
-    if space not in LINEAR_SPACES and space != "sRGB":
-        inputs.remark(f"colour space {space} is not supported; taken for sRGB")
+    if not is_known(space):
+        inputs.remark(f"colour space {space} is unknown; taken for sRGB")
     as_normals = holds_normals(inputs)
     if image.source == "TILED":
         found: Any = _tiles(image, as_normals)

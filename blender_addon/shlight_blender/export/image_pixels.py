@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from shlight import _core, images
 from shlight.nodes.textures import texture_pixels
 
-# Names of colour spaces whose bytes stand for linear light, or are no colours.
-LINEAR_SPACES = {"Non-Color", "Raw", "Linear", "Linear Rec.709"}
+from .color_spaces import SRGB, is_known, linear_light, needs_conversion
+
 # What Cycles shows in the place of a picture that is not there.
 MISSING = (1.0, 0.0, 1.0)
 # Files that are read at a time; each takes memory for its pixels twice.
@@ -102,18 +102,24 @@ def associates_alpha(image: Any) -> bool:
     return not is_data(image) and image.alpha_mode not in ("CHANNEL_PACKED", "NONE")
 
 
-def encoding_of(image: Any, *, as_normals: bool) -> str:
-    """How the core is to read its numbers."""
+def space_of(image: Any) -> str:
+    """The colour space of its numbers; one that nothing is known of is taken for sRGB."""
+    space = str(image.colorspace_settings.name)
+    return space if is_known(space) else SRGB
+
+
+def _texture(pixels: NDArray[Any], space: str, as_normals: bool) -> _core.TexturePixels:
     if as_normals:
-        return "normal"
-    encoded = not image.is_float and image.colorspace_settings.name not in LINEAR_SPACES
-    return "srgb" if encoded else "linear"
+        return texture_pixels(pixels, "normal")
+    if needs_conversion(space):
+        return texture_pixels(linear_light(pixels, space))
+    return texture_pixels(pixels, "srgb" if space == SRGB else "linear")
 
 
 class FileSettings(NamedTuple):
     """What of an image's settings changes the pixels of its files."""
 
-    encoded: bool  # as sRGB
+    space: str
     associate: bool
     alpha_mode: str
 
@@ -130,7 +136,8 @@ def datablock_texture(image: Any, *, as_normals: bool) -> Texture | None:
     )
     if image.is_dirty:
         key = (*key, TEXTURES._export)  # painted pixels have no stamp
-    return TEXTURES.get(key, lambda: texture_pixels(_pixels(image), encoding_of(image, as_normals=as_normals)))
+    space = "Linear" if image.is_float else space_of(image)  # Blender keeps floats as linear light
+    return TEXTURES.get(key, lambda: _texture(_pixels(image), space, as_normals))
 
 
 def file_texture(image: Any, path: str, *, as_normals: bool) -> Texture | None:
@@ -140,9 +147,7 @@ def file_texture(image: Any, path: str, *, as_normals: bool) -> Texture | None:
         images.check_texture(path)
     except (OSError, ValueError):
         return None
-    settings = FileSettings(
-        image.colorspace_settings.name not in LINEAR_SPACES, associates_alpha(image), image.alpha_mode
-    )
+    settings = FileSettings(space_of(image), associates_alpha(image), image.alpha_mode)
     key = (path, stamp, settings, as_normals)
     return TEXTURES.from_file(key, path, lambda: _read_file(path, settings, as_normals))
 
@@ -176,8 +181,8 @@ def _pixels(image: Any) -> NDArray[Any]:
 
 def _read_file(path: str, settings: FileSettings, as_normals: bool) -> _core.TexturePixels:
     pixels = images.read_texture(path, associate=False)
-    encoding = "normal" if as_normals else "srgb" if settings.encoded else "linear"
-    return texture_pixels(_with_alpha(pixels, associate=settings.associate, mode=settings.alpha_mode), encoding)
+    pixels = _with_alpha(pixels, associate=settings.associate, mode=settings.alpha_mode)
+    return _texture(pixels, settings.space, as_normals)
 
 
 def _with_alpha(pixels: NDArray[Any], *, associate: bool, mode: str) -> NDArray[Any]:

@@ -8,19 +8,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .color_spaces import LINEAR_SPACES, SRGB, is_known, linear_light
+
 # The brightest that a half float holds; what is infinite becomes this.
 BRIGHTEST = 65504.0
-
-
-def linear_from_srgb(encoded: NDArray[Any]) -> NDArray[Any]:
-    """The light that values encoded as sRGB stand for."""
-    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
 
 
 def linear_pixels(image: Any) -> NDArray[np.float32] | None:
     """Pixels (height, width, 3) with row 0 on top, never negative; None for an image without data.
 
-    Blender keeps floats as linear light, whatever their file has; bytes may be encoded as sRGB.
+    Blender keeps floats as linear light, whatever their file has; bytes are in the image's colour space.
     """
     width, height = image.size
     if width < 1 or height < 1:
@@ -33,5 +30,7 @@ def linear_pixels(image: Any) -> NDArray[np.float32] | None:
     rgb = np.clip(np.nan_to_num(rgb, posinf=BRIGHTEST), 0.0, None)
     if not image.is_float and channels == 4 and image.alpha_mode == "STRAIGHT":
         rgb = rgb * pixels[..., 3:]  # before the colour space is undone, as Cycles does
-    encoded = not image.is_float and image.colorspace_settings.name == "sRGB"
-    return np.ascontiguousarray(linear_from_srgb(rgb) if encoded else rgb, dtype=np.float32)
+    space = image.colorspace_settings.name
+    if not image.is_float and space not in LINEAR_SPACES:
+        rgb = linear_light(rgb, space if is_known(space) else SRGB)
+    return np.ascontiguousarray(rgb, dtype=np.float32)

@@ -4,13 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from shlight import _core
 from shlight.nodes.inputs import SOURCES
 from shlight.nodes.values import Step, Value, in_order, operations
+
+if TYPE_CHECKING:
+    from shlight.nodes.textures import ImageLookup
 
 CONSTANT, INPUT, OPERATION = 0, 1, 2
 
@@ -30,7 +33,7 @@ class ProgramBuilder:
         self.attributes: list[str] = [] if attributes is None else attributes
         self._steps: list[tuple[int, float, int, int, list[int]]] = []
         self._tables: list[tuple[Any, list[int]]] = []
-        self._images: list[_core.ImageTexture] = []
+        self._images: list[ImageLookup] = []
         self._numbers: dict[int, int] = {}  # first value of a step, by id
         self._known: dict[Any, int] = {}  # the same by what the step computes
         self._kept: list[Step] = []  # whose id must not be given to another
@@ -49,8 +52,8 @@ class ProgramBuilder:
         return first
 
     def program(self) -> _core.ShaderProgram:
-        """What was listed."""
-        return _core.shader_program(self._steps, self._tables, self._images, self._results)
+        """What was listed; waits for pictures that are still being read."""
+        return _core.shader_program(self._steps, self._tables, [lookup.core for lookup in self._images], self._results)
 
     def input_number(self, source: str, index: int | str) -> tuple[int, int]:
         """How the program refers to an input."""
@@ -88,5 +91,5 @@ class ProgramBuilder:
                 self._tables.append((data.values, data.sizes))
             else:
                 self._resources[id(data)] = len(self._images)
-                self._images.append(data.core)
+                self._images.append(data)
         return self._resources[id(data)]

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 from shlight import _core
 from shlight.nodes.inputs import normal as smooth_normal
@@ -44,6 +44,16 @@ class Lobe:
     ior: float = 1.5  # of "ggx_dielectric"
 
 
+class _Listed(NamedTuple):
+    """The steps of a material, and which of their results are what."""
+
+    camera: ProgramBuilder
+    shadow: ProgramBuilder
+    lobes: list[tuple[str, float, int, int | None, int | None]]
+    emission: int | None
+    transparency: int | None
+
+
 @dataclass(frozen=True)
 class Shader:
     """What a surface does to light; made by the functions of `shlight.nodes`, taken by `Scene.add_mesh`."""
@@ -67,18 +77,18 @@ class Shader:
     __rmul__ = __mul__
 
     def compiled(self) -> _core.SurfaceShader:
-        """The program that the core runs."""
-        return self._program[1]
+        """What the core runs."""
+        return self._compiled
 
     @property
     def attribute_names(self) -> list[str]:
-        """The attributes that it reads of a mesh."""
-        return list(self._program[2])
+        """The attributes that it reads of a mesh; known before its pictures are read."""
+        return list(self._listed.camera.attributes)
 
     @property
     def operation_count(self) -> int:
         """How many operations the core runs for each hit."""
-        return self._program[0].operation_count
+        return self._program.operation_count
 
     def _lobes_for_camera(self) -> list[Lobe]:
         """Lobes that show."""
@@ -96,7 +106,7 @@ class Shader:
         return found
 
     @cached_property
-    def _program(self) -> tuple[_core.ShaderProgram, _core.SurfaceShader, list[str]]:
+    def _listed(self) -> _Listed:
         builder = ProgramBuilder()
         lobes = []
         normals: dict[int, int] = {}  # lobes with the same normal share the number of its result
@@ -112,11 +122,21 @@ class Shader:
         glow_result = None if glow.constant == BLACK else builder.result(tuple(glow))
         is_opaque = seen.constant == lit.constant == BLACK
         through = None if is_opaque else builder.result(tuple(seen))
-        program = builder.program()
         shadows = ProgramBuilder(builder.attributes)
         shadows.result(tuple(lit))
-        shader = _core.surface_shader(program, lobes, glow_result, through, shadows.program(), builder.attributes)
-        return program, shader, builder.attributes
+        return _Listed(builder, shadows, lobes, glow_result, through)
+
+    @cached_property
+    def _program(self) -> _core.ShaderProgram:
+        return self._listed.camera.program()
+
+    @cached_property
+    def _compiled(self) -> _core.SurfaceShader:
+        listed = self._listed
+        shadow_program = listed.shadow.program()
+        return _core.surface_shader(
+            self._program, listed.lobes, listed.emission, listed.transparency, shadow_program, listed.camera.attributes
+        )
 
 
 def _merged(lobes: tuple[Lobe, ...]) -> tuple[Lobe, ...]:
