@@ -143,7 +143,9 @@ def test_nodes_of_a_lamp(studio: Any, use_nodes: bool) -> None:
     lamp.use_nodes = True
     emission = next(node for node in lamp.node_tree.nodes if node.type == "EMISSION")
     emission.inputs["Color"].default_value = (1.0, 0.5, 0.2, 1)
-    emission.inputs["Strength"].default_value = 1.7
+    falloff = lamp.node_tree.nodes.new("ShaderNodeLightFalloff")
+    falloff.inputs["Strength"].default_value = 1.7
+    lamp.node_tree.links.new(falloff.outputs["Quadratic"], emission.inputs["Strength"])
     lamp.use_nodes = use_nodes
     studio.camera()
     studio.compare()
@@ -151,7 +153,9 @@ def test_nodes_of_a_lamp(studio: Any, use_nodes: bool) -> None:
     if use_nodes:
         noise = lamp.node_tree.nodes.new("ShaderNodeTexNoise")
         lamp.node_tree.links.new(noise.outputs[0], emission.inputs["Color"])
-        assert [line for line in messages() if "Light 'Area', node 'Noise Texture'" in line]
+        lamp.node_tree.links.new(falloff.outputs["Linear"], emission.inputs["Strength"])
+        for name in ("Noise Texture", "Light Falloff"):
+            assert [line for line in messages() if f"Light 'Area', node '{name}'" in line]
 
 
 # --- reports

@@ -132,6 +132,12 @@ def _light_path(inputs: NodeInputs) -> Value:
     return number(0.0)
 
 
+def _light_falloff(inputs: NodeInputs) -> Value:
+    if inputs.output.identifier != "Quadratic" or inputs.number("Smooth").constant != 0.0:
+        inputs.remark("only Quadratic, the falloff of real light, is supported, without Smooth; it is used")
+    return inputs.number("Strength")
+
+
 def _normal_map(inputs: NodeInputs) -> Vector:
     node = inputs.node
     space = {"TANGENT": "tangent", "OBJECT": "object", "BLENDER_OBJECT": "object"}.get(node.space, "world")
@@ -214,6 +220,7 @@ INPUT_NODES: dict[str, ReadNode] = {
     "OBJECT_INFO": _object_info,
     "FRESNEL": _fresnel,
     "LAYER_WEIGHT": _layer_weight,
+    "LIGHT_FALLOFF": _light_falloff,
     "LIGHT_PATH": _light_path,
     "NORMAL_MAP": _normal_map,
     "BUMP": _bump,
