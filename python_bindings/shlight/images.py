@@ -21,6 +21,7 @@ from shlight._arrays import checked_array, checked_flag, checked_number
 
 __all__ = ["linear_to_srgb8", "read_exr", "read_texture", "write_exr", "write_png"]
 
+_TEXTURE_NUMBERS = ("uint8", "uint16", "half", "float")
 _CHANNEL_NAMES = {1: ("Y",), 3: ("R", "G", "B"), 4: ("R", "G", "B", "A")}
 
 
@@ -39,16 +40,16 @@ def read_exr(path: str | os.PathLike[str]) -> npt.NDArray[np.float32]:
 
     Raises OSError when the file is missing or cannot be read.
     """
-    return np.ascontiguousarray(_read(path, "openexr"), dtype=np.float32)
+    return np.ascontiguousarray(_read(path, only="openexr"), dtype=np.float32)
 
 
 def read_texture(path: str | os.PathLike[str], *, associate: bool = True) -> npt.NDArray[Any]:
-    """Reads a picture of any format: (height, width, channels), uint8 of files of 8 bits, otherwise float32.
+    """Reads a picture of any format: (height, width, channels) of uint8, uint16, float16 or float32, as its file has.
 
     associate: colours are multiplied with alpha; or else they are as the file has them.
     Raises ValueError naming the argument, OSError when the file is missing or cannot be read.
     """
-    pixels = _read(path, None, associate=checked_flag("associate", associate))
+    pixels = _read(path, associate=checked_flag("associate", associate))
     return np.ascontiguousarray(pixels[..., : {2: 1}.get(pixels.shape[2], 4)])
 
 
@@ -71,13 +72,13 @@ def _opened(path: str | os.PathLike[str], *, associate: bool = True) -> Any:
     return source
 
 
-def _read(path: str | os.PathLike[str], file_format: str | None, *, associate: bool = True) -> npt.NDArray[Any]:
-    """file_format: the only one that is read, as floats; None: any."""
+def _read(path: str | os.PathLike[str], *, only: str | None = None, associate: bool = True) -> npt.NDArray[Any]:
+    """Numbers of the file's type, floats where it is another than textures have; only: the one format that is read."""
     source = _opened(path, associate=associate)
     try:
-        bytes_only = file_format is None and str(source.spec().format) == "uint8"
-        suits = file_format in (None, source.format_name())
-        pixels = source.read_image("uint8" if bytes_only else "float") if suits else None
+        own = str(source.spec().format)
+        suits = only in (None, source.format_name())
+        pixels = source.read_image(own if own in _TEXTURE_NUMBERS else "float") if suits else None
         reason = source.geterror().strip() or "not an OpenEXR image"
     finally:
         source.close()

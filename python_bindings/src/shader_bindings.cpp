@@ -140,6 +140,13 @@ ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTup
 }
 
 /// uint8 or float; (height, width, channels), row 0 at v = 0.
+/// Precondition: numbers of this type, in order.
+template <class Number>
+std::vector<Number> numbers_of(const py::array& pixels) {
+    const auto* first = static_cast<const Number*>(pixels.data());
+    return {first, first + pixels.size()};
+}
+
 std::shared_ptr<TexturePixels> pixels_from(const py::array& pixels, int encoding) {
     if (pixels.ndim() != 3 || pixels.size() == 0 ||
         (pixels.shape(2) != 1 && pixels.shape(2) != 3 && pixels.shape(2) != 4)) {
@@ -148,13 +155,18 @@ std::shared_ptr<TexturePixels> pixels_from(const py::array& pixels, int encoding
     const auto height = static_cast<std::uint32_t>(pixels.shape(0));
     const auto width = static_cast<std::uint32_t>(pixels.shape(1));
     const auto channels = static_cast<int>(pixels.shape(2));
-    std::variant<TexturePixels::Bytes, TexturePixels::Floats> values;
-    if (py::isinstance<py::array_t<std::uint8_t>>(pixels)) {
-        const Array<std::uint8_t> bytes(pixels);
-        values = TexturePixels::Bytes(bytes.data(), bytes.data() + bytes.size());
+    TexelNumbers values;
+    const char kind = pixels.dtype().kind();
+    const py::ssize_t width_of_number = pixels.itemsize();
+    if (kind == 'u' && width_of_number == 1) {
+        values = numbers_of<std::uint8_t>(pixels);
+    } else if (kind == 'u' && width_of_number == 2) {
+        values = numbers_of<std::uint16_t>(pixels);
+    } else if (kind == 'f' && width_of_number == 2) {
+        values = numbers_of<Half>(pixels);
     } else {
         const AnyArray<float> floats = array_from<float>("pixels", pixels);
-        values = TexturePixels::Floats(floats.data(), floats.data() + floats.size());
+        values = std::vector<float>(floats.data(), floats.data() + floats.size());
     }
     const py::gil_scoped_release release;
     return std::make_shared<TexturePixels>(std::move(values), width, height, channels,

@@ -104,6 +104,34 @@ def test_a_picture_far_away_is_its_mean(extension: str) -> None:
     np.testing.assert_allclose(found[:3], expected, rtol=1e-5)
 
 
+@pytest.mark.parametrize("kind", [np.uint8, np.uint16, np.float16, np.float32])
+def test_numbers_of_a_picture_keep_their_type(kind: type[np.generic]) -> None:
+    random = np.random.default_rng(5)
+    if np.issubdtype(kind, np.integer):
+        pixels = random.integers(0, np.iinfo(kind).max, (4, 8, 3), endpoint=True).astype(kind)
+        values, step = pixels / np.iinfo(kind).max, 0.5 / np.iinfo(kind).max
+    else:
+        pixels = (random.normal(0, 1, (4, 8, 3)) * 10.0 ** random.integers(-4, 4, (4, 8, 3))).astype(kind)
+        pixels[0, 0] = np.nan, np.inf, -np.inf
+        largest = np.finfo(kind).max
+        values, step = np.nan_to_num(pixels.astype(float), nan=0.0, posinf=largest, neginf=-largest), 0.0
+    texture = nodes.image(pixels, interpolation="closest").x.step.data.core
+    assert nodes.textures.texture_pixels(pixels).size_in_bytes == (32 + 8 + 2 + 1) * 3 * pixels.itemsize
+
+    def at(x: float, y: float, wide: float) -> Any:
+        return texture.sample(x / 8, y / 4, (wide / 8, 0.0, 0.0, wide / 4))[:3]
+
+    for row, column in np.ndindex(4, 8):
+        found = at(column + 0.5, 3 - row + 0.5, 0.0)
+        np.testing.assert_allclose(found, values[row, column], rtol=1e-7, atol=1e-7 * float(step > 0))
+    # The second level rounds means of four to its type.
+    block = values[2:, 2:4].mean(axis=(0, 1))
+    rounding = 0.0 if step else float(np.finfo(kind).eps)
+    np.testing.assert_allclose(
+        at(3.0, 1.0, 2.0), block, rtol=rounding + 1e-6, atol=step + 1e-6 * abs(values[2:, 2:4]).max()
+    )
+
+
 @pytest.mark.parametrize(
     ("call", "named"),
     [

@@ -41,15 +41,15 @@ def is_known(space: str) -> bool:
 
 
 def linear_light(pixels: NDArray[Any], space: str) -> NDArray[np.float32]:
-    """Pixels (height, width, 1, 3 or 4) of bytes or floats in a known space, as linear light times alpha.
+    """Pixels (height, width, 1, 3 or 4) of integers for 0 … 1 or floats in a known space, as linear light times alpha.
 
     Colours are divided by alpha while they are converted, as in Cycles.
     """
     import OpenImageIO as oiio
 
     values = pixels.astype(np.float32)
-    if pixels.dtype == np.uint8:
-        values /= 255.0
+    if np.issubdtype(pixels.dtype, np.integer):
+        values /= np.iinfo(pixels.dtype).max
     if pixels.shape[2] == 1:
         values = np.repeat(values, 3, axis=2)
     source = oiio.ImageBuf(np.ascontiguousarray(values))

@@ -192,14 +192,15 @@ def _with_alpha(pixels: NDArray[Any], *, associate: bool, mode: str) -> NDArray[
         pixels = pixels[..., :1]
     if channels != 4:
         return pixels[..., :3]
-    opaque = 255 if pixels.dtype == np.uint8 else 1.0
+    counts = np.issubdtype(pixels.dtype, np.integer)
+    opaque = np.iinfo(pixels.dtype).max if counts else 1.0
     if mode == "NONE" or (pixels[..., 3] == opaque).all():
         return pixels[..., :3]
     if not (associate and mode == "STRAIGHT"):
         return pixels
     alpha = pixels[..., 3:]
-    if pixels.dtype == np.uint8:  # Cycles rounds the product of bytes down
-        color = (pixels[..., :3].astype(np.uint16) * alpha // 255).astype(np.uint8)
+    if counts:  # Cycles rounds the product of integers down
+        color = (pixels[..., :3].astype(np.uint32) * alpha // opaque).astype(pixels.dtype)
     else:
         color = pixels[..., :3] * alpha
     return np.concatenate([color, alpha], axis=2)

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <concepts>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include <glm/common.hpp>
@@ -55,6 +58,51 @@ float finite(float value) {
                : std::clamp(value, std::numeric_limits<float>::lowest(), std::numeric_limits<float>::max());
 }
 
+constexpr std::uint16_t kSignOfHalf = 0x8000;
+constexpr std::uint16_t kLargestHalf = 0x7BFF;  // 65504
+
+Half finite(Half value) {
+    const auto magnitude = static_cast<std::uint16_t>(value.bits & ~kSignOfHalf);
+    const int first_nan = 0x7C01;
+    const auto sign = static_cast<std::uint16_t>(value.bits & kSignOfHalf);
+    return magnitude >= first_nan ? Half{0}
+                                  : Half{static_cast<std::uint16_t>(sign | std::min(magnitude, kLargestHalf))};
+}
+
+template <class Integer>
+Integer finite(Integer value) requires std::integral<Integer> {
+    return value;
+}
+
+// A number as a float, which what is not finite never is, and back to the nearest.
+float to_float(float value) {
+    return value;
+}
+float to_float(std::uint16_t value) {
+    return static_cast<float>(value) / 65535;
+}
+/// The exponent of a float has three bits more, which are set by a product that also makes subnormal numbers normal.
+float to_float(Half value) {
+    const std::uint32_t magnitude = value.bits & static_cast<std::uint32_t>(~kSignOfHalf & 0xFFFF);
+    const float scaled = std::bit_cast<float>(magnitude << 13U) * 0x1p112F;
+    return (value.bits & kSignOfHalf) != 0 ? -scaled : scaled;
+}
+
+void assign(float value, float& to) {
+    to = value;
+}
+template <class Integer>
+void assign(float value, Integer& to) requires std::integral<Integer> {
+    constexpr auto largest = static_cast<float>(std::numeric_limits<Integer>::max());
+    to = static_cast<Integer>(std::lround(std::clamp(value, 0.0F, 1.0F) * largest));
+}
+void assign(float value, Half& to) {
+    // The product leaves the bits of a half, with its 13 bits fewer, rounded to even by the addition below.
+    const auto bits = std::bit_cast<std::uint32_t>(std::min(std::abs(value), 65504.0F) * 0x1p-112F);
+    const std::uint32_t rounded = (bits + 0x0FFFU + ((bits >> 13U) & 1U)) >> 13U;
+    to.bits = static_cast<std::uint16_t>(rounded | (std::signbit(value) ? std::uint32_t{kSignOfHalf} : 0U));
+}
+
 glm::vec4 encoded(const glm::vec4& linear, TexelEncoding encoding) {
     return encoding != TexelEncoding::srgb ? linear
                                            : glm::vec4(srgb_from_linear(linear.x), srgb_from_linear(linear.y),
@@ -83,12 +131,13 @@ glm::vec4 decoded(const glm::vec4& stored, TexelEncoding encoding) {
                                                        linear_from_srgb(stored.z), stored.w);
 }
 
-glm::vec4 Texels::of_floats(const float* texel) const {
+template <class Number>
+glm::vec4 Texels::of_numbers(const Number* texel) const {
+    const float first = to_float(texel[0]);
     if (channels_ == 1) {
-        const float grey = from_srgb_ ? linear_from_srgb(texel[0]) : texel[0];
-        return glm::vec4(glm::vec3(grey), 1);
+        return glm::vec4(glm::vec3(from_srgb_ ? linear_from_srgb(first) : first), 1);
     }
-    const glm::vec4 color(texel[0], texel[1], texel[2], channels_ == 4 ? texel[3] : 1.0F);
+    const glm::vec4 color(first, to_float(texel[1]), to_float(texel[2]), channels_ == 4 ? to_float(texel[3]) : 1.0F);
     return from_srgb_ ? decoded(color, TexelEncoding::srgb) : of_vectors_ ? vector(color) : color;
 }
 
@@ -99,12 +148,14 @@ glm::vec4 Texels::vector(const glm::vec4& color) const {
     return length > 0 ? glm::vec4(n * (wanted / length) * 0.5F + 0.5F, wanted) : color;
 }
 
-TexturePixels::TexturePixels(std::variant<Bytes, Floats> pixels, std::uint32_t width, std::uint32_t height,
-                             int channels, TexelEncoding encoding)
+TexturePixels::TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint32_t height, int channels,
+                             TexelEncoding encoding)
     : encoding_(encoding == TexelEncoding::normal && channels < 3 ? TexelEncoding::linear : encoding) {
-    if (auto* floats = std::get_if<Floats>(&pixels)) {
-        std::transform(floats->begin(), floats->end(), floats->begin(), finite);
-    }
+    std::visit(
+        [](auto& numbers) {
+            std::transform(numbers.begin(), numbers.end(), numbers.begin(), [](auto x) { return finite(x); });
+        },
+        pixels);
     levels_.push_back({width, height, channels, std::move(pixels)});
     while (levels_.back().width > 1 || levels_.back().height > 1) {
         levels_.push_back(halved(levels_.size() - 1));
@@ -114,8 +165,7 @@ TexturePixels::TexturePixels(std::variant<Bytes, Floats> pixels, std::uint32_t w
 std::size_t TexturePixels::size_in_bytes() const {
     std::size_t bytes = 0;
     for (const Level& level : levels_) {
-        const auto* floats = std::get_if<Floats>(&level.pixels);
-        bytes += floats != nullptr ? floats->size() * sizeof(float) : std::get<Bytes>(level.pixels).size();
+        bytes += std::visit([](const auto& numbers) { return numbers.size() * sizeof(numbers[0]); }, level.pixels);
     }
     return bytes;
 }
@@ -125,12 +175,12 @@ Texels TexturePixels::texels(std::size_t level, const ByteTable& bytes) const {
     Texels result{};
     result.width = own.width;
     result.height = own.height;
-    if (const auto* own_bytes = std::get_if<Bytes>(&own.pixels)) {
-        result.bytes_ = own_bytes->data();
-        result.table_ = bytes.data();
-    } else {
-        result.floats_ = std::get<Floats>(own.pixels).data();
-    }
+    const auto data_of = [&](const auto* numbers) { return numbers != nullptr ? numbers->data() : nullptr; };
+    result.bytes_ = data_of(std::get_if<std::vector<std::uint8_t>>(&own.pixels));
+    result.shorts_ = data_of(std::get_if<std::vector<std::uint16_t>>(&own.pixels));
+    result.halves_ = data_of(std::get_if<std::vector<Half>>(&own.pixels));
+    result.floats_ = data_of(std::get_if<std::vector<float>>(&own.pixels));
+    result.table_ = bytes.data();
     result.channels_ = own.channels;
     return result;
 }
@@ -149,14 +199,14 @@ Texels TexturePixels::linear(std::size_t level) const {
 
 void TexturePixels::store(Level& level, std::size_t texel, const glm::vec4& linear) const {
     const glm::vec4 value = encoding_ == TexelEncoding::normal ? unit_with_spread(linear) : encoded(linear, encoding_);
-    for (int i = 0; i < level.channels; ++i) {
-        const std::size_t at = texel * static_cast<std::size_t>(level.channels) + static_cast<std::size_t>(i);
-        if (auto* bytes = std::get_if<Bytes>(&level.pixels)) {
-            (*bytes)[at] = static_cast<std::uint8_t>(std::lround(std::clamp(value[i], 0.0F, 1.0F) * 255));
-        } else {
-            std::get<Floats>(level.pixels)[at] = value[i];
-        }
-    }
+    const auto channels = static_cast<std::size_t>(level.channels);
+    std::visit(
+        [&](auto& numbers) {
+            for (std::size_t i = 0; i < channels; ++i) {
+                assign(value[static_cast<int>(i)], numbers[texel * channels + i]);
+            }
+        },
+        level.pixels);
 }
 
 /// Each texel is the mean over its share of the area, also where a side is odd.
@@ -165,11 +215,7 @@ TexturePixels::Level TexturePixels::halved(std::size_t level) const {
     Level to = {
         (from.width + 1) / 2, (from.height + 1) / 2, encoding_ == TexelEncoding::normal ? 4 : from.channels, {}};
     const std::size_t count = std::size_t{to.width} * to.height * static_cast<std::size_t>(to.channels);
-    if (std::holds_alternative<Bytes>(from.pixels)) {
-        to.pixels = Bytes(count);
-    } else {
-        to.pixels = Floats(count);
-    }
+    std::visit([&](const auto& numbers) { to.pixels = std::decay_t<decltype(numbers)>(count); }, from.pixels);
     // Part i of `parts` covers i size/parts … (i + 1) size/parts, which is at most three texels.
     struct Cover {
         std::int64_t first;

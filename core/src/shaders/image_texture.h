@@ -33,6 +33,15 @@ enum class TexelEncoding : std::uint8_t {
     normal  ///< (n + 1) / 2 of unit vectors of three channels or more; alpha is the length of their mean
 };
 
+/// A float of 16 bits (IEEE 754).
+struct Half {
+    std::uint16_t bits;
+};
+
+/// The numbers of a picture, in the type of its file. Integers stand for 0 … 1.
+using TexelNumbers =
+    std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<Half>, std::vector<float>>;
+
 /// RGBA of the texels of one level, which must outlive this. Of unit vectors each is as long as the mean that it is.
 class Texels {
   public:
@@ -41,7 +50,12 @@ class Texels {
     /// Precondition: inside.
     glm::vec4 operator()(std::int64_t column, std::int64_t row) const {
         const std::int64_t first = (row * width + column) * channels_;
-        return bytes_ != nullptr ? of_bytes(bytes_ + first) : of_floats(floats_ + first);
+        if (bytes_ != nullptr) {
+            return of_bytes(bytes_ + first);
+        }
+        return floats_ != nullptr   ? of_numbers(floats_ + first)
+               : halves_ != nullptr ? of_numbers(halves_ + first)
+                                    : of_numbers(shorts_ + first);
     }
 
   private:
@@ -56,11 +70,15 @@ class Texels {
                               channels_ == 4 ? static_cast<float>(texel[3]) / 255 : 1.0F);
         return of_vectors_ ? vector(color) : color;
     }
-    glm::vec4 of_floats(const float* texel) const;
+    template <class Number>
+    glm::vec4 of_numbers(const Number* texel) const;
     /// (n + 1) / 2 with n as long as it is to be.
     glm::vec4 vector(const glm::vec4& color) const;
 
-    const std::uint8_t* bytes_;  // or null
+    // One of these, the others are null.
+    const std::uint8_t* bytes_;
+    const std::uint16_t* shorts_;
+    const Half* halves_;
     const float* floats_;
     const float* table_;  // what bytes stand for
     std::int64_t channels_;
@@ -70,13 +88,9 @@ class Texels {
 /// Immutable; shared by all who look it up.
 class TexturePixels {
   public:
-    using Bytes = std::vector<std::uint8_t>;
-    using Floats = std::vector<float>;
-
-    /// pixels: rows from v = 0 on, of 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. Bytes stand for
-    /// 0 … 1. What is not finite becomes 0, or the largest float.
-    TexturePixels(std::variant<Bytes, Floats> pixels, std::uint32_t width, std::uint32_t height, int channels,
-                  TexelEncoding encoding);
+    /// pixels: rows from v = 0 on, of 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. What is not finite
+    /// becomes 0, or the largest number of its type.
+    TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint32_t height, int channels, TexelEncoding encoding);
 
     std::uint32_t width() const { return levels_.front().width; }
     std::uint32_t height() const { return levels_.front().height; }
@@ -95,7 +109,7 @@ class TexturePixels {
         /// Means of unit vectors have length 1 and √(1 - their length) as a fourth channel, which bytes resolve where
         /// the length is near 1.
         int channels;
-        std::variant<Bytes, Floats> pixels;
+        TexelNumbers pixels;
     };
     Texels texels(std::size_t level, const std::array<float, 256>& bytes) const;
     Level halved(std::size_t level) const;

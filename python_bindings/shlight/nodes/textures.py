@@ -31,8 +31,8 @@ def _chosen(name: str, value: str, choices: tuple[str, ...]) -> int:
 def texture_pixels(pixels: Any, encoding: str = "linear") -> _core.TexturePixels:
     """A picture made ready for lookups: with it, any number of `image` share its memory.
 
-    pixels: (height, width) or (height, width, channels), of uint8 for 0 … 1 or of floats, row 0 on top; 1, 3 or 4
-        channels: grey, RGB, or RGB times alpha and alpha. Or the path of a file.
+    pixels: (height, width) or (height, width, channels), of uint8 or uint16 for 0 … 1, of float16 or other numbers as
+        they are, row 0 on top; 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. Or the path of a file.
     encoding: "linear", "srgb", or "normal" for unit vectors n as (n + 1) / 2, which `normal_map` takes.
     Raises ValueError naming the argument.
     """
@@ -44,7 +44,7 @@ def texture_pixels(pixels: Any, encoding: str = "linear") -> _core.TexturePixels
         array = array[..., None]
     if array.ndim != 3 or array.shape[2] not in (1, 3, 4) or array.size == 0:
         raise ValueError(f"pixels must have shape (height, width) or (height, width, 1, 3 or 4), got {array.shape}")
-    if array.dtype != np.uint8:
+    if array.dtype not in (np.uint8, np.uint16, np.float16):
         array = array.astype(np.float32)
     return _core.texture_pixels(np.ascontiguousarray(array[::-1]), number)
 
