@@ -31,11 +31,13 @@ def needs_conversion(space: str) -> bool:
 
 @cache
 def is_known(space: str) -> bool:
-    """True if pixels of a space can be read as light."""
-    import OpenImageIO as oiio
-
+    """True if pixels of a space can be read as light; others than sRGB and linear ones need OpenImageIO."""
     if not needs_conversion(space):
         return True
+    try:
+        import OpenImageIO as oiio
+    except ImportError:
+        return False
     probe = oiio.ImageBuf(np.zeros((1, 1, 3), dtype=np.float32))
     return not _converted(probe, space).has_error
 

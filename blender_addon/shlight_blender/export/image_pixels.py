@@ -141,11 +141,12 @@ def datablock_texture(image: Any, *, as_normals: bool) -> Texture | None:
 
 
 def file_texture(image: Any, path: str, *, as_normals: bool) -> Texture | None:
-    """The texture of a file that belongs to an image, being read; None if it is missing or of an unknown format."""
+    """The texture of a file that belongs to an image, being read; None if it is missing or of an unknown format, or if
+    there is no OpenImageIO."""
     try:
         stamp = Path(path).stat().st_mtime_ns
         images.check_texture(path)
-    except (OSError, ValueError):
+    except (ImportError, OSError, ValueError):
         return None
     settings = FileSettings(space_of(image), associates_alpha(image), image.alpha_mode)
     key = (path, stamp, settings, as_normals)
