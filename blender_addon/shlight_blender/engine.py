@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 import traceback
+from datetime import timedelta
 from typing import Any
 
 import bpy
@@ -64,7 +65,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         self._view_layers.add(view_layer)
 
     def _render(self, depsgraph: Any, frame: Frame) -> NDArray[np.float32] | None:
-        """The picture; None if the user stops the render."""
+        """The picture, or as much of it as there is when the user stops the render; None: nothing."""
         # Imported here: an installation without the native module still registers.
         import shlight
 
@@ -83,16 +84,34 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             record.last.texture_bytes = exported.texture_bytes
             self._show(record.last.report.lines())
             self._check("Rendering")
+            latest: NDArray[np.float32] | None = None
+
+            def show(image: NDArray[np.float32], report: Any) -> bool:
+                nonlocal latest
+                latest = image
+                self._status = _status(report)
+                self._deliver(depsgraph, frame, image)
+                return True
+
+            self._status = "Rendering"
             image, record.last.statistics = shlight.render(
-                exported.scene, frame.width, frame.height, progress=self._progress, return_report=True, **settings
+                exported.scene,
+                frame.width,
+                frame.height,
+                progress=self._progress,
+                on_update=show,
+                return_report=True,
+                **settings,
             )
-        except (ExportCancelled, shlight.RenderCancelled):
+        except ExportCancelled:
             return None
+        except shlight.RenderCancelled:
+            return latest  # what the user has seen stays
         return image
 
     def _progress(self, fraction: float) -> bool:
         self.update_progress(fraction)
-        return self._wait(f"Rendering {fraction:.0%}")
+        return self._wait(self._status)
 
     def _wait(self, text: str) -> bool:
         """Says what is done; False if it is to stop."""
@@ -142,6 +161,13 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
 
     def view_draw(self, context: Any, depsgraph: Any) -> None:
         """Leaves the viewport empty."""
+
+
+def _status(report: Any) -> str:
+    """What the render window says of a picture as it stands."""
+    noise = f"Noise {report.noise:.4f} | " if report.passes > 0 and report.noise > 0.0 else ""
+    left = f"Remaining {timedelta(seconds=round(report.seconds_left))}" if report.seconds_left > 0.0 else ""
+    return f"Pass {report.passes + 1} | {noise}{left}".removesuffix(" | ")
 
 
 def register() -> None:

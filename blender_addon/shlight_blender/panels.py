@@ -47,6 +47,27 @@ class EnginePanel:
         return context.engine in cls.COMPAT_ENGINES
 
 
+class SHLIGHT_RENDER_PT_sampling(EnginePanel, bpy.types.Panel):
+    """How many camera rays pixels get."""
+
+    bl_label = "Sampling"
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.scene.shlight
+        layout.prop(settings, "noise_threshold")
+        column = layout.column(align=True)
+        if settings.pixel_samples:
+            column.prop(settings, "pixel_samples")
+        else:
+            column.prop(settings, "max_samples")
+            column.prop(settings, "min_samples")
+        layout.prop(settings, "time_limit")
+
+
 class SHLIGHT_RENDER_PT_accuracy(EnginePanel, bpy.types.Panel):
     """How precisely light is integrated."""
 
@@ -62,7 +83,6 @@ class SHLIGHT_RENDER_PT_accuracy(EnginePanel, bpy.types.Panel):
         column = layout.column()
         column.active = settings.order == "AUTO"
         column.prop(settings, "tolerance")
-        layout.prop(settings, "pixel_samples")
 
 
 class SHLIGHT_RENDER_PT_shadows(EnginePanel, bpy.types.Panel):
@@ -96,6 +116,12 @@ class SHLIGHT_RENDER_PT_film(EnginePanel, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         layout.prop(context.scene.render, "film_transparent", text="Transparent")
+        cycles = getattr(context.scene, "cycles", None)
+        if cycles is not None:
+            column = layout.column(align=True)
+            column.prop(cycles, "pixel_filter_type", text="Pixel Filter")
+            if cycles.pixel_filter_type != "BOX":
+                column.prop(cycles, "filter_width", text="Width")
 
 
 class SHLIGHT_WORLD_PT_baking(EnginePanel, bpy.types.Panel):
@@ -228,6 +254,7 @@ def _draw_area(column: Any, light: Any) -> None:
 _DRAW_SHAPE = {"POINT": _draw_point, "SPOT": _draw_spot, "SUN": _draw_sun, "AREA": _draw_area}
 
 CLASSES = (
+    SHLIGHT_RENDER_PT_sampling,
     SHLIGHT_RENDER_PT_accuracy,
     SHLIGHT_RENDER_PT_shadows,
     SHLIGHT_RENDER_PT_film,

@@ -38,13 +38,49 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
         precision=5,
         step=0.1,
     )
-    pixel_samples: bpy.props.IntProperty(
-        name="Pixel Samples",
-        description="Least number of camera rays per pixel; where they disagree, at edges, more are taken",
-        default=16,
+    noise_threshold: bpy.props.FloatProperty(
+        name="Noise Threshold",
+        description="Estimated error at which a pixel has enough camera rays: of its value, relative to that, or to a "
+        "tenth of the picture's mean. At 0 all pixels get Max Samples",
+        default=0.01,
+        min=0.0,
+        max=1.0,
+        soft_min=0.001,
+        precision=4,
+        step=1,
+    )
+    min_samples: bpy.props.IntProperty(
+        name="Min Samples",
+        description="Least number of camera rays per pixel",
+        default=4,
         min=1,
         max=4096,
-        soft_max=64,
+    )
+    max_samples: bpy.props.IntProperty(
+        name="Max Samples",
+        description="Largest number of camera rays per pixel, rounded down to a power of four",
+        default=256,
+        min=1,
+        max=1 << 20,
+        soft_max=4096,
+    )
+    time_limit: bpy.props.FloatProperty(
+        name="Time Limit",
+        description="Passes over the picture that would end later are left out. At 0 all are made",
+        default=0.0,
+        min=0.0,
+        soft_max=3600.0,
+        unit="TIME_ABSOLUTE",
+        step=100,
+    )
+    pixel_samples: bpy.props.IntProperty(
+        name="Pixel Samples",
+        description="Camera rays of every pixel in the first pass, as files of older versions have them: in place of "
+        "Min Samples, and Max Samples is 16 times as many. At 0 it is unused",
+        default=0,
+        min=0,
+        max=4096,
+        options={"HIDDEN"},
     )
     use_shadows: bpy.props.BoolProperty(
         name="Shadows",

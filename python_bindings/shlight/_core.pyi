@@ -219,6 +219,12 @@ class RenderReport:
     @property
     def shadow_rays(self) -> int: ...
     @property
+    def passes(self) -> int: ...
+    @property
+    def noise(self) -> float: ...
+    @property
+    def seconds_left(self) -> float: ...
+    @property
     def build_seconds(self) -> float: ...
     @property
     def render_seconds(self) -> float: ...
@@ -332,12 +338,19 @@ def render(
     *,
     order: Literal["auto"] | int = "auto",
     tolerance: float = DEFAULT_TOLERANCE,
-    pixel_samples: int = 16,
+    noise_threshold: float = 0.01,
+    min_samples: int | None = None,
+    max_samples: int | None = None,
+    pixel_samples: int | None = None,
+    time_limit: float | None = None,
+    pixel_filter: Literal["box", "gaussian", "blackman_harris"] = "box",
+    filter_width: float = 1.5,
+    shadows: bool = True,
     shadow_rays: int = 16,
     transparent_bounces: int = 8,
     threads: int = 0,
     progress: Callable[[float], object] | None = None,
-    adaptive: bool = True,
+    on_update: Callable[[NDArray[np.float32], RenderReport], object] | None = None,
     return_report: Literal[False] = False,
 ) -> NDArray[np.float32]: ...
 @overload
@@ -348,11 +361,18 @@ def render(
     *,
     order: Literal["auto"] | int = "auto",
     tolerance: float = DEFAULT_TOLERANCE,
-    pixel_samples: int = 16,
+    noise_threshold: float = 0.01,
+    min_samples: int | None = None,
+    max_samples: int | None = None,
+    pixel_samples: int | None = None,
+    time_limit: float | None = None,
+    pixel_filter: Literal["box", "gaussian", "blackman_harris"] = "box",
+    filter_width: float = 1.5,
+    shadows: bool = True,
     shadow_rays: int = 16,
     transparent_bounces: int = 8,
     threads: int = 0,
     progress: Callable[[float], object] | None = None,
-    adaptive: bool = True,
+    on_update: Callable[[NDArray[np.float32], RenderReport], object] | None = None,
     return_report: Literal[True],
 ) -> tuple[NDArray[np.float32], RenderReport]: ...

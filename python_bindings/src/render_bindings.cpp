@@ -12,6 +12,7 @@
 #include <map>
 #include <numeric>
 #include <string>
+#include <string_view>
 #include <tuple>
 
 #include "arguments.h"
@@ -31,15 +32,25 @@ width, height: pixels.
 order: 1 ... 64: harmonics of this order for every light, or "auto": for each lobe, view and light the cheapest of
     harmonics in the lobe's warp and cubature that meets the tolerance.
 tolerance: error of what a point reflects / that, or / a tenth of the picture's mean where that is larger; > 0.
-pixel_samples: camera rays per pixel, over a box of one pixel; rounded up to a power of two if adaptive.
-adaptive: take up to 16 times as many where they disagree, as at edges, unless pixel_samples is 1.
+noise_threshold: a pixel has enough camera rays where the estimated error of its mean, relative to sqrt(r^2 + 0.01 m^2),
+    r its value and m the picture's mean, is not above this; 0 ... 1, 0: all pixels get max_samples.
+min_samples, max_samples: camera rays of a pixel, over the filter. The first pass takes one of each pixel, later ones
+    four times as many where they are needed. max_samples is rounded down to a power of four.
+pixel_samples: camera rays of each pixel in the first pass, in place of one; then also min_samples, and max_samples is
+    16 times as many unless it is given. Rounded up to a power of two, unless it is max_samples: then it is one pass.
+pixel_filter, filter_width: "box" of one pixel, or "gaussian" or "blackman_harris" of a width in pixels, 0.001 ... 100,
+    as Blender's render engine Cycles has them.
+time_limit: seconds, or None; a pass that would probably end later is left out. The first is always made.
+shadows: whether lights cast them.
 shadow_rays: per camera ray and light, at most, and again for each roughness of the material's glossy lobes; a quarter
     of them where light and shadow are plain. 0: no shadows.
 transparent_bounces: surfaces that let light through which a shadow ray passes, at most, 0 ... 1024; a camera ray
     passes one more.
-threads: at most; 0: all cores. The image does not depend on it.
-progress: is called with the finished share, 0 ... 1, about every 50 ms; returning False cancels. What it raises ends
-    the render and is raised here.
+threads: at most; 0: all cores. The image does not depend on it, and on a time limit only by the number of passes.
+progress: is called with the finished share, 0 ... 1, about every 50 ms; returning False cancels.
+on_update: is called as on_update(image, report) after each pass and a few times a second during long ones, with the
+    picture as it stands; returning False ends the render, which returns the picture as it is. What progress and
+    on_update raise ends the render and is raised here.
 return_report: return (image, RenderReport).
 
 Returns (height, width, 4) float32, linear, row 0 on top, RGB premultiplied; alpha is the share of
@@ -87,23 +98,25 @@ struct Report {
     }
 };
 
-using ReportState = std::tuple<std::array<std::uint64_t, kMaxOrder + 1>, std::array<std::uint64_t, 6>, double,
-                               std::array<double, kRenderStages.size()>, double>;
+using ReportState = std::tuple<std::array<std::uint64_t, kMaxOrder + 1>, std::array<std::uint64_t, 7>,
+                               std::array<double, 2>, std::array<double, kRenderStages.size()>, double>;
 
 ReportState report_state(const Report& report) {
     const RenderReport& core = report.core;
-    return {
-        core.order_counts,
-        {core.cubature_count, core.mirror_count, core.over_tolerance, core.summed_count, core.hits, core.shadow_rays},
-        core.seconds,
-        core.stage_seconds,
-        report.build_seconds};
+    return {core.order_counts,
+            {core.cubature_count, core.mirror_count, core.over_tolerance, core.summed_count, core.hits,
+             core.shadow_rays, core.passes},
+            {core.noise, core.seconds},
+            core.stage_seconds,
+            report.build_seconds};
 }
 
 Report report_from(const ReportState& state) {
-    const auto& [order_counts, counts, seconds, stage_seconds, build_seconds] = state;
-    const auto& [cubature, mirror, over_tolerance, summed, hits, shadow_rays] = counts;
-    return {{order_counts, cubature, mirror, over_tolerance, summed, hits, shadow_rays, seconds, stage_seconds},
+    const auto& [order_counts, counts, floats, stage_seconds, build_seconds] = state;
+    const auto& [cubature, mirror, over_tolerance, summed, hits, shadow_rays, passes] = counts;
+    const auto& [noise, seconds] = floats;
+    return {{order_counts, cubature, mirror, over_tolerance, summed, hits, shadow_rays,
+             static_cast<std::uint32_t>(passes), noise, seconds, 0, stage_seconds},
             build_seconds};
 }
 
@@ -114,31 +127,94 @@ int order_from(const py::object& order) {
     return static_cast<int>(integer_from("order", order, 1, kMaxOrder));
 }
 
+constexpr std::array<std::string_view, 3> kFilters = {"box", "gaussian", "blackman_harris"};  // by PixelFilter::Kind
+
+int samples_from(const char* name, const py::object& value) {
+    return static_cast<int>(integer_from(name, value, 1, kMostPixelSamples));
+}
+
+/// What the arguments of the same names ask for; None: not given.
+PixelSampling sampling_from(const py::object& noise_threshold, const py::object& min_samples,
+                            const py::object& max_samples, const py::object& pixel_samples,
+                            const py::object& time_limit) {
+    PixelSampling sampling;
+    if (!pixel_samples.is_none()) {
+        if (!min_samples.is_none()) {
+            throw std::invalid_argument("min_samples and pixel_samples cannot be given both");
+        }
+        sampling = PixelSampling::refined(samples_from("pixel_samples", pixel_samples));
+    }
+    if (!max_samples.is_none()) {
+        sampling.max_samples = samples_from("max_samples", max_samples);
+        sampling.first_samples = std::min(sampling.first_samples, sampling.max_samples);
+        sampling.min_samples = std::min(sampling.min_samples, sampling.max_samples);
+    }
+    if (!min_samples.is_none()) {
+        sampling.min_samples = samples_from("min_samples", min_samples);
+    }
+    sampling.noise_threshold = real_from("noise_threshold", noise_threshold);
+    if (!time_limit.is_none()) {
+        sampling.time_limit = real_from("time_limit", time_limit);
+        if (!(sampling.time_limit > 0)) {
+            throw std::invalid_argument("time_limit must be positive or None");
+        }
+    }
+    return sampling;
+}
+
+PixelFilter filter_from(const py::object& pixel_filter, const py::object& filter_width) {
+    const auto name = py::isinstance<py::str>(pixel_filter) ? pixel_filter.cast<std::string>() : std::string();
+    const auto* known = std::find(kFilters.begin(), kFilters.end(), name);
+    if (known == kFilters.end()) {
+        throw std::invalid_argument(R"(pixel_filter must be "box", "gaussian" or "blackman_harris")");
+    }
+    return {static_cast<PixelFilter::Kind>(known - kFilters.begin()), real_from("filter_width", filter_width)};
+}
+
+/// Throws std::invalid_argument naming `on_update` unless it is callable or None; keeps a reference to the arguments.
+PictureUpdate update_from(const py::object& callback, int width, int height, double build_seconds) {
+    if (callback.is_none()) {
+        return {};
+    }
+    return [&callback, width, height, build_seconds](std::span<const float> image, const RenderReport& report) {
+        const py::gil_scoped_acquire acquire;
+        const py::array_t<float> copy({height, width, 4}, image.data());
+        return !is_false(callback(copy, Report{report, build_seconds}));
+    };
+}
+
 py::object render_scene(const py::object& scene_object, const py::object& width, const py::object& height,
-                        const py::object& order, const py::object& tolerance, const py::object& pixel_samples,
-                        const py::object& shadow_rays, const py::object& transparent_bounces, const py::object& threads,
-                        const py::object& progress, const py::object& adaptive, const py::object& return_report) {
+                        const py::object& order, const py::object& tolerance, const py::object& noise_threshold,
+                        const py::object& min_samples, const py::object& max_samples, const py::object& pixel_samples,
+                        const py::object& time_limit, const py::object& pixel_filter, const py::object& filter_width,
+                        const py::object& shadows, const py::object& shadow_rays, const py::object& transparent_bounces,
+                        const py::object& threads, const py::object& progress, const py::object& on_update,
+                        const py::object& return_report) {
     auto& scene = object_from<SceneObject>("scene", scene_object, "Scene");
-    const RenderSettings settings = {order_from(order),
-                                     real_from("tolerance", tolerance),
-                                     int_from("pixel_samples", pixel_samples),
-                                     int_from("shadow_rays", shadow_rays),
-                                     int_from("threads", threads),
-                                     flag_from("adaptive", adaptive),
-                                     int_from("transparent_bounces", transparent_bounces)};
+    const int most_shadow_rays = int_from("shadow_rays", shadow_rays);
+    const RenderSettings settings = {
+        order_from(order),
+        real_from("tolerance", tolerance),
+        sampling_from(noise_threshold, min_samples, max_samples, pixel_samples, time_limit),
+        filter_from(pixel_filter, filter_width),
+        flag_from("shadows", shadows) ? most_shadow_rays : 0,
+        int_from("threads", threads),
+        int_from("transparent_bounces", transparent_bounces)};
     const int columns = int_from("width", width);
     const int rows = int_from("height", height);
     const bool with_report = flag_from("return_report", return_report);
     check_render(settings, columns, rows);
+    check_callable("on_update", on_update);
     const Progress report_progress = progress_from(progress);
     const Camera camera = camera_of(scene);
     const auto [compiled_scene, build_seconds] = compiled(scene, settings.threads);
     py::array_t<float> image({rows, columns, 4});
     const std::span<float> pixels(image.mutable_data(), static_cast<std::size_t>(image.size()));
+    const RenderWatch watch = {report_progress, update_from(on_update, columns, rows, build_seconds)};
     RenderReport report;
     {
         const py::gil_scoped_release release;
-        report = render(*compiled_scene, camera, columns, rows, settings, pixels, report_progress);
+        report = render(*compiled_scene, camera, columns, rows, settings, pixels, watch);
     }
     if (with_report) {
         return py::make_tuple(image, Report{report, build_seconds});
@@ -167,6 +243,14 @@ void bind_render(py::module_& m) {
             "hits", [](const Report& r) { return r.core.hits; }, "Camera rays that met a surface.")
         .def_property_readonly(
             "shadow_rays", [](const Report& r) { return r.core.shadow_rays; }, "Shadow rays traced.")
+        .def_property_readonly(
+            "passes", [](const Report& r) { return r.core.passes; }, "Passes over the picture or some of its pixels.")
+        .def_property_readonly(
+            "noise", [](const Report& r) { return r.core.noise; },
+            "Root mean square of the pixels' estimated errors, relative as noise_threshold; of a single pass 0.")
+        .def_property_readonly(
+            "seconds_left", [](const Report& r) { return r.core.seconds_left; },
+            "Time that the render will probably go on; 0 when it has ended.")
         .def_readonly("build_seconds", &Report::build_seconds, "Time for building what rays are traced in; 0 if kept.")
         .def_property_readonly(
             "render_seconds", [](const Report& r) { return r.core.seconds; }, "Time for rendering.")
@@ -175,8 +259,11 @@ void bind_render(py::module_& m) {
                                "light, without shadows; shadows; pixels, adding up.")
         .def("__repr__", &Report::repr);
     m.def("render", &render_scene, kRenderDoc, "scene"_a, "width"_a, "height"_a, py::kw_only(), "order"_a = "auto",
-          "tolerance"_a = kDefaultTolerance, "pixel_samples"_a = 16, "shadow_rays"_a = 16, "transparent_bounces"_a = 8,
-          "threads"_a = 0, "progress"_a = py::none(), "adaptive"_a = true, "return_report"_a = false);
+          "tolerance"_a = kDefaultTolerance, "noise_threshold"_a = PixelSampling().noise_threshold,
+          "min_samples"_a = py::none(), "max_samples"_a = py::none(), "pixel_samples"_a = py::none(),
+          "time_limit"_a = py::none(), "pixel_filter"_a = "box", "filter_width"_a = PixelFilter().width,
+          "shadows"_a = true, "shadow_rays"_a = RenderSettings().shadow_rays, "transparent_bounces"_a = 8,
+          "threads"_a = 0, "progress"_a = py::none(), "on_update"_a = py::none(), "return_report"_a = false);
 }
 
 }  // namespace shlight::python

@@ -3,24 +3,25 @@
 
 #include <chrono>
 #include <stdexcept>
+#include <string>
 
 namespace shlight::python {
 
 namespace py = pybind11;
-
-namespace {
 
 bool is_false(const py::object& value) {
     return (PyBool_Check(value.ptr()) != 0 || py::isinstance(value, py::module_::import("numpy").attr("bool_"))) &&
            !value.cast<bool>();
 }
 
-}  // namespace
+void check_callable(const char* name, const py::object& callback) {
+    if (!callback.is_none() && PyCallable_Check(callback.ptr()) == 0) {
+        throw std::invalid_argument(std::string(name) + " must be callable or None");
+    }
+}
 
 Progress progress_from(const py::object& callback) {
-    if (!callback.is_none() && PyCallable_Check(callback.ptr()) == 0) {
-        throw std::invalid_argument("progress must be callable or None");
-    }
+    check_callable("progress", callback);
     return [&callback](double share) {
         const py::gil_scoped_acquire acquire;
         if (PyErr_CheckSignals() != 0) {

@@ -13,6 +13,10 @@
 
 namespace shlight::python {
 
+/// Throws std::invalid_argument naming the argument unless it is callable or None.
+void check_callable(const char* name, const pybind11::object& callback);
+bool is_false(const pybind11::object& value);
+
 /// Runs in the calling thread, which does not hold the GIL while it waits: signals are seen, and the callback called.
 /// Throws std::invalid_argument naming `progress` unless it is callable or None; keeps a reference to the argument.
 Progress progress_from(const pybind11::object& callback);

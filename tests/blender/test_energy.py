@@ -28,6 +28,7 @@ def test_white_furnace(studio: Any, distribution: str) -> None:
     studio.world(color=(1.0, 1.0, 1.0))
     studio.camera((1.5, 2, 60), (1.5, 2, 0), lens=450)
     studio.scene.shlight.use_shadows = False
+    studio.scene.shlight.pixel_samples = 16  # which averages what single rays are off by
     image = studio.render("SHLIGHT")[..., :3]
     assert image.max() <= 1.0 + 1e-3
     assert image.min() >= 0.3

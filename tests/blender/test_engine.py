@@ -185,21 +185,32 @@ def test_settings_reach_the_renderer(studio: Any, monkeypatch: pytest.MonkeyPatc
     scene.shlight.order = "12"
     scene.shlight.tolerance = 0.02
     scene.shlight.shadow_rays = 3
+    scene.shlight.noise_threshold, scene.shlight.time_limit, scene.shlight.pixel_samples = 0.05, 100.0, 0
+    scene.shlight.min_samples, scene.shlight.max_samples = 8, 64
+    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "GAUSSIAN", 2.5
     scene.cycles.transparent_max_bounces = 5
     scene.render.threads_mode, scene.render.threads = "FIXED", 1
     studio.render("SHLIGHT")
-    passed = {name: value for name, value in given.items() if name not in {"progress", "return_report"}}
+    passed = {name: value for name, value in given.items() if name not in {"progress", "on_update", "return_report"}}
     assert callable(given["progress"])
     assert passed == {
         "order": 12,
         "tolerance": pytest.approx(0.02),
-        "pixel_samples": 1,
+        "noise_threshold": pytest.approx(0.05),
+        "min_samples": 8,
+        "max_samples": 64,
+        "pixel_samples": None,
+        "time_limit": 100.0,
+        "pixel_filter": "gaussian",
+        "filter_width": 2.5,
         "shadow_rays": 3,
         "transparent_bounces": 5,
         "threads": 1,
     }
     scene.shlight.order, scene.shlight.use_shadows, scene.render.threads_mode = "AUTO", False, "AUTO"
+    scene.shlight.pixel_samples = 4  # as in files of older versions
     studio.render("SHLIGHT")
+    assert (given["pixel_samples"], given["min_samples"], given["max_samples"]) == (4, None, None)
     assert (given["order"], given["shadow_rays"], given["threads"]) == ("auto", 0, 0)
 
 

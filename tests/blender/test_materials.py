@@ -84,7 +84,7 @@ def test_mirrors(studio: Any, shader: str, inputs: dict[str, Any], roughness: fl
     shine_on(studio, studio.material(shader, Roughness=roughness, **inputs))
     studio.scene.shlight.pixel_samples = 64  # the image has edges
     studio.scene.cycles.samples = 1024  # 256 miss the narrow peak in too many pixels
-    studio.compare()
+    studio.compare(mean=1e-2)  # the edges of the image are cut by the same points in all pixels
     assert studio.messages(most=99) == []
 
 

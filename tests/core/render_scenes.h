@@ -78,11 +78,12 @@ struct Image {
 };
 
 inline Image render_image(const Scene& scene, const Camera& camera, int width, int height,
-                          const RenderSettings& settings, const Progress& progress = {}) {
+                          const RenderSettings& settings, const Progress& progress = {},
+                          const PictureUpdate& on_update = {}) {
     Image image{width, height, {}, {}};
     image.values.assign(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), -1.0F);
     const auto compiled = scene.compile(settings.threads);
-    image.report = render(*compiled, camera, width, height, settings, image.values, progress);
+    image.report = render(*compiled, camera, width, height, settings, image.values, {progress, on_update});
     return image;
 }
 
@@ -113,9 +114,8 @@ inline double form_factor(const Vec3d& point, const std::vector<Vec3d>& vertices
 /// One camera ray through each pixel's centre, and no shadows.
 inline RenderSettings analytic_settings() {
     RenderSettings settings;
-    settings.pixel_samples = 1;
+    settings.sampling = PixelSampling::fixed(1);
     settings.shadow_rays = 0;
-    settings.adaptive = false;
     return settings;
 }
 

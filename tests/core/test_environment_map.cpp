@@ -287,7 +287,7 @@ TEST(EnvironmentMap, FewRaysLetNothingThroughAWall) {
         scene.set_environment(Environment(picture));
         RenderSettings settings;
         settings.shadow_rays = shadow_rays;
-        settings.adaptive = false;
+        settings.sampling = PixelSampling::fixed(16);
         const Image image = render_image(scene, {look_at({-8, 0.2, 0.5}, {-1, 0.4, 0}), 0.12}, 12, 12, settings);
         double sum = 0;
         for (int pixel = 0; pixel < 144; ++pixel) {

@@ -78,9 +78,8 @@ void check_mean(const Case& c) {
     const auto scene = room(c.bsdf, c.lights).compile();
     const Camera camera(look_at({0.5, -3, 2.5}, {0, 0, 0.2}), 0.9);
     RenderSettings fine;
-    fine.pixel_samples = 100;
+    fine.sampling = PixelSampling::fixed(100);
     fine.shadow_rays = 32;
-    fine.adaptive = false;
     fine.tolerance = 1e-4;
     Picture expected(4 * kSize * kSize);
     render(*scene, camera, kSize, kSize, fine, expected);

@@ -73,7 +73,7 @@ TEST(RenderCamera, CoverageIsTheShareOfThePixel) {
     Scene scene;
     scene.add_mesh(mesh);
     RenderSettings settings = analytic_settings();
-    settings.pixel_samples = 16;
+    settings.sampling = PixelSampling::refined(16);
     const Image image = render_image(scene, camera_above(1), 1, 1, settings);
     EXPECT_EQ(image.alpha(0, 0), 6.0F / 16);
     EXPECT_EQ(image.red(0, 0), 6.0F / 16);
@@ -89,7 +89,11 @@ TEST(RenderCamera, BadArgumentsAreTurnedDown) {
     rejects([](RenderSettings& s) { s.order = -1; });
     rejects([](RenderSettings& s) { s.tolerance = 0; });
     rejects([](RenderSettings& s) { s.tolerance = std::numeric_limits<double>::quiet_NaN(); });
-    rejects([](RenderSettings& s) { s.pixel_samples = 0; });
+    rejects([](RenderSettings& s) { s.sampling.max_samples = 0; });
+    rejects([](RenderSettings& s) { s.sampling.min_samples = 0; });
+    rejects([](RenderSettings& s) { s.sampling.min_samples = s.sampling.max_samples + 1; });
+    rejects([](RenderSettings& s) { s.sampling.noise_threshold = -0.1; });
+    rejects([](RenderSettings& s) { s.sampling.time_limit = std::numeric_limits<double>::quiet_NaN(); });
     rejects([](RenderSettings& s) { s.shadow_rays = -1; });
     rejects([](RenderSettings& s) { s.threads = -1; });
     rejects([](RenderSettings&) {}, 0, 4);

@@ -63,7 +63,7 @@ Scene scene_of(int first, int last, const Bsdf& bsdf, const LightTraits& traits 
 RenderSettings plain_settings(int shadow_rays) {
     RenderSettings settings;
     settings.tolerance = 7e-4;
-    settings.adaptive = false;
+    settings.sampling = PixelSampling::fixed(16);
     settings.shadow_rays = shadow_rays;
     return settings;
 }

@@ -262,7 +262,7 @@ TEST(RenderImage, SharedShadingPointsStayWithinTheTolerance) {
     scene.add_polygon_light({{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}}, Rgb(1));
     const Camera camera(look_at({0, -3, 2}, {0, 0, 0}), 0.7);
     RenderSettings settings = analytic_settings();
-    settings.pixel_samples = 16;
+    settings.sampling = PixelSampling::refined(16);
     settings.order = 24;
     const Image shared = render_image(scene, camera, 48, 48, settings);
     settings.tolerance = 1e-12;

@@ -60,7 +60,7 @@ class RenderMany : public ::testing::TestWithParam<double> {};
 
 TEST_P(RenderMany, LightsTogetherAreTheSumOfTheirParts) {
     RenderSettings settings;
-    settings.adaptive = false;
+    settings.sampling = PixelSampling::fixed(16);
     const Camera camera = testing::camera_above(2);
     for (const Bsdf& floor : {Bsdf::lambert(Rgb(0.5F)), Bsdf::ggx(0.4F, Rgb(0.9F))}) {
         const Image all =
@@ -97,7 +97,7 @@ TEST_P(RenderMany, APixelOfTwoSurfacesIsNoMixOfTheirShadows) {
     double truth = 0;
     testing::RandomInput random(6);
     RenderSettings settings;
-    settings.adaptive = false;
+    settings.sampling = PixelSampling::fixed(16);
     for (int i = 0; i < kLights; ++i) {
         const Vec3d position(random.uniform(-2, -1), random.uniform(-1, 1), random.uniform(0.5, 1));
         add_light(scene, position, GetParam(), Rgb(1));

@@ -32,7 +32,7 @@ Scene busy_scene() {
 
 RenderSettings settings_for(int threads) {
     RenderSettings settings;
-    settings.pixel_samples = 4;
+    settings.sampling = PixelSampling::refined(4);
     settings.threads = threads;
     return settings;
 }

@@ -150,8 +150,7 @@ TEST(RenderProfiles, ASharpRimIsResolvedWithinPixels) {
     scene.add_mesh(floor_mesh(5));
     scene.add_spot_light({0, 0, 100}, make_spot_profile(lamp_axes({0, 0, -1}), 2 * std::atan(0.01), 0), Rgb(1e4F));
     RenderSettings settings;
-    settings.pixel_samples = 256;
-    settings.adaptive = false;
+    settings.sampling = PixelSampling::fixed(256);
     const Image image = render_image(scene, camera_above(1.1), 7, 7, settings);
     double sum = 0;
     for (int i = 0; i < 49; ++i) {
@@ -175,9 +174,8 @@ TEST(RenderProfiles, PenumbraeCountWhatTheProfileLetsThrough) {
     scene.add_mesh(screen);
     scene.add_spot_light(position, make_spot_profile(lamp_axes({0, 0, -1}), 1, 1), Rgb(5), radius);
     RenderSettings settings;
-    settings.pixel_samples = 16;
+    settings.sampling = PixelSampling::fixed(16);
     settings.shadow_rays = 256;
-    settings.adaptive = false;
     // Pixels left of the screen, which still see part of the light.
     const Image image = render_image(scene, camera_above(0.4), 8, 8, settings);
     double error = 0;

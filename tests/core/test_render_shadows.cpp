@@ -19,7 +19,7 @@ constexpr int kSize = 32;
 
 RenderSettings with_rays(int pixel_samples, int shadow_rays) {
     RenderSettings settings;
-    settings.pixel_samples = pixel_samples;
+    settings.sampling = PixelSampling::refined(pixel_samples);
     settings.shadow_rays = shadow_rays;
     return settings;
 }

@@ -116,8 +116,7 @@ TEST(RenderSources, MirrorsDoNotShowSources) {
 
 TEST(RenderSources, ASourceTakesOneShadowRayPerHit) {
     RenderSettings settings;
-    settings.pixel_samples = 4;
-    settings.adaptive = false;
+    settings.sampling = PixelSampling::fixed(4);
     Scene scene;
     scene.add_mesh(floor_mesh(5));
     scene.add_mesh(floor_mesh(0.5, 1));
@@ -138,7 +137,7 @@ TEST(RenderSources, ShadowsAreSharpAndCanBeSwitchedOff) {
         scene.add_mesh(floor_mesh(5, 2.01F));
         scene.add_point_light({0, 0, 2}, Rgb(7), traits);
         RenderSettings settings;
-        settings.pixel_samples = 1;
+        settings.sampling = PixelSampling::refined(1);
         const Image image = render_image(scene, camera_above(kHalf, 1.9), 64, 64, settings);
         const auto lit = [&](double x) {
             const int column = static_cast<int>((x / kHalf + 1) * 32);
@@ -184,7 +183,7 @@ TEST(RenderSources, ALightInItsOwnSurfaceIsNoBrightPixel) {
     const Vec3d middle = floor_point(4, 4, kSize, kHalf);
     SpotProfile spot = make_spot_profile(lamp_axes({0, 0, -1}), 1, 0.2);
     RenderSettings settings;
-    settings.pixel_samples = 1;
+    settings.sampling = PixelSampling::refined(1);
     const Image image = floor_under(
         [&](Scene& scene) {
             scene.add_point_light(middle, Rgb(7));

@@ -79,10 +79,17 @@ RENDER = {"width": 2, "height": 2, "threads": 1, "progress": None}
 SETTINGS = {
     "order": "auto",
     "tolerance": 0.1,
+    "noise_threshold": 0.5,
+    "min_samples": None,
+    "max_samples": 1,
     "pixel_samples": 1,
+    "time_limit": 10.0,
+    "pixel_filter": "gaussian",
+    "filter_width": 1.0,
+    "shadows": True,
     "shadow_rays": 1,
     "transparent_bounces": 1,
-    "adaptive": False,
+    "on_update": None,
 }
 
 
@@ -216,7 +223,7 @@ def complaint(call: str, name: str, value: Any) -> str | None:
             result = function(**{**arguments, name: value})
     except (TypeError, ValueError) as error:
         named = str(error).startswith((name, *RELATED.get(name, ())))
-        return None if named or name == "progress" else f"{type(error).__name__}: {error}"
+        return None if named or name in ("progress", "on_update") else f"{type(error).__name__}: {error}"
     except OSError as error:
         return None if name == "path" else f"{type(error).__name__}: {error}"
     except shlight.RenderCancelled:

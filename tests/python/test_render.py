@@ -40,7 +40,7 @@ def test_lambert_floor_under_a_sphere_light() -> None:
 
 
 def test_report_of_a_picture_that_is_not_square() -> None:
-    image, report = shlight.render(lit_floor(), 32, 16, pixel_samples=2, threads=2, adaptive=False, return_report=True)
+    image, report = shlight.render(lit_floor(), 32, 16, pixel_samples=2, max_samples=2, threads=2, return_report=True)
     assert image.shape == (16, 32, 4)
     assert report.hits == 32 * 16 * 2
     assert report.order_shares == {2: 1.0}
@@ -154,6 +154,16 @@ RENDER_ERRORS: list[tuple[str, dict[str, Any]]] = [
     ("tolerance", {"tolerance": 0}),
     ("tolerance", {"tolerance": NAN}),
     ("pixel_samples", {"pixel_samples": 0}),
+    ("max_samples", {"max_samples": 2**21}),
+    ("min_samples", {"min_samples": 8, "max_samples": 4}),
+    ("min_samples", {"min_samples": 8, "pixel_samples": 4}),
+    ("noise_threshold", {"noise_threshold": -1}),
+    ("noise_threshold", {"noise_threshold": NAN}),
+    ("time_limit", {"time_limit": 0}),
+    ("time_limit", {"time_limit": NAN}),
+    ("pixel_filter", {"pixel_filter": "tent"}),
+    ("filter_width", {"filter_width": 0}),
+    ("on_update", {"on_update": 5}),
     ("shadow_rays", {"shadow_rays": -1}),
     ("shadow_rays", {"shadow_rays": 10**10}),
     ("threads", {"threads": -1}),
@@ -170,6 +180,25 @@ def test_bad_render_arguments(name: str, change: dict[str, Any]) -> None:
 
 def test_a_camera_is_needed() -> None:
     expect_value_error("camera", lambda: shlight.render(shlight.Scene(), 4, 4))
+
+
+def test_the_picture_as_it_stands() -> None:
+    shown: list[tuple[Any, shlight.RenderReport]] = []
+
+    def end_after_two(image: Any, report: shlight.RenderReport) -> bool:
+        shown.append((image, report))
+        return report.passes < 2
+
+    image, report = shlight.render(lit_floor(), 48, 32, on_update=end_after_two, return_report=True)
+    assert report.passes == 2
+    np.testing.assert_array_equal(image, shown[-1][0])
+    assert not np.array_equal(image, shown[0][0])
+    assert 0 < shown[-1][1].noise < 1
+    assert shown[-1][1].seconds_left >= 0
+    again = shlight.render(lit_floor(), 48, 32, threads=1, on_update=lambda _, seen: seen.passes < 2)
+    np.testing.assert_array_equal(image, again)
+    with pytest.raises(ZeroDivisionError):
+        shlight.render(lit_floor(), 48, 32, on_update=lambda image, report: 1 / 0)
 
 
 MESH_ERRORS: list[tuple[str, dict[str, Any]]] = [

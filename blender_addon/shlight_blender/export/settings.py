@@ -20,7 +20,13 @@ class RenderSettings:
 
     order: int | str
     tolerance: float
-    pixel_samples: int
+    noise_threshold: float
+    min_samples: int | None
+    max_samples: int | None
+    pixel_samples: int | None
+    time_limit: float | None
+    pixel_filter: str
+    filter_width: float
     shadow_rays: int
     transparent_bounces: int
     threads: int
@@ -31,15 +37,23 @@ class RenderSettings:
 
 
 def render_settings(scene: Any) -> RenderSettings:
-    """Reads `scene.shlight` and the number of threads of `scene.render`."""
+    """Reads `scene.shlight`, the number of threads of `scene.render`, and Cycles' filter and transparent bounces."""
     settings = scene.shlight
     render = scene.render
+    cycles = getattr(scene, "cycles", None)  # its add-on may be off
+    older = int(settings.pixel_samples)
     return RenderSettings(
         order="auto" if settings.order == "AUTO" else int(settings.order),
         tolerance=float(settings.tolerance),
-        pixel_samples=int(settings.pixel_samples),
+        noise_threshold=float(settings.noise_threshold),
+        min_samples=None if older else min(int(settings.min_samples), int(settings.max_samples)),
+        max_samples=None if older else int(settings.max_samples),
+        pixel_samples=older or None,
+        time_limit=float(settings.time_limit) or None,
+        pixel_filter=str(getattr(cycles, "pixel_filter_type", "BLACKMAN_HARRIS")).lower(),
+        filter_width=float(getattr(cycles, "filter_width", render.filter_size)),
         shadow_rays=int(settings.shadow_rays) if settings.use_shadows else 0,
-        transparent_bounces=int(scene.cycles.transparent_max_bounces) if hasattr(scene, "cycles") else 8,
+        transparent_bounces=int(getattr(cycles, "transparent_max_bounces", 8)),
         threads=int(render.threads) if render.threads_mode == "FIXED" else 0,
     )
 

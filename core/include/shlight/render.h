@@ -3,6 +3,8 @@
 // Pictures: direct light from area lights by Eq. 5 of Zhou & Wei 2020, times a visibility ratio from shadow rays.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <span>
 
 #include "shlight/camera.h"
@@ -13,34 +15,77 @@
 
 namespace shlight {
 
+inline constexpr int kMostPixelSamples = 1 << 20;
+
+/// Camera rays of a pixel. The first pass takes first_samples of each; later ones four times as many of all pixels that
+/// need them. Those of all passes are spread evenly over the pixel's square together.
+struct PixelSampling {
+    int first_samples = 1;  ///< rounded up to a power of two, unless it is max_samples
+    int min_samples = 4;
+    int max_samples = 256;
+    /// A pixel has enough rays where the estimated error of its mean, relative to √(r² + 0.01 r̄²), r the pixel's value
+    /// and r̄ the picture's mean, is not above this. 0: all pixels get max_samples.
+    double noise_threshold = 0.01;
+    /// [s]: a pass is left out where it would probably end later; ≤ 0: none is.
+    double time_limit = 0;
+
+    /// So many rays of each pixel at once, and no others.
+    static PixelSampling fixed(int samples) { return {samples, samples, samples, 0, 0}; }
+    /// So many rays of each pixel at once, rounded up to a power of two, and up to 16 times as many where they are
+    /// needed. One ray cannot disagree and stays one.
+    static PixelSampling refined(int samples);
+};
+
+/// How the camera rays around a pixel's middle weigh in its mean: they are drawn as often as they weigh. Widths are
+/// those that Blender's render engine Cycles calls so.
+struct PixelFilter {
+    enum class Kind : std::uint8_t {
+        box,              ///< the pixel's own square, whatever the width
+        gaussian,         ///< exp(-8 (v / width)²) on |v| < 1.5 width, along each axis
+        blackman_harris,  ///< of 2 width in all
+    };
+    Kind kind = Kind::box;
+    double width = 1.5;  ///< pixels
+
+    /// Distance from the middle, in pixels, below which a share of all rays lies, along either axis.
+    double place(double share) const;
+};
+
 struct RenderSettings {
     int order = 0;  ///< 1 … 64: harmonics of this order for every light; 0: the cheapest that meets the tolerance
     /// Error of the light that a point reflects to the camera ÷ that light, or ÷ a tenth of the picture's mean where
     /// that is larger. Only for order 0.
     double tolerance = kDefaultTolerance;
-    int pixel_samples = 16;  ///< camera rays per pixel, spread evenly over its square; see adaptive
+    PixelSampling sampling;
+    PixelFilter filter;
     /// Per camera ray and light, at most, and again for each roughness of the glossy lobes; 0: no shadows.
     int shadow_rays = 16;
     int threads = 0;  ///< 0: all cores
-    /// pixel_samples are the least that a pixel gets: they are rounded up to a power of two, and 4 or 16 times as many
-    /// are spread over a pixel, up to 2^20, where they disagree so much that its mean may be wrong by more than some 1
-    /// %, or where a neighbour saw something that may have been missed. One ray per pixel cannot disagree and stays
-    /// one.
-    bool adaptive = true;
     /// Surfaces that a shadow ray passes through as far as they are transparent, at most; a camera ray passes one more.
     int transparent_bounces = 8;
 };
 
+/// Is shown the picture as it stands, as render's image, and what it has taken so far; returns false to leave it so.
+using PictureUpdate = std::function<bool(std::span<const float>, const RenderReport&)>;
+
+/// Called from the thread that calls render, while others go on.
+struct RenderWatch {
+    Progress progress = {};
+    PictureUpdate on_update = {};  ///< after each pass, and a few times a second during long ones
+};
+
 /// Throws std::invalid_argument naming the member or argument: order outside 0 … 64, tolerance ≤ 0 or not finite,
-/// pixel_samples outside 1 … 2^20, shadow_rays outside 0 … 2^20, more than 2^22 of both per pixel, transparent_bounces
-/// outside 0 … 1024, threads < 0, width or height < 1, or more than 2^28 pixels.
+/// first_samples, min_samples or max_samples outside 1 … 2^20 or not in this order, noise_threshold outside 0 … 1,
+/// time_limit not finite, filter_width outside 0.001 … 100, shadow_rays outside 0 … 2^20, more than 2^22 of both in the
+/// first pass, transparent_bounces outside 0 … 1024, threads < 0, width or height < 1, or more than 2^28 pixels.
 void check_render(const RenderSettings& settings, int width, int height);
 
 /// image: height × width × RGBA, row 0 on top, linear, premultiplied, the mean of all camera rays of each pixel; alpha
 /// is the share of them that met a surface or, where the camera sees it, the environment. The picture depends on
-/// nothing but scene, camera, size and settings; not on the number of threads. Throws as check_render does, also for an
-/// image of another size; RenderCancelled when progress returns false; what progress throws.
+/// nothing but scene, camera, size and settings; not on the number of threads, and on a time limit only by the number
+/// of passes. Throws as check_render does, also for an image of another size; RenderCancelled when watch.progress
+/// returns false; what the watch's functions throw.
 RenderReport render(const CompiledScene& scene, const Camera& camera, int width, int height,
-                    const RenderSettings& settings, std::span<float> image, const Progress& progress = {});
+                    const RenderSettings& settings, std::span<float> image, const RenderWatch& watch = {});
 
 }  // namespace shlight

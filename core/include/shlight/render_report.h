@@ -25,7 +25,11 @@ struct RenderReport {
     std::uint64_t summed_count = 0;                           ///< camera hits × lights that were summed up instead
     std::uint64_t hits = 0;                                   ///< camera rays that met a surface
     std::uint64_t shadow_rays = 0;
+    std::uint32_t passes = 0;  ///< over the picture or some of its pixels, that have ended
+    /// Root mean square over the pixels of the estimated errors, see PixelSampling::noise_threshold.
+    double noise = 0;
     double seconds = 0;
+    double seconds_left = 0;                                   ///< of what is known to be left to do
     std::array<double, kRenderStages.size()> stage_seconds{};  ///< by RenderStage, summed over threads
 };
 

@@ -3,6 +3,7 @@
 // Points in the unit square that fill it evenly, and the same on every run, machine and number of threads.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -21,6 +22,23 @@ glm::dvec2 sobol(std::uint32_t index, std::uint32_t seed);
 /// Another index in place of each, another order for each seed: aligned blocks of 2^k indices stay together. Sequences
 /// of different seeds become unrelated even where both are taken in the order of their indices.
 std::uint32_t shuffled(std::uint32_t index, std::uint32_t seed);
+
+/// A sequence of Sobol points in an order of its own: sobol(shuffled(index, seed), seed).
+class SobolSequence {
+  public:
+    explicit SobolSequence(std::uint32_t seed);
+    glm::dvec2 point(std::uint32_t index) const;
+    /// What lanes need to draw points themselves.
+    std::uint32_t x_seed() const { return x_; }
+    std::uint32_t y_seed() const { return y_; }
+    std::uint32_t order_seed() const { return order_; }
+
+  private:
+    std::uint32_t x_, y_, order_;
+};
+
+/// Point i < count of a lattice of rank 1, which fills the unit square evenly for any count, moved around by `seed`.
+glm::dvec2 lattice_point(std::size_t i, std::size_t count, std::uint32_t seed);
 
 /// Points that can be continued: the first of a longer set are those of a shorter one. The first 2^k, and each aligned
 /// block of 2^k, have one point in each elementary interval of area 2^-k; each odd point is its even predecessor

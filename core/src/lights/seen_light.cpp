@@ -174,12 +174,6 @@ LitDisk lit_part(const DiskLight& light, const ShadingFrame& frame) {
     return lit;
 }
 
-/// Whether a hit lies off the plane of a light that is planar, on a side that the light shines to.
-template <class PlanarLight>
-bool is_lit_side(const PlanarLight& light, double height, double error) {
-    return (light.two_sided ? std::abs(height) : height) > 2 * (error + light.error);
-}
-
 }  // namespace
 
 std::optional<CapView> view(const SphereLight& light, const ShadingFrame& frame) {

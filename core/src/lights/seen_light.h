@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -42,6 +43,12 @@ struct DeltaView {
 /// Nothing for a source below the horizon, one that does not shine this way, or one within `error` of the hit.
 /// Precondition: is_delta(light).
 std::optional<DeltaView> delta_view(const Light& light, const ShadingFrame& frame, double error);
+
+/// Whether a hit lies off the plane of a planar light, on a side that the light shines to. height: over that plane.
+template <class PlanarLight>
+bool is_lit_side(const PlanarLight& light, double height, double error) {
+    return (light.two_sided ? std::abs(height) : height) > 2 * (error + light.error);
+}
 
 /// A light's emission profile as a hit sees it. Refers to the light.
 class ProfileView {

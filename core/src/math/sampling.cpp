@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <numbers>
 #include <numeric>
+
+#include <glm/common.hpp>
 
 namespace shlight {
 namespace {
@@ -34,7 +37,7 @@ std::uint32_t pascal(std::uint32_t x) {
     x ^= (x >> 8) & 0x00FF00FFU;
     x ^= (x >> 4) & 0x0F0F0F0FU;
     x ^= (x >> 2) & 0x33333333U;
-    x ^= (x >> 1) & 0x55555555U;
+    x ^= (x >> 1) & 0x15555555U;
     return x;
 }
 
@@ -67,9 +70,25 @@ std::uint32_t shuffled(std::uint32_t index, std::uint32_t seed) {
     return reverse_bits(scramble_reversed(reverse_bits(index), hash(seed, 2)));
 }
 
+SobolSequence::SobolSequence(std::uint32_t seed) : x_(hash(seed, 0)), y_(hash(seed, 1)), order_(hash(seed, 2)) {}
+
+glm::dvec2 SobolSequence::point(std::uint32_t index) const {
+    const std::uint32_t place = reverse_bits(scramble_reversed(reverse_bits(index), order_));
+    return {unit(reverse_bits(scramble_reversed(place, x_))), unit(reverse_bits(scramble_reversed(pascal(place), y_)))};
+}
+
+glm::dvec2 lattice_point(std::size_t i, std::size_t count, std::uint32_t seed) {
+    // The golden ratio's multiples are spread evenly, however many there are.
+    constexpr double kStep = std::numbers::phi - 1;
+    const auto number = static_cast<double>(i);
+    return {(number + unit(hash(seed, 0))) / static_cast<double>(count),
+            glm::fract(number * kStep + unit(hash(seed, 1)))};
+}
+
 std::vector<glm::dvec2> nested_points(std::uint32_t count) {
-    // Sobol points sit in the corners of the smallest cells. The shift by 1/3 moves them inside, at every level.
-    constexpr std::uint32_t kShift = 0x55555555U;
+    // Sobol points sit in the corners of the smallest cells. The shift moves them inside: to 1/3 of a cell at every
+    // level, but to 7/12 for sets of four, of which there are most.
+    constexpr std::uint32_t kShift = 0x25555555U;
     // The first bit decides on all the others.
     const auto coordinate = [](std::uint32_t x) { return unit(((x >> 31) != 0 ? x ^ 0x7FFFFFFFU : x) ^ kShift); };
     std::vector<glm::dvec2> points(count);

@@ -17,9 +17,12 @@ constexpr std::size_t kLeastLights = 8;
 /// Camera rays of a batch: enough for long batches, few enough for the cache.
 constexpr std::size_t kMostBatchSamples = 4096;
 constexpr std::size_t kLeastSamples = 256;
+/// Camera rays that tell a gradient from an edge.
+constexpr std::uint32_t kLeastForPlane = 8;
 /// Of what a camera ray adds to a pixel; squares of brighter ones would leave floats.
 constexpr double kBrightestRay = 1e18;
-/// In the place of a light's number.
+/// Of what casts shadows.
+constexpr std::uint32_t kLightSeed = 0;
 constexpr std::uint32_t kEnvironmentSeed = 0xFFFFFFFFU;
 constexpr std::uint32_t kDeltaSeed = 0xFFFFFFFEU;
 constexpr std::uint32_t kFarLightSeed = 0xFFFFFFFDU;
@@ -46,22 +49,32 @@ class StageClock {
 Vec3d PixelSums::variance() const {
     const double count = rays;
     const Vec3d mean = radiance / count;
-    // The variance of a coordinate over its unit interval is 1/12.
-    const Vec3d linear = 12.0 * (along_x * along_x + along_y * along_y) / (count * count);
+    // The variance of a coordinate over its unit interval is 1/12. Few rays are nearly always on a plane.
+    const double share = rays < kLeastForPlane ? 0.0 : 12.0;
+    const Vec3d linear = share * (along_x * along_x + along_y * along_y) / (count * count);
     return glm::max(squares / count - mean * mean - linear, Vec3d(0));
 }
 
-void PixelSums::add(const Rgb& ray_radiance, const Rgb& noise, const glm::dvec2& from_center, float ray_opacity) {
+Vec3d PixelSums::shadow_variance() const {
+    // n camera rays with m shadow rays each are n·m rays spread evenly over the light, whose error falls as
+    // (n m)^-3/4: the noise of one camera ray, of a mean of m, is the m-th part of a shadow ray's variance. What rays
+    // have in common is as wrong in their mean.
+    return shadow_rays > 0 ? noise / (rays * std::sqrt(shadow_rays)) + shared_noise / std::sqrt(1.0 * rays) : Vec3d(0);
+}
+
+void PixelSums::add(const Rgb& ray_radiance, const Rgb& ray_noise, const glm::dvec2& from_center, float ray_opacity) {
     const Vec3d shown = glm::clamp(Vec3d(ray_radiance), -kBrightestRay, kBrightestRay);
     opacity += double{ray_opacity};
     radiance += shown;
-    squares += shown * shown - glm::min(Vec3d(noise), kBrightestRay * kBrightestRay);
+    const Vec3d shadow_noise = glm::min(Vec3d(ray_noise), kBrightestRay * kBrightestRay);
+    squares += shown * shown - shadow_noise;
+    noise += shadow_noise;
     along_x += from_center.x * shown;
     along_y += from_center.y * shown;
 }
 
 Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const RenderSettings& r,
-                 std::vector<glm::dvec2> points)
+                 std::vector<glm::dvec2> points, std::uint32_t preview_points)
     : scene(&s),
       camera(&c),
       settings(r),
@@ -69,9 +82,14 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
       height(h),
       window(c.window(w, h)),
       pixel_points(std::move(points)),
+      previews(preview_points),
+      filter_places(pixel_points.size()),
       lights(s.lights().first(s.extended_light_count())),
       extended(pointers_to(lights)),
       deltas(pointers_to(s.lights().subspan(s.extended_light_count()))) {
+    std::transform(pixel_points.begin(), pixel_points.end(), filter_places.begin(), [&](const glm::dvec2& point) {
+        return glm::dvec2(r.filter.place(point.x), r.filter.place(point.y));
+    });
     for (const Material& material : s.materials()) {
         materials.emplace_back(material.shader == nullptr ? material.bsdf.lobes() : lobes_of(*material.shader), r.order,
                                r.tolerance);
@@ -99,10 +117,8 @@ PixelBatch::PixelBatch(const Picture& picture)
       shadowed_far_lights_(tracer_, picture.materials, picture.scene->lights()),
       shadowed_deltas_(tracer_, picture.materials, picture.lobe_stride),
       unshadowed_(picture.lobe_stride),
-      shadowed_(tracer_, static_cast<std::uint32_t>(picture.settings.shadow_rays), picture.materials,
-                picture.lobe_stride),
-      shadowed_environment_(tracer_, picture.scene->environment(),
-                            static_cast<std::uint32_t>(picture.settings.shadow_rays), picture.materials) {}
+      shadowed_(tracer_, picture.materials, picture.lobe_stride),
+      shadowed_environment_(tracer_, picture.scene->environment(), picture.materials) {}
 
 void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums) {
     StageClock clock(report_);
@@ -115,7 +131,7 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
 }
 
 double PixelBatch::reflected(std::span<const Pixel> pixels, std::uint32_t shadow_rays) {
-    const SampleRange first = {0, 1, shadow_rays};
+    const SampleRange first = {0, 1, shadow_rays, 0};
     trace_camera_rays(pixels, first);
     add_reflected(pixels, first);
     double sum = 0;
@@ -155,11 +171,12 @@ void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRa
     rays_.clear();
     neighbours_.clear();
     // The rays of a pixel share its area.
-    const double step = 1 / std::sqrt(samples.first + samples.count);
+    const std::uint32_t before = samples.first - std::min(samples.first, picture_->previews);
+    const double step = 1 / std::sqrt(before + samples.count);
     for (const Pixel& pixel : pixels) {
         for (std::uint32_t i = samples.first; i < samples.first + samples.count; ++i) {
-            const double column = pixel.column + picture_->pixel_points[i].x;
-            const double row = pixel.row + picture_->pixel_points[i].y;
+            const double column = pixel.column + 0.5 + picture_->filter_places[i].x;
+            const double row = pixel.row + 0.5 + picture_->filter_places[i].y;
             rays_.push_back({camera_ray(column, row), i});
             if (picture_->takes_differences) {
                 neighbours_.push_back({camera_ray(column + step, row), camera_ray(column, row + step)});
@@ -215,14 +232,10 @@ void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& sa
         const auto block = lights.subspan(first, std::min(most, lights.size() - first));
         unshadowed_.compute(points_, picture_->materials, block, picture_->light_error, report_);
         clock.end(RenderStage::light);
-        shadowed_.expect(block, unshadowed_);
-        for (std::size_t i = 0; i < block.size(); ++i) {
-            seed_pixels(pixels, static_cast<std::uint32_t>(first + i));
-            shadowed_.add(*block[i], i, samples, unshadowed_.light(i), pixel_seeds_, hits_);
-        }
+        seed_pixels(pixels, kLightSeed);
+        shadowed_.add(block, unshadowed_, static_cast<std::uint32_t>(first), samples, pixel_seeds_, hits_);
         clock.end(RenderStage::shadows);
     }
-    shadowed_.finish(hits_);
 }
 
 void PixelBatch::add_far_lights(std::span<const Pixel> pixels, const SampleRange& samples) {
@@ -231,8 +244,7 @@ void PixelBatch::add_far_lights(std::span<const Pixel> pixels, const SampleRange
     }
     StageClock clock(report_);
     seed_pixels(pixels, hash(kFarLightSeed, samples.first));
-    shadowed_far_lights_.add(far_light_sum_, points_, samples.shadow_rays > 0, pixel_seeds_, shadowed_.brightness(),
-                             hits_);
+    shadowed_far_lights_.add(far_light_sum_, points_, samples, pixel_seeds_, shadowed_.brightness(), hits_);
     report_.summed_count += far_light_sum_.size() * hits_.size();
     clock.end(RenderStage::shadows);
 }
@@ -272,6 +284,9 @@ void PixelBatch::add_up(const SampleRange& samples, std::span<PixelSums> sums) c
             sums[pixel].add(radiance, noise, from_center(rays_[ray].sample), ray_light_[ray].opacity);
         }
         sums[pixel].rays += samples.count;
+        sums[pixel].obstructed = sums[pixel].obstructed || hits_.obstructed[pixel] != 0;
+        sums[pixel].shared_noise += glm::min(Vec3d(hits_.shared_noise[pixel]), kBrightestRay * kBrightestRay);
+        sums[pixel].shadow_rays = samples.shadow_rays;
     }
 }
 

@@ -38,19 +38,25 @@ struct PixelSums {
     double opacity = 0;  ///< of rays that met a surface or the background 1, if these let nothing through
     Vec3d radiance{0};
     Vec3d squares{0};              ///< of radiance, without the part that is noise of shadow rays
+    Vec3d noise{0};                ///< that part
+    Vec3d shared_noise{0};         ///< the variance of `radiance` by shadow rays that camera rays have in common
+    double shadow_rays = 0;        ///< for each camera ray and light, at most
+    bool obstructed = false;       ///< whether any shadow ray has met something
     Vec3d along_x{0}, along_y{0};  ///< of radiance times the ray's distance from the pixel's centre
 
     /// Variance over the pixel of what is not linear in the place: rays in even number, spread evenly, average that
     /// out.
     Vec3d variance() const;
+    /// Of a camera ray, if its shadow rays were one.
+    Vec3d shadow_variance() const;
     /// The part of one ray; from_center: its distance from the pixel's centre.
-    void add(const Rgb& ray_radiance, const Rgb& noise, const glm::dvec2& from_center, float ray_opacity);
+    void add(const Rgb& ray_radiance, const Rgb& ray_noise, const glm::dvec2& from_center, float ray_opacity);
 };
 
 /// Everything that the batches of one picture share and only read.
 struct Picture {
     Picture(const CompiledScene& s, const Camera& c, int w, int h, const RenderSettings& r,
-            std::vector<glm::dvec2> points);
+            std::vector<glm::dvec2> points, std::uint32_t preview_points);
 
     /// Camera rays that a batch should hold. Under many lights fewer: what each light adds is kept until all are known.
     std::uint32_t batch_samples() const;
@@ -60,7 +66,9 @@ struct Picture {
     RenderSettings settings;
     int width, height;
     Window window;
-    std::vector<glm::dvec2> pixel_points;  ///< where each camera ray of a pixel goes through its unit square
+    std::vector<glm::dvec2> pixel_points;   ///< of each camera ray of a pixel, evenly over the unit square
+    std::uint32_t previews = 0;             ///< the first of them, which do not count beside the others
+    std::vector<glm::dvec2> filter_places;  ///< likewise as the filter spreads them, from the pixel's middle
     std::vector<MaterialLobes> materials;
     std::size_t lobe_stride = 1;
     bool takes_differences = false;      ///< whether any material looks at neighbouring camera rays
@@ -93,7 +101,7 @@ class PixelBatch {
     void add_lights(std::span<const Pixel> pixels, const SampleRange& samples);
     void add_far_lights(std::span<const Pixel> pixels, const SampleRange& samples);
     void add_environment(std::span<const Pixel> pixels, const SampleRange& samples);
-    /// One for each pixel and light.
+    /// One for each pixel and what casts shadows.
     void seed_pixels(std::span<const Pixel> pixels, std::uint32_t light);
     void add_up(const SampleRange& samples, std::span<PixelSums> sums) const;
     /// Through a point of the window, in pixels.

@@ -2,16 +2,20 @@
 #include "render/refinement.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <tuple>
+
+#include "shlight/parallel.h"
 
 namespace shlight {
 namespace {
 
-/// Relative error of a pixel that is good enough.
-constexpr double kGoodEnough = 0.012;
 /// Share of a neighbour's variance that a pixel may have without its rays showing it: that of a tenth of its area, in
 /// which an edge or a wire of the neighbour goes on between the rays.
 constexpr double kNeighbourShare = 0.1;
+/// So many rays say nothing of it yet.
+constexpr double kMissingRays = 16;
 
 /// Of a step of one somewhere in the pixel, what is not linear in the place; for steps between pixels, and of alpha.
 constexpr double kEdgeVariance = 1.0 / 16;
@@ -24,28 +28,53 @@ Vec3d color(std::span<const float> image, std::size_t pixel) {
     return {image[4 * pixel], image[4 * pixel + 1], image[4 * pixel + 2]};
 }
 
+/// The one of these; made if it is missing.
+RefinementGroup& group_of(int from, int to, bool calm, std::vector<RefinementGroup>& groups) {
+    const auto known = std::find_if(groups.begin(), groups.end(), [&](const RefinementGroup& g) {
+        return g.from == from && g.to == to && g.calm == calm;
+    });
+    return known != groups.end() ? *known : groups.emplace_back(RefinementGroup{from, to, calm, 0, {}, {}});
+}
+
 }  // namespace
 
-Refinement::Refinement(int width, int height, std::uint32_t base_samples, int most_level)
+Refinement::Refinement(int width, int height, const PixelSampling& sampling)
     : width_(width),
       height_(height),
-      base_samples_(base_samples),
-      most_level_(most_level),
-      states_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
+      first_samples_(static_cast<std::uint32_t>(sampling.first_samples)),
+      good_enough_(sampling.noise_threshold * sampling.noise_threshold),
+      states_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+    const auto most = static_cast<std::uint32_t>(sampling.max_samples);
+    if (first_samples_ < most) {
+        first_samples_ = std::bit_ceil(first_samples_);
+        while (samples(most_level_ + 1) <= most) {
+            ++most_level_;
+        }
+        while (least_level_ < most_level_ && samples(least_level_) < static_cast<std::uint32_t>(sampling.min_samples)) {
+            ++least_level_;
+        }
+    }
+    rays_left_ = static_cast<double>(states_.size()) * samples(least_level_);
+}
 
 void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std::span<float> image) {
     const std::size_t i = index(pixel.column, pixel.row);
     State& state = states_[i];
-    const double before = samples(state.level);
+    const double before = kept_samples(state.level);
     const double all = samples(level);
+    const Vec3d difference = before > 0 ? color(image, i) - sums.radiance / static_cast<double>(sums.rays) : Vec3d(0);
     const Vec3d radiance = before > 0 ? (before * color(image, i) + sums.radiance) / all : sums.radiance / all;
     const double alpha = before > 0 ? (before * image[4 * i + 3] + sums.opacity) / all : sums.opacity / all;
     for (int channel = 0; channel < 3; ++channel) {
         image[4 * i + static_cast<std::size_t>(channel)] = static_cast<float>(radiance[channel]);
     }
     image[4 * i + 3] = static_cast<float>(alpha);
-    // The new rays outnumber the old ones.
-    state = {Rgb(sums.variance()), level};
+    // Of all rays: the means of the variances, and of the means' squared distances from the common one.
+    const double old_share = before / all;
+    const Vec3d variance = old_share * Vec3d(state.variance) +
+                           (1 - old_share) * (sums.variance() + sums.shadow_variance()) +
+                           old_share * (1 - old_share) * difference * difference;
+    state = {Rgb(variance), level, state.obstructed || sums.obstructed};
 }
 
 void Refinement::set_mean(std::span<const float> image) {
@@ -57,64 +86,103 @@ void Refinement::set_mean(std::span<const float> image) {
     least_square_ = 0.01 * average * average;
 }
 
-std::vector<RefinementGroup> Refinement::next_round(std::span<const float> image) const {
+std::vector<RefinementGroup> Refinement::next_round(std::span<const float> image, int threads) {
+    set_mean(image);
+    std::vector<Row> rows(static_cast<std::size_t>(height_));
+    parallel_for(rows.size(), threads, [&](std::size_t row) { rows[row] = next_of(static_cast<int>(row), image); });
     std::vector<RefinementGroup> groups;
-    for (int from = 0; from < most_level_; ++from) {
-        for (int to = from + 1; to <= most_level_; ++to) {
-            groups.push_back({from, to, {}});
+    double errors = 0;
+    rays_left_ = 0;
+    for (const Row& row : rows) {
+        errors += row.errors;
+        rays_left_ += row.rays_left;
+        for (const RefinementGroup& part : row.groups) {
+            RefinementGroup& group = group_of(part.from, part.to, part.calm, groups);
+            group.rays = samples(part.to) - kept_samples(part.from);
+            group.pixels.insert(group.pixels.end(), part.pixels.begin(), part.pixels.end());
+            group.gains.insert(group.gains.end(), part.gains.begin(), part.gains.end());
         }
     }
-    for (int row = 0; row < height_; ++row) {
-        for (int column = 0; column < width_; ++column) {
-            const int from = states_[index(column, row)].level;
-            const int to = wanted_level(column, row, image);
-            const auto group = std::find_if(groups.begin(), groups.end(),
-                                            [&](const RefinementGroup& g) { return g.from == from && g.to == to; });
-            if (group != groups.end()) {
-                group->pixels.push_back({column, row});
-            }
-        }
-    }
-    std::erase_if(groups, [](const RefinementGroup& group) { return group.pixels.empty(); });
+    std::sort(groups.begin(), groups.end(), [](const RefinementGroup& a, const RefinementGroup& b) {
+        return std::tuple(a.from, a.to, b.calm) < std::tuple(b.from, b.to, a.calm);
+    });
+    noise_ = std::sqrt(errors / static_cast<double>(states_.size()));
     return groups;
 }
 
+Refinement::Row Refinement::next_of(int row, std::span<const float> image) const {
+    Row found;
+    for (int column = 0; column < width_; ++column) {
+        const int from = states_[index(column, row)].level;
+        const Wanted level = wanted(column, row, image);
+        found.errors += level.error;
+        found.rays_left += level.next > from ? samples(std::max(level.enough, level.next)) - kept_samples(from) : 0;
+        if (level.next > from) {
+            RefinementGroup& group = group_of(from, level.next, is_calm(column, row), found.groups);
+            group.pixels.push_back({column, row});
+            group.gains.push_back(level.error + level.supposed_error);
+        }
+    }
+    return found;
+}
+
+double Refinement::squared_error(double variance, int level) const {
+    const double count = samples(level);
+    return variance / (count * std::sqrt(count));
+}
+
 int Refinement::sufficient_level(double variance) const {
-    int level = 0;
-    while (level < most_level_ && variance * std::pow(samples(level), -1.5) > kGoodEnough * kGoodEnough) {
+    int level = least_level_;
+    while (level < most_level_ && (good_enough_ == 0 || squared_error(variance, level) > good_enough_)) {
         ++level;
     }
     return level;
 }
 
-int Refinement::wanted_level(int column, int row, std::span<const float> image) const {
+/// One level at a time: each shows better where more are needed.
+Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float> image) const {
     const std::size_t i = index(column, row);
     const State& state = states_[i];
     const Vec3d value = color(image, i);
     const Vec3d scale = value * value + least_square_;
     const double alpha = image[4 * i + 3];
     double variance = 4 * kEdgeVariance * alpha * (1 - alpha);
-    if (!(least_square_ > 0)) {  // a black picture
-        return std::max<int>(sufficient_level(variance), state.level);
+    double supposed = 0;
+    if (least_square_ > 0) {  // or else the picture is black
+        variance = std::max(variance, mean(Vec3d(state.variance) / scale));
     }
-    variance = std::max(variance, mean(Vec3d(state.variance) / scale));
-    const int own = sufficient_level(variance);
-    // What is only supposed is worth one step at a time, and the less likely the more rays have missed it.
-    const double supposed = std::pow(samples(state.level), -1.5) * std::pow(16.0, -state.level) * kNeighbourShare *
-                            neighbours_variance(column, row, scale, image);
-    const int next = std::min(most_level_, state.level + (supposed > kGoodEnough * kGoodEnough ? 1 : 0));
-    return std::max({own, next, static_cast<int>(state.level)});
+    const int enough = std::max<int>(sufficient_level(variance), state.level);
+    // One ray knows nothing of its pixel, and what is known to need more need not be supposed to.
+    if ((enough == state.level || state.level == 0) && good_enough_ > 0 && least_square_ > 0) {
+        // The less likely the more rays have missed it.
+        const double missed = std::max(samples(state.level) / kMissingRays, 1.0);
+        supposed = squared_error(neighbours_variance(column, row, scale, image), state.level) * kNeighbourShare /
+                   (missed * missed);
+    }
+    const int next = enough > state.level || supposed > good_enough_ ? state.level + 1 : enough;
+    return {enough, std::min(next, most_level_), squared_error(variance, state.level), supposed};
+}
+
+bool Refinement::is_calm(int column, int row) const {
+    bool calm = true;
+    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, height_ - 1); ++y) {
+        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, width_ - 1); ++x) {
+            calm = calm && !states_[index(x, y)].obstructed;
+        }
+    }
+    return calm;
 }
 
 double Refinement::neighbours_variance(int column, int row, const Vec3d& scale, std::span<const float> image) const {
     const Vec3d value = color(image, index(column, row));
+    const Vec3d over_scale = 1.0 / scale;
     double largest = 0;
     for (int y = std::max(row - 1, 0); y <= std::min(row + 1, height_ - 1); ++y) {
         for (int x = std::max(column - 1, 0); x <= std::min(column + 1, width_ - 1); ++x) {
             const std::size_t i = index(x, y);
             const Vec3d difference = color(image, i) - value;
             const Vec3d variance = glm::max(Vec3d(states_[i].variance), kEdgeVariance * difference * difference);
-            largest = std::max(largest, mean(variance / scale));
+            largest = std::max(largest, mean(variance * over_scale));
         }
     }
     return largest;

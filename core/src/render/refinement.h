@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Which pixels take more camera rays: where those that they have taken, or those of a neighbour, disagree so much that
-// the mean may be wrong.
+// Which pixels take more camera rays: where those that they have taken, their shadow rays or those of a neighbour
+// disagree so much that the mean may be wrong.
 //
 // The mean of n rays spread evenly over a pixel of variance v is wrong by about √v n^-3/4: an edge crosses some √n of
-// n cells, and errs in each by a random part of it. What counts is this error relative to √(r² + 0.01 r̄²), as in
-// relMSE, r the pixel's own value and r̄ the picture's mean after the first pass; and that of alpha. A pixel whose rays
-// agree may still hold something thin or bright that a neighbour has seen.
+// n cells, and errs in each by a random part of it. The same holds of the edge of a shadow on a light, and all shadow
+// rays of a pixel. What counts is this error relative to √(r² + 0.01 r̄²), as in relMSE, r the pixel's own value and r̄
+// the picture's mean; and that of alpha. A pixel whose rays agree may still hold something thin or bright that a
+// neighbour has seen.
 #pragma once
 
 #include <cstdint>
@@ -17,42 +18,73 @@
 
 namespace shlight {
 
-/// Pixels that go from one level to a higher one; one of level l has base_samples · 4^l rays, one of -1 none.
+/// Pixels that go from one level to a higher one; one of level l has first_samples · 4^l rays, one of -1 none.
 struct RefinementGroup {
     int from, to;
-    std::vector<Pixel> pixels;  // in rows
+    bool calm;    // see SampleRange
+    double rays;  // of each
+    std::vector<Pixel> pixels;
+    std::vector<double> gains;  // of each: what more rays may take from its squared error
 };
 
 class Refinement {
   public:
-    Refinement(int width, int height, std::uint32_t base_samples, int most_level);
+    Refinement(int width, int height, const PixelSampling& sampling);
 
     /// Merges the rays that take a pixel to a level into its mean, alpha and variance. Other pixels may be merged at
     /// the same time.
     void merge(const Pixel& pixel, int level, const PixelSums& sums, std::span<float> image);
-    /// What is compared with the picture as it now is.
-    void set_mean(std::span<const float> image);
-    /// What must be rendered next; empty: nothing.
-    std::vector<RefinementGroup> next_round(std::span<const float> image) const;
-    std::uint32_t samples(int level) const { return level < 0 ? 0 : base_samples_ << (2 * level); }
+    /// What needs more rays, the fewest first; empty: nothing. threads: as RenderSettings.
+    std::vector<RefinementGroup> next_round(std::span<const float> image, int threads);
+    /// Of the picture when next_round was called: see RenderReport::noise.
+    double noise() const { return noise_; }
+    /// Likewise: camera rays that are left until every pixel has enough, as far as that is known.
+    double rays_left() const { return rays_left_; }
+    std::uint32_t samples(int level) const { return level < 0 ? 0 : first_samples_ << (2 * level); }
+    /// Whether the first level is one ray through the middle, in whose place later ones come: of sets of four and more
+    /// that are spread evenly none has a point in the middle, where one alone must be.
+    bool has_preview() const { return first_samples_ == 1 && most_level_ > 0; }
+    /// As samples, of those that later levels go on with.
+    std::uint32_t kept_samples(int level) const { return level == 0 && has_preview() ? 0 : samples(level); }
+    int most_level() const { return most_level_; }
 
   private:
     struct State {
-        Rgb variance{0};
+        Rgb variance{0};  // of one ray, its shadow rays included
         int level = -1;
+        bool obstructed = false;
+    };
+    /// The level that is known to do, and the next one, which may be higher for what is only supposed.
+    struct Wanted {
+        int enough, next;
+        double error;  // squared
+        double supposed_error;
     };
 
     std::size_t index(int column, int row) const {
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
     }
-    int wanted_level(int column, int row, std::span<const float> image) const;
+    /// What a row adds to the next round.
+    struct Row {
+        std::vector<RefinementGroup> groups;
+        double errors = 0, rays_left = 0;
+    };
+
+    Row next_of(int row, std::span<const float> image) const;
+    void set_mean(std::span<const float> image);
+    Wanted wanted(int column, int row, std::span<const float> image) const;
+    double squared_error(double variance, int level) const;
     int sufficient_level(double variance) const;
+    /// Whether shadow rays from the pixel and those around it have met nothing.
+    bool is_calm(int column, int row) const;
     double neighbours_variance(int column, int row, const Vec3d& scale, std::span<const float> image) const;
 
     int width_, height_;
-    std::uint32_t base_samples_;
-    int most_level_;
+    std::uint32_t first_samples_;
+    int least_level_ = 0, most_level_ = 0;
+    double good_enough_;       // squared
     double least_square_ = 0;  // 0.01 r̄²
+    double noise_ = 0, rays_left_ = 0;
     std::vector<State> states_;
 };
 

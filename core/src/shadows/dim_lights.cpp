@@ -3,119 +3,185 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
+#include <variant>
 
-#include "base/even_steps.h"
-#include "shlight/sampling.h"
+#include "shadows/ray_start.h"
 
 namespace shlight {
 namespace {
 
-/// Beside the seed of a pixel and light.
-constexpr std::uint32_t kStartSeed = 0xFFFFFFFFU;
+/// Rays that are traced together, at least.
+constexpr std::size_t kQuestionsAtOnce = 512;
 
-/// Rays of a hit where one ray each has met nothing that a lobe reflects: of a light that the horizon cuts, or that a
-/// narrow lobe reflects a part of.
-constexpr std::uint32_t kMoreRays = 16;
+struct FoundMember {
+    std::size_t number;  ///< of the member
+    double into;         ///< how far into it, 0 … 1
+    double length;       ///< of it
+};
+
+/// Where on a line of members a share of its length lies.
+template <class Members>
+FoundMember find(const Members& members, double share) {
+    const double place = share * members.back().up_to;
+    const auto found = std::partition_point(members.begin(), members.end() - 1,
+                                            [&](const auto& member) { return member.up_to <= place; });
+    const double before = found == members.begin() ? 0.0 : (found - 1)->up_to;
+    const double length = found->up_to - before;
+    return {static_cast<std::size_t>(found - members.begin()), std::clamp((place - before) / length, 0.0, 1.0), length};
+}
 
 }  // namespace
 
-void DimLights::start(const ShadingPoints& points) {
-    points_ = &points;
-    radiance_.assign(points.size(), Rgb(0));
-}
-
-void DimLights::finish(Hits& hits) const {
-    for (std::size_t hit = 0; hit < hits.size(); ++hit) {
-        hits.radiance[hit] += radiance_[points_->of_hit[hit]];
+void DimLights::start(std::span<const Light* const> lights, const DirectLight& unshadowed, const SampleRange& samples) {
+    lights_ = lights;
+    unshadowed_ = &unshadowed;
+    samples_ = samples;
+    may_share_.clear();
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        // Shares are those of light that adds up; and rays to a mesh take another way.
+        const bool adds = glm::all(glm::greaterThanEqual(unshadowed.light(i).strength, Rgb(0)));
+        const bool is_mesh = std::holds_alternative<MeshLight>(*lights[i]);
+        may_share_.push_back(adds && !is_mesh && traits_of(*lights[i]).casts_shadows ? 1 : 0);
     }
 }
 
-void DimLights::add(const Light& light, const LightRadiance& unshadowed, std::size_t pixel, float brightness,
-                    const RayPhase& phase, std::size_t questions, std::uint32_t seed, const Hits& hits,
-                    ShadowRays& rays) {
-    const std::size_t begin = points_->pixel_begin[pixel];
-    const std::size_t end = points_->pixel_begin[pixel + 1];
-    for (std::size_t first = begin; first < end; ++first) {
-        const auto material = points_->material.begin();
-        const auto here = material + static_cast<std::ptrdiff_t>(first);
-        if (std::find(material + static_cast<std::ptrdiff_t>(begin), here, *here) != here) {
+bool DimLights::is_dim(std::size_t light, std::size_t pixel) const {
+    return may_share_[light] != 0 && samples_.shadow_rays > 0 &&
+           rays_by_share(brightness_->of_pixel(light, pixel), brightness_->all(pixel), samples_) < 1;
+}
+
+void DimLights::add(const ShadingPoints& points, std::uint32_t number, std::span<const std::uint32_t> pixel_seeds,
+                    Hits& hits) {
+    points_ = &points;
+    radiance_.resize(points.size());
+    asked_.clear();
+    rays_.start();
+    for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
+        const float own = gather(pixel);
+        if (dim_.empty()) {
             continue;
         }
-        const float own = gather(unshadowed, first, end);
-        if (own > 0) {
-            const float part = std::max(std::ceil(own / brightness * static_cast<float>(questions)), 1.0F);
-            draw(light, unshadowed, own, static_cast<std::size_t>(part), seed, hits);
-            for (const std::uint32_t count : {1U, kMoreRays}) {
-                rays.trace(light, hits, asked_, {true, phase.first_point, phase.first_sample, count}, seed);
-                if (find_shares(hits, rays)) {
-                    break;
-                }
-            }
-            shade(unshadowed);
+        const auto hit_count = static_cast<double>(hits.pixel_begin[pixel + 1] - hits.pixel_begin[pixel]);
+        const double rays = rays_by_share(own, brightness_->all(pixel), samples_) * hit_count;
+        ask(pixel, static_cast<std::size_t>(std::ceil(rays)), hash(hash(pixel_seeds[pixel], samples_.first), number),
+            hits);
+        if (rays_.count() >= kQuestionsAtOnce) {
+            finish(hits);
         }
     }
+    finish(hits);
 }
 
-float DimLights::gather(const LightRadiance& unshadowed, std::size_t first, std::size_t last) {
-    members_.clear();
+float DimLights::gather(std::size_t pixel) {
+    dim_.clear();
     float sum = 0;
-    for (std::size_t point = first; point < last; ++point) {
-        if (points_->material[point] == points_->material[first]) {
-            members_.push_back({point, brightness_->of_point(unshadowed, point)});
-            sum += members_.back().brightness;
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+        const float own = brightness_->of_pixel(i, pixel);
+        if (own > 0 && is_dim(i, pixel)) {
+            sum += own;
+            dim_.push_back({i, sum});
         }
     }
     return sum;
 }
 
-void DimLights::draw(const Light& light, const LightRadiance& unshadowed, float brightness, std::size_t questions,
-                     std::uint32_t seed, const Hits& hits) {
+void DimLights::ask(std::size_t pixel, std::size_t questions, std::uint32_t seed, const Hits& hits) {
+    const std::size_t before = rays_.count();
+    const SobolSequence places(seed);
+    for (std::size_t i = 0; i < questions; ++i) {
+        const glm::dvec2 point = lattice_point(i, questions, seed);
+        const FoundMember drawn = find(dim_, point.x);
+        const std::size_t light = dim_[drawn.number].index;
+        const LightRadiance unshadowed = unshadowed_->light(light);
+        gather_points(pixel, unshadowed);
+        const FoundMember at = find(dim_points_, point.y);
+        const auto own_hits = points_->hits_of(dim_points_[at.number].index);
+        const auto number = static_cast<std::size_t>(at.into * static_cast<double>(own_hits.size()));
+        const std::size_t hit = own_hits[std::min(number, own_hits.size() - 1)];
+        ask_hit(*lights_[light], unshadowed, hit, places.point(static_cast<std::uint32_t>(i)),
+                at.length / static_cast<double>(own_hits.size()), hits);
+    }
+    asked_.push_back({pixel, before, rays_.count()});
+    for (std::size_t point = points_->pixel_begin[pixel]; point < points_->pixel_begin[pixel + 1]; ++point) {
+        radiance_[point] = Rgb(0);
+        for (const Member& member : dim_) {
+            radiance_[point] += unblocked(point, member.index);
+        }
+    }
+}
+
+void DimLights::gather_points(std::size_t pixel, const LightRadiance& unshadowed) {
+    dim_points_.clear();
+    float sum = 0;
+    for (std::size_t point = points_->pixel_begin[pixel]; point < points_->pixel_begin[pixel + 1]; ++point) {
+        const float own = brightness_->of_point(unshadowed, point);
+        if (own > 0) {
+            sum += own;
+            dim_points_.push_back({point, sum});
+        }
+    }
+}
+
+void DimLights::ask_hit(const Light& light, const LightRadiance& unshadowed, std::size_t hit, const glm::dvec2& place,
+                        double density, const Hits& hits) {
+    if (!seen_.look(light, hits.frame[hit], hits.error[hit])) {
+        return;
+    }
+    sampler_.reset(seen_);
+    const RayStart start(hits.frame[hit], hits.shadow_origin[hit], clearance(light, hits.frame[hit]));
+    const auto ask = [&](const Rgb& value, const Vec3d& direction, double distance) {
+        if (value != Rgb(0)) {
+            rays_.ask(value, start.towards(direction, distance));
+        }
+    };
+    const LightSample sample = sampler_.sample(place);
+    const Vec3d view = hits.view(hit);
+    const double weight = sample.weight * seen_.profile().factor(sample.direction);
+    const Rgb strength = unshadowed.strength / static_cast<float>(density);
+    const MaterialLobes& material = materials_[hits.material[hit]];
+    Rgb value(0);
+    for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
+        const std::size_t i = lobe * points_->size() + points_->of_hit[hit];
+        const Rgb reflected = strength * glm::abs(hits.weight(hit, lobe));
+        const LobeShape shape = material.shape(lobe, hits.widths(hit)[lobe]);
+        if (!(unshadowed.values[i] > 0)) {
+            continue;
+        }
+        if (is_mirror(shape)) {
+            const std::optional<double> distance = sampler_.meets(mirrored(view));
+            ask(reflected * unshadowed.values[i], mirrored(view), distance.value_or(sample.distance));
+        } else {
+            value += reflected * static_cast<float>(weight * lobe_value(shape, sample.direction, view));
+        }
+    }
+    ask(value, sample.direction, sample.distance);
+}
+
+Rgb DimLights::unblocked(std::size_t point, std::size_t light) const {
+    const LightRadiance unshadowed = unshadowed_->light(light);
+    Rgb sum(0);
+    for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+        sum += points_->weight(point, lobe) * unshadowed[lobe * points_->size() + point];
+    }
+    return sum;
+}
+
+void DimLights::finish(Hits& hits) {
+    rays_.trace();
+    for (const Asked& asked : asked_) {
+        const SharedRays::Share share = rays_.share(asked.begin, asked.end);
+        Rgb sum(0);
+        for (std::size_t hit = hits.pixel_begin[asked.pixel]; hit < hits.pixel_begin[asked.pixel + 1]; ++hit) {
+            const Rgb& radiance = radiance_[points_->of_hit[hit]];
+            hits.radiance[hit] += share.seen * radiance;
+            sum += radiance;
+        }
+        hits.add_shared(asked.pixel, share.variance * sum * sum, share.obstructed);
+    }
     asked_.clear();
-    density_.clear();
-    EvenSteps steps(brightness, questions, hash(seed, kStartSeed));
-    for (const Member& member : members_) {
-        const std::span<const std::size_t> own_hits = points_->hits_of(member.point);
-        steps.within(member.brightness, own_hits.size(), [&](std::size_t k) {
-            const std::size_t hit = own_hits[k];
-            if (!asked_.add(light, hits, hit)) {
-                return;
-            }
-            density_.push_back(double{member.brightness} / static_cast<double>(own_hits.size()));
-            for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-                asked_.shines.push_back(unshadowed.values[lobe * points_->size() + member.point] > 0 ? 1 : 0);
-            }
-        });
-    }
-}
-
-bool DimLights::find_shares(const Hits& hits, const ShadowRays& rays) {
-    shares_.assign(lobe_stride_, Rgb(0));
-    bool complete = true;
-    for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-        Vec3d seen(0);
-        Vec3d all(0);
-        bool any = false;
-        for (std::size_t i = 0; i < asked_.hit.size(); ++i) {
-            if (asked_.shines[i * lobe_stride_ + lobe] != 0) {
-                const RaySums sums = rays.sum(hits, asked_, i, lobe);
-                seen += sums.seen / density_[i];
-                all += sums.all / density_[i];
-                any = true;
-            }
-        }
-        complete = complete && (all != Vec3d(0) || !any);
-        shares_[lobe] = Rgb(quotient(seen, all));
-    }
-    return complete;
-}
-
-void DimLights::shade(const LightRadiance& unshadowed) {
-    for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-        for (const Member& member : members_) {
-            radiance_[member.point] +=
-                shares_[lobe] * points_->weight(member.point, lobe) * unshadowed[lobe * points_->size() + member.point];
-        }
-    }
+    rays_.start();
 }
 
 }  // namespace shlight

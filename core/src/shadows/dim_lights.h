@@ -1,64 +1,82 @@
 // SPDX-License-Identifier: MIT
 //
-// Shadows of lights with extent that add little to a pixel. A scene may have thousands of them.
-//
-// Few hits of the pixel are asked, by one ray each, and all are shaded with the share of the light that these see. They
-// are drawn in proportion to what hits reflect of the light; hits of one material answer for each other only.
+// Shadows of lights with extent that add too little to a pixel for rays of their own: they share some, each in
+// proportion to what it adds. A scene may have thousands of them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "lights/light_sampling.h"
+#include "lights/seen_light.h"
+#include "lobes/material_lobes.h"
+#include "shading/direct_light.h"
 #include "shading/light_brightness.h"
 #include "shading/shading_points.h"
-#include "shadows/shadow_rays.h"
+#include "shadows/shadow_policy.h"
+#include "shadows/shared_rays.h"
 #include "shlight/light.h"
+#include "shlight/sampling.h"
 #include "tracing/hits.h"
+#include "tracing/shadow_tracer.h"
 
 namespace shlight {
 
 /// Keeps its memory from light to light; one per thread.
 class DimLights {
   public:
-    /// Refers to the brightness, which knows the same points.
-    DimLights(const LightBrightness& brightness, std::size_t lobe_stride)
-        : brightness_(&brightness), lobe_stride_(lobe_stride) {}
+    /// Refers to the brightness.
+    DimLights(const ShadowTracer& tracer, const LightBrightness& brightness, std::span<const MaterialLobes> materials,
+              std::size_t lobe_stride)
+        : brightness_(&brightness), materials_(materials), lobe_stride_(lobe_stride), rays_(tracer) {}
 
-    /// To be called before the first light of other points, which stay as they are until finish().
-    void start(const ShadingPoints& points);
-    /// Adds a light to the hits of a pixel. unshadowed: see DirectLight::light; brightness: of the light over the
-    /// pixel; phase: the batch's, of any number of rays; questions: about how many hits to ask; seed: of the pixel and
-    /// light.
-    void add(const Light& light, const LightRadiance& unshadowed, std::size_t pixel, float brightness,
-             const RayPhase& phase, std::size_t questions, std::uint32_t seed, const Hits& hits, ShadowRays& rays);
-    /// Adds all that was added to the hits' radiance.
-    void finish(Hits& hits) const;
+    /// To be called before the first of these lights, which the brightness expects: they are referred to by number.
+    void start(std::span<const Light* const> lights, const DirectLight& unshadowed, const SampleRange& samples);
+    bool is_dim(std::size_t light, std::size_t pixel) const;
+    /// Adds the dim ones to the hits' radiance. points: of the hits; number, pixel_seeds: tell rays from others.
+    void add(const ShadingPoints& points, std::uint32_t number, std::span<const std::uint32_t> pixel_seeds, Hits& hits);
+    std::uint64_t rays_traced() const { return rays_.rays_traced(); }
 
   private:
+    /// A light of a pixel, or a point of it under a light: on a line as long as all of them are bright.
     struct Member {
-        std::size_t point;
-        float brightness;
+        std::size_t index;
+        float up_to;
+    };
+    struct Asked {
+        std::size_t pixel, begin, end;  // numbers of questions
     };
 
-    /// Points of a pixel from the first on that have its material: their brightness.
-    float gather(const LightRadiance& unshadowed, std::size_t first, std::size_t last);
-    /// Draws hits of the members: asked_ are those that see the light.
-    void draw(const Light& light, const LightRadiance& unshadowed, float brightness, std::size_t questions,
-              std::uint32_t seed, const Hits& hits);
-    /// Of the light that the asked hits see, by lobe; false if rays tell nothing of some lobe.
-    bool find_shares(const Hits& hits, const ShadowRays& rays);
-    void shade(const LightRadiance& unshadowed);
+    /// The dim lights of a pixel; returns their brightness.
+    float gather(std::size_t pixel);
+    /// Asks for the gathered lights.
+    void ask(std::size_t pixel, std::size_t questions, std::uint32_t seed, const Hits& hits);
+    /// How bright points of a pixel are under a light.
+    void gather_points(std::size_t pixel, const LightRadiance& unshadowed);
+    /// density: how often it is asked for a unit of brightness.
+    void ask_hit(const Light& light, const LightRadiance& unshadowed, std::size_t hit, const glm::dvec2& place,
+                 double density, const Hits& hits);
+    /// Adds the lights to the pixels that have asked for them.
+    void finish(Hits& hits);
+    Rgb unblocked(std::size_t point, std::size_t light) const;
 
     const LightBrightness* brightness_;
+    std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
-    const ShadingPoints* points_ = nullptr;
-    std::vector<Rgb> radiance_;  // by point, of each of its hits
-    // Of a light, a pixel and a material:
-    std::vector<Member> members_;
-    LitHits asked_;
-    std::vector<Rgb> shares_;      // by lobe
-    std::vector<double> density_;  // of asked_: brightness of the hit
+    SharedRays rays_;
+    std::span<const Light* const> lights_;  // of the call of start()
+    const DirectLight* unshadowed_ = nullptr;
+    SampleRange samples_{};
+    std::vector<std::uint8_t> may_share_;    // by light
+    const ShadingPoints* points_ = nullptr;  // of the call of add()
+    std::vector<Asked> asked_;
+    std::vector<Rgb> radiance_;       // by shading point, of the dim lights if nothing blocks
+    std::vector<Member> dim_;         // lights of a pixel
+    std::vector<Member> dim_points_;  // of a pixel, under one of them
+    SeenLight seen_;
+    LightSampler sampler_;
 };
 
 }  // namespace shlight

@@ -27,7 +27,8 @@ class RayStart {
           x_(frame.x),
           y_(frame.y),
           z_(frame.z),
-          offset_(frame.to_local(frame.origin - Vec3d(origin_) + target_offset)) {}
+          offset_(frame.origin - Vec3d(origin_) + target_offset),
+          local_offset_(frame.to_local(frame.origin - Vec3d(origin_) + target_offset)) {}
 
     /// To a point in the shading frame, given by a unit direction and a distance.
     /// Infinitely far: without an end.
@@ -35,8 +36,21 @@ class RayStart {
         if (std::isinf(distance)) {
             return along(local_direction);
         }
-        const Vec3f way(distance * local_direction + offset_);
+        const Vec3f way(distance * local_direction + local_offset_);
         return {origin_, 0.0F, way.x * x_ + way.y * y_ + way.z * z_, kRayEnd};
+    }
+
+    /// To the end of a way from the hit, along the axes of the world. Each number is written once: GCC makes a copy of
+    /// a Ray wait for the stores before it.
+    void to_end_of(const Vec3f& way, Ray& ray) const {
+        ray.origin.x = origin_.x;
+        ray.origin.y = origin_.y;
+        ray.origin.z = origin_.z;
+        ray.t_min = 0;
+        ray.direction.x = way.x + offset_.x;
+        ray.direction.y = way.y + offset_.y;
+        ray.direction.z = way.z + offset_.z;
+        ray.t_max = kRayEnd;
     }
 
     /// Without an end.
@@ -46,8 +60,8 @@ class RayStart {
     }
 
   private:
-    Vec3f origin_, x_, y_, z_;
-    Vec3d offset_;
+    Vec3f origin_, x_, y_, z_, offset_;
+    Vec3d local_offset_;
 };
 
 }  // namespace shlight

@@ -2,8 +2,8 @@
 //
 // How many shadow rays a light gets, of whatever kind it is.
 //
-// A light that adds little to a pixel is never dropped, but asked for at few of the pixel's hits. All other rays go in
-// two phases, and where those of the first agree on a pixel, the second is spared.
+// Lights get rays in proportion to what they add to a pixel, and those that would get less than one share some. The
+// rays of each go in two phases, and where those of the first agree on a pixel, the second is spared.
 #pragma once
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 
 namespace shlight {
 
-/// A light that adds less than this to a pixel is asked for at fewer of its hits: what its visibility is then off by is
-/// no more than that of a light of this share, and of many such lights the errors go both ways. The variance of their
-/// sum, over its square, is below this share / (4 · hits), however many they are: each adds its own share times this
-/// share / hits, times p (1 - p) ≤ 1/4 if it is seen from p of the pixel.
+/// A source without extent that adds less than this to a pixel is asked for at fewer of its hits: what its visibility
+/// is then off by is no more than that of a light of this share, and of many such lights the errors go both ways. The
+/// variance of their sum, over its square, is below this share / (4 · hits), however many they are: each adds its own
+/// share times this share / hits, times p (1 - p) ≤ 1/4 if it is seen from p of the pixel.
 inline constexpr float kDimShare = 0.01F;
 
 /// Hits at which to ask: 1 … hits. own: brightness of the light over the pixel; all: that of all lights.
@@ -29,7 +29,18 @@ inline std::size_t hits_to_ask(float own, float all, std::size_t hits) {
 struct SampleRange {
     std::uint32_t first, count;
     std::uint32_t shadow_rays;  ///< per camera ray and light, at most
+    std::uint32_t first_point;  ///< on the light; as many are theirs as they may have shadow rays
+    bool calm = false;          ///< rays from here and near have met nothing so far: few will do, if they do not either
 };
+
+/// If a pixel's light came from n equal lights, each would get this many times the n-th part of the shadow rays.
+inline constexpr float kRaysByShare = 4;
+
+/// Of each camera ray for some lights together, or for one, which has no use for more than all. The variance of what
+/// comes of n lights that share rays in proportion to what they add is that of one light with all the rays, or less.
+inline float rays_by_share(float own, float all, const SampleRange& samples) {
+    return kRaysByShare * static_cast<float>(samples.calm ? 1 : samples.shadow_rays) * own / all;
+}
 
 /// Part of a light's shadow rays: which of the pixel's points they take.
 struct RayPhase {
@@ -43,12 +54,12 @@ struct RayPhase {
 /// of a penumbra's rim, or of what stands in the way.
 inline constexpr std::uint32_t kLeastFirstPoints = 16;
 
-/// A quarter of the rays, or more where that would be too few. most_rays: the largest SampleRange::shadow_rays of the
-/// picture; no two ranges of samples share a point.
-inline RayPhase first_phase(const SampleRange& samples, std::uint32_t most_rays) {
+/// A quarter of the rays, or more where that would be too few.
+inline RayPhase first_phase(const SampleRange& samples) {
     const std::uint32_t least = (kLeastFirstPoints + samples.count - 1) / samples.count;
-    const std::uint32_t rays = std::min(samples.shadow_rays, std::max((samples.shadow_rays + 3) / 4, least));
-    return {true, samples.first * most_rays, samples.first, rays};
+    const std::uint32_t quarter = std::max((samples.shadow_rays + 3) / 4, least);
+    const std::uint32_t rays = std::min(samples.shadow_rays, samples.calm ? 1 : quarter);
+    return {true, samples.first_point, samples.first, rays};
 }
 
 /// The rays that the first phase left.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Shadow rays from the hits of a pixel to one light: spread over the light, and spread as each glossy lobe reflects.
+// Shadow rays from hits to one light: spread over the light, and spread as each glossy lobe reflects. Those of many
+// pixels are drawn before they are traced, so that Embree's packets are full and alike.
 //
 // Both sets serve a glossy lobe, weighted by the balance heuristic (Veach & Guibas 1995): a sample of direction ω that
 // either way could have drawn counts f·cos / (n (p_light + p_lobe)). A lobe much wider than the light lives on the
@@ -9,24 +10,29 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "base/scratch.h"
 #include "lights/light_sampling.h"
 #include "lights/seen_light.h"
+#include "lights/whole_rectangle.h"
 #include "lobes/material_lobes.h"
 #include "shadows/ray_sums.h"
 #include "shadows/shadow_policy.h"
 #include "shlight/light.h"
+#include "shlight/sampling.h"
 #include "tracing/hits.h"
 #include "tracing/shadow_tracer.h"
 
 namespace shlight {
 
-/// The hits of a pixel that a light reaches if nothing is between.
+/// Hits that a light reaches if nothing is between.
 struct LitHits {
     void clear() {
         hit.clear();
+        whole.clear();
         shines.clear();
     }
     /// Adds a hit, unless it does not see the light itself: it may see less of it than the point that it shares.
@@ -34,16 +40,26 @@ struct LitHits {
         if (seen.size() == hit.size()) {
             seen.emplace_back();
         }
-        if (!seen[hit.size()].look(light, hits.frame[which], hits.error[which])) {
+        const std::optional<WholeRectangle> rectangle =
+            WholeRectangle::see(light, hits.frame[which], hits.error[which]);
+        if (!rectangle && !seen[hit.size()].look(light, hits.frame[which], hits.error[which])) {
             return false;
         }
         hit.push_back(which);
+        whole.push_back(rectangle);
         return true;
     }
 
     std::vector<std::size_t> hit;
-    std::vector<SeenLight> seen;       ///< by each of them; may be longer
+    std::vector<std::optional<WholeRectangle>> whole;  ///< as each of them sees it, or else …
+    std::vector<SeenLight> seen;                       ///< … the light; may be longer
     std::vector<std::uint8_t> shines;  ///< hit.size() × lobe_stride: whether the lobe reflects any of it
+};
+
+/// Those of LitHits that belong to a pixel: begin … end - 1.
+struct LitRange {
+    std::size_t begin, end;
+    std::size_t size() const { return end - begin; }
 };
 
 /// Keeps its memory from light to light; one per thread.
@@ -51,16 +67,20 @@ class ShadowRays {
   public:
     ShadowRays(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride);
 
-    /// seed: of the pixel and light, whose phases differ in nothing else.
-    void trace(const Light& light, const Hits& hits, const LitHits& lit, const RayPhase& phase, std::uint32_t seed);
+    /// Forgets all rays. hits and lit stay as they are until the next call.
+    void start(const Light& light, const Hits& hits, const LitHits& lit);
+    /// Draws the rays of a phase from a pixel's hits among lit. seed: of the pixel and light; the phases of a pixel
+    /// differ in nothing else.
+    void draw(const LitRange& pixel, const RayPhase& phase, std::uint32_t seed);
+    /// All that were drawn since the last call.
+    void trace();
 
-    /// Since the last first phase.
-    std::size_t count() const { return visible_.size(); }
-    std::size_t blocked_count() const;
-    /// Whether nothing takes light away from any of them.
-    bool all_free() const;
+    enum class Verdict { free, hidden, mixed };
+    /// What the rays of the first phase of a pixel say; free: nothing takes light away from any of them, or there is
+    /// none; hidden: nothing of it comes through.
+    Verdict verdict(const LitRange& pixel) const;
     /// Of all phases; lit_index: of LitHits.
-    RaySums sum(const Hits& hits, const LitHits& lit, std::size_t lit_index, std::size_t lobe) const;
+    RaySums sum(std::size_t lit_index, std::size_t lobe) const;
     std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
@@ -69,22 +89,38 @@ class ShadowRays {
         std::vector<std::size_t> lobes;          // of each set of rays one
         std::vector<std::uint32_t> set_of_lobe;  // index of lobes, kLightOnly for diffuse lobes
     };
-    /// The rays of one set of a hit.
+    /// The rays of one set of a hit in one phase.
     struct Run {
-        std::size_t begin, end;
+        std::size_t begin = 0, end = 0;
+    };
+    struct Drawn {
+        Vec3f way;  // from the hit, in the world; of any length
+        float weight;
+        bool hidden_layer;  // behind another layer of the light
     };
     class Drawing;
 
-    void draw(const Drawing& drawing, const LitHits& lit, std::size_t lit_index);
-    void follow(const MeshLight& light, std::size_t before);
-    /// The radiance of the faces that the rays of the phase would meet if nothing else were there.
-    void find_colors(const FaceRadiance& faces);
+    void draw_square(const LitRange& pixel, const RayPhase& phase);
+    void draw_hit(const Drawing& drawing, std::size_t lit_index);
+    void draw_light(const Drawing& drawing, std::size_t lit_index);
+    /// Makes the sampler that of a hit which sees the light as a whole rectangle.
+    void look(std::size_t lit_index);
     void draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set, const LobeShape& shape);
+    void follow(const MeshLight& light);
+    /// The radiance of the faces that the rays would meet if nothing else were there.
+    void find_colors(const FaceRadiance& faces);
     /// layers: of the light, one behind the other, each of which the unshadowed radiance counts.
     void push(const Drawing& drawing, const Vec3d& direction, double distance, double weight, int layers);
     /// Whose directions a set has at a hit.
     LobeShape set_shape(const Drawing& drawing, std::size_t set) const;
-    bool shines(const LitHits& lit, std::size_t lit_index, const Material& material, std::uint32_t set) const;
+    bool shines(std::size_t lit_index, const Material& material, std::uint32_t set) const;
+    Run& run(std::size_t lit_index, bool first_phase, std::size_t set) {
+        return runs_[(2 * lit_index + (first_phase ? 0 : 1)) * set_stride_ + set];
+    }
+    const Run& run(std::size_t lit_index, bool first_phase, std::size_t set) const {
+        return runs_[(2 * lit_index + (first_phase ? 0 : 1)) * set_stride_ + set];
+    }
+    double& solid_angle(std::size_t lit_index, std::size_t set) { return solid_angles_[lit_index * set_stride_ + set]; }
 
     const ShadowTracer* tracer_;
     std::size_t lobe_stride_;
@@ -92,16 +128,21 @@ class ShadowRays {
     std::span<const MaterialLobes> lobes_;
     std::size_t set_stride_ = 1;  // sets of rays of any hit: the light's, then one per shape
     LightSampler light_sampler_;
+    SeenLight seen_;  // by the sampler, if look() was called
     std::uint64_t rays_traced_ = 0;
 
-    std::vector<RayHit> met_;
-    std::vector<std::uint8_t> hidden_layers_;  // 1: behind another layer of the light
-    std::vector<Ray> rays_;                    // of the phase
-    std::vector<Vec3f> directions_;
-    std::vector<float> weights_;
-    std::vector<Rgb> colors_;  // factors of the weights; empty: 1
-    std::vector<Rgb> visible_;
-    std::vector<Run> runs_;             // phases × lit hits × set_stride
+    const Light* light_ = nullptr;
+    const Hits* hits_ = nullptr;
+    const LitHits* lit_ = nullptr;
+    std::vector<SobolSequence> sequences_;  // of a pixel, by set
+    std::vector<float> u_, v_;              // of a pixel and phase: points of the light's set from first_point_ on
+    std::uint32_t first_point_ = 0;
+    Scratch<Drawn> drawn_;
+    Scratch<Ray> rays_;                 // the last of those drawn, which are not traced yet
+    std::vector<RayHit> met_;           // by these
+    std::vector<Rgb> colors_;           // factors of the weights of those traced; empty: 1
+    std::vector<Rgb> visible_;          // of those traced
+    std::vector<Run> runs_;             // lit hits × 2 phases × set_stride
     std::vector<double> solid_angles_;  // lit hits × set_stride: the light's where the set's rays are drawn, else 0
 };
 

@@ -17,8 +17,8 @@ Vec3d kept_share(const RaySums& sums, const Vec3d& otherwise) {
 }  // namespace
 
 ShadowedEnvironment::ShadowedEnvironment(const ShadowTracer& tracer, const Environment& environment,
-                                         std::uint32_t most_rays, std::span<const MaterialLobes> materials)
-    : materials_(materials), most_rays_(most_rays), rays_(tracer, environment, materials) {}
+                                         std::span<const MaterialLobes> materials)
+    : materials_(materials), rays_(tracer, environment, materials) {}
 
 void ShadowedEnvironment::add(const EnvironmentShading& shading, const SampleRange& samples,
                               std::span<const DirectLightParts> unshadowed, std::size_t point_count,
@@ -30,7 +30,7 @@ void ShadowedEnvironment::add(const EnvironmentShading& shading, const SampleRan
     point_count_ = point_count;
     point_of_hit_ = point_of_hit;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
-        add_pixel(pixel_seeds[pixel], hits.pixel_begin[pixel], hits.pixel_begin[pixel + 1], hits);
+        add_pixel(pixel_seeds[pixel], pixel, hits);
     }
 }
 
@@ -40,10 +40,10 @@ DirectLightParts ShadowedEnvironment::unblocked(const Hits& hits, std::size_t hi
     return {weight * parts.smooth, weight * parts.spots};
 }
 
-void ShadowedEnvironment::add_pixel(std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits) {
+void ShadowedEnvironment::add_pixel(std::uint32_t seed, std::size_t pixel, Hits& hits) {
     lit_.clear();
     std::size_t lobe_count = 0;
-    for (std::size_t hit = begin; hit < end; ++hit) {
+    for (std::size_t hit = hits.pixel_begin[pixel]; hit < hits.pixel_begin[pixel + 1]; ++hit) {
         const std::size_t lobes = materials_[hits.material[hit]].lobes().size();
         if (lobes > 0) {
             lit_.push_back(hit);
@@ -54,6 +54,7 @@ void ShadowedEnvironment::add_pixel(std::uint32_t seed, std::size_t begin, std::
         return;
     }
     if (samples_.shadow_rays > 0 && find_obstacles(seed, hits)) {
+        hits.obstructed[pixel] = 1;
         deviation_.assign(lit_.size(), Rgb(0));
         for (std::size_t lobe = 0; lobe < lobe_count; ++lobe) {
             shade_lobe(lobe, hits);
@@ -73,7 +74,7 @@ void ShadowedEnvironment::add_pixel(std::uint32_t seed, std::size_t begin, std::
 
 /// Traces the pixel's rays; false: nothing is in their way.
 bool ShadowedEnvironment::find_obstacles(std::uint32_t seed, const Hits& hits) {
-    const RayPhase first = first_phase(samples_, most_rays_);
+    const RayPhase first = first_phase(samples_);
     rays_.trace(hits, lit_, first, seed);
     if (rays_.all_free()) {
         return false;

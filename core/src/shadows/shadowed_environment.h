@@ -22,8 +22,7 @@ namespace shlight {
 /// Keeps its memory from pixel to pixel; one per thread.
 class ShadowedEnvironment {
   public:
-    /// most_rays: per camera ray, of any call of add().
-    ShadowedEnvironment(const ShadowTracer& tracer, const Environment& environment, std::uint32_t most_rays,
+    ShadowedEnvironment(const ShadowTracer& tracer, const Environment& environment,
                         std::span<const MaterialLobes> materials);
 
     /// Adds the environment to the hits' radiance and noise. samples: what the hits are of; unshadowed: see
@@ -42,7 +41,7 @@ class ShadowedEnvironment {
         Vec3d kept_smooth, kept_spots;  // see kept_share
     };
 
-    void add_pixel(std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits);
+    void add_pixel(std::uint32_t seed, std::size_t pixel, Hits& hits);
     bool find_obstacles(std::uint32_t seed, const Hits& hits);
     const Lobe& lobe_of(std::size_t hit, std::size_t lobe, const Hits& hits) const {
         return materials_[hits.material[hit]].lobes()[lobe];
@@ -55,7 +54,6 @@ class ShadowedEnvironment {
     Rgb seen_part(const Rgb& unblocked, const RaySums& of_hit, const Vec3d& kept) const;
 
     std::span<const MaterialLobes> materials_;
-    std::uint32_t most_rays_;
     EnvironmentRays rays_;
 
     SampleRange samples_{};  // of the call of add()

@@ -2,49 +2,67 @@
 #include "shadows/shadowed_light.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "shlight/sampling.h"
 
 namespace shlight {
+namespace {
 
-ShadowedLight::ShadowedLight(const ShadowTracer& tracer, std::uint32_t most_rays,
-                             std::span<const MaterialLobes> materials, std::size_t lobe_stride)
+/// Hits whose rays are traced together: so few that all about them stays in the cache.
+constexpr std::size_t kHitsAtOnce = 128;
+
+}  // namespace
+
+ShadowedLight::ShadowedLight(const ShadowTracer& tracer, std::span<const MaterialLobes> materials,
+                             std::size_t lobe_stride)
     : materials_(materials),
       lobe_stride_(lobe_stride),
-      most_rays_(most_rays),
       rays_(tracer, materials, lobe_stride),
       brightness_(lobe_stride),
-      dim_(brightness_, lobe_stride) {}
+      dim_(tracer, brightness_, materials, lobe_stride) {}
 
-void ShadowedLight::start(const ShadingPoints& points, std::span<const float> brightness) {
-    points_ = &points;
-    brightness_.start(points, brightness);
-    dim_.start(points);
+void ShadowedLight::add(std::span<const Light* const> lights, const DirectLight& unshadowed, std::uint32_t first,
+                        const SampleRange& samples, std::span<const std::uint32_t> pixel_seeds, Hits& hits) {
+    samples_ = samples;
+    brightness_.expect(lights, unshadowed);
+    dim_.start(lights, unshadowed, samples);
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        unshadowed_ = unshadowed.light(i);
+        shadows_ = samples.shadow_rays > 0 && traits_of(*lights[i]).casts_shadows;
+        add_light(*lights[i], i, first + static_cast<std::uint32_t>(i), pixel_seeds, hits);
+    }
+    dim_.add(*points_, first, pixel_seeds, hits);
 }
 
-void ShadowedLight::add(const Light& light, std::size_t index, const SampleRange& samples,
-                        const LightRadiance& unshadowed, std::span<const std::uint32_t> pixel_seeds, Hits& hits) {
-    samples_ = samples;
-    unshadowed_ = unshadowed;
-    shadows_ = samples.shadow_rays > 0 && traits_of(light).casts_shadows;
+void ShadowedLight::add_light(const Light& light, std::size_t index, std::uint32_t number,
+                              std::span<const std::uint32_t> pixel_seeds, Hits& hits) {
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
-        const float own = brightness_.of_pixel(index, pixel);
-        if (!(own > 0)) {
+        if (!(brightness_.of_pixel(index, pixel) > 0) || dim_.is_dim(index, pixel)) {
             continue;
         }
-        const std::size_t begin = hits.pixel_begin[pixel];
-        const std::size_t end = hits.pixel_begin[pixel + 1];
-        const std::size_t asked = hits_to_ask(own, brightness_.all(pixel), end - begin);
-        if (shadows_ && asked < end - begin) {
-            dim_.add(light, unshadowed, pixel, own, first_phase(samples, most_rays_), asked, pixel_seeds[pixel], hits,
-                     rays_);
-        } else {
-            add_pixel(light, pixel_seeds[pixel], begin, end, hits);
+        const LitRange range = find_lit(light, hits, pixel);
+        if (range.size() > 0) {
+            pixels_.push_back({range, pixel, samples_of(index, pixel), hash(pixel_seeds[pixel], number)});
+        }
+        if (lit_.hit.size() >= kHitsAtOnce) {
+            shade_lit(light, hits);
         }
     }
+    shade_lit(light, hits);
 }
 
-void ShadowedLight::find_lit(const Light& light, const Hits& hits, std::size_t begin, std::size_t end) {
-    lit_.clear();
-    for (std::size_t hit = begin; hit < end; ++hit) {
+SampleRange ShadowedLight::samples_of(std::size_t index, std::size_t pixel) const {
+    const float share = rays_by_share(brightness_.of_pixel(index, pixel), brightness_.all(pixel), samples_);
+    SampleRange samples = samples_;
+    samples.shadow_rays = std::clamp(static_cast<std::uint32_t>(std::ceil(share)), std::min(samples_.shadow_rays, 1U),
+                                     samples_.shadow_rays);
+    return samples;
+}
+
+LitRange ShadowedLight::find_lit(const Light& light, const Hits& hits, std::size_t pixel) {
+    const std::size_t begin = lit_.hit.size();
+    for (std::size_t hit = hits.pixel_begin[pixel]; hit < hits.pixel_begin[pixel + 1]; ++hit) {
         bool any = false;
         for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
             any = any || unshadowed(hit, lobe) > 0;
@@ -55,6 +73,7 @@ void ShadowedLight::find_lit(const Light& light, const Hits& hits, std::size_t b
             }
         }
     }
+    return {begin, lit_.hit.size()};
 }
 
 bool ShadowedLight::is_glossy(std::uint32_t material) const {
@@ -62,33 +81,41 @@ bool ShadowedLight::is_glossy(std::uint32_t material) const {
     return std::any_of(lobes.begin(), lobes.end(), [](const Lobe& lobe) { return shlight::is_glossy(lobe.shape); });
 }
 
-void ShadowedLight::add_pixel(const Light& light, std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits) {
-    find_lit(light, hits, begin, end);
-    if (lit_.hit.empty()) {
-        return;
+void ShadowedLight::shade_lit(const Light& light, Hits& hits) {
+    rays_.start(light, hits, lit_);
+    for (const LitPixel& pixel : shadows_ ? std::span(pixels_) : std::span<const LitPixel>()) {
+        rays_.draw(pixel.range, first_phase(pixel.samples), pixel.seed);
     }
-    if (shadows_) {
-        const RayPhase first = first_phase(samples_, most_rays_);
-        rays_.trace(light, hits, lit_, first, seed);
-        // Few rays may miss the part of a light that is seen, and a glossy lobe may have its peak there.
-        if (rays_.count() > 0 && rays_.blocked_count() == rays_.count() && !is_glossy(hits.material[lit_.hit[0]])) {
-            return;
+    rays_.trace();
+    partly_.clear();
+    for (const LitPixel& pixel : pixels_) {
+        const ShadowRays::Verdict verdict = shadows_ ? rays_.verdict(pixel.range) : ShadowRays::Verdict::free;
+        if (verdict == ShadowRays::Verdict::free) {
+            shade_unblocked(pixel.range, hits);
+            continue;
         }
-        if (!rays_.all_free()) {
-            rays_.trace(light, hits, lit_, second_phase(samples_, first), seed);
-            shade(hits);
-            return;
+        hits.obstructed[pixel.pixel] = 1;
+        if (verdict == ShadowRays::Verdict::mixed || is_glossy(hits.material[lit_.hit[pixel.range.begin]])) {
+            // Few rays may miss the part of a light that is seen, and a glossy lobe may have its peak there.
+            const RayPhase first = first_phase(pixel.samples);
+            rays_.draw(pixel.range, second_phase(pixel.samples, first), pixel.seed);
+            partly_.push_back(pixel);
         }
     }
-    shade_unblocked(hits);
+    rays_.trace();
+    for (const LitPixel& pixel : partly_) {
+        shade(pixel.range, hits);
+    }
+    pixels_.clear();
+    lit_.clear();
 }
 
 Rgb ShadowedLight::scaled_radiance(const Hits& hits, std::size_t hit, std::size_t lobe) const {
     return hits.weight(hit, lobe) * unshadowed_[lobe * points_->size() + points_->of_hit[hit]];
 }
 
-void ShadowedLight::shade_unblocked(Hits& hits) const {
-    for (std::size_t i = 0; i < lit_.hit.size(); ++i) {
+void ShadowedLight::shade_unblocked(const LitRange& pixel, Hits& hits) const {
+    for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
         for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
             if (shines(i, lobe)) {
                 hits.radiance[lit_.hit[i]] += scaled_radiance(hits, lit_.hit[i], lobe);
@@ -97,33 +124,34 @@ void ShadowedLight::shade_unblocked(Hits& hits) const {
     }
 }
 
-void ShadowedLight::shade(Hits& hits) {
-    deviation_.assign(lit_.hit.size(), Rgb(0));
+void ShadowedLight::shade(const LitRange& pixel, Hits& hits) {
+    deviation_.assign(pixel.size(), Rgb(0));
     for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-        shade_lobe(lobe, hits);
+        shade_lobe(pixel, lobe, hits);
     }
-    for (std::size_t i = 0; i < lit_.hit.size(); ++i) {
-        hits.noise[lit_.hit[i]] += deviation_[i] * deviation_[i];
+    for (std::size_t i = 0; i < pixel.size(); ++i) {
+        hits.noise[lit_.hit[pixel.begin + i]] += deviation_[i] * deviation_[i];
     }
 }
 
-void ShadowedLight::shade_lobe(std::size_t lobe, Hits& hits) {
-    const auto [first, last] = std::minmax_element(lit_.hit.begin(), lit_.hit.end(), [&](std::size_t a, std::size_t b) {
+void ShadowedLight::shade_lobe(const LitRange& pixel, std::size_t lobe, Hits& hits) {
+    const auto lit_hits = std::span(lit_.hit).subspan(pixel.begin, pixel.size());
+    const auto [first, last] = std::minmax_element(lit_hits.begin(), lit_hits.end(), [&](std::size_t a, std::size_t b) {
         return points_->of_hit[a] < points_->of_hit[b];
     });
     const std::uint32_t first_point = points_->of_hit[*first];
-    hit_sums_.assign(lit_.hit.size(), {});
+    hit_sums_.assign(lit_hits.size(), {});
     point_sums_.assign(points_->of_hit[*last] - first_point + 1, {});
-    for (std::size_t i = 0; i < lit_.hit.size(); ++i) {
-        if (!shines(i, lobe)) continue;
-        hit_sums_[i] = rays_.sum(hits, lit_, i, lobe);
-        PointSums& of_point = point_sums_[points_->of_hit[lit_.hit[i]] - first_point];
+    for (std::size_t i = 0; i < lit_hits.size(); ++i) {
+        if (!shines(pixel.begin + i, lobe)) continue;
+        hit_sums_[i] = rays_.sum(pixel.begin + i, lobe);
+        PointSums& of_point = point_sums_[points_->of_hit[lit_hits[i]] - first_point];
         of_point.all += hit_sums_[i].all;
         ++of_point.hits;
     }
-    for (std::size_t i = 0; i < lit_.hit.size(); ++i) {
-        if (!shines(i, lobe)) continue;
-        const std::size_t hit = lit_.hit[i];
+    for (std::size_t i = 0; i < lit_hits.size(); ++i) {
+        if (!shines(pixel.begin + i, lobe)) continue;
+        const std::size_t hit = lit_hits[i];
         const RaySums& sums = hit_sums_[i];
         const PointSums& of_point = point_sums_[points_->of_hit[hit] - first_point];
         const Vec3d share = quotient(static_cast<double>(of_point.hits) * sums.seen, of_point.all);

@@ -27,36 +27,44 @@ namespace shlight {
 /// Keeps its memory from light to light; one per thread.
 class ShadowedLight {
   public:
-    /// most_rays: per camera ray and light, of any call of add().
-    ShadowedLight(const ShadowTracer& tracer, std::uint32_t most_rays, std::span<const MaterialLobes> materials,
-                  std::size_t lobe_stride);
+    ShadowedLight(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride);
     ~ShadowedLight() = default;
     // The parts refer to each other.
     ShadowedLight(const ShadowedLight&) = delete;
     ShadowedLight& operator=(const ShadowedLight&) = delete;
 
-    /// To be called before the first light of other hits. points: theirs, which stay as they are until finish();
+    /// To be called before the first light of other hits. points: theirs, which stay as they are until the last;
     /// brightness: of each pixel by other lights, if nothing blocks.
-    void start(const ShadingPoints& points, std::span<const float> brightness);
-    /// Lights that are to be added: those are bright or dim beside all that are known so far.
-    void expect(std::span<const Light* const> lights, const DirectLight& unshadowed) {
-        brightness_.expect(lights, unshadowed);
+    void start(const ShadingPoints& points, std::span<const float> brightness) {
+        points_ = &points;
+        brightness_.start(points, brightness);
     }
-    /// Of the pixels, by all lights that were expected and those that were not, see start().
+    /// Adds lights to the hits' radiance and noise. unshadowed: of these; first: the number of the first of them, which
+    /// tells their rays from others'; samples: what the hits are of; pixel_seeds: one per pixel. A hit's radiance
+    /// counts as part of the sum over the hits of its pixel.
+    void add(std::span<const Light* const> lights, const DirectLight& unshadowed, std::uint32_t first,
+             const SampleRange& samples, std::span<const std::uint32_t> pixel_seeds, Hits& hits);
+    /// Of the pixels, by all lights that were added and those that were not, see start().
     std::span<const float> brightness() const { return brightness_.all(); }
-    /// Adds one light to the hits' radiance and noise. index: its place among those expected last; samples: what the
-    /// hits are of; unshadowed: see DirectLight::light; pixel_seeds: one per pixel, other for each light. A hit's
-    /// radiance counts as part of the sum over the hits of its shading point.
-    void add(const Light& light, std::size_t index, const SampleRange& samples, const LightRadiance& unshadowed,
-             std::span<const std::uint32_t> pixel_seeds, Hits& hits);
-    /// To be called after the last light.
-    void finish(Hits& hits) const { dim_.finish(hits); }
-    std::uint64_t rays_traced() const { return rays_.rays_traced(); }
+    std::uint64_t rays_traced() const { return rays_.rays_traced() + dim_.rays_traced(); }
 
   private:
+    /// A pixel's lit hits.
+    struct LitPixel {
+        LitRange range;
+        std::size_t pixel;
+        SampleRange samples;
+        std::uint32_t seed;
+    };
+
+    void add_light(const Light& light, std::size_t index, std::uint32_t number,
+                   std::span<const std::uint32_t> pixel_seeds, Hits& hits);
+    SampleRange samples_of(std::size_t index, std::size_t pixel) const;
+
     bool is_glossy(std::uint32_t material) const;
-    void add_pixel(const Light& light, std::uint32_t seed, std::size_t begin, std::size_t end, Hits& hits);
-    void find_lit(const Light& light, const Hits& hits, std::size_t begin, std::size_t end);
+    LitRange find_lit(const Light& light, const Hits& hits, std::size_t pixel);
+    /// Adds the light to all that find_lit has found.
+    void shade_lit(const Light& light, Hits& hits);
     /// The value of one lobe at a hit.
     float unshadowed(std::size_t hit, std::size_t lobe) const {
         return unshadowed_.values[lobe * points_->size() + points_->of_hit[hit]];
@@ -64,9 +72,9 @@ class ShadowedLight {
     bool shines(std::size_t lit_index, std::size_t lobe) const {
         return lit_.shines[lit_index * lobe_stride_ + lobe] != 0;
     }
-    void shade_unblocked(Hits& hits) const;
-    void shade(Hits& hits);
-    void shade_lobe(std::size_t lobe, Hits& hits);
+    void shade_unblocked(const LitRange& pixel, Hits& hits) const;
+    void shade(const LitRange& pixel, Hits& hits);
+    void shade_lobe(const LitRange& pixel, std::size_t lobe, Hits& hits);
     Rgb scaled_radiance(const Hits& hits, std::size_t hit, std::size_t lobe) const;
 
     /// Rays of all hits of a shading point.
@@ -77,19 +85,19 @@ class ShadowedLight {
 
     std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
-    std::uint32_t most_rays_;
     ShadowRays rays_;
 
     SampleRange samples_{};       // of the call of add()
-    bool shadows_ = false;        // likewise, whether the light casts any
-    LightRadiance unshadowed_{};  // of the light being added
+    bool shadows_ = false;        // whether the light being added casts any
+    LightRadiance unshadowed_{};  // of that light
     const ShadingPoints* points_ = nullptr;
     LightBrightness brightness_;
     DimLights dim_;
-    LitHits lit_;                        // of the pixel
-    std::vector<RaySums> hit_sums_;      // of one lobe, by lit hit
-    std::vector<PointSums> point_sums_;  // likewise, by shading point
-    std::vector<Rgb> deviation_;         // of the light by lit hit, from its few rays
+    LitHits lit_;                            // of some pixels
+    std::vector<LitPixel> pixels_, partly_;  // all of these; and those whose rays do not agree
+    std::vector<RaySums> hit_sums_;          // of one lobe, by lit hit of a pixel
+    std::vector<PointSums> point_sums_;      // likewise, by shading point
+    std::vector<Rgb> deviation_;             // of the light by lit hit of a pixel, from its few rays
 };
 
 }  // namespace shlight

@@ -14,6 +14,8 @@ void Hits::clear() {
     sample.clear();
     radiance.clear();
     noise.clear();
+    shared_noise.clear();
+    obstructed.clear();
     pixel_begin.assign(1, 0);
 }
 

@@ -29,10 +29,13 @@ struct Hits {
     /// Weight of lobe i of hit h at h · lobe_stride + i: its colour as the viewer sees it. 0 for lobes that the
     /// material does not have.
     std::vector<Rgb> lobe_weight;
-    std::vector<float> lobe_width;               ///< likewise, of lobes whose width varies
-    std::vector<std::uint32_t> sample;           ///< number of the camera ray within its pixel
-    std::vector<Rgb> radiance;                   ///< reflected to the camera, summed up
-    std::vector<Rgb> noise;                      ///< the part of its variance that comes from shadow rays
+    std::vector<float> lobe_width;      ///< likewise, of lobes whose width varies
+    std::vector<std::uint32_t> sample;  ///< number of the camera ray within its pixel
+    std::vector<Rgb> radiance;          ///< reflected to the camera, summed up
+    std::vector<Rgb> noise;             ///< the part of its variance that comes from shadow rays
+    /// By pixel: the variance of the sum of its hits' radiance by what they have in common of few shadow rays.
+    std::vector<Rgb> shared_noise;
+    std::vector<std::uint8_t> obstructed;        ///< by pixel: whether any shadow ray has met something
     std::vector<std::size_t> pixel_begin = {0};  ///< pixel p has the hits pixel_begin[p] … pixel_begin[p + 1] - 1
 
     std::size_t size() const { return frame.size(); }
@@ -52,7 +55,16 @@ struct Hits {
     void add(const SurfacePoint& surface, const ShadingFrame& shading_frame, float view_cosine,
              std::span<const Rgb> weights, std::span<const float> widths, std::uint32_t sample_index);
     /// The hits added since the last call are those of one pixel.
-    void end_pixel() { pixel_begin.push_back(size()); }
+    void end_pixel() {
+        pixel_begin.push_back(size());
+        shared_noise.emplace_back(0);
+        obstructed.push_back(0);
+    }
+    /// What the shadow rays that a pixel's hits share tell beside the light that they let through.
+    void add_shared(std::size_t pixel, const Rgb& variance, bool any_obstructed) {
+        shared_noise[pixel] += variance;
+        obstructed[pixel] |= any_obstructed ? 1 : 0;
+    }
 };
 
 }  // namespace shlight

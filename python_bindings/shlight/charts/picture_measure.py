@@ -157,7 +157,7 @@ def seconds_text(seconds: float) -> str:
 
 def compare(setting: Setting, effort: Effort, seed: int, step: Step) -> Compared:
     scene = setting.build()
-    harmonics = functools.partial(_harmonics, scene, effort, adaptive=False)
+    harmonics = functools.partial(_harmonics, scene, effort)
     monte_carlo = functools.partial(_monte_carlo, scene, effort, seed=seed)
     harmonics((1, 1), setting.order)  # compiles the scene and makes the fits
     harmonics((1, 1), "auto")
@@ -173,7 +173,7 @@ def compare(setting: Setting, effort: Effort, seed: int, step: Step) -> Compared
     for rays in effort.rays:
         lines[1].calls.append(Call(_rays(rays), functools.partial(harmonics, rays, setting.order)))
     for rays in effort.adaptive_rays:
-        adaptive = functools.partial(_harmonics, scene, effort, rays, adaptive=True)
+        adaptive = functools.partial(_harmonics, scene, effort, rays, max_samples=16 * rays[0])
         name = f"{_rays(rays)} or more"
         lines[2].calls.append(Call(name, functools.partial(adaptive, setting.order)))
         lines[3].calls.append(Call(name, functools.partial(adaptive, "auto")))
@@ -207,9 +207,8 @@ def compare(setting: Setting, effort: Effort, seed: int, step: Step) -> Compared
 def _harmonics(
     scene: shlight.Scene, effort: Effort, rays: tuple[int, int], order: int | Literal["auto"], **options: Any
 ) -> Image:
-    image: Image = shlight.render(
-        scene, effort.width, effort.height, order=order, pixel_samples=rays[0], shadow_rays=rays[1], **options
-    )
+    settings = {"pixel_samples": rays[0], "max_samples": rays[0], "shadow_rays": rays[1]} | options
+    image: Image = shlight.render(scene, effort.width, effort.height, order=order, **settings)
     return image
 
 

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "lights/whole_rectangle.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lights/whole_rectangle.cpp"
+#include <hwy/foreach_target.h>
+// Highway's vocabulary, and what is compiled once per instruction set, come after it.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "lights/seen_light.h"
+#include "simd/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace shlight::HWY_NAMESPACE {
+namespace {
+
+static_assert(kLightPointLanes % kLaneCount<Floats> == 0);
+
+using Integers = hn::RebindToUnsigned<Floats>;
+
+template <int kShift>
+HWY_INLINE V<Integers> swapped(V<Integers> x, std::uint32_t low) {
+    const auto mask = hn::Set(Integers(), low);
+    return hn::Or(hn::And(hn::ShiftRight<kShift>(x), mask), hn::ShiftLeft<kShift>(hn::And(x, mask)));
+}
+
+// As sampling.cpp has them, for one index.
+
+HWY_INLINE V<Integers> reverse_bits(V<Integers> x) {
+    x = swapped<1>(x, 0x55555555U);
+    x = swapped<2>(x, 0x33333333U);
+    x = swapped<4>(x, 0x0F0F0F0FU);
+    x = swapped<8>(x, 0x00FF00FFU);
+    return hn::Or(hn::ShiftRight<16>(x), hn::ShiftLeft<16>(x));
+}
+
+HWY_INLINE V<Integers> scramble_reversed(V<Integers> x, std::uint32_t seed) {
+    const Integers d;
+    x = hn::Xor(x, hn::Mul(x, hn::Set(d, 0x3D20ADEAU)));
+    x = hn::Add(x, hn::Set(d, seed));
+    x = hn::Mul(x, hn::Set(d, (seed >> 16) | 1U));
+    x = hn::Xor(x, hn::Mul(x, hn::Set(d, 0x05526C56U)));
+    return hn::Xor(x, hn::Mul(x, hn::Set(d, 0x53A22864U)));
+}
+
+HWY_INLINE V<Integers> pascal(V<Integers> x) {
+    const Integers d;
+    x = hn::Xor(x, hn::ShiftRight<16>(x));
+    x = hn::Xor(x, hn::And(hn::ShiftRight<8>(x), hn::Set(d, 0x00FF00FFU)));
+    x = hn::Xor(x, hn::And(hn::ShiftRight<4>(x), hn::Set(d, 0x0F0F0F0FU)));
+    x = hn::Xor(x, hn::And(hn::ShiftRight<2>(x), hn::Set(d, 0x33333333U)));
+    return hn::Xor(x, hn::And(hn::ShiftRight<1>(x), hn::Set(d, 0x55555555U)));
+}
+
+/// Of the bits that a float holds: 0 … 1, neither included.
+HWY_INLINE V<Floats> unit(V<Integers> x) {
+    const Floats d;
+    const auto high = hn::ConvertTo(d, hn::BitCast(hn::RebindToSigned<Floats>(), hn::ShiftRight<9>(x)));
+    return hn::MulAdd(high, hn::Set(d, 0x1p-23F), hn::Set(d, 0x1p-24F));
+}
+
+HWY_INLINE V<Floats> at(float corner, float along, float across, V<Floats> u, V<Floats> v) {
+    const Floats d;
+    return hn::MulAdd(u, hn::Set(d, along), hn::MulAdd(v, hn::Set(d, across), hn::Set(d, corner)));
+}
+
+void draw_square(const SobolSequence& sequence, std::uint32_t first, std::size_t count, float* u, float* v) {
+    const Floats d;
+    for (std::size_t i = 0; i < count; i += kLaneCount<Floats>) {
+        const auto index = hn::Iota(Integers(), first + static_cast<std::uint32_t>(i));
+        const auto place = reverse_bits(scramble_reversed(reverse_bits(index), sequence.order_seed()));
+        hn::StoreU(unit(reverse_bits(scramble_reversed(place, sequence.x_seed()))), d, u + i);
+        hn::StoreU(unit(reverse_bits(scramble_reversed(pascal(place), sequence.y_seed()))), d, v + i);
+    }
+}
+
+void place(const WholeRectangle& r, const float* square_u, const float* square_v, std::size_t count,
+           const LightPointArrays& points) {
+    const Floats d;
+    for (std::size_t i = 0; i < count; i += kLaneCount<Floats>) {
+        const auto u = hn::LoadU(d, square_u + i);
+        const auto v = hn::LoadU(d, square_v + i);
+        const auto x = at(r.corner.x, r.along.x, r.across.x, u, v);
+        const auto y = at(r.corner.y, r.along.y, r.across.y, u, v);
+        const auto z = at(r.corner.z, r.along.z, r.across.z, u, v);
+        const auto square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+        hn::StoreU(x, d, points.x + i);
+        hn::StoreU(y, d, points.y + i);
+        hn::StoreU(z, d, points.z + i);
+        // dω = |cos at the light| dA / distance², by distances that no power takes out of a float's range.
+        const auto relative = hn::Div(hn::Set(d, r.nearest_square), square);
+        const auto weight = hn::Mul(hn::Set(d, r.most_weight), hn::Mul(relative, hn::Sqrt(relative)));
+        hn::StoreU(weight, d, points.weight + i);
+    }
+}
+
+}  // namespace
+}  // namespace shlight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace shlight {
+namespace {
+
+/// Of the farthest point's distance to the nearest one's; weights go with the third power.
+constexpr double kEvenRectangle = 1.6;
+
+}  // namespace
+
+HWY_EXPORT(draw_square);
+HWY_EXPORT(place);
+
+std::optional<WholeRectangle> WholeRectangle::see(const Light& light, const ShadingFrame& frame, double error) {
+    const auto* polygon = std::get_if<PolygonLight>(&light);
+    if (polygon == nullptr || !polygon->rectangle || !std::holds_alternative<EvenProfile>(polygon->traits.profile)) {
+        return std::nullopt;
+    }
+    const Vec3d corner = polygon->vertices[0] - frame.origin;
+    const Vec3d along = polygon->vertices[1] - polygon->vertices[0];
+    const Vec3d across = polygon->vertices[3] - polygon->vertices[0];
+    const double height = -glm::dot(polygon->normal, corner);
+    const double lowest =
+        glm::dot(frame.z, corner) + std::min(0.0, glm::dot(frame.z, along)) + std::min(0.0, glm::dot(frame.z, across));
+    const double middle = glm::length(polygon->center - frame.origin);
+    const double nearest = std::max(std::abs(height), middle - polygon->radius);
+    if (!is_lit_side(*polygon, height, error) || !(lowest >= 0) ||
+        !(middle + polygon->radius < kEvenRectangle * nearest)) {
+        return std::nullopt;
+    }
+    const double area = std::sqrt(glm::dot(along, along) * glm::dot(across, across));
+    return WholeRectangle{Vec3f(corner), Vec3f(along), Vec3f(across), static_cast<float>(nearest * nearest),
+                          static_cast<float>(area * std::abs(height) / (nearest * nearest * nearest))};
+}
+
+void draw_square_points(const SobolSequence& sequence, std::uint32_t first, std::size_t count, float* u, float* v) {
+    HWY_DYNAMIC_DISPATCH(draw_square)(sequence, first, count, u, v);
+}
+
+void place_points(const WholeRectangle& rectangle, const float* u, const float* v, std::size_t count,
+                  const LightPointArrays& points) {
+    HWY_DYNAMIC_DISPATCH(place)(rectangle, u, v, count, points);
+}
+
+}  // namespace shlight
+#endif

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// In which order a picture's pixels are rendered, and what is shown of those that are not rendered yet.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/pixel_batch.h"
+#include "render/refinement.h"
+
+namespace shlight {
+
+/// Every step'th pixel of every step'th row, but those of a wider grid.
+struct Grid {
+    int step;
+    int wider;  ///< the step of that; 0: there is none
+};
+
+struct Tile {
+    int left, top, right, bottom;  // pixels; right and bottom excluded
+};
+
+/// Of a picture, each with about as many pixels of the grid as a batch takes.
+std::vector<Tile> tiles_of(int width, int height, const Grid& grid, std::uint32_t pixel_samples,
+                           std::uint32_t batch_samples);
+/// Those of a grid.
+std::vector<Pixel> pixels_of(const Tile& tile, const Grid& grid);
+/// What is rendered next of some groups, in blocks, so that pixels which are rendered together see what lies together:
+/// those that gain most for their rays, and these first. Without gains.
+std::vector<RefinementGroup> most_urgent(std::span<const RefinementGroup> groups);
+/// Makes every pixel beside a grid of the four pixels of the grid about it, the nearer the more. image: RGBA.
+void fill_between(int step, int width, int height, std::span<float> image);
+
+}  // namespace shlight
