@@ -9,7 +9,7 @@ from pathlib import Path
 from shlight.commands import CommandError, check_folder, run_command, work_folder
 from shlight.progress import Progress
 
-from . import builds, machine, peer, table
+from . import builds, machine, peer, picture, table
 from .compare import comparison
 from .options import Options, parse
 from .row import Bench, Row, read
@@ -20,6 +20,8 @@ from .sections import PEERED, SECTIONS
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; its exit code: 2 for a request that cannot be met, 1 for what is missing to meet it."""
     arguments = sys.argv[1:] if argv is None else argv
+    if arguments[:1] == ["picture"]:
+        return picture.main(arguments[1:])
     return run_command("bench", lambda: _work(arguments), when_interrupted="nothing was written")
 
 

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: MIT
+"""`shlight bench picture`, with small pictures of shlight alone."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import pytest
+
+from shlight.bench import picture
+from shlight.bench.picture_renderers import Shlight
+
+
+def test_curves_reach_the_chart_and_the_table(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(picture, "QUICK", picture.Effort(32, 2, 0.5, 0.5))
+    monkeypatch.setattr(picture, "_renderers", lambda: [Shlight])
+    assert picture.main(["balls", "--quick", "--out", str(tmp_path)]) == 0
+    with (tmp_path / "picture.csv").open(encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    assert {row["renderer"] for row in rows} == {"shlight"}
+    assert {row["round"] for row in rows} == {"1", "2"}
+    assert (tmp_path / "picture.png").stat().st_size > 1000
+    assert "| balls | shlight |" in capsys.readouterr().out
+
+
+def test_an_unknown_scene(capsys: pytest.CaptureFixture[str]) -> None:
+    assert picture.main(["bowls"]) == 2
+    assert "bowls" in capsys.readouterr().err
+
+
+def test_errors_between_measurements() -> None:
+    points = [(1.0, 1e-1), (4.0, 1e-3)]
+    assert picture.Curve("s", "Cycles", [points]).error_at(2.0) == pytest.approx(1e-2)
+    assert picture.Curve("s", "shlight", [points]).error_at(2.0) == 1e-1, "what is on screen"
+    assert math.isinf(picture.Curve("s", "Cycles", [points]).error_at(0.5))
+    assert picture.Curve("s", "Cycles", [points]).seconds_to(1e-2) == 4.0
