@@ -171,7 +171,7 @@ PixelFilter filter_from(const py::object& pixel_filter, const py::object& filter
     return {static_cast<PixelFilter::Kind>(known - kFilters.begin()), real_from("filter_width", filter_width)};
 }
 
-/// Throws std::invalid_argument naming `on_update` unless it is callable or None; keeps a reference to the arguments.
+/// Of a callback that is callable or None; keeps a reference to it.
 PictureUpdate update_from(const py::object& callback, int width, int height, double build_seconds) {
     if (callback.is_none()) {
         return {};
