@@ -20,6 +20,11 @@ from .report import ExportCancelled, ExportError
 from .running import ENGINE
 
 MOST_WARNINGS = 20
+# Of pictures in the making, in seconds. Blender opens the render window meanwhile, and is not ready for the first
+# before that.
+FIRST_UPDATE = 0.1
+UPDATE_INTERVAL = 0.25
+LARGEST_UPDATE_SHARE = 0.1  # of the time
 VIEWPORT_NOTE = "shlight draws final renders (F12); use Material Preview in the viewport"
 
 
@@ -85,12 +90,16 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             self._show(record.last.report.lines())
             self._check("Rendering")
             latest: NDArray[np.float32] | None = None
+            next_update = start + FIRST_UPDATE
 
             def show(image: NDArray[np.float32], report: Any) -> bool:
-                nonlocal latest
+                nonlocal latest, next_update
                 latest = image
                 self._status = _status(report)
-                self._deliver(depsgraph, frame, image)
+                if (now := time.perf_counter()) >= next_update:
+                    self._deliver(depsgraph, frame, image)
+                    taken = time.perf_counter() - now
+                    next_update = now + max(UPDATE_INTERVAL, taken / LARGEST_UPDATE_SHARE)
                 return True
 
             self._status = "Rendering"

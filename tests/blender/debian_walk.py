@@ -108,7 +108,7 @@ def walk():
         with bpy.context.temp_override(window=window()):
             STEP[name][1]()
     except (AttributeError, RuntimeError) as error:
-        if "in this context" in str(error) or "in this state" in str(error):
+        if any(refusal in str(error) for refusal in ("in this context", "in this state", "in readonly state")):
             return wait_to_write()
         traceback.print_exc()
     except Exception:
