@@ -12,7 +12,7 @@
 #include "kept_region.h"
 #include "math/gauss_legendre.h"
 #include "method.h"
-#include "shading/light_cubature.h"
+#include "shading/cubature_kernel.h"
 #include "shlight/cap.h"
 
 namespace shlight::methods {
@@ -54,8 +54,7 @@ class CubatureLobe : public LobeIntegrator {
         if (whole && points_ <= kLibraryRules.back()) {
             const auto rules = std::count_if(kLibraryRules.begin(), kLibraryRules.end(),
                                              [&](int points) { return points <= points_; });
-            const CubatureSum sum = cap_cubature(shape_, view_, cap, static_cast<int>(rules));
-            return {sum.value, sum.points};
+            return by_library_rule(cap, static_cast<int>(rules));
         }
         const double solid_angle = clipped_solid_angle(cap);
         if (!whole) {
@@ -77,6 +76,15 @@ class CubatureLobe : public LobeIntegrator {
     }
 
   private:
+    Reflected by_library_rule(const Circle& cap, int rule) const {
+        constexpr std::uint32_t kOnly = 0;
+        const auto width = static_cast<float>(lobe_width(shape_));
+        float value = 0;
+        integrate_caps(shape_, &width, {&cap.axis.x, &cap.axis.y, &cap.axis.z, &cap.cosine, &cap.sine}, {&kOnly, 1},
+                       {&view_.x, &view_.z, true}, {&kOnly, 1}, rule, {&value, 1});
+        return {value, cap_rule_points(rule)};
+    }
+
     struct Sum {
         double values = 0, weights = 0;
         int points = 0;

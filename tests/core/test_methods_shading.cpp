@@ -17,7 +17,6 @@
 #include "quadrature.h"
 #include "random_input.h"
 #include "random_polygon.h"
-#include "shading/light_cubature.h"
 
 namespace shlight {
 namespace {

@@ -17,7 +17,8 @@ Vec3d vector_area(std::span<const Vec3d> v) {
     return sum;
 }
 
-/// Sutherland–Hodgman against z ≥ 0. Cut points get z = 0 exactly: their edge then lies *in* the horizon.
+}  // namespace
+
 std::vector<Vec3d> clipped_by_horizon(std::span<const Vec3d> v) {
     std::vector<Vec3d> kept;
     kept.reserve(2 * v.size());
@@ -34,6 +35,8 @@ std::vector<Vec3d> clipped_by_horizon(std::span<const Vec3d> v) {
     }
     return kept;
 }
+
+namespace {
 
 /// The side from a to b is the longest. Where it is nearly half a turn, a·(b×c) and 1 + a·b + b·c + c·a of the unit
 /// vectors both vanish as the square of a + b: they are formed from that sum and from c's distance to its neighbour b

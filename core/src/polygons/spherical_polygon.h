@@ -29,6 +29,10 @@ class SphericalPolygon {
     double solid_angle_ = 0;
 };
 
+/// Sutherland–Hodgman against z ≥ 0. Points where edges are cut get z = 0 exactly: the edge between two of them then
+/// lies in the horizon. What is left of a polygon that touches z ≥ 0 nowhere is empty.
+std::vector<Vec3d> clipped_by_horizon(std::span<const Vec3d> v);
+
 /// Solid angle of a triangle (Van Oosterom & Strackee 1983), signed by its winding. The triple product is taken of edge
 /// vectors, so that its error is relative to the triangle and not to the sphere.
 template <class Real>

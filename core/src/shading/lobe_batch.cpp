@@ -9,7 +9,7 @@
 #include "polygons/polygon_shading_kernel.h"
 #include "polygons/spherical_polygon.h"
 #include "shading/cubature_kernel.h"
-#include "shading/light_cubature.h"
+#include "shading/polygon_rule_kernel.h"
 
 namespace shlight {
 namespace {
@@ -289,11 +289,11 @@ void LobeBatch::by_rule(const LobeViews& lobe, const CircleArrays& circles, int 
 }
 
 void LobeBatch::by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule) {
-    for (std::size_t k = 0; k < items_.size(); ++k) {
-        const CubatureSum sum = polygon_cubature(lobe.shape(item_views_[k]), lobe.positions().direction(item_views_[k]),
-                                                 SphericalPolygon(polygons.polygon(items_[k]), true), rule);
-        item_values_[k] = static_cast<float>(sum.value);
-        efforts_[items_[k]] = sum.points;
+    integrate_polygons(lobe.shape(), lobe.widths(), polygons.vertices(), polygons.vertex_count(), items_,
+                       lobe.positions().directions(), item_views_, rule, item_values_);
+    const int points = polygon_rule_points(rule, polygons.vertex_count());
+    for (const std::uint32_t light : items_) {
+        efforts_[light] = points;
     }
 }
 
