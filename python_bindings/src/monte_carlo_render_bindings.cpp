@@ -30,7 +30,7 @@ py::array_t<float> render(const py::object& scene_object, const py::object& widt
     methods::check_monte_carlo(settings, columns, rows);
     const Progress report_progress = progress_from(progress);
     const Camera camera = camera_of(scene);
-    const auto compiled_scene = compiled(scene, settings.threads).first;
+    const auto compiled_scene = compiled(scene, settings.threads, report_progress).first;
     py::array_t<float> image({rows, columns, 4});
     const std::span<float> pixels(image.mutable_data(), static_cast<std::size_t>(image.size()));
     {

@@ -207,7 +207,7 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
     check_callable("on_update", on_update);
     const Progress report_progress = progress_from(progress);
     const Camera camera = camera_of(scene);
-    const auto [compiled_scene, build_seconds] = compiled(scene, settings.threads);
+    const auto [compiled_scene, build_seconds] = compiled(scene, settings.threads, report_progress);
     py::array_t<float> image({rows, columns, 4});
     const std::span<float> pixels(image.mutable_data(), static_cast<std::size_t>(image.size()));
     const RenderWatch watch = {report_progress, update_from(on_update, columns, rows, build_seconds)};

@@ -38,7 +38,8 @@ const Camera& camera_of(const SceneObject& scene) {
     return *scene.camera;
 }
 
-std::pair<std::shared_ptr<const CompiledScene>, double> compiled(SceneObject& object, int threads) {
+std::pair<std::shared_ptr<const CompiledScene>, double> compiled(SceneObject& object, int threads,
+                                                                 const Progress& progress) {
     if (object.compiled) {
         return {object.compiled, 0.0};
     }
@@ -49,7 +50,7 @@ std::pair<std::shared_ptr<const CompiledScene>, double> compiled(SceneObject& ob
     std::shared_ptr<const CompiledScene> result;
     {
         const py::gil_scoped_release release;
-        result = scene.compile(threads);
+        result = scene.compile(threads, progress);
     }
     if (object.revision == revision) {
         object.compiled = result;

@@ -24,7 +24,8 @@ Progress progress_from(const pybind11::object& callback);
 /// Throws std::invalid_argument naming `scene` if it has no camera.
 const Camera& camera_of(const SceneObject& scene);
 
-/// The compiled scene of the object as it is now, and the seconds that building it has taken.
-std::pair<std::shared_ptr<const CompiledScene>, double> compiled(SceneObject& object, int threads);
+/// The compiled scene of the object as it is now, and the seconds that building it has taken. Throws as Scene::compile.
+std::pair<std::shared_ptr<const CompiledScene>, double> compiled(SceneObject& object, int threads,
+                                                                 const Progress& progress);
 
 }  // namespace shlight::python

@@ -13,6 +13,7 @@
 
 #include "render_scenes.h"
 #include "shlight/parallel.h"
+#include "shlight/ray_tracer.h"
 
 namespace shlight {
 namespace {
@@ -123,6 +124,43 @@ TEST(RenderParallel, CancelStopsTheWork) {
     };
     EXPECT_THROW(parallel_for(10000, 0, slow, [](double) { return false; }), RenderCancelled);
     EXPECT_LE(runs, 2000);  // the whole would take 25 s on two cores
+}
+
+TEST(RenderParallel, WatchedWorkIsToldToEnd) {
+    const auto endless = [](const Stopped& stopped) {
+        while (true) {
+            end_if(stopped);
+            std::this_thread::yield();
+        }
+    };
+    EXPECT_THROW(run_watched(0, endless, [](double) { return false; }), RenderCancelled);
+    const auto throws = [](double) -> bool { throw std::out_of_range("from progress"); };
+    EXPECT_THROW(run_watched(0, endless, throws), std::out_of_range);
+    bool stopped_at_all = false;
+    const auto asks = [&](const Stopped& stopped) { stopped_at_all = stopped && stopped(); };
+    run_watched(0, asks, [](double) { return true; });
+    run_watched(0, asks, {});
+    EXPECT_FALSE(stopped_at_all);
+}
+
+TEST(RenderParallel, BuildingTheTracerCanBeStopped) {
+    std::vector<Vec3f> vertices;
+    std::vector<Triangle> triangles;
+    for (std::uint32_t i = 0; i < 100000; ++i) {
+        const auto x = static_cast<float>(i % 317);
+        const auto y = static_cast<float>(i / 317);
+        vertices.insert(vertices.end(), {{x, y, 0}, {x + 1, y, 0}, {x, y + 1, 0}});
+        triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+    }
+    const std::vector<TracedGeometry> geometries = {{vertices, triangles}};
+    for (const bool identity : {true, false}) {
+        const std::vector<TracedInstance> instances = {{0, identity, glm::dmat4(1)}};
+        std::atomic<int> asked = 0;
+        const RayTracer whole(geometries, instances, [&] { return ++asked < 0; });
+        EXPECT_GT(asked, 2);  // not only before the build
+        asked = 0;
+        EXPECT_THROW(RayTracer(geometries, instances, [&] { return ++asked > 1; }), RenderCancelled);
+    }
 }
 
 TEST(RenderParallel, ExceptionsReachTheCaller) {

@@ -311,6 +311,17 @@ def test_false_cancels(render: Callable[..., Any], answer: Any) -> None:
     assert issubclass(shlight.RenderCancelled, RuntimeError)
 
 
+def test_a_build_that_was_cancelled_is_done_again() -> None:
+    scene, picture = lit_floor(), shlight.render(lit_floor(), 8, 8)
+    asked: list[float] = []
+    with pytest.raises(shlight.RenderCancelled):
+        shlight.render(scene, 8, 8, progress=lambda share: asked.append(share) is not None)
+    assert asked == [0.0]
+    image, report = shlight.render(scene, 8, 8, return_report=True)
+    assert report.build_seconds > 0
+    np.testing.assert_array_equal(image, picture)
+
+
 @both_renderers
 def test_errors_of_the_callback_propagate(render: Callable[..., Any]) -> None:
     def progress(share: float) -> None:

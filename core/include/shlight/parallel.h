@@ -18,9 +18,20 @@ class RenderCancelled : public std::runtime_error {
 /// Is told the finished share, 0 … 1, never falling; returns false to cancel.
 using Progress = std::function<bool(double)>;
 
+/// Asked by long work, from any thread: whether it is to end early. Empty: never.
+using Stopped = std::function<bool()>;
+
+/// Throws RenderCancelled if the work is to end.
+void end_if(const Stopped& stopped);
+
 /// Runs `work` where parallel calls use at most `threads` threads, 0: all cores.
 /// Throws std::invalid_argument for threads < 0, and what work throws.
 void run_in_arena(int threads, const std::function<void()>& work);
+
+/// The same for long work of unknown length. With `progress` the calling thread waits and calls it with 0, about every
+/// 50 ms and at the end; once it has returned false or thrown, `work` is told so by what it is given.
+/// Throws as parallel_for does.
+void run_watched(int threads, const std::function<void(const Stopped&)>& work, const Progress& progress);
 
 /// Runs body(i) once for each i < count, in any order, on at most `threads` threads, 0: all cores.
 /// With `progress` the calling thread waits and calls it about every 50 ms and once at the end; work goes on meanwhile.

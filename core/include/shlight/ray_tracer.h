@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "shlight/parallel.h"
 #include "shlight/types.h"
 
 namespace shlight {
@@ -52,8 +53,10 @@ struct TracedInstance {
 class RayTracer {
   public:
     /// Copies what it needs. Builds with the threads of the tbb::task_arena that it is called in.
-    /// Throws std::runtime_error when Embree fails, std::bad_alloc when memory runs out.
-    RayTracer(std::span<const TracedGeometry> geometries, std::span<const TracedInstance> instances);
+    /// Throws std::runtime_error when Embree fails, std::bad_alloc when memory runs out, RenderCancelled once it is to
+    /// end.
+    RayTracer(std::span<const TracedGeometry> geometries, std::span<const TracedInstance> instances,
+              const Stopped& stopped = {});
     ~RayTracer();
     RayTracer(const RayTracer&) = delete;
     RayTracer& operator=(const RayTracer&) = delete;

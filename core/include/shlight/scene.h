@@ -15,6 +15,7 @@
 #include "shlight/environment.h"
 #include "shlight/light.h"
 #include "shlight/mesh.h"
+#include "shlight/parallel.h"
 #include "shlight/scene_rays.h"
 #include "shlight/surface_point.h"
 #include "shlight/types.h"
@@ -96,10 +97,10 @@ class Scene {
     /// visible: the camera sees it behind the scene.
     void set_environment(Environment environment, bool visible = true);
 
-    /// Builds with at most `threads` threads, 0: all cores.
+    /// Builds with at most `threads` threads, 0: all cores; calls `progress` meanwhile, with 0, as run_watched does.
     /// Throws std::invalid_argument for threads < 0 and for surfaces in a scene of less than 1e-6 m, std::bad_alloc or
-    /// std::runtime_error when Embree fails.
-    std::shared_ptr<const CompiledScene> compile(int threads = 0) const;
+    /// std::runtime_error when Embree fails; RenderCancelled when progress returns false, and what it throws.
+    std::shared_ptr<const CompiledScene> compile(int threads = 0, const Progress& progress = {}) const;
 
   private:
     void check_size() const;

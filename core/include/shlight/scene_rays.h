@@ -42,7 +42,7 @@ class SceneRays {
   public:
     /// Builds as RayTracer does, and throws what it throws. transparency must outlive this.
     SceneRays(std::span<const SceneGeometry> geometries, std::span<const TracedInstance> instances,
-              const SurfaceTransparency& transparency);
+              const SurfaceTransparency& transparency, const Stopped& stopped = {});
     SceneRays(const SceneRays&) = delete;
     SceneRays& operator=(const SceneRays&) = delete;
     ~SceneRays();

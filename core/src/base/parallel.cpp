@@ -113,6 +113,31 @@ void run_in_arena(int threads, const std::function<void()>& work) {
     arena_of(threads == 0 ? cores : std::min(threads, cores)).execute(work);
 }
 
+void end_if(const Stopped& stopped) {
+    if (stopped && stopped()) {
+        throw RenderCancelled();
+    }
+}
+
+void run_watched(int threads, const std::function<void(const Stopped&)>& work, const Progress& progress) {
+    if (!progress) {
+        run_in_arena(threads, [&] { work({}); });
+        return;
+    }
+    std::atomic<bool> stopped = false;
+    const auto ask = [&](double) {
+        try {
+            stopped = !progress(0);
+        } catch (...) {
+            stopped = true;
+            throw;
+        }
+        return !stopped;
+    };
+    parallel_for(
+        1, threads, [&](std::size_t) { work([&] { return stopped.load(); }); }, ask);
+}
+
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body,
                   const Progress& progress) {
     if (!progress) {

@@ -38,7 +38,7 @@ void add(RenderReport& sum, const RenderReport& part) {
 void Passes::run() {
     bool goes_on = first_pass();
     for (int round = 0; goes_on && round < kMostRounds; ++round) {
-        const auto groups = most_urgent(refinement_.next_round(image_, picture_->settings.threads));
+        const auto groups = most_urgent(refinement_.next_round(image_, picture_->settings.threads, waiting()));
         rays_before_round_ = rays_done_;
         shown_.noise = refinement_.noise();
         std::vector<Pass> passes;
@@ -135,6 +135,13 @@ bool Passes::run_pass(const Pass& pass) {
     }
     rays_done_ += pass.rays;
     return true;
+}
+
+Progress Passes::waiting() const {
+    if (!watch_->progress) {
+        return {};
+    }
+    return [this](double) { return watch_->progress(share_); };
 }
 
 /// Shows the picture and what is known of it.

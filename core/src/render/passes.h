@@ -59,6 +59,8 @@ class Passes {
     /// False if the watch asks to leave the picture as it is.
     bool run_pass(const Pass& pass);
     bool show();
+    /// Of what brings the picture no further.
+    Progress waiting() const;
     bool fits(std::span<const Pass> passes) const;
     double seconds_left(double rays) const;
     double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }

@@ -74,7 +74,7 @@ void PixelSums::add(const Rgb& ray_radiance, const Rgb& ray_noise, const glm::dv
 }
 
 Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const RenderSettings& r,
-                 std::vector<glm::dvec2> points, std::uint32_t preview_points)
+                 std::vector<glm::dvec2> points, std::uint32_t preview_points, const Stopped& stopped)
     : scene(&s),
       camera(&c),
       settings(r),
@@ -91,12 +91,14 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
         return glm::dvec2(r.filter.place(point.x), r.filter.place(point.y));
     });
     for (const Material& material : s.materials()) {
+        end_if(stopped);
         materials.emplace_back(material.shader == nullptr ? material.bsdf.lobes() : lobes_of(*material.shader), r.order,
                                r.tolerance);
         takes_differences =
             takes_differences || (material.shader != nullptr && material.shader->program.takes_differences());
         lobe_stride = std::max(lobe_stride, materials.back().lobes().size());
     }
+    end_if(stopped);
     far = FarLights(s.lights(), materials, r.order);
     if (!s.environment().is_black()) {
         environment.emplace(s.environment(), materials, lobe_stride, r.order, r.tolerance);
@@ -138,7 +140,7 @@ double PixelBatch::reflected(std::span<const Pixel> pixels, std::uint32_t shadow
     for (const Rgb& radiance : hits_.radiance) {
         sum += glm::dot(glm::abs(radiance), Rgb(1.0F / 3));
     }
-    return sum / static_cast<double>(pixels.size());
+    return sum;
 }
 
 void PixelBatch::add_reflected(std::span<const Pixel> pixels, const SampleRange& samples) {

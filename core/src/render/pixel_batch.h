@@ -55,8 +55,9 @@ struct PixelSums {
 
 /// Everything that the batches of one picture share and only read.
 struct Picture {
+    /// Throws RenderCancelled once it is to end.
     Picture(const CompiledScene& s, const Camera& c, int w, int h, const RenderSettings& r,
-            std::vector<glm::dvec2> points, std::uint32_t preview_points);
+            std::vector<glm::dvec2> points, std::uint32_t preview_points, const Stopped& stopped);
 
     /// Camera rays that a batch should hold. Under many lights fewer: what each light adds is kept until all are known.
     std::uint32_t batch_samples() const;
@@ -87,7 +88,7 @@ class PixelBatch {
 
     /// Adds these rays of each pixel to its sums.
     void add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums);
-    /// Mean brightness of what surfaces reflect in these pixels, by their first camera ray.
+    /// Brightness of what surfaces reflect in these pixels, by their first camera ray, summed up.
     double reflected(std::span<const Pixel> pixels, std::uint32_t shadow_rays);
     RenderReport report() const;
 

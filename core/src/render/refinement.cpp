@@ -86,10 +86,12 @@ void Refinement::set_mean(std::span<const float> image) {
     least_square_ = 0.01 * average * average;
 }
 
-std::vector<RefinementGroup> Refinement::next_round(std::span<const float> image, int threads) {
+std::vector<RefinementGroup> Refinement::next_round(std::span<const float> image, int threads,
+                                                    const Progress& progress) {
     set_mean(image);
     std::vector<Row> rows(static_cast<std::size_t>(height_));
-    parallel_for(rows.size(), threads, [&](std::size_t row) { rows[row] = next_of(static_cast<int>(row), image); });
+    parallel_for(
+        rows.size(), threads, [&](std::size_t row) { rows[row] = next_of(static_cast<int>(row), image); }, progress);
     std::vector<RefinementGroup> groups;
     double errors = 0;
     rays_left_ = 0;

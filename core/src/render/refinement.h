@@ -34,8 +34,9 @@ class Refinement {
     /// Merges the rays that take a pixel to a level into its mean, alpha and variance. Other pixels may be merged at
     /// the same time.
     void merge(const Pixel& pixel, int level, const PixelSums& sums, std::span<float> image);
-    /// What needs more rays, the fewest first; empty: nothing. threads: as RenderSettings.
-    std::vector<RefinementGroup> next_round(std::span<const float> image, int threads);
+    /// What needs more rays, the fewest first; empty: nothing. threads: as RenderSettings; throws RenderCancelled when
+    /// progress returns false.
+    std::vector<RefinementGroup> next_round(std::span<const float> image, int threads, const Progress& progress);
     /// Of the picture when next_round was called: see RenderReport::noise.
     double noise() const { return noise_; }
     /// Likewise: camera rays that are left until every pixel has enough, as far as that is known.

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +31,8 @@ constexpr double kWidestFilter = 100;
 constexpr double kShareOfMean = 0.5;
 constexpr int kPilotStep = 8;
 constexpr int kMostPilotPixels = 16;
+/// Of these, so many at a time.
+constexpr std::size_t kPilotBatch = 32;
 
 /// The same for every level but that of the preview, or the most even ones where there is one level.
 std::vector<glm::dvec2> pixel_points(const Refinement& refinement) {
@@ -42,7 +46,7 @@ std::vector<glm::dvec2> pixel_points(const Refinement& refinement) {
 
 /// How wrong a pixel may be by one light. The errors of many lights have no common sign, so that those of n add up to
 /// √n of them.
-double light_error(const Picture& picture, std::uint32_t shadow_rays) {
+double light_error(const Picture& picture, std::uint32_t shadow_rays, const Progress& progress) {
     std::vector<Pixel> grid;
     const int step = std::max({kPilotStep, picture.width / kMostPilotPixels, picture.height / kMostPilotPixels});
     for (int row = std::min(step, picture.height) / 2; row < picture.height; row += step) {
@@ -50,9 +54,16 @@ double light_error(const Picture& picture, std::uint32_t shadow_rays) {
             grid.push_back({column, row});
         }
     }
-    const double sum = kShareOfMean * PixelBatch(picture).reflected(grid, shadow_rays);
+    std::vector<double> sums((grid.size() + kPilotBatch - 1) / kPilotBatch);
+    const auto add_up = [&](std::size_t i) {
+        const std::size_t first = i * kPilotBatch;
+        const std::size_t size = std::min(kPilotBatch, grid.size() - first);
+        sums[i] = PixelBatch(picture).reflected(std::span(grid).subspan(first, size), shadow_rays);
+    };
+    parallel_for(sums.size(), picture.settings.threads, add_up, progress);
+    const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) / static_cast<double>(grid.size());
     const double count = static_cast<double>(std::max<std::size_t>(picture.lights.size(), 1));
-    return picture.settings.tolerance * sum / std::sqrt(count);
+    return picture.settings.tolerance * kShareOfMean * mean / std::sqrt(count);
 }
 
 void check_range(const char* name, std::int64_t value, std::int64_t least, std::int64_t most) {
@@ -102,11 +113,17 @@ RenderReport render(const CompiledScene& scene, const Camera& camera, int width,
     check_render(settings, width, height);
     check_size("image", image.size(), 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     Refinement refinement(width, height, settings.sampling);
-    Picture picture(scene, camera, width, height, settings, pixel_points(refinement), refinement.has_preview() ? 1 : 0);
-    picture.light_error =
-        light_error(picture, std::min(static_cast<std::uint32_t>(settings.shadow_rays), kLeastShadowRays));
+    const Progress waiting = watch.progress ? [&](double) { return watch.progress(0); } : Progress();
+    std::optional<Picture> picture;
+    const auto prepare = [&](const Stopped& stopped) {
+        picture.emplace(scene, camera, width, height, settings, pixel_points(refinement),
+                        refinement.has_preview() ? 1 : 0, stopped);
+    };
+    run_watched(settings.threads, prepare, waiting);
+    picture->light_error =
+        light_error(*picture, std::min(static_cast<std::uint32_t>(settings.shadow_rays), kLeastShadowRays), waiting);
     std::fill(image.begin(), image.end(), 0.0F);
-    Passes passes(picture, std::move(refinement), image, watch);
+    Passes passes(*picture, std::move(refinement), image, watch);
     passes.run();
     return passes.report();
 }

@@ -93,7 +93,7 @@ class CompiledScene::Impl {
         add_emissive_faces(traced, first_placement);
     }
 
-    void build() {
+    void build(const Stopped& stopped) {
         const auto first_delta =
             std::stable_partition(lights.begin(), lights.end(), [](const Light& light) { return !is_delta(light); });
         extended_light_count = static_cast<std::size_t>(first_delta - lights.begin());
@@ -105,7 +105,7 @@ class CompiledScene::Impl {
         for (const Placement& placement : placed.placements()) {
             instances.push_back({placement.mesh, placement.baked, placement.to_world});
         }
-        rays = std::make_unique<const SceneRays>(geometries, instances, transparency);
+        rays = std::make_unique<const SceneRays>(geometries, instances, transparency, stopped);
         seen_lamps = CameraVisibleLamps(lights);
     }
 
@@ -322,15 +322,19 @@ void Scene::check_size() const {
     }
 }
 
-std::shared_ptr<const CompiledScene> Scene::compile(int threads) const {
+std::shared_ptr<const CompiledScene> Scene::compile(int threads, const Progress& progress) const {
     check_size();
     auto impl = std::make_unique<CompiledScene::Impl>(lamps_, environment_, environment_visible_);
-    for (const auto& mesh : meshes_) {
-        if (!mesh->triangles.empty() && !mesh->transforms.empty()) {
-            impl->add(mesh);
+    const auto build = [&](const Stopped& stopped) {
+        for (const auto& mesh : meshes_) {
+            end_if(stopped);
+            if (!mesh->triangles.empty() && !mesh->transforms.empty()) {
+                impl->add(mesh);
+            }
         }
-    }
-    run_in_arena(threads, [&] { impl->build(); });
+        impl->build(stopped);
+    };
+    run_watched(threads, build, progress);
     return std::shared_ptr<const CompiledScene>(new CompiledScene(std::move(impl)));
 }
 

@@ -33,6 +33,8 @@ void throw_on_error(RTCDevice device) {
             return;
         case RTC_ERROR_OUT_OF_MEMORY:
             throw std::bad_alloc();
+        case RTC_ERROR_CANCELLED:
+            throw RenderCancelled();
         default:
             throw std::runtime_error("Embree failed to build the scene");
     }
@@ -81,11 +83,24 @@ EmbreeScene new_scene(RTCDevice device) {
     return scene;
 }
 
+void build(RTCDevice device, RTCScene scene, const Stopped& stopped) {
+    const auto goes_on = [](void* asked, double) { return !(*static_cast<const Stopped*>(asked))(); };
+    if (stopped) {
+        Stopped asked = stopped;
+        rtcSetSceneProgressMonitorFunction(scene, goes_on, &asked);
+        rtcJoinCommitScene(scene);
+        rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+    } else {
+        rtcJoinCommitScene(scene);
+    }
+    throw_on_error(device);
+}
+
 }  // namespace
 
 class RayTracer::Impl {
   public:
-    Impl(std::span<const TracedGeometry> geometries, std::span<const TracedInstance> instances)
+    Impl(std::span<const TracedGeometry> geometries, std::span<const TracedInstance> instances, const Stopped& stopped)
         : device_(rtcNewDevice(nullptr)) {
         if (!device_) {
             throw std::runtime_error("Embree cannot be started: error " +
@@ -94,6 +109,7 @@ class RayTracer::Impl {
         scene_ = new_scene(device_.get());
         std::vector<EmbreeScene> shared(geometries.size());
         for (std::size_t i = 0; i < instances.size(); ++i) {
+            end_if(stopped);
             const TracedInstance& instance = instances[i];
             const TracedGeometry& source = geometries[instance.geometry];
             Geometry geometry;
@@ -104,14 +120,13 @@ class RayTracer::Impl {
                 if (!instanced) {
                     instanced = new_scene(device_.get());
                     rtcAttachGeometry(instanced.get(), triangle_geometry(device_.get(), source).get());
-                    rtcJoinCommitScene(instanced.get());
+                    build(device_.get(), instanced.get(), stopped);
                 }
                 geometry = instance_geometry(device_.get(), instanced.get(), instance.to_world);
             }
             rtcAttachGeometryByID(scene_.get(), geometry.get(), static_cast<unsigned>(i));
         }
-        rtcJoinCommitScene(scene_.get());
-        throw_on_error(device_.get());
+        build(device_.get(), scene_.get(), stopped);
     }
 
     RTCScene scene() const { return scene_.get(); }
@@ -121,8 +136,9 @@ class RayTracer::Impl {
     EmbreeScene scene_;
 };
 
-RayTracer::RayTracer(std::span<const TracedGeometry> geometries, std::span<const TracedInstance> instances)
-    : impl_(std::make_unique<const Impl>(geometries, instances)) {}
+RayTracer::RayTracer(std::span<const TracedGeometry> geometries, std::span<const TracedInstance> instances,
+                     const Stopped& stopped)
+    : impl_(std::make_unique<const Impl>(geometries, instances, stopped)) {}
 
 RayTracer::~RayTracer() = default;
 

@@ -19,7 +19,8 @@ constexpr float kPassedOn = 1 + 0x1p-20F;
 class SceneRays::Part {
   public:
     static std::unique_ptr<const Part> make(std::span<const SceneGeometry> geometries,
-                                            std::span<const TracedInstance> instances, bool transparent) {
+                                            std::span<const TracedInstance> instances, bool transparent,
+                                            const Stopped& stopped) {
         auto part = std::make_unique<Part>();
         std::vector<std::vector<Triangle>> chosen(geometries.size());
         std::vector<TracedGeometry> traced;
@@ -41,7 +42,7 @@ class SceneRays::Part {
         part->renumbered_ = placed.size() != instances.size() ||
                             std::any_of(part->triangles_.begin(), part->triangles_.end(),
                                         [](const std::vector<std::uint32_t>& numbers) { return !numbers.empty(); });
-        part->tracer_ = std::make_unique<const RayTracer>(traced, placed);
+        part->tracer_ = std::make_unique<const RayTracer>(traced, placed, stopped);
         return part;
     }
 
@@ -81,9 +82,9 @@ class SceneRays::Part {
 };
 
 SceneRays::SceneRays(std::span<const SceneGeometry> geometries, std::span<const TracedInstance> instances,
-                     const SurfaceTransparency& transparency)
-    : opaque_(Part::make(geometries, instances, false)),
-      transparent_(Part::make(geometries, instances, true)),
+                     const SurfaceTransparency& transparency, const Stopped& stopped)
+    : opaque_(Part::make(geometries, instances, false, stopped)),
+      transparent_(Part::make(geometries, instances, true, stopped)),
       transparency_(&transparency) {}
 
 SceneRays::~SceneRays() = default;
