@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import shlight
-from shlight_blender.export import ExportError, export_scene
-from shlight_blender.report import Effect, ExportReport
+from shlight_blender.export import ExportError, export_scene, scene
+from shlight_blender.report import Effect, ExportCancelled, ExportReport
 
 
 def export() -> Any:
@@ -23,6 +23,21 @@ def export() -> Any:
 def messages() -> list[str]:
     """Lines of the export's report."""
     return export().report.lines(most=99)
+
+
+def test_the_export_asks_between_objects_whether_it_goes_on(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And again before it hands over each mesh."""
+    monkeypatch.setattr(scene, "ASKING_SECONDS", 0.0)
+    studio.still_life()
+    studio.camera()
+    asked: list[str] = []
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    export_scene(depsgraph, waiting=lambda text: asked.append(text) is None)
+    assert len(asked) > len(list(depsgraph.object_instances))
+    for last in range(len(asked)):
+        answers = iter([True] * last + [False])
+        with pytest.raises(ExportCancelled):
+            export_scene(depsgraph, waiting=lambda text, answers=answers: next(answers))
 
 
 # --- meshes

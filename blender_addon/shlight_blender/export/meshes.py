@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
@@ -155,10 +155,11 @@ class MeshCollector:
         counts = {self._names[key]: surface.shader.operation_count for key, surface in self._surfaces.items()}
         return {name: count for name, count in counts.items() if name and count > 0}
 
-    def hand_over(self, scene: shlight.Scene) -> bool:
-        """Adds everything to `scene`; True if some of it emits light."""
+    def hand_over(self, scene: shlight.Scene, ask: Callable[[], None]) -> bool:
+        """Adds everything to `scene`, and calls `ask` before each mesh; True if some of it emits light."""
         emits = False
         for use in self._uses.values():
+            ask()
             if use is not None:
                 emits |= self._add_mesh(scene, use)
         return emits

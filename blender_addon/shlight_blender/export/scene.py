@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,7 +12,7 @@ import numpy as np
 import shlight
 
 from ..frame import Frame, frame_of
-from ..report import Effect, ExportError, ExportReport
+from ..report import Effect, ExportCancelled, ExportError, ExportReport
 from .bake import Waiting
 from .camera import set_camera
 from .expressions import Surroundings
@@ -19,6 +21,8 @@ from .lights import add_lamp
 from .meshes import MeshCollector
 from .settings import report_unsupported_settings
 from .world import add_world
+
+ASKING_SECONDS = 0.05  # between questions whether the export is to go on
 
 # Types of objects that have a surface or volume which is not exported. Curves, texts, surfaces and metaballs are not
 # among them: the depsgraph gives their meshes as instances of their own.
@@ -60,7 +64,7 @@ def export_scene(
         the viewport shows: an object hidden there is missing, and modifiers have their viewport settings.
     frame: the picture and its part to render; None: resolution and render border of `scene.render`.
     camera: the camera object; None: the scene's.
-    waiting: called with what is being done while a world is baked; False stops it.
+    waiting: called with what is being done, a few times a second; False stops it.
     Raises ExportError if there is no camera or one that is not supported, and ExportCancelled if `waiting` stopped it.
     A scene without light is black, and the report says so.
     """
@@ -78,11 +82,25 @@ def export_scene(
     report_unsupported_settings(blender_scene, depsgraph.view_layer_eval, report)
     lit = add_world(scene, blender_scene, depsgraph.view_layer_eval, report, waiting)
     meshes = MeshCollector(report, Surroundings(view, depsgraph), depsgraph.view_layer_eval.material_override)
-    lit |= _add_objects(scene, depsgraph, meshes, report)
+    lit |= _add_objects(scene, depsgraph, meshes, report, _asking(waiting))
     for path in TEXTURES.unreadable:
         report.add(f"File '{path}'", "it cannot be read; magenta is used in the place of its picture", Effect.THING)
     dark = "" if lit else _report_darkness(blender_scene, report)
     return ExportedScene(scene, report, dark, meshes.operations(), TEXTURES.size_in_bytes)
+
+
+def _asking(waiting: Waiting | None) -> Callable[[], None]:
+    """To be called between objects: raises ExportCancelled if the export is to stop."""
+    last = time.monotonic()
+
+    def ask() -> None:
+        nonlocal last
+        if waiting is not None and (now := time.monotonic()) - last >= ASKING_SECONDS:
+            last = now
+            if not waiting("Exporting the scene"):
+                raise ExportCancelled
+
+    return ask
 
 
 def _report_darkness(blender_scene: Any, report: ExportReport) -> str:
@@ -94,10 +112,13 @@ def _report_darkness(blender_scene: Any, report: ExportReport) -> str:
     return f"{place}: {text}"
 
 
-def _add_objects(scene: shlight.Scene, depsgraph: Any, meshes: MeshCollector, report: ExportReport) -> bool:
+def _add_objects(
+    scene: shlight.Scene, depsgraph: Any, meshes: MeshCollector, report: ExportReport, ask: Callable[[], None]
+) -> bool:
     """Adds all meshes and lamps; True if something gives light."""
     lit = False
     for instance in depsgraph.object_instances:
+        ask()
         seen = instance.object
         if not instance.show_self or (seen.hide_render and not instance.is_instance):
             continue
@@ -112,7 +133,7 @@ def _add_objects(scene: shlight.Scene, depsgraph: Any, meshes: MeshCollector, re
         elif seen.type in UNSUPPORTED_TYPES:
             text = f"{UNSUPPORTED_TYPES[seen.type]} are not supported; left out"
             report.add(f"Object '{seen.name}'", text, Effect.THING)
-    return meshes.hand_over(scene) or lit
+    return meshes.hand_over(scene, ask) or lit
 
 
 def _report_object(seen: Any, instancer: Any, report: ExportReport) -> None:
