@@ -10,6 +10,7 @@ import pytest
 
 import shlight
 from shlight import nodes
+from shlight.nodes import energy
 
 STRIPS = np.linspace(0.05, 1.0, 6)
 
@@ -144,3 +145,8 @@ def test_numbers_of_a_picture_keep_their_type(kind: type[np.generic]) -> None:
 def test_bad_arguments_are_named(call: Any, named: str) -> None:
     with pytest.raises(ValueError, match=named):
         call()
+
+
+def test_kept_energies_are_what_computing_them_gives() -> None:
+    for name, compute in energy.TABLES.items():
+        np.testing.assert_allclose(energy.tables()[name].values, compute(), rtol=1e-6, atol=1e-7)

@@ -3,11 +3,15 @@
 
 Cycles layers and brightens its lobes by tables of these sizes, between whose entries it interpolates linearly; so do
 these, which are integrated over an even grid of visible normals (Heitz 2018) instead of drawn at random.
+
+That takes a second or two, which the first picture with a Principled BSDF would wait for: `energy.npz` keeps them as
+running this file writes them.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,6 +21,8 @@ from shlight.nodes.program import Table
 from shlight.nodes.values import Number, Value, clamp, number, operation, sqrt
 
 Array = NDArray[np.float64]
+
+KEPT = Path(__file__).with_name("energy.npz")
 
 LEAST = 1e-4  # of roughness, cosine and parameter of the index
 LARGEST_PARAMETER = 0.99
@@ -73,18 +79,16 @@ def _dielectric(cosine: Array, ior: Array) -> Array:
     return np.asarray(0.5 * a * a * (1.0 + b * b))
 
 
-@lru_cache(maxsize=1)
-def albedo_table() -> Table:
+def albedo_table() -> Array:
     """What a lobe without Fresnel's factor reflects, over cosine (rows) and roughness."""
-    return Table([[_reflected(r, c)[2].mean() for r in _steps(32)] for c in _steps(32)])
+    return np.array([[_reflected(r, c)[2].mean() for r in _steps(32)] for c in _steps(32)])
 
 
-@lru_cache(maxsize=1)
-def mean_albedo_table() -> Table:
+def mean_albedo_table() -> Array:
     """The same over all views, weighted by their cosine."""
     nodes, weights = np.polynomial.legendre.leggauss(24)
     cosines, weights = 0.5 * (nodes + 1.0), 0.5 * weights
-    return Table(
+    return np.array(
         [
             sum(2.0 * w * c * _reflected(r, c)[2].mean() for c, w in zip(cosines, weights, strict=True))
             for r in _steps(32)
@@ -92,8 +96,7 @@ def mean_albedo_table() -> Table:
     )
 
 
-@lru_cache(maxsize=1)
-def rise_table() -> Table:
+def rise_table() -> Array:
     """How far Fresnel's curve has risen from its value head-on to 1, on average over the microfacets that are seen.
 
     Over the parameter of the index (outermost), cosine and roughness.
@@ -108,21 +111,35 @@ def rise_table() -> Table:
             head_on = (root**2)[:, None]
             rise = (_dielectric(along[None], ior[:, None]) - head_on) / (1.0 - head_on)
             values[:, row, column] = (np.clip(rise, 0.0, 1.0) * up).mean(axis=1)
-    return Table(values)
+    return values
+
+
+TABLES = {"albedo": albedo_table, "mean_albedo": mean_albedo_table, "rise": rise_table}
+
+
+@lru_cache(maxsize=1)
+def tables() -> dict[str, Table]:
+    """All of them by name, as they are kept."""
+    with np.load(KEPT) as kept:
+        return {name: Table(kept[name]) for name in TABLES}
 
 
 def albedo(roughness: Number, cosine: Number) -> Value:
     """What a GGX lobe without Fresnel's factor reflects to a view."""
-    return operation("table2", roughness, cosine, data=albedo_table())
+    return operation("table2", roughness, cosine, data=tables()["albedo"])
 
 
 def mean_albedo(roughness: Number) -> Value:
     """The same of all views."""
-    return operation("table1", roughness, data=mean_albedo_table())
+    return operation("table1", roughness, data=tables()["mean_albedo"])
 
 
 def rise(roughness: Number, cosine: Number, ior: Number) -> Value:
     """How far Fresnel's curve has risen, see `rise_table`."""
     index = number(ior)
     parameter = sqrt(abs((index - 1.0) / (index + 1.0)))
-    return operation("table3", roughness, cosine, clamp(parameter), data=rise_table())
+    return operation("table3", roughness, cosine, clamp(parameter), data=tables()["rise"])
+
+
+if __name__ == "__main__":
+    np.savez(KEPT, **{name: compute().astype(np.float32) for name, compute in TABLES.items()})
