@@ -106,6 +106,7 @@ def walk():
         print(f"step {len(plan)}: {name}", flush=True)
     try:
         with bpy.context.temp_override(window=window()):
+            ask_to_write()
             STEP[name][1]()
     except (AttributeError, RuntimeError) as error:
         if any(refusal in str(error) for refusal in ("in this context", "in this state", "in readonly state")):
@@ -116,6 +117,12 @@ def walk():
     refused = 0
     plan.pop(0)
     return chance.choice([0.02, 0.1, 0.5]) if plan else None
+
+
+def ask_to_write():
+    """Fails where no script may write: add-ons and scripts that are disabled or reloaded then are left half-done."""
+    scene = window().scene
+    scene.frame_end = scene.frame_end
 
 
 def wait_to_write():
