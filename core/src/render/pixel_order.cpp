@@ -102,10 +102,9 @@ std::vector<RefinementGroup> most_urgent(std::span<const RefinementGroup> groups
     }
     std::stable_sort(blocks.begin(), blocks.end(),
                      [](const Block* a, const Block* b) { return a->gain * b->rays > b->gain * a->rays; });
-    std::vector<RefinementGroup> urgent(groups.begin(), groups.end());
-    for (RefinementGroup& group : urgent) {
-        group.pixels.clear();
-        group.gains.clear();
+    std::vector<RefinementGroup> urgent;
+    for (const RefinementGroup& group : groups) {
+        urgent.push_back({group.from, group.to, group.calm, group.rays, {}, {}});
     }
     double gained = 0;
     double taken = 0;
