@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <numbers>
 
-#include "environment/environment_map.h"
 #include "lobes/rotated_lobe.h"
+#include "lobes/turned_lobes.h"
 #include "lobes/view_grid.h"
+#include "shlight/basis.h"
 
 namespace shlight {
 namespace {
@@ -91,7 +93,8 @@ EnvironmentShading::EnvironmentShading(const Environment& environment, std::span
       materials_(materials),
       lobe_stride_(lobe_stride),
       order_(order),
-      tolerance_(tolerance) {
+      tolerance_(tolerance),
+      spots_(environment.map() != nullptr ? environment.map()->spots : std::vector<BrightSpot>()) {
     if (environment.map() == nullptr) {
         return;
     }
@@ -167,25 +170,9 @@ class EnvironmentShading::Point {
     Point(const EnvironmentMap& map, const ShadingFrame& frame, double cos_theta_o)
         : map_(&map),
           to_map_(map.to_map(frame.x), map.to_map(frame.y), map.to_map(frame.z)),
-          view_(std::sqrt(1 - cos_theta_o * cos_theta_o), 0, cos_theta_o),
-          turned_(to_map_) {}
+          view_(std::sqrt(1 - cos_theta_o * cos_theta_o), 0, cos_theta_o) {}
 
-    /// Without the spots.
-    Rgb by_harmonics(const ShProjection& lobe, int order) {
-        const float* turned = turned_.coefficients(lobe, static_cast<float>(view_.z), order);
-        return RotatedLobe::reflected(map_->coefficients.channels, turned, order);
-    }
-
-    Rgb spots(const LobeShape& shape) const {
-        Rgb sum(0);
-        for (const BrightSpot& spot : map_->spots) {
-            const Vec3d direction = spot.direction * to_map_;
-            if (direction.z > 0) {
-                sum += static_cast<float>(lobe_value(shape, direction, view_)) * spot.irradiance;
-            }
-        }
-        return sum;
-    }
+    const glm::dmat3& to_map() const { return to_map_; }
 
     /// The mean of what the directions show of the remainder, weighed with f·cos over their density.
     Rgb by_directions(const LobeShape& shape, bool with_spots) const {
@@ -213,7 +200,97 @@ class EnvironmentShading::Point {
     const EnvironmentMap* map_;
     glm::dmat3 to_map_;  // from the shading frame
     Vec3d view_;
-    RotatedLobe turned_;
+};
+
+/// Zonal lobes whose harmonics are held at a time: as many as fit the cache.
+constexpr std::size_t kZonalAtOnce = 64;
+
+/// Sums of harmonics that are wanted for a list of values.
+class EnvironmentShading::Harmonics {
+  public:
+    explicit Harmonics(const ColorHarmonics& light) : light_(&light) {}
+
+    /// Adds share times what a lobe reflects to value. All stay where they are until `finish`.
+    void add(const ShProjection& lobe, float cos_theta_o, const glm::dmat3& to_light, int order, float share,
+             Rgb& value) {
+        (lobe.is_zonal() ? zonal_ : turned_).push_back({&lobe, cos_theta_o, to_light, order, share, &value});
+    }
+
+    void finish() {
+        for (std::span<Wanted> rest = zonal_; !rest.empty();) {
+            const auto alike = [&, first = rest[0]](const Wanted& own) {
+                return own.lobe == first.lobe && own.order == first.order;
+            };
+            const auto others = std::stable_partition(rest.begin(), rest.end(), alike);
+            const auto count = static_cast<std::size_t>(others - rest.begin());
+            add_zonal(rest.first(count));
+            rest = rest.subspan(count);
+        }
+        add_turned();
+    }
+
+  private:
+    struct Wanted {
+        const ShProjection* lobe;
+        float cos_theta_o;
+        glm::dmat3 to_light;
+        int order;
+        float share;
+        Rgb* value;
+    };
+
+    /// Of one lobe and order. An expansion about an axis is the sum of P_l(ω·axis) = 4π/(2l+1) Σ_m Y_lm(axis) Y_lm(ω).
+    void add_zonal(std::span<const Wanted> some) {
+        const int order = some[0].order;
+        std::array<float, kCosineMax> terms;
+        some[0].lobe->coefficients(some[0].cos_theta_o, order, terms.data());
+        ColorHarmonics reflected = *light_;
+        for (int l = 0; l < order; ++l) {
+            const float factor =
+                terms[at(l, 0)] * std::sqrt(4 * std::numbers::pi_v<float> / static_cast<float>(2 * l + 1));
+            for (std::vector<float>& channel : reflected) {
+                std::for_each_n(&channel[static_cast<std::size_t>(l * l)], 2 * l + 1, [&](float& c) { c *= factor; });
+            }
+        }
+        const auto size = static_cast<std::size_t>(coefficient_count(order));
+        for (std::size_t first = 0; first < some.size(); first += kZonalAtOnce) {
+            const auto own = some.subspan(first, std::min(kZonalAtOnce, some.size() - first));
+            normals_.clear();
+            std::transform(own.begin(), own.end(), std::back_inserter(normals_),
+                           [](const Wanted& wanted) { return Vec3f(wanted.to_light[2]); });
+            basis_.resize(size * own.size());
+            sh_basis(std::span<const Vec3f>(normals_), order, std::span(basis_));
+            for (std::size_t i = 0; i < own.size(); ++i) {
+                *own[i].value += own[i].share * RotatedLobe::reflected(reflected, &basis_[i * size], order);
+            }
+        }
+    }
+
+    /// Those of similar orders at once: bands that only others have add nothing to a lobe.
+    void add_turned() {
+        std::stable_sort(turned_.begin(), turned_.end(),
+                         [](const Wanted& a, const Wanted& b) { return a.order < b.order; });
+        for (std::size_t first = 0; first < turned_.size(); first += kTurnedLanes) {
+            const auto some = std::span(turned_).subspan(first, std::min(kTurnedLanes, turned_.size() - first));
+            lobes_.clear();
+            for (std::size_t i = 0; i < kTurnedLanes; ++i) {
+                const Wanted& own = some[std::min(i, some.size() - 1)];
+                TurnedLobe& lobe = lobes_.emplace_back(TurnedLobe{{}, BandRotation(own.to_light)});
+                own.lobe->coefficients(own.cos_theta_o, own.order, lobe.terms.data());
+            }
+            std::array<Rgb, kTurnedLanes> reflected;
+            reflect_turned(lobes_, some.back().order, *light_, reflected);
+            for (std::size_t i = 0; i < some.size(); ++i) {
+                *some[i].value += some[i].share * reflected[i];
+            }
+        }
+    }
+
+    const ColorHarmonics* light_;
+    std::vector<Wanted> zonal_, turned_;
+    std::vector<TurnedLobe> lobes_;
+    std::vector<Vec3f> normals_;
+    std::vector<float> basis_;
 };
 
 void EnvironmentShading::shade(const ShadingPoints& points, std::vector<DirectLightParts>& values,
@@ -241,40 +318,57 @@ void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<D
     }
 }
 
-void EnvironmentShading::shade_map(const ShadingPoints& points, std::span<DirectLightParts> values,
-                                   RenderReport& report) const {
+template <class Function>
+void EnvironmentShading::for_each_lobe(const ShadingPoints& points, std::span<DirectLightParts> values,
+                                       const Function& function) const {
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const std::uint32_t material = points.material[i];
-        const double cosine = points.cos_theta_o[i];
-        Point point(*environment_->map(), points.frame[i], cosine);
-        for (std::size_t lobe = 0; lobe < materials_[material].lobes().size(); ++lobe) {
-            const float width = points.widths(i)[lobe];
-            const LobeShape shape = materials_[material].shape(lobe, width);
-            const auto albedo = static_cast<float>(albedo_of(materials_[material], lobe, width, cosine));
-            DirectLightParts& value = values[lobe * points.size() + i];
-            if (is_mirror(shape)) {
-                value.smooth = albedo * point.mirrored();
-                report.mirror_count += points.hit_count(i);
-                continue;
-            }
-            const PlanMix mix = plans(material, lobe, width);
-            const Choice choice = choose(mix, cosine);
-            value.smooth = (1 - mix.share) * point.by_harmonics(*mix.plans[0]->lobe, choice.order);
-            if (mix.share > 0) {
-                value.smooth += mix.share * point.by_harmonics(*mix.plans[1]->lobe, choice.order);
-            }
-            if (!sees_texels(shape)) {
-                value.spots = point.spots(shape);
-            }
-            if (choice.directions) {
-                value.smooth += albedo * point.by_directions(shape, sees_texels(shape));
-            }
-            value.smooth = glm::max(value.smooth, Rgb(0));
-            (choice.directions ? report.cubature_count : report.order_counts[static_cast<std::size_t>(choice.order)]) +=
-                points.hit_count(i);
-            report.over_tolerance += choice.met ? 0 : points.hit_count(i);
+        const Point point(*environment_->map(), points.frame[i], points.cos_theta_o[i]);
+        for (std::size_t lobe = 0; lobe < materials_[points.material[i]].lobes().size(); ++lobe) {
+            function(i, lobe, point, values[lobe * points.size() + i]);
         }
     }
+}
+
+void EnvironmentShading::shade_map(const ShadingPoints& points, std::span<DirectLightParts> values,
+                                   RenderReport& report) const {
+    const EnvironmentMap& map = *environment_->map();
+    Harmonics harmonics(map.coefficients.channels);
+    for_each_lobe(points, values, [&](std::size_t i, std::size_t lobe, const Point& point, DirectLightParts& value) {
+        const std::uint32_t material = points.material[i];
+        const float width = points.widths(i)[lobe];
+        if (is_mirror(materials_[material].shape(lobe, width))) return;
+        const float cosine = points.cos_theta_o[i];
+        const PlanMix mix = plans(material, lobe, width);
+        const int order = choose(mix, cosine).order;
+        harmonics.add(*mix.plans[0]->lobe, cosine, point.to_map(), order, 1 - mix.share, value.smooth);
+        if (mix.share > 0) {
+            harmonics.add(*mix.plans[1]->lobe, cosine, point.to_map(), order, mix.share, value.smooth);
+        }
+    });
+    harmonics.finish();
+    for_each_lobe(points, values, [&](std::size_t i, std::size_t lobe, const Point& point, DirectLightParts& value) {
+        const std::uint32_t material = points.material[i];
+        const float width = points.widths(i)[lobe];
+        const LobeShape shape = materials_[material].shape(lobe, width);
+        const double cosine = points.cos_theta_o[i];
+        const auto albedo = static_cast<float>(albedo_of(materials_[material], lobe, width, cosine));
+        if (is_mirror(shape)) {
+            value.smooth = albedo * point.mirrored();
+            report.mirror_count += points.hit_count(i);
+            return;
+        }
+        const Choice choice = choose(plans(material, lobe, width), cosine);
+        if (!sees_texels(shape)) {
+            value.spots = spots_.reflected(shape, cosine, point.to_map());
+        }
+        if (choice.directions) {
+            value.smooth += albedo * point.by_directions(shape, sees_texels(shape));
+        }
+        value.smooth = glm::max(value.smooth, Rgb(0));
+        (choice.directions ? report.cubature_count : report.order_counts[static_cast<std::size_t>(choice.order)]) +=
+            points.hit_count(i);
+        report.over_tolerance += choice.met ? 0 : points.hit_count(i);
+    });
 }
 
 }  // namespace shlight

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "environment/bright_spots.h"
 #include "lobes/material_lobes.h"
 #include "lobes/sh_projection.h"
 #include "shading/shading_points.h"
@@ -61,6 +62,7 @@ class EnvironmentShading {
         float share;           // of the second
     };
     class Point;
+    class Harmonics;
 
     Plan plan(const LobeShape& shape) const;
     /// Whether spots, too, have an extent beside the lobe.
@@ -68,6 +70,9 @@ class EnvironmentShading {
     PlanMix plans(std::size_t material, std::size_t lobe, float width) const;
     void shade_constant(const ShadingPoints& points, std::span<DirectLightParts> values, RenderReport& report) const;
     void shade_map(const ShadingPoints& points, std::span<DirectLightParts> values, RenderReport& report) const;
+    /// function(point, lobe, Point, value)
+    template <class Function>
+    void for_each_lobe(const ShadingPoints& points, std::span<DirectLightParts> values, const Function& function) const;
     static Choice choose(const Plan& plan, double cos_theta_o);
     static Choice choose(const PlanMix& mix, double cos_theta_o);
 
@@ -76,6 +81,7 @@ class EnvironmentShading {
     std::size_t lobe_stride_;
     int order_;
     double tolerance_;
+    BrightSpots spots_;
     std::vector<std::vector<Plan>> plans_;  // of each material's lobes; empty without a picture
     std::vector<std::vector<std::unique_ptr<const WidthPlans>>> width_plans_;  // likewise; null: the width is the same
 };

@@ -180,18 +180,19 @@ void BandRotation::Turn::apply(int l, float* band) const {
 }
 
 BandRotation::BandRotation(const glm::dmat3& rotation) {
+    auto& [first, second, third] = turns_;
     const Vec3d& z = rotation[2];
     const double sine = std::hypot(z.x, z.y);
-    second_.set(z.z, sine);
+    second.set(z.z, sine);
     // Near the poles the outer angles are only known together.
     if (sine > 1e-9) {
-        first_.set(-rotation[0].z / sine, rotation[1].z / sine);
-        third_.set(z.x / sine, z.y / sine);
+        first.set(-rotation[0].z / sine, rotation[1].z / sine);
+        third.set(z.x / sine, z.y / sine);
     } else {
         const Vec3d& y = rotation[1];
         const double length = std::hypot(y.x, y.y);
-        first_.set(1, 0);
-        third_.set(y.y / length, -y.x / length);
+        first.set(1, 0);
+        third.set(y.y / length, -y.x / length);
     }
 }
 
@@ -200,11 +201,11 @@ void BandRotation::apply(int order, float* coefficients) const {
     std::array<float, 2 * kMaxOrder> turned;
     for (int l = 1; l < order; ++l) {
         float* band = coefficients + l * l;
-        first_.apply(l, band);
+        turns_[0].apply(l, band);
         quarter.apply(l, band, turned.data());
-        second_.apply(l, turned.data());
+        turns_[1].apply(l, turned.data());
         quarter.apply_inverse(l, turned.data(), band);
-        third_.apply(l, band);
+        turns_[2].apply(l, band);
     }
 }
 

@@ -27,15 +27,17 @@ class QuarterTurn {
     /// The opposite turn.
     void apply_inverse(int l, const float* in, float* out) const;
 
+    /// Degrees of one symmetry that go to degrees of another, and the matrix between them. Degree m is number l + m.
+    struct Block {
+        std::vector<int> from, to;
+        std::vector<float> columns;  ///< of each degree of `from`, to.size() numbers
+        std::vector<float> rows;     ///< the same, transposed
+    };
+    const std::array<Block, 4>& blocks(int l) const { return bands_[static_cast<std::size_t>(l)]; }
+
   private:
     QuarterTurn();
 
-    /// Degrees of one symmetry that go to degrees of another, and the matrix between them.
-    struct Block {
-        std::vector<int> from, to;
-        std::vector<float> columns;  // of each degree of `from`, to.size() numbers
-        std::vector<float> rows;     // the same, transposed
-    };
     std::vector<std::array<Block, 4>> bands_;
 };
 
@@ -48,14 +50,17 @@ class BandRotation {
     /// coefficients: order² of f, replaced by those of g(ω) = f(rotation⁻¹ ω).
     void apply(int order, float* coefficients) const;
 
-  private:
     /// cos mφ, sin mφ.
     struct Turn {
         std::array<float, kMaxOrder> cosines, sines;
         void set(double cosine, double sine);
         void apply(int l, float* band) const;
     };
-    Turn first_, second_, third_;
+    /// About z, about y, about z.
+    const std::array<Turn, 3>& turns() const { return turns_; }
+
+  private:
+    std::array<Turn, 3> turns_;
 };
 
 }  // namespace shlight
