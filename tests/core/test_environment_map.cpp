@@ -11,9 +11,11 @@
 #include <gtest/gtest.h>
 
 #include "environment/environment_map.h"
+#include "environment/map_lookup.h"
 #include "error_message.h"
 #include "lobes/lobe_moments.h"
 #include "lobes/sh_projection.h"
+#include "lobes/turned_lobes.h"
 #include "math/band_rotation.h"
 #include "render_scenes.h"
 #include "shlight/basis.h"
@@ -162,6 +164,35 @@ TEST(BandRotation, MovesAFunctionAsItsArgument) {
     }
 }
 
+TEST(TurnedLobes, ReflectAsEachTurnedByItself) {
+    std::mt19937 random(10);
+    std::normal_distribution<float> normal;
+    ColorHarmonics light;
+    for (std::vector<float>& channel : light) {
+        channel.resize(4096);
+        std::generate(channel.begin(), channel.end(), [&] { return normal(random) / 64; });
+    }
+    const auto lobe = sh_projection(GgxShape{0.25});
+    for (const int order : {1, 2, 7, 40, 64}) {
+        std::vector<TurnedLobe> lobes;
+        std::vector<Rgb> expected;
+        for (std::size_t i = 0; i < 2 * kTurnedLanes; ++i) {
+            const glm::dmat3 frame =
+                i == 3 ? glm::dmat3(1)
+                       : rotation_about({normal(random), normal(random), normal(random)}, 0.3 * double(i));
+            const float cosine = 1 - 0.03F * static_cast<float>(i);
+            lobe->coefficients(cosine, order, lobes.emplace_back(TurnedLobe{{}, BandRotation(frame)}).terms.data());
+            RotatedLobe alone(frame);
+            expected.push_back(RotatedLobe::reflected(light, alone.coefficients(*lobe, cosine, order), order));
+        }
+        std::vector<Rgb> reflected(lobes.size());
+        reflect_turned(lobes, order, light, reflected);
+        for (std::size_t i = 0; i < lobes.size(); ++i) {
+            EXPECT_LE(glm::length(reflected[i] - expected[i]), 2e-6) << order << " " << i;
+        }
+    }
+}
+
 // --- lobes
 
 TEST(ShProjection, IsTheLobesMoments) {
@@ -201,6 +232,40 @@ TEST(RadianceSampler, DrawsAsItsDensitySays) {
         sum += g(d) / sampler.density(d) / kSteps / kSteps;
     }
     EXPECT_NEAR(sum, sphere_integral(400, g), 0.05);
+}
+
+TEST(MapLookup, IsThePicturesRadianceAndItsSamplersDensity) {
+    std::mt19937 random(12);
+    std::normal_distribution<double> normal;
+    for (const auto& [width, height] : {std::pair(48, 24), {1, 3}, {2, 1}}) {
+        LatLong source = random_picture(width, height, 5);
+        source.pixels[1] = Rgb(2000, 900, 400);
+        const EnvironmentMap map(source);
+        constexpr std::size_t kCount = 5 * kLookupLanes;
+        std::array<std::vector<float>, 10> v;
+        v.fill(std::vector<float>(kCount));
+        std::vector<Vec3d> directions(kCount);
+        for (std::size_t i = 0; i < kCount; ++i) {
+            directions[i] = glm::normalize(Vec3d(normal(random), normal(random), normal(random)));
+            for (int axis = 0; axis < 3; ++axis) {
+                v[static_cast<std::size_t>(axis)][i] = static_cast<float>(directions[i][axis]);
+            }
+        }
+        look_up(map, {v[0].data(), v[1].data(), v[2].data()}, kCount - 3,
+                {{v[3].data(), v[4].data(), v[5].data()}, {v[6].data(), v[7].data(), v[8].data()}, v[9].data()});
+        for (std::size_t i = 0; i + 3 < kCount; ++i) {
+            const Rgb smooth = map.smooth.radiance(directions[i]);
+            const Rgb whole = map.picture.radiance(directions[i]);
+            for (std::size_t c = 0; c < 3; ++c) {
+                const auto channel = static_cast<int>(c);
+                EXPECT_NEAR(v[3 + c][i], smooth[channel], 2e-5 * (whole[channel] + 20)) << width << " " << i;
+                EXPECT_NEAR(v[3 + c][i] + v[6 + c][i], whole[channel], 2e-5 * (whole[channel] + 20))
+                    << width << " " << i;
+            }
+            const double density = map.sampler.density(directions[i]);
+            EXPECT_NEAR(v[9][i], density, 1e-4 * density) << width << " " << i;
+        }
+    }
 }
 
 // --- reflection

@@ -36,8 +36,6 @@ class Environment {
     bool is_black() const;
     /// From a direction: a unit vector of the world frame that points away from the scene.
     Rgb radiance(const Vec3d& direction) const;
-    /// The same without a picture's bright spots, see environment_map.h.
-    Rgb smooth_radiance(const Vec3d& direction) const;
     /// The picture; null where one radiance comes from everywhere.
     const struct EnvironmentMap* map() const { return map_.get(); }
 

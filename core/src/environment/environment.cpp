@@ -82,8 +82,4 @@ Rgb Environment::radiance(const Vec3d& direction) const {
     return map_ ? map_->picture.radiance(map_->to_map(direction)) : constant_;
 }
 
-Rgb Environment::smooth_radiance(const Vec3d& direction) const {
-    return map_ ? map_->smooth.radiance(map_->to_map(direction)) : constant_;
-}
-
 }  // namespace shlight

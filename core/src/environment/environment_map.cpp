@@ -123,8 +123,10 @@ RadianceSampler::RadianceSampler(std::span<const Rgb> pixels, int width, int hei
         all += sum * (latitudes_[i] - latitudes_[i + 1]);
         rows_.push_back(all);
     }
-    for (double& row : rows_) {
-        row /= all;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        rows_[i] /= all;
+        const double solid_angle = (latitudes_[i] - latitudes_[i + 1]) * 2 * pi / width;  // of a cell
+        row_densities_.push_back(static_cast<float>((rows_[i] - (i > 0 ? rows_[i - 1] : 0.0)) / solid_angle));
     }
 }
 
@@ -148,10 +150,8 @@ double RadianceSampler::density(const Vec3d& direction) const {
     const glm::dvec2 place = texel_of(direction, width_, height_);
     const int row = std::clamp(static_cast<int>(std::floor(place.y + 0.5)), 0, height_);
     const int column = (static_cast<int>(std::floor(place.x - 0.5)) + width_) % width_;
-    const auto i = static_cast<std::size_t>(row);
-    const double in_row = rows_[i] - (row > 0 ? rows_[i - 1] : 0.0);
     const double in_cell = cells_[cell(column, row)] - (column > 0 ? cells_[cell(column - 1, row)] : 0.0F);
-    return in_row * in_cell / ((latitudes_[i] - latitudes_[i + 1]) * 2 * pi / width_);
+    return double{row_densities_[static_cast<std::size_t>(row)]} * in_cell;
 }
 
 SplitPicture without_spots(std::span<const Rgb> pixels, int width, int height) {

@@ -36,6 +36,9 @@ class RadiancePyramid {
     Rgb radiance(const Vec3d& direction) const { return level_radiance(0, direction); }
     /// Blurred over about this solid angle.
     Rgb radiance(const Vec3d& direction, double solid_angle) const;
+    int width() const { return levels_[0].width; }
+    int height() const { return levels_[0].height; }
+    const Rgb* pixels() const { return levels_[0].pixels.data(); }
 
   private:
     struct Level {
@@ -57,16 +60,21 @@ class RadianceSampler {
     Vec3d sample(const glm::dvec2& point) const;
     /// Per solid angle.
     double density(const Vec3d& direction) const;
+    /// height + 1 rows: how densely one draws if all of its cells have the same share.
+    const float* row_densities() const { return row_densities_.data(); }
+    /// (height + 1) × width: the share of the cells of a row up to each one, it included.
+    const float* cells() const { return cells_.data(); }
 
   private:
     std::size_t cell(int column, int row) const {
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
     }
 
-    int width_, height_;             // of the picture: width_ cells in a row, height_ + 1 rows
-    std::vector<double> rows_;       // share of all rows up to each one, it included
-    std::vector<float> cells_;       // the same of the cells of a row
+    int width_, height_;        // of the picture: width_ cells in a row, height_ + 1 rows
+    std::vector<double> rows_;  // share of all rows up to each one, it included
+    std::vector<float> cells_;
     std::vector<double> latitudes_;  // cosθ where each row of cells begins, and the last one ends
+    std::vector<float> row_densities_;
 };
 
 /// A bright texel's light beyond the limit.

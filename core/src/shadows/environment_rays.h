@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Shadow rays from the hits of a pixel to the environment: spread as a diffuse surface reflects, as each glossy lobe
-// does, and, where the environment is a picture, as its luminance.
+// Shadow rays from hits to the environment: spread as a diffuse surface reflects, as each glossy lobe does, and, where
+// the environment is a picture, as its luminance. Those of many pixels are drawn before they are traced, so that
+// Embree's packets are full, and only those of pixels where something was met are weighed.
 //
 // All sets serve all lobes, weighted by the balance heuristic (Veach & Guibas 1995): a ray of direction ω that any of
 // the sets could have drawn counts f·cos L / Σ p_set, with p_set the density of a set; all have equally many rays. A
@@ -9,7 +10,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,6 +17,7 @@
 #include "shadows/ray_sums.h"
 #include "shadows/shadow_policy.h"
 #include "shlight/environment.h"
+#include "shlight/sampling.h"
 #include "tracing/hits.h"
 #include "tracing/shadow_tracer.h"
 
@@ -33,14 +34,20 @@ class EnvironmentRays {
     EnvironmentRays(const ShadowTracer& tracer, const Environment& environment,
                     std::span<const MaterialLobes> materials);
 
-    /// lit: the hits; phase.rays_per_hit: of each set; seed: of the pixel, whose phases differ in nothing else.
-    void trace(const Hits& hits, std::span<const std::size_t> lit, const RayPhase& phase, std::uint32_t seed);
+    /// Forgets all rays. hits and lit, some of them, stay as they are until the next call.
+    void start(const Hits& hits, std::span<const std::size_t> lit);
+    /// Draws the rays of a phase from a pixel's lit hits. phase.rays_per_hit: of each set; seed: of the pixel, whose
+    /// phases differ in nothing else.
+    void draw(const LitRange& pixel, const RayPhase& phase, std::uint32_t seed);
+    /// All that were drawn since the last call.
+    void trace();
 
-    /// Whether nothing was met since the last first phase.
-    bool all_free() const;
-    /// Of all phases; lit_index: of the hit; split: or else all is in Sums::smooth.
-    Sums sum(const Hits& hits, std::span<const std::size_t> lit, std::size_t lit_index, std::size_t lobe,
-             bool split) const;
+    /// Whether the rays of the first phase of a pixel have met nothing.
+    bool all_free(const LitRange& pixel) const;
+    /// To be called before the sums of these pixels, of whose rays no more will be drawn.
+    void weigh(std::span<const LitRange> pixels);
+    /// Of all phases; split: or else all is in Sums::smooth.
+    Sums sum(std::size_t lit_index, std::size_t lobe, bool split) const;
     std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
@@ -49,27 +56,49 @@ class EnvironmentRays {
         std::vector<std::size_t> lobes;  // whose directions they have
         bool mirror = false;
     };
-    /// The rays of a hit in one phase.
+    /// The rays of a hit in one phase: that of a mirror is the last.
     struct Run {
-        std::size_t begin, end;
-        std::optional<std::size_t> mirror;
+        std::size_t begin = 0, mirror = 0, end = 0;
+    };
+    /// Radiance ÷ density: without spots, of spots.
+    struct Weight {
+        Rgb smooth, spots;
+    };
+    /// A ray that is weighed.
+    struct Asked {
+        std::size_t ray;
+        Vec3f direction;     // in the frame of the picture
+        float lobe_density;  // of all sets but the picture's
+        bool mirror;
     };
     class Directions;
 
-    Run draw(const Hits& hits, std::size_t hit, const RayPhase& phase, std::uint32_t seed);
+    /// Valid until the next call.
+    Directions directions_from(std::size_t hit);
+    void draw_hit(std::size_t lit_index, const RayPhase& phase);
+    void weigh_map(const struct EnvironmentMap& map);
+    Run& run(std::size_t lit_index, bool first_phase) { return runs_[2 * lit_index + (first_phase ? 0 : 1)]; }
+    const Run& run(std::size_t lit_index, bool first_phase) const {
+        return runs_[2 * lit_index + (first_phase ? 0 : 1)];
+    }
 
     const ShadowTracer* tracer_;
     const Environment* environment_;
     std::span<const MaterialLobes> lobes_;
     std::vector<Sets> materials_;
+    std::size_t set_stride_ = 1;  // sets of rays of any hit
     std::uint64_t rays_traced_ = 0;
 
-    std::vector<LobeShape> shapes_;  // of a hit's sets
-    std::vector<Ray> rays_;          // of the phase
-    std::vector<Vec3f> directions_;
-    std::vector<Rgb> weights_, spot_weights_;  // radiance ÷ density: without spots, of spots
-    std::vector<Rgb> visible_;
-    std::vector<Run> runs_;  // phases × lit hits
+    const Hits* hits_ = nullptr;  // of the call of start()
+    std::span<const std::size_t> lit_;
+    std::vector<Run> runs_;                 // lit hits × 2 phases
+    std::vector<SobolSequence> sequences_;  // of a pixel, by set
+    std::vector<LobeShape> shapes_;         // of a hit's sets
+    std::vector<Vec3f> directions_;         // in the shading frame
+    std::vector<Ray> rays_;                 // the last of those drawn, which are not traced yet
+    std::vector<Rgb> visible_;              // of those traced
+    std::vector<Weight> weights_;           // of those weighed
+    std::vector<Asked> asked_;
 };
 
 }  // namespace shlight

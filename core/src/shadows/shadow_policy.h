@@ -42,6 +42,15 @@ inline float rays_by_share(float own, float all, const SampleRange& samples) {
     return kRaysByShare * static_cast<float>(samples.calm ? 1 : samples.shadow_rays) * own / all;
 }
 
+/// Those of some lit hits that belong to a pixel: begin … end - 1.
+struct LitRange {
+    std::size_t begin, end;
+    std::size_t size() const { return end - begin; }
+};
+
+/// Hits whose rays are traced together: so few that all about them stays in the cache.
+inline constexpr std::size_t kHitsAtOnce = 128;
+
 /// Part of a light's shadow rays: which of the pixel's points they take.
 struct RayPhase {
     bool first;                  ///< forgets the rays before it; the second adds to them

@@ -56,12 +56,6 @@ struct LitHits {
     std::vector<std::uint8_t> shines;  ///< hit.size() × lobe_stride: whether the lobe reflects any of it
 };
 
-/// Those of LitHits that belong to a pixel: begin … end - 1.
-struct LitRange {
-    std::size_t begin, end;
-    std::size_t size() const { return end - begin; }
-};
-
 /// Keeps its memory from light to light; one per thread.
 class ShadowRays {
   public:

@@ -30,8 +30,15 @@ void ShadowedEnvironment::add(const EnvironmentShading& shading, const SampleRan
     point_count_ = point_count;
     point_of_hit_ = point_of_hit;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
-        add_pixel(pixel_seeds[pixel], pixel, hits);
+        const LitRange range = find_lit(hits, pixel);
+        if (range.size() > 0) {
+            pixels_.push_back({range, pixel, pixel_seeds[pixel]});
+        }
+        if (lit_.size() >= kHitsAtOnce) {
+            shade_lit(hits);
+        }
     }
+    shade_lit(hits);
 }
 
 DirectLightParts ShadowedEnvironment::unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const {
@@ -40,60 +47,79 @@ DirectLightParts ShadowedEnvironment::unblocked(const Hits& hits, std::size_t hi
     return {weight * parts.smooth, weight * parts.spots};
 }
 
-void ShadowedEnvironment::add_pixel(std::uint32_t seed, std::size_t pixel, Hits& hits) {
-    lit_.clear();
-    std::size_t lobe_count = 0;
+LitRange ShadowedEnvironment::find_lit(const Hits& hits, std::size_t pixel) {
+    const std::size_t begin = lit_.size();
     for (std::size_t hit = hits.pixel_begin[pixel]; hit < hits.pixel_begin[pixel + 1]; ++hit) {
-        const std::size_t lobes = materials_[hits.material[hit]].lobes().size();
-        if (lobes > 0) {
+        if (!materials_[hits.material[hit]].lobes().empty()) {
             lit_.push_back(hit);
-            lobe_count = std::max(lobe_count, lobes);
         }
     }
-    if (lit_.empty()) {
-        return;
-    }
-    if (samples_.shadow_rays > 0 && find_obstacles(seed, hits)) {
-        hits.obstructed[pixel] = 1;
-        deviation_.assign(lit_.size(), Rgb(0));
-        for (std::size_t lobe = 0; lobe < lobe_count; ++lobe) {
-            shade_lobe(lobe, hits);
-        }
-        for (std::size_t i = 0; i < lit_.size(); ++i) {
-            hits.noise[lit_[i]] += deviation_[i] * deviation_[i];
-        }
-        return;
-    }
-    for (const std::size_t hit : lit_) {
-        for (std::size_t lobe = 0; lobe < materials_[hits.material[hit]].lobes().size(); ++lobe) {
-            const DirectLightParts whole = unblocked(hits, hit, lobe);
-            hits.radiance[hit] += whole.smooth + whole.spots;
-        }
-    }
+    return {begin, lit_.size()};
 }
 
-/// Traces the pixel's rays; false: nothing is in their way.
-bool ShadowedEnvironment::find_obstacles(std::uint32_t seed, const Hits& hits) {
+void ShadowedEnvironment::shade_lit(Hits& hits) {
     const RayPhase first = first_phase(samples_);
-    rays_.trace(hits, lit_, first, seed);
-    if (rays_.all_free()) {
-        return false;
+    const bool shadows = samples_.shadow_rays > 0;
+    rays_.start(hits, lit_);
+    for (const LitPixel& pixel : shadows ? std::span(pixels_) : std::span<const LitPixel>()) {
+        rays_.draw(pixel.range, first, pixel.seed);
     }
-    // Where all were blocked too: a window may be smaller than any light is.
-    rays_.trace(hits, lit_, second_phase(samples_, first), seed);
-    return true;
+    rays_.trace();
+    partly_.clear();
+    for (const LitPixel& pixel : pixels_) {
+        if (!shadows || rays_.all_free(pixel.range)) {
+            shade_unblocked(pixel.range, hits);
+            continue;
+        }
+        // Where all were blocked too: a window may be smaller than any light is.
+        hits.obstructed[pixel.pixel] = 1;
+        rays_.draw(pixel.range, second_phase(samples_, first), pixel.seed);
+        partly_.push_back(pixel.range);
+    }
+    rays_.trace();
+    rays_.weigh(partly_);
+    for (const LitRange& pixel : partly_) {
+        shade(pixel, hits);
+    }
+    pixels_.clear();
+    lit_.clear();
 }
 
-void ShadowedEnvironment::shade_lobe(std::size_t lobe, Hits& hits) {
-    const auto material_of = [&](std::size_t i) -> std::size_t { return hits.material[lit_[i]]; };
+void ShadowedEnvironment::shade_unblocked(const LitRange& pixel, Hits& hits) const {
+    for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
+        for (std::size_t lobe = 0; lobe < materials_[hits.material[lit_[i]]].lobes().size(); ++lobe) {
+            const DirectLightParts whole = unblocked(hits, lit_[i], lobe);
+            hits.radiance[lit_[i]] += whole.smooth + whole.spots;
+        }
+    }
+}
+
+void ShadowedEnvironment::shade(const LitRange& pixel, Hits& hits) {
+    std::size_t lobe_count = 0;
+    for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
+        lobe_count = std::max(lobe_count, materials_[hits.material[lit_[i]]].lobes().size());
+    }
+    deviation_.assign(pixel.size(), Rgb(0));
+    for (std::size_t lobe = 0; lobe < lobe_count; ++lobe) {
+        shade_lobe(pixel, lobe, hits);
+    }
+    for (std::size_t i = 0; i < pixel.size(); ++i) {
+        hits.noise[lit_[pixel.begin + i]] += deviation_[i] * deviation_[i];
+    }
+}
+
+void ShadowedEnvironment::shade_lobe(const LitRange& pixel, std::size_t lobe, Hits& hits) {
+    const auto lit_hits = std::span(lit_).subspan(pixel.begin, pixel.size());
+    const auto material_of = [&](std::size_t i) -> std::size_t { return hits.material[lit_hits[i]]; };
     const auto has_lobe = [&](std::size_t i) { return lobe < materials_[material_of(i)].lobes().size(); };
-    hit_sums_.assign(lit_.size(), {});
+    hit_sums_.assign(lit_hits.size(), {});
     material_sums_.clear();
-    for (std::size_t i = 0; i < lit_.size(); ++i) {
+    for (std::size_t i = 0; i < lit_hits.size(); ++i) {
         if (has_lobe(i)) {
-            hit_sums_[i] =
-                rays_.sum(hits, lit_, i, lobe, shading_->splits(material_of(i), lobe, hits.widths(lit_[i])[lobe]));
-            const Vec3d weight(hits.weight(lit_[i], lobe));
+            const std::size_t hit = lit_hits[i];
+            const bool split = shading_->splits(material_of(i), lobe, hits.widths(hit)[lobe]);
+            hit_sums_[i] = rays_.sum(pixel.begin + i, lobe, split);
+            const Vec3d weight(hits.weight(hit, lobe));
             hit_sums_[i].smooth *= weight;
             hit_sums_[i].spots *= weight;
             EnvironmentRays::Sums& sums = sums_of(material_of(i)).sums;
@@ -106,9 +132,9 @@ void ShadowedEnvironment::shade_lobe(std::size_t lobe, Hits& hits) {
         // Spots that no ray has met are taken to be as hidden as the rest.
         material.kept_spots = kept_share(material.sums.spots, material.kept_smooth);
     }
-    for (std::size_t i = 0; i < lit_.size(); ++i) {
+    for (std::size_t i = 0; i < lit_hits.size(); ++i) {
         if (has_lobe(i)) {
-            shade_hit(i, lobe, sums_of(material_of(i)), hits);
+            deviation_[i] += shade_hit(lit_hits[i], lobe, hit_sums_[i], sums_of(material_of(i)), hits);
         }
     }
 }
@@ -119,19 +145,17 @@ ShadowedEnvironment::MaterialSums& ShadowedEnvironment::sums_of(std::size_t mate
     return known != material_sums_.end() ? *known : material_sums_.emplace_back(MaterialSums{material, {}, {}, {}});
 }
 
-void ShadowedEnvironment::shade_hit(std::size_t lit_index, std::size_t lobe, const MaterialSums& of_material,
-                                    Hits& hits) {
-    const std::size_t hit = lit_[lit_index];
+Rgb ShadowedEnvironment::shade_hit(std::size_t hit, std::size_t lobe, const EnvironmentRays::Sums& of_hit,
+                                   const MaterialSums& of_material, Hits& hits) const {
     const DirectLightParts whole = unblocked(hits, hit, lobe);
-    const EnvironmentRays::Sums& of_hit = hit_sums_[lit_index];
-    if (is_mirror(lobe_of(hit, lobe, hits).shape)) {
+    if (is_mirror(materials_[hits.material[hit]].lobes()[lobe].shape)) {
         // One ray, that is all of its light.
         hits.radiance[hit] += whole.smooth * Rgb(quotient(of_hit.smooth.seen, of_hit.smooth.all));
-        return;
+        return Rgb(0);
     }
     hits.radiance[hit] += seen_part(whole.smooth, of_hit.smooth, of_material.kept_smooth);
     hits.radiance[hit] += seen_part(whole.spots, of_hit.spots, of_material.kept_spots);
-    deviation_[lit_index] += deviation(whole.smooth, of_hit.smooth) + deviation(whole.spots, of_hit.spots);
+    return deviation(whole.smooth, of_hit.smooth) + deviation(whole.spots, of_hit.spots);
 }
 
 Rgb ShadowedEnvironment::seen_part(const Rgb& unblocked, const RaySums& of_hit, const Vec3d& kept) const {

@@ -41,16 +41,25 @@ class ShadowedEnvironment {
         Vec3d kept_smooth, kept_spots;  // see kept_share
     };
 
-    void add_pixel(std::uint32_t seed, std::size_t pixel, Hits& hits);
-    bool find_obstacles(std::uint32_t seed, const Hits& hits);
-    const Lobe& lobe_of(std::size_t hit, std::size_t lobe, const Hits& hits) const {
-        return materials_[hits.material[hit]].lobes()[lobe];
-    }
+    /// A pixel's lit hits.
+    struct LitPixel {
+        LitRange range;
+        std::size_t pixel;
+        std::uint32_t seed;
+    };
+
+    LitRange find_lit(const Hits& hits, std::size_t pixel);
+    /// Adds the environment to all that find_lit has found.
+    void shade_lit(Hits& hits);
+    void shade_unblocked(const LitRange& pixel, Hits& hits) const;
+    void shade(const LitRange& pixel, Hits& hits);
     /// The values of one lobe at a hit.
     DirectLightParts unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const;
-    void shade_lobe(std::size_t lobe, Hits& hits);
+    void shade_lobe(const LitRange& pixel, std::size_t lobe, Hits& hits);
     MaterialSums& sums_of(std::size_t material);
-    void shade_hit(std::size_t lit_index, std::size_t lobe, const MaterialSums& of_material, Hits& hits);
+    /// Returns how far it may be off.
+    Rgb shade_hit(std::size_t hit, std::size_t lobe, const EnvironmentRays::Sums& of_hit,
+                  const MaterialSums& of_material, Hits& hits) const;
     Rgb seen_part(const Rgb& unblocked, const RaySums& of_hit, const Vec3d& kept) const;
 
     std::span<const MaterialLobes> materials_;
@@ -61,10 +70,12 @@ class ShadowedEnvironment {
     std::span<const DirectLightParts> unshadowed_;
     std::size_t point_count_ = 0;
     std::span<const std::uint32_t> point_of_hit_;
-    std::vector<std::size_t> lit_;                 // hits of the pixel
-    std::vector<EnvironmentRays::Sums> hit_sums_;  // of one lobe, by lit hit
+    std::vector<std::size_t> lit_;                 // hits of some pixels
+    std::vector<LitPixel> pixels_;                 // these
+    std::vector<LitRange> partly_;                 // those of them in whose way something is
+    std::vector<EnvironmentRays::Sums> hit_sums_;  // of one lobe, by lit hit of a pixel
     std::vector<MaterialSums> material_sums_;      // likewise
-    std::vector<Rgb> deviation_;                   // by lit hit, from its few rays
+    std::vector<Rgb> deviation_;                   // by lit hit of a pixel, from its few rays
 };
 
 }  // namespace shlight

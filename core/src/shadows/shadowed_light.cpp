@@ -7,13 +7,6 @@
 #include "shlight/sampling.h"
 
 namespace shlight {
-namespace {
-
-/// Hits whose rays are traced together: so few that all about them stays in the cache.
-constexpr std::size_t kHitsAtOnce = 128;
-
-}  // namespace
-
 ShadowedLight::ShadowedLight(const ShadowTracer& tracer, std::span<const MaterialLobes> materials,
                              std::size_t lobe_stride)
     : materials_(materials),

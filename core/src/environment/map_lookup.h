@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+//
+// What a picture of all directions shows in many of them: in lanes, one for each direction.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "environment/environment_map.h"
+
+namespace shlight {
+
+/// More values than asked for are read and written, less than one more than this.
+inline constexpr std::size_t kLookupLanes = 16;
+
+/// Unit vectors of the picture's own frame.
+struct MapDirections {
+    const float *x, *y, *z;
+};
+
+struct MapValues {
+    std::array<float*, 3> smooth;  ///< radiance without the spots, see EnvironmentMap
+    std::array<float*, 3> spots;   ///< what these add
+    float* density;                ///< of EnvironmentMap::sampler
+};
+
+void look_up(const EnvironmentMap& map, const MapDirections& directions, std::size_t count, const MapValues& values);
+
+}  // namespace shlight
