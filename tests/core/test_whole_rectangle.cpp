@@ -71,6 +71,9 @@ TEST(WholeRectangle, PointsAreThoseOfTheSequenceAndWeighTheSolidAngle) {
                 ASSERT_LE(std::abs(place.z - height), 1e-5 * height);
                 ASSERT_LE(std::abs(place.x), width / 2 + 1e-5 * height);
                 ASSERT_LE(std::abs(place.y), depth / 2 + 1e-5 * height);
+                const LightSample one = seen->sample(frame, {points.u[p], points.v[p]});
+                ASSERT_LE(glm::length(one.distance * one.direction - place), 1e-5 * height);
+                ASSERT_LE(std::abs(one.weight - points.weight[p]), 1e-5 * one.weight);
                 sum += points.weight[p];
             }
             // So many points of a smooth function; far less than by chance.

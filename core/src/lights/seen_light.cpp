@@ -292,7 +292,6 @@ bool SeenLight::look(const Light& light, const ShadingFrame& frame, double error
     cap_.reset();
     corners_.clear();
     is_part_ = false;
-    profile_ = ProfileView();
     bool seen = false;
     if (const auto* polygon = std::get_if<PolygonLight>(&light)) {
         seen = look_at(*polygon);
@@ -304,9 +303,7 @@ bool SeenLight::look(const Light& light, const ShadingFrame& frame, double error
         cap_ = cap_view(light, frame);
         seen = cap_.has_value();
     }
-    if (seen) {
-        profile_ = ProfileView(light, frame);
-    }
+    profile_ = seen ? ProfileView(light, frame) : ProfileView();
     return seen && profile_.range().high > 0;
 }
 

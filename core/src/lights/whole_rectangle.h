@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "base/shading_frame.h"
+#include "math/light_sample.h"
 #include "shlight/light.h"
 #include "shlight/sampling.h"
 #include "shlight/types.h"
@@ -20,6 +21,9 @@ namespace shlight {
 struct WholeRectangle {
     /// Nothing for any other light, or where it is not seen whole. error: see SurfacePoint.
     static std::optional<WholeRectangle> see(const Light& light, const ShadingFrame& frame, double error);
+
+    /// One point, in the shading frame; as place_points() has it.
+    LightSample sample(const ShadingFrame& frame, const glm::dvec2& point) const;
 
     Vec3f corner;          ///< the way to it
     Vec3f along, across;   ///< its edges

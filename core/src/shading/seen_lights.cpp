@@ -26,6 +26,7 @@ void SeenLights::clear() {
     cap_numbers_.clear();
     vertices_.clear();
     polygons_.clear();
+    disks_.clear();
     numbers_.clear();
 }
 
@@ -77,13 +78,15 @@ void SeenLights::look_at(const MeshLight& light, const ShadingFrame& frame, doub
 void SeenLights::add_polygon(std::size_t first, std::uint32_t number, bool filled_up) {
     const std::size_t count = vertices_.size() - first;
     const std::size_t size = filled_up ? (count + kSizeStep - 1) / kSizeStep * kSizeStep : count;
-    polygons_.push_back({std::nullopt, first, count, static_cast<std::uint32_t>(size), number});
+    polygons_.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count),
+                         static_cast<std::uint32_t>(size), number});
 }
 
 void SeenLights::add_disk(const Ellipse<double>& disk, std::uint32_t number) {
     const SphericalEllipse<double> ellipse(disk, true);
     if (!ellipse.empty()) {
-        polygons_.push_back({ellipse, 0, 0, 0, number});
+        polygons_.push_back({static_cast<std::uint32_t>(disks_.size()), 0, 0, number});
+        disks_.push_back(ellipse);
     }
 }
 
@@ -146,12 +149,13 @@ void SeenLights::find_circles() {
 
 std::uint32_t SeenLights::size_of(const Polygon& polygon, const LobeViews& lobe, std::span<const std::uint32_t> view_of,
                                   double tolerance) const {
-    if (!polygon.disk) {
+    if (polygon.count > 0) {
         return polygon.size;
     }
     const std::uint32_t view = view_of[polygon.number];
     const double width = narrowest(lobe.shape(view), lobe.positions().cosine()[view]);
-    return static_cast<std::uint32_t>(disk_polygon_size(*polygon.disk, width, std::min(tolerance, kDiskTolerance)));
+    return static_cast<std::uint32_t>(
+        disk_polygon_size(disks_[polygon.first], width, std::min(tolerance, kDiskTolerance)));
 }
 
 void SeenLights::sort(const LobeViews& lobe, std::span<const std::uint32_t> view_of, double tolerance) {
@@ -161,8 +165,10 @@ void SeenLights::sort(const LobeViews& lobe, std::span<const std::uint32_t> view
     }
     order_.resize(polygons_.size());
     std::iota(order_.begin(), order_.end(), 0U);
-    std::stable_sort(order_.begin(), order_.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return sizes_[a] < sizes_[b]; });
+    if (!std::is_sorted(sizes_.begin(), sizes_.end())) {
+        std::stable_sort(order_.begin(), order_.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return sizes_[a] < sizes_[b]; });
+    }
 }
 
 std::size_t SeenLights::gather(std::size_t first) {
@@ -171,18 +177,26 @@ std::size_t SeenLights::gather(std::size_t first) {
     numbers_.clear();
     for (; first < order_.size() && sizes_[order_[first]] == size; ++first) {
         const Polygon& polygon = polygons_[order_[first]];
-        corners_.clear();
-        if (polygon.disk) {
-            append_disk_polygon(*polygon.disk, static_cast<int>(size), corners_);
+        if (polygon.count == size) {
+            gathered_.append(&vertices_[polygon.first], 1);
         } else {
-            const auto from = vertices_.begin() + static_cast<std::ptrdiff_t>(polygon.first);
-            corners_.assign(from, from + static_cast<std::ptrdiff_t>(polygon.count));
-            corners_.resize(size, corners_.back());
+            append_filled_up(polygon, size);
         }
-        gathered_.append(corners_.data(), 1);
         numbers_.push_back(polygon.number);
     }
     return first;
+}
+
+void SeenLights::append_filled_up(const Polygon& polygon, std::uint32_t size) {
+    corners_.clear();
+    if (polygon.count == 0) {
+        append_disk_polygon(disks_[polygon.first], static_cast<int>(size), corners_);
+    } else {
+        const auto from = vertices_.begin() + polygon.first;
+        corners_.assign(from, from + polygon.count);
+        corners_.resize(size, corners_.back());
+    }
+    gathered_.append(corners_.data(), 1);
 }
 
 std::span<const std::uint32_t> SeenLights::views(std::span<const std::uint32_t> numbers,

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -70,9 +69,8 @@ class SeenLights {
   private:
     /// A polygon, or a disk for which one of a size that depends on the lobe will stand.
     struct Polygon {
-        std::optional<SphericalEllipse<double>> disk;
-        std::size_t first, count;  // of vertices_, if it is none
-        std::uint32_t size;        // likewise: the last vertex is repeated up to this number
+        std::uint32_t first, count;  // of vertices_; count is 0 for a disk, and first of disks_
+        std::uint32_t size;          // of a polygon: the last vertex is repeated up to this number
         std::uint32_t number;
     };
 
@@ -90,6 +88,7 @@ class SeenLights {
     /// Puts the polygons from this one in the order of sizes on, as far as they have as many vertices, into gathered_
     /// and numbers_; returns the next one.
     std::size_t gather(std::size_t first);
+    void append_filled_up(const Polygon& polygon, std::uint32_t size);
     std::span<const std::uint32_t> views(std::span<const std::uint32_t> numbers,
                                          std::span<const std::uint32_t> view_of);
 
@@ -106,6 +105,7 @@ class SeenLights {
     MeshView mesh_view_;
     std::vector<Vec3d> vertices_;
     std::vector<Polygon> polygons_;
+    std::vector<SphericalEllipse<double>> disks_;
     std::vector<std::uint32_t> sizes_, order_;
     PolygonBatch gathered_;
     std::vector<std::uint32_t> numbers_;  // of gathered_

@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "lights/whole_rectangle.h"
 #include "shadows/ray_start.h"
 
 namespace shlight {
@@ -126,21 +127,26 @@ void DimLights::gather_points(std::size_t pixel, const LightRadiance& unshadowed
 
 void DimLights::ask_hit(const Light& light, const LightRadiance& unshadowed, std::size_t hit, const glm::dvec2& place,
                         double density, const Hits& hits) {
-    if (!seen_.look(light, hits.frame[hit], hits.error[hit])) {
-        return;
+    const MaterialLobes& material = materials_[hits.material[hit]];
+    const bool mirrors = std::any_of(material.lobes().begin(), material.lobes().end(),
+                                     [](const Lobe& lobe) { return is_mirror(lobe.shape); });
+    const auto rectangle = mirrors ? std::nullopt : WholeRectangle::see(light, hits.frame[hit], hits.error[hit]);
+    if (!rectangle) {
+        if (!seen_.look(light, hits.frame[hit], hits.error[hit])) {
+            return;
+        }
+        sampler_.reset(seen_);
     }
-    sampler_.reset(seen_);
     const RayStart start(hits.frame[hit], hits.shadow_origin[hit], clearance(light, hits.frame[hit]));
     const auto ask = [&](const Rgb& value, const Vec3d& direction, double distance) {
         if (value != Rgb(0)) {
             rays_.ask(value, start.towards(direction, distance));
         }
     };
-    const LightSample sample = sampler_.sample(place);
+    const LightSample sample = rectangle ? rectangle->sample(hits.frame[hit], place) : sampler_.sample(place);
     const Vec3d view = hits.view(hit);
-    const double weight = sample.weight * seen_.profile().factor(sample.direction);
+    const double weight = rectangle ? sample.weight : sample.weight * seen_.profile().factor(sample.direction);
     const Rgb strength = unshadowed.strength / static_cast<float>(density);
-    const MaterialLobes& material = materials_[hits.material[hit]];
     Rgb value(0);
     for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
         const std::size_t i = lobe * points_->size() + points_->of_hit[hit];
