@@ -19,11 +19,9 @@ std::uint32_t hash(std::uint32_t a, std::uint32_t b);
 /// of area 2^-k. Coordinates lie strictly between 0 and 1.
 glm::dvec2 sobol(std::uint32_t index, std::uint32_t seed);
 
-/// Another index in place of each, another order for each seed: aligned blocks of 2^k indices stay together. Sequences
-/// of different seeds become unrelated even where both are taken in the order of their indices.
-std::uint32_t shuffled(std::uint32_t index, std::uint32_t seed);
-
-/// A sequence of Sobol points in an order of its own: sobol(shuffled(index, seed), seed).
+/// The points of sobol() with another index in place of each, another order for each seed: aligned blocks of 2^k
+/// indices stay together. Sequences of different seeds are unrelated even where both are taken in the order of their
+/// indices.
 class SobolSequence {
   public:
     explicit SobolSequence(std::uint32_t seed);

@@ -66,10 +66,6 @@ glm::dvec2 sobol(std::uint32_t index, std::uint32_t seed) {
             unit(reverse_bits(scramble_reversed(pascal(index), hash(seed, 1))))};
 }
 
-std::uint32_t shuffled(std::uint32_t index, std::uint32_t seed) {
-    return reverse_bits(scramble_reversed(reverse_bits(index), hash(seed, 2)));
-}
-
 SobolSequence::SobolSequence(std::uint32_t seed) : x_(hash(seed, 0)), y_(hash(seed, 1)), order_(hash(seed, 2)) {}
 
 glm::dvec2 SobolSequence::point(std::uint32_t index) const {
