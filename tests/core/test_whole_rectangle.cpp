@@ -83,6 +83,41 @@ TEST(WholeRectangle, PointsAreThoseOfTheSequenceAndWeighTheSolidAngle) {
     }
 }
 
+/// By directions to points of its plane, within its edges and beyond them, of any length or backwards.
+TEST(WholeRectangle, IsMetWhereItIs) {
+    RandomInput random(4);
+    for (const double scale : {1e-6, 1.0, 1e9}) {
+        const ShadingFrame frame = random_frame(random, scale);
+        const std::optional<WholeRectangle> seen =
+            WholeRectangle::see(Light(lamp_above(frame, 0.8 * scale, 0.4 * scale, 2 * scale)), frame, 0);
+        ASSERT_TRUE(seen);
+        const std::vector<float> empty(kPoints + kLightPointLanes);
+        Points points = {{}, {}, empty, empty, empty, empty};
+        std::vector<glm::dvec2> targets;
+        for (std::size_t i = 0; i < kPoints; ++i) {
+            targets.emplace_back(random.uniform(-0.3, 1.3), random.uniform(-0.3, 1.3));
+            const LightSample towards = seen->sample(frame, targets[i]);
+            const Vec3d direction = (i % 8 == 0 ? -1.0 : 1.0) * towards.direction;
+            points.x[i] = static_cast<float>(direction.x);
+            points.y[i] = static_cast<float>(direction.y);
+            points.z[i] = static_cast<float>(direction.z);
+        }
+        meet_rectangle(*seen, frame, kPoints,
+                       {points.x.data(), points.y.data(), points.z.data(), points.weight.data()});
+        for (std::size_t i = 0; i < kPoints; ++i) {
+            const auto [least, most] = std::minmax(targets[i].x, targets[i].y);
+            if (std::min(std::abs(least), std::abs(most - 1)) < 1e-5) {
+                continue;  // too near an edge for floats
+            }
+            const bool met = i % 8 != 0 && least > 0 && most < 1;
+            const LightSample there = seen->sample(frame, targets[i]);
+            ASSERT_LE(std::abs(points.weight[i] - (met ? there.weight : 0)), 1e-5 * there.weight);
+            const Vec3d way = frame.to_local({points.x[i], points.y[i], points.z[i]});
+            ASSERT_TRUE(!met || glm::length(way - there.distance * there.direction) <= 1e-5 * there.distance);
+        }
+    }
+}
+
 TEST(WholeRectangle, OthersAreNotSeenAsSuch) {
     const ShadingFrame frame = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const auto sees = [&](const Light& light) { return WholeRectangle::see(light, frame, 0).has_value(); };

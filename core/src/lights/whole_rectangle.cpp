@@ -68,6 +68,15 @@ HWY_INLINE V<Floats> at(float corner, float along, float across, V<Floats> u, V<
     return hn::MulAdd(u, hn::Set(d, along), hn::MulAdd(v, hn::Set(d, across), hn::Set(d, corner)));
 }
 
+/// Of a point at the end of a way: dω = |cos at the light| dA / distance², by distances that no power takes out of a
+/// float's range.
+HWY_INLINE V<Floats> weight(const WholeRectangle& r, V<Floats> x, V<Floats> y, V<Floats> z) {
+    const Floats d;
+    const auto square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+    const auto relative = hn::Div(hn::Set(d, r.nearest_square), square);
+    return hn::Mul(hn::Set(d, r.most_weight), hn::Mul(relative, hn::Sqrt(relative)));
+}
+
 void draw_square(const SobolSequence& sequence, std::uint32_t first, std::size_t count, float* u, float* v) {
     const Floats d;
     for (std::size_t i = 0; i < count; i += kLaneCount<Floats>) {
@@ -87,14 +96,51 @@ void place(const WholeRectangle& r, const float* square_u, const float* square_v
         const auto x = at(r.corner.x, r.along.x, r.across.x, u, v);
         const auto y = at(r.corner.y, r.along.y, r.across.y, u, v);
         const auto z = at(r.corner.z, r.along.z, r.across.z, u, v);
-        const auto square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
         hn::StoreU(x, d, points.x + i);
         hn::StoreU(y, d, points.y + i);
         hn::StoreU(z, d, points.z + i);
-        // dω = |cos at the light| dA / distance², by distances that no power takes out of a float's range.
-        const auto relative = hn::Div(hn::Set(d, r.nearest_square), square);
-        const auto weight = hn::Mul(hn::Set(d, r.most_weight), hn::Mul(relative, hn::Sqrt(relative)));
-        hn::StoreU(weight, d, points.weight + i);
+        hn::StoreU(weight(r, x, y, z), d, points.weight + i);
+    }
+}
+
+HWY_INLINE V<Floats> dot(V<Floats> x, V<Floats> y, V<Floats> z, const Vec3f& b) {
+    const Floats d;
+    return hn::MulAdd(x, hn::Set(d, b.x), hn::MulAdd(y, hn::Set(d, b.y), hn::Mul(z, hn::Set(d, b.z))));
+}
+
+void meet(const WholeRectangle& r, const ShadingFrame& frame, std::size_t count, const LightPointArrays& points) {
+    const Floats d;
+    // Rows of the matrix from the frame to the world.
+    const Vec3f row_x(frame.x.x, frame.y.x, frame.z.x);
+    const Vec3f row_y(frame.x.y, frame.y.y, frame.z.y);
+    const Vec3f row_z(frame.x.z, frame.y.z, frame.z.z);
+    const Vec3f normal = glm::normalize(glm::cross(glm::normalize(r.along), glm::normalize(r.across)));
+    const auto height = hn::Set(d, glm::dot(normal, r.corner));
+    const Vec3f along = r.along / glm::dot(r.along, r.along);
+    const Vec3f across = r.across / glm::dot(r.across, r.across);
+    const auto along_corner = hn::Set(d, glm::dot(along, r.corner));
+    const auto across_corner = hn::Set(d, glm::dot(across, r.corner));
+    const auto zero = hn::Zero(d);
+    const auto one = hn::Set(d, 1.0F);
+    for (std::size_t i = 0; i < count; i += kLaneCount<Floats>) {
+        const auto x = hn::LoadU(d, points.x + i);
+        const auto y = hn::LoadU(d, points.y + i);
+        const auto z = hn::LoadU(d, points.z + i);
+        const auto world_x = dot(x, y, z, row_x);
+        const auto world_y = dot(x, y, z, row_y);
+        const auto world_z = dot(x, y, z, row_z);
+        const auto distance = hn::Div(height, dot(world_x, world_y, world_z, normal));
+        const auto way_x = hn::Mul(distance, world_x);
+        const auto way_y = hn::Mul(distance, world_y);
+        const auto way_z = hn::Mul(distance, world_z);
+        const auto u = hn::Sub(dot(way_x, way_y, way_z, along), along_corner);
+        const auto v = hn::Sub(dot(way_x, way_y, way_z, across), across_corner);
+        const auto inside = hn::And(hn::Ge(hn::Min(u, v), zero), hn::Le(hn::Max(u, v), one));
+        const auto met = hn::And(hn::Gt(distance, zero), inside);
+        hn::StoreU(way_x, d, points.x + i);
+        hn::StoreU(way_y, d, points.y + i);
+        hn::StoreU(way_z, d, points.z + i);
+        hn::StoreU(hn::IfThenElseZero(met, weight(r, way_x, way_y, way_z)), d, points.weight + i);
     }
 }
 
@@ -113,6 +159,7 @@ constexpr double kEvenRectangle = 1.6;
 
 HWY_EXPORT(draw_square);
 HWY_EXPORT(place);
+HWY_EXPORT(meet);
 
 std::optional<WholeRectangle> WholeRectangle::see(const Light& light, const ShadingFrame& frame, double error) {
     const auto* polygon = std::get_if<PolygonLight>(&light);
@@ -151,6 +198,11 @@ void draw_square_points(const SobolSequence& sequence, std::uint32_t first, std:
 void place_points(const WholeRectangle& rectangle, const float* u, const float* v, std::size_t count,
                   const LightPointArrays& points) {
     HWY_DYNAMIC_DISPATCH(place)(rectangle, u, v, count, points);
+}
+
+void meet_rectangle(const WholeRectangle& rectangle, const ShadingFrame& frame, std::size_t count,
+                    const LightPointArrays& points) {
+    HWY_DYNAMIC_DISPATCH(meet)(rectangle, frame, count, points);
 }
 
 }  // namespace shlight

@@ -37,14 +37,19 @@ struct LightPointArrays {
     float *x, *y, *z, *weight;
 };
 
-/// More values than asked for are written, less than one more than this.
+/// More values than asked for are read and written, less than one more than this.
 inline constexpr std::size_t kLightPointLanes = 16;
 
 /// Points number first … first + count - 1 of a sequence, as its point() has them up to 2⁻²³.
 void draw_square_points(const SobolSequence& sequence, std::uint32_t first, std::size_t count, float* u, float* v);
 
-/// Where points of the unit square lie on a rectangle. Reads as many values as it writes.
+/// Where points of the unit square lie on a rectangle.
 void place_points(const WholeRectangle& rectangle, const float* u, const float* v, std::size_t count,
                   const LightPointArrays& points);
+
+/// Where directions from the hit, given in its shading frame, meet a rectangle: the points may have replaced them. The
+/// weight is 0 where they miss it.
+void meet_rectangle(const WholeRectangle& rectangle, const ShadingFrame& frame, std::size_t count,
+                    const LightPointArrays& points);
 
 }  // namespace shlight

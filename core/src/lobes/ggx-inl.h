@@ -65,19 +65,19 @@ class GgxLanes {
         return {cos_o, alpha2, masking(d, alpha2, cos_o)};
     }
 
-    /// The bell is α² h_z² + h_x² + h_y², all over |h|².
     HWY_INLINE V<Floats> value(const HalfSum& sum, V<Floats> cos_i, const View<Floats>& view) const {
         const Floats d;
-        const auto across = hn::MulAdd(sum.x, sum.x, hn::Mul(sum.y, sum.y));
-        const auto up = hn::Mul(sum.z, sum.z);
-        const auto square = hn::Add(across, up);
-        const auto sharpness = hn::Div(square, hn::MulAdd(view.alpha2, up, across));
         const auto visibility =
             hn::Div(cos_i, hn::MulAdd(view.cosine, masking(d, view.alpha2, cos_i), hn::Mul(cos_i, view.masking)));
-        // In this order nothing of a narrow lobe leaves a float's range. |ω_i + ω_o| is twice ω_i·h.
-        const auto peak = hn::Mul(view.alpha2, all(d, 1 / (2 * std::numbers::pi)));
-        const auto bell = hn::Mul(hn::Mul(hn::Mul(peak, sharpness), sharpness), visibility);
-        return with_fresnel(d, bell, [&] HWY_ATTR { return hn::Mul(hn::Sqrt(square), all(d, 0.5)); });
+        // |ω_i + ω_o| is twice ω_i·h.
+        const auto square = hn::MulAdd(sum.x, sum.x, hn::MulAdd(sum.y, sum.y, hn::Mul(sum.z, sum.z)));
+        return with_fresnel(d, hn::Mul(half_distribution(sum, view), visibility),
+                            [&] HWY_ATTR { return hn::Mul(hn::Sqrt(square), all(d, 0.5)); });
+    }
+
+    /// As GgxShape::density.
+    HWY_INLINE V<Floats> density(const HalfSum& sum, V<Floats> /*cos_i*/, const View<Floats>& view) const {
+        return hn::Div(half_distribution(sum, view), hn::Add(view.cosine, view.masking));
     }
 
     /// F G₂ / cosθ_o.
@@ -89,6 +89,17 @@ class GgxLanes {
     }
 
   private:
+    /// D / 2, whose bell is α² h_z² + h_x² + h_y², all over |h|².
+    HWY_INLINE V<Floats> half_distribution(const HalfSum& sum, const View<Floats>& view) const {
+        const Floats d;
+        const auto across = hn::MulAdd(sum.x, sum.x, hn::Mul(sum.y, sum.y));
+        const auto up = hn::Mul(sum.z, sum.z);
+        const auto sharpness = hn::Div(hn::Add(across, up), hn::MulAdd(view.alpha2, up, across));
+        // In this order nothing of a narrow lobe leaves a float's range.
+        const auto peak = hn::Mul(view.alpha2, all(d, 1 / (2 * std::numbers::pi)));
+        return hn::Mul(hn::Mul(peak, sharpness), sharpness);
+    }
+
     /// √(α² + (1-α²) cos²θ).
     template <class D>
     static HWY_INLINE V<D> masking(D d, V<D> alpha2, V<D> cosine) {

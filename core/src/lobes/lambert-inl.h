@@ -31,6 +31,9 @@ class LambertLanes {
     HWY_INLINE V<Floats> value(const HalfSum& /*sum*/, V<Floats> cos_i, const View<Floats>& /*view*/) const {
         return hn::Mul(cos_i, all(Floats(), 1 / std::numbers::pi));
     }
+    HWY_INLINE V<Floats> density(const HalfSum& sum, V<Floats> cos_i, const View<Floats>& view) const {
+        return value(sum, cos_i, view);
+    }
     template <class D>
     HWY_INLINE V<D> over_bell(D d, V<D> cos_i, V<D> /*cos_half*/, const View<D>& /*view*/) const {
         return hn::Mul(cos_i, all(d, 4));

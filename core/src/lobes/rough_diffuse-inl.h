@@ -41,6 +41,9 @@ class DiffuseLanes {
         const auto square = hn::MulAdd(sum.x, sum.x, hn::MulAdd(sum.y, sum.y, hn::Mul(sum.z, sum.z)));
         return times_pi(d, cos_i, hn::MulAdd(square, all(d, 0.5), all(d, -1)), view, 1 / std::numbers::pi);
     }
+    HWY_INLINE V<Floats> density(const HalfSum& /*sum*/, V<Floats> cos_i, const View<Floats>& /*view*/) const {
+        return hn::Mul(cos_i, all(Floats(), 1 / std::numbers::pi));
+    }
     template <class D>
     HWY_INLINE V<D> over_bell(D d, V<D> cos_i, V<D> cos_half, const View<D>& view) const {
         return times_pi(d, cos_i, hn::MulAdd(hn::Add(cos_half, cos_half), cos_half, all(d, -1)), view, 4);

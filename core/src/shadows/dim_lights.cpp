@@ -91,12 +91,17 @@ float DimLights::gather(std::size_t pixel) {
 void DimLights::ask(std::size_t pixel, std::size_t questions, std::uint32_t seed, const Hits& hits) {
     const std::size_t before = rays_.count();
     const SobolSequence places(seed);
+    std::size_t gathered = lights_.size();
     for (std::size_t i = 0; i < questions; ++i) {
         const glm::dvec2 point = lattice_point(i, questions, seed);
         const FoundMember drawn = find(dim_, point.x);
         const std::size_t light = dim_[drawn.number].index;
         const LightRadiance unshadowed = unshadowed_->light(light);
-        gather_points(pixel, unshadowed);
+        if (light != gathered) {
+            // The questions come light by light.
+            gather_points(pixel, unshadowed);
+            gathered = light;
+        }
         const FoundMember at = find(dim_points_, point.y);
         const auto own_hits = points_->hits_of(dim_points_[at.number].index);
         const auto number = static_cast<std::size_t>(at.into * static_cast<double>(own_hits.size()));

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "emitters/face_radiance.h"
+#include "lobes/lobe_rays.h"
 #include "shadows/ray_start.h"
 #include "shlight/sampling.h"
 
@@ -19,9 +20,16 @@ constexpr std::uint32_t kLightOnly = std::numeric_limits<std::uint32_t>::max();
 /// A lobe takes rays of its own only where more than this share of them could meet the light.
 constexpr double kLeastShare = 0.1;
 
-/// Of a light.
+/// Of a hit; a multiple of all lanes.
 constexpr std::uint32_t kPointsAtOnce = 64;
-static_assert(kPointsAtOnce % kLightPointLanes == 0);
+static_assert(kPointsAtOnce % kLightPointLanes == 0 && kPointsAtOnce % kLobeRayLanes == 0);
+
+/// Of these; their elements are written before they are read.
+struct PointBuffer {
+    alignas(64) std::array<float, kPointsAtOnce> x, y, z, weight;
+
+    LightPointArrays arrays() { return {x.data(), y.data(), z.data(), weight.data()}; }
+};
 
 const ProfileView kEven;
 
@@ -31,7 +39,7 @@ const ProfileView kEven;
 class ShadowRays::Drawing {
   public:
     Drawing(const Light& light, const ProfileView& light_profile, const Hits& hits, std::size_t hit,
-            const RayPhase& phase, std::span<const SobolSequence> sequences)
+            const RayPhase& phase)
         : hit_material(hits.material[hit]),
           widths(hits.widths(hit)),
           view(hits.view(hit)),
@@ -40,11 +48,7 @@ class ShadowRays::Drawing {
           start(hits.frame[hit], hits.shadow_origin[hit], clearance(light, hits.frame[hit])),
           rays(phase.rays_per_hit),
           first_phase(phase.first),
-          first_point(phase.first_point + (hits.sample[hit] - phase.first_sample) * phase.rays_per_hit),
-          sequences_(sequences) {}
-
-    /// Of one set of rays.
-    glm::dvec2 point(std::size_t set, std::uint32_t ray) const { return sequences_[set].point(first_point + ray); }
+          first_point(phase.first_point + (hits.sample[hit] - phase.first_sample) * phase.rays_per_hit) {}
 
     std::uint32_t hit_material;
     std::span<const float> widths;
@@ -55,9 +59,6 @@ class ShadowRays::Drawing {
     std::uint32_t rays;  // of each set, but mirrors have one in the first phase
     bool first_phase;
     std::uint32_t first_point;  // of the hit
-
-  private:
-    std::span<const SobolSequence> sequences_;
 };
 
 ShadowRays::ShadowRays(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride)
@@ -78,6 +79,7 @@ ShadowRays::ShadowRays(const ShadowTracer& tracer, std::span<const MaterialLobes
         }
         set_stride_ = std::max(set_stride_, 1 + sets.lobes.size());
     }
+    points_.resize(set_stride_, {SobolSequence(0), {}, {}, false});
 }
 
 void ShadowRays::start(const Light& light, const Hits& hits, const LitHits& lit) {
@@ -89,15 +91,19 @@ void ShadowRays::start(const Light& light, const Hits& hits, const LitHits& lit)
     colors_.clear();
     visible_.clear();
     runs_.assign(lit.hit.size() * 2 * set_stride_, {});
-    solid_angles_.assign(lit.hit.size() * set_stride_, 0.0);
+    shared_.assign(lit.hit.size() * set_stride_, 0);
 }
 
 void ShadowRays::draw(const LitRange& pixel, const RayPhase& phase, std::uint32_t seed) {
-    sequences_.clear();
+    // The points of all hits of a pixel are neighbours in their sequences.
+    const std::uint32_t first = hits_->sample[lit_->hit[pixel.begin]];
+    const std::uint32_t last = hits_->sample[lit_->hit[pixel.end - 1]];
+    point_count_ = std::size_t{last - first + 1} * phase.rays_per_hit;
+    first_point_ = phase.first_point + (first - phase.first_sample) * phase.rays_per_hit;
     for (std::uint32_t set = 0; set < set_stride_; ++set) {
-        sequences_.emplace_back(set == 0 ? seed : hash(seed, 2 + set));
+        points_[set].sequence = SobolSequence(set == 0 ? seed : hash(seed, 2 + set));
+        points_[set].drawn = false;
     }
-    draw_square(pixel, phase);
     for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
         const ProfileView* profile = &kEven;
         if (!lit_->whole[i]) {
@@ -108,22 +114,19 @@ void ShadowRays::draw(const LitRange& pixel, const RayPhase& phase, std::uint32_
                 light_sampler_.move(lit_->seen[i]);
             }
         }
-        draw_hit(Drawing(*light_, *profile, *hits_, lit_->hit[i], phase, sequences_), i);
+        draw_hit(Drawing(*light_, *profile, *hits_, lit_->hit[i], phase), i);
     }
 }
 
-/// The points of all hits of a pixel are neighbours in their sequence.
-void ShadowRays::draw_square(const LitRange& pixel, const RayPhase& phase) {
-    const std::uint32_t first = hits_->sample[lit_->hit[pixel.begin]];
-    const std::uint32_t last = hits_->sample[lit_->hit[pixel.end - 1]];
-    const std::size_t count = std::size_t{last - first + 1} * phase.rays_per_hit;
-    first_point_ = phase.first_point + (first - phase.first_sample) * phase.rays_per_hit;
-    u_.resize(count + kLightPointLanes);
-    v_.resize(count + kLightPointLanes);
-    const auto own = std::span(lit_->whole).subspan(pixel.begin, pixel.size());
-    if (std::any_of(own.begin(), own.end(), [](const auto& rectangle) { return rectangle.has_value(); })) {
-        draw_square_points(sequences_[0], first_point_, count, u_.data(), v_.data());
+const ShadowRays::Points& ShadowRays::points(std::size_t set) {
+    Points& points = points_[set];
+    if (!points.drawn) {
+        points.u.resize(point_count_ + kPointsAtOnce);
+        points.v.resize(point_count_ + kPointsAtOnce);
+        draw_square_points(points.sequence, first_point_, point_count_, points.u.data(), points.v.data());
+        points.drawn = true;
     }
+    return points;
 }
 
 void ShadowRays::trace() {
@@ -194,35 +197,37 @@ void ShadowRays::draw_hit(const Drawing& drawing, std::size_t lit_index) {
 }
 
 void ShadowRays::draw_light(const Drawing& drawing, std::size_t lit_index) {
+    const Points& square = points(0);
+    const std::size_t before = drawing.first_point - first_point_;
     if (!lit_->whole[lit_index]) {
-        for (std::uint32_t ray = 0; ray < drawing.rays; ++ray) {
-            const LightSample sample = light_sampler_.sample(drawing.point(0, ray));
+        for (std::size_t i = before; i < before + drawing.rays; ++i) {
+            const LightSample sample = light_sampler_.sample({square.u[i], square.v[i]});
             push(drawing, sample.direction, sample.distance, sample.weight, light_sampler_.layers(sample.direction));
         }
         return;
     }
-    const std::size_t before = drawing.first_point - first_point_;
-    alignas(64) std::array<float, kPointsAtOnce> x, y, z, weight;  // all are written before they are read
+    PointBuffer buffer;
     for (std::uint32_t first = 0; first < drawing.rays; first += kPointsAtOnce) {
         const std::uint32_t count = std::min(drawing.rays - first, kPointsAtOnce);
-        place_points(*lit_->whole[lit_index], &u_[before + first], &v_[before + first], count,
-                     {x.data(), y.data(), z.data(), weight.data()});
-        const std::span<Drawn> drawn = drawn_.extend(count);
-        const std::span<Ray> rays = rays_.extend(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            const Vec3f way(x[i], y[i], z[i]);
-            drawn[i].way = way;
-            drawn[i].weight = weight[i];
-            drawn[i].hidden_layer = false;
-            drawing.start.to_end_of(way, rays[i]);
-        }
+        place_points(*lit_->whole[lit_index], &square.u[before + first], &square.v[before + first], count,
+                     buffer.arrays());
+        push(drawing, buffer.arrays(), count);
     }
 }
 
-void ShadowRays::look(std::size_t lit_index) {
-    const std::size_t hit = lit_->hit[lit_index];
-    seen_.look(*light_, hits_->frame[hit], hits_->error[hit]);
-    light_sampler_.reset(seen_);
+void ShadowRays::push(const Drawing& drawing, const LightPointArrays& points, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!(points.weight[i] > 0)) {
+            continue;
+        }
+        const Vec3f way(points.x[i], points.y[i], points.z[i]);
+        Drawn& drawn = drawn_.extend(1)[0];
+        drawn.way = way;
+        drawn.weight = points.weight[i];
+        drawn.light_spread = points.weight[i];
+        drawn.hidden_layer = false;
+        drawing.start.to_end_of(way, rays_.extend(1)[0]);
+    }
 }
 
 LobeShape ShadowRays::set_shape(const Drawing& drawing, std::size_t set) const {
@@ -231,26 +236,33 @@ LobeShape ShadowRays::set_shape(const Drawing& drawing, std::size_t set) const {
 }
 
 void ShadowRays::draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set, const LobeShape& shape) {
+    const std::optional<WholeRectangle>& rectangle = lit_->whole[lit_index];
     const bool mirror = is_mirror(shape);
-    const double most_density = mirror ? 0.0 : largest_lobe_density(shape, drawing.view);
-    if (const auto& rectangle = lit_->whole[lit_index]) {
-        if (!mirror && !(rectangle->most_weight * most_density > kLeastShare)) {
-            return;
-        }
-        look(lit_index);
-    }
-    const double whole = light_sampler_.solid_angle();
-    if (!mirror && !(whole * most_density > kLeastShare)) {
+    const double whole = rectangle ? double{rectangle->most_weight} : light_sampler_.solid_angle();
+    if (!mirror && !(whole * largest_lobe_density(shape, drawing.view) > kLeastShare)) {
         return;
     }
-    solid_angle(lit_index, 1 + set) = whole;
+    shared_[lit_index * set_stride_ + 1 + set] = 1;
     const std::uint32_t mirror_rays = drawing.first_phase ? 1 : 0;
     const std::uint32_t rays = mirror ? mirror_rays : drawing.rays;
-    for (std::uint32_t ray = 0; ray < rays; ++ray) {
-        const Vec3d direction = sample_lobe(shape, drawing.view, drawing.point(1 + set, ray));
-        const std::optional<double> distance = direction.z > 0 ? light_sampler_.meets(direction) : std::nullopt;
-        if (distance) {
-            push(drawing, direction, *distance, whole, mirror ? 1 : light_sampler_.layers(direction));
+    const Points& square = points(1 + set);
+    const std::size_t before = drawing.first_point - first_point_;
+    PointBuffer buffer;
+    for (std::uint32_t first = 0; first < rays; first += kPointsAtOnce) {
+        const std::uint32_t count = std::min(rays - first, kPointsAtOnce);
+        sample_lobe_rays(shape, drawing.view, &square.u[before + first], &square.v[before + first], count,
+                         {buffer.x.data(), buffer.y.data(), buffer.z.data()});
+        if (rectangle) {
+            meet_rectangle(*rectangle, *drawing.frame, count, buffer.arrays());
+            push(drawing, buffer.arrays(), count);
+            continue;
+        }
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const Vec3d direction(buffer.x[i], buffer.y[i], buffer.z[i]);
+            const std::optional<double> distance = direction.z > 0 ? light_sampler_.meets(direction) : std::nullopt;
+            if (distance) {
+                push(drawing, direction, *distance, whole, mirror ? 1 : light_sampler_.layers(direction));
+            }
         }
     }
 }
@@ -258,8 +270,9 @@ void ShadowRays::draw_lobes(const Drawing& drawing, std::size_t lit_index, std::
 void ShadowRays::push(const Drawing& drawing, const Vec3d& direction, double distance, double weight, int layers) {
     const double factor = drawing.profile->factor(direction);
     for (int layer = 0; weight * factor > 0 && layer < layers; ++layer) {
+        // The light's points are even in solid angle.
         drawn_.extend(1)[0] = {Vec3f(drawing.frame->to_world(direction)), static_cast<float>(weight * factor),
-                               layer > 0};
+                               static_cast<float>(light_sampler_.solid_angle()), layer > 0};
         rays_.extend(1)[0] = drawing.start.towards(direction, distance);
     }
 }
@@ -275,35 +288,55 @@ ShadowRays::Verdict ShadowRays::verdict(const LitRange& pixel) const {
     return hidden ? Verdict::hidden : Verdict::mixed;
 }
 
-RaySums ShadowRays::sum(std::size_t lit_index, std::size_t lobe) const {
+RaySums ShadowRays::sum(std::size_t lit_index, std::size_t lobe) {
     const std::size_t hit = lit_->hit[lit_index];
     const LobeShape shape = lobes_[hits_->material[hit]].shape(lobe, hits_->widths(hit)[lobe]);
     const std::uint32_t set = materials_[hits_->material[hit]].set_of_lobe[lobe];
-    const Vec3d view = hits_->view(hit);
     const bool mirror = is_mirror(shape);
-    const double solid_angle = set == kLightOnly ? 0.0 : solid_angles_[lit_index * set_stride_ + 1 + set];
-    RaySums sums;
-    const auto add = [&](const Run& run) {
-        for (std::size_t i = run.begin; i < run.end; ++i) {
-            const Vec3d direction = glm::normalize(hits_->frame[hit].to_local(Vec3d(drawn_[i].way)));
-            double value = mirror ? 1.0 : drawn_[i].weight * lobe_value(shape, direction, view);
-            if (!mirror && solid_angle > 0) {
-                // The weights are those of points even in solid angle; so p_light is one over that.
-                value /= 1 + solid_angle * lobe_density(shape, view, direction);
-            }
-            const Vec3d color = colors_.empty() || mirror ? Vec3d(1) : Vec3d(colors_[i]);
-            sums.add(value * color, visible_[i]);
-        }
-    };
+    served_.clear();
     for (const bool first_phase : {true, false}) {
-        if (!mirror) {
-            add(run(lit_index, first_phase, 0));
+        const Run& of_light = run(lit_index, first_phase, 0);
+        for (std::size_t i = of_light.begin; i < of_light.end && !mirror; ++i) {
+            served_.push_back(i);
         }
-        if (set != kLightOnly) {
-            add(run(lit_index, first_phase, 1 + set));
+        const Run& of_lobe = set == kLightOnly ? Run() : run(lit_index, first_phase, 1 + set);
+        for (std::size_t i = of_lobe.begin; i < of_lobe.end; ++i) {
+            served_.push_back(i);
         }
     }
+    weigh(lit_index, shape, set);
+    RaySums sums;
+    for (std::size_t i = 0; i < served_.size(); ++i) {
+        const std::size_t ray = served_[i];
+        const Vec3d color = colors_.empty() || mirror ? Vec3d(1) : Vec3d(colors_[ray]);
+        sums.add(double{values_[i]} * color, visible_[ray]);
+    }
     return sums;
+}
+
+void ShadowRays::weigh(std::size_t lit_index, const LobeShape& shape, std::uint32_t set) {
+    const std::size_t count = served_.size();
+    if (is_mirror(shape)) {
+        values_.assign(count, 1.0F);
+        return;
+    }
+    for (std::vector<float>* array : {&x_, &y_, &z_, &values_, &densities_}) {
+        array->resize(count + kLobeRayLanes);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec3f& way = drawn_[served_[i]].way;
+        x_[i] = way.x;
+        y_[i] = way.y;
+        z_[i] = way.z;
+    }
+    const std::size_t hit = lit_->hit[lit_index];
+    const bool shared = set != kLightOnly && shared_[lit_index * set_stride_ + 1 + set] != 0;
+    weigh_lobe_rays(shape, hits_->frame[hit], hits_->view(hit), {x_.data(), y_.data(), z_.data()}, count,
+                    values_.data(), shared ? densities_.data() : nullptr);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Drawn& drawn = drawn_[served_[i]];
+        values_[i] *= shared ? drawn.weight / (1 + drawn.light_spread * densities_[i]) : drawn.weight;
+    }
 }
 
 }  // namespace shlight

@@ -74,7 +74,7 @@ class ShadowRays {
     /// none; hidden: nothing of it comes through.
     Verdict verdict(const LitRange& pixel) const;
     /// Of all phases; lit_index: of LitHits.
-    RaySums sum(std::size_t lit_index, std::size_t lobe) const;
+    RaySums sum(std::size_t lit_index, std::size_t lobe);
     std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
@@ -90,19 +90,26 @@ class ShadowRays {
     struct Drawn {
         Vec3f way;  // from the hit, in the world; of any length
         float weight;
-        bool hidden_layer;  // behind another layer of the light
+        float light_spread;  // one over the density of the light's set there
+        bool hidden_layer;   // behind another layer of the light
+    };
+    /// Of the unit square, for a set of rays: those of a pixel and phase.
+    struct Points {
+        SobolSequence sequence;
+        std::vector<float> u, v;
+        bool drawn;
     };
     class Drawing;
 
-    void draw_square(const LitRange& pixel, const RayPhase& phase);
+    const Points& points(std::size_t set);
     void draw_hit(const Drawing& drawing, std::size_t lit_index);
     void draw_light(const Drawing& drawing, std::size_t lit_index);
-    /// Makes the sampler that of a hit which sees the light as a whole rectangle.
-    void look(std::size_t lit_index);
     void draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set, const LobeShape& shape);
     void follow(const MeshLight& light);
     /// The radiance of the faces that the rays would meet if nothing else were there.
     void find_colors(const FaceRadiance& faces);
+    /// To points of a whole rectangle; those without weight are left out.
+    void push(const Drawing& drawing, const LightPointArrays& points, std::size_t count);
     /// layers: of the light, one behind the other, each of which the unshadowed radiance counts.
     void push(const Drawing& drawing, const Vec3d& direction, double distance, double weight, int layers);
     /// Whose directions a set has at a hit.
@@ -114,7 +121,8 @@ class ShadowRays {
     const Run& run(std::size_t lit_index, bool first_phase, std::size_t set) const {
         return runs_[(2 * lit_index + (first_phase ? 0 : 1)) * set_stride_ + set];
     }
-    double& solid_angle(std::size_t lit_index, std::size_t set) { return solid_angles_[lit_index * set_stride_ + set]; }
+    /// What the rays of all phases that serve a lobe are worth to it, in values_ and by their numbers in served_.
+    void weigh(std::size_t lit_index, const LobeShape& shape, std::uint32_t set);
 
     const ShadowTracer* tracer_;
     std::size_t lobe_stride_;
@@ -122,22 +130,24 @@ class ShadowRays {
     std::span<const MaterialLobes> lobes_;
     std::size_t set_stride_ = 1;  // sets of rays of any hit: the light's, then one per shape
     LightSampler light_sampler_;
-    SeenLight seen_;  // by the sampler, if look() was called
     std::uint64_t rays_traced_ = 0;
 
     const Light* light_ = nullptr;
     const Hits* hits_ = nullptr;
     const LitHits* lit_ = nullptr;
-    std::vector<SobolSequence> sequences_;  // of a pixel, by set
-    std::vector<float> u_, v_;              // of a pixel and phase: points of the light's set from first_point_ on
+    std::vector<Points> points_;  // by set, from first_point_ on
     std::uint32_t first_point_ = 0;
+    std::size_t point_count_ = 0;
     Scratch<Drawn> drawn_;
     Scratch<Ray> rays_;                 // the last of those drawn, which are not traced yet
     std::vector<RayHit> met_;           // by these
     std::vector<Rgb> colors_;           // factors of the weights of those traced; empty: 1
     std::vector<Rgb> visible_;          // of those traced
     std::vector<Run> runs_;             // lit hits × 2 phases × set_stride
-    std::vector<double> solid_angles_;  // lit hits × set_stride: the light's where the set's rays are drawn, else 0
+    std::vector<std::uint8_t> shared_;  // lit hits × set_stride: whether the set's rays share the light's work
+    // Of the lobe whose sum is asked for:
+    std::vector<std::size_t> served_;
+    std::vector<float> x_, y_, z_, values_, densities_;
 };
 
 }  // namespace shlight

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include "lobes/lobe_rays.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lobes/lobe_rays.cpp"
+#include <hwy/foreach_target.h>
+// Highway's vocabulary, and what is compiled once per instruction set, come after it.
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <variant>
+
+#include "lobes/lobe_lanes-inl.h"
+#include "simd/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace shlight::HWY_NAMESPACE {
+namespace {
+
+static_assert(kLobeRayLanes % kLaneCount<Floats> == 0);
+
+/// The square of a narrower width would leave a float's range.
+constexpr double kLeastAlpha = 1e-9;
+
+struct Vectors {
+    V<Floats> x, y, z;
+};
+
+HWY_INLINE Vectors load(const RayVectors& arrays, std::size_t i) {
+    const Floats d;
+    return {hn::LoadU(d, arrays.x + i), hn::LoadU(d, arrays.y + i), hn::LoadU(d, arrays.z + i)};
+}
+
+HWY_INLINE V<Floats> dot(const Vectors& a, const Vec3d& b) {
+    const Floats d;
+    return hn::MulAdd(a.x, all(d, b.x), hn::MulAdd(a.y, all(d, b.y), hn::Mul(a.z, all(d, b.z))));
+}
+
+HWY_INLINE Vectors scaled(const Vectors& a, V<Floats> factor) {
+    return {hn::Mul(a.x, factor), hn::Mul(a.y, factor), hn::Mul(a.z, factor)};
+}
+
+/// By the largest part first: the square of a length may leave a float's range.
+HWY_INLINE Vectors normalized(const Vectors& a) {
+    const auto one = hn::Set(Floats(), 1.0F);
+    const auto largest = hn::Max(hn::Abs(a.x), hn::Max(hn::Abs(a.y), hn::Abs(a.z)));
+    const Vectors b = scaled(a, hn::Div(one, largest));
+    const auto square = hn::MulAdd(b.x, b.x, hn::MulAdd(b.y, b.y, hn::Mul(b.z, b.z)));
+    return scaled(b, hn::Div(one, hn::Sqrt(square)));
+}
+
+// As the shapes' sample() has it, with the same names.
+
+HWY_INLINE Vectors sample(const LambertShape& /*shape*/, const Vec3d& /*view*/, V<Floats> u, V<Floats> v) {
+    const Floats d;
+    const auto sine = hn::Sqrt(u);
+    const auto azimuth = hn::Mul(all(d, 2 * std::numbers::pi), v);
+    return {hn::Mul(sine, hn::Cos(d, azimuth)), hn::Mul(sine, hn::Sin(d, azimuth)), root(d, hn::Sub(all(d, 1), u))};
+}
+
+HWY_INLINE Vectors sample(const GgxShape& shape, const Vec3d& view, V<Floats> u, V<Floats> v) {
+    const Floats d;
+    const auto one = all(d, 1);
+    const Vec3d bent = glm::normalize(Vec3d(shape.alpha * view.x, 0, view.z));
+    // z + bent.z
+    const auto raised = hn::Mul(hn::Sub(one, v), all(d, 1 + bent.z));
+    const auto z = hn::Sub(raised, all(d, bent.z));
+    const auto sine = root(d, hn::Mul(hn::Sub(one, z), hn::Add(one, z)));
+    const auto azimuth = hn::Mul(all(d, 2 * std::numbers::pi), u);
+    const auto alpha = all(d, shape.alpha);
+    const Vectors normal =
+        normalized({hn::Mul(alpha, hn::MulAdd(sine, hn::Cos(d, azimuth), all(d, bent.x))),
+                    hn::Mul(alpha, hn::Mul(sine, hn::Sin(d, azimuth))), hn::Max(raised, all(d, 1e-30))});
+    const auto cosine = dot(normal, view);
+    const Vectors twice = scaled(normal, hn::Add(cosine, cosine));
+    return {hn::Sub(twice.x, all(d, view.x)), twice.y, hn::Sub(twice.z, all(d, view.z))};
+}
+
+template <class Shape>
+void sample_all(const Shape& shape, const Vec3d& view, const float* u, const float* v, std::size_t count,
+                const RayVectors& directions) {
+    const Floats d;
+    for (std::size_t i = 0; i < count; i += kLaneCount<Floats>) {
+        const Vectors direction = sample(shape, view, hn::LoadU(d, u + i), hn::LoadU(d, v + i));
+        hn::StoreU(direction.x, d, directions.x + i);
+        hn::StoreU(direction.y, d, directions.y + i);
+        hn::StoreU(direction.z, d, directions.z + i);
+    }
+}
+
+void sample_rays(const LobeShape& shape, const Vec3d& view, const float* u, const float* v, std::size_t count,
+                 const RayVectors& directions) {
+    std::visit([&](const auto& s) { sample_all(s.sampled(), view, u, v, count, directions); }, shape);
+}
+
+template <class Lobe>
+void weigh_all(const Lobe& lobe, double width, const ShadingFrame& frame, const Vec3d& view, const RayVectors& ways,
+               std::size_t count, float* values, float* densities) {
+    const Floats d;
+    const auto zero = hn::Zero(d);
+    const auto cos_o = all(d, view.z);
+    const auto of_view = lobe.view(d, cos_o, all(d, std::max(width, kLeastAlpha)));
+    for (std::size_t i = 0; i < count; i += kLaneCount<Floats>) {
+        const Vectors way = normalized(load(ways, i));
+        const auto cos_i = dot(way, frame.z);
+        const HalfSum sum = {hn::Add(dot(way, frame.x), all(d, view.x)), dot(way, frame.y), hn::Add(cos_i, cos_o)};
+        const auto above = hn::Gt(hn::Min(cos_i, cos_o), zero);
+        hn::StoreU(hn::IfThenElseZero(above, lobe.value(sum, cos_i, of_view)), d, values + i);
+        if (densities != nullptr) {
+            hn::StoreU(hn::IfThenElseZero(above, lobe.density(sum, cos_i, of_view)), d, densities + i);
+        }
+    }
+}
+
+void weigh_rays(const LobeShape& shape, const ShadingFrame& frame, const Vec3d& view, const RayVectors& ways,
+                std::size_t count, float* values, float* densities) {
+    with_lobe_lanes(shape, [&](const auto& lobe) {
+        weigh_all(lobe, lobe_width(shape), frame, view, ways, count, values, densities);
+    });
+}
+
+}  // namespace
+}  // namespace shlight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace shlight {
+
+HWY_EXPORT(sample_rays);
+HWY_EXPORT(weigh_rays);
+
+void sample_lobe_rays(const LobeShape& shape, const Vec3d& view, const float* u, const float* v, std::size_t count,
+                      const RayVectors& directions) {
+    HWY_DYNAMIC_DISPATCH(sample_rays)(shape, view, u, v, count, directions);
+}
+
+void weigh_lobe_rays(const LobeShape& shape, const ShadingFrame& frame, const Vec3d& view, const RayVectors& ways,
+                     std::size_t count, float* values, float* densities) {
+    HWY_DYNAMIC_DISPATCH(weigh_rays)(shape, frame, view, ways, count, values, densities);
+}
+
+}  // namespace shlight
+#endif

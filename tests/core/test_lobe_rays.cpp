@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "lobes/lobe_rays.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "random_input.h"
+#include "shlight/sampling.h"
+
+namespace shlight {
+namespace {
+
+using testing::RandomInput;
+
+constexpr std::size_t kRays = 37;  // no multiple of any number of lanes
+
+struct Vectors {
+    explicit Vectors() : x(kRays + kLobeRayLanes), y(x), z(x) {}
+    RayVectors arrays() { return {x.data(), y.data(), z.data()}; }
+    Vec3d operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+    std::vector<float> x, y, z;
+};
+
+std::vector<LobeShape> shapes() {
+    std::vector<LobeShape> list = {LambertShape()};
+    for (const Diffuse kind : {Diffuse::oren_nayar, Diffuse::oren_nayar_loss, Diffuse::bumped}) {
+        list.emplace_back(DiffuseShape{kind});
+    }
+    for (const double alpha : {0.01, 0.3, 1.0}) {
+        for (const Fresnel fresnel : {Fresnel::one, Fresnel::schlick, Fresnel::dielectric, Fresnel::dip}) {
+            list.emplace_back(GgxShape{alpha, fresnel, 1.45});
+        }
+    }
+    return list;
+}
+
+Vec3d random_view(RandomInput& random) {
+    const double tilt = random.uniform(0.0, 1.5);
+    return {std::sin(tilt), 0, std::cos(tilt)};
+}
+
+TEST(LobeRays, AreSpreadAsTheLobeSpreadsThem) {
+    RandomInput random(5);
+    std::vector<LobeShape> list = shapes();
+    list.emplace_back(GgxShape{0});
+    for (const LobeShape& shape : list) {
+        const Vec3d view = random_view(random);
+        std::vector<float> u(kRays + kLobeRayLanes);
+        std::vector<float> v(u);
+        std::generate(u.begin(), u.end(), [&] { return static_cast<float>(random.uniform(0.0, 1.0)); });
+        std::generate(v.begin(), v.end(), [&] { return static_cast<float>(random.uniform(0.0, 1.0)); });
+        Vectors directions;
+        sample_lobe_rays(shape, view, u.data(), v.data(), kRays, directions.arrays());
+        for (std::size_t i = 0; i < kRays; ++i) {
+            // Some ten operations; roots lose half of the digits of a point near 0 or 1.
+            EXPECT_LE(glm::length(directions[i] - sample_lobe(shape, view, {u[i], v[i]})), 1e-5) << i;
+        }
+    }
+}
+
+/// Half of them near the mirror direction, in a frame and of lengths that leave a float's range when squared.
+TEST(LobeRays, AreWorthWhatTheLobeReflects) {
+    RandomInput random(6);
+    for (const LobeShape& shape : shapes()) {
+        const ShadingFrame frame = shading_frame(Vec3d(0), random.direction(), random.direction());
+        const Vec3d view = random_view(random);
+        Vectors ways;
+        std::vector<Vec3d> directions;
+        for (std::size_t i = 0; i < kRays; ++i) {
+            const Vec3d near_mirror = glm::normalize(mirrored(view) + 3 * lobe_width(shape) * random.direction());
+            directions.push_back(i % 2 == 0 ? near_mirror : random.direction());
+            const Vec3d way = std::exp(random.uniform(-60.0, 60.0)) * frame.to_world(directions[i]);
+            ways.x[i] = static_cast<float>(way.x);
+            ways.y[i] = static_cast<float>(way.y);
+            ways.z[i] = static_cast<float>(way.z);
+        }
+        std::vector<float> values(kRays + kLobeRayLanes);
+        std::vector<float> densities(values);
+        weigh_lobe_rays(shape, frame, view, ways.arrays(), kRays, values.data(), densities.data());
+        // A direction in floats is off by some 1e-7, the part α of which turns a half vector through the bell.
+        const double tolerance = 1e-5 + 4e-6 / lobe_width(shape);
+        for (std::size_t i = 0; i < kRays; ++i) {
+            const double value = lobe_value(shape, directions[i], view);
+            const double density = lobe_density(shape, view, directions[i]);
+            EXPECT_LE(std::abs(values[i] - value), tolerance * value + 1e-6) << i;
+            EXPECT_LE(std::abs(densities[i] - density), tolerance * density + 1e-6) << i;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace shlight
