@@ -5,8 +5,6 @@
 #include <array>
 
 #include "environment/map_lookup.h"
-#include "shadows/ray_start.h"
-#include "shlight/sampling.h"
 
 namespace shlight {
 namespace {
@@ -16,44 +14,9 @@ static_assert(kLookedUpAtOnce % kLookupLanes == 0);
 
 }  // namespace
 
-/// Directions from one hit, and how densely the sets draw them.
-class EnvironmentRays::Directions {
-  public:
-    Directions(std::span<const LobeShape> lobes, const Vec3d& view, const EnvironmentMap* map,
-               const ShadingFrame& frame)
-        : lobes_(lobes), view_(view), map_(lobes.empty() ? nullptr : map) {
-        if (map != nullptr) {
-            to_map_ = glm::dmat3(map->to_map(frame.x), map->to_map(frame.y), map->to_map(frame.z));
-        }
-    }
-
-    std::size_t set_count() const { return lobes_.size() + (map_ != nullptr ? 1 : 0); }
-    /// May lie below the horizon.
-    Vec3d sample(std::size_t set, const glm::dvec2& point) const {
-        const bool of_map = map_ != nullptr && set == lobes_.size();
-        return of_map ? map_->sampler.sample(point) * to_map_ : sample_lobe(lobes_[set], view_, point);
-    }
-    /// By the sets of lobes.
-    double density_of_lobes(const Vec3d& direction) const {
-        double sum = 0;
-        for (const LobeShape& lobe : lobes_) {
-            sum += lobe_density(lobe, view_, direction);
-        }
-        return sum;
-    }
-    /// From the shading frame.
-    const glm::dmat3& to_map() const { return to_map_; }
-
-  private:
-    std::span<const LobeShape> lobes_;
-    Vec3d view_;
-    const EnvironmentMap* map_;
-    glm::dmat3 to_map_{1};
-};
-
 EnvironmentRays::EnvironmentRays(const ShadowTracer& tracer, const Environment& environment,
                                  std::span<const MaterialLobes> materials)
-    : tracer_(&tracer), environment_(&environment), lobes_(materials) {
+    : tracer_(&tracer), environment_(&environment), lobes_(materials), points_(0) {
     for (const MaterialLobes& material : materials) {
         Sets& sets = materials_.emplace_back();
         for (std::size_t i = 0; i < material.lobes().size(); ++i) {
@@ -68,6 +31,7 @@ EnvironmentRays::EnvironmentRays(const ShadowTracer& tracer, const Environment& 
         }
         set_stride_ = std::max(set_stride_, sets.lobes.size() + 1);
     }
+    points_ = PixelPoints(set_stride_);
 }
 
 void EnvironmentRays::start(const Hits& hits, std::span<const std::size_t> lit) {
@@ -79,20 +43,16 @@ void EnvironmentRays::start(const Hits& hits, std::span<const std::size_t> lit) 
     runs_.assign(2 * lit.size(), {});
 }
 
-EnvironmentRays::Directions EnvironmentRays::directions_from(std::size_t hit) {
+void EnvironmentRays::find_shapes(std::size_t hit) {
     const std::uint32_t material = hits_->material[hit];
     shapes_.clear();
     for (const std::size_t lobe : materials_[material].lobes) {
         shapes_.push_back(sampled_shape(lobes_[material].shape(lobe, hits_->widths(hit)[lobe])));
     }
-    return Directions(shapes_, hits_->view(hit), environment_->map(), hits_->frame[hit]);
 }
 
 void EnvironmentRays::draw(const LitRange& pixel, const RayPhase& phase, std::uint32_t seed) {
-    sequences_.clear();
-    for (std::uint32_t set = 0; set < set_stride_; ++set) {
-        sequences_.emplace_back(hash(seed, set));
-    }
+    points_.start(phase, hits_->sample[lit_[pixel.begin]], hits_->sample[lit_[pixel.end - 1]], seed);
     for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
         draw_hit(i, phase);
     }
@@ -101,27 +61,51 @@ void EnvironmentRays::draw(const LitRange& pixel, const RayPhase& phase, std::ui
 void EnvironmentRays::draw_hit(std::size_t lit_index, const RayPhase& phase) {
     const std::size_t hit = lit_[lit_index];
     const RayStart start(hits_->frame[hit], hits_->shadow_origin[hit], Vec3d(0));
-    const auto push = [&](const Vec3d& direction) {
-        directions_.emplace_back(direction);
-        rays_.push_back(start.along(direction));
-    };
-    const Directions directions = directions_from(hit);
-    const std::uint32_t first = phase.first_point + (hits_->sample[hit] - phase.first_sample) * phase.rays_per_hit;
+    find_shapes(hit);
     Run& own = run(lit_index, phase.first);
     own.begin = directions_.size();
-    for (std::size_t set = 0; set < directions.set_count(); ++set) {
-        for (std::uint32_t ray = 0; ray < phase.rays_per_hit; ++ray) {
-            const Vec3d direction = directions.sample(set, sequences_[set].point(first + ray));
-            if (direction.z > 0) {
-                push(direction);
-            }
-        }
+    for (std::size_t set = 0; set < shapes_.size(); ++set) {
+        draw_set(start, hit, set, phase.rays_per_hit);
+    }
+    if (environment_->map() != nullptr && !shapes_.empty()) {
+        draw_map(start, hit, phase.rays_per_hit);
     }
     own.mirror = directions_.size();
     if (materials_[hits_->material[hit]].mirror && phase.first) {
-        push(mirrored(hits_->view(hit)));
+        push(start, mirrored(hits_->view(hit)));
     }
     own.end = directions_.size();
+}
+
+void EnvironmentRays::draw_set(const RayStart& start, std::size_t hit, std::size_t set, std::uint32_t rays) {
+    const PixelPoints::Square square = points_.of(set, hits_->sample[hit]);
+    alignas(64) std::array<float, kRaysAtOnce> x, y, z;  // all are written before they are read
+    for (std::uint32_t first = 0; first < rays; first += kRaysAtOnce) {
+        const std::uint32_t count = std::min(rays - first, kRaysAtOnce);
+        sample_lobe_rays(shapes_[set], hits_->view(hit), square.u + first, square.v + first, count,
+                         {x.data(), y.data(), z.data()});
+        for (std::uint32_t i = 0; i < count; ++i) {
+            push(start, Vec3d(x[i], y[i], z[i]));
+        }
+    }
+}
+
+void EnvironmentRays::draw_map(const RayStart& start, std::size_t hit, std::uint32_t rays) {
+    const EnvironmentMap& map = *environment_->map();
+    const ShadingFrame& frame = hits_->frame[hit];
+    const glm::dmat3 to_map(map.to_map(frame.x), map.to_map(frame.y), map.to_map(frame.z));
+    const PixelPoints::Square square = points_.of(shapes_.size(), hits_->sample[hit]);
+    for (std::uint32_t i = 0; i < rays; ++i) {
+        push(start, map.sampler.sample({square.u[i], square.v[i]}) * to_map);
+    }
+}
+
+void EnvironmentRays::push(const RayStart& start, const Vec3d& direction) {
+    if (direction.z > 0) {
+        const Ray ray = start.along(direction);
+        directions_.push_back(ray.direction);
+        rays_.push_back(ray);
+    }
 }
 
 void EnvironmentRays::trace() {
@@ -137,20 +121,20 @@ bool EnvironmentRays::all_free(const LitRange& pixel) const {
     return std::all_of(own.begin(), own.end(), [](const Rgb& visible) { return visible == Rgb(1); });
 }
 
+void EnvironmentRays::gather(std::size_t lit_index) {
+    weighed_.clear();
+    for (const Run& own : {run(lit_index, true), run(lit_index, false)}) {
+        for (std::size_t ray = own.begin; ray < own.mirror; ++ray) {
+            weighed_.add(ray, directions_[ray]);
+        }
+    }
+}
+
 void EnvironmentRays::weigh(std::span<const LitRange> pixels) {
     asked_.clear();
     for (const LitRange& pixel : pixels) {
         for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
-            const Directions directions = directions_from(lit_[i]);
-            for (const Run& own : {run(i, true), run(i, false)}) {
-                for (std::size_t ray = own.begin; ray < own.end; ++ray) {
-                    const bool mirror = ray >= own.mirror;
-                    const Vec3d direction(directions_[ray]);
-                    asked_.push_back({ray, Vec3f(directions.to_map() * direction),
-                                      static_cast<float>(mirror ? 1.0 : directions.density_of_lobes(direction)),
-                                      mirror});
-                }
-            }
+            weigh_hit(i);
         }
     }
     weights_.resize(directions_.size());
@@ -161,6 +145,30 @@ void EnvironmentRays::weigh(std::span<const LitRange> pixels) {
     const Rgb radiance = environment_->radiance(Vec3d(0, 0, 1));
     for (const Asked& asked : asked_) {
         weights_[asked.ray] = {radiance / asked.lobe_density, Rgb(0)};
+    }
+}
+
+void EnvironmentRays::weigh_hit(std::size_t lit_index) {
+    const std::size_t hit = lit_[lit_index];
+    const EnvironmentMap* map = environment_->map();
+    const auto ask = [&](std::size_t ray, float density, bool mirror) {
+        const Vec3d direction(directions_[ray]);
+        asked_.push_back({ray, Vec3f(map != nullptr ? map->to_map(direction) : direction), density, mirror});
+    };
+    gather(lit_index);
+    const std::size_t first = asked_.size();
+    for (std::size_t i = 0; i < weighed_.size(); ++i) {
+        ask(weighed_.number(i), 0, false);
+    }
+    find_shapes(hit);
+    for (const LobeShape& shape : shapes_) {
+        weighed_.weigh(shape, hits_->frame[hit], hits_->view(hit), true);
+        for (std::size_t i = 0; i < weighed_.size(); ++i) {
+            asked_[first + i].lobe_density += weighed_.density(i);
+        }
+    }
+    for (std::size_t ray = run(lit_index, true).mirror; ray < run(lit_index, true).end; ++ray) {
+        ask(ray, 1, true);
     }
 }
 
@@ -188,21 +196,27 @@ void EnvironmentRays::weigh_map(const EnvironmentMap& map) {
     }
 }
 
-EnvironmentRays::Sums EnvironmentRays::sum(std::size_t lit_index, std::size_t lobe, bool split) const {
+EnvironmentRays::Sums EnvironmentRays::sum(std::size_t lit_index, std::size_t lobe, bool split) {
     const std::size_t hit = lit_[lit_index];
     const LobeShape shape = lobes_[hits_->material[hit]].shape(lobe, hits_->widths(hit)[lobe]);
-    const bool mirror = is_mirror(shape);
-    const Vec3d view = hits_->view(hit);
     Sums sums;
-    for (const Run& own : {run(lit_index, true), run(lit_index, false)}) {
-        for (std::size_t ray = mirror ? own.mirror : own.begin; ray < (mirror ? own.end : own.mirror); ++ray) {
-            const double value = mirror ? 1.0 : lobe_value(shape, Vec3d(directions_[ray]), view);
-            const Weight& weight = weights_[ray];
-            sums.smooth.add(value * Vec3d(split ? weight.smooth : weight.smooth + weight.spots), visible_[ray]);
-            if (split) {
-                sums.spots.add(value * Vec3d(weight.spots), visible_[ray]);
-            }
+    const auto add = [&](std::size_t ray, double value) {
+        const Weight& weight = weights_[ray];
+        sums.smooth.add(value * Vec3d(split ? weight.smooth : weight.smooth + weight.spots), visible_[ray]);
+        if (split) {
+            sums.spots.add(value * Vec3d(weight.spots), visible_[ray]);
         }
+    };
+    if (is_mirror(shape)) {
+        for (std::size_t ray = run(lit_index, true).mirror; ray < run(lit_index, true).end; ++ray) {
+            add(ray, 1);
+        }
+        return sums;
+    }
+    gather(lit_index);
+    weighed_.weigh(shape, hits_->frame[hit], hits_->view(hit), false);
+    for (std::size_t i = 0; i < weighed_.size(); ++i) {
+        add(weighed_.number(i), double{weighed_.value(i)});
     }
     return sums;
 }

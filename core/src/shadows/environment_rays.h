@@ -14,10 +14,12 @@
 #include <vector>
 
 #include "lobes/material_lobes.h"
+#include "shadows/pixel_points.h"
+#include "shadows/ray_start.h"
 #include "shadows/ray_sums.h"
 #include "shadows/shadow_policy.h"
+#include "shadows/weighed_rays.h"
 #include "shlight/environment.h"
-#include "shlight/sampling.h"
 #include "tracing/hits.h"
 #include "tracing/shadow_tracer.h"
 
@@ -36,8 +38,7 @@ class EnvironmentRays {
 
     /// Forgets all rays. hits and lit, some of them, stay as they are until the next call.
     void start(const Hits& hits, std::span<const std::size_t> lit);
-    /// Draws the rays of a phase from a pixel's lit hits. phase.rays_per_hit: of each set; seed: of the pixel, whose
-    /// phases differ in nothing else.
+    /// Draws the rays of a phase from a pixel's lit hits. phase.rays_per_hit: of each set; seed: see PixelPoints.
     void draw(const LitRange& pixel, const RayPhase& phase, std::uint32_t seed);
     /// All that were drawn since the last call.
     void trace();
@@ -47,7 +48,7 @@ class EnvironmentRays {
     /// To be called before the sums of these pixels, of whose rays no more will be drawn.
     void weigh(std::span<const LitRange> pixels);
     /// Of all phases; split: or else all is in Sums::smooth.
-    Sums sum(std::size_t lit_index, std::size_t lobe, bool split) const;
+    Sums sum(std::size_t lit_index, std::size_t lobe, bool split);
     std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
@@ -68,14 +69,21 @@ class EnvironmentRays {
     struct Asked {
         std::size_t ray;
         Vec3f direction;     // in the frame of the picture
-        float lobe_density;  // of all sets but the picture's
+        float lobe_density;  // of all sets but the picture's; 1 for a mirror
         bool mirror;
     };
-    class Directions;
 
-    /// Valid until the next call.
-    Directions directions_from(std::size_t hit);
+    /// Of a hit's sets, in shapes_.
+    void find_shapes(std::size_t hit);
     void draw_hit(std::size_t lit_index, const RayPhase& phase);
+    void draw_set(const RayStart& start, std::size_t hit, std::size_t set, std::uint32_t rays);
+    /// As the picture's luminance is spread.
+    void draw_map(const RayStart& start, std::size_t hit, std::uint32_t rays);
+    /// Of both phases, but for the mirror's; in weighed_.
+    void gather(std::size_t lit_index);
+    /// May lie below the horizon, where it is no ray.
+    void push(const RayStart& start, const Vec3d& direction);
+    void weigh_hit(std::size_t lit_index);
     void weigh_map(const struct EnvironmentMap& map);
     Run& run(std::size_t lit_index, bool first_phase) { return runs_[2 * lit_index + (first_phase ? 0 : 1)]; }
     const Run& run(std::size_t lit_index, bool first_phase) const {
@@ -91,14 +99,15 @@ class EnvironmentRays {
 
     const Hits* hits_ = nullptr;  // of the call of start()
     std::span<const std::size_t> lit_;
-    std::vector<Run> runs_;                 // lit hits × 2 phases
-    std::vector<SobolSequence> sequences_;  // of a pixel, by set
-    std::vector<LobeShape> shapes_;         // of a hit's sets
-    std::vector<Vec3f> directions_;         // in the shading frame
-    std::vector<Ray> rays_;                 // the last of those drawn, which are not traced yet
-    std::vector<Rgb> visible_;              // of those traced
-    std::vector<Weight> weights_;           // of those weighed
+    std::vector<Run> runs_;  // lit hits × 2 phases
+    PixelPoints points_;
+    std::vector<LobeShape> shapes_;  // of a hit's sets
+    std::vector<Vec3f> directions_;  // along the axes of the world
+    std::vector<Ray> rays_;          // the last of those drawn, which are not traced yet
+    std::vector<Rgb> visible_;       // of those traced
+    std::vector<Weight> weights_;    // of those weighed
     std::vector<Asked> asked_;
+    WeighedRays weighed_;
 };
 
 }  // namespace shlight

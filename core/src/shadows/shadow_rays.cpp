@@ -8,9 +8,7 @@
 #include <optional>
 
 #include "emitters/face_radiance.h"
-#include "lobes/lobe_rays.h"
 #include "shadows/ray_start.h"
-#include "shlight/sampling.h"
 
 namespace shlight {
 namespace {
@@ -20,13 +18,9 @@ constexpr std::uint32_t kLightOnly = std::numeric_limits<std::uint32_t>::max();
 /// A lobe takes rays of its own only where more than this share of them could meet the light.
 constexpr double kLeastShare = 0.1;
 
-/// Of a hit; a multiple of all lanes.
-constexpr std::uint32_t kPointsAtOnce = 64;
-static_assert(kPointsAtOnce % kLightPointLanes == 0 && kPointsAtOnce % kLobeRayLanes == 0);
-
-/// Of these; their elements are written before they are read.
+/// Elements are written before they are read.
 struct PointBuffer {
-    alignas(64) std::array<float, kPointsAtOnce> x, y, z, weight;
+    alignas(64) std::array<float, kRaysAtOnce> x, y, z, weight;
 
     LightPointArrays arrays() { return {x.data(), y.data(), z.data(), weight.data()}; }
 };
@@ -48,7 +42,7 @@ class ShadowRays::Drawing {
           start(hits.frame[hit], hits.shadow_origin[hit], clearance(light, hits.frame[hit])),
           rays(phase.rays_per_hit),
           first_phase(phase.first),
-          first_point(phase.first_point + (hits.sample[hit] - phase.first_sample) * phase.rays_per_hit) {}
+          sample(hits.sample[hit]) {}
 
     std::uint32_t hit_material;
     std::span<const float> widths;
@@ -58,11 +52,11 @@ class ShadowRays::Drawing {
     RayStart start;
     std::uint32_t rays;  // of each set, but mirrors have one in the first phase
     bool first_phase;
-    std::uint32_t first_point;  // of the hit
+    std::uint32_t sample;
 };
 
 ShadowRays::ShadowRays(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride)
-    : tracer_(&tracer), lobe_stride_(lobe_stride), lobes_(materials) {
+    : tracer_(&tracer), lobe_stride_(lobe_stride), lobes_(materials), points_(0) {
     for (const MaterialLobes& material : materials) {
         Material& sets = materials_.emplace_back();
         for (const Lobe& lobe : material.lobes()) {
@@ -79,7 +73,7 @@ ShadowRays::ShadowRays(const ShadowTracer& tracer, std::span<const MaterialLobes
         }
         set_stride_ = std::max(set_stride_, 1 + sets.lobes.size());
     }
-    points_.resize(set_stride_, {SobolSequence(0), {}, {}, false});
+    points_ = PixelPoints(set_stride_);
 }
 
 void ShadowRays::start(const Light& light, const Hits& hits, const LitHits& lit) {
@@ -95,15 +89,7 @@ void ShadowRays::start(const Light& light, const Hits& hits, const LitHits& lit)
 }
 
 void ShadowRays::draw(const LitRange& pixel, const RayPhase& phase, std::uint32_t seed) {
-    // The points of all hits of a pixel are neighbours in their sequences.
-    const std::uint32_t first = hits_->sample[lit_->hit[pixel.begin]];
-    const std::uint32_t last = hits_->sample[lit_->hit[pixel.end - 1]];
-    point_count_ = std::size_t{last - first + 1} * phase.rays_per_hit;
-    first_point_ = phase.first_point + (first - phase.first_sample) * phase.rays_per_hit;
-    for (std::uint32_t set = 0; set < set_stride_; ++set) {
-        points_[set].sequence = SobolSequence(set == 0 ? seed : hash(seed, 2 + set));
-        points_[set].drawn = false;
-    }
+    points_.start(phase, hits_->sample[lit_->hit[pixel.begin]], hits_->sample[lit_->hit[pixel.end - 1]], seed);
     for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
         const ProfileView* profile = &kEven;
         if (!lit_->whole[i]) {
@@ -116,17 +102,6 @@ void ShadowRays::draw(const LitRange& pixel, const RayPhase& phase, std::uint32_
         }
         draw_hit(Drawing(*light_, *profile, *hits_, lit_->hit[i], phase), i);
     }
-}
-
-const ShadowRays::Points& ShadowRays::points(std::size_t set) {
-    Points& points = points_[set];
-    if (!points.drawn) {
-        points.u.resize(point_count_ + kPointsAtOnce);
-        points.v.resize(point_count_ + kPointsAtOnce);
-        draw_square_points(points.sequence, first_point_, point_count_, points.u.data(), points.v.data());
-        points.drawn = true;
-    }
-    return points;
 }
 
 void ShadowRays::trace() {
@@ -197,20 +172,18 @@ void ShadowRays::draw_hit(const Drawing& drawing, std::size_t lit_index) {
 }
 
 void ShadowRays::draw_light(const Drawing& drawing, std::size_t lit_index) {
-    const Points& square = points(0);
-    const std::size_t before = drawing.first_point - first_point_;
+    const PixelPoints::Square square = points_.of(0, drawing.sample);
     if (!lit_->whole[lit_index]) {
-        for (std::size_t i = before; i < before + drawing.rays; ++i) {
+        for (std::uint32_t i = 0; i < drawing.rays; ++i) {
             const LightSample sample = light_sampler_.sample({square.u[i], square.v[i]});
             push(drawing, sample.direction, sample.distance, sample.weight, light_sampler_.layers(sample.direction));
         }
         return;
     }
     PointBuffer buffer;
-    for (std::uint32_t first = 0; first < drawing.rays; first += kPointsAtOnce) {
-        const std::uint32_t count = std::min(drawing.rays - first, kPointsAtOnce);
-        place_points(*lit_->whole[lit_index], &square.u[before + first], &square.v[before + first], count,
-                     buffer.arrays());
+    for (std::uint32_t first = 0; first < drawing.rays; first += kRaysAtOnce) {
+        const std::uint32_t count = std::min(drawing.rays - first, kRaysAtOnce);
+        place_points(*lit_->whole[lit_index], square.u + first, square.v + first, count, buffer.arrays());
         push(drawing, buffer.arrays(), count);
     }
 }
@@ -245,12 +218,11 @@ void ShadowRays::draw_lobes(const Drawing& drawing, std::size_t lit_index, std::
     shared_[lit_index * set_stride_ + 1 + set] = 1;
     const std::uint32_t mirror_rays = drawing.first_phase ? 1 : 0;
     const std::uint32_t rays = mirror ? mirror_rays : drawing.rays;
-    const Points& square = points(1 + set);
-    const std::size_t before = drawing.first_point - first_point_;
+    const PixelPoints::Square square = points_.of(1 + set, drawing.sample);
     PointBuffer buffer;
-    for (std::uint32_t first = 0; first < rays; first += kPointsAtOnce) {
-        const std::uint32_t count = std::min(rays - first, kPointsAtOnce);
-        sample_lobe_rays(shape, drawing.view, &square.u[before + first], &square.v[before + first], count,
+    for (std::uint32_t first = 0; first < rays; first += kRaysAtOnce) {
+        const std::uint32_t count = std::min(rays - first, kRaysAtOnce);
+        sample_lobe_rays(shape, drawing.view, square.u + first, square.v + first, count,
                          {buffer.x.data(), buffer.y.data(), buffer.z.data()});
         if (rectangle) {
             meet_rectangle(*rectangle, *drawing.frame, count, buffer.arrays());
@@ -293,50 +265,37 @@ RaySums ShadowRays::sum(std::size_t lit_index, std::size_t lobe) {
     const LobeShape shape = lobes_[hits_->material[hit]].shape(lobe, hits_->widths(hit)[lobe]);
     const std::uint32_t set = materials_[hits_->material[hit]].set_of_lobe[lobe];
     const bool mirror = is_mirror(shape);
-    served_.clear();
-    for (const bool first_phase : {true, false}) {
-        const Run& of_light = run(lit_index, first_phase, 0);
-        for (std::size_t i = of_light.begin; i < of_light.end && !mirror; ++i) {
-            served_.push_back(i);
+    weighed_.clear();
+    const auto add = [&](const Run& run) {
+        for (std::size_t i = run.begin; i < run.end; ++i) {
+            weighed_.add(i, drawn_[i].way);
         }
-        const Run& of_lobe = set == kLightOnly ? Run() : run(lit_index, first_phase, 1 + set);
-        for (std::size_t i = of_lobe.begin; i < of_lobe.end; ++i) {
-            served_.push_back(i);
+    };
+    for (const bool first_phase : {true, false}) {
+        if (!mirror) {
+            add(run(lit_index, first_phase, 0));
+        }
+        if (set != kLightOnly) {
+            add(run(lit_index, first_phase, 1 + set));
         }
     }
-    weigh(lit_index, shape, set);
+    const bool shared = set != kLightOnly && shared_[lit_index * set_stride_ + 1 + set] != 0;
+    if (!mirror) {
+        weighed_.weigh(shape, hits_->frame[hit], hits_->view(hit), shared);
+    }
     RaySums sums;
-    for (std::size_t i = 0; i < served_.size(); ++i) {
-        const std::size_t ray = served_[i];
-        const Vec3d color = colors_.empty() || mirror ? Vec3d(1) : Vec3d(colors_[ray]);
-        sums.add(double{values_[i]} * color, visible_[ray]);
+    for (std::size_t i = 0; i < weighed_.size(); ++i) {
+        const std::size_t ray = weighed_.number(i);
+        if (mirror) {
+            sums.add(Vec3d(1), visible_[ray]);
+            continue;
+        }
+        const Drawn& drawn = drawn_[ray];
+        const float weight = shared ? drawn.weight / (1 + drawn.light_spread * weighed_.density(i)) : drawn.weight;
+        const Vec3d color = colors_.empty() ? Vec3d(1) : Vec3d(colors_[ray]);
+        sums.add(double{weight * weighed_.value(i)} * color, visible_[ray]);
     }
     return sums;
-}
-
-void ShadowRays::weigh(std::size_t lit_index, const LobeShape& shape, std::uint32_t set) {
-    const std::size_t count = served_.size();
-    if (is_mirror(shape)) {
-        values_.assign(count, 1.0F);
-        return;
-    }
-    for (std::vector<float>* array : {&x_, &y_, &z_, &values_, &densities_}) {
-        array->resize(count + kLobeRayLanes);
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        const Vec3f& way = drawn_[served_[i]].way;
-        x_[i] = way.x;
-        y_[i] = way.y;
-        z_[i] = way.z;
-    }
-    const std::size_t hit = lit_->hit[lit_index];
-    const bool shared = set != kLightOnly && shared_[lit_index * set_stride_ + 1 + set] != 0;
-    weigh_lobe_rays(shape, hits_->frame[hit], hits_->view(hit), {x_.data(), y_.data(), z_.data()}, count,
-                    values_.data(), shared ? densities_.data() : nullptr);
-    for (std::size_t i = 0; i < count; ++i) {
-        const Drawn& drawn = drawn_[served_[i]];
-        values_[i] *= shared ? drawn.weight / (1 + drawn.light_spread * densities_[i]) : drawn.weight;
-    }
 }
 
 }  // namespace shlight

@@ -19,10 +19,11 @@
 #include "lights/seen_light.h"
 #include "lights/whole_rectangle.h"
 #include "lobes/material_lobes.h"
+#include "shadows/pixel_points.h"
 #include "shadows/ray_sums.h"
 #include "shadows/shadow_policy.h"
+#include "shadows/weighed_rays.h"
 #include "shlight/light.h"
-#include "shlight/sampling.h"
 #include "tracing/hits.h"
 #include "tracing/shadow_tracer.h"
 
@@ -63,8 +64,7 @@ class ShadowRays {
 
     /// Forgets all rays. hits and lit stay as they are until the next call.
     void start(const Light& light, const Hits& hits, const LitHits& lit);
-    /// Draws the rays of a phase from a pixel's hits among lit. seed: of the pixel and light; the phases of a pixel
-    /// differ in nothing else.
+    /// Draws the rays of a phase from a pixel's hits among lit. seed: see PixelPoints.
     void draw(const LitRange& pixel, const RayPhase& phase, std::uint32_t seed);
     /// All that were drawn since the last call.
     void trace();
@@ -93,15 +93,8 @@ class ShadowRays {
         float light_spread;  // one over the density of the light's set there
         bool hidden_layer;   // behind another layer of the light
     };
-    /// Of the unit square, for a set of rays: those of a pixel and phase.
-    struct Points {
-        SobolSequence sequence;
-        std::vector<float> u, v;
-        bool drawn;
-    };
     class Drawing;
 
-    const Points& points(std::size_t set);
     void draw_hit(const Drawing& drawing, std::size_t lit_index);
     void draw_light(const Drawing& drawing, std::size_t lit_index);
     void draw_lobes(const Drawing& drawing, std::size_t lit_index, std::size_t set, const LobeShape& shape);
@@ -121,8 +114,6 @@ class ShadowRays {
     const Run& run(std::size_t lit_index, bool first_phase, std::size_t set) const {
         return runs_[(2 * lit_index + (first_phase ? 0 : 1)) * set_stride_ + set];
     }
-    /// What the rays of all phases that serve a lobe are worth to it, in values_ and by their numbers in served_.
-    void weigh(std::size_t lit_index, const LobeShape& shape, std::uint32_t set);
 
     const ShadowTracer* tracer_;
     std::size_t lobe_stride_;
@@ -135,9 +126,7 @@ class ShadowRays {
     const Light* light_ = nullptr;
     const Hits* hits_ = nullptr;
     const LitHits* lit_ = nullptr;
-    std::vector<Points> points_;  // by set, from first_point_ on
-    std::uint32_t first_point_ = 0;
-    std::size_t point_count_ = 0;
+    PixelPoints points_;
     Scratch<Drawn> drawn_;
     Scratch<Ray> rays_;                 // the last of those drawn, which are not traced yet
     std::vector<RayHit> met_;           // by these
@@ -145,9 +134,7 @@ class ShadowRays {
     std::vector<Rgb> visible_;          // of those traced
     std::vector<Run> runs_;             // lit hits × 2 phases × set_stride
     std::vector<std::uint8_t> shared_;  // lit hits × set_stride: whether the set's rays share the light's work
-    // Of the lobe whose sum is asked for:
-    std::vector<std::size_t> served_;
-    std::vector<float> x_, y_, z_, values_, densities_;
+    WeighedRays weighed_;
 };
 
 }  // namespace shlight

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+//
+// Points of the unit square for the shadow rays of a pixel: a sequence for each set of rays, in which the points of all
+// hits are neighbours.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lights/whole_rectangle.h"
+#include "lobes/lobe_rays.h"
+#include "shadows/shadow_policy.h"
+#include "shlight/sampling.h"
+
+namespace shlight {
+
+/// Rays that are drawn together; a multiple of all lanes.
+inline constexpr std::uint32_t kRaysAtOnce = 64;
+static_assert(kRaysAtOnce % kLightPointLanes == 0 && kRaysAtOnce % kLobeRayLanes == 0);
+
+/// Keeps its memory from pixel to pixel.
+class PixelPoints {
+  public:
+    /// So many that a whole number of kRaysAtOnce may be read.
+    struct Square {
+        const float *u, *v;
+    };
+
+    explicit PixelPoints(std::size_t set_count) : sets_(set_count, {SobolSequence(0), {}, {}, false}) {}
+
+    /// Of the camera rays first … last. seed: of the pixel and light; the phases of a pixel differ in nothing else.
+    void start(const RayPhase& phase, std::uint32_t first, std::uint32_t last, std::uint32_t seed) {
+        phase_ = phase;
+        first_ = first;
+        count_ = std::size_t{last - first + 1} * phase.rays_per_hit;
+        for (std::uint32_t set = 0; set < sets_.size(); ++set) {
+            sets_[set].sequence = SobolSequence(hash(seed, set));
+            sets_[set].drawn = false;
+        }
+    }
+
+    /// phase.rays_per_hit of them, for one of these camera rays. They are drawn where they are asked for first.
+    Square of(std::size_t set, std::uint32_t sample) {
+        Set& own = sets_[set];
+        if (!own.drawn) {
+            own.u.resize(count_ + kRaysAtOnce);
+            own.v.resize(count_ + kRaysAtOnce);
+            draw_square_points(own.sequence, phase_.first_point + (first_ - phase_.first_sample) * phase_.rays_per_hit,
+                               count_, own.u.data(), own.v.data());
+            own.drawn = true;
+        }
+        const std::size_t before = std::size_t{sample - first_} * phase_.rays_per_hit;
+        return {&own.u[before], &own.v[before]};
+    }
+
+  private:
+    struct Set {
+        SobolSequence sequence;
+        std::vector<float> u, v;
+        bool drawn;
+    };
+
+    std::vector<Set> sets_;
+    RayPhase phase_{};
+    std::uint32_t first_ = 0;
+    std::size_t count_ = 0;
+};
+
+}  // namespace shlight
