@@ -41,18 +41,20 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
     def render(self, depsgraph: Any) -> None:
         """Renders one view layer. Blender prints exceptions and goes on, so all of them are reported here."""
         if depsgraph.scene.original not in bpy.data.scenes.values():  # one of Freestyle's own, of strokes
-            self._deliver(depsgraph, frame_of(depsgraph.scene.render), None)
+            self._deliver(depsgraph, frame_of(depsgraph.scene.render), {})
             return
         frame: Frame | None = None
-        self._begin(depsgraph.view_layer.name)
+        self._begin(depsgraph)
         try:
             frame = frame_of(depsgraph.scene.render)
             if native_problem():
                 raise ExportError(native_problem())
-            image = self._render(depsgraph, frame)
+            images = {}
+            for view in _views(depsgraph.scene.render):
+                images[view] = self._render(depsgraph, frame, view)
             if running.renders.stopped:
                 self._say_error(running.STOPPED)  # after an error Blender begins no other frame
-            self._deliver(depsgraph, frame, image)
+            self._deliver(depsgraph, frame, images)
         except ExportError as error:
             record.last.scene_error = str(error)
             self._fail(depsgraph, frame, str(error))
@@ -60,17 +62,18 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             traceback.print_exc()
             self._fail(depsgraph, frame, f"{type(error).__name__}: {error}")
 
-    def _begin(self, view_layer: str) -> None:
+    def _begin(self, depsgraph: Any) -> None:
         """Starts the record of a render with its first view layer; the others add to it."""
+        view_layer = depsgraph.view_layer.name
         # Blender makes an engine for each frame, or keeps one for all (Persistent Data).
         if view_layer in getattr(self, "_view_layers", {view_layer}):
-            record.begin()
+            record.begin(depsgraph.scene)
             self._view_layers: set[str] = set()
             self._shown: set[str] = set()
         self._view_layers.add(view_layer)
 
-    def _render(self, depsgraph: Any, frame: Frame) -> NDArray[np.float32] | None:
-        """The picture, or as much of it as there is when the user stops the render; None: nothing."""
+    def _render(self, depsgraph: Any, frame: Frame, view: str) -> NDArray[np.float32] | None:
+        """The picture of a view, or as much of it as there is when the user stops the render; None: nothing."""
         # Imported here: an installation without the native module still registers.
         import shlight
 
@@ -79,7 +82,8 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         start = time.perf_counter()
         try:
             self._check("Exporting the scene")
-            exported = export_scene(depsgraph, frame=frame, camera=self.camera_override, waiting=self._wait)
+            eye = self._eye(depsgraph, view)
+            exported = export_scene(depsgraph, frame=frame, camera=eye, waiting=self._wait)
             settings = render_settings(depsgraph.scene).arguments()
             record.last.export_seconds = time.perf_counter() - start
             record.last.report.extend(exported.report)
@@ -97,7 +101,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
                 latest = image
                 self._status = _status(report)
                 if (now := time.perf_counter()) >= next_update:
-                    self._deliver(depsgraph, frame, image)
+                    self._deliver(depsgraph, frame, {view: image})
                     taken = time.perf_counter() - now
                     next_update = now + max(UPDATE_INTERVAL, taken / LARGEST_UPDATE_SHARE)
                 return True
@@ -117,6 +121,18 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         except shlight.RenderCancelled:
             return latest  # what the user has seen stays
         return image
+
+    def _eye(self, depsgraph: Any, view: str) -> Any:
+        """What the view is seen with: a camera, or one of its two eyes."""
+        from .export import Eye
+
+        if not view:
+            return self.camera_override
+        self.active_view_set(view)
+        camera = self.camera_override or depsgraph.scene.camera
+        if camera is None or camera.type != "CAMERA":
+            return camera
+        return Eye(camera, self.camera_model_matrix(camera), self.camera_shift_x(camera))
 
     def _progress(self, fraction: float) -> bool:
         self.update_progress(fraction)
@@ -147,18 +163,16 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
     def _fail(self, depsgraph: Any, frame: Frame | None, text: str) -> None:
         self._say_error(text)
         if frame is not None:
-            self._deliver(depsgraph, frame, None)
+            self._deliver(depsgraph, frame, {})
 
     def _say_error(self, text: str) -> None:
         self.report({"ERROR"}, f"shlight: {text}")
 
-    def _deliver(self, depsgraph: Any, frame: Frame, image: NDArray[np.float32] | None) -> None:
-        """Hands over the picture (None: an empty one; without any, saving the render crashes Blender)."""
-        if image is None:
-            image = np.zeros((frame.height, frame.width, 4), dtype=np.float32)
-        render = depsgraph.scene.render
-        views = [view.name for view in render.views if view.use] if render.use_multiview else [""]
-        for view in views:
+    def _deliver(self, depsgraph: Any, frame: Frame, images: dict[str, NDArray[np.float32] | None]) -> None:
+        """Hands over pictures of views; empty ones for all if there are none: without, saving crashes Blender."""
+        for view, image in (images or dict.fromkeys(_views(depsgraph.scene.render))).items():
+            if image is None:
+                image = np.zeros((frame.height, frame.width, 4), dtype=np.float32)
             result = self.begin_result(0, 0, frame.width, frame.height, layer=depsgraph.view_layer.name, view=view)
             for layer in result.layers:
                 write_pass(layer.passes["Combined"], image[::-1].reshape(-1, 4))
@@ -170,6 +184,11 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
 
     def view_draw(self, context: Any, depsgraph: Any) -> None:
         """Leaves the viewport empty."""
+
+
+def _views(render: Any) -> list[str]:
+    """Names of the views of a render; that of a picture without views is empty."""
+    return [view.name for view in render.views if view.use] if render.use_multiview else [""]
 
 
 def _status(report: Any) -> str:

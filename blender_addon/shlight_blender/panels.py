@@ -9,7 +9,9 @@ from typing import Any
 
 import bpy
 
+from . import report_panel
 from .compat import LAMPS, has_node_switch, nodes_by_engine, shadow_switch, uses_nodes
+from .presets import SHLIGHT_OT_use_preset, draw_presets
 from .running import ENGINE
 
 # Panels for every engine that show what shlight does not have, or are replaced below.
@@ -58,6 +60,7 @@ class SHLIGHT_RENDER_PT_sampling(EnginePanel, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         settings = context.scene.shlight
+        draw_presets(layout, settings)
         layout.prop(settings, "noise_threshold")
         column = layout.column(align=True)
         if settings.pixel_samples:
@@ -68,10 +71,28 @@ class SHLIGHT_RENDER_PT_sampling(EnginePanel, bpy.types.Panel):
         layout.prop(settings, "time_limit")
 
 
-class SHLIGHT_RENDER_PT_accuracy(EnginePanel, bpy.types.Panel):
-    """How precisely light is integrated."""
+class SHLIGHT_RENDER_PT_light(EnginePanel, bpy.types.Panel):
+    """Where light goes, and how precisely it is integrated."""
 
-    bl_label = "Accuracy"
+    bl_label = "Light"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        cycles = getattr(context.scene, "cycles", None)
+        if cycles is not None:
+            layout.prop(cycles, "transparent_max_bounces", text="Transparent Bounces")
+
+
+class SHLIGHT_RENDER_PT_light_advanced(EnginePanel, bpy.types.Panel):
+    """What hardly anybody changes."""
+
+    bl_label = "Advanced"
+    bl_parent_id = "SHLIGHT_RENDER_PT_light"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
@@ -79,10 +100,10 @@ class SHLIGHT_RENDER_PT_accuracy(EnginePanel, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         settings = context.scene.shlight
-        layout.prop(settings, "order")
         column = layout.column()
         column.active = settings.order == "AUTO"
         column.prop(settings, "tolerance")
+        layout.prop(settings, "order")
 
 
 class SHLIGHT_RENDER_PT_shadows(EnginePanel, bpy.types.Panel):
@@ -122,6 +143,25 @@ class SHLIGHT_RENDER_PT_film(EnginePanel, bpy.types.Panel):
             column.prop(cycles, "pixel_filter_type", text="Pixel Filter")
             if cycles.pixel_filter_type != "BOX":
                 column.prop(cycles, "filter_width", text="Width")
+
+
+class SHLIGHT_RENDER_PT_performance(EnginePanel, bpy.types.Panel):
+    """Threads, and what is kept from frame to frame."""
+
+    bl_label = "Performance"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        render = context.scene.render
+        column = layout.column()
+        column.prop(render, "threads_mode")
+        row = column.row()
+        row.active = render.threads_mode == "FIXED"
+        row.prop(render, "threads")
 
 
 class SHLIGHT_WORLD_PT_baking(EnginePanel, bpy.types.Panel):
@@ -254,10 +294,14 @@ def _draw_area(column: Any, light: Any) -> None:
 _DRAW_SHAPE = {"POINT": _draw_point, "SPOT": _draw_spot, "SUN": _draw_sun, "AREA": _draw_area}
 
 CLASSES = (
+    SHLIGHT_OT_use_preset,
     SHLIGHT_RENDER_PT_sampling,
-    SHLIGHT_RENDER_PT_accuracy,
+    SHLIGHT_RENDER_PT_light,
+    SHLIGHT_RENDER_PT_light_advanced,
     SHLIGHT_RENDER_PT_shadows,
     SHLIGHT_RENDER_PT_film,
+    SHLIGHT_RENDER_PT_performance,
+    *report_panel.CLASSES,
     SHLIGHT_WORLD_PT_baking,
     SHLIGHT_OBJECT_PT_ray_visibility,
     SHLIGHT_LIGHT_PT_light,
@@ -294,7 +338,7 @@ def _as_for_cycles(context: Any) -> Any:
 
 
 def register() -> None:
-    """Adds the panels, and joins Blender's and its menu of nodes."""
+    """Adds the panels and their operators, and joins Blender's panels and its menu of nodes."""
     for panel in CLASSES:
         bpy.utils.register_class(panel)
     for panel in shared_panels():

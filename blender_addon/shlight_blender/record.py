@@ -13,6 +13,7 @@ from .report import ExportReport
 class RenderRecord:
     """One render; empty where it did not come that far. Times and statistics are those of its last view layer."""
 
+    scene: str = ""  # its name
     settings: dict[str, Any] = field(default_factory=dict)  # arguments of shlight.render
     report: ExportReport = field(default_factory=ExportReport)  # of all view layers
     export_seconds: float = 0.0
@@ -27,12 +28,22 @@ class RenderRecord:
         """What the report says, as plain data."""
         return self.report.to_data()
 
+    def is_of(self, scene: Any) -> bool:
+        """Whether it is of this scene."""
+        return bool(self.scene == scene.name)
+
 
 last = RenderRecord()
 
 
-def begin() -> RenderRecord:
+def begin(scene: Any) -> RenderRecord:
     """Starts the record of a new render."""
     global last
-    last = RenderRecord()
+    last = RenderRecord(scene.name)
     return last
+
+
+def forget() -> None:
+    """Nothing is known any more, as of a file that is opened."""
+    global last
+    last = RenderRecord()

@@ -13,6 +13,8 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
+from . import record
+
 ENGINE = "SHLIGHT"
 LONGEST_WAIT = 30.0  # seconds; the longest part of an export that does not ask whether it is to end takes a few
 STOPPED = "the render was stopped because a render engine was removed"
@@ -65,6 +67,11 @@ def _note_end(*_: Any) -> None:
     renders.end()
 
 
+@persistent
+def _note_file(*_: Any) -> None:
+    record.forget()
+
+
 def _stop_for(cls: Any) -> None:
     """Blender calls a class's `unregister` before it removes it."""
     if not renders.stopped:
@@ -72,11 +79,16 @@ def _stop_for(cls: Any) -> None:
         renders.resume()
 
 
-HANDLERS = {"render_init": _note_begin, "render_complete": _note_end, "render_cancel": _note_end}
+HANDLERS = {
+    "render_init": _note_begin,
+    "render_complete": _note_end,
+    "render_cancel": _note_end,
+    "load_post": _note_file,
+}
 
 
 def register() -> None:
-    """Watches for renders and for engines that are removed."""
+    """Watches for renders, for engines that are removed, and for files that are opened."""
     renders.resume()
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).append(handler)

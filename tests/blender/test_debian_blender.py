@@ -174,7 +174,7 @@ def test_window(tmp_path: Path) -> None:
     assert code == 0, output
     assert "Traceback" not in output, output
     drawn = json.loads((tmp_path / "drawn.json").read_text())
-    shown = {"RENDER_PT_accuracy", "RENDER_PT_shadows", "WORLD_PT_baking", "LIGHT_PT_light", "LIGHT_PT_nodes"}
+    shown = {"RENDER_PT_light", "RENDER_PT_shadows", "WORLD_PT_baking", "LIGHT_PT_light", "LIGHT_PT_nodes"}
     assert {f"SHLIGHT_{name}" for name in shown} <= set(drawn["panels"])
     shaders = {"BsdfPrincipled", "BsdfDiffuse", "BsdfGlossy", "Emission", "MixShader", "AddShader", "OutputLight"}
     assert {f"ShaderNode{name}" for name in shaders} <= set(drawn["nodes"]["SHLIGHT"])

@@ -19,7 +19,8 @@ import pytest
 import shlight
 import shlight_blender
 from shlight.images import read_exr
-from shlight_blender import compat, native, panels, preferences, record
+from shlight.metrics import rel_mse
+from shlight_blender import compat, native, panels, preferences, presets, record, report_panel
 from shlight_blender.engine import ShlightRenderEngine
 
 
@@ -144,15 +145,29 @@ def test_all_view_layers_are_reported_and_the_weightiest_warning_last(
         assert shown == [middle, heavy, slight, heavy]
 
 
-def test_both_eyes_get_a_picture(studio: Any) -> None:
+@pytest.mark.parametrize("format", ["STEREO_3D", "MULTIVIEW"])
+def test_views_are_seen_as_cycles_sees_them(studio: Any, format: str) -> None:
+    """The eyes of one camera that converge by shift, and a camera for each view."""
     simple_scene(studio)
-    studio.scene.render.use_multiview = True
-    studio.scene.render.image_settings.views_format = "INDIVIDUAL"
-    studio.scene.render.filepath = str(studio.folder / "eyes.exr")
-    bpy.ops.render.render(write_still=True)
-    written = sorted(studio.folder.glob("eyes*.exr"))
-    assert len(written) == 2
-    assert all(read_exr(path)[..., :3].any() for path in written)
+    render = studio.scene.render
+    render.use_multiview, render.views_format = True, format
+    render.image_settings.views_format = "INDIVIDUAL"
+    stereo = studio.scene.camera.data.stereo
+    stereo.convergence_mode, stereo.convergence_distance, stereo.interocular_distance = "OFFAXIS", 4.0, 0.5
+    if format == "MULTIVIEW":
+        studio.scene.camera.name = "Camera_L"
+        studio.camera(location=(4, -5, 3)).name = "Camera_R"
+    studio.scene.shlight.pixel_samples = 16
+    pictures = {}
+    for engine in ("SHLIGHT", "CYCLES"):
+        render.engine = engine
+        render.filepath = str(studio.folder / f"{engine}.exr")
+        bpy.ops.render.render(write_still=True)
+        pictures[engine] = [read_exr(path)[..., :3] for path in sorted(studio.folder.glob(f"{engine}*.exr"))]
+    assert len(pictures["SHLIGHT"]) == 2
+    for seen, expected in zip(pictures["SHLIGHT"], pictures["CYCLES"], strict=True):
+        assert rel_mse(seen, expected) <= 2e-3  # noise of Cycles' 256 samples
+    assert rel_mse(*pictures["SHLIGHT"]) > 0.05
 
 
 @pytest.mark.parametrize("eyes", [1, 2])
@@ -241,7 +256,7 @@ def test_blenders_own_panels_and_unregistering(studio: Any) -> None:
     try:
         assert shared() == set()
         assert not hasattr(bpy.types.Scene, "shlight")
-        assert not hasattr(bpy.types, "SHLIGHT_RENDER_PT_accuracy")
+        assert not hasattr(bpy.types, "SHLIGHT_RENDER_PT_light")
         with pytest.raises(TypeError):
             bpy.context.scene.render.engine = "SHLIGHT"
     finally:
@@ -256,7 +271,12 @@ class Layout:
     def __init__(self) -> None:
         self.shown: set[str] = set()
         self.text = ""
+        self.places: list[str] = []
         self.active = True
+
+    def operator(self, name: str, text: str, **_: Any) -> Any:
+        self.places.append(text)
+        return SimpleNamespace()
 
     def prop(self, owner: Any, name: str, **_: Any) -> None:
         getattr(owner, name)
@@ -268,10 +288,10 @@ class Layout:
     def label(self, text: str, **_: Any) -> None:
         self.text += " " + text
 
-    def column(self) -> Layout:
+    def column(self, align: bool = False) -> Layout:
         return self
 
-    row = column
+    row = box = column
 
 
 def drawn_by(panel: Any, **context: Any) -> Layout:
@@ -314,11 +334,55 @@ def test_ray_visibility_is_shown_and_dim_where_it_is_not_supported(studio: Any) 
     assert shown["Camera"].shown == set()
 
 
+def test_presets_set_what_they_say_and_preview_is_the_default(studio: Any) -> None:
+    settings = studio.scene.shlight
+    assert [name for name in presets.PRESETS if presets.is_set(settings, name)] == ["PREVIEW"]
+    settings.time_limit = 3.0
+    for name in presets.PRESETS:
+        settings.shadow_rays, settings.pixel_samples = 5, 2
+        bpy.ops.shlight.use_preset(preset=name)
+        assert [other for other in presets.PRESETS if presets.is_set(settings, other)] == [name]
+    assert settings.noise_threshold == pytest.approx(0.002)
+    assert settings.time_limit == 3.0
+
+
+def test_the_report_leads_to_its_places(studio: Any) -> None:
+    simple_scene(studio)
+    box = bpy.data.objects["Box"]
+    box.data.materials.clear()
+    for name in ("Plain", "Odd's"):
+        box.data.materials.append(studio.material(name=name))
+    tree = box.data.materials[1].node_tree
+    sheen = tree.nodes.new("ShaderNodeBsdfHair")
+    sheen.label = "Fluff, 'soft'"
+    tree.links.new(sheen.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+    box.is_shadow_catcher = True
+    context = {"scene": studio.scene, "region": SimpleNamespace(width=300)}
+    context["preferences"] = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))  # a Blender without a window has 0
+    assert "Render to see" in drawn_by(report_panel.SHLIGHT_RENDER_PT_report, **context).text
+    studio.render("SHLIGHT")
+    shown = drawn_by(report_panel.SHLIGHT_RENDER_PT_report, **context)
+    assert "shadow catchers are not supported" in " ".join(shown.text.split()).lower()
+    node = next(place for place in shown.places if "node" in place)
+    assert node == "Material 'Odd's', node 'Fluff, 'soft''"
+    for place in shown.places:
+        bpy.context.view_layer.objects.active = None
+        assert bpy.ops.shlight.show_place(place=place) == {"FINISHED"}
+        assert bpy.context.view_layer.objects.active == box
+    bpy.ops.shlight.show_place(place=node)
+    assert box.active_material.name == "Odd's"
+    assert tree.nodes.active == sheen
+    with pytest.raises(RuntimeError, match="'Gone' is not in this view layer"):
+        bpy.ops.shlight.show_place(place="Object 'Gone'")
+    studio.scene.name = "Another"
+    assert "Render to see" in drawn_by(report_panel.SHLIGHT_RENDER_PT_report, **context).text
+
+
 def test_world_width_is_a_setting_of_the_world(studio: Any) -> None:
     studio.world()
     context = {"scene": studio.scene, "world": studio.scene.world}
     assert drawn_by(panels.SHLIGHT_WORLD_PT_baking, **context).shown == {"world_width"}
-    assert "world_width" not in drawn_by(panels.SHLIGHT_RENDER_PT_accuracy, **context).shown
+    assert "world_width" not in drawn_by(panels.SHLIGHT_RENDER_PT_light, **context).shown
     assert drawn_by(panels.SHLIGHT_WORLD_PT_baking, scene=studio.scene, world=None).shown == set()
 
 

@@ -3,6 +3,7 @@
 
 from ..frame import Frame, frame_of, whole_frame
 from ..report import ExportError, ExportReport
+from .camera import Eye
 from .scene import ExportedScene, export_scene
 from .settings import RenderSettings, render_settings
 
@@ -10,6 +11,7 @@ __all__ = [
     "ExportError",
     "ExportReport",
     "ExportedScene",
+    "Eye",
     "Frame",
     "RenderSettings",
     "export_scene",

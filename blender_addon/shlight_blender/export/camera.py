@@ -16,6 +16,15 @@ from ..report import ExportError, ExportReport
 
 
 @dataclass(frozen=True)
+class Eye:
+    """One eye of a camera, or the camera of one view."""
+
+    camera: Any
+    to_world: Any  # 4 × 4
+    shift_x: float
+
+
+@dataclass(frozen=True)
 class View:
     """How the camera sees the world.
 
@@ -29,10 +38,9 @@ class View:
     orthographic: bool
 
 
-def set_camera(
-    scene: shlight.Scene, camera: Any, depsgraph: Any, frame: Frame, render: Any, report: ExportReport
-) -> View:
-    """Gives `scene` the evaluated object `camera`, looking at `frame`; ExportError for one without a picture plane."""
+def set_camera(scene: shlight.Scene, eye: Eye, depsgraph: Any, frame: Frame, render: Any, report: ExportReport) -> View:
+    """Gives `scene` the eye, looking at `frame`; ExportError for a camera without a picture plane."""
+    camera = eye.camera.evaluated_get(depsgraph)
     lens = camera.data
     place = f"Camera '{camera.name}'"
     if lens.type not in {"PERSP", "ORTHO"}:
@@ -41,12 +49,12 @@ def set_camera(
         )
     if lens.dof.use_dof:
         report.add(place, "depth of field is not supported; everything is in focus")
-    to_world = np.array(camera.matrix_world, dtype=np.float64)
+    to_world = np.array(eye.to_world, dtype=np.float64)
     scale = np.linalg.norm(to_world[:3, :3], axis=0)
     if not np.isfinite(to_world).all() or not scale.all():
         raise ExportError(f"{place}: its transform is not finite or has scale 0")
     to_world[:3, :3] /= scale  # a camera's scale means nothing
-    projection = _projection(camera, depsgraph, frame, render)
+    projection = _projection(eye, camera, depsgraph, frame, render)
     left, right, bottom, top = _window(projection, frame, orthographic=lens.type == "ORTHO")
     scene.set_camera_window(
         to_world,
@@ -61,17 +69,21 @@ def set_camera(
     return _view(to_world, projection, orthographic=lens.type == "ORTHO")
 
 
-def _projection(camera: Any, depsgraph: Any, frame: Frame, render: Any) -> NDArray[np.float64]:
-    return np.array(
-        camera.calc_matrix_camera(
+def _projection(eye: Eye, camera: Any, depsgraph: Any, frame: Frame, render: Any) -> NDArray[np.float64]:
+    lens = camera.data
+    shift_x = lens.shift_x
+    lens.shift_x = eye.shift_x  # of the evaluated copy
+    try:
+        matrix = camera.calc_matrix_camera(
             depsgraph,
             x=frame.full_width,
             y=frame.full_height,
             scale_x=render.pixel_aspect_x,
             scale_y=render.pixel_aspect_y,
-        ),
-        dtype=np.float64,
-    )
+        )
+    finally:
+        lens.shift_x = shift_x
+    return np.array(matrix, dtype=np.float64)
 
 
 def _view(to_world: NDArray[np.float64], projection: NDArray[np.float64], *, orthographic: bool) -> View:

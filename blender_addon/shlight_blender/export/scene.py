@@ -14,7 +14,7 @@ import shlight
 from ..frame import Frame, frame_of
 from ..report import Effect, ExportCancelled, ExportError, ExportReport
 from .bake import Waiting
-from .camera import set_camera
+from .camera import Eye, set_camera
 from .expressions import Surroundings
 from .image_pixels import TEXTURES
 from .lights import add_lamp
@@ -63,22 +63,18 @@ def export_scene(
     depsgraph: in a render engine the one it is given, else `bpy.context.evaluated_depsgraph_get()`, which shows what
         the viewport shows: an object hidden there is missing, and modifiers have their viewport settings.
     frame: the picture and its part to render; None: resolution and render border of `scene.render`.
-    camera: the camera object; None: the scene's.
+    camera: the camera object, or one eye of it; None: the scene's camera.
     waiting: called with what is being done, a few times a second; False stops it.
     Raises ExportError if there is no camera or one that is not supported, and ExportCancelled if `waiting` stopped it.
     A scene without light is black, and the report says so.
     """
     blender_scene = depsgraph.scene_eval
     frame = frame or frame_of(blender_scene.render)
-    camera = camera or blender_scene.camera
     report = ExportReport()
     TEXTURES.begin_export()
-    if camera is None:
-        raise ExportError(f"Scene '{blender_scene.name}' has no camera")
-    if camera.type != "CAMERA":
-        raise ExportError(f"the active camera of scene '{blender_scene.name}', '{camera.name}', is not a camera")
+    eye = _eye(camera or blender_scene.camera, blender_scene, depsgraph)
     scene = shlight.Scene()
-    view = set_camera(scene, camera.evaluated_get(depsgraph), depsgraph, frame, blender_scene.render, report)
+    view = set_camera(scene, eye, depsgraph, frame, blender_scene.render, report)
     report_unsupported_settings(blender_scene, depsgraph.view_layer_eval, report)
     lit = add_world(scene, blender_scene, depsgraph.view_layer_eval, report, waiting)
     meshes = MeshCollector(report, Surroundings(view, depsgraph), depsgraph.view_layer_eval.material_override)
@@ -87,6 +83,17 @@ def export_scene(
         report.add(f"File '{path}'", "it cannot be read; magenta is used in the place of its picture", Effect.THING)
     dark = "" if lit else _report_darkness(blender_scene, report)
     return ExportedScene(scene, report, dark, meshes.operations(), TEXTURES.size_in_bytes)
+
+
+def _eye(camera: Any, blender_scene: Any, depsgraph: Any) -> Eye:
+    if isinstance(camera, Eye):
+        return camera
+    if camera is None:
+        raise ExportError(f"Scene '{blender_scene.name}' has no camera")
+    if camera.type != "CAMERA":
+        raise ExportError(f"the active camera of scene '{blender_scene.name}', '{camera.name}', is not a camera")
+    evaluated = camera.evaluated_get(depsgraph)
+    return Eye(camera, evaluated.matrix_world, evaluated.data.shift_x)
 
 
 def _asking(waiting: Waiting | None) -> Callable[[], None]:

@@ -64,8 +64,6 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
     render = scene.render
     if render.use_motion_blur:
         report.add(place, "motion blur is not supported; everything stands still")
-    if render.use_multiview:
-        report.add(place, "stereoscopy is not supported; all views show the same picture")
     if getattr(render, "use_freestyle", False):
         report.add(place, "Freestyle lines are not supported; left out")
     if working_space() != REC709:

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the latest render drew in another way than Cycles, as a panel that leads to each place."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from typing import Any
+
+import bpy
+
+from . import record
+from .report import Effect, Message
+from .running import ENGINE
+
+MOST_PLACES = 4
+PIXELS_PER_LETTER = 7.0
+ICONS = {Effect.DARK: "ERROR", Effect.LIGHT: "ERROR", Effect.THING: "ERROR"}
+PLACE = re.compile(r"(?P<kind>[A-Z][a-z ]+?) '(?P<name>.+?)'(?:, node '(?P<node>.+)')?(?:, .*)?")
+OBJECT_KINDS = {"Object", "Light", "Camera"}
+
+
+class SHLIGHT_OT_show_place(bpy.types.Operator):
+    """Selects the object, or the object with the material and its node."""
+
+    bl_idname = "shlight.show_place"
+    bl_label = "Show"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    place: bpy.props.StringProperty()
+
+    def execute(self, context: Any) -> set[str]:
+        """Selects it."""
+        found = PLACE.fullmatch(self.place)
+        kind, name, node = found.group("kind", "name", "node") if found else ("", "", None)
+        if kind == "World":
+            _select_node(bpy.data.worlds.get(name), node)
+            if getattr(context.space_data, "type", "") == "PROPERTIES":
+                context.space_data.context = "WORLD"
+            return {"FINISHED"}
+        shown = _user_of(context.view_layer, name) if kind == "Material" else context.view_layer.objects.get(name)
+        if shown is None:
+            self.report({"ERROR"}, f"shlight: {self.place} is not in this view layer")
+            return {"CANCELLED"}
+        for other in context.view_layer.objects.selected:
+            other.select_set(False)
+        shown.select_set(True)
+        context.view_layer.objects.active = shown
+        if kind == "Material":
+            shown.active_material_index = [slot.name for slot in shown.material_slots].index(name)
+            _select_node(bpy.data.materials.get(name), node)
+        else:
+            _select_node(shown.data, node)
+        return {"FINISHED"}
+
+
+def _user_of(view_layer: Any, material: str) -> Any:
+    for each in view_layer.objects:
+        if any(slot.name == material for slot in each.material_slots):
+            return each
+    return None
+
+
+def _select_node(owner: Any, name: str | None) -> None:
+    tree: Any = getattr(owner, "node_tree", None)
+    for node in tree.nodes if tree and name else ():
+        node.select = name in (node.name, node.label)
+        if node.select:
+            tree.nodes.active = node
+
+
+def leads_somewhere(place: str) -> bool:
+    """Whether `SHLIGHT_OT_show_place` can select it."""
+    found = PLACE.fullmatch(place)
+    return found is not None and found["kind"] in OBJECT_KINDS | {"Material", "World"}
+
+
+class ReportPanel:
+    """What both panels have in common."""
+
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "render"
+    COMPAT_ENGINES = {ENGINE}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        """Shown while shlight is the scene's engine."""
+        return context.engine in cls.COMPAT_ENGINES
+
+
+class SHLIGHT_RENDER_PT_report(ReportPanel, bpy.types.Panel):
+    """What changes the picture, the most first."""
+
+    bl_label = "Report"
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        if not record.last.is_of(context.scene):
+            self.layout.label(text="Render to see what shlight draws otherwise than Cycles")
+            return
+        if record.last.scene_error:
+            _draw_text(self.layout, context, record.last.scene_error, "ERROR")
+        messages = [message for message in record.last.report if message.effect < Effect.SLIGHT]
+        if not messages and not record.last.scene_error:
+            self.layout.label(text="As Cycles draws it", icon="CHECKMARK")
+        for message in messages:
+            _draw_message(self.layout, context, message)
+
+
+class SHLIGHT_RENDER_PT_report_slight(ReportPanel, bpy.types.Panel):
+    """What is hardly seen."""
+
+    bl_label = "Hardly Seen"
+    bl_parent_id = "SHLIGHT_RENDER_PT_report"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        """Shown if there is anything."""
+        slight = any(message.effect == Effect.SLIGHT for message in record.last.report)
+        return super().poll(context) and slight and record.last.is_of(context.scene)
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        for message in record.last.report:
+            if message.effect == Effect.SLIGHT:
+                _draw_message(self.layout, context, message)
+
+
+def _draw_message(layout: Any, context: Any, message: Message) -> None:
+    box = layout.box().column(align=True)
+    _draw_text(box, context, message.text[:1].upper() + message.text[1:], ICONS.get(message.effect, "INFO"))
+    for place in message.places[:MOST_PLACES]:
+        if leads_somewhere(place):
+            box.operator(SHLIGHT_OT_show_place.bl_idname, text=place, icon="RESTRICT_SELECT_OFF").place = place
+        else:
+            box.label(text=place, icon="BLANK1")
+    if len(message.places) > MOST_PLACES:
+        box.label(text=f"and {len(message.places) - MOST_PLACES} more", icon="BLANK1")
+
+
+def _draw_text(layout: Any, context: Any, text: str, icon: str) -> None:
+    scale = context.preferences.system.ui_scale
+    letters = max(int((context.region.width / scale - 60) / PIXELS_PER_LETTER), 20)
+    for number, line in enumerate(textwrap.wrap(text, letters)):
+        layout.label(text=line, icon="BLANK1" if number else icon)
+
+
+CLASSES = (SHLIGHT_OT_show_place, SHLIGHT_RENDER_PT_report, SHLIGHT_RENDER_PT_report_slight)
