@@ -2,9 +2,8 @@
 """Blender add-on: the render engine "shlight", noise-free direct light from area lights."""
 
 import atexit
-import importlib.util
-import sys
-from pathlib import Path
+
+from .native import find_packages, forget_packages
 
 bl_info = {
     "name": "shlight",
@@ -17,14 +16,7 @@ bl_info = {
 }
 
 
-def _find_native_package() -> None:
-    """In the source tree the package `shlight` lies beside the add-on and need not be installed."""
-    package = Path(__file__).resolve().parents[2] / "python_bindings"
-    if importlib.util.find_spec("shlight") is None and (package / "shlight" / "__init__.py").is_file():
-        sys.path.append(str(package))
-
-
-_find_native_package()
+find_packages()
 
 
 def register() -> None:
@@ -35,6 +27,7 @@ def register() -> None:
 
     if properties.are_registered():
         return
+    find_packages()
     preferences.register()
     properties.register()
     engine.register()
@@ -55,3 +48,4 @@ def unregister() -> None:
     panels.unregister()
     preferences.unregister()
     properties.unregister()
+    forget_packages()

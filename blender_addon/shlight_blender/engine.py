@@ -50,6 +50,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             if native_problem():
                 raise ExportError(native_problem())
             images = {}
+            self._forget_changes(depsgraph)
             for view in _views(depsgraph.scene.render):
                 images[view] = self._render(depsgraph, frame, view)
             if running.renders.stopped:
@@ -70,6 +71,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             record.begin(depsgraph.scene)
             self._view_layers: set[str] = set()
             self._shown: set[str] = set()
+            self._exported: dict[str, Any] = getattr(self, "_exported", {})  # by view layer
         self._view_layers.add(view_layer)
 
     def _render(self, depsgraph: Any, frame: Frame, view: str) -> NDArray[np.float32] | None:
@@ -77,13 +79,12 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         # Imported here: an installation without the native module still registers.
         import shlight
 
-        from .export import export_scene, render_settings
+        from .export import render_settings
 
         start = time.perf_counter()
         try:
             self._check("Exporting the scene")
-            eye = self._eye(depsgraph, view)
-            exported = export_scene(depsgraph, frame=frame, camera=eye, waiting=self._wait)
+            exported = self._export(depsgraph, frame, view)
             settings = render_settings(depsgraph.scene).arguments()
             record.last.export_seconds = time.perf_counter() - start
             record.last.report.extend(exported.report)
@@ -121,6 +122,25 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         except shlight.RenderCancelled:
             return latest  # what the user has seen stays
         return image
+
+    def _forget_changes(self, depsgraph: Any) -> None:
+        """Of the render before (Persistent Data), keeps the exported scene if no more than a camera has changed."""
+        from .export import only_cameras_changed
+
+        if not depsgraph.scene.render.use_persistent_data or not only_cameras_changed(depsgraph):
+            self._exported.pop(depsgraph.view_layer.name, None)
+
+    def _export(self, depsgraph: Any, frame: Frame, view: str) -> Any:
+        from .export import export_scene
+
+        layer, eye = depsgraph.view_layer.name, self._eye(depsgraph, view)
+        exported = self._exported.get(layer)
+        if exported is not None and not exported.is_of_one_camera:
+            exported.look_from(depsgraph, frame=frame, camera=eye)
+        else:
+            exported = export_scene(depsgraph, frame=frame, camera=eye, waiting=self._wait)
+            self._exported[layer] = exported
+        return exported
 
     def _eye(self, depsgraph: Any, view: str) -> Any:
         """What the view is seen with: a camera, or one of its two eyes."""

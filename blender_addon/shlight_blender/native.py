@@ -1,21 +1,109 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The package `shlight` with its native module, which the add-on renders with."""
+"""The package `shlight` with its native module, which the add-on renders with.
+
+In the source tree it lies beside the add-on. The add-on's zip has it in wheels: Blender 4.2 and later unpack those of
+an extension, and of a legacy add-on they are unpacked here, into the add-on's own folder, with which they go.
+"""
 
 from __future__ import annotations
 
-import functools
+import importlib.util
+import re
+import shutil
 import sys
+import tempfile
+import zipfile
+from pathlib import Path
+
+ADDON = Path(__file__).resolve().parent
+WHEELS = ADDON / "wheels"
+SOURCE_TREE = ADDON.parents[1] / "python_bindings"
+PYTHON = f"{sys.version_info.major}.{sys.version_info.minor}"
+TAG = f"cp{sys.version_info.major}{sys.version_info.minor}"
+UNPACKED = WHEELS / f"unpacked-{TAG}"
+
+_unpacking_problem = ""
 
 
-@functools.cache
+def find_packages() -> None:
+    """Makes `import shlight` work where Blender does not see to that itself."""
+    global _unpacking_problem
+    if WHEELS.is_dir() and not __package__.startswith("bl_ext."):
+        try:
+            _unpack()
+            _add_to_path(UNPACKED)
+        except (OSError, zipfile.BadZipFile) as error:
+            _unpacking_problem = f"its wheels cannot be unpacked into {WHEELS} ({error})"
+    elif importlib.util.find_spec("shlight") is None and (SOURCE_TREE / "shlight" / "__init__.py").is_file():
+        _add_to_path(SOURCE_TREE)
+
+
+def forget_packages() -> None:
+    """Undoes `find_packages`; what is imported stays until Blender ends."""
+    if str(UNPACKED) in sys.path:
+        sys.path.remove(str(UNPACKED))
+
+
+def _add_to_path(folder: Path) -> None:
+    if str(folder) not in sys.path:
+        sys.path.append(str(folder))
+
+
+def _unpack() -> None:
+    """All of it or nothing, whatever other Blenders do at the same time."""
+    if UNPACKED.is_dir():
+        return
+    part = Path(tempfile.mkdtemp(prefix=".part-", dir=WHEELS))
+    try:
+        for wheel in WHEELS.glob(f"*-{TAG}-*.whl"):
+            with zipfile.ZipFile(wheel) as archive:
+                # The add-on that runs is this one.
+                names = [name for name in archive.namelist() if not name.startswith("shlight_blender/")]
+                archive.extractall(part, names)
+        part.chmod(0o755)
+        try:
+            part.rename(UNPACKED)
+        except OSError:
+            if not UNPACKED.is_dir():
+                raise
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+
+
 def native_problem() -> str:
     """Why the package cannot be used and what to do; empty if it can."""
     try:
+        import shlight
         from shlight import render  # noqa: F401
     except ImportError as error:
+        return f"the Python package 'shlight' cannot be loaded ({_unpacking_problem or error}): {_advice()}"
+    wanted = _version()
+    if WHEELS.is_dir() and shlight.__version__ != wanted:
         return (
-            f"the Python package 'shlight' cannot be loaded ({error}): install it with "
-            f"'{sys.executable} -m pip install <shlight's source tree>', or enable the add-on of a source tree where "
-            f"'./dev setup' has built it for Python {sys.version_info.major}.{sys.version_info.minor}; restart Blender"
+            f"the add-on is version {wanted}, and the Python package 'shlight' in {Path(shlight.__file__).parent} is "
+            f"version {shlight.__version__}: restart Blender; if that does not help, remove that package"
         )
     return ""
+
+
+def _advice() -> str:
+    pythons = _pythons_of_wheels()
+    if not pythons:
+        return (
+            f"install it with '{sys.executable} -m pip install <shlight's source tree>', or enable the add-on of a "
+            f"source tree where './dev setup' has built it for Python {PYTHON}; restart Blender"
+        )
+    if PYTHON not in pythons:
+        return f"this Blender has Python {PYTHON}, and this zip is for {' and '.join(pythons)}; use another Blender"
+    return "install the add-on's zip again and restart Blender"
+
+
+def _pythons_of_wheels() -> list[str]:
+    """Versions of Python that the add-on has wheels for; none in the source tree."""
+    tags = {match for wheel in WHEELS.glob("shlight-*.whl") for match in re.findall(r"-cp(3)(\d+)-cp", wheel.name)}
+    return [f"{major}.{minor}" for major, minor in sorted(tags, key=lambda tag: int(tag[1]))]
+
+
+def _version() -> str:
+    manifest = (ADDON / "blender_manifest.toml").read_text(encoding="utf-8")
+    return re.findall(r'^version = "(.+)"', manifest, re.MULTILINE)[0]

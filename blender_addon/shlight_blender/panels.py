@@ -162,6 +162,7 @@ class SHLIGHT_RENDER_PT_performance(EnginePanel, bpy.types.Panel):
         row = column.row()
         row.active = render.threads_mode == "FIXED"
         row.prop(render, "threads")
+        layout.prop(render, "use_persistent_data", text="Persistent Data")
 
 
 class SHLIGHT_WORLD_PT_baking(EnginePanel, bpy.types.Panel):

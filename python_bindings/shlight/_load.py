@@ -41,5 +41,6 @@ def _foreign_embree_is_global() -> bool:
     core = importlib.util.find_spec("shlight._core")
     if core is None or core.origin is None:
         return False
-    own = re.search(rb"libembree\d+\.so", Path(core.origin).read_bytes())
-    return own is None or own.group() not in maps.read_bytes()
+    # In a wheel the library's name has a hash behind the version.
+    own = re.search(rb"(libembree\d+)(-\w+)?\.so", Path(core.origin).read_bytes())
+    return own is None or re.search(own.group(1) + rb"(-\w+)?\.so", maps.read_bytes()) is None

@@ -4,7 +4,7 @@
 from ..frame import Frame, frame_of, whole_frame
 from ..report import ExportError, ExportReport
 from .camera import Eye
-from .scene import ExportedScene, export_scene
+from .scene import ExportedScene, export_scene, only_cameras_changed
 from .settings import RenderSettings, render_settings
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "RenderSettings",
     "export_scene",
     "frame_of",
+    "only_cameras_changed",
     "render_settings",
     "whole_frame",
 ]

@@ -24,13 +24,20 @@ from .object_values import ObjectValues
 Expression = Value | Vector  # a Color is a Vector that counts with its luminance
 
 
-@dataclass(frozen=True)
+@dataclass
 class Surroundings:
     """What nodes may ask for beside the surface: the camera, the depsgraph, and numbers of objects."""
 
-    view: View | None = None
+    camera_view: View | None = None
     depsgraph: Any = None
     object_values: ObjectValues = field(default_factory=ObjectValues)
+    view_is_used: bool = field(default=False, init=False)
+
+    @property
+    def view(self) -> View | None:
+        """How the camera sees the world; what asks for it is of this camera alone."""
+        self.view_is_used = True
+        return self.camera_view
 
 
 @dataclass(frozen=True)

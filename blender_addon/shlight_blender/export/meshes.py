@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import shlight
 
-from ..compat import slot_materials, smooth_corner_normals
+from ..compat import mesh_triangles, slot_materials, smooth_corner_normals
 from ..report import Effect, ExportReport
 from .expressions import Surroundings
 from .materials import Surface, read_material
@@ -41,32 +41,20 @@ class MeshUse:
 
 def mesh_arrays(mesh: Any) -> MeshArrays | None:
     """Triangles of an evaluated mesh, None if it has none."""
-    mesh.calc_loop_triangles()
-    count = len(mesh.loop_triangles)
-    if count == 0:
+    triangles = mesh_triangles(mesh)
+    if not len(triangles.corners):
         return None
-    vertices = np.empty(len(mesh.vertices) * 3, dtype=np.float32)
-    mesh.vertices.foreach_get("co", vertices)
-    triangles = np.empty(count * 3, dtype=np.int32)
-    mesh.loop_triangles.foreach_get("vertices", triangles)
-    polygons = np.empty(count, dtype=np.int32)
-    mesh.loop_triangles.foreach_get("polygon_index", polygons)
-    materials = np.empty(len(mesh.polygons), dtype=np.int32)
-    mesh.polygons.foreach_get("material_index", materials)
+    vertices, corner_vertices = triangles.vertices, triangles.corner_vertices
     corner_normals = smooth_corner_normals(mesh)
     normals = None
-    vertices, triangles = vertices.reshape(-1, 3), triangles.reshape(-1, 3)
     if corner_normals is not None:
-        loops = np.empty(count * 3, dtype=np.int32)
-        mesh.loop_triangles.foreach_get("loops", loops)
-        normals = _repaired(corner_normals[loops].reshape(-1, 3, 3), vertices, triangles)
-    return MeshArrays(vertices, triangles, normals, materials[polygons])
+        normals = _repaired(corner_normals[triangles.corners], vertices, corner_vertices)
+    return MeshArrays(vertices, corner_vertices, normals, triangles.materials)
 
 
 def _repaired(normals: FloatArray, vertices: FloatArray, triangles: NDArray[np.int32]) -> FloatArray:
     """Normals of length 1; where Blender has none (degenerate faces) the face's own, else +Z."""
-    length = np.linalg.norm(normals, axis=2, keepdims=True)
-    good = length > 1e-6
+    good = np.einsum("ijk,ijk->ij", normals, normals)[:, :, None] > 1e-12
     if good.all():
         return normals
     a, b, c = (vertices[triangles[:, i]] for i in range(3))

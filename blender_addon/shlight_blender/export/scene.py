@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+import bpy
 import numpy as np
 
 import shlight
@@ -53,6 +54,24 @@ class ExportedScene(NamedTuple):
     dark: str  # what the report says if nothing gives light, else ""
     operations: dict[str, int]  # of the program of each material whose values vary, for a hit
     texture_bytes: int  # of all textures that are kept
+    is_of_one_camera: bool  # materials ask where the camera is
+
+    def look_from(self, depsgraph: Any, *, frame: Frame, camera: Any = None) -> None:
+        """Another camera, or the same elsewhere; arguments and errors as of `export_scene`."""
+        blender_scene = depsgraph.scene_eval
+        eye = _eye(camera or blender_scene.camera, blender_scene, depsgraph)
+        set_camera(self.scene, eye, depsgraph, frame, blender_scene.render, self.report)
+
+
+def only_cameras_changed(depsgraph: Any) -> bool:
+    """Whether all but cameras is as in the render before, of which Blender has kept `depsgraph`."""
+
+    def is_of_camera(changed: Any) -> bool:
+        return getattr(changed, "type", "") == "CAMERA" or isinstance(changed, (bpy.types.Camera, bpy.types.Action))
+
+    # The pictures of a sequence change with the frame, and tell nobody.
+    moving = any(image.source in {"SEQUENCE", "MOVIE"} for image in bpy.data.images)
+    return not moving and all(is_of_camera(update.id) for update in depsgraph.updates)
 
 
 def export_scene(
@@ -77,12 +96,14 @@ def export_scene(
     view = set_camera(scene, eye, depsgraph, frame, blender_scene.render, report)
     report_unsupported_settings(blender_scene, depsgraph.view_layer_eval, report)
     lit = add_world(scene, blender_scene, depsgraph.view_layer_eval, report, waiting)
-    meshes = MeshCollector(report, Surroundings(view, depsgraph), depsgraph.view_layer_eval.material_override)
+    surroundings = Surroundings(view, depsgraph)
+    meshes = MeshCollector(report, surroundings, depsgraph.view_layer_eval.material_override)
     lit |= _add_objects(scene, depsgraph, meshes, report, _asking(waiting))
     for path in TEXTURES.unreadable:
         report.add(f"File '{path}'", "it cannot be read; magenta is used in the place of its picture", Effect.THING)
     dark = "" if lit else _report_darkness(blender_scene, report)
-    return ExportedScene(scene, report, dark, meshes.operations(), TEXTURES.size_in_bytes)
+    operations = meshes.operations()
+    return ExportedScene(scene, report, dark, operations, TEXTURES.size_in_bytes, surroundings.view_is_used)
 
 
 def _eye(camera: Any, blender_scene: Any, depsgraph: Any) -> Eye:
