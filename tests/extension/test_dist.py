@@ -16,7 +16,7 @@ from shlight.images import read_exr
 from shlight_blender import native
 
 ROOT = Path(__file__).resolve().parents[2]
-DIST = Path(os.environ.get("SHLIGHT_DIST", ROOT / "dist"))
+DIST = ROOT / os.environ.get("SHLIGHT_DIST", "dist")
 BLENDER = shutil.which("blender")
 
 # Blender's first scene, by a lamp with a penumbra, and a texture that is read by OpenImageIO.
@@ -40,7 +40,8 @@ def render(path):
     bpy.ops.render.render(write_still=True)
 """
 
-FROM_SOURCE_TREE = """
+FROM_SOURCE_TREE = f"""
+sys.path[:0] = {[str(ROOT / "python_bindings"), str(ROOT / "blender_addon")]}
 import shlight_blender
 shlight_blender.register()
 render(sys.argv[-1])
@@ -123,10 +124,9 @@ def test_the_zip_is_an_extension(archive: Path, profile: Path) -> None:
 def test_the_zip_is_a_legacy_add_on(archive: Path, profile: Path) -> None:
     """In Blender 3.4 it renders what the source tree renders, and all that it has is in its own folder."""
     pictures = [str(profile.parent / f"{number}.exr") for number in range(2)]
-    source_tree = f"import sys; sys.path[:0] = {[str(ROOT / 'python_bindings'), str(ROOT / 'blender_addon')]}"
     for script, picture in (
         (RENDER + AS_EXTENSION, pictures[0]),
-        (source_tree + RENDER + FROM_SOURCE_TREE, pictures[1]),
+        (RENDER + FROM_SOURCE_TREE, pictures[1]),
     ):
         (profile.parent / "script.py").write_text(script)
         arguments = ["--factory-startup", "--python-exit-code", "1", "--python", str(profile.parent / "script.py")]
