@@ -32,8 +32,8 @@ def register() -> None:
     properties.register()
     engine.register()
     panels.register()
-    if getattr(bpy.app, "module", False):
-        # Python with the module bpy hangs at its end while an add-on's classes are registered.
+    if not bpy.app.binary_path:
+        # Python with the module bpy hangs or crashes at its end while an add-on's classes are registered.
         atexit.register(unregister)
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import shutil
 import subprocess
@@ -12,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from shlight.images import read_exr
+from shlight.images import read_exr, write_png
 from shlight_blender import native
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -76,7 +77,7 @@ def profile(tmp_path: Path) -> Path:
     """An empty home, with a texture beside it."""
     colors = np.zeros((8, 8, 3), dtype=np.uint8)
     colors[::2, ::2] = (200, 60, 30)
-    (tmp_path / "texture.ppm").write_bytes(b"P6 8 8 255\\n" + colors.tobytes())
+    write_png(str(tmp_path / "texture.png"), colors)
     (tmp_path / "home").mkdir()
     return tmp_path / "home"
 
@@ -85,7 +86,7 @@ def run(command: list[str], profile: Path) -> str:
     """Output of a program that knows of nothing but the profile; it must end well and without a traceback."""
     environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTHON", "BLENDER"))}
     environment |= {"HOME": str(profile), "BLENDER_USER_RESOURCES": str(profile / "blender")}
-    environment["SHLIGHT_TEXTURE"] = str(profile.parent / "texture.ppm")
+    environment["SHLIGHT_TEXTURE"] = str(profile.parent / "texture.png")
     done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=240, check=False)
     said = done.stdout + done.stderr
     assert done.returncode == 0, said
@@ -95,7 +96,8 @@ def run(command: list[str], profile: Path) -> str:
 
 def blender_alone(folder: Path) -> list[str]:
     """A Python that has the module bpy and what belongs to it, and nothing of shlight."""
-    pytest.importorskip("bpy")
+    if importlib.util.find_spec("bpy") is None:
+        pytest.skip("there is no module bpy")
     for package in Path(np.__file__).parents[1].iterdir():
         if not package.name.lower().startswith(("shlight", "openimageio", "_editable")):
             (folder / package.name).symlink_to(package)
