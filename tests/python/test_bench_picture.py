@@ -24,7 +24,7 @@ def test_curves_reach_the_chart_and_the_table(
     assert {row["renderer"] for row in rows} == {"shlight"}
     assert {row["round"] for row in rows} == {"1", "2"}
     assert (tmp_path / "picture.png").stat().st_size > 1000
-    assert "| balls | shlight |" in capsys.readouterr().out
+    assert "| scene | shlight |\n| --- | --- |\n| balls | " in capsys.readouterr().out
 
 
 def test_an_unknown_scene(capsys: pytest.CaptureFixture[str]) -> None:

@@ -195,15 +195,13 @@ def _draw(path: Path, curves: list[Curve]) -> None:
 
 
 def _tables(curves: list[Curve]) -> str:
-    lines = [
-        "Time to the first picture and to a relMSE of …",
-        "",
-        _row("scene", "renderer", "first", *map(_short, GOALS)),
-    ]
-    lines.append(_row(*["---"] * (3 + len(GOALS))))
-    for curve in curves:
-        times = [_seconds(curve.seconds_to(goal)) for goal in (math.inf, *GOALS)]
-        lines.append(_row(curve.scene, curve.renderer, *times))
+    scenes = list(dict.fromkeys(curve.scene for curve in curves))
+    renderers = list(dict.fromkeys(curve.renderer for curve in curves))
+    lines = [f"Seconds to the first picture · to a relMSE of {' · '.join(map(_short, GOALS))}", ""]
+    lines += [_row("scene", *renderers), _row(*["---"] * (1 + len(renderers)))]
+    for scene in scenes:
+        own = {curve.renderer: curve for curve in curves if curve.scene == scene}
+        lines.append(_row(scene, *(_times(own[name]) if name in own else "" for name in renderers)))
     lines += ["", "relMSE ÷ that of shlight at the same time", ""]
     lines += [_row("scene", "renderer", *(f"{t:g} s" for t in TIMES)), _row(*["---"] * (2 + len(TIMES)))]
     for curve in curves:
@@ -246,8 +244,9 @@ def _short(number: float) -> str:
     return f"{number:.0e}".replace("e-0", "e-")
 
 
-def _seconds(seconds: float) -> str:
-    return "-" if math.isinf(seconds) else f"{seconds:.2f} s"
+def _times(curve: Curve) -> str:
+    times = [curve.seconds_to(goal) for goal in (math.inf, *GOALS)]
+    return " · ".join("–" if math.isinf(seconds) else f"{seconds:.2g}" for seconds in times)
 
 
 def _ratio_text(ratio: float) -> str:
