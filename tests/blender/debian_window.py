@@ -29,7 +29,7 @@ def watched(original, name):
 
 def watch():
     """Notes which of the engine's panels are drawn and how often the viewport asks for an update."""
-    for panel in panels.CLASSES:
+    for panel in (each for each in panels.CLASSES if issubclass(each, bpy.types.Panel)):
         panel.draw = watched(panel.draw, panel.__name__)
     update = engine.ShlightRenderEngine.view_update
 

@@ -141,23 +141,24 @@ def run_in_window(*arguments: str, script: str, folder: Path, after: tuple[str, 
 SEGMENTATION_FAULT = 128 + signal.SIGSEGV  # as a shell reports it
 
 
-def take_a_walk(folder: Path, seed: int) -> tuple[int, str]:
-    """Runs Blender with a window for a hundred steps of debian_walk.py; returns its exit code and what it says."""
-    walk = (str(seed), "100")
+def take_a_walk(folder: Path, seed: int, steps: int) -> tuple[int, str]:
+    """Runs Blender with a window for so many steps of debian_walk.py; returns its exit code and what it says."""
+    walk = (str(seed), str(steps))
     return run_in_window("--enable-event-simulate", script="debian_walk.py", folder=folder, after=walk)
 
 
-def test_a_walk_in_the_window(tmp_path: Path) -> None:
-    """A hundred random steps during renders: other files, undo, the add-on and Cycles disabled, scripts reloaded."""
+@pytest.mark.parametrize("steps", [50, pytest.param(150, marks=pytest.mark.slow)])
+def test_a_walk_in_the_window(tmp_path: Path, steps: int) -> None:
+    """Random steps during renders: other files, undo, the add-on and Cycles disabled, scripts reloaded."""
     addons = tmp_path / ".config/blender/3.4/scripts/addons"
     addons.mkdir(parents=True)
     (addons / "shlight_blender").symlink_to(ROOT / "blender_addon/shlight_blender")
     seed = int(os.environ.get("SHLIGHT_SEED", "1"))
-    code, output = take_a_walk(tmp_path, seed)
+    code, output = take_a_walk(tmp_path, seed, steps)
     if code == SEGMENTATION_FAULT:
         # An operator that a script calls with another context lets Python's lock go, and Blender 3.4 then takes the
         # lock of a thread that renders for its own (PyC_IsInterpreterActive): about one walk in thirty ends there.
-        code, output = take_a_walk(tmp_path, seed + 1)
+        code, output = take_a_walk(tmp_path, seed + 1, steps)
     assert code in {0, 1}, output  # 1 after a render that was stopped, which is an operator's error
     assert "step 1: quit" in output or "Blender lets no script write any more" in output, output
     assert "Traceback" not in output, output
@@ -174,7 +175,14 @@ def test_window(tmp_path: Path) -> None:
     assert code == 0, output
     assert "Traceback" not in output, output
     drawn = json.loads((tmp_path / "drawn.json").read_text())
-    shown = {"RENDER_PT_light", "RENDER_PT_shadows", "WORLD_PT_baking", "LIGHT_PT_light", "LIGHT_PT_nodes"}
+    shown = {
+        "RENDER_PT_sampling",
+        "RENDER_PT_report",
+        "RENDER_PT_shadows",
+        "WORLD_PT_baking",
+        "LIGHT_PT_light",
+        "LIGHT_PT_nodes",
+    }
     assert {f"SHLIGHT_{name}" for name in shown} <= set(drawn["panels"])
     shaders = {"BsdfPrincipled", "BsdfDiffuse", "BsdfGlossy", "Emission", "MixShader", "AddShader", "OutputLight"}
     assert {f"ShaderNode{name}" for name in shaders} <= set(drawn["nodes"]["SHLIGHT"])
