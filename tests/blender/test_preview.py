@@ -114,6 +114,7 @@ def test_the_figures_tell_how_they_came_about(example: SimpleNamespace) -> None:
     assert example.figures["size"] == [24, 16]
     assert (ours["settings"]["shadow_rays"], ours["settings"]["pixel_samples"]) == (4, 2)
     assert ours["settings"]["tolerance"] == pytest.approx(0.01)
+    assert ours["settings"]["pixel_filter"] == "box", "not the filter of Cycles' pictures"
     assert sum([*ours["order_shares"].values(), ours["cubature_share"], ours["mirror_share"]]) == pytest.approx(1)
     assert ours["unsupported"] == []
     assert 0 <= ours["within_3_standard_errors"] <= 1

@@ -66,7 +66,7 @@ def _reason(error: RuntimeError) -> str:
 
 
 def prepare(scene: Any, options: RenderOptions) -> None:
-    """Settings that all renders share: the frame, the lamps, the size, and nothing after the renderer."""
+    """Settings that all renders share: the frame, the lamps, the size, the filter, and nothing after the renderer."""
     if options.frame is not None:
         scene.frame_set(options.frame)
     if options.lights is not None:
@@ -84,6 +84,7 @@ def prepare(scene: Any, options: RenderOptions) -> None:
     render.threads_mode = "FIXED" if options.threads else "AUTO"
     if options.threads:
         render.threads = options.threads
+    scene.cycles.pixel_filter_type = "BOX"  # both engines read it
     image = render.image_settings
     image.color_management = "FOLLOW_SCENE"
     image.file_format = "OPEN_EXR"
@@ -152,7 +153,7 @@ def _glows(seen: Any) -> bool:
 
 
 def use_cycles(scene: Any, samples: int, seed: int, *, first: int = 0, of: int | None = None) -> None:
-    """The next render is Cycles': direct light only, the same pixel filter, nothing that trades truth for calm.
+    """The next render is Cycles': direct light only, nothing that trades truth for calm.
 
     The samples are those from number `first` on of a sequence of `of` (by default of `samples`).
     """
@@ -173,6 +174,5 @@ def use_cycles(scene: Any, samples: int, seed: int, *, first: int = 0, of: int |
     cycles.use_denoising = False
     cycles.use_guiding = False
     cycles.film_exposure = 1.0
-    cycles.pixel_filter_type = "BOX"
     for layer in scene.view_layers:
         layer.samples = 0  # 0: the scene's number
