@@ -168,11 +168,12 @@ def point_is_disk(lamp: Any) -> bool:
 
 @dataclass(frozen=True)
 class Triangles:
-    """Of a mesh: vertices (n, 3); of each triangle its corners (m, 3), their vertices (m, 3) and its material (m,)."""
+    """Of a mesh: vertices (n, 3); of each triangle its corners (m, 3), their vertices (m, 3), polygon and material."""
 
     vertices: NDArray[np.float32]
     corners: NDArray[np.int32]
     corner_vertices: NDArray[np.int32]
+    polygons: NDArray[np.int32]
     materials: NDArray[np.int32]
 
 
@@ -183,23 +184,24 @@ def mesh_triangles(mesh: Any) -> Triangles:
     first is asked for where both are there, which is since Blender 4.1.
     """
     mesh.calc_loop_triangles()
-    corners = _values(mesh.loop_triangles, "loops", np.int32, 3)
+    corners = values_of(mesh.loop_triangles, "loops", np.int32, 3)
     position, corner_vertex = mesh.attributes.get("position"), mesh.attributes.get(".corner_vert")
     if position is None or corner_vertex is None or not hasattr(mesh, "loop_triangle_polygons"):
-        vertices = _values(mesh.vertices, "co", np.float32, 3)
-        vertex_of_corner = _values(mesh.loops, "vertex_index", np.int32)
-        polygons = _values(mesh.loop_triangles, "polygon_index", np.int32)
-        materials = _values(mesh.polygons, "material_index", np.int32)
+        vertices = values_of(mesh.vertices, "co", np.float32, 3)
+        vertex_of_corner = values_of(mesh.loops, "vertex_index", np.int32)
+        polygons = values_of(mesh.loop_triangles, "polygon_index", np.int32)
+        materials = values_of(mesh.polygons, "material_index", np.int32)
     else:
-        vertices = _values(position.data, "vector", np.float32, 3)
-        vertex_of_corner = _values(corner_vertex.data, "value", np.int32)
-        polygons = _values(mesh.loop_triangle_polygons, "value", np.int32)
+        vertices = values_of(position.data, "vector", np.float32, 3)
+        vertex_of_corner = values_of(corner_vertex.data, "value", np.int32)
+        polygons = values_of(mesh.loop_triangle_polygons, "value", np.int32)
         own = mesh.attributes.get("material_index")  # missing where all are the first
-        materials = np.zeros(len(mesh.polygons), np.int32) if own is None else _values(own.data, "value", np.int32)
-    return Triangles(vertices, corners, vertex_of_corner[corners], materials[polygons])
+        materials = np.zeros(len(mesh.polygons), np.int32) if own is None else values_of(own.data, "value", np.int32)
+    return Triangles(vertices, corners, vertex_of_corner[corners], polygons, materials[polygons])
 
 
-def _values(collection: Any, name: str, dtype: Any, size: int = 1) -> NDArray[Any]:
+def values_of(collection: Any, name: str, dtype: Any, size: int = 1) -> NDArray[Any]:
+    """A property of all items of a collection: (n,), or (n, size) of vectors."""
     values = np.empty(len(collection) * size, dtype=dtype)
     collection.foreach_get(name, values)
     return values.reshape(-1, size) if size > 1 else values
@@ -207,20 +209,12 @@ def _values(collection: Any, name: str, dtype: Any, size: int = 1) -> NDArray[An
 
 def smooth_corner_normals(mesh: Any) -> NDArray[np.float32] | None:
     """Normals of all corners (loops, 3) with smooth and custom shading applied; None if every face is flat."""
-    corners = len(mesh.loops)
-    normals = np.empty(corners * 3, dtype=np.float32)
     if hasattr(mesh, "corner_normals"):
-        if mesh.normals_domain == "FACE":
-            return None
-        mesh.corner_normals.foreach_get("vector", normals)
-    else:
-        smooth = np.empty(len(mesh.polygons), dtype=bool)
-        mesh.polygons.foreach_get("use_smooth", smooth)
-        if not smooth.any() and not mesh.has_custom_normals:
-            return None
-        mesh.calc_normals_split()
-        mesh.loops.foreach_get("normal", normals)
-    return normals.reshape(-1, 3)
+        return None if mesh.normals_domain == "FACE" else values_of(mesh.corner_normals, "vector", np.float32, 3)
+    if not values_of(mesh.polygons, "use_smooth", bool).any() and not mesh.has_custom_normals:
+        return None
+    mesh.calc_normals_split()
+    return values_of(mesh.loops, "normal", np.float32, 3)
 
 
 def write_pass(render_pass: Any, pixels: NDArray[np.float32]) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compat import values_of
 from .random_numbers import hashed, share
 
 Array = NDArray[np.float64]
@@ -15,15 +16,11 @@ Index = NDArray[np.int64]
 
 
 def _edges(mesh: Any) -> Index:
-    flat = np.empty(2 * len(mesh.edges), dtype=np.int32)
-    mesh.edges.foreach_get("vertices", flat)
-    return flat.reshape(-1, 2).astype(np.int64)
+    return values_of(mesh.edges, "vertices", np.int32, 2).astype(np.int64)
 
 
 def _vectors(collection: Any, name: str) -> Array:
-    flat = np.empty(3 * len(collection), dtype=np.float32)
-    collection.foreach_get(name, flat)
-    return flat.reshape(-1, 3).astype(np.float64)
+    return values_of(collection, name, np.float32, 3).astype(np.float64)
 
 
 def _unit(v: Array) -> Array:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
@@ -39,8 +39,8 @@ class MeshUse:
     object_values: list[list[float]] = field(default_factory=list)
 
 
-def mesh_arrays(mesh: Any) -> MeshArrays | None:
-    """Triangles of an evaluated mesh, None if it has none."""
+def mesh_arrays(mesh: Any, attribute_names: Iterable[str]) -> MeshArrays | None:
+    """Triangles of an evaluated mesh with those of the attributes that it has, None if it has no triangles."""
     triangles = mesh_triangles(mesh)
     if not len(triangles.corners):
         return None
@@ -49,7 +49,8 @@ def mesh_arrays(mesh: Any) -> MeshArrays | None:
     normals = None
     if corner_normals is not None:
         normals = _repaired(corner_normals[triangles.corners], vertices, corner_vertices)
-    return MeshArrays(vertices, corner_vertices, normals, triangles.materials)
+    attributes = mesh_attributes(mesh, triangles, attribute_names)
+    return MeshArrays(vertices, corner_vertices, normals, triangles.materials, attributes)
 
 
 def _repaired(normals: FloatArray, vertices: FloatArray, triangles: NDArray[np.int32]) -> FloatArray:
@@ -99,10 +100,9 @@ class MeshCollector:
         surfaces = [self._surface(material) for material in materials or [None]]
         mesh = mesh_object.to_mesh()
         try:
-            arrays = mesh_arrays(mesh)
+            names = dict.fromkeys(name for surface in surfaces for name in surface.attribute_names)
+            arrays = mesh_arrays(mesh, names)
             if arrays is not None:
-                names = dict.fromkeys(name for surface in surfaces for name in surface.attribute_names)
-                arrays.attributes = mesh_attributes(mesh, names)
                 missing = [name for name in names if name not in arrays.attributes]
                 self._report_missing(mesh_object, missing)
                 # A missing colour is transparent black, other missing attributes have an alpha of 1.
