@@ -11,6 +11,7 @@ import bpy
 
 from . import report_panel
 from .compat import LAMPS, has_node_switch, nodes_by_engine, shadow_switch, uses_nodes
+from .engine_panel import EnginePanel, with_names_aside
 from .presets import SHLIGHT_OT_use_preset, draw_presets
 from .running import ENGINE
 
@@ -35,20 +36,6 @@ INCLUDED = {
 DRAWN_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META", "LIGHT"}
 
 
-class EnginePanel:
-    """What the panels below have in common."""
-
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    bl_context = "render"
-    COMPAT_ENGINES = {ENGINE}
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        """Shown while shlight is the scene's engine."""
-        return context.engine in cls.COMPAT_ENGINES
-
-
 class SHLIGHT_RENDER_PT_sampling(EnginePanel, bpy.types.Panel):
     """How many camera rays pixels get."""
 
@@ -56,9 +43,7 @@ class SHLIGHT_RENDER_PT_sampling(EnginePanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = with_names_aside(self.layout)
         settings = context.scene.shlight
         draw_presets(layout, settings)
         layout.prop(settings, "noise_threshold")
@@ -79,9 +64,7 @@ class SHLIGHT_RENDER_PT_light(EnginePanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = with_names_aside(self.layout)
         cycles = getattr(context.scene, "cycles", None)
         if cycles is not None:
             layout.prop(cycles, "transparent_max_bounces", text="Transparent Bounces")
@@ -96,9 +79,7 @@ class SHLIGHT_RENDER_PT_light_advanced(EnginePanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = with_names_aside(self.layout)
         settings = context.scene.shlight
         column = layout.column()
         column.active = settings.order == "AUTO"
@@ -117,9 +98,7 @@ class SHLIGHT_RENDER_PT_shadows(EnginePanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = with_names_aside(self.layout)
         settings = context.scene.shlight
         layout.active = settings.use_shadows
         layout.prop(settings, "shadow_rays")
@@ -133,9 +112,7 @@ class SHLIGHT_RENDER_PT_film(EnginePanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = with_names_aside(self.layout)
         layout.prop(context.scene.render, "film_transparent", text="Transparent")
         cycles = getattr(context.scene, "cycles", None)
         if cycles is not None:
@@ -153,9 +130,7 @@ class SHLIGHT_RENDER_PT_performance(EnginePanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = with_names_aside(self.layout)
         render = context.scene.render
         column = layout.column()
         column.prop(render, "threads_mode")
@@ -178,9 +153,7 @@ class SHLIGHT_WORLD_PT_baking(EnginePanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = with_names_aside(self.layout)
         layout.prop(context.scene.shlight, "world_width")
 
 
@@ -199,9 +172,7 @@ class SHLIGHT_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = with_names_aside(self.layout)
         shown = context.object
         is_lamp = shown.type == "LIGHT"
         column = layout.column()
@@ -231,8 +202,7 @@ class SHLIGHT_LIGHT_PT_light(LampPanel, bpy.types.Panel):
         layout = self.layout
         light = context.light
         layout.prop(light, "type", expand=True)
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        with_names_aside(layout)
         column = layout.column()
         for name in ("color", "use_temperature", "temperature", "energy", "exposure", "normalize"):
             if name in light.bl_rna.properties:  # 3.4 has colour and power alone

@@ -10,8 +10,8 @@ from typing import Any
 import bpy
 
 from . import record
+from .engine_panel import EnginePanel
 from .report import Effect, Message
-from .running import ENGINE
 
 MOST_PLACES = 4
 PIXELS_PER_LETTER = 7.0
@@ -75,21 +75,7 @@ def leads_somewhere(place: str) -> bool:
     return found is not None and found["kind"] in OBJECT_KINDS | {"Material", "World"}
 
 
-class ReportPanel:
-    """What both panels have in common."""
-
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    bl_context = "render"
-    COMPAT_ENGINES = {ENGINE}
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        """Shown while shlight is the scene's engine."""
-        return context.engine in cls.COMPAT_ENGINES
-
-
-class SHLIGHT_RENDER_PT_report(ReportPanel, bpy.types.Panel):
+class SHLIGHT_RENDER_PT_report(EnginePanel, bpy.types.Panel):
     """What changes the picture, the most first."""
 
     bl_label = "Report"
@@ -108,7 +94,7 @@ class SHLIGHT_RENDER_PT_report(ReportPanel, bpy.types.Panel):
             _draw_message(self.layout, context, message)
 
 
-class SHLIGHT_RENDER_PT_report_slight(ReportPanel, bpy.types.Panel):
+class SHLIGHT_RENDER_PT_report_slight(EnginePanel, bpy.types.Panel):
     """What is hardly seen."""
 
     bl_label = "Hardly Seen"
