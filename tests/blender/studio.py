@@ -177,6 +177,13 @@ class Studio:
         self.box((0.4, 0.4, 0.4), self.material(Color=(0.2, 0.7, 0.2)), location=(0.2, 1.6, 0.2))
         self.area(energy=150, shape="RECTANGLE", size=1.5, size_y=0.6, rotation_euler=(0.3, 0.4, 0.2))
 
+    def simple_scene(self) -> None:
+        """A plane, boxes, a lamp and a camera, which shlight renders quickly."""
+        self.still_life()
+        self.camera()
+        self.scene.render.engine = "SHLIGHT"
+        self.scene.shlight.pixel_samples = 1
+
     def world(self, color: Sequence[float] | None = None, strength: float = 1.0) -> Any:
         """A fresh world of one Background node, by default in Blender's grey; returns that node."""
         made = self.scene.world = bpy.data.worlds.new("World")

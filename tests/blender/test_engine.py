@@ -8,7 +8,6 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import bpy
@@ -20,20 +19,12 @@ import shlight
 import shlight_blender
 from shlight.images import read_exr
 from shlight.metrics import rel_mse
-from shlight_blender import compat, export, panels, preferences, presets, record, report_panel
+from shlight_blender import compat, export, record
 from shlight_blender.engine import ShlightRenderEngine
 
 
-def simple_scene(studio: Any) -> None:
-    """A plane, a lamp and a camera, rendered quickly."""
-    studio.still_life()
-    studio.camera()
-    studio.scene.render.engine = "SHLIGHT"
-    studio.scene.shlight.pixel_samples = 1
-
-
 def test_errors_are_reported_and_something_is_saved(studio: Any) -> None:
-    simple_scene(studio)
+    studio.simple_scene()
     studio.scene.camera.data.type = "PANO"
     studio.scene.render.filepath = str(studio.folder / "dark.exr")
     with pytest.raises(RuntimeError, match="pano cameras are not supported"):
@@ -41,7 +32,7 @@ def test_errors_are_reported_and_something_is_saved(studio: Any) -> None:
 
 
 def test_an_animation_goes_on_after_a_dark_frame(studio: Any) -> None:
-    simple_scene(studio)
+    studio.simple_scene()
     lamp = bpy.data.objects["Area"].data
     for frame, energy in ((1, 0.0), (2, 150.0)):
         lamp.energy = energy
@@ -62,7 +53,7 @@ def test_unexpected_exceptions_are_reported(studio: Any, monkeypatch: pytest.Mon
     def fails(*args: Any, **named: Any) -> None:
         raise MemoryError("no room")
 
-    simple_scene(studio)
+    studio.simple_scene()
     monkeypatch.setattr(shlight, "render", fails)
     with pytest.raises(RuntimeError, match="MemoryError: no room"):
         studio.render("SHLIGHT")
@@ -72,7 +63,7 @@ def test_unexpected_exceptions_are_reported(studio: Any, monkeypatch: pytest.Mon
 def test_progress_goes_from_0_to_1_and_cancelling_leaves_an_empty_picture(
     studio: Any, monkeypatch: pytest.MonkeyPatch, goes_on: bool
 ) -> None:
-    simple_scene(studio)
+    studio.simple_scene()
     studio.scene.shlight.pixel_samples = 64 if goes_on else 4096
     seen: list[float] = []
     original = ShlightRenderEngine._progress
@@ -89,7 +80,7 @@ def test_progress_goes_from_0_to_1_and_cancelling_leaves_an_empty_picture(
 
 
 def test_every_view_layer_gets_its_own_picture(studio: Any) -> None:
-    simple_scene(studio)
+    studio.simple_scene()
     scene = studio.scene
     other = bpy.data.collections.new("Other")
     scene.collection.children.link(other)
@@ -121,7 +112,7 @@ def test_all_view_layers_are_reported_and_the_weightiest_warning_last(
     studio: Any, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """The first layer's counts more than the second's; a render after that starts anew."""
-    simple_scene(studio)
+    studio.simple_scene()
     scene = studio.scene
     other = bpy.data.collections.new("Other")
     scene.collection.children.link(other)
@@ -148,7 +139,7 @@ def test_all_view_layers_are_reported_and_the_weightiest_warning_last(
 @pytest.mark.parametrize("format", ["STEREO_3D", "MULTIVIEW"])
 def test_views_are_seen_as_cycles_sees_them(studio: Any, format: str) -> None:
     """The eyes of one camera that converge by shift, and a camera for each view."""
-    simple_scene(studio)
+    studio.simple_scene()
     render = studio.scene.render
     render.use_multiview, render.views_format = True, format
     render.image_settings.views_format = "INDIVIDUAL"
@@ -172,7 +163,7 @@ def test_views_are_seen_as_cycles_sees_them(studio: Any, format: str) -> None:
 
 def test_persistent_data_keeps_what_did_not_change(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """Frames of which the first two differ by the camera alone are as without it, and one export fewer."""
-    simple_scene(studio)
+    studio.simple_scene()
     scene = studio.scene
     for frame, place in ((1, (3, -6, 4)), (2, (4, -5, 3))):
         scene.camera.location = place
@@ -202,7 +193,7 @@ def test_persistent_data_keeps_what_did_not_change(studio: Any, monkeypatch: pyt
 
 @pytest.mark.parametrize("eyes", [1, 2])
 def test_freestyle_ends_and_changes_nothing(studio: Any, eyes: int) -> None:
-    simple_scene(studio)
+    studio.simple_scene()
     render = studio.scene.render
     render.use_multiview = eyes == 2
     pictures = []
@@ -217,7 +208,7 @@ def test_freestyle_ends_and_changes_nothing(studio: Any, eyes: int) -> None:
 
 
 def test_settings_reach_the_renderer(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    simple_scene(studio)
+    studio.simple_scene()
     scene = studio.scene
     given: dict[str, Any] = {}
     original = shlight.render
@@ -293,149 +284,6 @@ def test_blenders_own_panels_and_unregistering(studio: Any) -> None:
         shlight_blender.register()
         shlight_blender.register()
     assert shared() == joined
-
-
-class Layout:
-    """Notes what a panel draws; as Blender's, it raises for properties that their owner does not have."""
-
-    def __init__(self) -> None:
-        self.shown: set[str] = set()
-        self.text = ""
-        self.places: list[str] = []
-        self.active = True
-
-    def operator(self, name: str, text: str, **_: Any) -> Any:
-        self.places.append(text)
-        return SimpleNamespace()
-
-    def prop(self, owner: Any, name: str, **_: Any) -> None:
-        getattr(owner, name)
-        self.shown.add(name)
-
-    def template_node_view(self, tree: Any, node: Any, socket: Any) -> None:
-        self.shown.add(f"{node.bl_idname}.{socket.name}")
-
-    def label(self, text: str, **_: Any) -> None:
-        self.text += " " + text
-
-    def column(self, align: bool = False) -> Layout:
-        return self
-
-    row = box = column
-
-
-def drawn_by(panel: Any, **context: Any) -> Layout:
-    """What `panel` draws in a context of shlight; nothing where it is not shown."""
-    layout, shown_in = Layout(), SimpleNamespace(engine="SHLIGHT", **context)
-    if panel.poll(shown_in):
-        panel.draw(SimpleNamespace(layout=layout), shown_in)
-    return layout
-
-
-@pytest.mark.parametrize(
-    ("kind", "shape"),
-    [
-        ("POINT", {"shadow_soft_size"}),
-        ("SPOT", {"shadow_soft_size", "spot_size", "spot_blend"}),
-        ("SUN", {"angle"}),
-        ("AREA", {"shape", "size", "spread"}),
-    ],
-)
-def test_the_panels_of_a_lamp_show_what_makes_its_light(studio: Any, kind: str, shape: set[str]) -> None:
-    light = bpy.data.lights.new(kind, kind)
-    switch = compat.shadow_switch(light)
-    assert switch is not None
-    assert shape | {"type", "color", "energy", switch[1]} <= drawn_by(panels.SHLIGHT_LIGHT_PT_light, light=light).shown
-    light.use_nodes = True
-    assert "ShaderNodeOutputLight.Surface" in drawn_by(panels.SHLIGHT_LIGHT_PT_nodes, light=light).shown
-
-
-def test_ray_visibility_is_shown_and_dim_where_it_is_not_supported(studio: Any) -> None:
-    studio.camera()
-    kinds = {"visible_camera", "visible_diffuse", "visible_glossy"}
-    shown = {
-        thing.name: drawn_by(panels.SHLIGHT_OBJECT_PT_ray_visibility, object=thing)
-        for thing in (studio.area(), studio.box(), studio.scene.camera)
-    }
-    assert shown["Area"].shown == kinds
-    assert shown["Area"].active
-    assert shown["Box"].shown == kinds | {"visible_shadow"}
-    assert not shown["Box"].active
-    assert shown["Camera"].shown == set()
-
-
-def test_presets_set_what_they_say_and_preview_is_the_default(studio: Any) -> None:
-    settings = studio.scene.shlight
-    assert [name for name in presets.PRESETS if presets.is_set(settings, name)] == ["PREVIEW"]
-    settings.time_limit = 3.0
-    for name in presets.PRESETS:
-        settings.shadow_rays, settings.pixel_samples = 5, 2
-        bpy.ops.shlight.use_preset(preset=name)
-        assert [other for other in presets.PRESETS if presets.is_set(settings, other)] == [name]
-    assert settings.noise_threshold == pytest.approx(0.002)
-    assert settings.time_limit == 3.0
-
-
-def test_the_report_leads_to_its_places(studio: Any) -> None:
-    simple_scene(studio)
-    box = bpy.data.objects["Box"]
-    box.data.materials.clear()
-    for name in ("Plain", "Odd's"):
-        box.data.materials.append(studio.material(name=name))
-    tree = box.data.materials[1].node_tree
-    sheen = tree.nodes.new("ShaderNodeBsdfHair")
-    sheen.label = "Fluff, 'soft'"
-    tree.links.new(sheen.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
-    box.is_shadow_catcher = True
-    context = {"scene": studio.scene, "region": SimpleNamespace(width=300)}
-    context["preferences"] = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))  # a Blender without a window has 0
-    assert "Render to see" in drawn_by(report_panel.SHLIGHT_RENDER_PT_report, **context).text
-    studio.render("SHLIGHT")
-    shown = drawn_by(report_panel.SHLIGHT_RENDER_PT_report, **context)
-    assert "shadow catchers are not supported" in " ".join(shown.text.split()).lower()
-    node = next(place for place in shown.places if "node" in place)
-    assert node == "Material 'Odd's', node 'Fluff, 'soft''"
-    for place in shown.places:
-        bpy.context.view_layer.objects.active = None
-        assert bpy.ops.shlight.show_place(place=place) == {"FINISHED"}
-        assert bpy.context.view_layer.objects.active == box
-    bpy.ops.shlight.show_place(place=node)
-    assert box.active_material.name == "Odd's"
-    assert tree.nodes.active == sheen
-    with pytest.raises(RuntimeError, match="'Gone' is not in this view layer"):
-        bpy.ops.shlight.show_place(place="Object 'Gone'")
-    studio.scene.name = "Another"
-    assert "Render to see" in drawn_by(report_panel.SHLIGHT_RENDER_PT_report, **context).text
-
-
-def test_world_width_is_a_setting_of_the_world(studio: Any) -> None:
-    studio.world()
-    context = {"scene": studio.scene, "world": studio.scene.world}
-    assert drawn_by(panels.SHLIGHT_WORLD_PT_baking, **context).shown == {"world_width"}
-    assert "world_width" not in drawn_by(panels.SHLIGHT_RENDER_PT_light, **context).shown
-    assert drawn_by(panels.SHLIGHT_WORLD_PT_baking, scene=studio.scene, world=None).shown == set()
-
-
-def test_without_the_native_module_the_engine_says_so(
-    studio: Any, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-) -> None:
-    def ready() -> str:
-        layout = Layout()
-        preferences.SHLIGHT_Preferences.draw(SimpleNamespace(layout=layout), None)
-        return layout.text
-
-    simple_scene(studio)
-    assert "Ready" in ready()
-    with monkeypatch.context() as missing:
-        missing.setitem(sys.modules, "shlight", None)
-        said = ready()
-        with pytest.raises(RuntimeError, match=r"'shlight' cannot be loaded .*pip install") as error:
-            studio.render("SHLIGHT")
-        assert str(error.value).count("\n") <= 1
-        assert "'shlight' cannot be loaded" in said
-        assert "pip install" in said
-    assert "Ready" in ready()
-    assert "Traceback" not in capfd.readouterr().err
 
 
 INSTALL = """

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: MIT
+"""What the engine's panels show, set and lead to."""
+
+from __future__ import annotations
+
+import sys
+from types import SimpleNamespace
+from typing import Any
+
+import bpy
+import pytest
+
+from shlight_blender import compat, panels, preferences, presets, report_panel
+
+
+class Layout:
+    """Notes what a panel draws; as Blender's, it raises for properties that their owner does not have."""
+
+    def __init__(self) -> None:
+        self.shown: set[str] = set()
+        self.text = ""
+        self.places: list[str] = []
+        self.active = True
+
+    def operator(self, name: str, text: str, **_: Any) -> Any:
+        self.places.append(text)
+        return SimpleNamespace()
+
+    def prop(self, owner: Any, name: str, **_: Any) -> None:
+        getattr(owner, name)
+        self.shown.add(name)
+
+    def template_node_view(self, tree: Any, node: Any, socket: Any) -> None:
+        self.shown.add(f"{node.bl_idname}.{socket.name}")
+
+    def label(self, text: str, **_: Any) -> None:
+        self.text += " " + text
+
+    def column(self, align: bool = False) -> Layout:
+        return self
+
+    row = box = column
+
+
+def drawn_by(panel: Any, **context: Any) -> Layout:
+    """What `panel` draws in a context of shlight; nothing where it is not shown."""
+    layout, shown_in = Layout(), SimpleNamespace(engine="SHLIGHT", **context)
+    if panel.poll(shown_in):
+        panel.draw(SimpleNamespace(layout=layout), shown_in)
+    return layout
+
+
+@pytest.mark.parametrize(
+    ("kind", "shape"),
+    [
+        ("POINT", {"shadow_soft_size"}),
+        ("SPOT", {"shadow_soft_size", "spot_size", "spot_blend"}),
+        ("SUN", {"angle"}),
+        ("AREA", {"shape", "size", "spread"}),
+    ],
+)
+def test_the_panels_of_a_lamp_show_what_makes_its_light(studio: Any, kind: str, shape: set[str]) -> None:
+    light = bpy.data.lights.new(kind, kind)
+    switch = compat.shadow_switch(light)
+    assert switch is not None
+    assert shape | {"type", "color", "energy", switch[1]} <= drawn_by(panels.SHLIGHT_LIGHT_PT_light, light=light).shown
+    light.use_nodes = True
+    assert "ShaderNodeOutputLight.Surface" in drawn_by(panels.SHLIGHT_LIGHT_PT_nodes, light=light).shown
+
+
+def test_ray_visibility_is_shown_and_dim_where_it_is_not_supported(studio: Any) -> None:
+    studio.camera()
+    kinds = {"visible_camera", "visible_diffuse", "visible_glossy"}
+    shown = {
+        thing.name: drawn_by(panels.SHLIGHT_OBJECT_PT_ray_visibility, object=thing)
+        for thing in (studio.area(), studio.box(), studio.scene.camera)
+    }
+    assert shown["Area"].shown == kinds
+    assert shown["Area"].active
+    assert shown["Box"].shown == kinds | {"visible_shadow"}
+    assert not shown["Box"].active
+    assert shown["Camera"].shown == set()
+
+
+def test_presets_set_what_they_say_and_preview_is_the_default(studio: Any) -> None:
+    settings = studio.scene.shlight
+    assert [name for name in presets.PRESETS if presets.is_set(settings, name)] == ["PREVIEW"]
+    settings.time_limit = 3.0
+    for name in presets.PRESETS:
+        settings.shadow_rays, settings.pixel_samples = 5, 2
+        bpy.ops.shlight.use_preset(preset=name)
+        assert [other for other in presets.PRESETS if presets.is_set(settings, other)] == [name]
+    assert settings.noise_threshold == pytest.approx(0.002)
+    assert settings.time_limit == 3.0
+
+
+def test_the_report_leads_to_its_places(studio: Any) -> None:
+    studio.simple_scene()
+    box = bpy.data.objects["Box"]
+    box.data.materials.clear()
+    for name in ("Plain", "Odd's"):
+        box.data.materials.append(studio.material(name=name))
+    tree = box.data.materials[1].node_tree
+    sheen = tree.nodes.new("ShaderNodeBsdfHair")
+    sheen.label = "Fluff, 'soft'"
+    tree.links.new(sheen.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+    box.is_shadow_catcher = True
+    context = {"scene": studio.scene, "region": SimpleNamespace(width=300)}
+    context["preferences"] = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))  # a Blender without a window has 0
+    assert "Render to see" in drawn_by(report_panel.SHLIGHT_RENDER_PT_report, **context).text
+    studio.render("SHLIGHT")
+    shown = drawn_by(report_panel.SHLIGHT_RENDER_PT_report, **context)
+    assert "shadow catchers are not supported" in " ".join(shown.text.split()).lower()
+    node = next(place for place in shown.places if "node" in place)
+    assert node == "Material 'Odd's', node 'Fluff, 'soft''"
+    for place in shown.places:
+        bpy.context.view_layer.objects.active = None
+        assert bpy.ops.shlight.show_place(place=place) == {"FINISHED"}
+        assert bpy.context.view_layer.objects.active == box
+    bpy.ops.shlight.show_place(place=node)
+    assert box.active_material.name == "Odd's"
+    assert tree.nodes.active == sheen
+    with pytest.raises(RuntimeError, match="'Gone' is not in this view layer"):
+        bpy.ops.shlight.show_place(place="Object 'Gone'")
+    studio.scene.name = "Another"
+    assert "Render to see" in drawn_by(report_panel.SHLIGHT_RENDER_PT_report, **context).text
+
+
+def test_world_width_is_a_setting_of_the_world(studio: Any) -> None:
+    studio.world()
+    context = {"scene": studio.scene, "world": studio.scene.world}
+    assert drawn_by(panels.SHLIGHT_WORLD_PT_baking, **context).shown == {"world_width"}
+    assert "world_width" not in drawn_by(panels.SHLIGHT_RENDER_PT_light, **context).shown
+    assert drawn_by(panels.SHLIGHT_WORLD_PT_baking, scene=studio.scene, world=None).shown == set()
+
+
+def test_without_the_native_module_the_engine_says_so(
+    studio: Any, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def ready() -> str:
+        layout = Layout()
+        preferences.SHLIGHT_Preferences.draw(SimpleNamespace(layout=layout), None)
+        return layout.text
+
+    studio.simple_scene()
+    assert "Ready" in ready()
+    with monkeypatch.context() as missing:
+        missing.setitem(sys.modules, "shlight", None)
+        said = ready()
+        with pytest.raises(RuntimeError, match=r"'shlight' cannot be loaded .*pip install") as error:
+            studio.render("SHLIGHT")
+        assert str(error.value).count("\n") <= 1
+        assert "'shlight' cannot be loaded" in said
+        assert "pip install" in said
+    assert "Ready" in ready()
+    assert "Traceback" not in capfd.readouterr().err
