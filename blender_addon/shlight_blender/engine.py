@@ -47,8 +47,8 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         self._begin(depsgraph)
         try:
             frame = frame_of(depsgraph.scene.render)
-            if native_problem():
-                raise ExportError(native_problem())
+            if problem := native_problem():
+                raise ExportError(problem)
             images = {}
             self._forget_changes(depsgraph)
             for view in _views(depsgraph.scene.render):
