@@ -11,7 +11,15 @@ from shlight._load import load_core
 load_core()
 
 from shlight import images, methods  # noqa: E402
-from shlight._core import DEFAULT_TOLERANCE, Bsdf, RenderCancelled, RenderReport, Scene, render  # noqa: E402
+from shlight._core import (  # noqa: E402
+    DEFAULT_TOLERANCE,
+    Bsdf,
+    RenderCancelled,
+    RenderReport,
+    Scene,
+    SceneMesh,
+    render,
+)
 from shlight.coefficients import (  # noqa: E402
     cap_coefficients,
     disk_coefficients,
@@ -31,6 +39,7 @@ __all__ = [
     "RenderCancelled",
     "RenderReport",
     "Scene",
+    "SceneMesh",
     "cap_coefficients",
     "disk_coefficients",
     "evaluate",

@@ -99,57 +99,55 @@ py::list items_of(const py::object& value) {
     }
 }
 
-/// Attributes by name.
-using AttributeNames = std::vector<std::string>;
-
 std::uint32_t attribute_index(const AttributeNames& names, const std::string& name) {
     const auto found = std::find(names.begin(), names.end(), name);
     return found == names.end() ? MeshShader::kNoAttribute : static_cast<std::uint32_t>(found - names.begin());
 }
 
 /// A Bsdf, or what has a method `compiled` that makes a shader.
-void add_material(Mesh& mesh, const AttributeNames& names, const py::handle& item) {
-    mesh.bsdfs.emplace_back();
-    mesh.shaders.emplace_back();
+void add_material(MeshUse& use, const AttributeNames& names, const py::handle& item) {
+    use.bsdfs.emplace_back();
+    use.shaders.emplace_back();
     if (py::isinstance<Bsdf>(item)) {
-        mesh.bsdfs.back() = item.cast<Bsdf>();
+        use.bsdfs.back() = item.cast<Bsdf>();
         return;
     }
     if (!py::hasattr(item, "compiled")) {
         throw std::invalid_argument("bsdf must be a Bsdf, a shader of shlight.nodes, or a sequence of them");
     }
     const auto shader = item.attr("compiled")().cast<ShaderObject>();
-    mesh.shaders.back().shader = shader.shader;
+    use.shaders.back().shader = shader.shader;
     for (const std::string& name : shader.attribute_names) {
-        mesh.shaders.back().attributes.push_back(attribute_index(names, name));
+        use.shaders.back().attributes.push_back(attribute_index(names, name));
     }
 }
 
-void set_materials(Mesh& mesh, const AttributeNames& names, const py::object& value) {
-    mesh.bsdfs.clear();
+void set_bsdfs(MeshUse& use, const AttributeNames& names, const py::object& value) {
+    use.shaders.clear();
+    use.bsdfs.clear();
     if (value.is_none()) {
-        mesh.bsdfs = {Bsdf::lambert(Rgb(0.8F))};
+        use.bsdfs = {Bsdf::lambert(Rgb(0.8F))};
         return;
     }
     if (py::isinstance<Bsdf>(value) || py::hasattr(value, "compiled")) {
-        add_material(mesh, names, value);
+        add_material(use, names, value);
     } else {
         for (const py::handle item : items_of(value)) {
-            add_material(mesh, names, item);
+            add_material(use, names, item);
         }
     }
-    if (mesh.bsdfs.empty()) {
+    if (use.bsdfs.empty()) {
         throw std::invalid_argument("bsdf must be a Bsdf or a sequence of at least one");
     }
-    const bool constant = std::all_of(mesh.shaders.begin(), mesh.shaders.end(),
+    const bool constant = std::all_of(use.shaders.begin(), use.shaders.end(),
                                       [](const MeshShader& shader) { return shader.shader == nullptr; });
     if (constant) {
-        mesh.shaders.clear();
+        use.shaders.clear();
     }
 }
 
 /// (n,) or (n, c) for n vertices or triangles; (k, 3) or (k, 3, c) for corners.
-MeshAttribute attribute_from(const std::string& name, const Mesh& mesh, const py::handle& value) {
+MeshAttribute attribute_from(const std::string& name, const MeshShape& mesh, const py::handle& value) {
     const AnyArray<float> array = array_from<float>(name.c_str(), value);
     const auto vertex_count = static_cast<py::ssize_t>(mesh.vertices.size());
     const auto triangle_count = static_cast<py::ssize_t>(mesh.triangles.size());
@@ -172,7 +170,7 @@ MeshAttribute attribute_from(const std::string& name, const Mesh& mesh, const py
 }
 
 /// One array, under the argument's own name, or a dict of them.
-void add_attributes(Mesh& mesh, AttributeNames& names, const std::string& argument, const py::object& value) {
+void add_attributes(MeshShape& mesh, AttributeNames& names, const std::string& argument, const py::object& value) {
     if (value.is_none()) {
         return;
     }
@@ -202,7 +200,7 @@ std::vector<Rgb> emission_from(const py::object& value) {
 }
 
 /// Either of the two forms; the other stays empty.
-void set_normals(Mesh& mesh, const py::object& value) {
+void set_normals(MeshShape& mesh, const py::object& value) {
     const AnyArray<float> array = array_from<float>("normals", value);
     const auto vertex_count = static_cast<py::ssize_t>(mesh.vertices.size());
     const auto triangle_count = static_cast<py::ssize_t>(mesh.triangles.size());
@@ -268,7 +266,32 @@ Environment environment_from(const char* name, const py::handle& value, const gl
     return Environment(picture);
 }
 
-Mesh mesh_from(const MeshArguments& arguments) {
+void set_materials(MeshUse& use, const AttributeNames& names, const py::object& bsdf, const py::object& emission) {
+    set_bsdfs(use, names, bsdf);
+    use.emission = emission_from(emission);
+}
+
+void set_places(MeshUse& use, const py::object& transforms, const py::object& object_values) {
+    use.transforms = {glm::dmat4(1)};
+    use.object_values.clear();
+    if (!transforms.is_none()) {
+        const AnyArray<double> array = numbers<double>("transforms", transforms, {kAny, 4, 4});
+        use.transforms.clear();
+        for (py::ssize_t i = 0; i < array.shape(0); ++i) {
+            use.transforms.push_back(matrix_at(array.data() + 16 * i));
+        }
+    }
+    if (!object_values.is_none()) {
+        const auto count = static_cast<py::ssize_t>(use.transforms.size());
+        const AnyArray<float> array = numbers<float>("object_values", object_values, {count, kAny});
+        for (py::ssize_t i = 0; i < count; ++i) {
+            const float* row = array.data() + i * array.shape(1);
+            use.object_values.emplace_back(row, row + array.shape(1));
+        }
+    }
+}
+
+Mesh mesh_from(const MeshArguments& arguments, AttributeNames& names) {
     Mesh mesh;
     mesh.vertices = copy_vectors("vertices", numbers<float>("vertices", arguments.vertices, {kAny, 3}));
     const std::vector<std::uint32_t> corners = indices("triangles", arguments.triangles, {kAny, 3});
@@ -278,31 +301,15 @@ Mesh mesh_from(const MeshArguments& arguments) {
     if (!arguments.normals.is_none()) {
         set_normals(mesh, arguments.normals);
     }
-    AttributeNames names;
     add_attributes(mesh, names, "uvs", arguments.uvs);
     add_attributes(mesh, names, "colors", arguments.colors);
     add_attributes(mesh, names, "attributes", arguments.attributes);
-    set_materials(mesh, names, arguments.bsdf);
-    mesh.emission = emission_from(arguments.emission);
+    set_materials(mesh, names, arguments.bsdf, arguments.emission);
     if (!arguments.material_indices.is_none()) {
         mesh.material_indices =
             indices("material_indices", arguments.material_indices, {static_cast<py::ssize_t>(mesh.triangles.size())});
     }
-    if (!arguments.transforms.is_none()) {
-        const AnyArray<double> array = numbers<double>("transforms", arguments.transforms, {kAny, 4, 4});
-        mesh.transforms.clear();
-        for (py::ssize_t i = 0; i < array.shape(0); ++i) {
-            mesh.transforms.push_back(matrix_at(array.data() + 16 * i));
-        }
-    }
-    if (!arguments.object_values.is_none()) {
-        const auto count = static_cast<py::ssize_t>(mesh.transforms.size());
-        const AnyArray<float> array = numbers<float>("object_values", arguments.object_values, {count, kAny});
-        for (py::ssize_t i = 0; i < count; ++i) {
-            const float* row = array.data() + i * array.shape(1);
-            mesh.object_values.emplace_back(row, row + array.shape(1));
-        }
-    }
+    set_places(mesh, arguments.transforms, arguments.object_values);
     return mesh;
 }
 

@@ -6,6 +6,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <string>
 #include <vector>
 
 #include "shlight/environment.h"
@@ -36,7 +37,14 @@ struct MeshArguments {
         transforms, object_values;
 };
 
-/// Shapes and types are checked here, the rest by check_mesh.
-Mesh mesh_from(const MeshArguments& arguments);
+/// The names of a mesh's attributes, in their order.
+using AttributeNames = std::vector<std::string>;
+
+/// Shapes and types are checked here, the rest by Scene::add_mesh. names: is given those of the mesh.
+Mesh mesh_from(const MeshArguments& arguments, AttributeNames& names);
+/// Each as of Scene.add_mesh.
+void set_materials(MeshUse& use, const AttributeNames& names, const pybind11::object& bsdf,
+                   const pybind11::object& emission);
+void set_places(MeshUse& use, const pybind11::object& transforms, const pybind11::object& object_values);
 
 }  // namespace shlight::python

@@ -45,15 +45,17 @@ std::pair<std::shared_ptr<const CompiledScene>, double> compiled(SceneObject& ob
     }
     // A copy, since other Python threads may add to the object meanwhile.
     const Scene scene = object.scene;
+    const std::shared_ptr<const CompiledScene> before = object.before;
     const std::uint64_t revision = object.revision;
     const auto start = std::chrono::steady_clock::now();
     std::shared_ptr<const CompiledScene> result;
     {
         const py::gil_scoped_release release;
-        result = scene.compile(threads, progress);
+        result = scene.compile(threads, progress, before.get());
     }
     if (object.revision == revision) {
         object.compiled = result;
+        object.before.reset();
     }
     return {result, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
 }

@@ -2,6 +2,8 @@
 #include "scene_bindings.h"
 
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "arguments.h"
 #include "bindings.h"
@@ -16,7 +18,7 @@ namespace {
 constexpr const char* kSceneDoc = R"(Meshes, lights and a camera in one world frame, in metres.
 
 Scene() is empty. Add meshes and lights, set a camera, then call shlight.render().
-What render() builds for ray tracing is kept until something is added.
+What render() builds for ray tracing is kept as long as meshes and their places stay as they are.
 A copy, deep or not, and the Scene that it was made of do not change each other.)";
 
 constexpr const char* kAddMeshDoc = R"(Add a triangle mesh. Surfaces are two-sided.
@@ -35,7 +37,22 @@ material_indices: (k,) integers, the material of each triangle; None: 0 for all.
 transforms: (i, 4, 4), one object-to-world matrix per instance, for column vectors; None: one at the identity.
 object_values: (i, v), numbers of each instance, which shlight.nodes.object_value() reads.
 
+Returns the SceneMesh, which can be changed and removed.
 Raises ValueError naming the argument; the scene is then as it was.)";
+
+constexpr const char* kSceneMeshDoc = R"(A mesh of a Scene, as Scene.add_mesh returns it.
+
+It belongs to that scene alone; copies of the scene have meshes of their own. A render that runs shows what was there
+when it began. All methods raise ValueError once the mesh has been removed.)";
+
+constexpr const char* kSetBsdfDoc = R"(Give the mesh other materials; bsdf and emission as of Scene.add_mesh.
+
+Raises ValueError naming the argument; the mesh is then as it was.)";
+
+constexpr const char* kSetTransformsDoc =
+    R"(Place the mesh elsewhere; transforms and object_values as of Scene.add_mesh.
+
+Raises ValueError naming the argument; the mesh is then as it was.)";
 
 constexpr const char* kEnvironmentDoc =
     R"(Set the light that comes from infinitely far all around; it takes the place of the one before.
@@ -63,12 +80,53 @@ clip_start, clip_end: surfaces are seen between these depths along the view axis
 
 Raises ValueError naming the argument.)";
 
-void add_mesh(SceneObject& self, const py::object& vertices, const py::object& triangles, const py::object& normals,
-              const py::object& uvs, const py::object& colors, const py::object& attributes, const py::object& bsdf,
-              const py::object& emission, const py::object& material_indices, const py::object& transforms,
-              const py::object& object_values) {
-    self.scene.add_mesh(mesh_from({vertices, triangles, normals, uvs, colors, attributes, bsdf, emission,
-                                   material_indices, transforms, object_values}));
+/// A mesh of a scene; it keeps the scene alive.
+struct MeshHandle {
+    py::object owner;
+    Scene::MeshNumber number;
+    AttributeNames names;
+
+    SceneObject& scene() const { return owner.cast<SceneObject&>(); }
+};
+
+MeshHandle add_mesh(const py::object& self, const py::object& vertices, const py::object& triangles,
+                    const py::object& normals, const py::object& uvs, const py::object& colors,
+                    const py::object& attributes, const py::object& bsdf, const py::object& emission,
+                    const py::object& material_indices, const py::object& transforms, const py::object& object_values) {
+    MeshHandle handle = {self, 0, {}};
+    Mesh mesh = mesh_from({vertices, triangles, normals, uvs, colors, attributes, bsdf, emission, material_indices,
+                           transforms, object_values},
+                          handle.names);
+    handle.number = handle.scene().scene.add_mesh(std::move(mesh));
+    handle.scene().meshes_changed();
+    return handle;
+}
+
+void set_bsdf(const MeshHandle& self, const py::object& bsdf, const py::object& emission) {
+    Scene& scene = self.scene().scene;
+    MeshUse use = scene.mesh(self.number);
+    set_materials(use, self.names, bsdf, emission);
+    scene.use_mesh(self.number, std::move(use));
+    self.scene().changed();
+}
+
+void set_transforms(const MeshHandle& self, const py::object& transforms, const py::object& object_values) {
+    Scene& scene = self.scene().scene;
+    MeshUse use = scene.mesh(self.number);
+    const std::vector<glm::dmat4> before = use.transforms;
+    set_places(use, transforms, object_values);
+    const bool moves = use.transforms != before;
+    scene.use_mesh(self.number, std::move(use));
+    moves ? self.scene().meshes_changed() : self.scene().changed();
+}
+
+void remove_mesh(const MeshHandle& self) {
+    self.scene().scene.remove_mesh(self.number);
+    self.scene().meshes_changed();
+}
+
+void remove_lights(SceneObject& self) {
+    self.scene.remove_lamps();
     self.changed();
 }
 
@@ -97,6 +155,11 @@ void set_camera_window(SceneObject& self, const py::object& to_world, const py::
 }  // namespace
 
 void bind_scene(py::module_& m) {
+    py::class_<MeshHandle>(m, "SceneMesh", kSceneMeshDoc, without_constructor())
+        .def("set_bsdf", &set_bsdf, kSetBsdfDoc, "bsdf"_a, py::kw_only(), "emission"_a = py::none())
+        .def("set_transforms", &set_transforms, kSetTransformsDoc, "transforms"_a, py::kw_only(),
+             "object_values"_a = py::none())
+        .def("remove", &remove_mesh, "Take the mesh out of its scene.");
     py::class_<SceneObject> scene(m, "Scene", kSceneDoc, constructed_when_new());
     scene.def(py::init<>())
         .def("__copy__", [](const SceneObject& self) { return self; })
@@ -112,6 +175,8 @@ void bind_scene(py::module_& m) {
              "uvs"_a = py::none(), "colors"_a = py::none(), "attributes"_a = py::none(), "bsdf"_a = py::none(),
              "emission"_a = py::none(), "material_indices"_a = py::none(), "transforms"_a = py::none(),
              "object_values"_a = py::none())
+        .def("remove_lights", &remove_lights,
+             "Take out all lights that the add_..._light methods have added; emissive meshes and the environment stay.")
         .def("set_environment", &set_environment, kEnvironmentDoc, "radiance"_a, py::kw_only(),
              "to_world"_a = py::none(), "visible"_a = true)
         .def("set_camera", &set_camera, kCameraDoc, "to_world"_a, "fov_x"_a)

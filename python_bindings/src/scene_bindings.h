@@ -8,22 +8,29 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "shlight/camera.h"
 #include "shlight/scene.h"
 
 namespace shlight::python {
 
-/// A scene, its camera, and what the last render compiled of it, until something is added. Guarded by the GIL.
+/// A scene, its camera, and what the last render compiled of it, until something changes. Guarded by the GIL.
 struct SceneObject {
     Scene scene;
     std::optional<Camera> camera;
     std::shared_ptr<const CompiledScene> compiled;
+    std::shared_ptr<const CompiledScene> before;  // compiled with the same meshes in the same places, or null
     std::uint64_t revision = 0;
 
+    /// Anything but a mesh or its place.
     void changed() {
-        compiled.reset();
+        before = compiled ? std::exchange(compiled, nullptr) : before;
         ++revision;
+    }
+    void meshes_changed() {
+        changed();
+        before.reset();
     }
 };
 

@@ -100,6 +100,10 @@ def new_scene() -> shlight.Scene:
     return scene
 
 
+def of_mesh(name: str) -> Callable[..., Any]:
+    return lambda **arguments: getattr(shlight.Scene().add_mesh(**MESH), name)(**arguments)
+
+
 def of_scene(name: str) -> Callable[..., Any]:
     return lambda **arguments: getattr(new_scene(), name)(**arguments)
 
@@ -122,6 +126,13 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Bsdf.__rmul__": (GGX.__rmul__, {"factor": 0.5}),
     **{f"Scene.{name}": (of_scene(name), {**light, **SEEN_BY}) for name, light in LIGHTS.items()},
     "Scene.add_mesh": (of_scene("add_mesh"), MESH),
+    "Scene.remove_lights": (of_scene("remove_lights"), {}),
+    "SceneMesh.set_bsdf": (of_mesh("set_bsdf"), {name: MESH[name] for name in ("bsdf", "emission")}),
+    "SceneMesh.set_transforms": (
+        of_mesh("set_transforms"),
+        {name: MESH[name] for name in ("transforms", "object_values")},
+    ),
+    "SceneMesh.remove": (of_mesh("remove"), {}),
     "Scene.set_environment": (
         of_scene("set_environment"),
         {"radiance": np.ones((2, 4, 3)), "to_world": np.eye(3), "visible": True},

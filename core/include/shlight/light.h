@@ -91,11 +91,11 @@ struct MeshLight {
     std::shared_ptr<const FaceRadiance> faces;  ///< null: all shine alike
     // Which of the faces that rays meet are the light's.
     std::uint32_t instance;  ///< RayHit::instance
-    std::shared_ptr<const Mesh> mesh;
+    std::shared_ptr<const SceneMesh> mesh;
     LightTraits traits = {};
 
     bool holds(const RayHit& hit) const {
-        return hit.instance == instance && mesh->emitted(mesh->material_index(hit.triangle)) != Rgb(0);
+        return hit.instance == instance && mesh->emitted(mesh->shape->material_index(hit.triangle)) != Rgb(0);
     }
 };
 

@@ -38,25 +38,30 @@ struct MeshShader {
     static constexpr std::uint32_t kNoAttribute = 0xFFFFFFFFU;
 };
 
-/// Surfaces are two-sided: the normal is turned to the viewer.
-struct Mesh {
+/// Triangles with what is known at their corners.
+struct MeshShape {
     std::vector<Vec3f> vertices;
     std::vector<Triangle> triangles;  ///< vertex indices
     /// Smooth normals of any length in the mesh's frame: one per vertex, or three per triangle, or none (flat).
     std::vector<Vec3f> vertex_normals, corner_normals;
+    std::vector<MeshAttribute> attributes;
+    std::vector<std::uint32_t> material_indices;  ///< one per triangle, or none (all 0)
+
+    std::uint32_t material_index(std::size_t triangle) const {
+        return material_indices.empty() ? 0 : material_indices[triangle];
+    }
+};
+
+/// What a shape is made of, and where it stands. Surfaces are two-sided: the normal is turned to the viewer.
+struct MeshUse {
     std::vector<Bsdf> bsdfs = {Bsdf()};    ///< one per material, or one for all
     std::vector<Rgb> emission = {Rgb(0)};  ///< radiance of both sides: one per material, or one for all
     /// One per material, or none. Emission of theirs is seen by the camera; what lights the scene is `emission`.
     std::vector<MeshShader> shaders;
-    std::vector<MeshAttribute> attributes;
-    std::vector<std::uint32_t> material_indices;           ///< one per triangle, or none (all 0)
     std::vector<glm::dmat4> transforms = {glm::dmat4(1)};  ///< object to world, one per instance
     std::vector<std::vector<float>> object_values;         ///< one per instance, or none: see ShaderSource
 
     std::size_t material_count() const { return std::max({bsdfs.size(), emission.size(), shaders.size()}); }
-    std::uint32_t material_index(std::size_t triangle) const {
-        return material_indices.empty() ? 0 : material_indices[triangle];
-    }
     const Bsdf& bsdf(std::size_t material) const { return bsdfs[bsdfs.size() == 1 ? 0 : material]; }
     const Rgb& emitted(std::size_t material) const { return emission[emission.size() == 1 ? 0 : material]; }
     Material material(std::size_t index) const {
@@ -65,11 +70,20 @@ struct Mesh {
     }
 };
 
+struct Mesh : MeshShape, MeshUse {};
+
+/// A mesh of a scene; others of the scene, or of scenes before, may have the same shape.
+struct SceneMesh : MeshUse {
+    std::shared_ptr<const MeshShape> shape;
+};
+
 /// Throws std::invalid_argument naming the member that is wrong: sizes that do not fit, an index out of range,
-/// a number outside docs/conventions.md's range, a transform that is not affine and invertible.
-void check_mesh(const Mesh& mesh);
+/// a number outside docs/conventions.md's range.
+void check_shape(const MeshShape& shape);
+/// The same of a shape's use; a transform must be affine and invertible.
+void check_use(const MeshShape& shape, const MeshUse& use);
 
 /// A bound of the coordinates that its instances have in the world.
-double reach(const Mesh& mesh);
+double reach(const MeshShape& shape, const MeshUse& use);
 
 }  // namespace shlight

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -73,10 +75,19 @@ class CompiledScene {
 
 class Scene {
   public:
-    /// Throws as check_mesh does. Emissive faces become two-sided polygon lights,
+    /// Of a mesh, as long as the scene or a copy of it holds it.
+    using MeshNumber = std::uint64_t;
+
+    /// Throws as check_shape and check_use do. Emissive faces become two-sided polygon lights,
     /// many of them one mesh light; as every face, the camera sees them
     /// and they block light.
-    void add_mesh(Mesh mesh);
+    MeshNumber add_mesh(Mesh mesh);
+    /// Throws std::invalid_argument unless the scene holds the mesh.
+    const SceneMesh& mesh(MeshNumber number) const;
+    /// The same shape, used otherwise. Throws as mesh() and check_use do; the mesh is then as it was.
+    void use_mesh(MeshNumber number, MeshUse use);
+    /// Throws as mesh() does.
+    void remove_mesh(MeshNumber number);
     /// Lamps throw as make_sphere_light, make_polygon_light … do. The camera sees those that are
     /// LightTraits::seen_by_camera and have an extent; they block no light.
     void add_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk = false,
@@ -93,6 +104,9 @@ class Scene {
     void add_sun_light(const Vec3d& direction, double angle, const Rgb& irradiance, bool tangent = false,
                        const LightTraits& traits = {});
 
+    /// All lamps; what shines of meshes, and the environment, stays.
+    void remove_lamps() { lamps_.clear(); }
+
     /// Takes the place of the environment before, at first a black one that the camera does not see.
     /// visible: the camera sees it behind the scene.
     void set_environment(Environment environment, bool visible = true);
@@ -100,12 +114,15 @@ class Scene {
     /// Builds with at most `threads` threads, 0: all cores; calls `progress` meanwhile, with 0, as run_watched does.
     /// Throws std::invalid_argument for threads < 0 and for surfaces in a scene of less than 1e-6 m, std::bad_alloc or
     /// std::runtime_error when Embree fails; RenderCancelled when progress returns false, and what it throws.
-    std::shared_ptr<const CompiledScene> compile(int threads = 0, const Progress& progress = {}) const;
+    /// before: what it has built for its rays is shared if it has the same shapes in the same places; null: nothing.
+    std::shared_ptr<const CompiledScene> compile(int threads = 0, const Progress& progress = {},
+                                                 const CompiledScene* before = nullptr) const;
 
   private:
     void check_size() const;
 
-    std::vector<std::shared_ptr<const Mesh>> meshes_;
+    std::map<MeshNumber, std::shared_ptr<const SceneMesh>> meshes_;
+    MeshNumber next_mesh_ = 0;
     std::vector<Light> lamps_;
     Environment environment_;
     bool environment_visible_ = false;

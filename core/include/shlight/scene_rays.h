@@ -43,6 +43,8 @@ class SceneRays {
     /// Builds as RayTracer does, and throws what it throws. transparency must outlive this.
     SceneRays(std::span<const SceneGeometry> geometries, std::span<const TracedInstance> instances,
               const SurfaceTransparency& transparency, const Stopped& stopped = {});
+    /// Of the same surfaces: what is built is shared. transparency must outlive this.
+    SceneRays(const SceneRays& same, const SurfaceTransparency& transparency);
     SceneRays(const SceneRays&) = delete;
     SceneRays& operator=(const SceneRays&) = delete;
     ~SceneRays();
@@ -58,7 +60,7 @@ class SceneRays {
 
   private:
     class Part;
-    std::unique_ptr<const Part> opaque_, transparent_;  // null: there are none
+    std::shared_ptr<const Part> opaque_, transparent_;  // null: there are none
     const SurfaceTransparency* transparency_;
 };
 

@@ -51,11 +51,11 @@ float matrix_number(const glm::dmat4& matrix, std::uint32_t component) {
 
 }  // namespace
 
-const TracedMesh& PlacedMeshes::add(const std::shared_ptr<const Mesh>& mesh, std::uint32_t first_material) {
+const TracedMesh& PlacedMeshes::add(const std::shared_ptr<const SceneMesh>& mesh, std::uint32_t first_material) {
     const auto index = static_cast<std::uint32_t>(meshes_.size());
     const bool baked = mesh->transforms.size() == 1;
     meshes_.push_back(
-        {mesh, baked ? moved(mesh->vertices, mesh->transforms[0]) : std::vector<Vec3f>(), first_material});
+        {mesh, baked ? moved(mesh->shape->vertices, mesh->transforms[0]) : std::vector<Vec3f>(), first_material});
     std::uint32_t number = 0;
     for (const glm::dmat4& to_world : mesh->transforms) {
         placements_.push_back(place(index, number++, to_world, baked));
@@ -67,7 +67,7 @@ std::array<Vec3d, 3> PlacedMeshes::corners(const RayHit& hit) const {
     const Placement& placement = placements_[hit.instance];
     const TracedMesh& traced = meshes_[placement.mesh];
     const std::span<const Vec3f> vertices = traced.vertices();
-    const Triangle& triangle = traced.mesh->triangles[hit.triangle];
+    const Triangle& triangle = traced.mesh->shape->triangles[hit.triangle];
     std::array<Vec3d, 3> result = {Vec3d(vertices[triangle.x]), Vec3d(vertices[triangle.y]),
                                    Vec3d(vertices[triangle.z])};
     if (!placement.baked) {
@@ -80,7 +80,7 @@ std::array<Vec3d, 3> PlacedMeshes::corners(const RayHit& hit) const {
 
 bool PlacedMeshes::smooth_normal(const RayHit& hit, Vec3d& normal) const {
     const Placement& placement = placements_[hit.instance];
-    const Mesh& mesh = *meshes_[placement.mesh].mesh;
+    const MeshShape& mesh = *meshes_[placement.mesh].mesh->shape;
     if (mesh.vertex_normals.empty() && mesh.corner_normals.empty()) {
         return false;
     }
@@ -124,7 +124,7 @@ SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) co
     }
     const double scale = placement.condition * (largest_component(position) + placement.origin) + extent;
     return {position, geometric, shading, kRayRounding * scale,
-            traced.first_material + traced.mesh->material_index(hit.triangle)};
+            traced.first_material + traced.mesh->shape->material_index(hit.triangle)};
 }
 
 SurfacePlace PlacedMeshes::neighbour(const SurfacePlace& place, const Vec3d& normal, double length,
@@ -160,7 +160,7 @@ float PlacedMeshes::attribute(const MeshAttribute& attribute, std::uint32_t comp
         const auto at = [&](std::uint32_t i) { return this->attribute(attribute, i, hit); };
         return attribute.components == 1 ? at(0) : (at(0) + at(1) + at(2)) * (1 / 3.0F);
     }
-    const Mesh& mesh = *meshes_[placements_[hit.instance].mesh].mesh;
+    const MeshShape& mesh = *meshes_[placements_[hit.instance].mesh].mesh->shape;
     const std::size_t count = attribute.values.size() / attribute.components;
     const std::uint32_t own = attribute.components == 1 && component < 3 ? 0 : component;
     const auto value = [&](std::size_t index) { return attribute.values[index * attribute.components + own]; };
@@ -235,7 +235,7 @@ void PlacedMeshes::read(const ShaderInput& input, const std::vector<std::uint32_
                 return;
             }
             return fill([&](const auto&, const SurfacePlace& at) {
-                return attribute(meshes_[placement(at).mesh].mesh->attributes[index], input.component, at.hit);
+                return attribute(meshes_[placement(at).mesh].mesh->shape->attributes[index], input.component, at.hit);
             });
         }
         case ShaderSource::object_to_world:

@@ -22,12 +22,12 @@ namespace shlight {
 
 /// A mesh as it is traced. A mesh placed once has its vertices moved to the world; others are instanced.
 struct TracedMesh {
-    std::shared_ptr<const Mesh> mesh;
+    std::shared_ptr<const SceneMesh> mesh;
     std::vector<Vec3f> world_vertices;  // empty: instanced
     std::uint32_t first_material;
 
     std::span<const Vec3f> vertices() const {
-        return world_vertices.empty() ? std::span<const Vec3f>(mesh->vertices) : world_vertices;
+        return world_vertices.empty() ? std::span<const Vec3f>(mesh->shape->vertices) : world_vertices;
     }
 };
 
@@ -43,7 +43,7 @@ struct Placement {
 class PlacedMeshes {
   public:
     /// first_material: number of the mesh's first material in the scene.
-    const TracedMesh& add(const std::shared_ptr<const Mesh>& mesh, std::uint32_t first_material);
+    const TracedMesh& add(const std::shared_ptr<const SceneMesh>& mesh, std::uint32_t first_material);
 
     std::span<const TracedMesh> meshes() const { return meshes_; }
     std::span<const Placement> placements() const { return placements_; }

@@ -38,16 +38,22 @@ struct Reach {
 };
 
 /// None if no material lets light through.
-std::vector<std::uint8_t> transparent_triangles(const Mesh& mesh) {
+std::vector<std::uint8_t> transparent_triangles(const SceneMesh& mesh) {
     const auto passes = [](const MeshShader& own) { return own.shader != nullptr && own.shader->transparency; };
     if (std::none_of(mesh.shaders.begin(), mesh.shaders.end(), passes)) {
         return {};
     }
-    std::vector<std::uint8_t> transparent(mesh.triangles.size());
+    std::vector<std::uint8_t> transparent(mesh.shape->triangles.size());
     for (std::size_t i = 0; i < transparent.size(); ++i) {
-        transparent[i] = passes(mesh.shaders[mesh.material_index(i)]) ? 1 : 0;
+        transparent[i] = passes(mesh.shaders[mesh.shape->material_index(i)]) ? 1 : 0;
     }
     return transparent;
+}
+
+/// The same triangles in the same places, opaque or not.
+bool meets_rays_alike(const TracedMesh& a, const TracedMesh& b) {
+    return a.mesh->shape == b.mesh->shape && a.mesh->transforms == b.mesh->transforms &&
+           transparent_triangles(*a.mesh) == transparent_triangles(*b.mesh);
 }
 
 /// Of one material.
@@ -84,7 +90,7 @@ class CompiledScene::Impl {
     Impl(std::vector<Light> lamps, Environment all_around, bool environment_visible)
         : lights(std::move(lamps)), environment(std::move(all_around)), has_background(environment_visible) {}
 
-    void add(const std::shared_ptr<const Mesh>& mesh) {
+    void add(const std::shared_ptr<const SceneMesh>& mesh) {
         const auto first_placement = static_cast<std::uint32_t>(placed.placements().size());
         const TracedMesh& traced = placed.add(mesh, static_cast<std::uint32_t>(materials.size()));
         for (std::size_t i = 0; i < mesh->material_count(); ++i) {
@@ -93,19 +99,13 @@ class CompiledScene::Impl {
         add_emissive_faces(traced, first_placement);
     }
 
-    void build(const Stopped& stopped) {
+    void build(const Impl* before, const Stopped& stopped) {
         const auto first_delta =
             std::stable_partition(lights.begin(), lights.end(), [](const Light& light) { return !is_delta(light); });
         extended_light_count = static_cast<std::size_t>(first_delta - lights.begin());
-        std::vector<SceneGeometry> geometries;
-        for (const TracedMesh& traced : placed.meshes()) {
-            geometries.push_back({traced.vertices(), traced.mesh->triangles, transparent_triangles(*traced.mesh)});
-        }
-        std::vector<TracedInstance> instances;
-        for (const Placement& placement : placed.placements()) {
-            instances.push_back({placement.mesh, placement.baked, placement.to_world});
-        }
-        rays = std::make_unique<const SceneRays>(geometries, instances, transparency, stopped);
+        const bool alike =
+            before != nullptr && std::ranges::equal(placed.meshes(), before->placed.meshes(), meets_rays_alike);
+        rays = alike ? std::make_unique<const SceneRays>(*before->rays, transparency) : built_rays(stopped);
         seen_lamps = CameraVisibleLamps(lights);
     }
 
@@ -120,6 +120,18 @@ class CompiledScene::Impl {
     CameraVisibleLamps seen_lamps;
 
   private:
+    std::unique_ptr<const SceneRays> built_rays(const Stopped& stopped) const {
+        std::vector<SceneGeometry> geometries;
+        for (const TracedMesh& traced : placed.meshes()) {
+            geometries.push_back(
+                {traced.vertices(), traced.mesh->shape->triangles, transparent_triangles(*traced.mesh)});
+        }
+        std::vector<TracedInstance> instances;
+        for (const Placement& placement : placed.placements()) {
+            instances.push_back({placement.mesh, placement.baked, placement.to_world});
+        }
+        return std::make_unique<const SceneRays>(geometries, instances, transparency, stopped);
+    }
     void add_emissive_faces(const TracedMesh& traced, std::uint32_t first_placement);
     void add_single_faces(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
                           std::span<const Rgb> radiance);
@@ -169,13 +181,14 @@ void CompiledScene::Impl::Transparency::find(std::span<const Ray> rays, std::spa
 }
 
 void CompiledScene::Impl::add_emissive_faces(const TracedMesh& traced, std::uint32_t first_placement) {
-    const std::shared_ptr<const Mesh>& mesh = traced.mesh;
+    const std::shared_ptr<const SceneMesh>& mesh = traced.mesh;
+    const MeshShape& shape = *mesh->shape;
     std::vector<Triangle> emissive;
     std::vector<Rgb> radiance;  // of each of them
-    for (std::size_t i = 0; i < mesh->triangles.size(); ++i) {
-        const Rgb& emitted = mesh->emitted(mesh->material_index(i));
+    for (std::size_t i = 0; i < shape.triangles.size(); ++i) {
+        const Rgb& emitted = mesh->emitted(shape.material_index(i));
         if (emitted != Rgb(0)) {
-            emissive.push_back(mesh->triangles[i]);
+            emissive.push_back(shape.triangles[i]);
             radiance.push_back(emitted);
         }
     }
@@ -263,9 +276,32 @@ void CompiledScene::read(const ShaderInput& input, const Material& material, int
     impl_->placed.read(input, material.attributes, place, places, out);
 }
 
-void Scene::add_mesh(Mesh mesh) {
-    check_mesh(mesh);
-    meshes_.push_back(std::make_shared<const Mesh>(std::move(mesh)));
+Scene::MeshNumber Scene::add_mesh(Mesh mesh) {
+    check_shape(mesh);
+    check_use(mesh, mesh);
+    auto shape = std::make_shared<const MeshShape>(std::move(static_cast<MeshShape&>(mesh)));
+    meshes_[next_mesh_] =
+        std::make_shared<const SceneMesh>(SceneMesh{std::move(static_cast<MeshUse&>(mesh)), std::move(shape)});
+    return next_mesh_++;
+}
+
+const SceneMesh& Scene::mesh(MeshNumber number) const {
+    const auto found = meshes_.find(number);
+    if (found == meshes_.end()) {
+        reject("mesh has been removed from its scene");
+    }
+    return *found->second;
+}
+
+void Scene::use_mesh(MeshNumber number, MeshUse use) {
+    const SceneMesh& own = mesh(number);
+    check_use(*own.shape, use);
+    meshes_[number] = std::make_shared<const SceneMesh>(SceneMesh{std::move(use), own.shape});
+}
+
+void Scene::remove_mesh(MeshNumber number) {
+    mesh(number);
+    meshes_.erase(number);
 }
 
 void Scene::add_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk,
@@ -308,8 +344,8 @@ void Scene::set_environment(Environment environment, bool visible) {
 
 void Scene::check_size() const {
     double farthest = 0;
-    for (const auto& mesh : meshes_) {
-        farthest = std::max(farthest, reach(*mesh));
+    for (const auto& [number, mesh] : meshes_) {
+        farthest = std::max(farthest, reach(*mesh->shape, *mesh));
     }
     if (farthest == 0 || farthest >= kLeastReach) {
         return;
@@ -322,17 +358,18 @@ void Scene::check_size() const {
     }
 }
 
-std::shared_ptr<const CompiledScene> Scene::compile(int threads, const Progress& progress) const {
+std::shared_ptr<const CompiledScene> Scene::compile(int threads, const Progress& progress,
+                                                    const CompiledScene* before) const {
     check_size();
     auto impl = std::make_unique<CompiledScene::Impl>(lamps_, environment_, environment_visible_);
     const auto build = [&](const Stopped& stopped) {
-        for (const auto& mesh : meshes_) {
+        for (const auto& [number, mesh] : meshes_) {
             end_if(stopped);
-            if (!mesh->triangles.empty() && !mesh->transforms.empty()) {
+            if (!mesh->shape->triangles.empty() && !mesh->transforms.empty()) {
                 impl->add(mesh);
             }
         }
-        impl->build(stopped);
+        impl->build(before == nullptr ? nullptr : before->impl_.get(), stopped);
     };
     run_watched(threads, build, progress);
     return std::shared_ptr<const CompiledScene>(new CompiledScene(std::move(impl)));

@@ -23,46 +23,44 @@ void check_per_material(const char* name, std::size_t size, std::size_t material
     }
 }
 
-void check_attributes(const Mesh& mesh) {
-    for (const MeshAttribute& attribute : mesh.attributes) {
+void check_attributes(const MeshShape& shape) {
+    for (const MeshAttribute& attribute : shape.attributes) {
         if (attribute.components < 1 || attribute.components > 4) {
             reject("attributes must have 1 … 4 components");
         }
         const std::size_t count = attribute.values.size() / attribute.components;
         if (count * attribute.components != attribute.values.size() ||
-            (count != mesh.vertices.size() && count != mesh.triangles.size() && count != 3 * mesh.triangles.size())) {
+            (count != shape.vertices.size() && count != shape.triangles.size() &&
+             count != 3 * shape.triangles.size())) {
             reject("attributes must have one entry per vertex, triangle or triangle's corner");
         }
     }
 }
 
-void check_shaders(const Mesh& mesh) {
-    if (mesh.shaders.empty()) {
+void check_shaders(const MeshShape& shape, const MeshUse& use) {
+    if (use.shaders.empty()) {
         return;
     }
-    check_size("shaders", mesh.shaders.size(), mesh.material_count());
-    for (const MeshShader& own : mesh.shaders) {
+    check_size("shaders", use.shaders.size(), use.material_count());
+    for (const MeshShader& own : use.shaders) {
         for (const std::uint32_t index : own.attributes) {
-            if (index != MeshShader::kNoAttribute && index >= mesh.attributes.size()) {
+            if (index != MeshShader::kNoAttribute && index >= shape.attributes.size()) {
                 reject("shaders: attribute " + std::to_string(index) + " does not exist");
             }
         }
     }
 }
 
-void check_materials(const Mesh& mesh) {
-    check_per_material("bsdf", mesh.bsdfs.size(), mesh.material_count());
-    check_per_material("emission", mesh.emission.size(), mesh.material_count());
-    std::for_each(mesh.emission.begin(), mesh.emission.end(),
+void check_materials(const MeshShape& shape, const MeshUse& use) {
+    const std::size_t count = use.material_count();
+    check_per_material("bsdf", use.bsdfs.size(), count);
+    check_per_material("emission", use.emission.size(), count);
+    std::for_each(use.emission.begin(), use.emission.end(),
                   [](const Rgb& color) { check_strength("emission", color); });
-    if (mesh.material_indices.empty()) {
-        return;
-    }
-    check_size("material_indices", mesh.material_indices.size(), mesh.triangles.size());
-    for (const std::uint32_t index : mesh.material_indices) {
-        if (index >= mesh.material_count()) {
-            reject("material_indices: " + std::to_string(index) + " is out of range for " +
-                   std::to_string(mesh.material_count()) + " materials");
+    for (const std::uint32_t index : shape.material_indices) {
+        if (index >= count) {
+            reject("material_indices: " + std::to_string(index) + " is out of range for " + std::to_string(count) +
+                   " materials");
         }
     }
 }
@@ -77,18 +75,18 @@ void check_scale(const glm::dmat4& transform) {
 
 }  // namespace
 
-double reach(const Mesh& mesh) {
-    if (mesh.vertices.empty()) {
+double reach(const MeshShape& shape, const MeshUse& use) {
+    if (shape.vertices.empty()) {
         return 0;
     }
-    Vec3d least(mesh.vertices.front());
+    Vec3d least(shape.vertices.front());
     Vec3d largest = least;
-    for (const Vec3f& v : mesh.vertices) {
+    for (const Vec3f& v : shape.vertices) {
         least = glm::min(least, Vec3d(v));
         largest = glm::max(largest, Vec3d(v));
     }
     double farthest = 0;
-    for (const glm::dmat4& transform : mesh.transforms) {
+    for (const glm::dmat4& transform : use.transforms) {
         for (int corner = 0; corner < 8; ++corner) {
             const Vec3d p(corner & 1 ? least.x : largest.x, corner & 2 ? least.y : largest.y,
                           corner & 4 ? least.z : largest.z);
@@ -98,38 +96,44 @@ double reach(const Mesh& mesh) {
     return farthest;
 }
 
-void check_mesh(const Mesh& mesh) {
-    for (const Vec3f& v : mesh.vertices) {
+void check_shape(const MeshShape& shape) {
+    for (const Vec3f& v : shape.vertices) {
         check_position("vertices", Vec3d(v));
     }
-    for (const Triangle& triangle : mesh.triangles) {
+    for (const Triangle& triangle : shape.triangles) {
         const std::uint32_t largest = std::max({triangle.x, triangle.y, triangle.z});
-        if (largest >= mesh.vertices.size()) {
+        if (largest >= shape.vertices.size()) {
             reject("triangles: vertex " + std::to_string(largest) + " is out of range for " +
-                   std::to_string(mesh.vertices.size()) + " vertices");
+                   std::to_string(shape.vertices.size()) + " vertices");
         }
     }
-    if (!mesh.vertex_normals.empty()) {
-        check_size("normals", mesh.vertex_normals.size(), mesh.vertices.size());
-        check_all_finite("normals", mesh.vertex_normals);
+    if (!shape.vertex_normals.empty()) {
+        check_size("normals", shape.vertex_normals.size(), shape.vertices.size());
+        check_all_finite("normals", shape.vertex_normals);
     }
-    if (!mesh.corner_normals.empty()) {
-        check_size("normals", mesh.corner_normals.size(), 3 * mesh.triangles.size());
-        check_all_finite("normals", mesh.corner_normals);
+    if (!shape.corner_normals.empty()) {
+        check_size("normals", shape.corner_normals.size(), 3 * shape.triangles.size());
+        check_all_finite("normals", shape.corner_normals);
     }
-    check_materials(mesh);
-    check_shaders(mesh);
-    check_attributes(mesh);
-    if (!mesh.object_values.empty()) {
-        check_size("object_values", mesh.object_values.size(), mesh.transforms.size());
+    if (!shape.material_indices.empty()) {
+        check_size("material_indices", shape.material_indices.size(), shape.triangles.size());
     }
-    for (const glm::dmat4& transform : mesh.transforms) {
+    check_attributes(shape);
+}
+
+void check_use(const MeshShape& shape, const MeshUse& use) {
+    check_materials(shape, use);
+    check_shaders(shape, use);
+    if (!use.object_values.empty()) {
+        check_size("object_values", use.object_values.size(), use.transforms.size());
+    }
+    for (const glm::dmat4& transform : use.transforms) {
         check_transform("transforms", transform);
-        if (mesh.transforms.size() > 1) {
+        if (use.transforms.size() > 1) {
             check_scale(transform);
         }
     }
-    check_reach("transforms", reach(mesh));
+    check_reach("transforms", reach(shape, use));
 }
 
 }  // namespace shlight

@@ -87,6 +87,9 @@ SceneRays::SceneRays(std::span<const SceneGeometry> geometries, std::span<const 
       transparent_(Part::make(geometries, instances, true, stopped)),
       transparency_(&transparency) {}
 
+SceneRays::SceneRays(const SceneRays& same, const SurfaceTransparency& transparency)
+    : opaque_(same.opaque_), transparent_(same.transparent_), transparency_(&transparency) {}
+
 SceneRays::~SceneRays() = default;
 
 void SceneRays::intersect_opaque(std::span<const Ray> rays, std::span<RayHit> hits) const {

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: MIT
+"""Scenes that change between renders look like scenes made anew."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scene_cases import FACES, FLOOR, from_above
+
+import shlight
+from shlight import Bsdf, nodes
+
+WALL = np.array([[-0.2, -1, 0.2], [-0.2, 1, 0.2], [0.4, 1, 0.9], [0.4, -1, 0.9]])
+UP = np.eye(4)
+ASIDE = np.eye(4)
+ASIDE[0, 3] = 0.5
+SHEER = nodes.mix(nodes.transparent(1.0), nodes.lambert(0.5), 0.5)
+
+
+def scene_of(**wall: Any) -> tuple[shlight.Scene, shlight.SceneMesh]:
+    """A wall on a floor, and no lamp."""
+    scene = shlight.Scene()
+    scene.add_mesh(FLOOR, FACES)
+    mesh = scene.add_mesh(WALL, FACES, **wall)
+    from_above(scene, 2.0)
+    return scene, mesh
+
+
+def add_lamp(scene: shlight.Scene, x: float) -> None:
+    scene.add_sphere_light([x, 0.25, 1.5], 0.3, [4, 2, 1])
+
+
+def picture(scene: shlight.Scene) -> NDArray[np.float32]:
+    return shlight.render(scene, 24, 24, max_samples=4)
+
+
+Change = Callable[[shlight.SceneMesh], None]
+CHANGES: dict[str, tuple[Change, dict[str, Any]]] = {  # what it does, and arguments that have it from the beginning
+    "material": (lambda mesh: mesh.set_bsdf(Bsdf.lambert(0.1)), {"bsdf": Bsdf.lambert(0.1)}),
+    "emission": (lambda mesh: mesh.set_bsdf(None, emission=[1, 2, 3]), {"emission": [1, 2, 3]}),
+    "transparent": (lambda mesh: mesh.set_bsdf(SHEER), {"bsdf": SHEER}),
+    "place": (lambda mesh: mesh.set_transforms([ASIDE]), {"transforms": [ASIDE]}),
+    "instances": (lambda mesh: mesh.set_transforms([UP, ASIDE]), {"transforms": [UP, ASIDE]}),
+}
+
+
+@pytest.mark.parametrize(("change", "arguments"), CHANGES.values(), ids=CHANGES)
+def test_a_changed_mesh_looks_as_if_made_so(change: Change, arguments: dict[str, Any]) -> None:
+    scene, wall = scene_of()
+    add_lamp(scene, 0.5)
+    before = picture(scene)
+    change(wall)
+    changed = picture(scene)
+    other, _ = scene_of(**arguments)
+    add_lamp(other, 0.5)
+    np.testing.assert_array_equal(changed, picture(other))
+    assert not np.array_equal(changed, before)
+
+
+def test_lamps_are_replaced() -> None:
+    scene, _ = scene_of(emission=[0, 0.1, 0])
+    scene.set_environment([0.1, 0.1, 0.2])
+    add_lamp(scene, 0.5)
+    picture(scene)
+    scene.remove_lights()
+    add_lamp(scene, -0.5)
+    other, _ = scene_of(emission=[0, 0.1, 0])
+    other.set_environment([0.1, 0.1, 0.2])
+    add_lamp(other, -0.5)
+    np.testing.assert_array_equal(picture(scene), picture(other))
+
+
+def test_a_removed_mesh_is_gone_and_the_others_stay() -> None:
+    scene, wall = scene_of()
+    add_lamp(scene, 0.5)
+    copied = copy.copy(scene)
+    with_wall = picture(scene)
+    wall.remove()
+    other = shlight.Scene()
+    other.add_mesh(FLOOR, FACES)
+    from_above(other, 2.0)
+    add_lamp(other, 0.5)
+    np.testing.assert_array_equal(picture(scene), picture(other))
+    np.testing.assert_array_equal(picture(copied), with_wall)
+    for use in (wall.remove, lambda: wall.set_bsdf(None), lambda: wall.set_transforms(None)):
+        with pytest.raises(ValueError, match="mesh has been removed"):
+            use()
+
+
+@pytest.mark.parametrize(
+    ("change", "name"),
+    [
+        (lambda mesh: mesh.set_bsdf("red"), "bsdf"),
+        (lambda mesh: mesh.set_bsdf(None, emission=[np.nan, 0, 0]), "emission"),
+        (lambda mesh: mesh.set_transforms([np.zeros((4, 4))]), "transforms"),
+        (lambda mesh: mesh.set_transforms([UP], object_values=[[1.0], [2.0]]), "object_values"),
+    ],
+)
+def test_a_refused_change_leaves_the_mesh_as_it_was(change: Change, name: str) -> None:
+    scene, wall = scene_of()
+    add_lamp(scene, 0.5)
+    before = picture(scene)
+    with pytest.raises(ValueError, match=f"^{name}"):
+        change(wall)
+    np.testing.assert_array_equal(picture(scene), before)
