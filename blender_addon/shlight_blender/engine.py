@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import time
 import traceback
-from datetime import timedelta
 from typing import Any
 
 import bpy
@@ -18,6 +17,7 @@ from .frame import Frame, frame_of
 from .native import native_problem
 from .report import ExportCancelled, ExportError
 from .running import ENGINE
+from .status import status_of
 
 MOST_WARNINGS = 20
 # Of pictures in the making, in seconds. Blender opens the render window meanwhile, and is not ready for the first
@@ -25,7 +25,6 @@ MOST_WARNINGS = 20
 FIRST_UPDATE = 0.1
 UPDATE_INTERVAL = 0.25
 LARGEST_UPDATE_SHARE = 0.1  # of the time
-VIEWPORT_NOTE = "shlight draws final renders (F12); use Material Preview in the viewport"
 
 
 class ShlightRenderEngine(bpy.types.RenderEngine):
@@ -50,7 +49,9 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             if problem := native_problem():
                 raise ExportError(problem)
             images = {}
-            self._forget_changes(depsgraph)
+            self._is_new_frame = True
+            if not depsgraph.scene.render.use_persistent_data:
+                self._exported.clear()
             for view in _views(depsgraph.scene.render):
                 images[view] = self._render(depsgraph, frame, view)
             if running.renders.stopped:
@@ -100,7 +101,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             def show(image: NDArray[np.float32], report: Any) -> bool:
                 nonlocal latest, next_update
                 latest = image
-                self._status = _status(report)
+                self._status = status_of(report)
                 if (now := time.perf_counter()) >= next_update:
                     self._deliver(depsgraph, frame, {view: image})
                     taken = time.perf_counter() - now
@@ -123,23 +124,19 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             return latest  # what the user has seen stays
         return image
 
-    def _forget_changes(self, depsgraph: Any) -> None:
-        """Of the render before (Persistent Data), keeps the exported scene if no more than a camera has changed."""
-        from .export import only_cameras_changed
-
-        if not depsgraph.scene.render.use_persistent_data or not only_cameras_changed(depsgraph):
-            self._exported.pop(depsgraph.view_layer.name, None)
-
     def _export(self, depsgraph: Any, frame: Frame, view: str) -> Any:
-        from .export import export_scene
+        """The scene as one view sees it. With Persistent Data, what has not changed since the last render is kept."""
+        from .export import Changes, ExportedScene, changes_of, everything
 
-        layer, eye = depsgraph.view_layer.name, self._eye(depsgraph, view)
-        exported = self._exported.get(layer)
-        if exported is not None and not exported.is_of_one_camera:
-            exported.look_from(depsgraph, frame=frame, camera=eye)
+        layer = depsgraph.view_layer.name
+        exported = self._exported.pop(layer, None)  # one whose export ends half way is not kept
+        if exported is None:
+            exported, changes = ExportedScene(), everything()
         else:
-            exported = export_scene(depsgraph, frame=frame, camera=eye, waiting=self._wait)
-            self._exported[layer] = exported
+            changes = changes_of(depsgraph) if self._is_new_frame else Changes()
+        exported.look_from(depsgraph, frame=frame, camera=self._eye(depsgraph, view))
+        exported.update(depsgraph, changes, waiting=self._wait)
+        self._exported[layer], self._is_new_frame = exported, False
         return exported
 
     def _eye(self, depsgraph: Any, view: str) -> Any:
@@ -199,23 +196,25 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             self.end_result(result)
 
     def view_update(self, context: Any, depsgraph: Any) -> None:
-        """Says in the viewport that it shows nothing."""
-        self.update_stats("", VIEWPORT_NOTE)
+        """Takes over what has changed for a viewport."""
+        self._viewport().update(context, depsgraph)
 
     def view_draw(self, context: Any, depsgraph: Any) -> None:
-        """Leaves the viewport empty."""
+        """Draws a viewport as far as it is rendered."""
+        self._viewport().draw(context, depsgraph)
+
+    def _viewport(self) -> Any:
+        """What the viewport shows that this engine was made for."""
+        from .viewport import RenderedViewport
+
+        if not hasattr(self, "_own_viewport"):
+            self._own_viewport = RenderedViewport(self)
+        return self._own_viewport
 
 
 def _views(render: Any) -> list[str]:
     """Names of the views of a render; that of a picture without views is empty."""
     return [view.name for view in render.views if view.use] if render.use_multiview else [""]
-
-
-def _status(report: Any) -> str:
-    """What the render window says of a picture as it stands."""
-    noise = f"Noise {report.noise:.4f} | " if report.passes > 0 and report.noise > 0.0 else ""
-    left = f"Remaining {timedelta(seconds=round(report.seconds_left))}" if report.seconds_left > 0.0 else ""
-    return f"Pass {report.passes + 1} | {noise}{left}".removesuffix(" | ")
 
 
 def register() -> None:

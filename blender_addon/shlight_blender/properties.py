@@ -73,6 +73,40 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
         unit="TIME_ABSOLUTE",
         step=100,
     )
+    preview_noise_threshold: bpy.props.FloatProperty(
+        name="Noise Threshold",
+        description="Estimated error at which a pixel of the viewport has enough camera rays",
+        default=0.02,
+        min=0.0,
+        max=1.0,
+        soft_min=0.001,
+        precision=4,
+        step=1,
+    )
+    preview_min_samples: bpy.props.IntProperty(
+        name="Min Samples",
+        description="Least number of camera rays per pixel of the viewport",
+        default=1,
+        min=1,
+        max=4096,
+    )
+    preview_max_samples: bpy.props.IntProperty(
+        name="Max Samples",
+        description="Largest number of camera rays per pixel of the viewport, rounded down to a power of four",
+        default=64,
+        min=1,
+        max=1 << 20,
+        soft_max=4096,
+    )
+    preview_time_limit: bpy.props.FloatProperty(
+        name="Time Limit",
+        description="Passes over the viewport's picture that would end later are left out. At 0 all are made",
+        default=0.0,
+        min=0.0,
+        soft_max=3600.0,
+        unit="TIME_ABSOLUTE",
+        step=100,
+    )
     pixel_samples: bpy.props.IntProperty(
         name="Pixel Samples",
         description="Camera rays of every pixel in the first pass, as files of older versions have them: in place of "

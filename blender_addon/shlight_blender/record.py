@@ -34,16 +34,23 @@ class RenderRecord:
 
 
 last = RenderRecord()
+shown = last  # in the Report panel: of the latest render, or of a viewport after it
 
 
 def begin(scene: Any) -> RenderRecord:
     """Starts the record of a new render."""
-    global last
-    last = RenderRecord(scene.name)
+    global last, shown
+    last = shown = RenderRecord(scene.name)
     return last
+
+
+def show_viewport(scene: Any, exported: Any) -> None:
+    """Shows what a viewport's `export.ExportedScene` says."""
+    global shown
+    shown = RenderRecord(scene.name, report=exported.report)
 
 
 def forget() -> None:
     """Nothing is known any more, as of a file that is opened."""
-    global last
-    last = RenderRecord()
+    global last, shown
+    last = shown = RenderRecord()

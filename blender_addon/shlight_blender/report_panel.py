@@ -82,13 +82,13 @@ class SHLIGHT_RENDER_PT_report(EnginePanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        if not record.last.is_of(context.scene):
+        if not record.shown.is_of(context.scene):
             self.layout.label(text="Render to see what shlight draws otherwise than Cycles")
             return
-        if record.last.scene_error:
-            _draw_text(self.layout, context, record.last.scene_error, "ERROR")
-        messages = [message for message in record.last.report if message.effect < Effect.SLIGHT]
-        if not messages and not record.last.scene_error:
+        if record.shown.scene_error:
+            _draw_text(self.layout, context, record.shown.scene_error, "ERROR")
+        messages = [message for message in record.shown.report if message.effect < Effect.SLIGHT]
+        if not messages and not record.shown.scene_error:
             self.layout.label(text="As Cycles draws it", icon="CHECKMARK")
         for message in messages:
             _draw_message(self.layout, context, message)
@@ -104,12 +104,12 @@ class SHLIGHT_RENDER_PT_report_slight(EnginePanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context: Any) -> bool:
         """Shown if there is anything."""
-        slight = any(message.effect == Effect.SLIGHT for message in record.last.report)
-        return super().poll(context) and slight and record.last.is_of(context.scene)
+        slight = any(message.effect == Effect.SLIGHT for message in record.shown.report)
+        return super().poll(context) and slight and record.shown.is_of(context.scene)
 
     def draw(self, context: Any) -> None:
         """Draws the panel."""
-        for message in record.last.report:
+        for message in record.shown.report:
             if message.effect == Effect.SLIGHT:
                 _draw_message(self.layout, context, message)
 

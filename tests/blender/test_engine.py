@@ -19,7 +19,7 @@ import shlight
 import shlight_blender
 from shlight.images import read_exr
 from shlight.metrics import rel_mse
-from shlight_blender import compat, export, record
+from shlight_blender import compat, record
 from shlight_blender.engine import ShlightRenderEngine
 
 
@@ -159,36 +159,6 @@ def test_views_are_seen_as_cycles_sees_them(studio: Any, format: str) -> None:
     for seen, expected in zip(pictures["SHLIGHT"], pictures["CYCLES"], strict=True):
         assert rel_mse(seen, expected) <= 2e-3  # noise of Cycles' 256 samples
     assert rel_mse(*pictures["SHLIGHT"]) > 0.05
-
-
-def test_persistent_data_keeps_what_did_not_change(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Frames of which the first two differ by the camera alone are as without it, and one export fewer."""
-    studio.simple_scene()
-    scene = studio.scene
-    for frame, place in ((1, (3, -6, 4)), (2, (4, -5, 3))):
-        scene.camera.location = place
-        scene.camera.keyframe_insert("location", frame=frame)
-    exports = []
-    original = export.export_scene
-    monkeypatch.setattr(export, "export_scene", lambda *a, **k: exports.append(1) or original(*a, **k))
-    scene.frame_start, scene.frame_end = 1, 2
-    pictures: dict[bool, list[Any]] = {}
-    for keeps in (False, True):
-        scene.render.use_persistent_data = keeps
-        scene.render.filepath = str(studio.folder / f"{keeps}_")
-        exports.clear()
-        bpy.ops.render.render(animation=True)
-        bpy.data.objects["Box"].location.x += 0.7
-        scene.frame_set(2)
-        bpy.ops.render.render()
-        assert len(exports) == (2 if keeps else 3)
-        bpy.data.objects["Box"].location.x -= 0.7
-        scene.render.filepath = str(studio.folder / f"{keeps}_moved.exr")
-        bpy.ops.render.render(write_still=True)
-        pictures[keeps] = [read_exr(path) for path in sorted(studio.folder.glob(f"{keeps}_*.exr"))]
-    assert len(pictures[True]) == 3
-    for kept, anew in zip(pictures[True], pictures[False], strict=True):
-        np.testing.assert_array_equal(kept, anew)
 
 
 @pytest.mark.parametrize("eyes", [1, 2])

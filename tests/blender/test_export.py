@@ -10,8 +10,7 @@ import bpy
 import numpy as np
 import pytest
 
-import shlight
-from shlight_blender.export import ExportError, export_scene, scene
+from shlight_blender.export import ExportError, export_scene, meshes, scene
 from shlight_blender.report import Effect, ExportCancelled, ExportReport
 
 
@@ -47,12 +46,8 @@ def test_instances_are_one_mesh_and_what_is_hidden_is_none(studio: Any, monkeypa
     """In the viewport's scene too; a ball, then curves, texts and metaballs, each once."""
     instances: list[int] = []
 
-    class Scene(shlight.Scene):
-        def add_mesh(self, *args: Any, **named: Any) -> None:
-            instances.append(len(named["transforms"]))
-            super().add_mesh(*args, **named)
-
-    monkeypatch.setattr(shlight, "Scene", Scene)
+    place = meshes._place
+    monkeypatch.setattr(meshes, "_place", lambda use: instances.append(len(use.transforms)) or place(use))
     studio.lit_floor()
     studio.box().hide_render = True
     ball = studio.ball(0.2)

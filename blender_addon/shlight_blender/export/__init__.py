@@ -3,20 +3,25 @@
 
 from ..frame import Frame, frame_of, whole_frame
 from ..report import ExportError, ExportReport
-from .camera import Eye
-from .scene import ExportedScene, export_scene, only_cameras_changed
-from .settings import RenderSettings, render_settings
+from .camera import Eye, set_projection
+from .changes import Changes, changes_of, everything
+from .scene import ExportedScene, export_scene
+from .settings import RenderSettings, render_settings, viewport_settings
 
 __all__ = [
+    "Changes",
     "ExportError",
     "ExportReport",
     "ExportedScene",
     "Eye",
     "Frame",
     "RenderSettings",
+    "changes_of",
+    "everything",
     "export_scene",
     "frame_of",
-    "only_cameras_changed",
     "render_settings",
+    "set_projection",
+    "viewport_settings",
     "whole_frame",
 ]

@@ -14,6 +14,8 @@ import shlight
 from ..frame import Frame
 from ..report import ExportError, ExportReport
 
+Matrix = NDArray[np.float64]
+
 
 @dataclass(frozen=True)
 class Eye:
@@ -28,11 +30,11 @@ class Eye:
 class View:
     """How the camera sees the world.
 
-    to_camera (3, 4): to x to the right, y up and z forward.
+    to_camera, 3 x 4: to x to the right, y up and z forward.
     slope, offset: x/z slope[0] + offset[0] is -1 … 1 over the picture, and so is y/z; x and y where it is orthographic.
     """
 
-    to_camera: NDArray[np.float64]
+    to_camera: tuple[tuple[float, ...], ...]
     slope: tuple[float, float]
     offset: tuple[float, float]
     orthographic: bool
@@ -55,21 +57,23 @@ def set_camera(scene: shlight.Scene, eye: Eye, depsgraph: Any, frame: Frame, ren
         raise ExportError(f"{place}: its transform is not finite or has scale 0")
     to_world[:3, :3] /= scale  # a camera's scale means nothing
     projection = _projection(eye, camera, depsgraph, frame, render)
-    left, right, bottom, top = _window(projection, frame, orthographic=lens.type == "ORTHO")
-    scene.set_camera_window(
-        to_world,
-        left,
-        right,
-        bottom,
-        top,
-        orthographic=lens.type == "ORTHO",
-        clip_start=float(lens.clip_start),
-        clip_end=float(lens.clip_end),
-    )
-    return _view(to_world, projection, orthographic=lens.type == "ORTHO")
+    clips = float(lens.clip_start), float(lens.clip_end)
+    return set_projection(scene, to_world, projection, frame, clips, orthographic=lens.type == "ORTHO")
 
 
-def _projection(eye: Eye, camera: Any, depsgraph: Any, frame: Frame, render: Any) -> NDArray[np.float64]:
+def set_projection(
+    scene: shlight.Scene, to_world: Matrix, projection: Matrix, frame: Frame, clips: tuple[float, float], **kind: bool
+) -> View:
+    """Gives `scene` a camera that sees what OpenGL would, through `frame`.
+
+    to_world, projection: 4 x 4, without scale, and to normalized device coordinates. orthographic: the kind.
+    """
+    left, right, bottom, top = _window(projection, frame, **kind)
+    scene.set_camera_window(to_world, left, right, bottom, top, clip_start=clips[0], clip_end=clips[1], **kind)
+    return _view(to_world, projection, **kind)
+
+
+def _projection(eye: Eye, camera: Any, depsgraph: Any, frame: Frame, render: Any) -> Matrix:
     lens = camera.data
     shift_x = lens.shift_x
     lens.shift_x = eye.shift_x  # of the evaluated copy
@@ -86,18 +90,18 @@ def _projection(eye: Eye, camera: Any, depsgraph: Any, frame: Frame, render: Any
     return np.array(matrix, dtype=np.float64)
 
 
-def _view(to_world: NDArray[np.float64], projection: NDArray[np.float64], *, orthographic: bool) -> View:
+def _view(to_world: Matrix, projection: Matrix, *, orthographic: bool) -> View:
     to_camera = np.linalg.inv(to_world)[:3] * np.array([[1.0], [1.0], [-1.0]])
     offset = projection[:2, 3] if orthographic else -projection[:2, 2]
     return View(
-        to_camera,
+        tuple(tuple(row) for row in to_camera.tolist()),
         (float(projection[0, 0]), float(projection[1, 1])),
         (float(offset[0]), float(offset[1])),
         orthographic,
     )
 
 
-def _window(projection: NDArray[np.float64], frame: Frame, *, orthographic: bool) -> tuple[float, float, float, float]:
+def _window(projection: Matrix, frame: Frame, *, orthographic: bool) -> tuple[float, float, float, float]:
     """(left, right, bottom, top) of `frame` on the plane z = -1 of the camera, or in metres if it is orthographic."""
     # Normalized coordinates are (P00 x + P02 z) / -z, or P00 x + P03 for the orthographic camera; same for y.
     column = 3 if orthographic else 2

@@ -29,7 +29,7 @@ def _rows(matrix: Array, v: Vector) -> Vector:
 
 
 def _in_camera(view: View) -> Vector:
-    return _rows(view.to_camera, nodes.position())
+    return _rows(np.array(view.to_camera), nodes.position())
 
 
 def _in_window(view: View) -> Vector:
@@ -83,7 +83,7 @@ Move = Callable[[Vector], Vector]
 
 def _moves(kind: str, view: View | None) -> tuple[dict[str, Move], dict[str, Move]]:
     """How a vector gets from each frame to the world, and from the world to each."""
-    to_camera = np.eye(3, 4) if view is None else view.to_camera
+    to_camera = np.eye(3, 4) if view is None else np.array(view.to_camera)
     to_world = np.linalg.inv(np.vstack([to_camera, (0.0, 0.0, 0.0, 1.0)]))[:3]
     if kind == "NORMAL":
         return (

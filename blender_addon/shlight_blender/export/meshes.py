@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes: evaluated objects as arrays, one set of arrays for all instances of the same mesh and materials."""
+"""Meshes: evaluated objects as meshes of the core, one for all instances of the same mesh and materials."""
 
 from __future__ import annotations
 
@@ -15,12 +15,14 @@ import shlight
 
 from ..compat import mesh_triangles, slot_materials, smooth_corner_normals
 from ..report import Effect, ExportReport
+from .changes import Changes
 from .expressions import Surroundings
 from .materials import Surface, read_material
 from .mesh_attributes import COLOR, mesh_attributes
 from .textured_meshes import MeshArrays, with_even_emission
 
 FloatArray = NDArray[np.float32]
+Matrix = NDArray[np.float64]
 
 # Of one material in one place, more emissive triangles than these are one light to the core.
 MOST_SINGLE_FACES = 16
@@ -29,14 +31,38 @@ MANY_EMITTERS = 200
 
 
 @dataclass
-class MeshUse:
-    """A mesh with its surfaces (one per material slot, at least one), and all places where it stands."""
+class KeptSurface:
+    """A material as it was read."""
 
-    place: str
-    arrays: MeshArrays
+    name: str
+    surface: Surface
+    report: ExportReport
+
+
+@dataclass
+class KeptMesh:
+    """A mesh in the scene, with a surface for each material slot (at least one), and all places where it stands."""
+
+    mesh: shlight.SceneMesh | None  # None: nothing of it is seen
+    owner: str | None  # the object that it is the mesh of; None: of none, a modifier has made it
+    place: str  # how the report names it
+    attributes: frozenset[str]  # that were asked for
     surfaces: list[Surface]
-    transforms: list[NDArray[np.float64]] = field(default_factory=list)
+    faces: NDArray[np.int64]  # how many of each surface
+    is_cut: bool  # its emission varies: it is cut into pieces for its first place
+    report: ExportReport
+    transforms: list[Matrix] = field(default_factory=list)
     object_values: list[list[float]] = field(default_factory=list)
+    stands: tuple[Any, ...] | None = None  # both, as the scene has them
+
+    def emits(self) -> bool:
+        """True if something of it gives light."""
+        return any(bool(own.emission.any()) for own, faces in zip(self.surfaces, self.faces, strict=True) if faces)
+
+    def light_count(self) -> int:
+        """How many lights it is to the core."""
+        faces = [n for own, n in zip(self.surfaces, self.faces, strict=True) if own.emission.any()]
+        return len(self.transforms) * sum(1 if n > MOST_SINGLE_FACES else int(n) for n in faces)
 
 
 def mesh_arrays(mesh: Any, attribute_names: Iterable[str]) -> MeshArrays | None:
@@ -66,138 +92,207 @@ def _repaired(normals: FloatArray, vertices: FloatArray, triangles: NDArray[np.i
     return repaired
 
 
-class MeshCollector:
-    """Gathers the meshes of a depsgraph and hands them to a scene."""
+class SceneMeshes:
+    """Keeps the meshes of a scene like those of a depsgraph: `begin`, `add` for each instance, then `finish`."""
 
-    def __init__(self, report: ExportReport, surroundings: Surroundings, material_override: Any = None) -> None:
-        self._report = report
-        self.surroundings = surroundings
+    def __init__(self, scene: shlight.Scene) -> None:
+        self._scene = scene
+        self._kept: dict[tuple[Any, ...], KeptMesh] = {}
+        self._surfaces: dict[Any, KeptSurface] = {}
+        self._override: Any = None
+        self.report = ExportReport()
+
+    def begin(self, changes: Changes, surroundings: Surroundings, material_override: Any = None) -> None:
+        """Starts a walk over all instances."""
+        self._changes = changes
+        self._surroundings = surroundings
         self._override = material_override
-        self._uses: dict[tuple[Any, ...], MeshUse | None] = {}
-        self._surfaces: dict[Any, Surface] = {}
-        self._names: dict[Any, str] = {}  # of the materials of these
+        self._seen: dict[tuple[Any, ...], KeptMesh] = {}
+        self._told: set[Any] = set()  # the materials whose report this one has
+        self.report = ExportReport()
+        if changes.materials:
+            self._surfaces.clear()
 
-    def add(self, instance: Any, to_world: NDArray[np.float64]) -> None:
+    def add(self, instance: Any, to_world: Matrix) -> None:
         """Notes one instance of the depsgraph that shows a mesh, at `to_world`."""
         mesh_object = instance.object
         place = f"Object '{mesh_object.name}'"
         if not np.isfinite(to_world).all():
-            self._report.add(place, "its transform is not finite; left out", Effect.THING)
+            self.report.add(place, "its transform is not finite; left out", Effect.THING)
             return
         materials = slot_materials(mesh_object)
         key = (mesh_object.data.as_pointer(), *(material and material.as_pointer() for material in materials))
-        if key not in self._uses:
-            self._uses[key] = self._convert(instance, to_world, place, materials)
-        use = self._uses[key]
-        if use is not None:
-            use.transforms.append(to_world)
-            use.object_values.append(self.surroundings.object_values.of(instance))
-
-    def _convert(
-        self, instance: Any, to_world: NDArray[np.float64], place: str, materials: Sequence[Any]
-    ) -> MeshUse | None:
-        mesh_object = instance.object
+        flat = _is_flat(to_world)
+        if flat:  # a mesh of its own, which stands where it is
+            key = (*key, len(self._seen))
         surfaces = [self._surface(material) for material in materials or [None]]
-        mesh = mesh_object.to_mesh()
-        try:
-            names = dict.fromkeys(name for surface in surfaces for name in surface.attribute_names)
-            arrays = mesh_arrays(mesh, names)
-            if arrays is not None:
-                missing = [name for name in names if name not in arrays.attributes]
-                self._report_missing(mesh_object, missing)
-                # A missing colour is transparent black, other missing attributes have an alpha of 1.
-                black = np.zeros((len(arrays.triangles), 3, 4), dtype=np.float32)
-                arrays.attributes |= {name: black for name in missing if name.startswith(COLOR)}
-        finally:
-            mesh_object.to_mesh_clear()
-        if arrays is None:
-            return None
-        if not np.isfinite(arrays.vertices).all():
-            self._report.add(place, "some of its vertices are not finite; left out", Effect.THING)
-            return None
-        if arrays.normals is not None and not np.isfinite(arrays.normals).all():
-            arrays.normals = None
-        if any(surface.varying is not None for surface in surfaces):
-            remark = partial(self._report.add, place)
-            arrays, surfaces = with_even_emission(
-                arrays, surfaces, to_world, self.surroundings.object_values.of(instance), remark
+        if key not in self._seen:
+            self._seen[key] = self._kept_mesh(key, instance, to_world, surfaces) or self._convert(
+                instance, to_world, place, surfaces, flat
             )
-        return MeshUse(place, arrays, surfaces)
+        use = self._seen[key]
+        use.transforms.append(np.eye(4) if flat else to_world)
+        use.object_values.append(self._surroundings.object_values.of(instance))
 
-    def _report_missing(self, mesh_object: Any, names: Sequence[str]) -> None:
-        for name in names:
-            what = f"attribute or UV map '{name}'" if name else "UV map"
-            text = f"it has no {what}, which its material reads; 0 is used, as in Cycles"
-            self._report.add(f"Object '{mesh_object.name}'", text, Effect.SLIGHT)
+    def _kept_mesh(
+        self, key: tuple[Any, ...], instance: Any, to_world: Matrix, surfaces: list[Surface]
+    ) -> KeptMesh | None:
+        """What the scene has of a mesh, if it needs not be converted again."""
+        kept = self._kept.get(key)
+        if kept is None or self._changes.all_shapes:
+            return None
+        shapes = self._changes.shapes
+        if instance.object.name_full in shapes or (kept.owner in shapes if kept.owner else bool(shapes)):
+            return None
+        first_place = kept.transforms[0]
+        kept.transforms, kept.object_values = [], []
+        if not self._changes.materials:
+            return kept if not kept.is_cut or np.array_equal(first_place, to_world) else None
+        if kept.is_cut or _is_cut(surfaces) or not _attribute_names(surfaces) <= kept.attributes:
+            return None
+        kept.surfaces = surfaces
+        if kept.mesh is not None:
+            kept.mesh.set_bsdf([own.shader for own in surfaces], emission=_emission(kept))
+        return kept
+
+    def _convert(self, instance: Any, to_world: Matrix, place: str, surfaces: list[Surface], flat: bool) -> KeptMesh:
+        """The mesh of an instance, added to the scene where nothing shows it yet; flat: as it stands at to_world."""
+        report = ExportReport()
+        names = _attribute_names(surfaces)
+        arrays = _arrays(instance.object, place, sorted(names), report)
+        if arrays is not None and flat:
+            arrays = _flattened(arrays, to_world)
+        is_cut = arrays is not None and _is_cut(surfaces)
+        if arrays is not None and is_cut:
+            values = self._surroundings.object_values.of(instance)
+            at = np.eye(4) if flat else to_world
+            arrays, surfaces = with_even_emission(arrays, surfaces, at, values, partial(report.add, place))
+        owner = _owner(instance, self._surroundings.depsgraph)
+        none = np.zeros(len(surfaces), dtype=np.int64)
+        made = KeptMesh(None, owner, place, names, surfaces, none, is_cut, report)
+        if arrays is not None:
+            slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)
+            made.faces = np.bincount(slots, minlength=len(surfaces))
+            made.mesh = self._scene.add_mesh(
+                arrays.vertices,
+                arrays.triangles,
+                normals=arrays.normals,
+                attributes=arrays.attributes,
+                bsdf=[own.shader for own in surfaces],
+                emission=_emission(made),
+                material_indices=slots,
+                transforms=np.empty((0, 4, 4)),
+            )
+        return made
 
     def _surface(self, material: Any) -> Surface:
         material = self._override or material
         key = material and material.as_pointer()
         if key not in self._surfaces:
-            self._surfaces[key] = read_material(material, self._report, self.surroundings)
-            self._names[key] = "" if material is None else material.name
-        return self._surfaces[key]
+            report = ExportReport()
+            surface = read_material(material, report, self._surroundings)
+            self._surfaces[key] = KeptSurface("" if material is None else material.name, surface, report)
+        if key not in self._told:
+            self._told.add(key)
+            self.report.extend(self._surfaces[key].report)
+        return self._surfaces[key].surface
 
     def operations(self) -> dict[str, int]:
         """How many operations a hit takes, by the name of each material whose values vary."""
-        counts = {self._names[key]: surface.shader.operation_count for key, surface in self._surfaces.items()}
+        counts = {own.name: own.surface.shader.operation_count for own in self._surfaces.values()}
         return {name: count for name, count in counts.items() if name and count > 0}
 
-    def hand_over(self, scene: shlight.Scene, ask: Callable[[], None]) -> bool:
-        """Adds everything to `scene`, and calls `ask` before each mesh; True if some of it emits light."""
+    def finish(self, ask: Callable[[], None]) -> bool:
+        """Ends the walk: the scene has all meshes that were seen where they stand, and no others; `ask` is called for
+        each. True if some of it emits light."""
+        for key, kept in self._kept.items():
+            if kept.mesh is not None and self._seen.get(key) is not kept:
+                kept.mesh.remove()
+        self._kept = self._seen
         emits = False
-        for use in self._uses.values():
+        for use in self._seen.values():
             ask()
-            if use is not None:
-                emits |= self._add_mesh(scene, use)
-        return emits
-
-    def _add_mesh(self, scene: shlight.Scene, use: MeshUse) -> bool:
-        surfaces = use.surfaces
-        indices = np.clip(use.arrays.material_indices, 0, len(surfaces) - 1)
-        used = np.unique(indices)
-        emission = np.array([surface.emission for surface in surfaces])
-        emits = bool(emission[used].any())
-        faces = np.bincount(indices, minlength=len(surfaces))[emission.any(axis=1)]
-        lights = int(np.where(faces > MOST_SINGLE_FACES, 1, faces).sum()) * len(use.transforms)
-        if lights >= MANY_EMITTERS:
-            text = f"its emissive faces are up to {lights} lights, which take long to render"
-            self._report.add(use.place, text, Effect.SLIGHT)
-        for arrays, transforms, values in standing(use):
-            scene.add_mesh(
-                arrays.vertices,
-                arrays.triangles,
-                normals=arrays.normals,
-                attributes=arrays.attributes,
-                bsdf=[surface.shader for surface in surfaces],
-                emission=emission if emits else None,
-                material_indices=indices,
-                transforms=transforms,
-                object_values=values,
-            )
+            self.report.extend(use.report)
+            emits |= use.emits()
+            if (lights := use.light_count()) >= MANY_EMITTERS:
+                text = f"its emissive faces are up to {lights} lights, which take long to render"
+                self.report.add(use.place, text, Effect.SLIGHT)
+            _place(use)
         return emits
 
 
-Standing = tuple[MeshArrays, NDArray[np.float64] | None, NDArray[np.float64] | None]
-
-
-def standing(use: MeshUse) -> list[Standing]:
-    """A mesh with its transforms and their object values, and one flattened copy for each transform without inverse."""
+def _place(use: KeptMesh) -> None:
+    """Moves a mesh of the scene to where it stands, if it does not stand there."""
     most = max(len(values) for values in use.object_values)
-    values = np.array([[*own, *[0.0] * (most - len(own))] for own in use.object_values]) if most else None
+    values = [[*own, *[0.0] * (most - len(own))] for own in use.object_values] if most else None
     transforms = np.array(use.transforms)
-    linear = transforms[:, :3, :3]
-    volume = np.abs(np.linalg.det(linear))
-    size = np.linalg.norm(linear, axis=1).max(axis=1)
-    regular = volume > 1e-9 * size**3
-    parts: list[Standing] = []
-    if regular.any():
-        parts.append((use.arrays, transforms[regular], None if values is None else values[regular]))
-    for i in np.flatnonzero(~regular):
-        transform = transforms[i]
-        vertices = use.arrays.vertices @ transform[:3, :3].T + transform[:3, 3]
-        if np.linalg.matrix_rank(vertices - vertices[0]) < 2:
-            continue  # a line or a point shows nothing
-        flat = replace(use.arrays, vertices=vertices.astype(np.float32), normals=None)
-        parts.append((flat, None, None if values is None else values[i : i + 1]))
-    return parts
+    stands = (transforms.tobytes(), values)
+    if use.mesh is not None and stands != use.stands:
+        use.mesh.set_transforms(transforms, object_values=values)
+    use.stands = stands
+
+
+def _arrays(mesh_object: Any, place: str, names: Iterable[str], report: ExportReport) -> MeshArrays | None:
+    """The triangles of an object; None if it has none that can be drawn."""
+    mesh = mesh_object.to_mesh()
+    try:
+        arrays = mesh_arrays(mesh, names)
+        if arrays is None:
+            return None
+        missing = [name for name in names if name not in arrays.attributes]
+        _report_missing(mesh_object, missing, report)
+        # A missing colour is transparent black, other missing attributes have an alpha of 1.
+        black = np.zeros((len(arrays.triangles), 3, 4), dtype=np.float32)
+        arrays.attributes |= {name: black for name in missing if name.startswith(COLOR)}
+    finally:
+        mesh_object.to_mesh_clear()
+    if not np.isfinite(arrays.vertices).all():
+        report.add(place, "some of its vertices are not finite; left out", Effect.THING)
+        return None
+    if arrays.normals is not None and not np.isfinite(arrays.normals).all():
+        arrays.normals = None
+    return arrays
+
+
+def _attribute_names(surfaces: Sequence[Surface]) -> frozenset[str]:
+    return frozenset(name for surface in surfaces for name in surface.attribute_names)
+
+
+def _is_cut(surfaces: Sequence[Surface]) -> bool:
+    return any(surface.varying is not None for surface in surfaces)
+
+
+def _emission(use: KeptMesh) -> NDArray[Any] | None:
+    """What the faces of each surface give; None: nothing of it shines."""
+    return np.array([own.emission for own in use.surfaces]) if use.emits() else None
+
+
+def _owner(instance: Any, depsgraph: Any) -> str | None:
+    """The object whose own mesh an instance shows; None: a modifier has made it."""
+    shown = instance.object
+    if instance.is_instance:
+        own = shown.original.evaluated_get(depsgraph).data
+        if own is None or own.as_pointer() != shown.data.as_pointer():
+            return None
+    return str(shown.name_full)
+
+
+def _report_missing(mesh_object: Any, names: Sequence[str], report: ExportReport) -> None:
+    for name in names:
+        what = f"attribute or UV map '{name}'" if name else "UV map"
+        text = f"it has no {what}, which its material reads; 0 is used, as in Cycles"
+        report.add(f"Object '{mesh_object.name}'", text, Effect.SLIGHT)
+
+
+def _is_flat(to_world: Matrix) -> bool:
+    """True for a transform without inverse."""
+    linear = to_world[:3, :3]
+    return bool(abs(np.linalg.det(linear)) <= 1e-9 * np.linalg.norm(linear, axis=0).max() ** 3)
+
+
+def _flattened(arrays: MeshArrays, to_world: Matrix) -> MeshArrays | None:
+    """The mesh as it stands at `to_world`, without smooth normals; None if a line or a point is left of it."""
+    vertices = arrays.vertices @ to_world[:3, :3].T + to_world[:3, 3]
+    if np.linalg.matrix_rank(vertices - vertices[0]) < 2:
+        return None
+    return replace(arrays, vertices=vertices.astype(np.float32), normals=None)

@@ -15,13 +15,14 @@ import shlight
 from ..frame import Frame, frame_of
 from ..report import Effect, ExportCancelled, ExportError, ExportReport
 from .bake import Waiting
-from .camera import Eye, set_camera
+from .camera import Eye, View, set_camera
+from .changes import Changes, everything
 from .expressions import Surroundings
 from .image_pixels import TEXTURES
 from .lights import add_lamp
-from .meshes import MeshCollector
+from .meshes import SceneMeshes
 from .settings import report_unsupported_settings
-from .world import add_world
+from .world import SceneWorld
 
 ASKING_SECONDS = 0.05  # between questions whether the export is to go on
 
@@ -46,32 +47,164 @@ VISIBILITY = {
 }
 
 
-class ExportedScene(NamedTuple):
-    """A scene ready for `shlight.render`."""
+class _State(NamedTuple):
+    """What Blender does not list among the changes of a scene."""
 
-    scene: shlight.Scene
-    report: ExportReport  # what of the Blender scene is not supported
-    dark: str  # what the report says if nothing gives light, else ""
-    operations: dict[str, int]  # of the program of each material whose values vary, for a hit
-    texture_bytes: int  # of all textures that are kept
-    is_of_one_camera: bool  # materials ask where the camera is
+    world: Any = None
+    material_override: Any = None
+    moving_frame: float = 0.0  # of pictures that change with the frame
+    shown: tuple[int, ...] = ()  # the objects of all instances that are seen
+
+    @staticmethod
+    def of(depsgraph: Any, viewport: Any) -> _State:
+        scene, view_layer = depsgraph.scene_eval, depsgraph.view_layer_eval
+        world = getattr(view_layer, "world_override", None) or scene.world
+        moving = any(image.source in {"SEQUENCE", "MOVIE"} for image in bpy.data.images)
+        override = view_layer.material_override
+        return _State(
+            (world and world.as_pointer(), scene.render.film_transparent, scene.shlight.world_width),
+            override and override.as_pointer(),
+            scene.frame_current_final if moving else 0.0,
+            tuple(own.object.as_pointer() for own in depsgraph.object_instances if _is_seen(own, viewport)),
+        )
+
+
+class ExportedScene:
+    """A shlight.Scene that follows a scene of Blender: `look_from` a camera first, then `update`.
+
+    scene: ready for `shlight.render` after both.
+    dark: what the report says if nothing gives light, else "".
+    """
+
+    def __init__(self) -> None:
+        self.scene = shlight.Scene()
+        self.dark = ""
+        self._view: View | None = None
+        self._surroundings = Surroundings()
+        self._meshes = SceneMeshes(self.scene)
+        self._world = SceneWorld(self.scene)
+        self._state = _State()
+        self._is_lit: dict[str, bool] = {}  # by the part of the scene that gives light or none
+        self._reports: dict[str, ExportReport] = {}  # likewise
+
+    @property
+    def report(self) -> ExportReport:
+        """What of the Blender scene is not supported."""
+        whole = ExportReport()
+        for part in self._reports.values():
+            whole.extend(part)
+        return whole
+
+    @property
+    def operations(self) -> dict[str, int]:
+        """Of the program of each material whose values vary, for a hit."""
+        return self._meshes.operations()
+
+    @property
+    def is_of_one_camera(self) -> bool:
+        """Whether materials ask where the camera is."""
+        return self._surroundings.view_is_used
+
+    @property
+    def texture_bytes(self) -> int:
+        """Of all textures that are kept."""
+        return TEXTURES.size_in_bytes
 
     def look_from(self, depsgraph: Any, *, frame: Frame, camera: Any = None) -> None:
         """Another camera, or the same elsewhere; arguments and errors as of `export_scene`."""
         blender_scene = depsgraph.scene_eval
         eye = _eye(camera or blender_scene.camera, blender_scene, depsgraph)
-        set_camera(self.scene, eye, depsgraph, frame, blender_scene.render, self.report)
+        report = self._new_report("camera")
+        self._view = set_camera(self.scene, eye, depsgraph, frame, blender_scene.render, report)
 
+    def look_through(self, view: Any) -> None:
+        """A view of a viewport in place of a camera; view: a ViewportView."""
+        self._new_report("camera")
+        self._view = view.set_camera(self.scene)
 
-def only_cameras_changed(depsgraph: Any) -> bool:
-    """Whether all but cameras is as in the render before, of which Blender has kept `depsgraph`."""
+    def update(self, depsgraph: Any, changes: Changes, *, viewport: Any = None, waiting: Waiting | None = None) -> bool:
+        """Takes over what has changed; False if nothing has. `waiting`, and errors, as of `export_scene`.
 
-    def is_of_camera(changed: Any) -> bool:
-        return getattr(changed, "type", "") == "CAMERA" or isinstance(changed, (bpy.types.Camera, bpy.types.Action))
+        viewport: a SpaceView3D; what is hidden in it is left out, in place of what is hidden in renders.
+        """
+        self._find_more(changes, _State.of(depsgraph, viewport))
+        blender_scene, view_layer = depsgraph.scene_eval, depsgraph.view_layer_eval
+        report_unsupported_settings(blender_scene, view_layer, self._new_report("settings"))
+        if changes.world:
+            self._is_lit["world"] = self._world.read(blender_scene, view_layer, self._new_report("world"), waiting)
+        if changes.materials:
+            TEXTURES.begin_export()
+            self._surroundings = Surroundings(self._view)
+        self._surroundings.depsgraph = depsgraph
+        if changes:
+            self._walk(depsgraph, changes, viewport, _asking(waiting))
+        report = self._new_report("files")
+        for path in TEXTURES.unreadable:
+            report.add(f"File '{path}'", "it cannot be read; magenta is used in the place of its picture", Effect.THING)
+        self._find_darkness(blender_scene)
+        return bool(changes)
 
-    # The pictures of a sequence change with the frame, and tell nobody.
-    moving = any(image.source in {"SEQUENCE", "MOVIE"} for image in bpy.data.images)
-    return not moving and all(is_of_camera(update.id) for update in depsgraph.updates)
+    def _new_report(self, part: str) -> ExportReport:
+        self._reports[part] = ExportReport()
+        return self._reports[part]
+
+    def _find_more(self, changes: Changes, state: _State) -> None:
+        """Adds what Blender does not list."""
+        old, self._state = self._state, state
+        moved = state.moving_frame != old.moving_frame
+        looks_elsewhere = self.is_of_one_camera and self._surroundings.camera_view != self._view
+        changes.world |= moved or state.world != old.world
+        changes.materials |= moved or looks_elsewhere or state.material_override != old.material_override
+        changes.objects |= state.shown != old.shown
+        changes.lamps |= moved or changes.world or changes.objects
+
+    def _walk(self, depsgraph: Any, changes: Changes, viewport: Any, ask: Callable[[], None]) -> None:
+        """Adds the lamps and meshes that are seen, where they have changed."""
+        walks_meshes = changes.objects or changes.materials
+        if changes.lamps:
+            self.scene.remove_lights()
+            self._world.add_suns()
+            self._is_lit["lamps"] = False
+            self._new_report("lamps")
+        if walks_meshes:
+            self._meshes.begin(changes, self._surroundings, depsgraph.view_layer_eval.material_override)
+            self._new_report("objects")
+        for instance in depsgraph.object_instances:
+            ask()
+            if not _is_seen(instance, viewport):
+                continue
+            if instance.object.type == "LIGHT":
+                if changes.lamps:
+                    self._is_lit["lamps"] |= self._add_lamp(instance)
+            elif walks_meshes:
+                self._add_object(instance)
+        if walks_meshes:
+            self._is_lit["objects"] = self._meshes.finish(ask)
+            self._reports["objects"].extend(self._meshes.report)
+
+    def _add_lamp(self, instance: Any) -> bool:
+        report, instancer = self._reports["lamps"], _instancer(instance)
+        _report_light_linking((instance.object, instancer), f"Light '{instance.object.name}'", report)
+        return add_lamp(self.scene, instance.object, _to_world(instance), report, self._surroundings, instancer)
+
+    def _add_object(self, instance: Any) -> None:
+        seen, report = instance.object, self._reports["objects"]
+        if seen.type == "MESH":
+            _report_object(seen, _instancer(instance), report)
+            self._meshes.add(instance, _to_world(instance))
+        elif seen.type in UNSUPPORTED_TYPES:
+            text = f"{UNSUPPORTED_TYPES[seen.type]} are not supported; left out"
+            report.add(f"Object '{seen.name}'", text, Effect.THING)
+
+    def _find_darkness(self, blender_scene: Any) -> None:
+        """Reports if nothing gives light, with what of the light is left out."""
+        report = self._new_report("darkness")
+        self.dark = ""
+        if not any(self._is_lit.values()):
+            left_out = [message.line() for message in self.report if message.effect == Effect.LIGHT]
+            text = ". ".join(["it has no light that shlight can render; the picture is black", *left_out])
+            self.dark = f"Scene '{blender_scene.name}': {text}"
+            report.add(f"Scene '{blender_scene.name}'", text, Effect.DARK)
 
 
 def export_scene(
@@ -87,23 +220,10 @@ def export_scene(
     Raises ExportError if there is no camera or one that is not supported, and ExportCancelled if `waiting` stopped it.
     A scene without light is black, and the report says so.
     """
-    blender_scene = depsgraph.scene_eval
-    frame = frame or frame_of(blender_scene.render)
-    report = ExportReport()
-    TEXTURES.begin_export()
-    eye = _eye(camera or blender_scene.camera, blender_scene, depsgraph)
-    scene = shlight.Scene()
-    view = set_camera(scene, eye, depsgraph, frame, blender_scene.render, report)
-    report_unsupported_settings(blender_scene, depsgraph.view_layer_eval, report)
-    lit = add_world(scene, blender_scene, depsgraph.view_layer_eval, report, waiting)
-    surroundings = Surroundings(view, depsgraph)
-    meshes = MeshCollector(report, surroundings, depsgraph.view_layer_eval.material_override)
-    lit |= _add_objects(scene, depsgraph, meshes, report, _asking(waiting))
-    for path in TEXTURES.unreadable:
-        report.add(f"File '{path}'", "it cannot be read; magenta is used in the place of its picture", Effect.THING)
-    dark = "" if lit else _report_darkness(blender_scene, report)
-    operations = meshes.operations()
-    return ExportedScene(scene, report, dark, operations, TEXTURES.size_in_bytes, surroundings.view_is_used)
+    exported = ExportedScene()
+    exported.look_from(depsgraph, frame=frame or frame_of(depsgraph.scene_eval.render), camera=camera)
+    exported.update(depsgraph, everything(), waiting=waiting)
+    return exported
 
 
 def _eye(camera: Any, blender_scene: Any, depsgraph: Any) -> Eye:
@@ -131,37 +251,23 @@ def _asking(waiting: Waiting | None) -> Callable[[], None]:
     return ask
 
 
-def _report_darkness(blender_scene: Any, report: ExportReport) -> str:
-    """Reports that nothing gives light, with what of the light is left out; returns that line."""
-    left_out = [message.line() for message in report if message.effect == Effect.LIGHT]
-    place = f"Scene '{blender_scene.name}'"
-    text = ". ".join(["it has no light that shlight can render; the picture is black", *left_out])
-    report.add(place, text, Effect.DARK)
-    return f"{place}: {text}"
+def _is_seen(instance: Any, viewport: Any) -> bool:
+    """Whether an instance of the depsgraph is seen, in renders or, if one is given, in a viewport."""
+    if not instance.show_self:
+        return False
+    if viewport is None:
+        return instance.is_instance or not instance.object.hide_render
+    shown = instance.parent if instance.is_instance else instance.object
+    return bool(shown.original.visible_in_viewport_get(viewport))
 
 
-def _add_objects(
-    scene: shlight.Scene, depsgraph: Any, meshes: MeshCollector, report: ExportReport, ask: Callable[[], None]
-) -> bool:
-    """Adds all meshes and lamps; True if something gives light."""
-    lit = False
-    for instance in depsgraph.object_instances:
-        ask()
-        seen = instance.object
-        if not instance.show_self or (seen.hide_render and not instance.is_instance):
-            continue
-        to_world = np.array(instance.matrix_world, dtype=np.float64)
-        instancer = instance.parent if instance.is_instance else None
-        if seen.type == "LIGHT":
-            _report_light_linking((seen, instancer), f"Light '{seen.name}'", report)
-            lit |= add_lamp(scene, seen, to_world, report, meshes.surroundings, instancer)
-        elif seen.type == "MESH":
-            _report_object(seen, instancer, report)
-            meshes.add(instance, to_world)
-        elif seen.type in UNSUPPORTED_TYPES:
-            text = f"{UNSUPPORTED_TYPES[seen.type]} are not supported; left out"
-            report.add(f"Object '{seen.name}'", text, Effect.THING)
-    return meshes.hand_over(scene, ask) or lit
+def _instancer(instance: Any) -> Any:
+    """The object that shows an instance; None: the object itself."""
+    return instance.parent if instance.is_instance else None
+
+
+def _to_world(instance: Any) -> Any:
+    return np.array(instance.matrix_world, dtype=np.float64)
 
 
 def _report_object(seen: Any, instancer: Any, report: ExportReport) -> None:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ..compat import REC709, working_space
@@ -55,6 +55,19 @@ def render_settings(scene: Any) -> RenderSettings:
         shadow_rays=int(settings.shadow_rays) if settings.use_shadows else 0,
         transparent_bounces=int(getattr(cycles, "transparent_max_bounces", 8)),
         threads=int(render.threads) if render.threads_mode == "FIXED" else 0,
+    )
+
+
+def viewport_settings(scene: Any) -> RenderSettings:
+    """As `render_settings`, with the settings of the viewport in place of those of final renders."""
+    own = scene.shlight
+    return replace(
+        render_settings(scene),
+        noise_threshold=float(own.preview_noise_threshold),
+        min_samples=min(int(own.preview_min_samples), int(own.preview_max_samples)),
+        max_samples=int(own.preview_max_samples),
+        pixel_samples=None,
+        time_limit=float(own.preview_time_limit) or None,
     )
 
 

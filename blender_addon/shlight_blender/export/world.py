@@ -31,20 +31,31 @@ class World:
     suns: list[Sun] = field(default_factory=list)
 
 
-def add_world(
-    scene: shlight.Scene, blender_scene: Any, view_layer: Any, report: ExportReport, waiting: Waiting | None = None
-) -> bool:
-    """Sets the environment of `scene`, which is the scene's unless the view layer has another; True if it gives light.
+class SceneWorld:
+    """The world of a shlight.Scene."""
 
-    Blender's film is opaque: without a world the camera sees black behind the scene, unless the film is transparent.
-    """
-    visible = not blender_scene.render.film_transparent
-    world = getattr(view_layer, "world_override", None) or blender_scene.world
-    read = _black() if world is None else _read_world(world, blender_scene, report, waiting)
-    scene.set_environment(read.radiance, to_world=read.to_world, visible=visible)
-    for sun in read.suns:
-        scene.add_sun_light(sun.direction, sun.angle, sun.irradiance, camera=visible)
-    return bool(read.radiance.any() or read.suns)
+    def __init__(self, scene: shlight.Scene) -> None:
+        self._scene = scene
+        self._suns: list[Sun] = []
+        self._visible = True
+
+    def read(self, blender_scene: Any, view_layer: Any, report: ExportReport, waiting: Waiting | None = None) -> bool:
+        """Sets the environment to the scene's, unless the view layer has another; True if it gives light.
+
+        Blender's film is opaque: without a world the camera sees black behind the scene, unless the film is
+        transparent. `add_suns` is to follow.
+        """
+        self._visible = not blender_scene.render.film_transparent
+        world = getattr(view_layer, "world_override", None) or blender_scene.world
+        read = _black() if world is None else _read_world(world, blender_scene, report, waiting)
+        self._scene.set_environment(read.radiance, to_world=read.to_world, visible=self._visible)
+        self._suns = read.suns
+        return bool(read.radiance.any() or read.suns)
+
+    def add_suns(self) -> None:
+        """Adds the discs of the world's sky to the scene's lights."""
+        for sun in self._suns:
+            self._scene.add_sun_light(sun.direction, sun.angle, sun.irradiance, camera=self._visible)
 
 
 def _black() -> World:

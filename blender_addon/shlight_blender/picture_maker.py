@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The thread behind a rendered viewport, which makes the picture of the newest state of scene and view.
+
+It knows nothing of Blender, whose data only the main thread may read.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .frame import Frame
+from .status import status_of
+
+LONGEST_WAIT = 5.0  # seconds, for a thread that is to end
+LARGEST = 65504.0  # of the half floats that a graphics card keeps
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Some of a viewport's pixels: linear, premultiplied RGBA, row 0 at the bottom."""
+
+    pixels: NDArray[np.float32]
+    frame: Frame
+    status: str
+
+
+@dataclass(frozen=True)
+class Job:
+    """A picture to be made."""
+
+    scene: Any  # shlight.Scene
+    frame: Frame
+    settings: dict[str, Any]
+
+
+class PictureMaker:
+    """A thread that makes the picture of the job it was given last."""
+
+    def __init__(self, redraw: Callable[[], None]) -> None:
+        """redraw: called from the thread when there is a new picture."""
+        self._redraw = redraw
+        self._changed = threading.Condition()
+        self._job: Job | None = None
+        self._number = 0  # of the job; a picture of another is out of date
+        self._ended = False
+        self._thread: threading.Thread | None = None
+        self.picture: Picture | None = None
+        self.error = ""
+
+    def interrupt(self) -> None:
+        """Ends the job: its scene is about to change."""
+        with self._changed:
+            self._number += 1
+            self._job = None
+
+    def start(self, job: Job) -> None:
+        """Makes the picture of a job in place of the one before."""
+        with self._changed:
+            self._number += 1
+            self._job = job
+            self._changed.notify_all()
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._run, name="shlight viewport", daemon=True)
+            self._thread.start()
+
+    def end(self) -> None:
+        """Ends the thread."""
+        with self._changed:
+            self._ended = True
+            self._number += 1
+            self._changed.notify_all()
+        if self._thread is not None and self._thread is not threading.current_thread():
+            self._thread.join(LONGEST_WAIT)
+
+    def _run(self) -> None:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._ended or self._job is not None)
+                job, number, self._job = self._job, self._number, None
+            if self._ended or job is None:
+                return
+            self._make(job, number)
+
+    def _make(self, job: Job, number: int) -> None:
+        import shlight
+
+        def show(image: NDArray[np.float32], report: Any, *, done: bool = False) -> bool:
+            pixels = np.minimum(image[::-1], np.float32(LARGEST))
+            with self._changed:
+                if number != self._number:
+                    return False
+                self.picture = Picture(pixels, job.frame, "" if done else status_of(report))
+                self.error = ""
+            self._redraw()
+            return True
+
+        try:
+            image, report = shlight.render(
+                job.scene,
+                job.frame.width,
+                job.frame.height,
+                progress=lambda share: number == self._number,
+                on_update=show,
+                return_report=True,
+                **job.settings,
+            )
+            show(image, report, done=True)
+        except shlight.RenderCancelled:
+            pass
+        except Exception as error:
+            if number == self._number:
+                self.error = f"{type(error).__name__}: {error}"
+                self._redraw()

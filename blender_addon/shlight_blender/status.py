@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What windows say of a picture while it is rendered."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+from typing import Any
+
+
+def status_of(report: Any) -> str:
+    """A line about a picture as it stands; report: its shlight.RenderReport."""
+    noise = f"Noise {report.noise:.4f} | " if report.passes > 0 and report.noise > 0.0 else ""
+    left = f"Remaining {timedelta(seconds=round(report.seconds_left))}" if report.seconds_left > 0.0 else ""
+    return f"Pass {report.passes + 1} | {noise}{left}".removesuffix(" | ")
