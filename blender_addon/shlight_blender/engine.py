@@ -72,6 +72,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             record.begin(depsgraph.scene)
             self._view_layers: set[str] = set()
             self._shown: set[str] = set()
+            self._said = ""
             self._exported: dict[str, Any] = getattr(self, "_exported", {})  # by view layer
         self._view_layers.add(view_layer)
 
@@ -157,7 +158,9 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
 
     def _wait(self, text: str) -> bool:
         """Says what is done; False if it is to stop."""
-        self.update_stats("", text)
+        if text != self._said:
+            self.update_stats("", text)
+            self._said = text
         return not (running.renders.stopped or self.test_break())
 
     def _check(self, text: str) -> None:

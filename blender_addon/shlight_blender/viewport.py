@@ -48,7 +48,9 @@ class RenderedViewport:
 
     def draw(self, context: Any, depsgraph: Any) -> None:
         """Draws the newest picture, and has another one made if the view has changed."""
-        if self._needed(context, depsgraph.scene) != self._shown:
+        if self._changes:
+            self._follow(context, depsgraph, True)
+        elif self._needed(context, depsgraph.scene) != self._shown:
             self._follow(context, depsgraph, self._exported.is_of_one_camera)
         picture = self._maker.picture
         if picture is not self._picture:
@@ -71,7 +73,9 @@ class RenderedViewport:
         try:
             self._exported.look_through(view)
             changes, self._changes = self._changes, Changes()
-            changed = scene_may_change and self._exported.update(depsgraph, changes, viewport=context.space_data)
+            changed = scene_may_change and self._exported.update(
+                depsgraph, changes, viewport=context.space_data, bake=self._bake
+            )
             self._error = ""
         except Exception as error:
             if not isinstance(error, ExportError):
@@ -84,6 +88,15 @@ class RenderedViewport:
         if (changed or needed != self._shown) and view.frame.width > 0 and view.frame.height > 0:
             self._maker.start(Job(self._exported.scene, view.frame, settings.arguments()))
         self._shown = needed
+
+    def _bake(self, world: Any, scene: Any) -> Any:
+        from .export import bake_in_background
+
+        return bake_in_background(world, scene, self._take_baked_world)
+
+    def _take_baked_world(self) -> None:
+        self._changes.world = True
+        self._redraw()
 
     def _redraw(self) -> None:
         try:

@@ -47,7 +47,7 @@ shadow_rays: per camera ray and light, at most, and again for each roughness of 
 transparent_bounces: surfaces that let light through which a shadow ray passes, at most, 0 ... 1024; a camera ray
     passes one more.
 threads: at most; 0: all cores. The image does not depend on it, and on a time limit only by the number of passes.
-progress: is called with the finished share, 0 ... 1, about every 50 ms; returning False cancels.
+progress: is called with the finished share, 0 ... 1, about every 10 ms; returning False cancels.
 on_update: is called as on_update(image, report) after each pass and a few times a second during long ones, with the
     picture as it stands; returning False ends the render, which returns the picture as it is. What progress and
     on_update raise ends the render and is raised here.

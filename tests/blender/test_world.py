@@ -129,7 +129,7 @@ def test_real_pictures(studio: Any, name: str, floor: bool) -> None:
     image = bpy.data.images.load(str(WORLDS / f"{name}.exr"))
     if (name, floor) in QUICK:
         studio.scene.render.resolution_x, studio.scene.render.resolution_y = 64, 48
-    studio.scene.cycles.samples = 1024
+    studio.scene.cycles.samples = 1024 if (name, floor) in QUICK else 2048
     studio.scene.render.film_transparent = True  # what is seen behind is not the question
     if floor:
         balls(studio)
@@ -166,7 +166,7 @@ def test_what_of_a_world_is_not_baked_is_named(studio: Any, monkeypatch: pytest.
     def fail(*_: Any) -> None:
         raise BakeError("there is no Cycles")
 
-    monkeypatch.setattr("shlight_blender.export.world.bake_world", fail)
+    monkeypatch.setattr("shlight_blender.export.scene.bake_world", fail)
     studio.plane()
     studio.area()
     studio.camera()

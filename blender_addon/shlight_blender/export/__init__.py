@@ -3,6 +3,7 @@
 
 from ..frame import Frame, frame_of, whole_frame
 from ..report import ExportError, ExportReport
+from .bake import bake_in_background, stop_background
 from .camera import Eye, set_projection
 from .changes import Changes, changes_of, everything
 from .scene import ExportedScene, export_scene
@@ -16,12 +17,14 @@ __all__ = [
     "Eye",
     "Frame",
     "RenderSettings",
+    "bake_in_background",
     "changes_of",
     "everything",
     "export_scene",
     "frame_of",
     "render_settings",
     "set_projection",
+    "stop_background",
     "viewport_settings",
     "whole_frame",
 ]

@@ -12,6 +12,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections import OrderedDict
 from collections.abc import Callable
@@ -83,18 +84,91 @@ def _keep(key: bytes, baked: Baked) -> None:
         kept.popitem(last=False)
 
 
+class _Background:
+    """The bake that goes on while Blender is used."""
+
+    def __init__(self, key: bytes, world: Any, scene: Any) -> None:
+        self.key = key
+        self.ended: list[Callable[[], None]] = []  # called from its thread
+        self.error = ""
+        self._stopped = False
+        self._folder = tempfile.TemporaryDirectory(prefix="shlight_world_")
+        _write(Path(self._folder.name), world, scene)
+        threading.Thread(target=self._run, name="shlight world", daemon=True).start()
+
+    def stop(self) -> None:
+        """Ends it."""
+        self._stopped = True
+
+    def _run(self) -> None:
+        with self._folder as name:
+            try:
+                baked = _picture(Path(name), lambda _: not self._stopped)
+            except BakeError as error:
+                baked, self.error = None, str(error)
+        if baked is not None:
+            _keep(self.key, baked)
+        for call in self.ended if not self._stopped else ():
+            call()
+
+
+_background: _Background | None = None  # the latest
+
+
+def bake_in_background(world: Any, scene: Any, ended: Callable[[], None]) -> Baked | None:
+    """The world if it is kept; None while it is baked beside Blender, which ends the bake of another one.
+
+    ended: called from another thread once it has been baked, or could not be.
+    Raises BakeError if it cannot be baked, or is not known again.
+    """
+    global _background
+    key = bake_key(world, scene)
+    if key is None:
+        raise BakeError("it uses something whose changes cannot be told; final renders bake it each time")
+    if key in kept:
+        kept.move_to_end(key)
+        return kept[key]
+    if _background is None or _background.key != key:
+        stop_background()
+        _background = _Background(key, world, scene)
+    if _background.error:
+        raise BakeError(_background.error)
+    _background.ended.append(ended)
+    return None
+
+
+def stop_background() -> None:
+    """Ends the bake that goes on beside Blender, if there is one."""
+    global _background
+    if _background is not None:
+        _background.stop()
+    _background = None
+
+
 def _bake(world: Any, scene: Any, waiting: Waiting | None) -> Baked | None:
     with tempfile.TemporaryDirectory(prefix="shlight_world_") as name:
-        folder = Path(name)
-        try:
-            bpy.data.libraries.write(str(folder / "world.blend"), {world.original}, path_remap="ABSOLUTE")
-            (folder / "request.json").write_text(json.dumps(_request(world, scene, folder)), encoding="utf-8")
-            if not _run(folder, waiting):
-                return None
-            picture = np.load(folder / "picture.npy", allow_pickle=False)
-            suns = json.loads((folder / "suns.json").read_text(encoding="utf-8"))
-        except (OSError, RuntimeError, ValueError) as error:
-            raise BakeError(" ".join(str(error).split())) from error
+        _write(Path(name), world, scene)
+        return _picture(Path(name), waiting)
+
+
+def _write(folder: Path, world: Any, scene: Any) -> None:
+    """What the other Blender needs."""
+    try:
+        bpy.data.libraries.write(str(folder / "world.blend"), {world.original}, path_remap="ABSOLUTE")
+        (folder / "request.json").write_text(json.dumps(_request(world, scene, folder)), encoding="utf-8")
+    except (OSError, RuntimeError, ValueError) as error:
+        raise BakeError(" ".join(str(error).split())) from error
+
+
+def _picture(folder: Path, waiting: Waiting | None) -> Baked | None:
+    """What the other Blender makes of it; None if `waiting` stopped it."""
+    try:
+        if not _run(folder, waiting):
+            return None
+        picture = np.load(folder / "picture.npy", allow_pickle=False)
+        suns = json.loads((folder / "suns.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise BakeError(" ".join(str(error).split())) from error
     return Baked(picture, [Sun(np.array(s["direction"]), s["angle"], np.array(s["irradiance"])) for s in suns])
 
 

@@ -14,7 +14,7 @@ import shlight
 
 from ..frame import Frame, frame_of
 from ..report import Effect, ExportCancelled, ExportError, ExportReport
-from .bake import Waiting
+from .bake import Baked, Waiting, bake_world
 from .camera import Eye, View, set_camera
 from .changes import Changes, everything
 from .expressions import Surroundings
@@ -22,7 +22,7 @@ from .image_pixels import TEXTURES
 from .lights import add_lamp
 from .meshes import SceneMeshes
 from .settings import report_unsupported_settings
-from .world import SceneWorld
+from .world import Bake, SceneWorld
 
 ASKING_SECONDS = 0.05  # between questions whether the export is to go on
 
@@ -122,16 +122,27 @@ class ExportedScene:
         self._new_report("camera")
         self._view = view.set_camera(self.scene)
 
-    def update(self, depsgraph: Any, changes: Changes, *, viewport: Any = None, waiting: Waiting | None = None) -> bool:
+    def update(
+        self,
+        depsgraph: Any,
+        changes: Changes,
+        *,
+        viewport: Any = None,
+        waiting: Waiting | None = None,
+        bake: Bake | None = None,
+    ) -> bool:
         """Takes over what has changed; False if nothing has. `waiting`, and errors, as of `export_scene`.
 
         viewport: a SpaceView3D; what is hidden in it is left out, in place of what is hidden in renders.
+        bake: makes pictures of worlds of nodes in another way than `bake_world`; it may take its time.
         """
         self._find_more(changes, _State.of(depsgraph, viewport))
         blender_scene, view_layer = depsgraph.scene_eval, depsgraph.view_layer_eval
         report_unsupported_settings(blender_scene, view_layer, self._new_report("settings"))
         if changes.world:
-            self._is_lit["world"] = self._world.read(blender_scene, view_layer, self._new_report("world"), waiting)
+            self._is_lit["world"] = self._world.read(
+                blender_scene, view_layer, self._new_report("world"), bake or _waiting_bake(waiting)
+            )
         if changes.materials:
             TEXTURES.begin_export()
             self._surroundings = Surroundings(self._view)
@@ -235,6 +246,15 @@ def _eye(camera: Any, blender_scene: Any, depsgraph: Any) -> Eye:
         raise ExportError(f"the active camera of scene '{blender_scene.name}', '{camera.name}', is not a camera")
     evaluated = camera.evaluated_get(depsgraph)
     return Eye(camera, evaluated.matrix_world, evaluated.data.shift_x)
+
+
+def _waiting_bake(waiting: Waiting | None) -> Bake:
+    def bake(world: Any, scene: Any) -> Baked:
+        if (baked := bake_world(world, scene, waiting)) is None:
+            raise ExportCancelled
+        return baked
+
+    return bake
 
 
 def _asking(waiting: Waiting | None) -> Callable[[], None]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,10 +14,13 @@ from numpy.typing import NDArray
 import shlight
 
 from ..compat import uses_nodes
-from ..report import Effect, ExportCancelled, ExportReport
-from .bake import BakeError, Sun, Waiting, bake_world
+from ..report import Effect, ExportReport
+from .bake import Baked, BakeError, Sun
 from .nodes import ConstantReader, Origin, all_nodes, origin
 from .pictures import linear_pixels
+
+# Of a world and its scene; None while it goes on.
+Bake = Callable[[Any, Any], "Baked | None"]
 
 # Kinds of rays that Cycles can hide the world from.
 RAY_KINDS = ("camera", "diffuse", "glossy")
@@ -39,15 +43,16 @@ class SceneWorld:
         self._suns: list[Sun] = []
         self._visible = True
 
-    def read(self, blender_scene: Any, view_layer: Any, report: ExportReport, waiting: Waiting | None = None) -> bool:
+    def read(self, blender_scene: Any, view_layer: Any, report: ExportReport, bake: Bake) -> bool:
         """Sets the environment to the scene's, unless the view layer has another; True if it gives light.
 
+        bake: see `ExportedScene.update`.
         Blender's film is opaque: without a world the camera sees black behind the scene, unless the film is
         transparent. `add_suns` is to follow.
         """
         self._visible = not blender_scene.render.film_transparent
         world = getattr(view_layer, "world_override", None) or blender_scene.world
-        read = _black() if world is None else _read_world(world, blender_scene, report, waiting)
+        read = _black() if world is None else _read_world(world, blender_scene, report, bake)
         self._scene.set_environment(read.radiance, to_world=read.to_world, visible=self._visible)
         self._suns = read.suns
         return bool(read.radiance.any() or read.suns)
@@ -62,7 +67,7 @@ def _black() -> World:
     return World(np.zeros(3))
 
 
-def _read_world(world: Any, blender_scene: Any, report: ExportReport, waiting: Waiting | None) -> World:
+def _read_world(world: Any, blender_scene: Any, report: ExportReport, bake: Bake) -> World:
     place = f"World '{world.name}'"
     _report_visibility(world, place, report)
     if not uses_nodes(world):
@@ -80,13 +85,14 @@ def _read_world(world: Any, blender_scene: Any, report: ExportReport, waiting: W
     if not len(findings):
         return read
     try:
-        baked = bake_world(world, blender_scene, waiting)
+        baked = bake(world, blender_scene)
     except BakeError as error:
         report.add(place, f"it could not be baked to a picture ({error}); it is simplified", Effect.LIGHT)
         report.extend(findings)
         return read
     if baked is None:
-        raise ExportCancelled
+        report.add(place, "it is simplified until it is baked to a picture", Effect.LIGHT)
+        return read
     _report_rays(world, ConstantReader(place, report))
     return World(baked.picture, suns=baked.suns)
 

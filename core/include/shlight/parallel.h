@@ -29,12 +29,12 @@ void end_if(const Stopped& stopped);
 void run_in_arena(int threads, const std::function<void()>& work);
 
 /// The same for long work of unknown length. With `progress` the calling thread waits and calls it with 0, about every
-/// 50 ms and at the end; once it has returned false or thrown, `work` is told so by what it is given.
+/// 10 ms and at the end; once it has returned false or thrown, `work` is told so by what it is given.
 /// Throws as parallel_for does.
 void run_watched(int threads, const std::function<void(const Stopped&)>& work, const Progress& progress);
 
 /// Runs body(i) once for each i < count, in any order, on at most `threads` threads, 0: all cores.
-/// With `progress` the calling thread waits and calls it about every 50 ms and once at the end; work goes on meanwhile.
+/// With `progress` the calling thread waits and calls it about every 10 ms and once at the end; work goes on meanwhile.
 /// Without, it takes part.
 /// Throws RenderCancelled after progress has returned false, and what body or progress throw; by then no body runs.
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body,

@@ -18,7 +18,7 @@
 namespace shlight {
 namespace {
 
-constexpr auto kInterval = std::chrono::milliseconds(50);
+constexpr auto kInterval = std::chrono::milliseconds(10);
 
 void check_threads(int threads) {
     if (threads < 0) {

@@ -14,7 +14,7 @@ namespace {
 /// Each round takes some pixels to the next level, or follows something thin by one pixel more.
 constexpr int kMostRounds = 256;
 /// The first pixels are those of a grid of this step.
-constexpr int kWidestGrid = 8;
+constexpr int kWidestGrid = 16;
 constexpr double kLeastBetweenGrids = 0.05;  // seconds
 constexpr double kSoon = 0.2;                // likewise
 constexpr double kMostUnfinished = 0.999;    // share of the work
