@@ -12,6 +12,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import OpenImageIO as oiio
 import pytest
 
 from shlight.images import read_exr
@@ -195,3 +197,52 @@ def test_window(tmp_path: Path) -> None:
     first, second = (read_exr(tmp_path / f"final_{i}.exr")[..., :3] for i in range(2))
     assert first.any()
     assert (first == second).all()
+
+
+PARTS = {
+    "move a lamp": "Lamps",
+    "lamp's power": "Lamps",
+    "move an object": "Lamps, Objects",
+    "colour": "Materials",
+    "texture": "Materials",
+    "world": "World, Lamps",
+    "vertex": "Lamps, Objects",
+    "hide": "Lamps, Objects",
+    "show": "Lamps, Objects",
+    "frame": "Lamps, Objects",
+    "orbit": "",
+    "orthographic": "",
+    "camera": "",
+    "local view": "Lamps, Objects",
+}
+
+
+def test_the_rendered_viewport(tmp_path: Path) -> None:
+    """It follows whatever changes, exports no more than that, and shows what a final render shows."""
+    code, output = run_in_window(script="debian_viewport.py", folder=tmp_path)
+    assert code == 0, output
+    assert "Traceback" not in output, output
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert found["updated"].pop("select") is None
+    assert {name: found["updated"][name] for name in PARTS} == PARTS
+    same = {name for name, difference in found["differs"].items() if difference == 0.0}
+    assert same == {"select", "undo"}
+    assert found["anew"], "after all changes the picture is not that of a viewport that has just been opened"
+    # The corners of pixels' squares are rounded otherwise, which a few rays at edges tell.
+    seen = np.load(tmp_path / "viewport.npy")[::-1]
+    assert rel_mse(seen, read_exr(tmp_path / "final.exr")) <= 1e-4
+    assert found["viewports"] == 1
+    assert found["threads"] == 0
+    check_screen(tmp_path, found["region"])
+
+
+def check_screen(folder: Path, region: list[int]) -> None:
+    """The window shows the picture, which has half as many pixels, where the viewport is, without header and tools."""
+    x, y, width, height = region
+    window = oiio.ImageBuf(str(folder / "window.png")).get_pixels(oiio.FLOAT)[::-1]
+    screen = window[y : y + height, x : x + width, :3]
+    shown = np.clip(np.load(folder / "shown.npy")[..., :3], 0.0, 1.0)
+    at = [(2 * np.arange(length // 3, 2 * length // 3)) for length in shown.shape[:2]]
+    expected = shown[np.ix_(*(each // 2 for each in at))]
+    # Bytes, and edges between pixels that are drawn linearly.
+    assert np.abs(screen[np.ix_(*at)] - expected).mean() <= 0.01

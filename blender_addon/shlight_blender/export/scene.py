@@ -278,7 +278,7 @@ def _is_seen(instance: Any, viewport: Any) -> bool:
     if viewport is None:
         return instance.is_instance or not instance.object.hide_render
     shown = instance.parent if instance.is_instance else instance.object
-    return bool(shown.original.visible_in_viewport_get(viewport))
+    return bool(shown.visible_in_viewport_get(viewport))
 
 
 def _instancer(instance: Any) -> Any:
