@@ -90,53 +90,62 @@ STEP = {
     "wait": (4, lambda: None),
 }
 plan = chance.choices(list(STEP), [weight for weight, _ in STEP.values()], k=int(STEPS))
-
-
 plan.append("quit")
 STEP["quit"] = (0, bpy.ops.wm.quit_blender)
-
-
+KEY = "F19"
+MOST_REFUSALS = 500
 refused = 0
 
 
-def walk():
-    global refused
-    name = plan[0]
-    if refused == 0:
-        print(f"step {len(plan)}: {name}", flush=True)
-    try:
-        with bpy.context.temp_override(window=window()):
+class SHLIGHT_OT_step(bpy.types.Operator):
+    """Takes a step. A key starts it, so that its context is the window's own.
+
+    In a context that a script gives, Blender 3.4 takes Python's lock for its own while a thread that renders has it.
+    """
+
+    bl_idname = "shlight.step"
+    bl_label = "Step"
+
+    def execute(self, context):
+        global refused
+        name = plan[0]
+        if refused == 0:
+            print(f"step {len(plan)}: {name}", flush=True)
+        try:
             ask_to_write()
             STEP[name][1]()
-    except (AttributeError, RuntimeError) as error:
-        if any(refusal in str(error) for refusal in ("in this context", "in this state", "in readonly state")):
-            return wait_to_write()
-        traceback.print_exc()
-    except Exception:
-        traceback.print_exc()
-    refused = 0
-    plan.pop(0)
-    return chance.choice([0.02, 0.1, 0.5]) if plan else None
+        except (AttributeError, RuntimeError) as error:
+            if any(refusal in str(error) for refusal in ("in this context", "in this state", "in readonly state")):
+                refused += 1
+                return {"CANCELLED"}
+            traceback.print_exc()
+        except Exception:
+            traceback.print_exc()
+        refused = 0
+        plan.pop(0)
+        return {"FINISHED"}
 
 
 def ask_to_write():
-    """Fails where no script may write: add-ons and scripts that are disabled or reloaded then are left half-done."""
+    """Fails where no script may write: add-ons and scripts that are disabled or reloaded then are left half-done.
+
+    Blender lets no script write while any thread is in a method of a class that draws or renders.
+    """
     scene = window().scene
     scene.frame_end = scene.frame_end
 
 
-def wait_to_write():
-    """Blender lets no script write while any thread is in a method of a class that draws or renders.
-
-    Where a panel is drawn as a render ends, Blender 3.4 leaves it at that for good.
-    """
-    global refused
-    refused += 1
-    if refused == 500:
+def knock():
+    """Has the next step taken, or the same again."""
+    if refused == MOST_REFUSALS:  # where a panel is drawn as a render ends, Blender 3.4 leaves it at that for good
         print("Blender lets no script write any more", flush=True)
         os._exit(0)
-    return 0.02
+    press(KEY)
+    return 0.02 if refused else chance.choice([0.02, 0.1, 0.5])
 
 
 bpy.context.preferences.view.show_splash = False
-bpy.app.timers.register(walk, first_interval=0.5, persistent=True)
+bpy.utils.register_class(SHLIGHT_OT_step)
+keys = bpy.context.window_manager.keyconfigs.addon.keymaps.new("Window", space_type="EMPTY")
+keys.keymap_items.new(SHLIGHT_OT_step.bl_idname, KEY, "PRESS")
+bpy.app.timers.register(knock, first_interval=0.5, persistent=True)
