@@ -36,6 +36,11 @@ class Frame:
         """Height of the part to render."""
         return self.top - self.bottom
 
+    @property
+    def corners(self) -> tuple[tuple[int, int], tuple[int, int]]:
+        """The lower left and the upper right corner of the part to render."""
+        return (self.left, self.bottom), (self.right, self.top)
+
 
 def whole_frame(width: int, height: int) -> Frame:
     """The frame of a picture rendered as a whole."""

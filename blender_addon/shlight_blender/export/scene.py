@@ -21,6 +21,7 @@ from .image_pixels import TEXTURES
 from .lights import add_lamp
 from .meshes import MeshCollector
 from .settings import report_unsupported_settings
+from .shares import shares_of_picture
 from .world import add_world
 
 ASKING_SECONDS = 0.05  # between questions whether the export is to go on
@@ -101,6 +102,8 @@ def export_scene(
     lit |= _add_objects(scene, depsgraph, meshes, report, _asking(waiting))
     for path in TEXTURES.unreadable:
         report.add(f"File '{path}'", "it cannot be read; magenta is used in the place of its picture", Effect.THING)
+    if len(report) > 1:
+        report.weigh(shares_of_picture(depsgraph, view, frame, report.things()))
     dark = "" if lit else _report_darkness(blender_scene, report)
     operations = meshes.operations()
     return ExportedScene(scene, report, dark, operations, TEXTURES.size_in_bytes, surroundings.view_is_used)
