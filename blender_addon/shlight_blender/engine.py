@@ -227,5 +227,9 @@ def register() -> None:
 def unregister() -> None:
     """Stops the render that runs, and removes the engine."""
     if running.renders.stop():  # else Blender would use what is removed
-        bpy.utils.unregister_class(ShlightRenderEngine)
+        try:
+            bpy.utils.unregister_class(ShlightRenderEngine)
+        except RuntimeError:  # where Blender lets no script write the add-on stays as it is, and renders
+            running.renders.resume()
+            raise
     running.unregister()

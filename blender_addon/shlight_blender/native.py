@@ -81,7 +81,8 @@ def native_problem() -> str:
     if WHEELS.is_dir() and shlight.__version__ != wanted:
         return (
             f"the add-on is version {wanted}, and the Python package 'shlight' in {Path(shlight.__file__).parent} is "
-            f"version {shlight.__version__}: restart Blender; if that does not help, remove that package"
+            f"version {shlight.__version__}: restart Blender; if that does not help, remove other copies of the add-on "
+            "or that package"
         )
     return ""
 

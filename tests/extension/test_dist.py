@@ -49,11 +49,17 @@ render(sys.argv[-1])
 """
 
 AS_EXTENSION = """
-if bpy.app.version >= (4, 2):
-    bpy.ops.extensions.package_install_files(filepath=sys.argv[-2], repo="user_default", enable_on_install=True)
-else:
-    bpy.ops.preferences.addon_install(filepath=sys.argv[-2])
-    bpy.ops.preferences.addon_enable(module="shlight_blender")
+for _ in range(2):
+    if bpy.app.version >= (4, 2):
+        name = "bl_ext.user_default.shlight_blender"
+        bpy.ops.extensions.package_install_files(filepath=sys.argv[-2], repo="user_default", enable_on_install=True)
+    else:
+        name = "shlight_blender"
+        bpy.ops.preferences.addon_install(filepath=sys.argv[-2])
+        bpy.ops.preferences.addon_enable(module=name)
+for _ in range(10):
+    bpy.ops.preferences.addon_disable(module=name)
+    bpy.ops.preferences.addon_enable(module=name)
 import shlight, OpenImageIO
 render(sys.argv[-1])
 print("from", shlight.__file__, OpenImageIO.__file__)
@@ -110,7 +116,10 @@ def files_of_shlight(profile: Path) -> list[Path]:
 
 
 def test_the_zip_is_an_extension(archive: Path, profile: Path) -> None:
-    """Installed into an empty profile it renders what the source tree renders, and leaves nothing when it goes."""
+    """Installed twice into an empty profile and enabled again and again, it renders what the source tree renders.
+
+    It leaves nothing when it goes.
+    """
     pictures = [str(profile.parent / f"{number}.exr") for number in range(2)]
     (profile.parent / "packages").mkdir()
     *python, script = blender_alone(profile.parent / "packages")
