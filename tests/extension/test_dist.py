@@ -8,6 +8,7 @@ import os
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -167,10 +168,12 @@ class Wheels:
         self.patch = monkeypatch
         self.folder = folder / "wheels"
         self.folder.mkdir(parents=True)
+        manifest = folder / "manifest"
+        manifest.write_text("\n".join([f'version = "{native.RUNNING}"', *(f'"./wheels/{name}"' for name in names)]))
         for name in names:
             (self.folder / name).write_bytes(b"no zip")
+        monkeypatch.setattr(native, "MANIFEST", manifest)
         monkeypatch.setattr(native, "WHEELS", self.folder)
-        monkeypatch.setattr(native, "UNPACKED", self.folder / "unpacked")
         monkeypatch.setattr(native, "_unpacking_problem", "")
 
     def problem(self) -> str:
@@ -198,3 +201,21 @@ def test_another_version_of_the_package_is_named(tmp_path: Path, monkeypatch: py
     assert native.native_problem() == ""
     monkeypatch.setattr(shlight, "__version__", "0.0.9")
     assert "is version 0.0.9: restart Blender" in native.native_problem()
+
+
+def test_a_version_installed_over_another_replaces_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As Blender 3.4 installs it: the files of both are there, and the modules of the first go on."""
+    wheels = Wheels(tmp_path, monkeypatch)
+    monkeypatch.setattr(sys, "path", sys.path[:])
+    for version in ("1", "2"):
+        name = f"shlight-{version}-{native.TAG}-{native.TAG}-x.whl"
+        with zipfile.ZipFile(wheels.folder / name, "w") as archive:
+            archive.writestr("version", version)
+        native.MANIFEST.write_text(f'version = "{version}"\n"./wheels/{name}"')
+        native.forget_packages()
+        native.find_packages()
+        folder, wheel = sorted(wheels.folder.iterdir(), reverse=True)
+        assert (folder / "version").read_text() == version
+        assert wheel.name == name
+        assert [path for path in sys.path if str(wheels.folder) in path] == [str(folder)]
+    assert f"version 2 of the add-on is installed, and version {native.RUNNING} is running" in native.native_problem()
