@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
 from typing import Any
 
 import bpy
@@ -63,3 +65,33 @@ def test_what_is_missing_of_a_library(studio: Any, missing: str) -> None:
     studio.scene.shlight.pixel_samples = 64
     studio.compare()
     assert ["green.png' is missing" in line for line in studio.messages()] == [True] * (missing == "texture")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="asks the system for the memory of the process")
+@pytest.mark.parametrize("persistent", [False, True])
+def test_renders_do_not_gather_memory(studio: Any, persistent: bool) -> None:
+    """After the first ones, of a scene that changes and so is exported each time, with textures on and around it."""
+    studio.simple_scene()
+    pixels = np.random.default_rng(1).random((256, 512, 3))
+    material = studio.material()
+    for tree, kind, socket in (
+        (material.node_tree, "ShaderNodeTexImage", next(iter(material.node_tree.nodes)).inputs["Color"]),
+        (
+            studio.world().id_data,
+            "ShaderNodeTexEnvironment",
+            studio.scene.world.node_tree.nodes["Background"].inputs[0],
+        ),
+    ):
+        node = tree.nodes.new(kind)
+        node.image = studio.picture(pixels)
+        tree.links.new(node.outputs["Color"], socket)
+    ball = studio.ball(rings=200, material=material)
+    studio.scene.render.use_persistent_data = persistent
+    memory = []
+    for _ in range(30):
+        ball.location.x += 0.01
+        bpy.ops.render.render()
+        memory.append(int(Path("/proc/self/statm").read_text().split()[1]))
+    first, last = max(memory[:10]), min(memory[-10:])  # what the allocator keeps goes up and down
+    print(f"{last / first - 1:+.2%}")
+    assert last <= 1.05 * first
