@@ -20,13 +20,20 @@ find_packages()
 
 
 def register() -> None:
-    """Adds the engine, its scene settings and its panels to Blender. Does nothing where they are."""
+    """Adds the engine, its scene settings and its panels to Blender. Does nothing where they are.
+
+    Raises RuntimeError if they are those of another copy of the add-on.
+    """
     import bpy
 
-    from . import engine, panels, preferences, properties
+    from . import engine, panels, preferences, properties, running
 
     if properties.are_registered():
         return
+    other = bpy.types.RenderEngine.bl_rna_get_subclass_py(running.ENGINE)
+    if other is not None and not other.__module__.startswith(f"{__name__}."):
+        copy = other.__module__.rpartition(".")[0]
+        raise RuntimeError(f"shlight is enabled already, as {copy}; disable that in Preferences > Add-ons first")
     find_packages()
     preferences.register()
     properties.register()

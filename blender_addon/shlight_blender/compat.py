@@ -207,6 +207,13 @@ def values_of(collection: Any, name: str, dtype: Any, size: int = 1) -> NDArray[
     return values.reshape(-1, size) if size > 1 else values
 
 
+def uv_coordinates(layer: Any) -> NDArray[np.float32]:
+    """Coordinates (corners, 2) of a UV map, handed over at once where they are an attribute's, which is since 3.5."""
+    if hasattr(layer, "uv"):
+        return values_of(layer.uv, "vector", np.float32, 2)
+    return values_of(layer.data, "uv", np.float32, 2)
+
+
 def smooth_corner_normals(mesh: Any) -> NDArray[np.float32] | None:
     """Normals of all corners (loops, 3) with smooth and custom shading applied; None if every face is flat."""
     if hasattr(mesh, "corner_normals"):

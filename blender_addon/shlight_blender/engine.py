@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from . import record, running
 from .compat import write_pass
-from .frame import Frame, frame_of
+from .frame import Frame, frame_of, memory_problem
 from .native import native_problem
 from .report import ExportCancelled, ExportError
 from .running import ENGINE
@@ -46,7 +46,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         self._begin(depsgraph)
         try:
             frame = frame_of(depsgraph.scene.render)
-            if problem := native_problem():
+            if problem := native_problem() or memory_problem(frame):
                 raise ExportError(problem)
             images = {}
             self._is_new_frame = True
@@ -191,11 +191,10 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
     def _deliver(self, depsgraph: Any, frame: Frame, images: dict[str, NDArray[np.float32] | None]) -> None:
         """Hands over pictures of views; empty ones for all if there are none: without, saving crashes Blender."""
         for view, image in (images or dict.fromkeys(_views(depsgraph.scene.render))).items():
-            if image is None:
-                image = np.zeros((frame.height, frame.width, 4), dtype=np.float32)
             result = self.begin_result(0, 0, frame.width, frame.height, layer=depsgraph.view_layer.name, view=view)
-            for layer in result.layers:
-                write_pass(layer.passes["Combined"], image[::-1].reshape(-1, 4))
+            if image is not None:
+                for layer in result.layers:
+                    write_pass(layer.passes["Combined"], image[::-1].reshape(-1, 4))
             self.end_result(result)
 
     def view_update(self, context: Any, depsgraph: Any) -> None:
@@ -230,5 +229,9 @@ def register() -> None:
 def unregister() -> None:
     """Stops the render that runs, and removes the engine."""
     if running.renders.stop():  # else Blender would use what is removed
-        bpy.utils.unregister_class(ShlightRenderEngine)
+        try:
+            bpy.utils.unregister_class(ShlightRenderEngine)
+        except RuntimeError:  # where Blender lets no script write the add-on stays as it is, and renders
+            running.renders.resume()
+            raise
     running.unregister()

@@ -7,12 +7,14 @@ an extension, and of a legacy add-on they are unpacked here, into the add-on's o
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import re
 import shutil
 import sys
 import tempfile
 import zipfile
+from collections.abc import Collection
 from pathlib import Path
 
 ADDON = Path(__file__).resolve().parent
@@ -20,18 +22,26 @@ WHEELS = ADDON / "wheels"
 SOURCE_TREE = ADDON.parents[1] / "python_bindings"
 PYTHON = f"{sys.version_info.major}.{sys.version_info.minor}"
 TAG = f"cp{sys.version_info.major}{sys.version_info.minor}"
-UNPACKED = WHEELS / f"unpacked-{TAG}"
+MANIFEST = ADDON / "blender_manifest.toml"
+
+
+def _version() -> str:
+    return re.findall(r'^version = "(.+)"', MANIFEST.read_text(encoding="utf-8"), re.MULTILINE)[0]
+
+
+RUNNING = _version()  # Blender 3.4 goes on with the modules it has when another version is installed
 
 _unpacking_problem = ""
+_unpacked: Path | None = None  # what `import` finds
 
 
 def find_packages() -> None:
     """Makes `import shlight` work where Blender does not see to that itself."""
-    global _unpacking_problem
+    global _unpacking_problem, _unpacked
     if WHEELS.is_dir() and not __package__.startswith("bl_ext."):
         try:
-            _unpack()
-            _add_to_path(UNPACKED)
+            _unpacked = _unpack()
+            _add_to_path(_unpacked)
         except (OSError, zipfile.BadZipFile) as error:
             _unpacking_problem = f"its wheels cannot be unpacked into {WHEELS} ({error})"
     elif importlib.util.find_spec("shlight") is None and (SOURCE_TREE / "shlight" / "__init__.py").is_file():
@@ -40,8 +50,8 @@ def find_packages() -> None:
 
 def forget_packages() -> None:
     """Undoes `find_packages`; what is imported stays until Blender ends."""
-    if str(UNPACKED) in sys.path:
-        sys.path.remove(str(UNPACKED))
+    if _unpacked is not None and str(_unpacked) in sys.path:
+        sys.path.remove(str(_unpacked))
 
 
 def _add_to_path(folder: Path) -> None:
@@ -49,25 +59,43 @@ def _add_to_path(folder: Path) -> None:
         sys.path.append(str(folder))
 
 
-def _unpack() -> None:
-    """All of it or nothing, whatever other Blenders do at the same time."""
-    if UNPACKED.is_dir():
-        return
-    part = Path(tempfile.mkdtemp(prefix=".part-", dir=WHEELS))
-    try:
-        for wheel in WHEELS.glob(f"*-{TAG}-*.whl"):
-            with zipfile.ZipFile(wheel) as archive:
-                # The add-on that runs is this one.
-                names = [name for name in archive.namelist() if not name.startswith("shlight_blender/")]
-                archive.extractall(part, names)
-        part.chmod(0o755)
+def _unpack() -> Path:
+    """Unpacks the wheels for this Python, all or nothing, whatever other Blenders do at the same time.
+
+    Returns the folder. What another version has left in WHEELS is removed: Blender 3.4 installs one over the other.
+    """
+    named = re.findall(r'"\./wheels/(.+?)"', MANIFEST.read_text(encoding="utf-8"))
+    wheels = [WHEELS / name for name in named if f"-{TAG}-" in name]
+    folder = WHEELS / f"unpacked-{TAG}-{max((wheel.stat().st_mtime_ns for wheel in wheels), default=0)}"
+    if not folder.is_dir():
+        part = Path(tempfile.mkdtemp(prefix=".part-", dir=WHEELS))
         try:
-            part.rename(UNPACKED)
-        except OSError:
-            if not UNPACKED.is_dir():
-                raise
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
+            for wheel in wheels:
+                with zipfile.ZipFile(wheel) as archive:
+                    # The add-on that runs is this one.
+                    names = [name for name in archive.namelist() if not name.startswith("shlight_blender/")]
+                    archive.extractall(part, names)
+            part.chmod(0o755)
+            try:
+                part.rename(folder)
+            except OSError:
+                if not folder.is_dir():
+                    raise
+        finally:
+            shutil.rmtree(part, ignore_errors=True)
+    _remove_others(named, folder)
+    return folder
+
+
+def _remove_others(named: Collection[str], unpacked: Path) -> None:
+    """Removes wheels that are not named and what was unpacked before, unless this process uses it."""
+    used = Path(getattr(sys.modules.get("shlight"), "__file__", None) or unpacked / "shlight/__init__.py").parents[1]
+    with contextlib.suppress(OSError):  # others' files
+        for old in WHEELS.iterdir():
+            if old.suffix == ".whl" and old.name not in named:
+                old.unlink()
+            elif old.name.startswith(f"unpacked-{TAG}") and old not in {unpacked, used}:
+                shutil.rmtree(old)
 
 
 def native_problem() -> str:
@@ -78,10 +106,13 @@ def native_problem() -> str:
     except ImportError as error:
         return f"the Python package 'shlight' cannot be loaded ({_unpacking_problem or error}): {_advice()}"
     wanted = _version()
+    if wanted != RUNNING:
+        return f"version {wanted} of the add-on is installed, and version {RUNNING} is running: restart Blender"
     if WHEELS.is_dir() and shlight.__version__ != wanted:
         return (
             f"the add-on is version {wanted}, and the Python package 'shlight' in {Path(shlight.__file__).parent} is "
-            f"version {shlight.__version__}: restart Blender; if that does not help, remove that package"
+            f"version {shlight.__version__}: restart Blender; if that does not help, remove other copies of the add-on "
+            "or that package"
         )
     return ""
 
@@ -102,8 +133,3 @@ def _pythons_of_wheels() -> list[str]:
     """Versions of Python that the add-on has wheels for; none in the source tree."""
     tags = {match for wheel in WHEELS.glob("shlight-*.whl") for match in re.findall(r"-cp(3)(\d+)-cp", wheel.name)}
     return [f"{major}.{minor}" for major, minor in sorted(tags, key=lambda tag: int(tag[1]))]
-
-
-def _version() -> str:
-    manifest = (ADDON / "blender_manifest.toml").read_text(encoding="utf-8")
-    return re.findall(r'^version = "(.+)"', manifest, re.MULTILINE)[0]

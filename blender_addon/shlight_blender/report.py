@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
 
@@ -42,14 +42,21 @@ class Message:
         return f"{shown}: {self.text}"
 
 
+def thing(place: str) -> str:
+    """What a place is part of: "Material 'Wood'" of "Material 'Wood', node 'Noise Texture'"."""
+    name, part, _ = place.partition("', ")
+    return f"{name}'" if part else place
+
+
 class ExportReport:
-    """Messages by their effect, then in the order of their first occurrence.
+    """Messages by their effect, then by how much of the picture that changes, then as they first occurred.
 
     The same text about several things is one message.
     """
 
     def __init__(self) -> None:
         self._messages: dict[str, Message] = {}
+        self._shares: dict[str, float] = {}
 
     def add(self, place: str, text: str, effect: Effect = Effect.LOOK) -> None:
         """Notes `text` about `place`, for instance "Material 'Wood', node 'Noise Texture'"."""
@@ -63,9 +70,22 @@ class ExportReport:
         for message in other:
             for place in message.places:
                 self.add(place, message.text, message.effect)
+        self.weigh(other._shares)
+
+    def things(self) -> set[str]:
+        """What its places are part of."""
+        return {thing(place) for message in self._messages.values() for place in message.places}
+
+    def weigh(self, shares: Mapping[str, float]) -> None:
+        """Says how much of the picture things can change; those that nothing is said of can change all."""
+        self._shares |= {name: max(share, self._shares.get(name, 0.0)) for name, share in shares.items()}
+
+    def _rank(self, message: Message) -> tuple[Effect, float]:
+        share = sum(self._shares.get(name, 1.0) for name in {thing(place) for place in message.places})
+        return message.effect, -min(share, 1.0)
 
     def __iter__(self) -> Iterator[Message]:
-        return iter(sorted(self._messages.values(), key=lambda message: message.effect))
+        return iter(sorted(self._messages.values(), key=self._rank))
 
     def __len__(self) -> int:
         return len(self._messages)

@@ -4,7 +4,6 @@
 Arguments: a folder, a seed and how many steps to take. Prints the steps, so that a walk that fails is known.
 """
 
-import os
 import random
 import sys
 import traceback
@@ -53,9 +52,20 @@ def move():
     bpy.ops.ed.undo_push(message="move")
 
 
-def undo():
-    if bpy.ops.ed.undo.poll():
-        bpy.ops.ed.undo()
+def undo(again=False):
+    operator = bpy.ops.ed.redo if again else bpy.ops.ed.undo
+    if operator.poll():
+        operator()
+
+
+def edit():
+    if bpy.ops.object.editmode_toggle.poll():
+        bpy.ops.object.editmode_toggle()
+
+
+def switch():
+    if ready():
+        window().scene.render.engine = "BLENDER_WORKBENCH"
 
 
 def load():
@@ -78,6 +88,9 @@ STEP = {
     "Esc": (4, lambda: press("ESC")),
     "move": (2, move),
     "undo": (2, undo),
+    "redo": (1, lambda: undo(again=True)),
+    "edit mode": (2, edit),
+    "engine": (2, switch),
     "viewport": (1, shade),
     "new": (2, lambda: bpy.ops.wm.read_homefile()),
     "factory": (1, lambda: bpy.ops.wm.read_factory_settings()),
@@ -90,53 +103,41 @@ STEP = {
     "wait": (4, lambda: None),
 }
 plan = chance.choices(list(STEP), [weight for weight, _ in STEP.values()], k=int(STEPS))
-
-
 plan.append("quit")
 STEP["quit"] = (0, bpy.ops.wm.quit_blender)
+KEY = "F19"
+# Blender lets no script write while any thread is in a method of a class that draws or renders, and sometimes leaves it
+# at that as a render ends, for which a step waits that has begun before. What it prints of that is the test's to judge.
+READ_ONLY = "can't run in readonly state"
 
 
-refused = 0
+class SHLIGHT_OT_step(bpy.types.Operator):
+    """Takes a step. A key starts it, so that its context is the window's own.
 
-
-def walk():
-    global refused
-    name = plan[0]
-    if refused == 0:
-        print(f"step {len(plan)}: {name}", flush=True)
-    try:
-        with bpy.context.temp_override(window=window()):
-            ask_to_write()
-            STEP[name][1]()
-    except (AttributeError, RuntimeError) as error:
-        if any(refusal in str(error) for refusal in ("in this context", "in this state", "in readonly state")):
-            return wait_to_write()
-        traceback.print_exc()
-    except Exception:
-        traceback.print_exc()
-    refused = 0
-    plan.pop(0)
-    return chance.choice([0.02, 0.1, 0.5]) if plan else None
-
-
-def ask_to_write():
-    """Fails where no script may write: add-ons and scripts that are disabled or reloaded then are left half-done."""
-    scene = window().scene
-    scene.frame_end = scene.frame_end
-
-
-def wait_to_write():
-    """Blender lets no script write while any thread is in a method of a class that draws or renders.
-
-    Where a panel is drawn as a render ends, Blender 3.4 leaves it at that for good.
+    In a context that a script gives, Blender 3.4 takes Python's lock for its own while a thread that renders has it.
     """
-    global refused
-    refused += 1
-    if refused == 500:
-        print("Blender lets no script write any more", flush=True)
-        os._exit(0)
-    return 0.02
+
+    bl_idname = "shlight.step"
+    bl_label = "Step"
+
+    def execute(self, context):
+        name = plan.pop(0)
+        print(f"step {len(plan)}: {name}", flush=True)
+        try:
+            STEP[name][1]()
+        except Exception as error:
+            if READ_ONLY not in str(error):
+                traceback.print_exc()
+        return {"FINISHED"}
+
+
+def knock():
+    press(KEY)
+    return chance.choice([0.02, 0.1, 0.5])
 
 
 bpy.context.preferences.view.show_splash = False
-bpy.app.timers.register(walk, first_interval=0.5, persistent=True)
+bpy.utils.register_class(SHLIGHT_OT_step)
+keys = bpy.context.window_manager.keyconfigs.addon.keymaps.new("Window", space_type="EMPTY")
+keys.keymap_items.new(SHLIGHT_OT_step.bl_idname, KEY, "PRESS")
+bpy.app.timers.register(knock, first_interval=0.5, persistent=True)

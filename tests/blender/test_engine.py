@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import shutil
 import subprocess
@@ -261,6 +262,19 @@ import sys, bpy
 bpy.ops.extensions.package_install_files(filepath=sys.argv[-1], repo="user_default", enable_on_install=True)
 bpy.context.scene.render.engine = "SHLIGHT"
 """
+
+
+def test_a_second_copy_is_refused(studio: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As of two repositories of extensions: the first stays as it is, whatever is done with the second."""
+    shutil.copytree(Path(shlight_blender.__file__).parent, tmp_path / "second_copy")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    second = importlib.import_module("second_copy")
+    with pytest.raises(RuntimeError, match="shlight is enabled already, as shlight_blender; disable that"):
+        second.register()
+    second.unregister()
+    assert bpy.types.RenderEngine.bl_rna_get_subclass_py("SHLIGHT") is ShlightRenderEngine
+    studio.simple_scene()
+    assert studio.render("SHLIGHT").any()
 
 
 def test_an_extension_leaves_without_a_traceback(tmp_path: Path) -> None:

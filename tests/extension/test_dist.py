@@ -8,6 +8,7 @@ import os
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -49,11 +50,17 @@ render(sys.argv[-1])
 """
 
 AS_EXTENSION = """
-if bpy.app.version >= (4, 2):
-    bpy.ops.extensions.package_install_files(filepath=sys.argv[-2], repo="user_default", enable_on_install=True)
-else:
-    bpy.ops.preferences.addon_install(filepath=sys.argv[-2])
-    bpy.ops.preferences.addon_enable(module="shlight_blender")
+for _ in range(2):
+    if bpy.app.version >= (4, 2):
+        name = "bl_ext.user_default.shlight_blender"
+        bpy.ops.extensions.package_install_files(filepath=sys.argv[-2], repo="user_default", enable_on_install=True)
+    else:
+        name = "shlight_blender"
+        bpy.ops.preferences.addon_install(filepath=sys.argv[-2])
+        bpy.ops.preferences.addon_enable(module=name)
+for _ in range(10):
+    bpy.ops.preferences.addon_disable(module=name)
+    bpy.ops.preferences.addon_enable(module=name)
 import shlight, OpenImageIO
 render(sys.argv[-1])
 print("from", shlight.__file__, OpenImageIO.__file__)
@@ -110,7 +117,10 @@ def files_of_shlight(profile: Path) -> list[Path]:
 
 
 def test_the_zip_is_an_extension(archive: Path, profile: Path) -> None:
-    """Installed into an empty profile it renders what the source tree renders, and leaves nothing when it goes."""
+    """Installed twice into an empty profile and enabled again and again, it renders what the source tree renders.
+
+    It leaves nothing when it goes.
+    """
     pictures = [str(profile.parent / f"{number}.exr") for number in range(2)]
     (profile.parent / "packages").mkdir()
     *python, script = blender_alone(profile.parent / "packages")
@@ -158,10 +168,12 @@ class Wheels:
         self.patch = monkeypatch
         self.folder = folder / "wheels"
         self.folder.mkdir(parents=True)
+        manifest = folder / "manifest"
+        manifest.write_text("\n".join([f'version = "{native.RUNNING}"', *(f'"./wheels/{name}"' for name in names)]))
         for name in names:
             (self.folder / name).write_bytes(b"no zip")
+        monkeypatch.setattr(native, "MANIFEST", manifest)
         monkeypatch.setattr(native, "WHEELS", self.folder)
-        monkeypatch.setattr(native, "UNPACKED", self.folder / "unpacked")
         monkeypatch.setattr(native, "_unpacking_problem", "")
 
     def problem(self) -> str:
@@ -189,3 +201,21 @@ def test_another_version_of_the_package_is_named(tmp_path: Path, monkeypatch: py
     assert native.native_problem() == ""
     monkeypatch.setattr(shlight, "__version__", "0.0.9")
     assert "is version 0.0.9: restart Blender" in native.native_problem()
+
+
+def test_a_version_installed_over_another_replaces_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As Blender 3.4 installs it: the files of both are there, and the modules of the first go on."""
+    wheels = Wheels(tmp_path, monkeypatch)
+    monkeypatch.setattr(sys, "path", sys.path[:])
+    for version in ("1", "2"):
+        name = f"shlight-{version}-{native.TAG}-{native.TAG}-x.whl"
+        with zipfile.ZipFile(wheels.folder / name, "w") as archive:
+            archive.writestr("version", version)
+        native.MANIFEST.write_text(f'version = "{version}"\n"./wheels/{name}"')
+        native.forget_packages()
+        native.find_packages()
+        folder, wheel = sorted(wheels.folder.iterdir(), reverse=True)
+        assert (folder / "version").read_text() == version
+        assert wheel.name == name
+        assert [path for path in sys.path if str(wheels.folder) in path] == [str(folder)]
+    assert f"version 2 of the add-on is installed, and version {native.RUNNING} is running" in native.native_problem()

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compat import Triangles, values_of
+from ..compat import Triangles, uv_coordinates, values_of
 from .mesh_shape import pointiness, random_per_island
 
 Array = NDArray[np.float32]
@@ -76,8 +76,7 @@ def _uvs(mesh: Any, triangles: Triangles, name: str) -> Array | None:
     layer = _uv_layer(mesh, name)
     if layer is None:
         return None
-    uvs = values_of(layer.data, "uv", np.float32, 2)
-    return np.nan_to_num(uvs, posinf=0.0, neginf=0.0)[triangles.corners]
+    return np.nan_to_num(uv_coordinates(layer), posinf=0.0, neginf=0.0)[triangles.corners]
 
 
 def _tangents(mesh: Any, triangles: Triangles, name: str) -> Array | None:

@@ -22,6 +22,7 @@ from .image_pixels import TEXTURES
 from .lights import add_lamp
 from .meshes import SceneMeshes
 from .settings import report_unsupported_settings
+from .shares import shares_of_picture
 from .world import Bake, SceneWorld
 
 ASKING_SECONDS = 0.05  # between questions whether the export is to go on
@@ -80,6 +81,7 @@ class ExportedScene:
         self.scene = shlight.Scene()
         self.dark = ""
         self._view: View | None = None
+        self._frame: Frame | None = None  # of a camera's picture
         self._surroundings = Surroundings()
         self._meshes = SceneMeshes(self.scene)
         self._world = SceneWorld(self.scene)
@@ -116,11 +118,12 @@ class ExportedScene:
         eye = _eye(camera or blender_scene.camera, blender_scene, depsgraph)
         report = self._new_report("camera")
         self._view = set_camera(self.scene, eye, depsgraph, frame, blender_scene.render, report)
+        self._frame = frame
 
     def look_through(self, view: Any) -> None:
         """A view of a viewport in place of a camera; view: a ViewportView."""
         self._new_report("camera")
-        self._view = view.set_camera(self.scene)
+        self._view, self._frame = view.set_camera(self.scene), None
 
     def update(
         self,
@@ -152,6 +155,7 @@ class ExportedScene:
         report = self._new_report("files")
         for path in TEXTURES.unreadable:
             report.add(f"File '{path}'", "it cannot be read; magenta is used in the place of its picture", Effect.THING)
+        self._weigh_report(depsgraph)
         self._find_darkness(blender_scene)
         return bool(changes)
 
@@ -206,6 +210,12 @@ class ExportedScene:
         elif seen.type in UNSUPPORTED_TYPES:
             text = f"{UNSUPPORTED_TYPES[seen.type]} are not supported; left out"
             report.add(f"Object '{seen.name}'", text, Effect.THING)
+
+    def _weigh_report(self, depsgraph: Any) -> None:
+        """Orders the report of a picture by how much of it each finding can change."""
+        own, report = self.report, self._new_report("shares")
+        if self._view is not None and self._frame is not None and len(own) > 1:
+            report.weigh(shares_of_picture(depsgraph, self._view, self._frame, own.things()))
 
     def _find_darkness(self, blender_scene: Any) -> None:
         """Reports if nothing gives light, with what of the light is left out."""

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: MIT
+"""Scenes with something missing or far too large: the right picture, or one line that says what is wrong."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+
+from shlight.images import write_png
+from shlight_blender import frame
+
+
+def test_a_picture_larger_than_the_memory_is_an_error(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is rendered or saved. In a border that fits the scene is rendered."""
+    studio.simple_scene()
+    info = studio.folder / "meminfo"
+    info.write_text("MemTotal: 9000000 kB\nMemAvailable: 180 kB\nSwapFree: 20 kB\n")
+    monkeypatch.setattr(frame, "MEMORY_INFO", info)
+    with pytest.raises(RuntimeError, match="a picture of 64 × 48 pixels takes about"):
+        studio.render("SHLIGHT")
+    assert not (studio.folder / "shlight.exr").exists()
+    render = studio.scene.render
+    render.use_border = render.use_crop_to_border = True
+    render.border_max_x, render.border_max_y = 0.5, 0.5
+    assert studio.render("SHLIGHT")[..., :3].any()
+
+
+def test_a_scene_without_objects_shows_the_world(studio: Any) -> None:
+    studio.simple_scene()
+    for shown in [each for each in studio.scene.objects if each.type != "CAMERA"]:
+        bpy.data.objects.remove(shown)
+    studio.world((0.2, 0.4, 0.6))
+    studio.compare(mean=1e-5, error=1e-9)
+
+
+@pytest.mark.parametrize("missing", ["library", "texture"])
+def test_what_is_missing_of_a_library(studio: Any, missing: str) -> None:
+    """As Cycles draws it: objects of a library that is gone are not there, a texture that is gone is magenta."""
+    studio.simple_scene()
+    folder = studio.folder
+    write_png(str(folder / "green.png"), np.full((8, 8, 3), (20, 200, 20), np.uint8))
+    material = studio.material()
+    tree = material.node_tree
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image = bpy.data.images.load(str(folder / "green.png"))
+    shader = next(each for each in tree.nodes if each.type == "BSDF_DIFFUSE")
+    tree.links.new(node.outputs["Color"], shader.inputs["Color"])
+    linked = studio.box(material=material, name="Linked", location=(0, 0, 0.5))
+    bpy.data.libraries.write(str(folder / "library.blend"), {linked})
+    for made in (linked, material, node.image):
+        bpy.data.batch_remove([made])
+    with bpy.data.libraries.load(str(folder / "library.blend"), link=True) as (_, wanted):
+        wanted.objects = ["Linked"]
+    studio.scene.collection.objects.link(wanted.objects[0])
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "main.blend"))
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    (folder / {"library": "library.blend", "texture": "green.png"}[missing]).unlink()
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "main.blend"))
+    studio.scene = bpy.context.scene
+    studio.scene.shlight.pixel_samples = 64
+    studio.compare()
+    assert ["green.png' is missing" in line for line in studio.messages()] == [True] * (missing == "texture")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="asks the system for the memory of the process")
+@pytest.mark.parametrize("persistent", [False, True])
+def test_renders_do_not_gather_memory(studio: Any, persistent: bool) -> None:
+    """After the first ones, of a scene that changes and so is exported each time, with textures on and around it."""
+    studio.simple_scene()
+    pixels = np.random.default_rng(1).random((256, 512, 3))
+    material = studio.material()
+    for tree, kind, socket in (
+        (material.node_tree, "ShaderNodeTexImage", next(iter(material.node_tree.nodes)).inputs["Color"]),
+        (
+            studio.world().id_data,
+            "ShaderNodeTexEnvironment",
+            studio.scene.world.node_tree.nodes["Background"].inputs[0],
+        ),
+    ):
+        node = tree.nodes.new(kind)
+        node.image = studio.picture(pixels)
+        tree.links.new(node.outputs["Color"], socket)
+    ball = studio.ball(rings=200, material=material)
+    studio.scene.render.use_persistent_data = persistent
+    memory = []
+    for _ in range(30):
+        ball.location.x += 0.01
+        bpy.ops.render.render()
+        memory.append(int(Path("/proc/self/statm").read_text().split()[1]))
+    first, last = max(memory[:10]), min(memory[-10:])  # what the allocator keeps goes up and down
+    print(f"{last / first - 1:+.2%}")
+    assert last <= 1.05 * first
