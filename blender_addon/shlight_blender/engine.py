@@ -32,13 +32,16 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
 
     bl_idname = ENGINE
     bl_label = "shlight"
-    bl_use_preview = False  # material previews stay with EEVEE
+    bl_use_preview = True
     bl_use_eevee_viewport = True  # and so does the viewport's Material Preview
     bl_use_shading_nodes_custom = False
     bl_use_custom_freestyle = True  # EEVEE would draw the lines, which takes long, or fails, without a graphics card
 
     def render(self, depsgraph: Any) -> None:
         """Renders one view layer. Blender prints exceptions and goes on, so all of them are reported here."""
+        if self.is_preview:
+            self._render_preview(depsgraph)
+            return
         if depsgraph.scene.original not in bpy.data.scenes.values():  # one of Freestyle's own, of strokes
             self._deliver(depsgraph, frame_of(depsgraph.scene.render), {})
             return
@@ -63,6 +66,31 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         except Exception as error:
             traceback.print_exc()
             self._fail(depsgraph, frame, f"{type(error).__name__}: {error}")
+
+    def _render_preview(self, depsgraph: Any) -> None:
+        """The picture of a material, a light or a world in Blender's panels, empty if there can be none."""
+        frame, image = frame_of(depsgraph.scene.render), None
+        try:
+            if not native_problem():
+                import shlight
+
+                from .export import ExportedScene, everything, kept_world, preview_settings
+
+                exported = ExportedScene()
+                exported.look_from(depsgraph, frame=frame)
+                exported.update(depsgraph, everything(), bake=kept_world)
+                image = shlight.render(
+                    exported.scene,
+                    frame.width,
+                    frame.height,
+                    progress=lambda share: not self.test_break(),
+                    **preview_settings(depsgraph.scene).arguments(),
+                )
+        except (ExportError, shlight.RenderCancelled):
+            pass
+        except Exception:
+            traceback.print_exc()
+        self._deliver(depsgraph, frame, {"": image})
 
     def _begin(self, depsgraph: Any) -> None:
         """Starts the record of a render with its first view layer; the others add to it."""

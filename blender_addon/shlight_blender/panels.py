@@ -56,6 +56,25 @@ class SHLIGHT_RENDER_PT_sampling(EnginePanel, bpy.types.Panel):
         layout.prop(settings, "time_limit")
 
 
+class SHLIGHT_RENDER_PT_sampling_viewport(EnginePanel, bpy.types.Panel):
+    """The same of rendered viewports."""
+
+    bl_label = "Viewport"
+    bl_parent_id = "SHLIGHT_RENDER_PT_sampling"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        layout = with_names_aside(self.layout)
+        settings = context.scene.shlight
+        layout.prop(settings, "preview_noise_threshold")
+        column = layout.column(align=True)
+        column.prop(settings, "preview_max_samples")
+        column.prop(settings, "preview_min_samples")
+        layout.prop(settings, "preview_time_limit")
+        layout.prop(context.scene.render, "preview_pixel_size")
+
+
 class SHLIGHT_RENDER_PT_light(EnginePanel, bpy.types.Panel):
     """Where light goes, and how precisely it is integrated."""
 
@@ -267,6 +286,7 @@ _DRAW_SHAPE = {"POINT": _draw_point, "SPOT": _draw_spot, "SUN": _draw_sun, "AREA
 CLASSES = (
     SHLIGHT_OT_use_preset,
     SHLIGHT_RENDER_PT_sampling,
+    SHLIGHT_RENDER_PT_sampling_viewport,
     SHLIGHT_RENDER_PT_light,
     SHLIGHT_RENDER_PT_light_advanced,
     SHLIGHT_RENDER_PT_shadows,

@@ -3,11 +3,11 @@
 
 from ..frame import Frame, frame_of, whole_frame
 from ..report import ExportError, ExportReport
-from .bake import bake_in_background, stop_background
+from .bake import bake_in_background, kept_world, stop_background
 from .camera import Eye, set_projection
 from .changes import Changes, changes_of, everything
 from .scene import ExportedScene, export_scene
-from .settings import RenderSettings, render_settings, viewport_settings
+from .settings import RenderSettings, preview_settings, render_settings, viewport_settings
 
 __all__ = [
     "Changes",
@@ -22,6 +22,8 @@ __all__ = [
     "everything",
     "export_scene",
     "frame_of",
+    "kept_world",
+    "preview_settings",
     "render_settings",
     "set_projection",
     "stop_background",

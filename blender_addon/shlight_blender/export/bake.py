@@ -84,6 +84,12 @@ def _keep(key: bytes, baked: Baked) -> None:
         kept.popitem(last=False)
 
 
+def kept_world(world: Any, scene: Any) -> Baked | None:
+    """The world if it is kept."""
+    key = bake_key(world, scene)
+    return None if key is None else kept.get(key)
+
+
 class _Background:
     """The bake that goes on while Blender is used."""
 

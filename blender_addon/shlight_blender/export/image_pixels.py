@@ -28,7 +28,7 @@ Texture: TypeAlias = "_core.TexturePixels | Future[_core.TexturePixels]"
 
 
 class TextureCache:
-    """Textures by what their pixels depend on."""
+    """Textures by what their pixels depend on. Viewports and final renders ask from threads of their own."""
 
     def __init__(self) -> None:
         self._textures: dict[tuple[Any, ...], tuple[Texture, int]] = {}
@@ -42,7 +42,7 @@ class TextureCache:
         self._export += 1
         self._asked.clear()
         limit = self._export - KEPT_EXPORTS
-        self._textures = {key: entry for key, entry in self._textures.items() if entry[1] >= limit}
+        self._textures = {key: entry for key, entry in list(self._textures.items()) if entry[1] >= limit}
 
     def clear(self) -> None:
         """Drops everything."""
@@ -85,7 +85,7 @@ class TextureCache:
     @property
     def size_in_bytes(self) -> int:
         """Memory that the textures take."""
-        textures = (own.result() if isinstance(own, Future) else own for own, _ in self._textures.values())
+        textures = (own.result() if isinstance(own, Future) else own for own, _ in list(self._textures.values()))
         return sum(texture.size_in_bytes for texture in textures)
 
 

@@ -71,6 +71,19 @@ def viewport_settings(scene: Any) -> RenderSettings:
     )
 
 
+def preview_settings(scene: Any) -> RenderSettings:
+    """Those of a small picture in a panel, which is to be there at once."""
+    return replace(
+        render_settings(scene),
+        tolerance=0.01,
+        noise_threshold=0.1,
+        min_samples=1,
+        max_samples=4,
+        pixel_samples=None,
+        threads=0,  # Blender asks for one
+    )
+
+
 def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportReport) -> None:
     """Notes settings of the scene and its view layer that change Cycles' picture and not shlight's."""
     place = f"Scene '{scene.name}'"
