@@ -24,6 +24,7 @@ def register() -> None:
     import bpy
 
     from . import engine, panels, preferences, properties
+    from .compare import registration
 
     if properties.are_registered():
         return
@@ -32,6 +33,7 @@ def register() -> None:
     properties.register()
     engine.register()
     panels.register()
+    registration.register()
     if not bpy.app.binary_path:
         # Python with the module bpy hangs or crashes at its end while an add-on's classes are registered.
         atexit.register(unregister)
@@ -40,10 +42,12 @@ def register() -> None:
 def unregister() -> None:
     """Stops renders and removes everything that `register` added. Does nothing where it is removed."""
     from . import engine, panels, preferences, properties
+    from .compare import registration
 
     if not properties.are_registered():
         return
     atexit.unregister(unregister)
+    registration.unregister()
     engine.unregister()
     panels.unregister()
     preferences.unregister()
