@@ -18,6 +18,7 @@ APART = 1 / 10  # of the longer side: nearer places count as one
 MOST = 32
 
 Image = npt.NDArray[np.float32]
+Values = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -32,17 +33,22 @@ class Difference:
 def largest_differences(image: Image, halves: tuple[Image, Image], most: int = MOST) -> list[Difference]:
     """The largest first, away from each other, beyond the noise that the halves tell and what edges explain.
 
-    Pictures (height, width, 3 or more). Differences are those of `metrics.relative_difference`, averaged by a tent.
+    Pictures (height, width, 3 or more), finite and not black. Differences are on the scale of `metrics.rel_mse`, with
+    its reference and what is divided by it averaged by a tent each: a quotient of single pixels is biased by noise.
     """
-    reference = (halves[0] + halves[1]) / 2
+    picture, *both = (np.asarray(each, dtype=np.float64)[..., :3] for each in (image, *halves))
+    reference = (both[0] + both[1]) / 2
     height, width = reference.shape[:2]
     radius = max(round(SMOOTHED_SHARE * max(height, width)), 2)
-    smooth = _tent(metrics.relative_difference(image, reference), radius)
-    noise = np.subtract(*(metrics.relative_difference(half, reference) for half in halves)) / 2
-    explained = np.maximum(
-        LEAST_ERRORS * _error_of_tent(noise**2, radius), EDGE_PIXELS * _tent(_steepness(reference), radius)
-    )
-    strength = np.where(np.abs(smooth) > np.maximum(LEAST_DIFFERENCE, explained), np.abs(smooth), 0.0)
+    scale = np.sqrt(_tent(reference, radius) ** 2 + 0.01 * reference.mean() ** 2)
+    smooth = np.mean(_tent(picture - reference, radius) / scale, axis=-1)
+    noise = _error_of_tent((both[0] - both[1]) ** 2 / 4, radius)
+    edges = _tent(_steepness(reference), radius)
+    explained = np.mean(np.maximum(LEAST_ERRORS * noise, EDGE_PIXELS * edges) / scale, axis=-1)
+    # Beside what is different the tent is, too.
+    here = np.mean(metrics.box_mean(picture - reference, 1) / scale, axis=-1) * np.sign(smooth)
+    counts = (np.abs(smooth) > np.maximum(LEAST_DIFFERENCE, explained)) & (here > np.abs(smooth) / 2)
+    strength = np.where(counts, np.abs(smooth), 0.0)
     apart = max(round(APART * max(height, width)), 1)
     rows, columns = np.ogrid[:height, :width]
     found: list[Difference] = []
@@ -53,24 +59,32 @@ def largest_differences(image: Image, halves: tuple[Image, Image], most: int = M
     return found
 
 
-def _tent(values: npt.NDArray[np.float64], radius: int) -> npt.NDArray[np.float64]:
+def _tent(values: Values, radius: int) -> Values:
     """Mean with weights that fall off linearly: a peak is in the middle of what is different."""
     return metrics.box_mean(metrics.box_mean(values, radius), radius)
 
 
-def _error_of_tent(variance: npt.NDArray[np.float64], radius: int) -> npt.NDArray[np.float64]:
+def _error_of_tent(variance: Values, radius: int) -> Values:
     """Standard error of `_tent` of pixels whose variances are estimated, each with one degree of freedom.
 
     Rare bright samples may be missing nearby in both halves: the wider surroundings count where they are noisier.
     """
     side = 2 * radius + 1
-    weights2 = (2 * side**2 + 1) / (3 * side**3)  # sum of squares of the weights along one axis
-    return weights2 * np.sqrt(np.maximum(_tent(variance, radius), _tent(variance, 3 * radius)))
+    weights2 = (2 * side**2 + 1) / (3 * side**3)  # sum of squares of the weights along one axis, inside the picture
+    near_border = np.sqrt(np.multiply.outer(*(side / _neighbours(size, radius) for size in variance.shape[:2])))
+    error: Values = weights2 * np.sqrt(np.maximum(_tent(variance, radius), _tent(variance, 3 * radius)))
+    return error * near_border[..., None]
 
 
-def _steepness(reference: Image) -> npt.NDArray[np.float64]:
-    """Relative step from a pixel to the next one, after the noise is averaged a little."""
+def _neighbours(size: int, radius: int) -> Values:
+    """How many pixels within `radius` each pixel of a row has."""
+    places = np.arange(size, dtype=np.float64)
+    return np.minimum(places, radius) + np.minimum(places[::-1], radius) + 1
+
+
+def _steepness(reference: Values) -> Values:
+    """Step from a pixel to the next one, after the noise is averaged a little."""
     height, width = reference.shape[:2]
     calm = np.pad(metrics.box_mean(reference, 1), ((1, 1), (1, 1), (0, 0)), mode="edge")
     steps = (calm[2:, 1:-1] - calm[:height, 1:-1], calm[1:-1, 2:] - calm[1:-1, :width])
-    return np.hypot(*(metrics.relative_difference(reference + step / 2, reference) for step in steps))
+    return np.hypot(*steps) / 2

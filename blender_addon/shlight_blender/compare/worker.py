@@ -64,7 +64,7 @@ class CompareWorker(SameTimeWorker[CompareOptions]):
             use_denoiser(self._scene.cycles)  # its absence is said before anything is rendered
 
     def _halves(self, figures: dict[str, Any], time_of: SampleTime) -> list[Image]:
-        """Two independent pictures of Cycles, which tell its noise: of the reference, or of shlight's time or longer."""
+        """Two independent pictures of Cycles, which tell its noise: the reference, or as long as shlight or longer."""
         budget = self._options.reference_seconds
         if budget > 0:
             self._stage("Reference", budget)
