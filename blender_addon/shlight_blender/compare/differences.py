@@ -23,7 +23,7 @@ Values = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Difference:
-    """A place [pixels from the first pixel's outer corner], and the mean relative difference around it, signed."""
+    """A place [pixels from the first pixel's outer corner], and the relative difference around it, signed."""
 
     x: float
     y: float
@@ -33,22 +33,24 @@ class Difference:
 def largest_differences(image: Image, halves: tuple[Image, Image], most: int = MOST) -> list[Difference]:
     """The largest first, away from each other, beyond the noise that the halves tell and what edges explain.
 
-    Pictures (height, width, 3 or more), finite and not black. Differences are on the scale of `metrics.rel_mse`, with
-    its reference and what is divided by it averaged by a tent each: a quotient of single pixels is biased by noise.
+    Pictures (height, width, 3 or more), finite and not black. A difference is x - r over √(r² + 0.01 r̄²) of the means
+    x and r of RGB, as `metrics.rel_mse` squares it. x - r and r are averaged by a tent each: a quotient of single
+    pixels is biased by noise.
     """
-    picture, *both = (np.asarray(each, dtype=np.float64)[..., :3] for each in (image, *halves))
-    reference = (both[0] + both[1]) / 2
-    height, width = reference.shape[:2]
+    picture, first, second = (np.mean(each[..., :3], axis=-1, dtype=np.float64) for each in (image, *halves))
+    reference = (first + second) / 2
+    height, width = reference.shape
     radius = max(round(SMOOTHED_SHARE * max(height, width)), 2)
     scale = np.sqrt(_tent(reference, radius) ** 2 + 0.01 * reference.mean() ** 2)
-    smooth = np.mean(_tent(picture - reference, radius) / scale, axis=-1)
-    noise = _error_of_tent((both[0] - both[1]) ** 2 / 4, radius)
+    smooth = _tent(picture - reference, radius) / scale
+    noise = _error_of_tent((first - second) ** 2 / 4, radius)
     edges = _tent(_steepness(reference), radius)
-    explained = np.mean(np.maximum(LEAST_ERRORS * noise, EDGE_PIXELS * edges) / scale, axis=-1)
-    # Beside what is different the tent is, too.
-    here = np.mean(metrics.box_mean(picture - reference, 1) / scale, axis=-1) * np.sign(smooth)
-    counts = (np.abs(smooth) > np.maximum(LEAST_DIFFERENCE, explained)) & (here > np.abs(smooth) / 2)
-    strength = np.where(counts, np.abs(smooth), 0.0)
+    explained = np.maximum(LEAST_ERRORS * noise, EDGE_PIXELS * edges) / scale
+    # Beside what is different the tent is, too: only its peaks count, and there the pixels themselves.
+    size = np.abs(smooth)
+    here = metrics.box_mean(picture - reference, 1) / scale * np.sign(smooth)
+    counts = (size > np.maximum(LEAST_DIFFERENCE, explained)) & (here > size / 2) & (size >= _largest(size, radius))
+    strength = np.where(counts, size, 0.0)
     apart = max(round(APART * max(height, width)), 1)
     rows, columns = np.ogrid[:height, :width]
     found: list[Difference] = []
@@ -64,6 +66,14 @@ def _tent(values: Values, radius: int) -> Values:
     return metrics.box_mean(metrics.box_mean(values, radius), radius)
 
 
+def _largest(values: Values, radius: int) -> Values:
+    """Largest of the (2 radius + 1)² neighbours of each pixel."""
+    for axis in range(2):
+        padded = np.pad(values, [(radius, radius) if each == axis else (0, 0) for each in range(2)], mode="edge")
+        values = np.lib.stride_tricks.sliding_window_view(padded, 2 * radius + 1, axis).max(axis=-1)
+    return values
+
+
 def _error_of_tent(variance: Values, radius: int) -> Values:
     """Standard error of `_tent` of pixels whose variances are estimated, each with one degree of freedom.
 
@@ -72,8 +82,8 @@ def _error_of_tent(variance: Values, radius: int) -> Values:
     side = 2 * radius + 1
     weights2 = (2 * side**2 + 1) / (3 * side**3)  # sum of squares of the weights along one axis, inside the picture
     near_border = np.sqrt(np.multiply.outer(*(side / _neighbours(size, radius) for size in variance.shape[:2])))
-    error: Values = weights2 * np.sqrt(np.maximum(_tent(variance, radius), _tent(variance, 3 * radius)))
-    return error * near_border[..., None]
+    error: Values = weights2 * np.sqrt(np.maximum(_tent(variance, radius), metrics.box_mean(variance, 3 * radius)))
+    return error * near_border
 
 
 def _neighbours(size: int, radius: int) -> Values:
@@ -85,6 +95,6 @@ def _neighbours(size: int, radius: int) -> Values:
 def _steepness(reference: Values) -> Values:
     """Step from a pixel to the next one, after the noise is averaged a little."""
     height, width = reference.shape[:2]
-    calm = np.pad(metrics.box_mean(reference, 1), ((1, 1), (1, 1), (0, 0)), mode="edge")
+    calm = np.pad(metrics.box_mean(reference, 1), 1, mode="edge")
     steps = (calm[2:, 1:-1] - calm[:height, 1:-1], calm[1:-1, 2:] - calm[1:-1, :width])
     return np.hypot(*steps) / 2
