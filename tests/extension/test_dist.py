@@ -57,6 +57,8 @@ else:
 import shlight, OpenImageIO
 render(sys.argv[-1])
 print("from", shlight.__file__, OpenImageIO.__file__)
+bpy.ops.shlight.compare()
+print("compared", *bpy.data.images["shlight Comparison"].size)
 """
 
 UNINSTALL = """
@@ -110,13 +112,14 @@ def files_of_shlight(profile: Path) -> list[Path]:
 
 
 def test_the_zip_is_an_extension(archive: Path, profile: Path) -> None:
-    """Installed into an empty profile it renders what the source tree renders, and leaves nothing when it goes."""
+    """Installed into an empty profile it renders what the source tree renders, compares, and leaves nothing."""
     pictures = [str(profile.parent / f"{number}.exr") for number in range(2)]
     (profile.parent / "packages").mkdir()
     *python, script = blender_alone(profile.parent / "packages")
     said = run([*python, script + RENDER + AS_EXTENSION + UNINSTALL, str(archive), pictures[0]], profile)
     places = next(line for line in said.splitlines() if line.startswith("from")).split()[1:]
     assert all(place.startswith(str(profile)) for place in places), places
+    assert "compared 96 64" in said
     assert files_of_shlight(profile) == []
     run([sys.executable, "-c", RENDER + FROM_SOURCE_TREE, pictures[1]], profile)
     np.testing.assert_array_equal(*(read_exr(picture) for picture in pictures))
@@ -124,7 +127,7 @@ def test_the_zip_is_an_extension(archive: Path, profile: Path) -> None:
 
 @pytest.mark.skipif(BLENDER is None, reason="no program named blender is installed")
 def test_the_zip_is_a_legacy_add_on(archive: Path, profile: Path) -> None:
-    """In Blender 3.4 it renders what the source tree renders, and all that it has is in its own folder."""
+    """In Blender 3.4 it renders what the source tree renders, compares, and has all in its own folder."""
     pictures = [str(profile.parent / f"{number}.exr") for number in range(2)]
     for script, picture in (
         (RENDER + AS_EXTENSION, pictures[0]),
@@ -132,7 +135,8 @@ def test_the_zip_is_a_legacy_add_on(archive: Path, profile: Path) -> None:
     ):
         (profile.parent / "script.py").write_text(script)
         arguments = ["--factory-startup", "--python-exit-code", "1", "--python", str(profile.parent / "script.py")]
-        run([str(BLENDER), "-b", *arguments, "--", str(archive), picture], profile)
+        said = run([str(BLENDER), "-b", *arguments, "--", str(archive), picture], profile)
+        assert ("compared 96 64" in said) == (AS_EXTENSION in script)
     folder = next(profile.rglob("shlight_blender"))
     assert folder.parts[-3:] == ("scripts", "addons", "shlight_blender")
     assert all(path.is_relative_to(folder) for path in files_of_shlight(profile))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The process in which Blender renders; `supervision` starts it and listens to its messages.
+"""The process in which Blender renders; `process` starts it and reads its messages.
 
 usage: python -m <module of the worker> <folder> <file descriptor for messages>
 
