@@ -47,6 +47,13 @@ def render(**what):
         bpy.ops.render.render("INVOKE_DEFAULT", **what)
 
 
+def compare():
+    if ready() and addon_utils.check("cycles")[1] and not bpy.app.is_job_running("RENDER"):
+        session = sys.modules[f"{ADDON}.compare.session"].session
+        if session.job is None:
+            bpy.ops.shlight.compare("INVOKE_DEFAULT")
+
+
 def move():
     for shown in window().scene.objects:
         shown.location.x += chance.uniform(-0.1, 0.1)
@@ -74,6 +81,7 @@ def shade():
 STEP = {
     "F12": (6, lambda: ready() and press("F12")),
     "render": (6, render),
+    "compare": (2, compare),
     "animation": (3, lambda: render(animation=True)),
     "Esc": (4, lambda: press("ESC")),
     "move": (2, move),
