@@ -27,6 +27,7 @@ def register() -> None:
     import bpy
 
     from . import engine, panels, preferences, properties, running
+    from .compare import registration
 
     if properties.are_registered():
         return
@@ -39,6 +40,7 @@ def register() -> None:
     properties.register()
     engine.register()
     panels.register()
+    registration.register()
     if not bpy.app.binary_path:
         # Python with the module bpy hangs or crashes at its end while an add-on's classes are registered.
         atexit.register(unregister)
@@ -47,11 +49,13 @@ def register() -> None:
 def unregister() -> None:
     """Stops renders and removes everything that `register` added. Does nothing where it is removed."""
     from . import engine, panels, preferences, properties
+    from .compare import registration
 
     if not properties.are_registered():
         return
     atexit.unregister(unregister)
     engine.unregister()
+    registration.unregister()
     panels.unregister()
     preferences.unregister()
     properties.unregister()

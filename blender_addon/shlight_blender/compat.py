@@ -243,6 +243,17 @@ def set_sample_range(cycles: Any, first: int, count: int, of: int) -> None:
         cycles.samples = count
 
 
+FLAT_SHADER = "UNIFORM_COLOR" if IS_BLENDER_4 else "2D_UNIFORM_COLOR"  # of module gpu
+
+
+def draw_progress(layout: Any, text: str, share: float) -> None:
+    """A bar with text, or where Blender has no bars (before 4.0) the share in percent."""
+    if hasattr(layout, "progress"):
+        layout.progress(text=text, factor=share)
+    else:
+        layout.label(text=f"{text}, {share:.0%}" if share > 0 else text)
+
+
 def has_node_switch(owner: Any) -> bool:
     """True if `use_nodes` of a material, world or lamp is read.
 

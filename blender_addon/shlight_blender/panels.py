@@ -10,6 +10,7 @@ from typing import Any
 import bpy
 
 from . import report_panel
+from .compare import panel as compare_panel
 from .compat import LAMPS, has_node_switch, nodes_by_engine, shadow_switch, uses_nodes
 from .engine_panel import EnginePanel, with_names_aside
 from .presets import SHLIGHT_OT_use_preset, draw_presets
@@ -293,6 +294,7 @@ CLASSES = (
     SHLIGHT_RENDER_PT_film,
     SHLIGHT_RENDER_PT_performance,
     *report_panel.CLASSES,
+    *compare_panel.CLASSES,
     SHLIGHT_WORLD_PT_baking,
     SHLIGHT_OBJECT_PT_ray_visibility,
     SHLIGHT_LIGHT_PT_light,

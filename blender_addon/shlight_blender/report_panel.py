@@ -86,7 +86,7 @@ class SHLIGHT_RENDER_PT_report(EnginePanel, bpy.types.Panel):
             self.layout.label(text="Render to see what shlight draws otherwise than Cycles")
             return
         if record.shown.scene_error:
-            _draw_text(self.layout, context, record.shown.scene_error, "ERROR")
+            draw_text(self.layout, context, record.shown.scene_error, "ERROR")
         messages = [message for message in record.shown.report if message.effect < Effect.SLIGHT]
         if not messages and not record.shown.scene_error:
             self.layout.label(text="As Cycles draws it", icon="CHECKMARK")
@@ -116,7 +116,7 @@ class SHLIGHT_RENDER_PT_report_slight(EnginePanel, bpy.types.Panel):
 
 def _draw_message(layout: Any, context: Any, message: Message) -> None:
     box = layout.box().column(align=True)
-    _draw_text(box, context, message.text[:1].upper() + message.text[1:], ICONS.get(message.effect, "INFO"))
+    draw_text(box, context, message.text[:1].upper() + message.text[1:], ICONS.get(message.effect, "INFO"))
     for place in message.places[:MOST_PLACES]:
         if leads_somewhere(place):
             box.operator(SHLIGHT_OT_show_place.bl_idname, text=place, icon="RESTRICT_SELECT_OFF").place = place
@@ -126,7 +126,8 @@ def _draw_message(layout: Any, context: Any, message: Message) -> None:
         box.label(text=f"and {len(message.places) - MOST_PLACES} more", icon="BLANK1")
 
 
-def _draw_text(layout: Any, context: Any, text: str, icon: str) -> None:
+def draw_text(layout: Any, context: Any, text: str, icon: str) -> None:
+    """Text in lines that fit the region; the icon is before the first of them."""
     scale = context.preferences.system.ui_scale
     letters = max(int((context.region.width / scale - 60) / PIXELS_PER_LETTER), 20)
     for number, line in enumerate(textwrap.wrap(text, letters)):

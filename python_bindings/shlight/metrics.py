@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "box_mean",
     "mean_ratio",
     "reference_rel_mse",
     "rel_mse",
@@ -47,7 +48,7 @@ def standard_error(half_a: npt.ArrayLike, half_b: npt.ArrayLike, radius: int = 2
     it is averaged over the square of neighbours within `radius` pixels.
     """
     a, b = _pair(half_a, half_b, ("half_a", "half_b"))
-    return np.sqrt(_box_mean((a - b) ** 2 / 4, radius))
+    return np.sqrt(box_mean((a - b) ** 2 / 4, radius))
 
 
 def reference_rel_mse(half_a: npt.ArrayLike, half_b: npt.ArrayLike) -> float:
@@ -119,15 +120,17 @@ def _scale2(reference: npt.NDArray[np.float64], mean: float | None = None) -> np
     return reference**2 + 0.01 * mean**2
 
 
-def _box_mean(values: npt.NDArray[np.float64], radius: int) -> npt.NDArray[np.float64]:
-    """Mean over the (2 radius + 1)² neighbours, at the border over those that exist."""
-    height, width = values.shape[:2]
-    total = np.zeros_like(values)
-    count = np.zeros((height, width, 1))
-    for dy in range(-radius, radius + 1):
-        for dx in range(-radius, radius + 1):
-            to = (slice(max(0, -dy), min(height, height - dy)), slice(max(0, -dx), min(width, width - dx)))
-            source = (slice(max(0, dy), min(height, height + dy)), slice(max(0, dx), min(width, width + dx)))
-            total[to] += values[source]
+def box_mean(values: npt.ArrayLike, radius: int) -> npt.NDArray[np.float64]:
+    """Mean over the (2 radius + 1)² neighbours of pixels (height, width, …), at the border over those that exist."""
+    mean = np.asarray(values, dtype=np.float64)
+    for axis in range(2):
+        mean = np.moveaxis(mean, axis, 0)
+        size = len(mean)
+        total, count = np.zeros_like(mean), np.zeros((size, *[1] * (mean.ndim - 1)))
+        for step in range(-min(radius, size - 1), min(radius, size - 1) + 1):
+            to = slice(max(0, -step), min(size, size - step))
+            source = slice(max(0, step), min(size, size + step))
+            total[to] += mean[source]
             count[to] += 1
-    return total / count
+        mean = np.moveaxis(total / count, 0, axis)
+    return mean

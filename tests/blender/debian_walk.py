@@ -46,6 +46,13 @@ def render(**what):
         bpy.ops.render.render("INVOKE_DEFAULT", **what)
 
 
+def compare():
+    if ready() and addon_utils.check("cycles")[1] and not bpy.app.is_job_running("RENDER"):
+        session = sys.modules[f"{ADDON}.compare.session"].session
+        if session.job is None:
+            bpy.ops.shlight.compare("INVOKE_DEFAULT")
+
+
 def move():
     for shown in window().scene.objects:
         shown.location.x += chance.uniform(-0.1, 0.1)
@@ -81,9 +88,21 @@ def shade():
             area.spaces[0].shading.type = chance.choice(["RENDERED", "SOLID"])
 
 
+def orbit():
+    for area in window().screen.areas:
+        if area.type == "VIEW_3D":
+            area.spaces[0].region_3d.view_distance *= chance.choice([0.8, 1.25])
+
+
+def light():
+    for lamp in bpy.data.lights:
+        lamp.energy *= chance.choice([0.8, 1.25])
+
+
 STEP = {
     "F12": (6, lambda: ready() and press("F12")),
     "render": (6, render),
+    "compare": (2, compare),
     "animation": (3, lambda: render(animation=True)),
     "Esc": (4, lambda: press("ESC")),
     "move": (2, move),
@@ -91,7 +110,9 @@ STEP = {
     "redo": (1, lambda: undo(again=True)),
     "edit mode": (2, edit),
     "engine": (2, switch),
-    "viewport": (1, shade),
+    "viewport": (4, shade),
+    "orbit": (3, orbit),
+    "light": (3, light),
     "new": (2, lambda: bpy.ops.wm.read_homefile()),
     "factory": (1, lambda: bpy.ops.wm.read_factory_settings()),
     "save": (2, lambda: bpy.ops.wm.save_as_mainfile(filepath=FILE)),

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from typing import Any
 
 import numpy as np
@@ -174,12 +175,12 @@ def test_a_bake_that_fails_is_named(studio: Any, monkeypatch: pytest.MonkeyPatch
     studio.plane()
     studio.camera()
     set_sky(studio, disc=False)
-    monkeypatch.setattr(bake, "_command", lambda folder: [bake.sys.executable, "-c", "raise SystemExit('no Cycles')"])
+    monkeypatch.setattr(bake, "command", lambda *_: [sys.executable, "-c", "raise SystemExit('no Cycles')"])
     text = "\n".join(studio.messages())
-    assert "World 'World': it could not be baked to a picture (Blender ended with code 1" in text
+    assert "World 'World': it could not be baked to a picture (Blender ended unexpectedly with code 1" in text
     assert "no Cycles" in text
     assert "node 'Sky Texture': varying values are not supported" in text
-    monkeypatch.setattr(bake, "_command", lambda folder: ["/nowhere/blender"])
+    monkeypatch.setattr(bake, "command", lambda *_: ["/nowhere/blender"])
     assert "No such file" in "\n".join(studio.messages())
 
 
@@ -189,7 +190,7 @@ def sleeping(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     popen = bake.subprocess.Popen
 
     def start(command: Any, **given: Any) -> Any:
-        started.append(popen([bake.sys.executable, "-c", "import time; time.sleep(60)"], **given))
+        started.append(popen([sys.executable, "-c", "import time; time.sleep(60)"], **given))
         return started[-1]
 
     monkeypatch.setattr(bake.subprocess, "Popen", start)

@@ -238,3 +238,28 @@ def check_screen(folder: Path, region: list[int]) -> None:
     expected = shown[np.ix_(*(each // 2 for each in at))]
     # Bytes, and edges between pixels that are drawn linearly.
     assert np.abs(screen[np.ix_(*at)] - expected).mean() <= 0.01
+
+
+def test_comparing_in_the_window(tmp_path: Path) -> None:
+    """Beside the window, with its results shown, dragged and kept over undo; whatever ends it leaves nothing."""
+    code, output = run_in_window("--enable-event-simulate", script="debian_compare.py", folder=tmp_path)
+    assert code == 0, output
+    assert "Traceback" not in output, output
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert "a comparison is running" in found["twice"]
+    assert "Reference" in found["stages"]
+    assert found["is_dirty"] == found["was_dirty"] is True
+    assert found["unsaved_images"] == found["unsaved_after_drag"] == []
+    assert found["shown"] == "shlight Comparison"
+    assert found["places"][0][0] == "Object 'Cube'"
+    assert any("Velvet BSDF is not supported" in message for message in found["places"][0][1])
+    assert abs(found["split"] - 0.25) <= 0.01
+    assert found["corner_on_screen"] == found["corner"]
+    assert found["marker"] == 255
+    assert found["kept"]
+    assert found["shown_after_undo"] == "shlight Difference"
+    assert set(found["ends"]) == {"press_escape", "press_cancel", "undo", "close_file", "disable"}
+    for way, end in found["ends"].items():
+        assert end == {"running": True, "job": False, "process": False, "files": []}, way
+    assert found["after_file"] == [False, False]
+    assert not found["operator_left"]

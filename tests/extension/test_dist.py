@@ -64,6 +64,8 @@ for _ in range(10):
 import shlight, OpenImageIO
 render(sys.argv[-1])
 print("from", shlight.__file__, OpenImageIO.__file__)
+bpy.ops.shlight.compare()
+print("compared", *bpy.data.images["shlight Comparison"].size)
 """
 
 UNINSTALL = """
@@ -119,7 +121,7 @@ def files_of_shlight(profile: Path) -> list[Path]:
 def test_the_zip_is_an_extension(archive: Path, profile: Path) -> None:
     """Installed twice into an empty profile and enabled again and again, it renders what the source tree renders.
 
-    It leaves nothing when it goes.
+    It compares, and leaves nothing when it goes.
     """
     pictures = [str(profile.parent / f"{number}.exr") for number in range(2)]
     (profile.parent / "packages").mkdir()
@@ -127,6 +129,7 @@ def test_the_zip_is_an_extension(archive: Path, profile: Path) -> None:
     said = run([*python, script + RENDER + AS_EXTENSION + UNINSTALL, str(archive), pictures[0]], profile)
     places = next(line for line in said.splitlines() if line.startswith("from")).split()[1:]
     assert all(place.startswith(str(profile)) for place in places), places
+    assert "compared 96 64" in said
     assert files_of_shlight(profile) == []
     run([sys.executable, "-c", RENDER + FROM_SOURCE_TREE, pictures[1]], profile)
     np.testing.assert_array_equal(*(read_exr(picture) for picture in pictures))
@@ -134,7 +137,7 @@ def test_the_zip_is_an_extension(archive: Path, profile: Path) -> None:
 
 @pytest.mark.skipif(BLENDER is None, reason="no program named blender is installed")
 def test_the_zip_is_a_legacy_add_on(archive: Path, profile: Path) -> None:
-    """In Blender 3.4 it renders what the source tree renders, and all that it has is in its own folder."""
+    """In Blender 3.4 it renders what the source tree renders, compares, and has all in its own folder."""
     pictures = [str(profile.parent / f"{number}.exr") for number in range(2)]
     for script, picture in (
         (RENDER + AS_EXTENSION, pictures[0]),
@@ -142,7 +145,8 @@ def test_the_zip_is_a_legacy_add_on(archive: Path, profile: Path) -> None:
     ):
         (profile.parent / "script.py").write_text(script)
         arguments = ["--factory-startup", "--python-exit-code", "1", "--python", str(profile.parent / "script.py")]
-        run([str(BLENDER), "-b", *arguments, "--", str(archive), picture], profile)
+        said = run([str(BLENDER), "-b", *arguments, "--", str(archive), picture], profile)
+        assert ("compared 96 64" in said) == (AS_EXTENSION in script)
     folder = next(profile.rglob("shlight_blender"))
     assert folder.parts[-3:] == ("scripts", "addons", "shlight_blender")
     assert all(path.is_relative_to(folder) for path in files_of_shlight(profile))

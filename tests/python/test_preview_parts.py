@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from shlight_blender.comparison import pictures, timing
+from shlight_blender.comparison import measurements, pictures, timing
 from shlight_blender.comparison.reference import render_halves
-from shlight_blender.preview import figures, picture
 from shlight_blender.preview.progress import Progress
 
 
@@ -62,9 +61,9 @@ def test_the_reference_keeps_to_its_time_and_its_samples() -> None:
 
 
 def test_an_error_that_noise_hides_is_given_as_a_bound() -> None:
-    assert figures.error_text({"rel_mse": 3.14e-5, "rel_mse_standard_error": 2e-6}) == "3.1e-05 ± 2e-06"
-    assert figures.error_text({"rel_mse": 3e-6, "rel_mse_standard_error": 2e-6}) == "≤ 7.0e-06"
-    assert figures.error_text({"rel_mse": -3e-6, "rel_mse_standard_error": 2e-6}) == "≤ 4.0e-06"
+    assert measurements.error_text({"rel_mse": 3.14e-5, "rel_mse_standard_error": 2e-6}) == "3.1e-05 ± 2e-06"
+    assert measurements.error_text({"rel_mse": 3e-6, "rel_mse_standard_error": 2e-6}) == "≤ 7.0e-06"
+    assert measurements.error_text({"rel_mse": -3e-6, "rel_mse_standard_error": 2e-6}) == "≤ 4.0e-06"
 
 
 def test_a_terminal_shows_a_bar_that_is_full_only_at_the_end() -> None:
@@ -83,4 +82,4 @@ def test_the_picture_is_bright_enough_and_its_scale_round() -> None:
     assert pictures.common_exposure(dim) == pytest.approx(3)
     assert pictures.common_exposure(0 * dim) == 0
     for share, limit in ((0.012, 2.0), (0.02, 2.0), (0.049, 5.0), (0.08, 10.0), (0.0, 0.1)):
-        assert picture.difference_limit(np.full((8, 8), -share)) == pytest.approx(limit)
+        assert pictures.difference_limit(np.full((8, 8), -share)) == pytest.approx(limit)

@@ -49,10 +49,10 @@ def _build(script: Path) -> Any:
         raise SceneError(f"{type(error).__name__}: {' '.join(str(error).split())}") from error
 
 
-def open_blend(path: Path) -> Any:
+def open_blend(path: Path, *, use_scripts: bool = False) -> Any:
     """Opens a Blender file and returns its scene."""
     try:
-        bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False, use_scripts=False)
+        bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False, use_scripts=use_scripts)
     except RuntimeError as error:
         raise SceneError(_reason(error)) from error
     return bpy.context.scene
@@ -75,16 +75,21 @@ def prepare(scene: Any, options: RenderOptions) -> None:
     render.resolution_x, render.resolution_y = options.size or _default_size(render)
     render.resolution_percentage = 100
     render.use_border = False
+    render.threads_mode = "FIXED" if options.threads else "AUTO"
+    if options.threads:
+        render.threads = options.threads
+    scene.cycles.pixel_filter_type = "BOX"  # both engines read it
+    leave_plain(render)
+
+
+def leave_plain(render: Any) -> None:
+    """One picture with nothing after the renderer, saved as it is."""
     render.use_multiview = False
     render.use_compositing = False
     render.use_sequencer = False
     render.use_stamp = False
     # Each render exports the scene anew: that is part of its time, and Cycles would go on with its old settings.
     render.use_persistent_data = False
-    render.threads_mode = "FIXED" if options.threads else "AUTO"
-    if options.threads:
-        render.threads = options.threads
-    scene.cycles.pixel_filter_type = "BOX"  # both engines read it
     image = render.image_settings
     image.color_management = "FOLLOW_SCENE"
     image.file_format = "OPEN_EXR"
@@ -152,10 +157,13 @@ def _glows(seen: Any) -> bool:
     return any(read_material(material, ExportReport(), Surroundings()).emits() for material in materials)
 
 
-def use_cycles(scene: Any, samples: int, seed: int, *, first: int = 0, of: int | None = None) -> None:
+def use_cycles(
+    scene: Any, samples: int, seed: int, *, first: int = 0, of: int | None = None, denoise: bool = False
+) -> None:
     """The next render is Cycles': direct light only, nothing that trades truth for calm.
 
-    The samples are those from number `first` on of a sequence of `of` (by default of `samples`).
+    The samples are those from number `first` on of a sequence of `of` (by default of `samples`). SceneError where it is
+    to be denoised and this Blender has no denoiser.
     """
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
@@ -171,8 +179,18 @@ def use_cycles(scene: Any, samples: int, seed: int, *, first: int = 0, of: int |
     cycles.light_sampling_threshold = 0.0
     cycles.blur_glossy = 0.0
     cycles.use_adaptive_sampling = False
-    cycles.use_denoising = False
+    cycles.use_denoising = denoise
+    if denoise:
+        use_denoiser(cycles)
     cycles.use_guiding = False
     cycles.film_exposure = 1.0
     for layer in scene.view_layers:
         layer.samples = 0  # 0: the scene's number
+
+
+def use_denoiser(cycles: Any) -> None:
+    """Chooses OpenImageDenoise; SceneError where Blender is built without it."""
+    try:
+        cycles.denoiser = "OPENIMAGEDENOISE"
+    except TypeError:
+        raise SceneError("the Cycles of this Blender is built without OpenImageDenoise") from None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The process in which Blender renders; `supervision` starts it and listens to its messages.
+"""The process in which Blender renders; `process` starts it and reads its messages.
 
 usage: python -m <module of the worker> <folder> <file descriptor for messages>
 
@@ -25,10 +25,8 @@ import bpy
 import numpy as np
 import numpy.typing as npt
 
-import shlight_blender
-from shlight import images
-
 from .. import record
+from .. import register as register_addon
 from .options import RenderOptions
 from .reference import render_halves
 from .scene import SceneError, few_pixels, prepare, use_cycles, use_shlight, without_shadows
@@ -66,8 +64,11 @@ class Worker(Generic[Options]):
         """Takes a scene that Blender has opened."""
         self._scene = scene
         bpy.ops.preferences.addon_enable(module="cycles")
-        shlight_blender.register()
-        prepare(scene, self._options)
+        register_addon()
+        self._set_up()
+
+    def _set_up(self) -> None:
+        prepare(self._scene, self._options)
 
     def _shlight(self) -> tuple[float, float]:
         """Leaves shlight's picture in shlight.exr and what is known of it in `record`; seconds of it and its warm-up.
@@ -95,8 +96,8 @@ class Worker(Generic[Options]):
         use_shlight(self._scene, self._options)
         return _render()
 
-    def _render_cycles(self, samples: int, seed: int, **part: int) -> float:
-        use_cycles(self._scene, samples, seed, **part)
+    def _render_cycles(self, samples: int, seed: int, **further: Any) -> float:
+        use_cycles(self._scene, samples, seed, **further)
         with nullcontext() if self._scene.shlight.use_shadows else without_shadows():
             return _render()
 
@@ -104,7 +105,7 @@ class Worker(Generic[Options]):
         """See reference.Render. Blender hands a picture out through a file only; its time counts too."""
         start = time.perf_counter()
         self._render_cycles(samples, SEEDS_OF_HALVES[half], first=first, of=(self._options.samples + 1) // 2)
-        image = images.read_exr(self._save("part.exr"))
+        image = read_picture(self._save("part.exr"))
         return time.perf_counter() - start, image
 
     def _save(self, name: str) -> Path:
@@ -125,6 +126,16 @@ def _render() -> float:
     start = time.perf_counter()
     bpy.ops.render.render()
     return time.perf_counter() - start
+
+
+def read_picture(path: Path) -> npt.NDArray[np.float32]:
+    """A picture that Blender has saved: (height, width, 4), row 0 on top. Not every Blender has OpenImageIO."""
+    image = bpy.data.images.load(str(path))
+    width, height = image.size
+    pixels = np.empty(width * height * 4, dtype=np.float32)
+    image.pixels.foreach_get(pixels)
+    bpy.data.images.remove(image)
+    return np.ascontiguousarray(pixels.reshape(height, width, 4)[::-1])
 
 
 def _one_line(error: Exception) -> str:

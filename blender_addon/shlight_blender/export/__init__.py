@@ -3,7 +3,7 @@
 
 from ..frame import Frame, frame_of, whole_frame
 from ..report import ExportError, ExportReport
-from .bake import bake_in_background, kept_world, stop_background
+from .bake import bake_in_background, kept_world
 from .camera import Eye, set_projection
 from .changes import Changes, changes_of, everything
 from .scene import ExportedScene, export_scene
@@ -26,7 +26,6 @@ __all__ = [
     "preview_settings",
     "render_settings",
     "set_projection",
-    "stop_background",
     "viewport_settings",
     "whole_frame",
 ]

@@ -7,10 +7,9 @@ What was baked is kept as long as Blender runs; `bake_key` says what a world mus
 
 from __future__ import annotations
 
+import atexit
 import json
-import os
 import subprocess
-import sys
 import tempfile
 import threading
 import time
@@ -24,6 +23,8 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..comparison.process import last_words
+from ..other_blender import command, environment, save_unsaved_images
 from .bake_key import bake_key
 from .nodes import all_nodes
 
@@ -100,11 +101,17 @@ class _Background:
         self._stopped = False
         self._folder = tempfile.TemporaryDirectory(prefix="shlight_world_")
         _write(Path(self._folder.name), world, scene)
-        threading.Thread(target=self._run, name="shlight world", daemon=True).start()
+        self._thread = threading.Thread(target=self._run, name="shlight world", daemon=True)
+        self._thread.start()
+        atexit.register(self._end)  # else the other Blender would go on
 
     def stop(self) -> None:
-        """Ends it."""
+        """Ends it soon."""
         self._stopped = True
+
+    def _end(self) -> None:
+        self.stop()
+        self._thread.join()
 
     def _run(self) -> None:
         with self._folder as name:
@@ -112,6 +119,7 @@ class _Background:
                 baked = _picture(Path(name), lambda _: not self._stopped)
             except BakeError as error:
                 baked, self.error = None, str(error)
+        atexit.unregister(self._end)
         if baked is not None:
             _keep(self.key, baked)
         for call in self.ended if not self._stopped else ():
@@ -135,20 +143,13 @@ def bake_in_background(world: Any, scene: Any, ended: Callable[[], None]) -> Bak
         kept.move_to_end(key)
         return kept[key]
     if _background is None or _background.key != key:
-        stop_background()
+        if _background is not None:
+            _background.stop()
         _background = _Background(key, world, scene)
     if _background.error:
         raise BakeError(_background.error)
     _background.ended.append(ended)
     return None
-
-
-def stop_background() -> None:
-    """Ends the bake that goes on beside Blender, if there is one."""
-    global _background
-    if _background is not None:
-        _background.stop()
-    _background = None
 
 
 def _bake(world: Any, scene: Any, waiting: Waiting | None) -> Baked | None:
@@ -186,20 +187,12 @@ def _request(world: Any, scene: Any, folder: Path) -> dict[str, Any]:
         "subframe": scene.frame_subframe,
         "width": scene.shlight.world_width,
         "threads": render.threads if render.threads_mode == "FIXED" else 0,
-        "images": _save_unsaved_images(world, folder),
+        "images": save_unsaved_images(_images(world), folder),
     }
 
 
-def _save_unsaved_images(world: Any, folder: Path) -> dict[str, str]:
-    """Names of the world's images whose changes are in no file, and of the files in `folder` with their pixels."""
-    images = {node.image.original for node in all_nodes(world.node_tree) if getattr(node, "image", None)}
-    files = {}
-    for number, image in enumerate(image for image in images if image.is_dirty):
-        pixels = np.empty(len(image.pixels), dtype=np.float32)
-        image.pixels.foreach_get(pixels)
-        files[image.name] = f"image_{number}.npy"
-        np.save(folder / files[image.name], pixels)
-    return files
+def _images(world: Any) -> set[Any]:
+    return {node.image.original for node in all_nodes(world.node_tree) if getattr(node, "image", None)}
 
 
 def _run(folder: Path, waiting: Waiting | None) -> bool:
@@ -207,7 +200,11 @@ def _run(folder: Path, waiting: Waiting | None) -> bool:
     log = folder / "blender.log"
     with log.open("wb") as output:
         process = subprocess.Popen(
-            _command(folder), stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT, env=_environment()
+            command(WORKER, str(folder)),
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            env=environment(),
         )
     try:
         end = time.monotonic() + LONGEST_SECONDS
@@ -221,27 +218,5 @@ def _run(folder: Path, waiting: Waiting | None) -> bool:
         process.kill()
         process.wait()
     if process.returncode != 0:
-        raise BakeError(_last_words(process.returncode, log))
+        raise BakeError(last_words(process.returncode, log))
     return True
-
-
-def _command(folder: Path) -> list[str]:
-    """Blender's program, or the Python that has the module bpy."""
-    if bpy.app.binary_path:
-        options = ["--background", "--factory-startup", "--python-exit-code", "1", "--python", str(WORKER)]
-        return [bpy.app.binary_path, *options, "--", str(folder)]
-    return [sys.executable, str(WORKER), "--", str(folder)]
-
-
-def _environment() -> dict[str, str]:
-    """The other Python finds the modules of this one, except Blender's own: their bpy is not the one to start with."""
-    if bpy.app.binary_path:
-        return dict(os.environ)
-    scripts = bpy.utils.system_resource("SCRIPTS")
-    return os.environ | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p and not p.startswith(scripts))}
-
-
-def _last_words(code: int, log: Path) -> str:
-    lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
-    said = [line.strip() for line in lines if line.strip()]
-    return f"Blender ended with code {code}" + (f"; its last words: {said[-1][:300]}" if said else "")

@@ -11,9 +11,10 @@ from typing import Any
 from shlight import images
 from shlight.commands import INTERRUPTED, CommandError, check_folder, run_command, work_folder
 
+from ..comparison.measurements import Image, add_measurements
 from ..comparison.pictures import common_exposure
 from ..comparison.supervision import check_blender, run_worker
-from .figures import Image, add_circumstances, add_measurements, table
+from .figures import add_circumstances, table
 from .options import Options, parse
 from .picture import comparison
 from .progress import Progress

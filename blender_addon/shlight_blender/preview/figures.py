@@ -9,31 +9,9 @@ from importlib import metadata
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from shlight import metrics
-
+from ..comparison.measurements import error_text
 from .options import Options
-
-Image = npt.NDArray[np.float32]
-FACTOR = 3.0  # standard errors
-
-
-def add_measurements(figures: dict[str, Any], shlight: Image, cycles: Image, halves: tuple[Image, Image]) -> Image:
-    """Adds the errors of both pictures and of the reference to the figures of the worker; returns the reference."""
-    reference: Image = (halves[0] + halves[1]) / 2
-    error = metrics.standard_error(*halves)
-    figures["reference"]["noise_rel_mse"] = metrics.reference_rel_mse(*halves)
-    for name, image in (("shlight", shlight), ("cycles_same_time", cycles)):
-        rel_mse, its_error = metrics.rel_mse_without_noise(image, *halves)
-        figures[name] |= {
-            "rel_mse": rel_mse,
-            "rel_mse_standard_error": its_error,
-            "rel_mse_measured": metrics.rel_mse(image, reference),
-            "mean_ratio": metrics.mean_ratio(image, reference),
-        }
-    figures["shlight"]["within_3_standard_errors"] = metrics.share_within(shlight, reference, error, factor=FACTOR)
-    return reference
 
 
 def add_circumstances(figures: dict[str, Any], options: Options) -> None:
@@ -47,12 +25,6 @@ def add_circumstances(figures: dict[str, Any], options: Options) -> None:
         "numpy": np.__version__,
     }
     figures["machine"] = {"processors": os.cpu_count(), "system": platform.platform()}
-
-
-def error_text(measured: dict[str, Any]) -> str:
-    """relMSE without the reference's noise; where that noise hides it, what it is at most (two standard errors)."""
-    value, error = measured["rel_mse"], measured["rel_mse_standard_error"]
-    return f"{value:.1e} ± {error:.0e}" if value > 2 * error else f"≤ {max(value, 0.0) + 2 * error:.1e}"
 
 
 def table(figures: dict[str, Any]) -> str:

@@ -9,7 +9,8 @@ from pathlib import Path
 
 from shlight.commands import Parser
 
-from ..comparison.options import RenderOptions, order, seconds, size, tolerance, whole
+from ..comparison.arguments import order, seconds, size, tolerance, whole
+from ..comparison.options import RenderOptions
 
 DEFAULT_SCENE = "example_scene"
 

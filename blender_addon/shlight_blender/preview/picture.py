@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from shlight import images, metrics
 
-from ..comparison.pictures import PALETTE, common_exposure
-from .figures import error_text
+from ..comparison.measurements import error_text
+from ..comparison.pictures import PALETTE, common_exposure, difference_limit
 
 Image = npt.NDArray[np.float32]
 
@@ -73,13 +73,6 @@ def comparison(
     bar.ax.tick_params(labelsize=7, length=2, pad=1)
     canvas.draw()
     return np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[..., :3])
-
-
-def difference_limit(difference: npt.NDArray[np.float64]) -> float:
-    """End of the colour scale [%]: 1, 2 or 5 times a power of ten that only the outermost hundredth exceeds."""
-    needed = max(100 * float(np.percentile(np.abs(difference), 99)), 0.1)
-    power = 10.0 ** math.floor(math.log10(needed))
-    return next(step * power for step in (1, 2, 5, 10) if step * power >= needed * (1 - 1e-9))
 
 
 def _seconds(figures: dict[str, Any]) -> str:

@@ -16,7 +16,8 @@ from typing import Any
 
 from shlight.commands import INTERRUPTED, CommandError, check_folder, run_command, work_folder
 
-from ..comparison.supervision import LOG, check_blender, run_worker
+from ..comparison.process import LOG
+from ..comparison.supervision import check_blender, run_worker
 from . import records
 from .options import SUFFIXES, Options, parse
 from .records import Record

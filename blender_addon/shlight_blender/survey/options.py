@@ -10,7 +10,8 @@ from typing import Any
 
 from shlight.commands import Parser
 
-from ..comparison.options import RenderOptions, seconds, size, whole
+from ..comparison.arguments import seconds, size, whole
+from ..comparison.options import RenderOptions
 
 NOISE = 2e-4  # relMSE of the reference's own noise at which it ends
 SUFFIXES = (".blend", ".gltf", ".glb")

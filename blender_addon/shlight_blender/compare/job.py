@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The comparison that runs: a copy of the file, and the other Blender that renders it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from ..comparison.process import WorkerError, WorkerProcess
+from ..native import native_problem
+from ..other_blender import command, environment, save_unsaved_images
+from ..running import ENGINE
+from .options import CompareOptions
+
+START = Path(__file__).with_name("start.py")
+PACKAGE = __package__.rpartition(".")[0]
+PAINTED_SOURCES = {"FILE", "GENERATED"}  # of images whose pixels may be in no file
+
+
+class CompareError(Exception):
+    """There is nothing to compare, or the comparison failed; the message says why."""
+
+
+class Job:
+    """One comparison, in a temporary folder."""
+
+    def __init__(self, context: Any, *, denoise: bool, reference_seconds: float) -> None:
+        """Writes the copy and starts the other Blender; CompareError where that cannot be."""
+        _check(context)
+        self.stage = "Starting Blender"
+        self._expected = 0.0
+        self._since = time.monotonic()
+        try:
+            self.folder = temporary_folder("shlight_compare_")
+        except OSError as error:
+            raise CompareError(one_line(error)) from error
+        try:
+            options = CompareOptions(
+                scene=str(self.folder / "scene.blend"),
+                scene_name=context.scene.name,
+                view_layer=context.view_layer.name,
+                use_scripts=not bpy.app.autoexec_fail,
+                denoise=denoise,
+                reference_seconds=reference_seconds,
+                images=_save_copy(context.scene, self.folder),
+            )
+            start = command(START, PACKAGE, os.pathsep.join(folder for folder in sys.path if folder))
+            self._worker = WorkerProcess(start, options.to_data(), self.folder, environment())
+        except BaseException as error:
+            shutil.rmtree(self.folder, ignore_errors=True)
+            if isinstance(error, (OSError, RuntimeError)):
+                raise CompareError(one_line(error)) from error
+            raise
+
+    def figures(self, seconds: float = 0.0) -> dict[str, Any] | None:
+        """The figures once all is there, else None after so many seconds at most; CompareError if it fails."""
+        try:
+            messages = self._worker.messages(seconds)
+        except WorkerError as error:
+            raise CompareError(str(error)) from error
+        for message in messages:
+            if message["kind"] == "result":
+                found: dict[str, Any] = message["figures"]
+                return found
+            if message["kind"] == "stage":
+                self.stage, self._expected = message["name"], message["expected_seconds"]
+                self._since = time.monotonic()
+        return None
+
+    @property
+    def progress(self) -> float:
+        """What share of the stage's expected time is over, less than 1; 0 where no time is expected."""
+        elapsed = time.monotonic() - self._since
+        return min(elapsed / self._expected, 0.99) if self._expected > 0 else 0.0
+
+    @property
+    def status(self) -> str:
+        """What is being done, and for how long already."""
+        return f"{self.stage} ({time.monotonic() - self._since:.0f} s)"
+
+    def end(self) -> None:
+        """Ends the other Blender at once and removes the folder."""
+        self._worker.end()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def _check(context: Any) -> None:
+    """What can be known to fail before anything is started."""
+    scene = context.scene
+    if problem := native_problem():
+        raise CompareError(problem)
+    if scene.render.engine != ENGINE:
+        raise CompareError("choose shlight as the scene's render engine first")
+    if getattr(scene, "cycles", None) is None:
+        raise CompareError("Cycles is not there: enable its add-on, Cycles Render Engine")
+    if scene.camera is None:
+        raise CompareError(f"scene '{scene.name}' has no camera")
+    if bpy.app.is_job_running("RENDER"):
+        raise CompareError("a render is running; wait for its end")
+
+
+def _save_copy(scene: Any, folder: Path) -> dict[str, str]:
+    """Writes scene.blend; see `save_unsaved_images` for what is returned.
+
+    After Blender's operator to save a copy the file itself would count as saved.
+    """
+    for each in scene.objects:
+        if each.mode == "EDIT":
+            each.update_from_editmode()
+    bpy.data.libraries.write(str(folder / "scene.blend"), {scene, *bpy.data.texts}, path_remap="ABSOLUTE")
+    return save_unsaved_images((image for image in bpy.data.images if image.source in PAINTED_SOURCES), folder)
+
+
+def temporary_folder(prefix: str) -> Path:
+    """A folder that goes with Blender's temporary files, if not before."""
+    return Path(tempfile.mkdtemp(prefix=prefix, dir=bpy.app.tempdir or None))
+
+
+def one_line(error: Exception) -> str:
+    """What an error says, without line breaks."""
+    return " ".join(str(error).removeprefix("Error: ").split())

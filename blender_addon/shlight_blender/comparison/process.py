@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The process of a worker: it is started, its messages are read without waiting for it, and it is ended for good."""
+
+from __future__ import annotations
+
+import json
+import os
+import select
+import signal
+import subprocess
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+LOG = "blender.log"
+
+
+class WorkerError(Exception):
+    """The worker failed; the message says why. exit_code: of a command that started it."""
+
+    def __init__(self, text: str, exit_code: int) -> None:
+        super().__init__(text)
+        self.exit_code = exit_code
+
+
+class WorkerProcess:
+    """A process of its own with all that it starts. Blender's temporary files, and its log, are in `folder`."""
+
+    def __init__(self, command: list[str], request: dict[str, Any], folder: Path, environment: dict[str, str]) -> None:
+        """Starts it; `command` without the folder and the file descriptor for messages. OSError if it cannot."""
+        (folder / "request.json").write_text(json.dumps(request), encoding="utf-8")
+        self._log = folder / LOG
+        self._pending = b""
+        self._read_end, write_end = os.pipe()
+        try:
+            with self._log.open("wb") as log:
+                self._process = subprocess.Popen(
+                    [*command, str(folder), str(write_end)],
+                    stdin=subprocess.DEVNULL,
+                    stdout=log,
+                    stderr=subprocess.STDOUT,
+                    pass_fds=[write_end],
+                    # Blender reads no preferences of the user.
+                    env=environment | {"BLENDER_USER_RESOURCES": str(folder / "blender"), "TMPDIR": str(folder)},
+                    start_new_session=True,  # Ctrl-C reaches this process alone, which then ends the worker
+                )
+        except OSError:
+            os.close(self._read_end)
+            raise
+        finally:
+            os.close(write_end)
+
+    def messages(self, seconds: float) -> list[dict[str, Any]]:
+        """What it has said and was not read; waits so long for anything. WorkerError once it has failed."""
+        if not select.select([self._read_end], [], [], seconds)[0]:
+            return []
+        received = os.read(self._read_end, 65536)
+        if not received:
+            raise WorkerError(last_words(self._process.wait(), self._log), 1)
+        *lines, self._pending = (self._pending + received).split(b"\n")
+        messages = [json.loads(line) for line in lines]
+        for message in messages:
+            if message["kind"] == "error":
+                raise WorkerError(message["text"], message["exit_code"])
+        return messages
+
+    def end(self) -> None:
+        """Ends it at once. After its result nothing is left to do but Blender's own end, which may crash."""
+        os.close(self._read_end)
+        with suppress(ProcessLookupError):
+            os.killpg(self._process.pid, signal.SIGKILL)  # with what it has started itself
+        self._process.wait()
+
+
+def last_words(code: int, log: Path) -> str:
+    """How it ended, and the last that it said."""
+    how = f"with signal {signal.Signals(-code).name}" if code < 0 else f"with code {code}"
+    lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
+    said = [line.strip() for line in lines if line.strip()]
+    return f"Blender ended unexpectedly {how}" + (f"; its last words: {said[-1][:300]}" if said else "")
