@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
 
 HIGHEST_ORDER = 64
@@ -15,6 +17,38 @@ ORDER_ITEMS = [
         for order in range(1, HIGHEST_ORDER + 1)
     ),
 ]
+
+
+def _noise_threshold(default: float, pixel: str) -> Any:
+    return bpy.props.FloatProperty(
+        name="Noise Threshold",
+        description=f"Estimated error at which {pixel} has enough camera rays: of its value, relative to that, or to a "
+        "tenth of the picture's mean. At 0 all pixels get Max Samples",
+        default=default,
+        min=0.0,
+        max=1.0,
+        soft_min=0.001,
+        precision=4,
+        step=1,
+    )
+
+
+def _samples(which: str, default: int, description: str) -> Any:
+    return bpy.props.IntProperty(
+        name=f"{which} Samples", description=description, default=default, min=1, max=1 << 20, soft_max=4096
+    )
+
+
+def _time_limit(picture: str) -> Any:
+    return bpy.props.FloatProperty(
+        name="Time Limit",
+        description=f"Passes over {picture} that would end later are left out. At 0 all are made",
+        default=0.0,
+        min=0.0,
+        soft_max=3600.0,
+        unit="TIME_ABSOLUTE",
+        step=100,
+    )
 
 
 class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
@@ -38,75 +72,16 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
         precision=5,
         step=0.1,
     )
-    noise_threshold: bpy.props.FloatProperty(
-        name="Noise Threshold",
-        description="Estimated error at which a pixel has enough camera rays: of its value, relative to that, or to a "
-        "tenth of the picture's mean. At 0 all pixels get Max Samples",
-        default=0.01,
-        min=0.0,
-        max=1.0,
-        soft_min=0.001,
-        precision=4,
-        step=1,
+    noise_threshold: _noise_threshold(0.01, "a pixel")
+    min_samples: _samples("Min", 4, "Least number of camera rays per pixel")
+    max_samples: _samples("Max", 256, "Largest number of camera rays per pixel, rounded down to a power of four")
+    time_limit: _time_limit("the picture")
+    preview_noise_threshold: _noise_threshold(0.02, "a pixel of a viewport")
+    preview_min_samples: _samples("Min", 1, "Least number of camera rays per pixel of a viewport")
+    preview_max_samples: _samples(
+        "Max", 64, "Largest number of camera rays per pixel of a viewport, rounded down to a power of four"
     )
-    min_samples: bpy.props.IntProperty(
-        name="Min Samples",
-        description="Least number of camera rays per pixel",
-        default=4,
-        min=1,
-        max=4096,
-    )
-    max_samples: bpy.props.IntProperty(
-        name="Max Samples",
-        description="Largest number of camera rays per pixel, rounded down to a power of four",
-        default=256,
-        min=1,
-        max=1 << 20,
-        soft_max=4096,
-    )
-    time_limit: bpy.props.FloatProperty(
-        name="Time Limit",
-        description="Passes over the picture that would end later are left out. At 0 all are made",
-        default=0.0,
-        min=0.0,
-        soft_max=3600.0,
-        unit="TIME_ABSOLUTE",
-        step=100,
-    )
-    preview_noise_threshold: bpy.props.FloatProperty(
-        name="Noise Threshold",
-        description="Estimated error at which a pixel of the viewport has enough camera rays",
-        default=0.02,
-        min=0.0,
-        max=1.0,
-        soft_min=0.001,
-        precision=4,
-        step=1,
-    )
-    preview_min_samples: bpy.props.IntProperty(
-        name="Min Samples",
-        description="Least number of camera rays per pixel of the viewport",
-        default=1,
-        min=1,
-        max=4096,
-    )
-    preview_max_samples: bpy.props.IntProperty(
-        name="Max Samples",
-        description="Largest number of camera rays per pixel of the viewport, rounded down to a power of four",
-        default=64,
-        min=1,
-        max=1 << 20,
-        soft_max=4096,
-    )
-    preview_time_limit: bpy.props.FloatProperty(
-        name="Time Limit",
-        description="Passes over the viewport's picture that would end later are left out. At 0 all are made",
-        default=0.0,
-        min=0.0,
-        soft_max=3600.0,
-        unit="TIME_ABSOLUTE",
-        step=100,
-    )
+    preview_time_limit: _time_limit("a viewport's picture")
     pixel_samples: bpy.props.IntProperty(
         name="Pixel Samples",
         description="Camera rays of every pixel in the first pass, as files of older versions have them: in place of "
