@@ -58,6 +58,22 @@ LAMPS = (
 
 
 @dataclass(frozen=True)
+class CameraConvention:
+    """Where a camera's settings are, and how Cycles reads them."""
+
+    panorama_is_cycles: bool  # the settings of panoramas are Cycles' own, or Blender's
+    lens_is_at_near_plane: bool  # an orthographic camera's lens lies in the near clip plane, or where the camera is
+
+
+CAMERAS = CameraConvention(panorama_is_cycles=not IS_BLENDER_4, lens_is_at_near_plane=not IS_BLENDER_4)
+
+
+def panorama_settings(lens: Any) -> Any:
+    """What has the panorama of a camera's data; AttributeError without the add-on of Cycles where that is Cycles'."""
+    return lens.cycles if CAMERAS.panorama_is_cycles else lens
+
+
+@dataclass(frozen=True)
 class PrincipledSockets:
     """Sockets of the Principled BSDF by meaning; `unsupported` maps a socket to the value at which it does nothing."""
 

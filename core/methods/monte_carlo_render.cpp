@@ -178,8 +178,9 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
             const glm::dvec2 place = random_[pixel].point();
             const double x = (column + place.x) / p.width;
             const double y = (static_cast<double>(above) + place.y) / p.height;
+            const glm::dvec2 lens = p.camera.has_depth_of_field() ? random_[pixel].point() : glm::dvec2(0.5);
             rays_.push_back(p.camera.ray(p.window.left + x * (p.window.right - p.window.left),
-                                         p.window.top + y * (p.window.bottom - p.window.top)));
+                                         p.window.top + y * (p.window.bottom - p.window.top), lens));
             pixel_of_camera_ray_.push_back(pixel);
         }
     }
@@ -198,6 +199,10 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
             const ShadingFrame frame = shading_frame(surface.position, surface.shading_normal, -direction);
             hits_.add(surface, frame, view_cosine(frame, -direction), {}, {}, 0);
             pixel_of_hit_.push_back(pixel);
+            continue;
+        }
+        if (rays_[i].empty()) {
+            ++covered_[pixel];
             continue;
         }
         radiance_[pixel] += Vec3d(p.scene.lamps_along(rays_[i], std::nullopt));

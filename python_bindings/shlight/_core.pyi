@@ -239,6 +239,13 @@ class _SeenBy(TypedDict, total=False):
     glossy: bool  # True unless given
     camera: bool  # False unless given
 
+class _Lens(TypedDict, total=False):
+    aperture_size: float  # 0 unless given
+    focus_distance: float
+    aperture_blades: int
+    aperture_rotation: float
+    aperture_ratio: float
+
 class SceneMesh:
     def set_bsdf(
         self, bsdf: Bsdf | Shader | Sequence[Bsdf | Shader] | None, *, emission: ArrayLike | None = None
@@ -324,7 +331,7 @@ class Scene:
     def set_environment(
         self, radiance: ArrayLike, *, to_world: ArrayLike | None = None, visible: bool = True
     ) -> None: ...
-    def set_camera(self, to_world: ArrayLike, fov_x: float) -> None: ...
+    def set_camera(self, to_world: ArrayLike, fov_x: float, **lens: Unpack[_Lens]) -> None: ...
     def set_camera_window(
         self,
         to_world: ArrayLike,
@@ -336,6 +343,35 @@ class Scene:
         orthographic: bool = False,
         clip_start: float = 0.0,
         clip_end: float = ...,
+        **lens: Unpack[_Lens],
+    ) -> None: ...
+    def set_panorama_camera(
+        self,
+        to_world: ArrayLike,
+        panorama_type: Literal[
+            "equirectangular",
+            "central_cylindrical",
+            "fisheye_equidistant",
+            "fisheye_equisolid",
+            "fisheye_lens_polynomial",
+            "mirrorball",
+            "equiangular_cubemap_face",
+        ],
+        *,
+        left: float = 0.0,
+        right: float = 1.0,
+        bottom: float = 0.0,
+        top: float = 1.0,
+        equirectangular_range: ArrayLike = ...,
+        central_cylindrical_range: ArrayLike = ...,
+        fisheye_fov: float = ...,
+        fisheye_lens: float = 0.0105,
+        fisheye_polynomial: ArrayLike = ...,
+        sensor_width: float = 0.036,
+        sensor_height: float = 0.036,
+        clip_start: float = 0.0,
+        clip_end: float = ...,
+        **lens: Unpack[_Lens],
     ) -> None: ...
 
 @overload

@@ -65,21 +65,6 @@ visible: the camera sees it behind the scene, where the picture is then opaque.
 
 Raises ValueError naming the argument.)";
 
-constexpr const char* kCameraDoc = R"(Set a perspective camera with square pixels.
-
-to_world: (4, 4), camera to world, for column vectors; the camera looks along -z, y is up.
-fov_x: horizontal field of view in radians, between 0 and pi.
-
-Raises ValueError naming the argument.)";
-
-constexpr const char* kWindowDoc = R"(Set a camera by the rectangle that the image shows.
-
-to_world: (4, 4), camera to world, for column vectors; the camera looks along -z, y is up.
-left, right, bottom, top: on the plane z = -1 of the camera frame, or in metres if orthographic.
-clip_start, clip_end: surfaces are seen between these depths along the view axis.
-
-Raises ValueError naming the argument.)";
-
 /// A mesh of a scene; it keeps the scene alive.
 struct MeshHandle {
     py::object owner;
@@ -138,20 +123,6 @@ void set_environment(SceneObject& self, const py::object& radiance, const py::ob
     self.changed();
 }
 
-void set_camera(SceneObject& self, const py::object& to_world, const py::object& fov_x) {
-    self.camera.emplace(matrix_from("to_world", to_world), real_from("fov_x", fov_x));
-}
-
-void set_camera_window(SceneObject& self, const py::object& to_world, const py::object& left, const py::object& right,
-                       const py::object& bottom, const py::object& top, const py::object& orthographic,
-                       const py::object& clip_start, const py::object& clip_end) {
-    const Window window = {real_from("left", left), real_from("right", right), real_from("bottom", bottom),
-                           real_from("top", top)};
-    self.camera.emplace(matrix_from("to_world", to_world), window,
-                        flag_from("orthographic", orthographic) ? Projection::orthographic : Projection::perspective,
-                        ClipRange{real_from("clip_start", clip_start), real_from("clip_end", clip_end)});
-}
-
 }  // namespace
 
 void bind_scene(py::module_& m) {
@@ -178,11 +149,8 @@ void bind_scene(py::module_& m) {
         .def("remove_lights", &remove_lights,
              "Take out all lights that the add_..._light methods have added; emissive meshes and the environment stay.")
         .def("set_environment", &set_environment, kEnvironmentDoc, "radiance"_a, py::kw_only(),
-             "to_world"_a = py::none(), "visible"_a = true)
-        .def("set_camera", &set_camera, kCameraDoc, "to_world"_a, "fov_x"_a)
-        .def("set_camera_window", &set_camera_window, kWindowDoc, "to_world"_a, "left"_a, "right"_a, "bottom"_a,
-             "top"_a, py::kw_only(), "orthographic"_a = false, "clip_start"_a = 0.0,
-             "clip_end"_a = std::numeric_limits<double>::infinity());
+             "to_world"_a = py::none(), "visible"_a = true);
+    bind_cameras(scene);
     bind_lights(scene);
 }
 

@@ -35,6 +35,7 @@ struct SceneObject {
 };
 
 /// Scene.add_sphere_light and its like.
+void bind_cameras(pybind11::class_<SceneObject>& scene);
 void bind_lights(pybind11::class_<SceneObject>& scene);
 
 }  // namespace shlight::python

@@ -150,12 +150,31 @@ def dark(studio):
 
 def panoramic(studio):
     lit_by(studio, "POINT", 60)
-    studio.scene.camera.data.type = "PANO"
+    camera = studio.scene.camera.data
+    camera.type = "PANO"
+    camera.cycles.panorama_type = "FISHEYE_EQUISOLID"
+    camera.cycles.fisheye_fov = 2.0
+    camera.dof.use_dof = True
+    camera.dof.focus_distance, camera.dof.aperture_fstop = 4.0, 0.05
+
+
+def orthographic(studio):
+    """Out of focus, with a lens that Cycles 3.4 puts into the near clip plane."""
+    lit_by(studio, "POINT", 60)
+    camera = studio.scene.camera.data
+    camera.type, camera.ortho_scale, camera.clip_start = "ORTHO", 4.0, 3.0
+    camera.dof.use_dof = True
+    camera.dof.focus_distance, camera.dof.aperture_fstop = 2.0, 1.5
+
+
+def flat_camera(studio):
+    lit_by(studio, "POINT", 60)
+    studio.scene.camera.scale = (1, 0, 1)
 
 
 SCENES = [
     point, area, spot, small_spot, small_point, sun, small_sun, spread, textured, textured_by_default, smooth, glossy,
-    metal, principled, curves, sky, dark, panoramic,
+    metal, principled, curves, sky, dark, panoramic, orthographic, flat_camera,
 ]  # fmt: skip
 
 polls = [item.poll for item in nodes_by_engine()]

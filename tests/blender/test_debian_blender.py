@@ -70,7 +70,7 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """Runs all background scenes once; returns what the script says of them."""
     folder = tmp_path_factory.mktemp("debian")
     done = run_blender("-b", script="debian_scenes.py", folder=folder)
-    # Blender's exit code is 1 after any operator's error, the expected one of the panoramic camera too.
+    # Blender's exit code is 1 after any operator's error, the expected one of the flat camera too.
     assert done.returncode in {0, 1}, spoken(done)
     assert (folder / "results.json").is_file(), spoken(done)
     results: dict[str, Any] = json.loads((folder / "results.json").read_text())
@@ -80,7 +80,7 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 LAMPS = ["point", "area", "spot", "small_spot", "small_point", "sun", "small_sun", "spread", "textured"]
 
 
-@pytest.mark.parametrize("scene", [*LAMPS, "smooth", "glossy", "metal", "curves", "sky"])
+@pytest.mark.parametrize("scene", [*LAMPS, "smooth", "glossy", "metal", "curves", "sky", "panoramic", "orthographic"])
 def test_pictures_against_cycles(pictures: dict[str, Any], scene: str) -> None:
     result = pictures[scene]
     assert result["messages"] == []
@@ -113,7 +113,7 @@ def test_example_scenes_are_built(tmp_path: Path, name: str) -> None:
 
 
 def test_errors_do_not_crash(pictures: dict[str, Any]) -> None:
-    assert "pano cameras are not supported" in pictures["panoramic"]["error"]
+    assert "scale 0" in pictures["flat_camera"]["error"]
 
 
 def test_a_dark_frame_is_black(pictures: dict[str, Any]) -> None:

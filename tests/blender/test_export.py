@@ -186,7 +186,6 @@ def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any
     studio.lit_floor()
     scene = studio.scene
     scene.render.use_motion_blur = True
-    scene.camera.data.dof.use_dof = True
     view_layer = bpy.context.view_layer
     view_layer.use_pass_normal = True
     view_layer.cycles.use_pass_shadow_catcher = True
@@ -207,7 +206,6 @@ def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any
     text = "\n".join(messages())
     for part in (
         "motion blur is not supported",
-        "Camera 'Camera': depth of field",
         "only the Combined pass is written; not normal, shadow_catcher, AOV 'Mask', light group 'Key'",
         "World 'Sky': hiding it from diffuse rays",
         "Object 'Hidden': objects hidden from the camera",
@@ -235,7 +233,6 @@ def test_equal_findings_are_one_message() -> None:
 
 CANNOT_BE_RENDERED = {
     "camera": "no camera",
-    "panoramic": "pano cameras",
     "flat camera": "scale 0",
 }
 
@@ -246,8 +243,6 @@ def test_scenes_that_cannot_be_rendered(studio: Any, missing: str) -> None:
     studio.area()
     if missing != "camera":
         camera = studio.camera()
-        if missing == "panoramic":
-            camera.data.type = "PANO"
         if missing == "flat camera":
             camera.scale = (1, 0, 1)
     with pytest.raises(ExportError, match=CANNOT_BE_RENDERED[missing]):

@@ -60,7 +60,25 @@ LIGHTS: dict[str, dict[str, Any]] = {
     "add_sun_light": {"direction": [0, 0, -1], "angle": 0.1, "irradiance": RGB, "tangent": False},
 }
 WINDOW = {"left": -1.0, "right": 1.0, "bottom": -1.0, "top": 1.0, "orthographic": False}
+SHARES = {"left": 0.0, "right": 1.0, "bottom": 0.0, "top": 1.0}
 CLIPS = {"clip_start": 0.0, "clip_end": 10.0}
+LENS = {
+    "aperture_size": 0.1,
+    "focus_distance": 2.0,
+    "aperture_blades": 5,
+    "aperture_rotation": 0.5,
+    "aperture_ratio": 1.5,
+}
+PANORAMA = {
+    "panorama_type": "fisheye_lens_polynomial",
+    "equirectangular_range": [-1.0, 1.0, -0.5, 0.5],
+    "central_cylindrical_range": [-1.0, 1.0, -0.5, 0.5],
+    "fisheye_fov": 3.0,
+    "fisheye_lens": 0.01,
+    "fisheye_polynomial": [0.0, -20.0, 0.0, 0.0, 0.0],
+    "sensor_width": 0.03,
+    "sensor_height": 0.02,
+}
 MESH = {
     "vertices": TRIANGLE,
     "triangles": FACES,
@@ -137,8 +155,12 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         of_scene("set_environment"),
         {"radiance": np.ones((2, 4, 3)), "to_world": np.eye(3), "visible": True},
     ),
-    "Scene.set_camera": (of_scene("set_camera"), {"to_world": np.eye(4), "fov_x": 1.0}),
-    "Scene.set_camera_window": (of_scene("set_camera_window"), {"to_world": np.eye(4), **WINDOW, **CLIPS}),
+    "Scene.set_camera": (of_scene("set_camera"), {"to_world": np.eye(4), "fov_x": 1.0, **LENS}),
+    "Scene.set_camera_window": (of_scene("set_camera_window"), {"to_world": np.eye(4), **WINDOW, **CLIPS, **LENS}),
+    "Scene.set_panorama_camera": (
+        of_scene("set_panorama_camera"),
+        {"to_world": np.eye(4), **PANORAMA, **SHARES, **CLIPS, **LENS},
+    ),
     "cap_coefficients": (shlight.cap_coefficients, {**CAP, **EXACT}),
     "cap_coefficients/random": (shlight.cap_coefficients, {**CAP, **RANDOM}),
     "disk_coefficients": (shlight.disk_coefficients, {**DISK, **COEFFICIENTS}),
@@ -185,6 +207,8 @@ for name, way in methods.shading_methods().items():
 
 # What the range of one argument may depend on.
 RELATED = {
+    "aperture_ratio": ("aperture_size", "focus_distance"),
+    "aperture_size": ("focus_distance",),
     "bsdf_coefficients": ("light_coefficients",),
     "centers": ("radii",),
     "clip_start": ("clip_end",),

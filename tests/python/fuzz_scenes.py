@@ -15,6 +15,10 @@ import shlight
 
 SCALES = [1e15, 1e-15, 1e19, 1e-19, 1e20, 1e-30, 1e30, 1e-38, 1e38, 1e-45, 1e200]
 SQUARE = np.array([[-4.0, -4, 0], [4, -4, 0], [4, 4, 0], [-4, 4, 0]])
+PANORAMAS = [
+    *("equirectangular", "central_cylindrical", "mirrorball", "equiangular_cubemap_face"),
+    *("fisheye_equidistant", "fisheye_equisolid", "fisheye_lens_polynomial"),
+]
 Call = tuple[str, dict[str, Any]]
 
 
@@ -68,17 +72,41 @@ def environment(rng: Rng, unit: float) -> Call:
     return "set_environment", {"radiance": radiance, "to_world": plane(rng), "visible": chance(rng, 0.5)}
 
 
+def aperture(rng: Rng, unit: float) -> dict[str, Any]:
+    return {
+        "aperture_size": unit * 10 ** rng.uniform(-3, 1),
+        "focus_distance": unit * 10 ** rng.uniform(-1, 2),
+        "aperture_blades": int(rng.integers(0, 9)),
+        "aperture_rotation": rng.uniform(-4, 4),
+        "aperture_ratio": 10 ** rng.uniform(-1, 1),
+    }
+
+
+def panorama(rng: Rng) -> dict[str, Any]:
+    return {
+        "panorama_type": one_of(rng, *PANORAMAS),
+        "equirectangular_range": rng.uniform(-3, 3, 4),
+        "central_cylindrical_range": rng.uniform(-3, 3, 4),
+        "fisheye_fov": rng.uniform(0.1, 7),
+        "fisheye_lens": rng.uniform(0.001, 0.1),
+        "fisheye_polynomial": rng.uniform(-1, 0, 5) * 50.0 ** np.arange(5),
+    }
+
+
 def camera(rng: Rng, unit: float) -> Call:
     to_world = np.eye(4)
     to_world[2, 3] = 6 * unit
     to_world = one_of(rng, to_world, placed(rng, 1.0, unit))
-    if chance(rng, 0.5):
-        return "set_camera", {"to_world": to_world, "fov_x": rng.uniform(0.01, 3)}
+    lens = aperture(rng, unit) if chance(rng, 0.3) else {}
+    if chance(rng, 0.4):
+        return "set_camera", {"to_world": to_world, "fov_x": rng.uniform(0.01, 3), **lens}
+    if chance(rng, 0.3):
+        return "set_panorama_camera", {"to_world": to_world, **panorama(rng), **lens}
     orthographic = chance(rng, 0.5)
     w, h = rng.uniform(0.1, 5, 2) * (unit if orthographic else 0.2)
     window = {"left": -w, "right": w, "bottom": -h, "top": h, "orthographic": orthographic}
     clip = {"clip_start": 0.01 * unit, "clip_end": 100 * unit} if chance(rng, 0.3) else {}
-    return "set_camera_window", {"to_world": to_world, **window, **clip}
+    return "set_camera_window", {"to_world": to_world, **window, **clip, **lens}
 
 
 def spoil(rng: Rng, arguments: dict[str, Any]) -> None:

@@ -258,6 +258,18 @@ def test_bad_lights_and_cameras() -> None:
     expect_value_error("to_world", lambda: scene.set_camera(np.eye(3), 1.0))
     expect_value_error("to_world", lambda: scene.set_camera(np.zeros((4, 4)), 1.0))
     expect_value_error("fov_x", lambda: scene.set_camera(np.eye(4), np.pi))
+    expect_value_error("aperture_size", lambda: scene.set_camera(np.eye(4), 1.0, aperture_size=-1))
+    expect_value_error("aperture_blades", lambda: scene.set_camera(np.eye(4), 1.0, aperture_blades=-1))
+    expect_value_error("aperture_ratio", lambda: scene.set_camera(np.eye(4), 1.0, aperture_ratio=0))
+    expect_value_error("focus_distance", lambda: scene.set_camera(np.eye(4), 1.0, aperture_size=1, focus_distance=0))
+    expect_value_error("panorama_type", lambda: scene.set_panorama_camera(np.eye(4), "fisheye"))
+    fisheye = "fisheye_equisolid"
+    expect_value_error("fisheye_fov", lambda: scene.set_panorama_camera(np.eye(4), fisheye, fisheye_fov=0))
+    expect_value_error("fisheye_lens", lambda: scene.set_panorama_camera(np.eye(4), fisheye, fisheye_lens=-1))
+    expect_value_error("sensor_width", lambda: scene.set_panorama_camera(np.eye(4), fisheye, sensor_width=np.inf))
+    expect_value_error(
+        "fisheye_polynomial", lambda: scene.set_panorama_camera(np.eye(4), fisheye, fisheye_polynomial=1)
+    )
     expect_value_error("left", lambda: scene.set_camera_window(np.eye(4), 1, 1, 0, 1))
     expect_value_error("bottom", lambda: scene.set_camera_window(np.eye(4), 0, 1, 1, 0))
     expect_value_error("clip_start", lambda: scene.set_camera_window(np.eye(4), 0, 1, 0, 1, clip_start=-1))

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Camera: the rectangle that the image sees, from lens, sensor fit, shift and pixel aspect."""
+"""Camera: what the image sees, from its kind, lens, sensor fit, shift and pixel aspect."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +14,7 @@ import shlight
 
 from ..frame import Frame
 from ..report import ExportError, ExportReport
+from .lens import aperture_of, panorama_of
 
 Matrix = NDArray[np.float64]
 
@@ -30,47 +32,98 @@ class Eye:
 class View:
     """How the camera sees the world.
 
-    to_camera, 3 x 4: to x to the right, y up and z forward.
+    to_camera, 3 x 4: to x to the right, y up and z forward; of a panorama to Cycles' frame of it.
     slope, offset: x/z slope[0] + offset[0] is -1 … 1 over the picture, and so is y/z; x and y where it is orthographic.
+        Without meaning for a panorama.
     """
 
     to_camera: tuple[tuple[float, ...], ...]
     slope: tuple[float, float]
     offset: tuple[float, float]
     orthographic: bool
+    panoramic: bool = False
 
 
 def set_camera(scene: shlight.Scene, eye: Eye, depsgraph: Any, frame: Frame, render: Any, report: ExportReport) -> View:
-    """Gives `scene` the eye, looking at `frame`; ExportError for a camera without a picture plane."""
+    """Gives `scene` the eye, looking at `frame`; ExportError for a camera of a kind that is not supported."""
     camera = eye.camera.evaluated_get(depsgraph)
     lens = camera.data
     place = f"Camera '{camera.name}'"
-    if lens.type not in {"PERSP", "ORTHO"}:
+    if lens.type not in {"PERSP", "ORTHO", "PANO"}:
         raise ExportError(
-            f"{place}: {lens.type.lower()} cameras are not supported; use a perspective or orthographic one"
+            f"{place}: {lens.type.lower()} cameras are not supported; use a perspective, orthographic or panoramic one"
         )
-    if lens.dof.use_dof:
-        report.add(place, "depth of field is not supported; everything is in focus")
     to_world = np.array(eye.to_world, dtype=np.float64)
     scale = np.linalg.norm(to_world[:3, :3], axis=0)
     if not np.isfinite(to_world).all() or not scale.all():
         raise ExportError(f"{place}: its transform is not finite or has scale 0")
     to_world[:3, :3] /= scale  # a camera's scale means nothing
-    projection = _projection(eye, camera, depsgraph, frame, render)
+    aperture = aperture_of(lens, to_world, depsgraph)
     clips = float(lens.clip_start), float(lens.clip_end)
-    return set_projection(scene, to_world, projection, frame, clips, orthographic=lens.type == "ORTHO")
+    if lens.type == "PANO":
+        panorama = panorama_of(lens, frame, render)
+        if panorama is None:
+            raise ExportError(f"{place}: a panorama of its type is not supported; choose another Panorama Type")
+        if render.use_multiview and lens.stereo.use_spherical_stereo:
+            report.add(place, "spherical stereo is not supported; each eye sees all directions from one point")
+        shift = eye.shift_x, float(lens.shift_y)
+        return _set_panorama(scene, to_world, frame, shift, clips, {**panorama, **aperture})
+    projection = _projection(eye, camera, depsgraph, frame, render)
+    return set_projection(scene, to_world, projection, frame, clips, aperture, orthographic=lens.type == "ORTHO")
 
 
 def set_projection(
-    scene: shlight.Scene, to_world: Matrix, projection: Matrix, frame: Frame, clips: tuple[float, float], **kind: bool
+    scene: shlight.Scene,
+    to_world: Matrix,
+    projection: Matrix,
+    frame: Frame,
+    clips: tuple[float, float],
+    aperture: Mapping[str, Any] | None = None,
+    *,
+    orthographic: bool,
 ) -> View:
     """Gives `scene` a camera that sees what OpenGL would, through `frame`.
 
-    to_world, projection: 4 x 4, without scale, and to normalized device coordinates. orthographic: the kind.
+    to_world, projection: 4 x 4, without scale, and to normalized device coordinates. aperture: as of `aperture_of`;
+    None: everything is in focus.
     """
-    left, right, bottom, top = _window(projection, frame, **kind)
-    scene.set_camera_window(to_world, left, right, bottom, top, clip_start=clips[0], clip_end=clips[1], **kind)
-    return _view(to_world, projection, **kind)
+    left, right, bottom, top = _window(projection, frame, orthographic=orthographic)
+    scene.set_camera_window(
+        to_world,
+        left,
+        right,
+        bottom,
+        top,
+        orthographic=orthographic,
+        clip_start=clips[0],
+        clip_end=clips[1],
+        **(aperture or {}),
+    )
+    return _view(to_world, projection, orthographic=orthographic)
+
+
+def _set_panorama(
+    scene: shlight.Scene,
+    to_world: Matrix,
+    frame: Frame,
+    shift: tuple[float, float],
+    clips: tuple[float, float],
+    panorama: Mapping[str, Any],
+) -> View:
+    scene.set_panorama_camera(
+        to_world,
+        left=frame.left / frame.full_width + shift[0],
+        right=frame.right / frame.full_width + shift[0],
+        bottom=frame.bottom / frame.full_height + shift[1],
+        top=frame.top / frame.full_height + shift[1],
+        clip_start=clips[0],
+        clip_end=clips[1],
+        **panorama,
+    )
+    right, up, back = np.linalg.inv(to_world)[:3]
+    rows = (right, back, up) if panorama["panorama_type"] == "mirrorball" else (-back, -right, up)
+    to_camera = tuple(tuple(row) for row in np.array(rows).tolist())
+    return View(to_camera, (0.0, 0.0), (0.0, 0.0), orthographic=False, panoramic=True)
 
 
 def _projection(eye: Eye, camera: Any, depsgraph: Any, frame: Frame, render: Any) -> Matrix:

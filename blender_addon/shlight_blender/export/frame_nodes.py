@@ -58,7 +58,7 @@ def _texture_coordinate(inputs: NodeInputs) -> Expression:
         return _rows(np.linalg.pinv(np.array(other.matrix_world, dtype=np.float64))[:3], nodes.position())
     if name == "Reflection":
         return reflect(-nodes.towards_viewer(), nodes.normal())
-    if view is None:
+    if view is None or (name == "Window" and view.panoramic):
         inputs.remark(f"'{name}' coordinates are not supported here; (0, 0, 0) is used")
         return Vector(0.0, 0.0, 0.0)
     return _in_camera(view) if name == "Camera" else _in_window(view)

@@ -50,6 +50,8 @@ def shares_of_picture(depsgraph: Any, view: View, frame: Frame, wanted: Containe
 
 def _covered(boxes: Array, view: View, frame: Frame) -> Array:
     """Of the frame, what the rectangles around boxes cover, by their corners (n, 8, 3) in the world."""
+    if view.panoramic:
+        return np.ones(len(boxes))
     to_camera = np.array(view.to_camera)
     points = boxes @ to_camera[:, :3].T + to_camera[:, 3]
     if not view.orthographic:

@@ -22,6 +22,8 @@ struct Ray {
     float t_min = 0;
     Vec3f direction{0};
     float t_max = std::numeric_limits<float>::infinity();
+
+    bool empty() const { return t_max < t_min; }
 };
 
 /// Where a ray meets a surface first. The point is (1 - u - v) · corner 0 + u · corner 1 + v · corner 2.

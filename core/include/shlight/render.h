@@ -82,7 +82,8 @@ struct RenderWatch {
 void check_render(const RenderSettings& settings, int width, int height);
 
 /// image: height × width × RGBA, row 0 on top, linear, premultiplied, the mean of all camera rays of each pixel; alpha
-/// is the share of them that met a surface or, where the camera sees it, the environment. The picture depends on
+/// is the share of them that met a surface or, where the camera sees it, the environment, or went beside a panorama's
+/// image. The picture depends on
 /// nothing but scene, camera, size and settings; not on the number of threads, and on a time limit only by the number
 /// of passes. Throws as check_render does, also for an image of another size; RenderCancelled when watch.progress
 /// returns false; what the watch's functions throw.

@@ -19,6 +19,10 @@ std::uint32_t hash(std::uint32_t a, std::uint32_t b);
 /// of area 2^-k. Coordinates lie strictly between 0 and 1.
 glm::dvec2 sobol(std::uint32_t index, std::uint32_t seed);
 
+/// The third and fourth coordinate of the Sobol sequence (Joe & Kuo 2008), Owen-scrambled likewise: they go on where
+/// nested_points() and hammersley() end, so that all four fill their cube evenly.
+glm::dvec2 sobol_beyond(std::uint32_t index, std::uint32_t seed);
+
 /// The points of sobol() with another index in place of each, another order for each seed: aligned blocks of 2^k
 /// indices stay together. Sequences of different seeds are unrelated even where both are taken in the order of their
 /// indices.

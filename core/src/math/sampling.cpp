@@ -2,6 +2,7 @@
 #include "shlight/sampling.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
@@ -41,6 +42,32 @@ std::uint32_t pascal(std::uint32_t x) {
     return x;
 }
 
+using DirectionNumbers = std::array<std::uint32_t, 32>;
+
+/// From the first ones, v_k = v_(k-s) ^ v_(k-s) >> s ^ v_(k-o), s being how many there are.
+constexpr DirectionNumbers direction_numbers(std::initializer_list<std::uint32_t> first, std::size_t other) {
+    DirectionNumbers numbers{};
+    std::copy(first.begin(), first.end(), numbers.begin());
+    for (std::size_t k = first.size(); k < numbers.size(); ++k) {
+        const std::uint32_t before = numbers[k - first.size()];
+        numbers[k] = before ^ (before >> first.size()) ^ numbers[k - other];
+    }
+    return numbers;
+}
+
+/// Of the polynomials x² + x + 1 and x³ + x + 1.
+constexpr DirectionNumbers kThird = direction_numbers({0x80000000U, 0xC0000000U}, 1);
+constexpr DirectionNumbers kFourth = direction_numbers({0x80000000U, 0xC0000000U, 0x20000000U}, 2);
+
+/// A coordinate of the Sobol sequence, bit-reversed.
+std::uint32_t reversed_coordinate(const DirectionNumbers& numbers, std::uint32_t index) {
+    std::uint32_t x = 0;
+    for (std::size_t k = 0; index != 0; ++k, index >>= 1) {
+        x ^= (index & 1) != 0 ? numbers[k] : 0;
+    }
+    return reverse_bits(x);
+}
+
 double unit(std::uint32_t x) {
     return (static_cast<double>(x) + 0.5) * 0x1p-32;
 }
@@ -64,6 +91,11 @@ std::uint32_t hash(std::uint32_t a, std::uint32_t b) {
 glm::dvec2 sobol(std::uint32_t index, std::uint32_t seed) {
     return {unit(reverse_bits(scramble_reversed(index, hash(seed, 0)))),
             unit(reverse_bits(scramble_reversed(pascal(index), hash(seed, 1))))};
+}
+
+glm::dvec2 sobol_beyond(std::uint32_t index, std::uint32_t seed) {
+    return {unit(reverse_bits(scramble_reversed(reversed_coordinate(kThird, index), hash(seed, 0)))),
+            unit(reverse_bits(scramble_reversed(reversed_coordinate(kFourth, index), hash(seed, 1))))};
 }
 
 SobolSequence::SobolSequence(std::uint32_t seed) : x_(hash(seed, 0)), y_(hash(seed, 1)), order_(hash(seed, 2)) {}

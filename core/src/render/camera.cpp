@@ -46,26 +46,41 @@ void check_place(const glm::dmat4& to_world, const Window& window, Projection pr
 
 }  // namespace
 
-Camera::Camera(const glm::dmat4& to_world, double fov_x) : to_world_(to_world) {
-    check_transform("to_world", to_world);
-    check_place(to_world, {}, projection_);
+Camera::Camera(const glm::dmat4& to_world, double fov_x, const Aperture& aperture)
+    : to_world_(to_world), aperture_(aperture) {
+    check();
     if (!(fov_x > 0 && fov_x < std::numbers::pi)) {
         reject("fov_x must lie between 0 and π");
     }
     half_width_ = std::tan(fov_x / 2);
 }
 
-Camera::Camera(const glm::dmat4& to_world, const Window& window, Projection projection, const ClipRange& clip)
-    : to_world_(to_world), window_(window), projection_(projection), clip_(clip) {
-    check_transform("to_world", to_world);
-    check_window(window);
-    check_place(to_world, window, projection);
-    if (!(std::isfinite(clip.start) && clip.start >= 0)) {
+Camera::Camera(const glm::dmat4& to_world, const Window& window, Projection projection, const ClipRange& clip,
+               const Aperture& aperture)
+    : to_world_(to_world), window_(window), projection_(projection), clip_(clip), aperture_(aperture) {
+    check();
+}
+
+Camera::Camera(const glm::dmat4& to_world, const Panorama& panorama, const Window& window, const ClipRange& clip,
+               const Aperture& aperture)
+    : to_world_(to_world), window_(window), panorama_(panorama), clip_(clip), aperture_(aperture) {
+    check_panorama(panorama);
+    check();
+}
+
+void Camera::check() const {
+    check_transform("to_world", to_world_);
+    if (window_) {
+        check_window(*window_);
+    }
+    check_place(to_world_, window_.value_or(Window{}), projection_);
+    if (!(std::isfinite(clip_.start) && clip_.start >= 0)) {
         reject("clip_start must be finite and not negative");
     }
-    if (!(clip.end > clip.start)) {
+    if (!(clip_.end > clip_.start)) {
         reject("clip_end must be greater than clip_start");
     }
+    check_aperture(aperture_);
 }
 
 Window Camera::window(int width, int height) const {
@@ -76,15 +91,34 @@ Window Camera::window(int width, int height) const {
     return {-half_width_, half_width_, -half_height, half_height};
 }
 
-Ray Camera::ray(double x, double y) const {
-    const bool perspective = projection_ == Projection::perspective;
+Ray Camera::ray(double x, double y, const glm::dvec2& square) const {
+    const glm::dvec2 lens = has_depth_of_field() ? aperture_.point(square) : glm::dvec2(0);
+    // From there to the point in focus, per unit of its distance.
+    const glm::dvec2 turn = lens / aperture_.focus_distance;
+    if (panorama_) {
+        const std::optional<Vec3d> ahead = panorama_direction(*panorama_, x, y);
+        if (!ahead) {
+            return {Vec3f(0), 0, Vec3f(0, 0, -1), -1};
+        }
+        if (!has_depth_of_field()) {
+            return from_lens(Vec3d(0), *ahead);
+        }
+        const PanoramaAxes axes = panorama_axes(*panorama_, *ahead);
+        return from_lens(axes.x * lens.x + axes.y * lens.y, glm::normalize(*ahead - axes.x * turn.x - axes.y * turn.y));
+    }
+    if (projection_ == Projection::perspective) {
+        return from_lens(Vec3d(lens, 0), Vec3d(x - turn.x, y - turn.y, -1));
+    }
+    return from_lens(Vec3d(x + lens.x, y + lens.y, 0), Vec3d(glm::dvec2(0) - turn, -1));
+}
+
+Ray Camera::from_lens(const Vec3d& origin, const Vec3d& per_depth) const {
     // Per unit of depth, so that the clip range is measured along the view axis and not along the ray, as Blender does.
-    const Vec3d per_depth = transform_vector(to_world_, perspective ? Vec3d(x, y, -1) : Vec3d(0, 0, -1));
-    const double length = glm::length(per_depth);
-    const Vec3d origin = transform_point(to_world_, perspective ? Vec3d(0) : Vec3d(x, y, 0));
+    const Vec3d direction = transform_vector(to_world_, per_depth);
+    const double length = glm::length(direction);
     // What starts farther than anything may be sees nothing.
     const double start = std::min(clip_.start * length, 4 * kFarthest);
-    return {Vec3f(origin), static_cast<float>(start), Vec3f(per_depth / length),
+    return {Vec3f(transform_point(to_world_, origin)), static_cast<float>(start), Vec3f(direction / length),
             static_cast<float>(clip_.end * length)};
 }
 

@@ -43,10 +43,16 @@ void CameraSurfaces::trace(std::span<const CameraRay> rays, std::span<const Neig
     results_.clear();
     light.assign(rays.size(), {});
     throughput_.assign(rays.size(), Rgb(1));
-    active_.resize(rays.size());
-    std::iota(active_.begin(), active_.end(), std::size_t{0});
+    active_.clear();
     segments_.clear();
-    std::transform(rays.begin(), rays.end(), std::back_inserter(segments_), [](const CameraRay& r) { return r.ray; });
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (rays[i].ray.empty()) {
+            light[i].opacity = 1;  // outside a panorama's image, as Cycles has it
+        } else {
+            active_.push_back(i);
+            segments_.push_back(rays[i].ray);
+        }
+    }
     for (std::uint32_t depth = 0; !active_.empty(); ++depth) {
         const std::size_t first = surfaces_.size();
         meet(rays, depth, light);

@@ -26,6 +26,8 @@ constexpr std::uint32_t kLightSeed = 0;
 constexpr std::uint32_t kEnvironmentSeed = 0xFFFFFFFFU;
 constexpr std::uint32_t kDeltaSeed = 0xFFFFFFFEU;
 constexpr std::uint32_t kFarLightSeed = 0xFFFFFFFDU;
+/// Of points of the aperture.
+constexpr std::uint32_t kLensSeed = 0xFFFFFFFCU;
 
 /// Times stages that follow each other.
 class StageClock {
@@ -163,25 +165,36 @@ RenderReport PixelBatch::report() const {
     return report;
 }
 
-Ray PixelBatch::camera_ray(double column, double row) const {
+Ray PixelBatch::camera_ray(double column, double row, const glm::dvec2& lens) const {
     const Window& window = picture_->window;
     return picture_->camera->ray(window.left + column / picture_->width * (window.right - window.left),
-                                 window.top + row / picture_->height * (window.bottom - window.top));
+                                 window.top + row / picture_->height * (window.bottom - window.top), lens);
+}
+
+/// The pixel's point and this are one of four dimensions. A preview's is the one before the first, the sequence's last.
+glm::dvec2 PixelBatch::lens_point(std::uint32_t sample, std::uint32_t pixel_seed) const {
+    return picture_->camera->has_depth_of_field() ? sobol_beyond(sample - picture_->previews, pixel_seed)
+                                                  : glm::dvec2(0.5);
 }
 
 void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples) {
     rays_.clear();
     neighbours_.clear();
+    seed_pixels(pixels, kLensSeed);
     // The rays of a pixel share its area.
     const std::uint32_t before = samples.first - std::min(samples.first, picture_->previews);
     const double step = 1 / std::sqrt(before + samples.count);
-    for (const Pixel& pixel : pixels) {
+    for (std::size_t p = 0; p < pixels.size(); ++p) {
         for (std::uint32_t i = samples.first; i < samples.first + samples.count; ++i) {
-            const double column = pixel.column + 0.5 + picture_->filter_places[i].x;
-            const double row = pixel.row + 0.5 + picture_->filter_places[i].y;
-            rays_.push_back({camera_ray(column, row), i});
+            const double column = pixels[p].column + 0.5 + picture_->filter_places[i].x;
+            const double row = pixels[p].row + 0.5 + picture_->filter_places[i].y;
+            const glm::dvec2 lens = lens_point(i, pixel_seeds_[p]);
+            const Ray ray = camera_ray(column, row, lens);
+            rays_.push_back({ray, i});
             if (picture_->takes_differences) {
-                neighbours_.push_back({camera_ray(column + step, row), camera_ray(column, row + step)});
+                const Ray right = camera_ray(column + step, row, lens);
+                const Ray below = camera_ray(column, row + step, lens);
+                neighbours_.push_back({right.empty() ? ray : right, below.empty() ? ray : below});
             }
         }
     }

@@ -105,8 +105,10 @@ class PixelBatch {
     /// One for each pixel and what casts shadows.
     void seed_pixels(std::span<const Pixel> pixels, std::uint32_t light);
     void add_up(const SampleRange& samples, std::span<PixelSums> sums) const;
-    /// Through a point of the window, in pixels.
-    Ray camera_ray(double column, double row) const;
+    /// Through a point of the window, in pixels, and one of the aperture.
+    Ray camera_ray(double column, double row, const glm::dvec2& lens) const;
+    /// Of a camera ray, in the unit square.
+    glm::dvec2 lens_point(std::uint32_t sample, std::uint32_t pixel_seed) const;
 
     const Picture* picture_;
     RenderReport report_;

@@ -38,11 +38,12 @@ RefinementGroup& group_of(int from, int to, bool calm, std::vector<RefinementGro
 
 }  // namespace
 
-Refinement::Refinement(int width, int height, const PixelSampling& sampling)
+Refinement::Refinement(int width, int height, const PixelSampling& sampling, bool depth_of_field)
     : width_(width),
       height_(height),
       first_samples_(static_cast<std::uint32_t>(sampling.first_samples)),
       good_enough_(sampling.noise_threshold * sampling.noise_threshold),
+      depth_of_field_(depth_of_field),
       states_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
     const auto most = static_cast<std::uint32_t>(sampling.max_samples);
     if (first_samples_ < most) {
@@ -130,7 +131,8 @@ Refinement::Row Refinement::next_of(int row, std::span<const float> image) const
 
 double Refinement::squared_error(double variance, int level) const {
     const double count = samples(level);
-    return variance / (count * std::sqrt(count));
+    const double evenness = std::sqrt(count);
+    return variance / (count * (depth_of_field_ ? std::sqrt(evenness) : evenness));
 }
 
 int Refinement::sufficient_level(double variance) const {
@@ -156,8 +158,8 @@ Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float
     const int enough = std::max<int>(sufficient_level(variance), state.level);
     // One ray knows nothing of its pixel, and what is known to need more need not be supposed to.
     if ((enough == state.level || state.level == 0) && good_enough_ > 0 && least_square_ > 0) {
-        // The less likely the more rays have missed it.
-        const double missed = std::max(samples(state.level) / kMissingRays, 1.0);
+        // The less likely the more rays have missed it, unless what is out of focus is as thin everywhere.
+        const double missed = depth_of_field_ ? 1 : std::max(samples(state.level) / kMissingRays, 1.0);
         supposed = squared_error(neighbours_variance(column, row, scale, image), state.level) * kNeighbourShare /
                    (missed * missed);
     }

@@ -112,7 +112,7 @@ RenderReport render(const CompiledScene& scene, const Camera& camera, int width,
                     const RenderSettings& settings, std::span<float> image, const RenderWatch& watch) {
     check_render(settings, width, height);
     check_size("image", image.size(), 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    Refinement refinement(width, height, settings.sampling);
+    Refinement refinement(width, height, settings.sampling, camera.has_depth_of_field());
     const Progress waiting = watch.progress ? [&](double) { return watch.progress(0); } : Progress();
     std::optional<Picture> picture;
     const auto prepare = [&](const Stopped& stopped) {
