@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 import pytest
 
+from shlight_blender.compare.places import Finder
 from shlight_blender.export.lens import aperture_of
 
 SLOW = pytest.mark.slow
@@ -100,3 +101,8 @@ def test_window_coordinates_of_a_panorama_are_named(studio: Any) -> None:
     material.node_tree.links.new(coordinates.outputs["Camera"], shader.inputs["Color"])
     studio.compare(mean=5e-3, error=2e-3)
     assert studio.messages() == []
+
+
+def test_no_object_is_taken_for_what_a_panorama_shows(studio: Any) -> None:
+    set_up(studio, type="PANO")
+    assert Finder(studio.scene, bpy.context.view_layer).seen_at(32, 24).place == "Camera 'Camera'"

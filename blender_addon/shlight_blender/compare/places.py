@@ -68,7 +68,7 @@ def _show_collections(layer_collection: Any) -> None:
 
 
 class Finder:
-    """Casts rays through the pixels of a scene's frame."""
+    """Casts rays through the pixels of a scene's frame, and through the middle of the camera's lens."""
 
     def __init__(self, scene: Any, view_layer: Any) -> None:
         self._scene = scene
@@ -83,11 +83,15 @@ class Finder:
             scale_y=scene.render.pixel_aspect_y,
         )
         location, rotation, _ = camera.matrix_world.decompose()
+        # What a panorama shows at a pixel is not looked up; the report may name the camera.
+        self._panorama = Seen(f"Camera '{camera.name}'") if camera.data.type == "PANO" else None
         self._from_picture = Matrix.LocRotScale(location, rotation, None) @ projection.inverted()
         self._lamps = [seen for seen in view_layer.objects if seen.type == "LIGHT" and not seen.hide_render]
 
     def seen_at(self, x: float, y: float) -> Seen:
         """What is seen there [pixels from the lower left corner of what is rendered]."""
+        if self._panorama:
+            return self._panorama
         picture_x = 2 * (self._frame.left + x) / self._frame.full_width - 1
         picture_y = 2 * (self._frame.bottom + y) / self._frame.full_height - 1
         start, end = (self._point(picture_x, picture_y, z) for z in (-1.0, 1.0))
