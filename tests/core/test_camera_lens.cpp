@@ -144,6 +144,26 @@ TEST(CameraLens, APointFarOutOfFocusIsFound) {
     EXPECT_EQ(outside, 0);
 }
 
+TEST(CameraLens, ThePictureIsTheSameForAnyNumberOfThreadsAndPixelsDiffer) {
+    Mesh mesh = floor_mesh(50, -6);
+    mesh.transforms = {frame_matrix({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-50, 0, 0})};
+    mesh.emission = {Rgb(1)};
+    Scene scene;
+    scene.add_mesh(mesh);
+    const Camera camera(glm::dmat4(1), {-0.05, 0.05, -0.05, 0.05}, Projection::perspective, {},
+                        {.size = 0.2, .focus_distance = 2});
+    const auto pixels = [&](int threads) {
+        RenderSettings settings = analytic_settings();
+        settings.sampling = {.first_samples = 1, .min_samples = 4, .max_samples = 64};
+        settings.threads = threads;
+        return render_image(scene, camera, 24, 24, settings).values;
+    };
+    const std::vector<float> one = pixels(1);
+    EXPECT_EQ(one, pixels(3));
+    // Rows see the same, by other points of the aperture.
+    EXPECT_FALSE(std::equal(one.begin(), one.begin() + 96, one.begin() + 96));
+}
+
 TEST(CameraLens, PanoramasLookWhereTheirFormulasSay) {
     const auto looks = [](const Panorama& panorama, double u, double v, const Vec3d& expected) {
         const Ray ray = Camera(look_at({1, 2, 3}, {4, 1, 2}), panorama, {0, 1, 0, 1}, {0.5, 9}).ray(u, v);
