@@ -12,6 +12,7 @@ import pytest
 
 from shlight_blender.compare.places import Finder
 from shlight_blender.export.lens import aperture_of
+from shlight_blender.report import ExportError
 
 SLOW = pytest.mark.slow
 
@@ -106,3 +107,18 @@ def test_window_coordinates_of_a_panorama_are_named(studio: Any) -> None:
 def test_no_object_is_taken_for_what_a_panorama_shows(studio: Any) -> None:
     set_up(studio, type="PANO")
     assert Finder(studio.scene, bpy.context.view_layer).seen_at(32, 24).place == "Camera 'Camera'"
+
+
+def test_spherical_stereo_is_named(studio: Any) -> None:
+    data = set_up(studio, type="PANO")
+    studio.scene.render.use_multiview = data.stereo.use_spherical_stereo = True
+    assert any("spherical stereo is not supported" in line for line in studio.messages())
+
+
+def test_cameras_of_other_types_are_errors(studio: Any) -> None:
+    data = set_up(studio)
+    if "CUSTOM" not in data.bl_rna.properties["type"].enum_items:
+        pytest.skip("this Blender has no others")
+    data.type = "CUSTOM"
+    with pytest.raises(ExportError, match="custom cameras are not supported"):
+        studio.messages()
