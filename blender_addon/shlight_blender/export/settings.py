@@ -78,8 +78,9 @@ def preview_settings(scene: Any) -> RenderSettings:
         tolerance=0.01,
         noise_threshold=0.1,
         min_samples=1,
-        max_samples=4,
+        max_samples=16,
         pixel_samples=None,
+        time_limit=0.15,
         threads=0,  # Blender asks for one
     )
 
