@@ -108,7 +108,7 @@ std::uint32_t attribute_index(const AttributeNames& names, const std::string& na
 }
 
 /// A Bsdf, or what has a method `compiled` that makes a shader.
-void add_material(Mesh& mesh, const AttributeNames& names, const py::handle& item) {
+void add_material(Mesh& mesh, const AttributeNames& names, const py::handle& item, SceneObject& scene) {
     mesh.bsdfs.emplace_back();
     mesh.shaders.emplace_back();
     if (py::isinstance<Bsdf>(item)) {
@@ -123,19 +123,23 @@ void add_material(Mesh& mesh, const AttributeNames& names, const py::handle& ite
     for (const std::string& name : shader.attribute_names) {
         mesh.shaders.back().attributes.push_back(attribute_index(names, name));
     }
+    for (std::size_t i = 0; i < shader.aov_names.size(); ++i) {
+        mesh.shaders.back().aovs.push_back(
+            aov_number(scene, shader.aov_names[i], shader.shader->aovs[i].is_color));
+    }
 }
 
-void set_materials(Mesh& mesh, const AttributeNames& names, const py::object& value) {
+void set_materials(Mesh& mesh, const AttributeNames& names, const py::object& value, SceneObject& scene) {
     mesh.bsdfs.clear();
     if (value.is_none()) {
         mesh.bsdfs = {Bsdf::lambert(Rgb(0.8F))};
         return;
     }
     if (py::isinstance<Bsdf>(value) || py::hasattr(value, "compiled")) {
-        add_material(mesh, names, value);
+        add_material(mesh, names, value, scene);
     } else {
         for (const py::handle item : items_of(value)) {
-            add_material(mesh, names, item);
+            add_material(mesh, names, item, scene);
         }
     }
     if (mesh.bsdfs.empty()) {
@@ -187,6 +191,59 @@ void add_attributes(Mesh& mesh, AttributeNames& names, const std::string& argume
         place.append("['").append(name).append("']");
         mesh.attributes.push_back(attribute_from(place, mesh, array));
         names.push_back(name);
+    }
+}
+
+/// One string for all, or one for each of so many; 0 where Python leaves them out.
+std::vector<float> identities(const char* name, const py::object& value, std::size_t count) {
+    if (value.is_none()) {
+        return std::vector<float>(count);
+    }
+    if (py::isinstance<py::str>(value)) {
+        return std::vector<float>(count, cryptomatte_id(value.cast<std::string>()));
+    }
+    std::vector<float> result;
+    for (const py::handle item : items_of(value)) {
+        if (!py::isinstance<py::str>(item)) {
+            throw std::invalid_argument(std::string(name) + " must be strings");
+        }
+        result.push_back(cryptomatte_id(item.cast<std::string>()));
+    }
+    if (result.size() != count) {
+        throw std::invalid_argument(std::string(name) + " must be one string, or " + std::to_string(count));
+    }
+    return result;
+}
+
+/// Likewise, of integers.
+std::vector<float> pass_indices(const char* name, const py::object& value, std::size_t count) {
+    if (value.is_none()) {
+        return std::vector<float>(count);
+    }
+    const bool is_one = py::isinstance<py::int_>(value);
+    const py::object all = is_one ? py::object(py::make_tuple(value)) : value;
+    const std::vector<std::uint32_t> own = indices(name, all, {is_one ? 1 : static_cast<py::ssize_t>(count)});
+    std::vector<float> result(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        result[i] = static_cast<float>(own[is_one ? 0 : i]);
+    }
+    return result;
+}
+
+void set_labels(Mesh& mesh, const MeshArguments& arguments) {
+    const std::size_t objects = mesh.transforms.size();
+    const std::vector<float> index = pass_indices("object_indices", arguments.object_indices, objects);
+    const std::vector<float> name = identities("object_names", arguments.object_names, objects);
+    const std::vector<float> asset = identities("asset_names", arguments.asset_names, objects);
+    for (std::size_t i = 0; i < objects; ++i) {
+        mesh.object_labels.push_back({index[i], name[i], asset[i]});
+    }
+    const std::size_t materials = mesh.material_count();
+    const std::vector<float> material_index =
+        pass_indices("material_pass_indices", arguments.material_pass_indices, materials);
+    const std::vector<float> material_name = identities("material_names", arguments.material_names, materials);
+    for (std::size_t i = 0; i < materials; ++i) {
+        mesh.material_labels.push_back({material_index[i], material_name[i], 0});
     }
 }
 
@@ -268,7 +325,7 @@ Environment environment_from(const char* name, const py::handle& value, const gl
     return Environment(picture);
 }
 
-Mesh mesh_from(const MeshArguments& arguments) {
+Mesh mesh_from(const MeshArguments& arguments, SceneObject& scene) {
     Mesh mesh;
     mesh.vertices = copy_vectors("vertices", numbers<float>("vertices", arguments.vertices, {kAny, 3}));
     const std::vector<std::uint32_t> corners = indices("triangles", arguments.triangles, {kAny, 3});
@@ -280,9 +337,10 @@ Mesh mesh_from(const MeshArguments& arguments) {
     }
     AttributeNames names;
     add_attributes(mesh, names, "uvs", arguments.uvs);
+    mesh.uv = names.empty() ? MeshShader::kNoAttribute : 0;
     add_attributes(mesh, names, "colors", arguments.colors);
     add_attributes(mesh, names, "attributes", arguments.attributes);
-    set_materials(mesh, names, arguments.bsdf);
+    set_materials(mesh, names, arguments.bsdf, scene);
     mesh.emission = emission_from(arguments.emission);
     if (!arguments.material_indices.is_none()) {
         mesh.material_indices =
@@ -303,6 +361,8 @@ Mesh mesh_from(const MeshArguments& arguments) {
             mesh.object_values.emplace_back(row, row + array.shape(1));
         }
     }
+    set_labels(mesh, arguments);
+    mesh.group = group_from(scene, arguments.group);
     return mesh;
 }
 

@@ -8,6 +8,7 @@
 
 #include <vector>
 
+#include "scene_bindings.h"
 #include "shlight/environment.h"
 #include "shlight/mesh.h"
 #include "shlight/types.h"
@@ -33,10 +34,11 @@ Environment environment_from(const char* name, const pybind11::handle& value, co
 /// The arguments of Scene.add_mesh; None where Python leaves one out.
 struct MeshArguments {
     pybind11::object vertices, triangles, normals, uvs, colors, attributes, bsdf, emission, material_indices,
-        transforms, object_values;
+        transforms, object_values, group, object_names, asset_names, object_indices, material_names,
+        material_pass_indices;
 };
 
-/// Shapes and types are checked here, the rest by check_mesh.
-Mesh mesh_from(const MeshArguments& arguments);
+/// Shapes and types are checked here, the rest by check_mesh. Groups and AOVs become known to the scene.
+Mesh mesh_from(const MeshArguments& arguments, SceneObject& scene);
 
 }  // namespace shlight::python

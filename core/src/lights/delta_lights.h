@@ -42,6 +42,8 @@ class DeltaLights {
     /// With what fills the last vector up, which shines nowhere.
     std::size_t padded_size() const { return x_.size(); }
     bool casts_shadows(std::size_t i) const { return casts_shadows_[i] != 0; }
+    /// See LightTraits.
+    std::uint32_t group(std::size_t i) const { return i < lights_.size() ? traits_of(*lights_[i]).group : 0; }
     Rgb strength(std::size_t i) const { return {r_[i], g_[i], b_[i]}; }
     ColorArrays strengths(std::size_t begin) const { return {&r_[begin], &g_[begin], &b_[begin]}; }
     /// The absolute values of these.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -24,6 +25,7 @@ struct FarLight {
     Vec3d normal;  ///< 0: it shines alike in all directions
     bool two_sided;
     bool casts_shadows;
+    std::uint32_t group;  ///< see LightTraits
     double extent;  ///< no point of it is farther from its position
     Rgb intensity;  ///< [W sr⁻¹] along the normal
     std::size_t index;

@@ -179,7 +179,8 @@ void ShadowedDeltas::find_shares(const ShadingPoints& points, const PixelRange& 
             const Rgb share = visible(q);
             for (std::size_t lobe = 0; lobe < lobes.size() && share != Rgb(0); ++lobe) {
                 const float value = values(points.of_hit[q.hit] - pixel.first_point, lobe, range)[asked.light];
-                hits.radiance[q.hit] += hits.weight(q.hit, lobe) * strength * share * value;
+                hits.reflect(q.hit, lobe, lights_->group(range.begin + asked.light),
+                             hits.weight(q.hit, lobe) * strength * share * value);
             }
         }
     }
@@ -195,6 +196,21 @@ void ShadowedDeltas::add_shares(const ShadingPoints& points, const PixelRange& p
             for (const std::size_t hit : points.hits_of(pixel.first_point + p)) {
                 hits.radiance[hit] += hits.weight(hit, lobe) * sum;
             }
+            if (!hits.apart.empty()) {
+                add_parts(points.hits_of(pixel.first_point + p), lobe, values(p, lobe, range), range, hits);
+            }
+        }
+    }
+}
+
+void ShadowedDeltas::add_parts(std::span<const std::size_t> own_hits, std::size_t lobe, const float* values,
+                               const DeltaRange& range, Hits& hits) const {
+    for (std::size_t i = 0; i < range.count; ++i) {
+        const Rgb light = values[i] * Rgb(seen_r_[i], seen_g_[i], seen_b_[i]);
+        if (light == Rgb(0)) continue;
+        for (const std::size_t hit : own_hits) {
+            hits.apart.add(hit, hits.apart.parts().kind(hits.material[hit], lobe), lights_->group(range.begin + i),
+                           hits.weight(hit, lobe) * light);
         }
     }
 }

@@ -23,6 +23,7 @@ ShadowedFarLights::ShadowedFarLights(const ShadowTracer& tracer, std::span<const
 
 void ShadowedFarLights::add(const FarLightSum& far_light_sum, const ShadingPoints& points, const SampleRange& samples,
                             std::span<const std::uint32_t> pixel_seeds, std::span<const float> brightness, Hits& hits) {
+    apart_.reset(hits.apart.parts(), points.size());
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
         const std::size_t hit_count = hits.pixel_begin[pixel + 1] - hits.pixel_begin[pixel];
         const float own = far_light_sum.brightness(pixel);
@@ -35,7 +36,7 @@ void ShadowedFarLights::add(const FarLightSum& far_light_sum, const ShadingPoint
         if (samples.shadow_rays > 0) {
             ask(far_light_sum, questions, pixel_seeds[pixel], pixel, hits);
         } else {
-            rays_.know(Rgb(1));
+            rays_.know(Rgb(1), 0);
         }
         rays_.trace();
         const SharedRays::Share share = rays_.share(0, rays_.count());
@@ -45,6 +46,10 @@ void ShadowedFarLights::add(const FarLightSum& far_light_sum, const ShadingPoint
                 hits.radiance[hit] += share.seen * far_light_sum.radiance(point);
                 sum += far_light_sum.radiance(point);
             }
+        }
+        if (!apart_.empty()) {
+            find_apart(far_light_sum, points, pixel);
+            rays_.keep_apart({pixel, 0, rays_.count()}, share, points, apart_, hits);
         }
         hits.add_shared(pixel, share.variance * sum * sum, share.obstructed);
     }
@@ -61,10 +66,33 @@ void ShadowedFarLights::ask(const FarLightSum& far_light_sum, std::size_t questi
         const auto hit = static_cast<std::size_t>(place.y * count);
         const float own = value(light, hits, first, hit) / static_cast<float>(far_light_sum.density(drawn));
         if (own > 0 && light.casts_shadows) {
-            rays_.ask(Rgb(own), ray(light, hits, first + hit));
+            rays_.ask(Rgb(own), light.group, ray(light, hits, first + hit));
         } else if (own > 0) {
-            rays_.know(Rgb(own));
+            rays_.know(Rgb(own), light.group);
         }
+    }
+}
+
+/// Light by light, and then what makes up for what the sum is off by.
+void ShadowedFarLights::find_apart(const FarLightSum& far_light_sum, const ShadingPoints& points, std::size_t pixel) {
+    for (std::size_t point = points.pixel_begin[pixel]; point < points.pixel_begin[pixel + 1]; ++point) {
+        const std::uint32_t material = points.material[point];
+        const double cosine = points.cos_theta_o[point];
+        const Vec3d view(std::sqrt(1 - cosine * cosine), 0, cosine);
+        for (std::size_t i = 0; i < far_light_sum.size(); ++i) {
+            const FarLight& light = far_light_sum.light(i);
+            const Vec3d way = light.position - points.frame[point].origin;
+            const Vec3d direction = glm::normalize(points.frame[point].to_local(way));
+            const Rgb irradiance = light.intensity * static_cast<float>(light.irradiance(way));
+            for (std::size_t lobe = 0; lobe < materials_[material].lobes().size(); ++lobe) {
+                const LobeShape shape = materials_[material].shape(lobe, points.widths(point)[lobe]);
+                apart_.add(point, apart_.parts().kind(material, lobe), light.group,
+                           points.weight(point, lobe) * irradiance *
+                               static_cast<float>(lobe_value(shape, direction, view)));
+            }
+        }
+        complete(apart_.kinds(point), far_light_sum.radiance(point), LightParts::of_kind(LightKind::diffuse));
+        complete(apart_.groups(point), far_light_sum.radiance(point), far_light_sum.light(0).group);
     }
 }
 

@@ -39,7 +39,11 @@ class ShadowedFarLights {
     float value(const FarLight& light, const Hits& hits, std::size_t first, std::size_t hit) const;
     Ray ray(const FarLight& light, const Hits& hits, std::size_t hit) const;
 
+    /// Of the lights of the sum, what points of the pixel get if nothing blocks.
+    void find_apart(const FarLightSum& far_light_sum, const ShadingPoints& points, std::size_t pixel);
+
     SharedRays rays_;
+    KeptApart apart_;  // by shading point, if nothing blocks
     std::span<const MaterialLobes> materials_;
     std::span<const Light> lights_;
 };

@@ -89,6 +89,7 @@ class ShadowedLight {
 
     SampleRange samples_{};       // of the call of add()
     bool shadows_ = false;        // whether the light being added casts any
+    std::uint32_t group_ = 0;     // of that light
     LightRadiance unshadowed_{};  // of that light
     const ShadingPoints* points_ = nullptr;
     LightBrightness brightness_;

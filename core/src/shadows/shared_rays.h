@@ -10,8 +10,10 @@
 #include <span>
 #include <vector>
 
+#include "shading/shading_points.h"
 #include "shlight/ray_tracer.h"
 #include "shlight/types.h"
+#include "tracing/hits.h"
 #include "tracing/shadow_tracer.h"
 
 namespace shlight {
@@ -25,25 +27,34 @@ class SharedRays {
         bool obstructed = false;  ///< whether any ray met anything
     };
 
+    /// Questions of a pixel: those numbered begin … end - 1.
+    struct Asked {
+        std::size_t pixel, begin, end;
+    };
+
     explicit SharedRays(const ShadowTracer& tracer) : tracer_(&tracer) {}
 
     void start();
-    /// value: what the question stands for if nothing blocks, ≥ 0.
-    void ask(const Rgb& value, const Ray& ray);
+    /// value: what the question stands for if nothing blocks, ≥ 0; group: see LightTraits.
+    void ask(const Rgb& value, std::uint32_t group, const Ray& ray);
     /// Likewise, of a light that nothing blocks.
-    void know(const Rgb& value) { questions_.push_back({value, kNoRay}); }
+    void know(const Rgb& value, std::uint32_t group) { questions_.push_back({value, group, kNoRay}); }
     /// Questions so far.
     std::size_t count() const { return questions_.size(); }
     void trace();
     /// What those numbered begin … end - 1 tell; nothing is seen if none of them has a value.
     Share share(std::size_t begin, std::size_t end) const;
+    /// Adds to Hits::apart of a pixel what comes through of its light, of each group in proportion to what the questions
+    /// for it tell; together that is share.seen of all. unblocked: of each shading point.
+    void keep_apart(const Asked& asked, const Share& share, const ShadingPoints& points, const KeptApart& unblocked,
+                    Hits& hits);
     std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
     static constexpr std::uint32_t kNoRay = std::numeric_limits<std::uint32_t>::max();
     struct Question {
         Rgb value;
-        std::uint32_t ray;
+        std::uint32_t group, ray;
     };
 
     Rgb visible(const Question& question) const { return question.ray == kNoRay ? Rgb(1) : visible_[question.ray]; }
@@ -53,6 +64,7 @@ class SharedRays {
     std::vector<Question> questions_;
     std::vector<Ray> rays_;
     std::vector<Rgb> visible_;
+    std::vector<Rgb> seen_, asked_of_, all_;  // of groups
 };
 
 }  // namespace shlight

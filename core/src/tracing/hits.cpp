@@ -13,6 +13,7 @@ void Hits::clear() {
     lobe_width.clear();
     sample.clear();
     radiance.clear();
+    apart.clear();
     noise.clear();
     shared_noise.clear();
     obstructed.clear();
@@ -32,6 +33,7 @@ void Hits::add(const SurfacePoint& surface, const ShadingFrame& shading_frame, f
     lobe_width.resize(size() * lobe_stride, 1);
     sample.push_back(sample_index);
     radiance.emplace_back(0);
+    apart.push_back();
     noise.emplace_back(0);
 }
 

@@ -123,6 +123,15 @@ void check_mesh(const Mesh& mesh) {
     if (!mesh.object_values.empty()) {
         check_size("object_values", mesh.object_values.size(), mesh.transforms.size());
     }
+    if (!mesh.object_labels.empty()) {
+        check_size("object_labels", mesh.object_labels.size(), mesh.transforms.size());
+    }
+    if (!mesh.material_labels.empty()) {
+        check_size("material_labels", mesh.material_labels.size(), mesh.material_count());
+    }
+    if (mesh.uv != MeshShader::kNoAttribute && mesh.uv >= mesh.attributes.size()) {
+        reject("uv: there is no such attribute");
+    }
     for (const glm::dmat4& transform : mesh.transforms) {
         check_transform("transforms", transform);
         if (mesh.transforms.size() > 1) {
