@@ -16,6 +16,7 @@ from . import record, running
 from .compat import write_pass
 from .frame import Frame, frame_of
 from .native import native_problem
+from .passes import Arrays, layer_passes, pass_arguments, stamp_cryptomattes, write_passes
 from .report import ExportCancelled, ExportError
 from .running import ENGINE
 
@@ -49,13 +50,13 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             frame = frame_of(depsgraph.scene.render)
             if problem := native_problem():
                 raise ExportError(problem)
-            images = {}
+            views: dict[str, Arrays | None] = {}
             self._forget_changes(depsgraph)
             for view in _views(depsgraph.scene.render):
-                images[view] = self._render(depsgraph, frame, view)
+                views[view] = self._render(depsgraph, frame, view)
             if running.renders.stopped:
                 self._say_error(running.STOPPED)  # after an error Blender begins no other frame
-            self._deliver(depsgraph, frame, images)
+            self._deliver(depsgraph, frame, views)
         except ExportError as error:
             record.last.scene_error = str(error)
             self._fail(depsgraph, frame, str(error))
@@ -74,8 +75,14 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             self._exported: dict[str, Any] = getattr(self, "_exported", {})  # by view layer
         self._view_layers.add(view_layer)
 
-    def _render(self, depsgraph: Any, frame: Frame, view: str) -> NDArray[np.float32] | None:
-        """The picture of a view, or as much of it as there is when the user stops the render; None: nothing."""
+    def update_render_passes(self, scene: Any = None, renderlayer: Any = None) -> None:
+        """Names the passes of a view layer, for the compositor."""
+        self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
+        for own in layer_passes(scene, renderlayer):
+            self.register_pass(scene, renderlayer, own.name, len(own.channels), own.channels, own.kind)
+
+    def _render(self, depsgraph: Any, frame: Frame, view: str) -> Arrays | None:
+        """The picture of a view and its passes, or as much as there is when the user stops the render; None: nothing."""
         # Imported here: an installation without the native module still registers.
         import shlight
 
@@ -86,6 +93,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             self._check("Exporting the scene")
             exported = self._export(depsgraph, frame, view)
             settings = render_settings(depsgraph.scene).arguments()
+            passes = pass_arguments(depsgraph.scene, depsgraph.view_layer)
             record.last.export_seconds = time.perf_counter() - start
             record.last.report.extend(exported.report)
             record.last.dark = exported.dark or record.last.dark
@@ -94,34 +102,34 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             record.last.texture_bytes = exported.texture_bytes
             self._show(record.last.report.lines())
             self._check("Rendering")
-            latest: NDArray[np.float32] | None = None
             next_update = start + FIRST_UPDATE
+            self._is_shown = False
 
             def show(image: NDArray[np.float32], report: Any) -> bool:
-                nonlocal latest, next_update
-                latest = image
+                nonlocal next_update
+                self._is_shown = True
                 self._status = _status(report)
                 if (now := time.perf_counter()) >= next_update:
-                    self._deliver(depsgraph, frame, {view: image})
+                    self._deliver(depsgraph, frame, {view: {"combined": image}})
                     taken = time.perf_counter() - now
                     next_update = now + max(UPDATE_INTERVAL, taken / LARGEST_UPDATE_SHARE)
-                return True
+                return self._wait(self._status)
 
             self._status = "Rendering"
-            image, record.last.statistics = shlight.render(
+            result, record.last.statistics = shlight.render(
                 exported.scene,
                 frame.width,
                 frame.height,
                 progress=self._progress,
                 on_update=show,
                 return_report=True,
+                **passes,
                 **settings,
             )
-        except ExportCancelled:
+        except (ExportCancelled, shlight.RenderCancelled):
             return None
-        except shlight.RenderCancelled:
-            return latest  # what the user has seen stays
-        return image
+        stamp_cryptomattes(self.get_result(), depsgraph.view_layer, exported.names)
+        return result if isinstance(result, dict) else {"combined": result}
 
     def _forget_changes(self, depsgraph: Any) -> None:
         """Of the render before (Persistent Data), keeps the exported scene if no more than a camera has changed."""
@@ -155,8 +163,9 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         return Eye(camera, self.camera_model_matrix(camera), self.camera_shift_x(camera))
 
     def _progress(self, fraction: float) -> bool:
+        """What has been shown of a render that is stopped stays, with its passes: then only `show` stops it."""
         self.update_progress(fraction)
-        return self._wait(self._status)
+        return self._wait(self._status) or self._is_shown
 
     def _wait(self, text: str) -> bool:
         """Says what is done; False if it is to stop."""
@@ -188,14 +197,18 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
     def _say_error(self, text: str) -> None:
         self.report({"ERROR"}, f"shlight: {text}")
 
-    def _deliver(self, depsgraph: Any, frame: Frame, images: dict[str, NDArray[np.float32] | None]) -> None:
+    def _deliver(self, depsgraph: Any, frame: Frame, views: dict[str, Arrays | None]) -> None:
         """Hands over pictures of views; empty ones for all if there are none: without, saving crashes Blender."""
-        for view, image in (images or dict.fromkeys(_views(depsgraph.scene.render))).items():
-            if image is None:
-                image = np.zeros((frame.height, frame.width, 4), dtype=np.float32)
+        passes = layer_passes(depsgraph.scene, depsgraph.view_layer)
+        for own in passes:
+            self.add_pass(own.name, len(own.channels), own.channels, layer=depsgraph.view_layer.name)
+        for view, arrays in (views or dict.fromkeys(_views(depsgraph.scene.render))).items():
+            if arrays is None:
+                arrays = {"combined": np.zeros((frame.height, frame.width, 4), dtype=np.float32)}
             result = self.begin_result(0, 0, frame.width, frame.height, layer=depsgraph.view_layer.name, view=view)
             for layer in result.layers:
-                write_pass(layer.passes["Combined"], image[::-1].reshape(-1, 4))
+                write_pass(layer.passes["Combined"], arrays["combined"][::-1].reshape(-1, 4))
+                write_passes(layer, passes, arrays)
             self.end_result(result)
 
     def view_update(self, context: Any, depsgraph: Any) -> None:

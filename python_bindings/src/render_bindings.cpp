@@ -279,6 +279,8 @@ void bind_render(py::module_& m) {
                                "Time for each stage, summed over threads: camera rays; views, of the materials there; "
                                "light, without shadows; shadows; pixels, adding up.")
         .def("__repr__", &Report::repr);
+    m.def(
+        "cryptomatte_hash", [](const std::string& name) { return cryptomatte_hash(name); }, "name"_a);
     m.def("render", &render_scene, kRenderDoc, "scene"_a, "width"_a, "height"_a, py::kw_only(), "order"_a = "auto",
           "tolerance"_a = kDefaultTolerance, "noise_threshold"_a = PixelSampling().noise_threshold,
           "min_samples"_a = py::none(), "max_samples"_a = py::none(), "pixel_samples"_a = py::none(),

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 import shlight
 
 from ..compat import mesh_triangles, slot_materials, smooth_corner_normals
+from ..passes import SURFACES
 from ..report import Effect, ExportReport
 from .expressions import Surroundings
 from .materials import Surface, read_material
-from .mesh_attributes import COLOR, mesh_attributes
+from .mesh_attributes import COLOR, UV, mesh_attributes
 from .textured_meshes import MeshArrays, with_even_emission
 
 FloatArray = NDArray[np.float32]
@@ -26,6 +27,22 @@ FloatArray = NDArray[np.float32]
 MOST_SINGLE_FACES = 16
 # From this number of lights on the user is told why the render takes long.
 MANY_EMITTERS = 200
+
+
+class Label(NamedTuple):
+    """What passes know an object by."""
+
+    name: str
+    asset: str
+    index: int
+
+
+def _label(shown: Any) -> Label:
+    """An asset is all that hangs on one object without a parent."""
+    root = shown
+    while root.parent is not None:
+        root = root.parent
+    return Label(shown.name, root.name, int(shown.pass_index))
 
 
 @dataclass
@@ -37,6 +54,8 @@ class MeshUse:
     surfaces: list[Surface]
     transforms: list[NDArray[np.float64]] = field(default_factory=list)
     object_values: list[list[float]] = field(default_factory=list)
+    labels: list[Label] = field(default_factory=list)
+    group: str | None = None  # see PassWishes.light_part
 
 
 def mesh_arrays(mesh: Any, attribute_names: Iterable[str]) -> MeshArrays | None:
@@ -85,23 +104,25 @@ class MeshCollector:
             self._report.add(place, "its transform is not finite; left out", Effect.THING)
             return
         materials = slot_materials(mesh_object)
-        key = (mesh_object.data.as_pointer(), *(material and material.as_pointer() for material in materials))
+        group = self.surroundings.passes.light_part(SURFACES, mesh_object.lightgroup)
+        key = (mesh_object.data.as_pointer(), group, *(material and material.as_pointer() for material in materials))
         if key not in self._uses:
-            self._uses[key] = self._convert(instance, to_world, place, materials)
+            self._uses[key] = self._convert(instance, to_world, place, materials, group)
         use = self._uses[key]
         if use is not None:
             use.transforms.append(to_world)
             use.object_values.append(self.surroundings.object_values.of(instance))
+            use.labels.append(_label(mesh_object))
 
     def _convert(
-        self, instance: Any, to_world: NDArray[np.float64], place: str, materials: Sequence[Any]
+        self, instance: Any, to_world: NDArray[np.float64], place: str, materials: Sequence[Any], group: str | None
     ) -> MeshUse | None:
         mesh_object = instance.object
         surfaces = [self._surface(material) for material in materials or [None]]
         mesh = mesh_object.to_mesh()
         try:
             names = dict.fromkeys(name for surface in surfaces for name in surface.attribute_names)
-            arrays = mesh_arrays(mesh, names)
+            arrays = mesh_arrays(mesh, [*names, UV] if self.surroundings.passes.uvs else names)
             if arrays is not None:
                 missing = [name for name in names if name not in arrays.attributes]
                 self._report_missing(mesh_object, missing)
@@ -122,7 +143,7 @@ class MeshCollector:
             arrays, surfaces = with_even_emission(
                 arrays, surfaces, to_world, self.surroundings.object_values.of(instance), remark
             )
-        return MeshUse(place, arrays, surfaces)
+        return MeshUse(place, arrays, surfaces, group=group)
 
     def _report_missing(self, mesh_object: Any, names: Sequence[str]) -> None:
         for name in names:
@@ -142,6 +163,15 @@ class MeshCollector:
         """How many operations a hit takes, by the name of each material whose values vary."""
         counts = {self._names[key]: surface.shader.operation_count for key, surface in self._surfaces.items()}
         return {name: count for name, count in counts.items() if name and count > 0}
+
+    def names(self) -> dict[str, set[str]]:
+        """Of all that is drawn: of objects, materials and assets."""
+        labels = [label for use in self._uses.values() if use is not None for label in use.labels]
+        return {
+            "object": {label.name for label in labels},
+            "material": {surface.name for surface in self._surfaces.values()},
+            "asset": {label.asset for label in labels},
+        }
 
     def hand_over(self, scene: shlight.Scene, ask: Callable[[], None]) -> bool:
         """Adds everything to `scene`, and calls `ask` before each mesh; True if some of it emits light."""
@@ -163,26 +193,33 @@ class MeshCollector:
         if lights >= MANY_EMITTERS:
             text = f"its emissive faces are up to {lights} lights, which take long to render"
             self._report.add(use.place, text, Effect.SLIGHT)
-        for arrays, transforms, values in standing(use):
+        for arrays, transforms, values, labels in standing(use):
             scene.add_mesh(
                 arrays.vertices,
                 arrays.triangles,
                 normals=arrays.normals,
+                uvs={UV: arrays.attributes[UV]} if UV in arrays.attributes else None,
                 attributes=arrays.attributes,
                 bsdf=[surface.shader for surface in surfaces],
                 emission=emission if emits else None,
                 material_indices=indices,
                 transforms=transforms,
                 object_values=values,
+                group=use.group,
+                object_names=[label.name for label in labels],
+                asset_names=[label.asset for label in labels],
+                object_indices=[label.index for label in labels],
+                material_names=[surface.name for surface in surfaces],
+                material_pass_indices=[surface.pass_index for surface in surfaces],
             )
         return emits
 
 
-Standing = tuple[MeshArrays, NDArray[np.float64] | None, NDArray[np.float64] | None]
+Standing = tuple[MeshArrays, NDArray[np.float64] | None, NDArray[np.float64] | None, list[Label]]
 
 
 def standing(use: MeshUse) -> list[Standing]:
-    """A mesh with its transforms and their object values, and one flattened copy for each transform without inverse."""
+    """A mesh with its transforms, their object values and labels, and a flattened copy for each without inverse."""
     most = max(len(values) for values in use.object_values)
     values = np.array([[*own, *[0.0] * (most - len(own))] for own in use.object_values]) if most else None
     transforms = np.array(use.transforms)
@@ -192,12 +229,13 @@ def standing(use: MeshUse) -> list[Standing]:
     regular = volume > 1e-9 * size**3
     parts: list[Standing] = []
     if regular.any():
-        parts.append((use.arrays, transforms[regular], None if values is None else values[regular]))
+        labels = [label for label, stands in zip(use.labels, regular, strict=True) if stands]
+        parts.append((use.arrays, transforms[regular], None if values is None else values[regular], labels))
     for i in np.flatnonzero(~regular):
         transform = transforms[i]
         vertices = use.arrays.vertices @ transform[:3, :3].T + transform[:3, 3]
         if np.linalg.matrix_rank(vertices - vertices[0]) < 2:
             continue  # a line or a point shows nothing
         flat = replace(use.arrays, vertices=vertices.astype(np.float32), normals=None)
-        parts.append((flat, None, None if values is None else values[i : i + 1]))
+        parts.append((flat, None, None if values is None else values[i : i + 1], [use.labels[i]]))
     return parts

@@ -13,6 +13,7 @@ import numpy as np
 import shlight
 
 from ..frame import Frame, frame_of
+from ..passes import pass_wishes
 from ..report import Effect, ExportCancelled, ExportError, ExportReport
 from .bake import Waiting
 from .camera import Eye, set_camera
@@ -55,6 +56,7 @@ class ExportedScene(NamedTuple):
     operations: dict[str, int]  # of the program of each material whose values vary, for a hit
     texture_bytes: int  # of all textures that are kept
     is_of_one_camera: bool  # materials ask where the camera is
+    names: dict[str, set[str]]  # what Cryptomatte may know: of each of passes.CRYPTOMATTES
 
     def look_from(self, depsgraph: Any, *, frame: Frame, camera: Any = None) -> None:
         """Another camera, or the same elsewhere; arguments and errors as of `export_scene`."""
@@ -95,15 +97,18 @@ def export_scene(
     scene = shlight.Scene()
     view = set_camera(scene, eye, depsgraph, frame, blender_scene.render, report)
     report_unsupported_settings(blender_scene, depsgraph.view_layer_eval, report)
-    lit = add_world(scene, blender_scene, depsgraph.view_layer_eval, report, waiting)
-    surroundings = Surroundings(view, depsgraph)
+    passes = pass_wishes(blender_scene, depsgraph.view_layer_eval)
+    lit = add_world(scene, blender_scene, depsgraph.view_layer_eval, report, passes, waiting)
+    surroundings = Surroundings(view, depsgraph, passes=passes)
     meshes = MeshCollector(report, surroundings, depsgraph.view_layer_eval.material_override)
     lit |= _add_objects(scene, depsgraph, meshes, report, _asking(waiting))
     for path in TEXTURES.unreadable:
         report.add(f"File '{path}'", "it cannot be read; magenta is used in the place of its picture", Effect.THING)
     dark = "" if lit else _report_darkness(blender_scene, report)
     operations = meshes.operations()
-    return ExportedScene(scene, report, dark, operations, TEXTURES.size_in_bytes, surroundings.view_is_used)
+    return ExportedScene(
+        scene, report, dark, operations, TEXTURES.size_in_bytes, surroundings.view_is_used, meshes.names()
+    )
 
 
 def _eye(camera: Any, blender_scene: Any, depsgraph: Any) -> Eye:

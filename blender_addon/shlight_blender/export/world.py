@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 import shlight
 
 from ..compat import uses_nodes
+from ..passes import WORLD, PassWishes
 from ..report import Effect, ExportCancelled, ExportReport
 from .bake import BakeError, Sun, Waiting, bake_world
 from .nodes import ConstantReader, Origin, all_nodes, origin
@@ -32,7 +33,12 @@ class World:
 
 
 def add_world(
-    scene: shlight.Scene, blender_scene: Any, view_layer: Any, report: ExportReport, waiting: Waiting | None = None
+    scene: shlight.Scene,
+    blender_scene: Any,
+    view_layer: Any,
+    report: ExportReport,
+    passes: PassWishes,
+    waiting: Waiting | None = None,
 ) -> bool:
     """Sets the environment of `scene`, which is the scene's unless the view layer has another; True if it gives light.
 
@@ -41,9 +47,10 @@ def add_world(
     visible = not blender_scene.render.film_transparent
     world = getattr(view_layer, "world_override", None) or blender_scene.world
     read = _black() if world is None else _read_world(world, blender_scene, report, waiting)
-    scene.set_environment(read.radiance, to_world=read.to_world, visible=visible)
+    group = None if world is None else passes.light_part(WORLD, world.lightgroup)
+    scene.set_environment(read.radiance, to_world=read.to_world, visible=visible, group=group)
     for sun in read.suns:
-        scene.add_sun_light(sun.direction, sun.angle, sun.irradiance, camera=visible)
+        scene.add_sun_light(sun.direction, sun.angle, sun.irradiance, camera=visible, group=group)
     return bool(read.radiance.any() or read.suns)
 
 

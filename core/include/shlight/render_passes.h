@@ -53,7 +53,9 @@ struct Label {
     float name = 0, asset = 0;  ///< identities, see cryptomatte_id(); 0: none
 };
 
-/// The number by which Cryptomatte knows a name (github.com/Psyop/Cryptomatte): of MurmurHash3, as the bits of a float.
+/// MurmurHash3_x86_32 with the seed 0, by which Cryptomatte (github.com/Psyop/Cryptomatte) knows a name.
+std::uint32_t cryptomatte_hash(std::string_view name);
+/// The same as the bits of a float that is finite and not 0.
 float cryptomatte_id(std::string_view name);
 
 /// How far the mist pass reaches: its distance from the camera, less start, ÷ depth, to the power of falloff.

@@ -31,13 +31,15 @@ std::size_t channels(Pass kind, int levels) {
     }
 }
 
-/// MurmurHash3_x86_32 (Austin Appleby, public domain) with the seed 0.
-std::uint32_t murmur_hash(std::string_view text) {
+}  // namespace
+
+/// Austin Appleby, public domain.
+std::uint32_t cryptomatte_hash(std::string_view name) {
     std::uint32_t hash = 0;
     std::uint32_t block = 0;
     const auto mix = [&] { hash ^= std::rotl(block * 0xCC9E2D51U, 15) * 0x1B873593U; };
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        block |= std::uint32_t{static_cast<unsigned char>(text[i])} << (8 * (i % 4));
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        block |= std::uint32_t{static_cast<unsigned char>(name[i])} << (8 * (i % 4));
         if (i % 4 == 3) {
             mix();
             hash = std::rotl(hash, 13) * 5 + 0xE6546B64U;
@@ -45,16 +47,14 @@ std::uint32_t murmur_hash(std::string_view text) {
         }
     }
     mix();
-    hash ^= static_cast<std::uint32_t>(text.size());
+    hash ^= static_cast<std::uint32_t>(name.size());
     hash = (hash ^ (hash >> 16U)) * 0x85EBCA6BU;
     hash = (hash ^ (hash >> 13U)) * 0xC2B2AE35U;
     return hash ^ (hash >> 16U);
 }
 
-}  // namespace
-
 float cryptomatte_id(std::string_view name) {
-    const std::uint32_t hash = murmur_hash(name);
+    const std::uint32_t hash = cryptomatte_hash(name);
     // Neither a number without its first bit nor one that is not finite, which programs may lose.
     const std::uint32_t exponent = (hash >> 23U) & 0xFFU;
     return std::bit_cast<float>(exponent == 0 || exponent == 0xFFU ? hash ^ (1U << 23U) : hash);
