@@ -56,6 +56,8 @@ class CompiledScene {
     std::span<const std::uint32_t> light_groups() const;
     /// What camera rays that meet no surface see; null: nothing, which is transparent.
     const Environment* background() const;
+    /// Whether the camera sees any lamp.
+    bool shows_lamps() const;
     /// What lamps that the camera sees add to a camera ray, up to a surface at this distance along it, if there is one.
     /// by_group: is added to what each LightTraits::group of them adds, unless it is empty.
     Rgb lamps_along(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group = {}) const;

@@ -43,7 +43,7 @@ class DeltaLights {
     std::size_t padded_size() const { return x_.size(); }
     bool casts_shadows(std::size_t i) const { return casts_shadows_[i] != 0; }
     /// See LightTraits.
-    std::uint32_t group(std::size_t i) const { return i < lights_.size() ? traits_of(*lights_[i]).group : 0; }
+    std::uint32_t group(std::size_t i) const { return group_[i]; }
     Rgb strength(std::size_t i) const { return {r_[i], g_[i], b_[i]}; }
     ColorArrays strengths(std::size_t begin) const { return {&r_[begin], &g_[begin], &b_[begin]}; }
     /// The absolute values of these.
@@ -75,6 +75,7 @@ class DeltaLights {
     std::vector<float> r_, g_, b_, abs_r_, abs_g_, abs_b_;
     std::vector<float> lights_diffuse_, lights_glossy_;  // 1 or 0
     std::vector<std::uint8_t> casts_shadows_, is_even_;  // likewise
+    std::vector<std::uint32_t> group_;
     std::vector<std::size_t> uneven_;                    // sources that have a profile
 };
 

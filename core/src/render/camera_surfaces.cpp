@@ -42,7 +42,8 @@ void CameraSurfaces::trace(std::span<const CameraRay> rays, std::span<const Neig
     surfaces_.clear();
     results_.clear();
     light.assign(rays.size(), {});
-    apart_.reset(apart_.parts(), rays.size());
+    hits.apart.reset(rays.size() / rays_per_pixel);
+    const Sink sink = {light, hits.apart, rays_per_pixel};
     throughput_.assign(rays.size(), Rgb(1));
     active_.resize(rays.size());
     std::iota(active_.begin(), active_.end(), std::size_t{0});
@@ -50,29 +51,29 @@ void CameraSurfaces::trace(std::span<const CameraRay> rays, std::span<const Neig
     std::transform(rays.begin(), rays.end(), std::back_inserter(segments_), [](const CameraRay& r) { return r.ray; });
     for (std::uint32_t depth = 0; !active_.empty(); ++depth) {
         const std::size_t first = surfaces_.size();
-        meet(rays, depth, light);
+        meet(rays, depth, sink);
         run_programs(neighbours, first);
-        pass_on(rays, first, light);
+        pass_on(rays, first, sink);
     }
     add_hits(rays, rays_per_pixel, hits);
 }
 
 /// The next surface of each ray, or what lies behind all of them.
-void CameraSurfaces::meet(std::span<const CameraRay> rays, std::uint32_t depth, std::vector<RayLight>& light) {
+void CameraSurfaces::meet(std::span<const CameraRay> rays, std::uint32_t depth, const Sink& sink) {
     met_.resize(segments_.size());
     scene_->rays().intersect(segments_, met_);
     for (std::size_t i = 0; i < active_.size(); ++i) {
         const std::size_t index = active_[i];
         const CameraRay& ray = rays[index];
         if (met_[i].missed()) {
-            add_lamps(index, segments_[i], std::nullopt, light);
-            leave_scene(ray, index, light);
+            add_lamps(index, segments_[i], std::nullopt, sink);
+            leave_scene(ray, index, sink);
             continue;
         }
         const SurfacePoint point = scene_->surface(met_[i], ray.ray.direction);
         const Vec3d direction = glm::normalize(Vec3d(ray.ray.direction));
         const double distance = glm::dot(point.position - Vec3d(ray.ray.origin), direction);
-        add_lamps(index, segments_[i], distance, light);
+        add_lamps(index, segments_[i], distance, sink);
         surfaces_.push_back(
             {index, depth, met_[i], point, -direction, distance, distance - ray.ray.t_min, throughput_[index], 0, 0});
     }
@@ -90,34 +91,36 @@ ShadedPlace CameraSurfaces::place_of(const Surface& surface, const NeighbourRays
     return place;
 }
 
-void CameraSurfaces::leave_scene(const CameraRay& ray, std::size_t index, std::vector<RayLight>& light) {
+void CameraSurfaces::leave_scene(const CameraRay& ray, std::size_t index, const Sink& sink) {
     const Environment* background = scene_->background();
     const Rgb& left = throughput_[index];
     const Vec3d direction = glm::normalize(Vec3d(ray.ray.direction));
     if (background != nullptr) {
         add_light(index, LightKind::environment, scene_->environment_group(), left * background->radiance(direction),
-                  light);
-    } else if (!apart_.empty()) {
-        apart_.of(index)[LightParts::of_kind(LightKind::environment)] +=
+                  sink);
+    } else if (!sink.apart.empty()) {
+        sink.apart.of(index / sink.rays_per_pixel)[LightParts::of_kind(LightKind::environment)] +=
             left * scene_->environment().radiance(direction);
     }
-    light[index].opacity = background != nullptr ? 1.0F : 1.0F - (left.x + left.y + left.z) / 3;
+    sink.light[index].opacity = background != nullptr ? 1.0F : 1.0F - (left.x + left.y + left.z) / 3;
 }
 
 void CameraSurfaces::add_lamps(std::size_t index, const Ray& segment, const std::optional<double>& surface,
-                               std::vector<RayLight>& light) {
-    by_group_.assign(apart_.empty() ? 0 : apart_.groups(index).size(), Rgb(0));
-    light[index].radiance += throughput_[index] * scene_->lamps_along(segment, surface, by_group_);
+                               const Sink& sink) {
+    const bool apart = !sink.apart.empty() && scene_->shows_lamps();
+    by_group_.assign(apart ? sink.apart.parts().count - kLightKinds : 0, Rgb(0));
+    sink.light[index].radiance += throughput_[index] * scene_->lamps_along(segment, surface, by_group_);
     for (std::size_t group = 0; group < by_group_.size(); ++group) {
-        apart_.add(index, LightKind::emission, static_cast<std::uint32_t>(group), throughput_[index] * by_group_[group]);
+        sink.apart.add(index / sink.rays_per_pixel, LightKind::emission, static_cast<std::uint32_t>(group),
+                       throughput_[index] * by_group_[group]);
     }
 }
 
 void CameraSurfaces::add_light(std::size_t index, LightKind kind, std::uint32_t group, const Rgb& radiance,
-                               std::vector<RayLight>& light) {
-    light[index].radiance += radiance;
-    if (!apart_.empty() && radiance != Rgb(0)) {  // groups without light have no part
-        apart_.add(index, kind, group, radiance);
+                               const Sink& sink) {
+    sink.light[index].radiance += radiance;
+    if (!sink.apart.empty() && radiance != Rgb(0)) {  // groups without light have no part
+        sink.apart.add(index / sink.rays_per_pixel, kind, group, radiance);
     }
 }
 
@@ -175,20 +178,20 @@ float CameraSurfaces::width(const Surface& surface, std::uint32_t result) const 
 }
 
 /// Emission of the surfaces met last, and what is left of the rays behind them.
-void CameraSurfaces::pass_on(std::span<const CameraRay> rays, std::size_t first, std::vector<RayLight>& light) {
+void CameraSurfaces::pass_on(std::span<const CameraRay> rays, std::size_t first, const Sink& sink) {
     active_.clear();
     segments_.clear();
     for (std::size_t i = first; i < surfaces_.size(); ++i) {
         const Surface& surface = surfaces_[i];
         const Material& material = scene_->materials()[surface.point.material];
-        light[surface.ray].opacity = 1;
+        sink.light[surface.ray].opacity = 1;
         if (material.shader == nullptr) {
-            add_light(surface.ray, LightKind::emission, material.group, surface.throughput * material.emission, light);
+            add_light(surface.ray, LightKind::emission, material.group, surface.throughput * material.emission, sink);
             continue;
         }
         if (material.shader->emission) {
             add_light(surface.ray, LightKind::emission, material.group,
-                      surface.throughput * color(surface, *material.shader->emission), light);
+                      surface.throughput * color(surface, *material.shader->emission), sink);
         }
         if (material.shader->transparency) {
             throughput_[surface.ray] *= transparency(surface);

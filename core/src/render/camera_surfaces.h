@@ -46,10 +46,9 @@ class CameraSurfaces {
   public:
     /// transparent_bounces: as Cycles counts them, a camera ray passes through one surface more, and of the next one
     /// it sees the emission alone.
-    /// parts: outlive this.
     CameraSurfaces(const CompiledScene& scene, std::span<const MaterialLobes> materials,
-                   std::uint32_t transparent_bounces, const LightParts& parts)
-        : scene_(&scene), materials_(materials), transparent_bounces_(transparent_bounces), apart_(parts) {}
+                   std::uint32_t transparent_bounces)
+        : scene_(&scene), materials_(materials), transparent_bounces_(transparent_bounces) {}
 
     /// rays: those of a pixel, rays_per_pixel, follow each other. neighbours: of each ray, or none if no program takes
     /// differences. light: one for each ray. Clears the hits first.
@@ -71,8 +70,6 @@ class CameraSurfaces {
     };
 
     // Of the last call:
-    /// Parts of the light of each ray.
-    const KeptApart& apart() const { return apart_; }
     /// Of any one ray, the nearest first.
     std::span<const Surface> surfaces() const { return surfaces_; }
     void find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const;
@@ -85,17 +82,22 @@ class CameraSurfaces {
 
   private:
 
-    void meet(std::span<const CameraRay> rays, std::uint32_t depth, std::vector<RayLight>& light);
-    void leave_scene(const CameraRay& ray, std::size_t index, std::vector<RayLight>& light);
-    void add_lamps(std::size_t index, const Ray& segment, const std::optional<double>& surface,
-                   std::vector<RayLight>& light);
-    void add_light(std::size_t index, LightKind kind, std::uint32_t group, const Rgb& radiance,
-                   std::vector<RayLight>& light);
+    /// Where the light of the rays of a call goes.
+    struct Sink {
+        std::vector<RayLight>& light;  // of each ray
+        KeptApart& apart;
+        std::size_t rays_per_pixel;
+    };
+    void meet(std::span<const CameraRay> rays, std::uint32_t depth, const Sink& sink);
+    void leave_scene(const CameraRay& ray, std::size_t index, const Sink& sink);
+    void add_lamps(std::size_t index, const Ray& segment, const std::optional<double>& surface, const Sink& sink);
+    static void add_light(std::size_t index, LightKind kind, std::uint32_t group, const Rgb& radiance,
+                          const Sink& sink);
     void run_programs(std::span<const NeighbourRays> neighbours, std::size_t first);
     void run_program(std::span<const NeighbourRays> neighbours, std::span<const std::uint32_t> surfaces);
     /// neighbours: null where the program takes no differences.
     ShadedPlace place_of(const Surface& surface, const NeighbourRays* neighbours) const;
-    void pass_on(std::span<const CameraRay> rays, std::size_t first, std::vector<RayLight>& light);
+    void pass_on(std::span<const CameraRay> rays, std::size_t first, const Sink& sink);
     void add_hits(std::span<const CameraRay> rays, std::size_t rays_per_pixel, Hits& hits);
     void add_hit(const CameraRay& ray, const Surface& surface, Hits& hits);
     /// Unit.
@@ -116,7 +118,6 @@ class CameraSurfaces {
     std::vector<std::size_t> active_;  // rays that go on
     std::vector<Ray> segments_;        // what is left of them
     std::vector<Rgb> throughput_;      // of each ray
-    KeptApart apart_;                  // likewise
     std::vector<Rgb> by_group_;        // of lamps along a ray
     std::vector<RayHit> met_;
     std::vector<Surface> surfaces_;

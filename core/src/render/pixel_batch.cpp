@@ -84,6 +84,11 @@ std::vector<PartPlace> part_places(const Picture& picture) {
             places.push_back({place->first, LightParts::of_kind(kind)});
         }
     }
+    if (const PassLayout::Place* place = picture.layout.find(Pass::denoising_albedo)) {
+        for (const LightKind kind : {LightKind::emission, LightKind::environment}) {
+            places.push_back({place->first, LightParts::of_kind(kind)});
+        }
+    }
     for (const PassLayout::Place& place : picture.layout.places()) {
         const std::size_t part = LightParts::of_group(place.pass.number);
         if (place.pass.kind == Pass::light_group && part < picture.parts.count) {
@@ -163,8 +168,7 @@ std::uint32_t Picture::batch_samples() const {
 
 PixelBatch::PixelBatch(const Picture& picture)
     : picture_(&picture),
-      surfaces_(*picture.scene, picture.materials, static_cast<std::uint32_t>(picture.settings.transparent_bounces),
-                picture.parts),
+      surfaces_(*picture.scene, picture.materials, static_cast<std::uint32_t>(picture.settings.transparent_bounces)),
       surface_passes_(*picture.scene, *picture.camera, picture.settings.passes, picture.layout),
       hits_(picture.lobe_stride, picture.parts),
       far_light_sum_(picture.far, picture.materials, picture.settings.tolerance),
@@ -172,7 +176,7 @@ PixelBatch::PixelBatch(const Picture& picture)
       shadowed_far_lights_(tracer_, picture.materials, picture.scene->lights()),
       shadowed_deltas_(tracer_, picture.materials, picture.lobe_stride),
       unshadowed_(picture.lobe_stride),
-      shadowed_(tracer_, picture.materials, picture.lobe_stride),
+      shadowed_(tracer_, picture.materials, picture.lobe_stride, picture.parts),
       shadowed_environment_(tracer_, picture.scene->environment(), picture.materials),
       part_places_(part_places(picture)) {}
 
@@ -188,7 +192,7 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
     StageClock last(report_);
     add_up(samples, sums);
     if (!picture_->parts.empty()) {
-        add_up_parts(samples, pass_sums);
+        add_up_parts(pass_sums);
     }
     last.end(RenderStage::pixels);
 }
@@ -365,25 +369,13 @@ void PixelBatch::add_up(const SampleRange& samples, std::span<PixelSums> sums) c
     }
 }
 
-void PixelBatch::add_up_parts(const SampleRange& samples, std::span<double> pass_sums) const {
-    std::vector<Rgb> all(picture_->parts.count);
+void PixelBatch::add_up_parts(std::span<double> pass_sums) const {
     for (std::size_t pixel = 0; pixel < hits_.pixel_count(); ++pixel) {
-        std::fill(all.begin(), all.end(), Rgb(0));
-        const auto add = [&](std::span<const Rgb> parts) {
-            for (std::size_t i = 0; i < parts.size(); ++i) {
-                all[i] += glm::clamp(parts[i], static_cast<float>(-kBrightestRay), static_cast<float>(kBrightestRay));
-            }
-        };
-        for (std::size_t ray = pixel * samples.count; ray < (pixel + 1) * samples.count; ++ray) {
-            add(surfaces_.apart().of(ray));
-        }
-        for (std::size_t hit = hits_.pixel_begin[pixel]; hit < hits_.pixel_begin[pixel + 1]; ++hit) {
-            add(hits_.apart.of(hit));
-        }
+        const std::span<const Rgb> own = hits_.apart.of(pixel);
         for (const auto& [first, part] : part_places_) {
             for (int channel = 0; channel < 3; ++channel) {
                 pass_sums[pixel * picture_->layout.stride() + first + static_cast<std::size_t>(channel)] +=
-                    double{all[part][channel]};
+                    double{own[part][channel]};
             }
         }
     }

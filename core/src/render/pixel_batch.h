@@ -119,7 +119,7 @@ class PixelBatch {
     void seed_pixels(std::span<const Pixel> pixels, std::uint32_t light);
     void add_up(const SampleRange& samples, std::span<PixelSums> sums) const;
     /// Parts of the light.
-    void add_up_parts(const SampleRange& samples, std::span<double> pass_sums) const;
+    void add_up_parts(std::span<double> pass_sums) const;
     /// Through a point of the window, in pixels.
     Ray camera_ray(double column, double row) const;
 

@@ -275,6 +275,9 @@ std::span<const std::uint32_t> CompiledScene::light_groups() const {
 std::uint32_t CompiledScene::environment_group() const {
     return impl_->environment_group;
 }
+bool CompiledScene::shows_lamps() const {
+    return !impl_->seen_lamps.empty();
+}
 Rgb CompiledScene::lamps_along(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group) const {
     return impl_->seen_lamps.empty() ? Rgb(0) : impl_->seen_lamps.radiance(ray, surface, by_group);
 }

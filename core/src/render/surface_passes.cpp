@@ -73,9 +73,6 @@ void SurfacePasses::add(const CameraSurfaces& surfaces, std::size_t rays, std::s
             *at(Pass::mist, pixel) += clearness(surface.point.position) * mean(surface.throughput * alpha);
         }
     }
-    if (has(Pass::denoising_albedo)) {
-        add_shining(surfaces, rays_per_pixel, sums);
-    }
 }
 
 void SurfacePasses::add_first(const Surface& surface, double share, double* pixel) const {
@@ -189,17 +186,6 @@ void SurfacePasses::add_denoising(const Surface& surface, double share, const Rg
     }
     if (has(Pass::denoising_albedo)) {
         shlight::add(Vec3d(surface.throughput * albedo), at(Pass::denoising_albedo, pixel));
-    }
-}
-
-/// Radiance of all that a ray meets.
-void SurfacePasses::add_shining(const CameraSurfaces& surfaces, std::size_t rays_per_pixel,
-                                std::span<double> sums) const {
-    for (std::size_t ray = 0; ray < rays_.size(); ++ray) {
-        const std::span<const Rgb> parts = surfaces.apart().of(ray);
-        const Rgb light = parts[LightParts::of_kind(LightKind::emission)] +
-                          parts[LightParts::of_kind(LightKind::environment)];
-        shlight::add(Vec3d(light), at(Pass::denoising_albedo, &sums[ray / rays_per_pixel * layout_->stride()]));
     }
 }
 

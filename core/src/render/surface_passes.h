@@ -57,7 +57,6 @@ class SurfacePasses {
     void add_mattes(const Surface& surface, double share, double* pixel) const;
     void add_colors(const Surface& surface, double* pixel);
     void add_denoising(const Surface& surface, double share, const Rgb& transparency, RayState& ray, double* pixel);
-    void add_shining(const CameraSurfaces& surfaces, std::size_t rays_per_pixel, std::span<double> sums) const;
     /// Of the light that the lobe reflects under a white sky, without what its microfacets lose to each other.
     Rgb color(const SurfaceLobe& lobe, const Surface& surface);
     const AlbedoTable& table(const LobeShape& shape);

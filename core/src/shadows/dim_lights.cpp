@@ -57,7 +57,7 @@ void DimLights::add(const ShadingPoints& points, std::uint32_t number, std::span
                     Hits& hits) {
     points_ = &points;
     radiance_.assign(points.size(), Rgb(0));
-    apart_.reset(hits.apart.parts(), points.size());
+    apart_.reset(hits.pixel_count());
     asked_.clear();
     rays_.start();
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
@@ -176,7 +176,8 @@ void DimLights::add_unblocked(std::size_t pixel) {
                 const Rgb own = points_->weight(point, lobe) * unshadowed[lobe * points_->size() + point];
                 sum += own;
                 if (!apart_.empty()) {
-                    apart_.add(point, apart_.parts().kind(points_->material[point], lobe), group, own);
+                    apart_.add(pixel, apart_.parts().kind(points_->material[point], lobe), group,
+                               static_cast<float>(points_->hit_count(point)) * own);
                 }
             }
             radiance_[point] += sum;
@@ -195,7 +196,7 @@ void DimLights::finish(Hits& hits) {
             sum += radiance;
         }
         if (!apart_.empty()) {
-            rays_.keep_apart(asked, share, *points_, apart_, hits);
+            rays_.keep_apart(asked, share, apart_.of(asked.pixel), hits.apart);
         }
         hits.add_shared(asked.pixel, share.variance * sum * sum, share.obstructed);
     }

@@ -27,10 +27,10 @@ namespace shlight {
 /// Keeps its memory from light to light; one per thread.
 class DimLights {
   public:
-    /// Refers to the brightness.
+    /// Refers to the brightness and the parts.
     DimLights(const ShadowTracer& tracer, const LightBrightness& brightness, std::span<const MaterialLobes> materials,
-              std::size_t lobe_stride)
-        : brightness_(&brightness), materials_(materials), lobe_stride_(lobe_stride), rays_(tracer) {}
+              std::size_t lobe_stride, const LightParts& parts)
+        : brightness_(&brightness), materials_(materials), lobe_stride_(lobe_stride), rays_(tracer), apart_(parts) {}
 
     /// To be called before the first of these lights, which the brightness expects: they are referred to by number.
     void start(std::span<const Light* const> lights, const DirectLight& unshadowed, const SampleRange& samples);
@@ -71,7 +71,7 @@ class DimLights {
     const ShadingPoints* points_ = nullptr;  // of the call of add()
     std::vector<SharedRays::Asked> asked_;
     std::vector<Rgb> radiance_;       // by shading point, of the dim lights if nothing blocks
-    KeptApart apart_;                 // likewise
+    KeptApart apart_;                 // of that, by pixel
     std::vector<Member> dim_;         // lights of a pixel
     std::vector<Member> dim_points_;  // of a pixel, under one of them
     SeenLight seen_;

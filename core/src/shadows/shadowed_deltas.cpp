@@ -197,22 +197,24 @@ void ShadowedDeltas::add_shares(const ShadingPoints& points, const PixelRange& p
                 hits.radiance[hit] += hits.weight(hit, lobe) * sum;
             }
             if (!hits.apart.empty()) {
-                add_parts(points.hits_of(pixel.first_point + p), lobe, values(p, lobe, range), range, hits);
+                const std::size_t point = pixel.first_point + p;
+                const Rgb weight = static_cast<float>(points.hit_count(point)) * points.weight(point, lobe);
+                add_parts(values(p, lobe, range), range, weight, hits.apart.parts().kind(points.material[point], lobe),
+                          hits.apart.of(hits.of_pixel[points.hits_of(point).front()]));
             }
         }
     }
 }
 
-void ShadowedDeltas::add_parts(std::span<const std::size_t> own_hits, std::size_t lobe, const float* values,
-                               const DeltaRange& range, Hits& hits) const {
+void ShadowedDeltas::add_parts(const float* values, const DeltaRange& range, const Rgb& weight, LightKind kind,
+                               std::span<Rgb> apart) const {
+    Rgb sum(0);
     for (std::size_t i = 0; i < range.count; ++i) {
-        const Rgb light = values[i] * Rgb(seen_r_[i], seen_g_[i], seen_b_[i]);
-        if (light == Rgb(0)) continue;
-        for (const std::size_t hit : own_hits) {
-            hits.apart.add(hit, hits.apart.parts().kind(hits.material[hit], lobe), lights_->group(range.begin + i),
-                           hits.weight(hit, lobe) * light);
-        }
+        const Rgb light = weight * values[i] * Rgb(seen_r_[i], seen_g_[i], seen_b_[i]);
+        apart[LightParts::of_group(lights_->group(range.begin + i))] += light;
+        sum += light;
     }
+    apart[LightParts::of_kind(kind)] += sum;
 }
 
 std::uint64_t ShadowedDeltas::count_values(const ShadingPoints& points, const PixelRange& pixel,

@@ -23,7 +23,6 @@ ShadowedFarLights::ShadowedFarLights(const ShadowTracer& tracer, std::span<const
 
 void ShadowedFarLights::add(const FarLightSum& far_light_sum, const ShadingPoints& points, const SampleRange& samples,
                             std::span<const std::uint32_t> pixel_seeds, std::span<const float> brightness, Hits& hits) {
-    apart_.reset(hits.apart.parts(), points.size());
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
         const std::size_t hit_count = hits.pixel_begin[pixel + 1] - hits.pixel_begin[pixel];
         const float own = far_light_sum.brightness(pixel);
@@ -47,9 +46,9 @@ void ShadowedFarLights::add(const FarLightSum& far_light_sum, const ShadingPoint
                 sum += far_light_sum.radiance(point);
             }
         }
-        if (!apart_.empty()) {
-            find_apart(far_light_sum, points, pixel);
-            rays_.keep_apart({pixel, 0, rays_.count()}, share, points, apart_, hits);
+        if (!hits.apart.empty()) {
+            find_apart(far_light_sum, points, pixel, hits.apart.parts());
+            rays_.keep_apart({pixel, 0, rays_.count()}, share, apart_, hits.apart);
         }
         hits.add_shared(pixel, share.variance * sum * sum, share.obstructed);
     }
@@ -74,8 +73,11 @@ void ShadowedFarLights::ask(const FarLightSum& far_light_sum, std::size_t questi
 }
 
 /// Light by light, and then what makes up for what the sum is off by.
-void ShadowedFarLights::find_apart(const FarLightSum& far_light_sum, const ShadingPoints& points, std::size_t pixel) {
+void ShadowedFarLights::find_apart(const FarLightSum& far_light_sum, const ShadingPoints& points, std::size_t pixel,
+                                   const LightParts& parts) {
+    apart_.assign(parts.count, Rgb(0));
     for (std::size_t point = points.pixel_begin[pixel]; point < points.pixel_begin[pixel + 1]; ++point) {
+        point_apart_.assign(parts.count, Rgb(0));
         const std::uint32_t material = points.material[point];
         const double cosine = points.cos_theta_o[point];
         const Vec3d view(std::sqrt(1 - cosine * cosine), 0, cosine);
@@ -86,13 +88,18 @@ void ShadowedFarLights::find_apart(const FarLightSum& far_light_sum, const Shadi
             const Rgb irradiance = light.intensity * static_cast<float>(light.irradiance(way));
             for (std::size_t lobe = 0; lobe < materials_[material].lobes().size(); ++lobe) {
                 const LobeShape shape = materials_[material].shape(lobe, points.widths(point)[lobe]);
-                apart_.add(point, apart_.parts().kind(material, lobe), light.group,
-                           points.weight(point, lobe) * irradiance *
-                               static_cast<float>(lobe_value(shape, direction, view)));
+                const Rgb own = points.weight(point, lobe) * irradiance *
+                                static_cast<float>(lobe_value(shape, direction, view));
+                point_apart_[LightParts::of_kind(parts.kind(material, lobe))] += own;
+                point_apart_[LightParts::of_group(light.group)] += own;
             }
         }
-        complete(apart_.kinds(point), far_light_sum.radiance(point), LightParts::of_kind(LightKind::diffuse));
-        complete(apart_.groups(point), far_light_sum.radiance(point), far_light_sum.light(0).group);
+        const std::span<Rgb> own(point_apart_);
+        complete(own.first(kLightKinds), far_light_sum.radiance(point), LightParts::of_kind(LightKind::diffuse));
+        complete(own.subspan(kLightKinds), far_light_sum.radiance(point), far_light_sum.light(0).group);
+        for (std::size_t part = 0; part < parts.count; ++part) {
+            apart_[part] += static_cast<float>(points.hit_count(point)) * own[part];
+        }
     }
 }
 

@@ -8,12 +8,12 @@
 
 namespace shlight {
 ShadowedLight::ShadowedLight(const ShadowTracer& tracer, std::span<const MaterialLobes> materials,
-                             std::size_t lobe_stride)
+                             std::size_t lobe_stride, const LightParts& parts)
     : materials_(materials),
       lobe_stride_(lobe_stride),
       rays_(tracer, materials, lobe_stride),
       brightness_(lobe_stride),
-      dim_(tracer, brightness_, materials, lobe_stride) {}
+      dim_(tracer, brightness_, materials, lobe_stride, parts) {}
 
 void ShadowedLight::add(std::span<const Light* const> lights, const DirectLight& unshadowed, std::uint32_t first,
                         const SampleRange& samples, std::span<const std::uint32_t> pixel_seeds, Hits& hits) {

@@ -27,7 +27,8 @@ namespace shlight {
 /// Keeps its memory from light to light; one per thread.
 class ShadowedLight {
   public:
-    ShadowedLight(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride);
+    ShadowedLight(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride,
+                  const LightParts& parts);
     ~ShadowedLight() = default;
     // The parts refer to each other.
     ShadowedLight(const ShadowedLight&) = delete;

@@ -39,43 +39,24 @@ SharedRays::Share SharedRays::share(std::size_t begin, std::size_t end) const {
     return share;
 }
 
-void SharedRays::keep_apart(const Asked& asked, const Share& share, const ShadingPoints& points,
-                            const KeptApart& unblocked, Hits& hits) {
-    const std::size_t count = hits.apart.parts().count - kLightKinds;
-    for (std::vector<Rgb>* sums : {&seen_, &asked_of_, &all_}) {
-        sums->assign(count, Rgb(0));
-    }
+void SharedRays::keep_apart(const Asked& asked, const Share& share, std::span<const Rgb> unblocked, KeptApart& apart) {
+    const std::span<const Rgb> all = unblocked.subspan(kLightKinds);
+    seen_.assign(all.size(), Rgb(0));
+    asked_of_.assign(all.size(), Rgb(0));
     for (const Question& question : std::span(questions_).subspan(asked.begin, asked.end - asked.begin)) {
         seen_[question.group] += question.value * visible(question);
         asked_of_[question.group] += question.value;
     }
-    const std::size_t first = points.pixel_begin[asked.pixel];
-    const std::size_t last = points.pixel_begin[asked.pixel + 1];
     Rgb sum(0);
-    for (std::size_t point = first; point < last; ++point) {
-        const std::span<const Rgb> own = unblocked.of(point).subspan(kLightKinds);
-        for (std::size_t group = 0; group < count; ++group) {
-            all_[group] += static_cast<float>(points.hit_count(point)) * own[group];
-        }
-    }
-    for (std::size_t group = 0; group < count; ++group) {
-        const auto asks = glm::greaterThan(asked_of_[group], Rgb(0));
-        seen_[group] = all_[group] * glm::mix(share.seen, Rgb(quotient(seen_[group], asked_of_[group])), Rgb(asks));
-        sum += share.seen * all_[group];
+    for (std::size_t group = 0; group < all.size(); ++group) {
+        const Rgb known(glm::greaterThan(asked_of_[group], Rgb(0)));
+        seen_[group] = all[group] * glm::mix(share.seen, Rgb(quotient(seen_[group], asked_of_[group])), known);
+        sum += share.seen * all[group];
     }
     complete(seen_, sum, 0);
-    for (std::size_t group = 0; group < count; ++group) {
-        for (int channel = 0; channel < 3; ++channel) {
-            const float all = all_[group][channel];
-            seen_[group][channel] = all != 0 ? seen_[group][channel] / all : 0.0F;
-        }
-    }
-    for (std::size_t hit = hits.pixel_begin[asked.pixel]; hit < hits.pixel_begin[asked.pixel + 1]; ++hit) {
-        const std::span<const Rgb> own = unblocked.of(points.of_hit[hit]);
-        const std::span<Rgb> apart = hits.apart.of(hit);
-        for (std::size_t part = 0; part < apart.size(); ++part) {
-            apart[part] += own[part] * (part < kLightKinds ? share.seen : seen_[part - kLightKinds]);
-        }
+    const std::span<Rgb> own = apart.of(asked.pixel);
+    for (std::size_t part = 0; part < own.size(); ++part) {
+        own[part] += part < kLightKinds ? share.seen * unblocked[part] : seen_[part - kLightKinds];
     }
 }
 

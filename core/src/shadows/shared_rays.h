@@ -10,10 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "shading/shading_points.h"
 #include "shlight/ray_tracer.h"
 #include "shlight/types.h"
-#include "tracing/hits.h"
+#include "tracing/light_parts.h"
 #include "tracing/shadow_tracer.h"
 
 namespace shlight {
@@ -44,10 +43,9 @@ class SharedRays {
     void trace();
     /// What those numbered begin … end - 1 tell; nothing is seen if none of them has a value.
     Share share(std::size_t begin, std::size_t end) const;
-    /// Adds to Hits::apart of a pixel what comes through of its light, of each group in proportion to what the questions
-    /// for it tell; together that is share.seen of all. unblocked: of each shading point.
-    void keep_apart(const Asked& asked, const Share& share, const ShadingPoints& points, const KeptApart& unblocked,
-                    Hits& hits);
+    /// Adds to the parts of a pixel what comes through of these that are `unblocked`: of each group as the questions for
+    /// it tell, but together share.seen of all.
+    void keep_apart(const Asked& asked, const Share& share, std::span<const Rgb> unblocked, KeptApart& apart);
     std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
@@ -64,7 +62,7 @@ class SharedRays {
     std::vector<Question> questions_;
     std::vector<Ray> rays_;
     std::vector<Rgb> visible_;
-    std::vector<Rgb> seen_, asked_of_, all_;  // of groups
+    std::vector<Rgb> seen_, asked_of_;  // of groups
 };
 
 }  // namespace shlight

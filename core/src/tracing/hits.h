@@ -33,7 +33,8 @@ struct Hits {
     std::vector<float> lobe_width;      ///< likewise, of lobes whose width varies
     std::vector<std::uint32_t> sample;  ///< number of the camera ray within its pixel
     std::vector<Rgb> radiance;          ///< reflected to the camera, summed up
-    KeptApart apart;                    ///< parts of that
+    KeptApart apart;                    ///< by pixel: parts of that, and of what camera rays bring besides
+    std::vector<std::uint32_t> of_pixel;  ///< number of the pixel
     std::vector<Rgb> noise;             ///< the part of its variance that comes from shadow rays
     /// By pixel: the variance of the sum of its hits' radiance by what they have in common of few shadow rays.
     std::vector<Rgb> shared_noise;
@@ -57,7 +58,7 @@ struct Hits {
     void reflect(std::size_t hit, std::size_t lobe, std::uint32_t group, const Rgb& light) {
         radiance[hit] += light;
         if (!apart.empty()) {
-            apart.add(hit, apart.parts().kind(material[hit], lobe), group, light);
+            apart.add(of_pixel[hit], apart.parts().kind(material[hit], lobe), group, light);
         }
     }
     /// weights, widths: of the material's lobes.

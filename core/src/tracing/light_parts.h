@@ -32,33 +32,27 @@ struct LightParts {
 /// Light that is not kept apart.
 inline const LightParts kWholeLight;
 
-/// What is kept apart of hits, camera rays or shading points.
+/// What is kept apart of pixels.
 class KeptApart {
   public:
-    explicit KeptApart(const LightParts& parts = kWholeLight) : parts_(&parts) {}
+    /// parts: outlive this.
+    explicit KeptApart(const LightParts& parts) : parts_(&parts) {}
 
     const LightParts& parts() const { return *parts_; }
     bool empty() const { return parts_->empty(); }
-    /// parts: outlive this.
-    void reset(const LightParts& parts, std::size_t size) {
-        parts_ = &parts;
-        light_.assign(size * parts.count, Rgb(0));
-    }
-    void clear() { light_.clear(); }
-    void push_back() { light_.resize(light_.size() + parts_->count, Rgb(0)); }
+    /// Forgets all light; pixels: how many.
+    void reset(std::size_t pixels) { light_.assign(pixels * parts_->count, Rgb(0)); }
     /// Precondition: not empty().
-    void add(std::size_t index, LightKind kind, std::uint32_t group, const Rgb& light) {
-        const std::span<Rgb> own = of(index);
+    void add(std::size_t pixel, LightKind kind, std::uint32_t group, const Rgb& light) {
+        const std::span<Rgb> own = of(pixel);
         own[LightParts::of_kind(kind)] += light;
         own[LightParts::of_group(group)] += light;
     }
     /// By kind and group.
-    std::span<Rgb> of(std::size_t index) { return std::span(light_).subspan(index * parts_->count, parts_->count); }
-    std::span<const Rgb> of(std::size_t index) const {
-        return std::span(light_).subspan(index * parts_->count, parts_->count);
+    std::span<Rgb> of(std::size_t pixel) { return std::span(light_).subspan(pixel * parts_->count, parts_->count); }
+    std::span<const Rgb> of(std::size_t pixel) const {
+        return std::span(light_).subspan(pixel * parts_->count, parts_->count);
     }
-    std::span<Rgb> kinds(std::size_t index) { return of(index).first(kLightKinds); }
-    std::span<Rgb> groups(std::size_t index) { return of(index).subspan(kLightKinds); }
 
   private:
     const LightParts* parts_;
