@@ -96,7 +96,8 @@ void add_polygon_light(SceneObject& self, const py::object& vertices, const py::
                        const py::object& spread, const py::object& shadows, const py::object& diffuse,
                        const py::object& glossy, const py::object& camera, const py::object& group) {
     self.scene.add_polygon_light(points_from("vertices", vertices), rgb_from("radiance", radiance),
-                                 real_from("spread", spread), traits_from(self, shadows, diffuse, glossy, camera, group));
+                                 real_from("spread", spread),
+                                 traits_from(self, shadows, diffuse, glossy, camera, group));
     self.changed();
 }
 
@@ -127,13 +128,15 @@ void add_spot_light(SceneObject& self, const py::object& position, const py::obj
                               make_spot_profile(axes_from("direction", direction), real_from("spot_angle", spot_angle),
                                                 real_from("blend", blend), flag_from("times_cosine", times_cosine)),
                               rgb_from("intensity", intensity), real_from("radius", radius),
-                              flag_from("facing_disk", facing_disk), traits_from(self, shadows, diffuse, glossy, camera, group));
+                              flag_from("facing_disk", facing_disk),
+                              traits_from(self, shadows, diffuse, glossy, camera, group));
     self.changed();
 }
 
 void add_sun_light(SceneObject& self, const py::object& direction, const py::object& angle,
                    const py::object& irradiance, const py::object& tangent, const py::object& shadows,
-                   const py::object& diffuse, const py::object& glossy, const py::object& camera, const py::object& group) {
+                   const py::object& diffuse, const py::object& glossy, const py::object& camera,
+                   const py::object& group) {
     self.scene.add_sun_light(vector_from("direction", direction), real_from("angle", angle),
                              rgb_from("irradiance", irradiance), flag_from("tangent", tangent),
                              traits_from(self, shadows, diffuse, glossy, camera, group));
@@ -154,10 +157,12 @@ void bind_lights(py::class_<SceneObject>& scene) {
              "half_axis_v"_a, "radiance"_a, py::kw_only(), "spread"_a = std::numbers::pi, "shadows"_a = true,
              "diffuse"_a = true, "glossy"_a = true, "camera"_a = false, "group"_a = py::none())
         .def("add_point_light", &add_point_light, with_traits(kPointDoc).c_str(), "position"_a, "intensity"_a,
-             py::kw_only(), "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true, "camera"_a = false, "group"_a = py::none())
+             py::kw_only(), "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true, "camera"_a = false,
+             "group"_a = py::none())
         .def("add_spot_light", &add_spot_light, with_traits(kSpotDoc).c_str(), "position"_a, "direction"_a,
              "spot_angle"_a, "blend"_a, "intensity"_a, py::kw_only(), "radius"_a = 0.0, "facing_disk"_a = false,
-             "times_cosine"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true, "camera"_a = false, "group"_a = py::none())
+             "times_cosine"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true, "camera"_a = false,
+             "group"_a = py::none())
         .def("add_sun_light", &add_sun_light, with_traits(kSunDoc).c_str(), "direction"_a, "angle"_a, "irradiance"_a,
              py::kw_only(), "tangent"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true,
              "camera"_a = false, "group"_a = py::none());

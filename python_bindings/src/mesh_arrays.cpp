@@ -124,8 +124,7 @@ void add_material(Mesh& mesh, const AttributeNames& names, const py::handle& ite
         mesh.shaders.back().attributes.push_back(attribute_index(names, name));
     }
     for (std::size_t i = 0; i < shader.aov_names.size(); ++i) {
-        mesh.shaders.back().aovs.push_back(
-            aov_number(scene, shader.aov_names[i], shader.shader->aovs[i].is_color));
+        mesh.shaders.back().aovs.push_back(aov_number(scene, shader.aov_names[i], shader.shader->aovs[i].is_color));
     }
 }
 

@@ -207,15 +207,14 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
     auto& scene = object_from<SceneObject>("scene", scene_object, "Scene");
     const int most_shadow_rays = int_from("shadow_rays", shadow_rays);
     const PassArguments pass_arguments = {passes, groups, aovs, alpha_threshold, mist, cryptomatte_levels};
-    RenderSettings settings = {
-        order_from(order),
-        real_from("tolerance", tolerance),
-        sampling_from(noise_threshold, min_samples, max_samples, pixel_samples, time_limit),
-        filter_from(pixel_filter, filter_width),
-        flag_from("shadows", shadows) ? most_shadow_rays : 0,
-        int_from("threads", threads),
-        int_from("transparent_bounces", transparent_bounces),
-        pass_settings_from(pass_arguments)};
+    RenderSettings settings = {order_from(order),
+                               real_from("tolerance", tolerance),
+                               sampling_from(noise_threshold, min_samples, max_samples, pixel_samples, time_limit),
+                               filter_from(pixel_filter, filter_width),
+                               flag_from("shadows", shadows) ? most_shadow_rays : 0,
+                               int_from("threads", threads),
+                               int_from("transparent_bounces", transparent_bounces),
+                               pass_settings_from(pass_arguments)};
     const int columns = int_from("width", width);
     const int rows = int_from("height", height);
     const bool with_report = flag_from("return_report", return_report);
@@ -289,8 +288,8 @@ void bind_render(py::module_& m) {
           "passes"_a = py::tuple(), "groups"_a = false, "aovs"_a = false,
           "alpha_threshold"_a = PassSettings().alpha_threshold,
           "mist"_a = py::make_tuple(MistRange().start, MistRange().depth, MistRange().falloff),
-          "cryptomatte_levels"_a = PassSettings().cryptomatte_levels,
-          "threads"_a = 0, "progress"_a = py::none(), "on_update"_a = py::none(), "return_report"_a = false);
+          "cryptomatte_levels"_a = PassSettings().cryptomatte_levels, "threads"_a = 0, "progress"_a = py::none(),
+          "on_update"_a = py::none(), "return_report"_a = false);
 }
 
 }  // namespace shlight::python

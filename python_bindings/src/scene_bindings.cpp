@@ -77,11 +77,10 @@ void add_mesh(SceneObject& self, const py::object& vertices, const py::object& t
               const py::object& object_values, const py::object& group, const py::object& object_names,
               const py::object& asset_names, const py::object& object_indices, const py::object& material_names,
               const py::object& material_pass_indices) {
-    self.scene.add_mesh(
-        mesh_from({vertices, triangles, normals, uvs, colors, attributes, bsdf, emission, material_indices, transforms,
-                   object_values, group, object_names, asset_names, object_indices, material_names,
-                   material_pass_indices},
-                  self));
+    self.scene.add_mesh(mesh_from(
+        {vertices, triangles, normals, uvs, colors, attributes, bsdf, emission, material_indices, transforms,
+         object_values, group, object_names, asset_names, object_indices, material_names, material_pass_indices},
+        self));
     self.changed();
 }
 

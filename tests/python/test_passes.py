@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from scene_cases import FACES, FLOOR, SQUARE, from_above, lit_floor
 
 import shlight
 from shlight import nodes
+from shlight.images import write_layers
 from shlight.metrics import rel_mse
 
 Array = NDArray[np.float64]
@@ -226,6 +228,31 @@ def test_passes_see_through_what_lets_light_through() -> None:
     assert (through["object_index"] == 1).all()
     assert set(np.unique(kept["object_index"])) == {1, 2}
     assert kept["cryptomatte_object"][4, 4, 1] == pytest.approx(0.25)
+
+
+def test_passes_as_a_file_have_blenders_names(tmp_path: Path) -> None:
+    oiio = pytest.importorskip("OpenImageIO")
+    scene = lit_floor(object_names="floor", bsdf=nodes.lambert(0.5).with_aovs({"half": 0.5}))
+    scene.set_environment((1, 1, 1), group="sky")
+    names = ["depth", "normal", "diffuse_direct", "cryptomatte_object"]
+    passes = shlight.render(scene, 8, 4, passes=names, groups=True, aovs=True, max_samples=1, cryptomatte_levels=4)
+    write_layers(tmp_path / "layers.exr", passes)
+    file = oiio.ImageInput.open(str(tmp_path / "layers.exr"))
+    channels, pixels = list(file.spec().channelnames), file.read_image("float")
+    file.close()
+    expected = {
+        "Combined.A": passes["combined"][..., 3],
+        "Depth.Z": passes["depth"][..., 0],
+        "Normal.Y": passes["normal"][..., 1],
+        "DiffDir.G": passes["diffuse_direct"][..., 1],
+        "CryptoObject01.g": passes["cryptomatte_object"][..., 5],
+        "Combined_sky.R": passes["combined_sky"][..., 0],
+        "half.X": passes["aov_half"][..., 0],
+    }
+    for name, values in expected.items():
+        np.testing.assert_array_equal(pixels[..., channels.index(f"ViewLayer.{name}")], values, err_msg=name)
+    with pytest.raises(ValueError, match="^passes must"):
+        write_layers(tmp_path / "none.exr", {})
 
 
 @pytest.mark.parametrize(

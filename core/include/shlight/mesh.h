@@ -71,8 +71,12 @@ struct Mesh {
     const Rgb& emitted(std::size_t material) const { return emission[emission.size() == 1 ? 0 : material]; }
     Material material(std::size_t index) const {
         const MeshShader shader = shaders.empty() ? MeshShader() : shaders[index];
-        return {bsdf(index),       emitted(index), shader.shader,
-                shader.attributes, group,          shader.aovs,
+        return {bsdf(index),
+                emitted(index),
+                shader.shader,
+                shader.attributes,
+                group,
+                shader.aovs,
                 index < material_labels.size() ? material_labels[index] : Label()};
     }
 };

@@ -19,7 +19,7 @@ struct ShadedLobe {
     std::uint32_t weight;                 ///< colour; what is not finite counts as 0
     std::optional<std::uint32_t> alpha;   ///< takes the place of that of a GgxShape; clamped to 0 … 1
     std::optional<std::uint32_t> normal;  ///< world vector of any length; none, or without a direction: the smooth one
-    bool several_bounces = false;  ///< the weight makes up for what microfacets lose to each other
+    bool several_bounces = false;         ///< the weight makes up for what microfacets lose to each other
 };
 
 /// A number or colour that a program finds for a pass of its own.

@@ -76,7 +76,7 @@ class DeltaLights {
     std::vector<float> lights_diffuse_, lights_glossy_;  // 1 or 0
     std::vector<std::uint8_t> casts_shadows_, is_even_;  // likewise
     std::vector<std::uint32_t> group_;
-    std::vector<std::size_t> uneven_;                    // sources that have a profile
+    std::vector<std::size_t> uneven_;  // sources that have a profile
 };
 
 }  // namespace shlight

@@ -243,8 +243,7 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
         for (const ShadedLobe& lobe : shader->lobes) {
             const LobeShape shape =
                 lobe.alpha ? with_width(lobe.shape, double{width(surface, *lobe.alpha)}) : lobe.shape;
-            lobes.push_back({shape, normal(surface, lobe), color(surface, lobe.weight),
-                             lobe.several_bounces});
+            lobes.push_back({shape, normal(surface, lobe), color(surface, lobe.weight), lobe.several_bounces});
         }
         return;
     }

@@ -36,8 +36,8 @@ struct RayLight {
 /// A lobe as a camera ray meets it.
 struct SurfaceLobe {
     LobeShape shape;
-    Vec3d normal;  ///< unit
-    Rgb weight;    ///< colour, as of a surface that nothing stands before
+    Vec3d normal;                  ///< unit
+    Rgb weight;                    ///< colour, as of a surface that nothing stands before
     bool several_bounces = false;  ///< see ShadedLobe
 };
 
@@ -81,7 +81,6 @@ class CameraSurfaces {
     }
 
   private:
-
     /// Where the light of the rays of a call goes.
     struct Sink {
         std::vector<RayLight>& light;  // of each ray

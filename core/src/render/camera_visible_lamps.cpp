@@ -116,7 +116,8 @@ Rgb CameraVisibleLamps::radiance(const Ray& ray, const std::optional<double>& su
     Rgb sum(0);
     for (const Light* lamp : lamps_) {
         if (std::visit([&](const auto& light) { return meets(light, view); }, *lamp)) {
-            const Rgb own = strength_of(*lamp) * static_cast<float>(profile_factor(traits_of(*lamp).profile, -direction));
+            const Rgb own =
+                strength_of(*lamp) * static_cast<float>(profile_factor(traits_of(*lamp).profile, -direction));
             sum += own;
             if (!by_group.empty()) {
                 by_group[traits_of(*lamp).group] += own;

@@ -215,9 +215,9 @@ void Passes::render(std::span<const Pixel> pixels, int from, int to, bool calm) 
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         refinement_.merge(pixels[i], to, sums[i], image_);
         if (!pass_image_.empty()) {
-            const std::size_t index = static_cast<std::size_t>(pixels[i].row) *
-                                          static_cast<std::size_t>(picture_->width) +
-                                      static_cast<std::size_t>(pixels[i].column);
+            const std::size_t index =
+                static_cast<std::size_t>(pixels[i].row) * static_cast<std::size_t>(picture_->width) +
+                static_cast<std::size_t>(pixels[i].column);
             pass_image_.merge(index, refinement_.kept_samples(from), refinement_.samples(to),
                               std::span(pass_sums).subspan(i * pass_image_.stride(), pass_image_.stride()));
         }

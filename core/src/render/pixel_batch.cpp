@@ -333,8 +333,8 @@ void PixelBatch::add_environment(std::span<const Pixel> pixels, const SampleRang
     picture_->environment->shade(points_, environment_, report_);
     clock.end(RenderStage::light);
     seed_pixels(pixels, kEnvironmentSeed);
-    shadowed_environment_.add(*picture_->environment, picture_->scene->environment_group(), samples, environment_, points_.size(), points_.of_hit,
-                              pixel_seeds_, hits_);
+    shadowed_environment_.add(*picture_->environment, picture_->scene->environment_group(), samples, environment_,
+                              points_.size(), points_.of_hit, pixel_seeds_, hits_);
     clock.end(RenderStage::shadows);
 }
 

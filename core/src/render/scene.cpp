@@ -365,8 +365,7 @@ void Scene::check_size() const {
 
 std::shared_ptr<const CompiledScene> Scene::compile(int threads, const Progress& progress) const {
     check_size();
-    auto impl = std::make_unique<CompiledScene::Impl>(lamps_, environment_, environment_visible_,
-                                                      environment_group_);
+    auto impl = std::make_unique<CompiledScene::Impl>(lamps_, environment_, environment_visible_, environment_group_);
     const auto build = [&](const Stopped& stopped) {
         for (const auto& mesh : meshes_) {
             end_if(stopped);

@@ -26,8 +26,8 @@ struct FarLight {
     bool two_sided;
     bool casts_shadows;
     std::uint32_t group;  ///< see LightTraits
-    double extent;  ///< no point of it is farther from its position
-    Rgb intensity;  ///< [W sr⁻¹] along the normal
+    double extent;        ///< no point of it is farther from its position
+    Rgb intensity;        ///< [W sr⁻¹] along the normal
     std::size_t index;
 
     /// On a surface that faces it, of intensity 1. way: to its position, of any length > 0.

@@ -26,8 +26,8 @@ class ShadowedEnvironment {
                         std::span<const MaterialLobes> materials);
 
     /// Adds the environment to the hits' radiance and noise. samples: what the hits are of; unshadowed: see
-    /// EnvironmentShading; group: its, see LightTraits; point_of_hit: the shading point of each hit, none shared by pixels; pixel_seeds: one per
-    /// pixel. A hit's radiance counts as part of the sum over the hits of its pixel.
+    /// EnvironmentShading; group: its, see LightTraits; point_of_hit: the shading point of each hit, none shared by
+    /// pixels; pixel_seeds: one per pixel. A hit's radiance counts as part of the sum over the hits of its pixel.
     void add(const EnvironmentShading& shading, std::uint32_t group, const SampleRange& samples,
              std::span<const DirectLightParts> unshadowed, std::size_t point_count,
              std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds, Hits& hits);

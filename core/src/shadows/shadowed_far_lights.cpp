@@ -88,8 +88,8 @@ void ShadowedFarLights::find_apart(const FarLightSum& far_light_sum, const Shadi
             const Rgb irradiance = light.intensity * static_cast<float>(light.irradiance(way));
             for (std::size_t lobe = 0; lobe < materials_[material].lobes().size(); ++lobe) {
                 const LobeShape shape = materials_[material].shape(lobe, points.widths(point)[lobe]);
-                const Rgb own = points.weight(point, lobe) * irradiance *
-                                static_cast<float>(lobe_value(shape, direction, view));
+                const Rgb own =
+                    points.weight(point, lobe) * irradiance * static_cast<float>(lobe_value(shape, direction, view));
                 point_apart_[LightParts::of_kind(parts.kind(material, lobe))] += own;
                 point_apart_[LightParts::of_group(light.group)] += own;
             }

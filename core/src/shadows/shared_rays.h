@@ -43,8 +43,8 @@ class SharedRays {
     void trace();
     /// What those numbered begin … end - 1 tell; nothing is seen if none of them has a value.
     Share share(std::size_t begin, std::size_t end) const;
-    /// Adds to the parts of a pixel what comes through of these that are `unblocked`: of each group as the questions for
-    /// it tell, but together share.seen of all.
+    /// Adds to the parts of a pixel what comes through of these that are `unblocked`: of each group as the questions
+    /// for it tell, but together share.seen of all.
     void keep_apart(const Asked& asked, const Share& share, std::span<const Rgb> unblocked, KeptApart& apart);
     std::uint64_t rays_traced() const { return rays_traced_; }
 

@@ -30,12 +30,12 @@ struct Hits {
     /// Weight of lobe i of hit h at h · lobe_stride + i: its colour as the viewer sees it. 0 for lobes that the
     /// material does not have.
     std::vector<Rgb> lobe_weight;
-    std::vector<float> lobe_width;      ///< likewise, of lobes whose width varies
-    std::vector<std::uint32_t> sample;  ///< number of the camera ray within its pixel
-    std::vector<Rgb> radiance;          ///< reflected to the camera, summed up
-    KeptApart apart;                    ///< by pixel: parts of that, and of what camera rays bring besides
+    std::vector<float> lobe_width;        ///< likewise, of lobes whose width varies
+    std::vector<std::uint32_t> sample;    ///< number of the camera ray within its pixel
+    std::vector<Rgb> radiance;            ///< reflected to the camera, summed up
+    KeptApart apart;                      ///< by pixel: parts of that, and of what camera rays bring besides
     std::vector<std::uint32_t> of_pixel;  ///< number of the pixel
-    std::vector<Rgb> noise;             ///< the part of its variance that comes from shadow rays
+    std::vector<Rgb> noise;               ///< the part of its variance that comes from shadow rays
     /// By pixel: the variance of the sum of its hits' radiance by what they have in common of few shadow rays.
     std::vector<Rgb> shared_noise;
     std::vector<std::uint8_t> obstructed;        ///< by pixel: whether any shadow ray has met something
