@@ -6,10 +6,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ..compat import REC709, working_space
+from ..compat import PASSES, REC709, working_space
+from ..passes import CRYPTOMATTES
 from ..report import Effect, ExportReport
 
-PASSES_WRITTEN = {"use_pass_combined"}
+PASSES_WRITTEN = {"use_pass_combined", *PASSES, *(f"use_pass_cryptomatte_{kind}" for kind in CRYPTOMATTES)}
 # Says how precise another pass is, and is no pass itself.
 PASS_OPTIONS = {"use_pass_cryptomatte_accurate"}
 
@@ -97,7 +98,7 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
         report.add(place, f"working space {working_space()} is not supported; skies and pictures stay Rec. 709")
     passes = ", ".join(_passes_not_written(view_layer))
     if passes:
-        report.add(f"View layer '{view_layer.name}'", f"only the Combined pass is written; not {passes}", Effect.SLIGHT)
+        report.add(f"View layer '{view_layer.name}'", f"passes that are not supported: {passes}", Effect.SLIGHT)
     _report_layer_collections(view_layer.layer_collection, report)
 
 
@@ -108,9 +109,7 @@ def _passes_not_written(view_layer: Any) -> list[str]:
         for name in dir(owner)
         if name.startswith("use_pass_") and getattr(owner, name)
     )
-    passes = [flag.removeprefix("use_pass_") for flag in flags if flag not in PASSES_WRITTEN | PASS_OPTIONS]
-    passes += [f"AOV '{aov.name}'" for aov in view_layer.aovs]
-    return passes + [f"light group '{group.name}'" for group in view_layer.lightgroups]
+    return [flag.removeprefix("use_pass_") for flag in flags if flag not in PASSES_WRITTEN | PASS_OPTIONS]
 
 
 def _report_layer_collections(layer_collection: Any, report: ExportReport) -> None:

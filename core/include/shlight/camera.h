@@ -38,6 +38,12 @@ class Camera {
     Window window(int width, int height) const;
     /// The ray through a point of the window; its direction is a unit vector.
     Ray ray(double x, double y) const;
+    /// Along the view axis, from the camera's place to a point.
+    double depth(const Vec3d& point) const;
+    /// From the camera's place to a point; of an orthographic camera |depth|.
+    double distance(const Vec3d& point) const;
+    /// A world direction in the camera's frame, whose axes count as if they had length 1.
+    Vec3d turned_to_frame(const Vec3d& direction) const;
 
   private:
     glm::dmat4 to_world_;

@@ -88,4 +88,17 @@ Ray Camera::ray(double x, double y) const {
             static_cast<float>(clip_.end * length)};
 }
 
+double Camera::depth(const Vec3d& point) const {
+    return -glm::dot(point - Vec3d(to_world_[3]), glm::normalize(Vec3d(to_world_[2])));
+}
+
+double Camera::distance(const Vec3d& point) const {
+    return projection_ == Projection::perspective ? glm::length(point - Vec3d(to_world_[3])) : std::abs(depth(point));
+}
+
+Vec3d Camera::turned_to_frame(const Vec3d& direction) const {
+    const auto along = [&](int axis) { return glm::dot(direction, glm::normalize(Vec3d(to_world_[axis]))); };
+    return {along(0), along(1), along(2)};
+}
+
 }  // namespace shlight
