@@ -36,7 +36,9 @@ class LayerPass:
     kind: str  # VALUE, VECTOR or COLOR
     source: str = ""  # the array that it is some channels of
     first: int = 0  # of these channels
-    light: tuple[int, str] | None = None  # or the lights that it is the sum of: lamp (0) or light group (1), and its name
+    light: tuple[int, str] | None = (
+        None  # or the lights that it is the sum of: lamp (0) or light group (1), and its name
+    )
 
     def find(self, arrays: Arrays) -> NDArray[np.float32] | None:
         """The pass (height, width, channels); None where it is not among the arrays: black."""

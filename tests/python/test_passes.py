@@ -199,7 +199,9 @@ def test_cryptomatte_names_things_and_shares_pixels() -> None:
     assert set(middle[:2, 0]) == {identity["left"], identity["right"]}
     np.testing.assert_allclose(middle[:, 1], [0.5, 0.5, 0, 0], atol=1e-6)
     for kind in ("asset", "material"):
-        np.testing.assert_allclose(mattes[f"cryptomatte_{kind}"][7, 7, 0], [identity["pair" if kind == "asset" else "matt"], 1])
+        np.testing.assert_allclose(
+            mattes[f"cryptomatte_{kind}"][7, 7, 0], [identity["pair" if kind == "asset" else "matt"], 1]
+        )
     shares = mattes["cryptomatte_object"][..., 1]
     np.testing.assert_allclose(shares.sum(axis=-1), passes["combined"][..., 3], atol=1e-6)
     assert (np.diff(shares, axis=-1) <= 0).all()
@@ -208,7 +210,9 @@ def test_cryptomatte_names_things_and_shares_pixels() -> None:
 def test_aovs_are_what_materials_say() -> None:
     scene = shlight.Scene()
     place = nodes.position()
-    scene.add_mesh(FLOOR / 9, FACES, bsdf=nodes.lambert(0.5).with_aovs({"height": 3.0 + place.x, "tint": (1.0, 0.5, 0.25)}))
+    scene.add_mesh(
+        FLOOR / 9, FACES, bsdf=nodes.lambert(0.5).with_aovs({"height": 3.0 + place.x, "tint": (1.0, 0.5, 0.25)})
+    )
     from_above(scene, 1.0)
     passes = shlight.render(scene, 4, 4, aovs=True, max_samples=1)
     x = np.broadcast_to([[-0.75, -0.25, 0.25, 0.75]], (4, 4))

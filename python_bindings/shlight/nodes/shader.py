@@ -84,7 +84,11 @@ class Shader:
     def with_aovs(self, aovs: Mapping[str, Varying]) -> Shader:
         """The same, with values that `shlight.render` delivers as passes by these names: numbers, or colours (RGBA)."""
         own = {
-            name: value if isinstance(value, Value) else number(value) if isinstance(value, int | float) else color(value)
+            name: value
+            if isinstance(value, Value)
+            else number(value)
+            if isinstance(value, int | float)
+            else color(value)
             for name, value in aovs.items()
         }
         return replace(self, aovs={**self.aovs, **own})
