@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Passes of a view layer: what its switches ask for, by Blender's names, and the arrays of `shlight.render` for them."""
+"""Passes of a view layer: what its switches ask for, by Blender's names, and what `shlight.render` has for them."""
 
 from __future__ import annotations
 
@@ -117,9 +117,12 @@ def pass_wishes(scene: Any, view_layer: Any) -> PassWishes:
 
 
 def pass_arguments(scene: Any, view_layer: Any) -> dict[str, Any]:
-    """Arguments of `shlight.render` for the passes of a view layer."""
+    """Arguments of `shlight.render` for the passes of a view layer; none where it asks for no more than Combined."""
+    own_passes = layer_passes(scene, view_layer)
+    if not own_passes:
+        return {}
     wishes = pass_wishes(scene, view_layer)
-    sources = [own.source for own in layer_passes(scene, view_layer) if not own.source.startswith("aov_")]
+    sources = [own.source for own in own_passes if not own.source.startswith("aov_")]
     mist = getattr(scene.world, "mist_settings", None)
     reach = (0.0, 100.0, 1.0) if mist is None else (mist.start, mist.depth, FALLOFFS[mist.falloff])
     return {

@@ -34,7 +34,7 @@ class Label(NamedTuple):
 
     name: str
     asset: str
-    index: int
+    pass_index: int
 
 
 def _label(shown: Any) -> Label:
@@ -208,7 +208,7 @@ class MeshCollector:
                 group=use.group,
                 object_names=[label.name for label in labels],
                 asset_names=[label.asset for label in labels],
-                object_indices=[label.index for label in labels],
+                object_indices=[label.pass_index for label in labels],
                 material_names=[surface.name for surface in surfaces],
                 material_pass_indices=[surface.pass_index for surface in surfaces],
             )
