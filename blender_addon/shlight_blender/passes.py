@@ -51,6 +51,11 @@ class LayerPass:
         return None if not lights else np.sum(lights, axis=0)
 
 
+def stores_denoising_data(view_layer: Any) -> bool:
+    """Whether a view layer has denoising data: the switch is that of Cycles' add-on."""
+    return bool(getattr(getattr(view_layer, "cycles", None), "denoising_store_passes", False))
+
+
 def layer_passes(scene: Any, view_layer: Any) -> list[LayerPass]:
     """All passes but Combined that the view layer asks for and shlight has."""
     found = [LayerPass(*row) for switch, row in PASSES.items() if getattr(view_layer, switch, False)]
@@ -58,7 +63,7 @@ def layer_passes(scene: Any, view_layer: Any) -> list[LayerPass]:
         if getattr(view_layer, f"use_pass_cryptomatte_{kind}"):
             for i in range((_levels(view_layer) + 1) // 2):
                 found.append(LayerPass(f"{name}{i:02d}", "rgba", "COLOR", f"cryptomatte_{kind}", 4 * i))
-    if getattr(getattr(view_layer, "cycles", None), "denoising_store_passes", False):
+    if stores_denoising_data(view_layer):
         found += [LayerPass(*row) for row in DENOISING]
     for aov in view_layer.aovs:
         if aov.is_valid:
