@@ -105,7 +105,9 @@ def test_passes_are_those_of_cycles(studio: Any) -> None:
             assert set(mine) == set(theirs)
             worst[name] = max([np.abs(mine[i] - theirs[i]).max() for i in mine], default=0.0) ** 2
         else:
-            worst[name] = relative_error(image, expected)
+            # Where a ray sees nothing, Cycles 5.2 has a share of the largest float as its denoising depth.
+            known = expected[..., 0] < 1e30
+            worst[name] = relative_error(image[known], expected[known])
     print({name: f"{error:.1e}" for name, error in worst.items()})
     # Shares differ by the rays that find an edge; the world's direct light is Cycles' noise.
     allowed = {name: 5e-3 if ".Crypto" in name or name.endswith("sky") else 1e-3 for name in worst}
