@@ -140,6 +140,9 @@ PASSES: dict[str, tuple[str, str, str, str]] = {
     "use_pass_environment": (_pass_name("Environment", "Env"), "RGB", "COLOR", "environment"),
 }
 
+# Passes that Cycles adds to its denoising data, and shlight does not have.
+DENOISING_LEFT_OUT = ("Denoising Specular Albedo", "Denoising Roughness") if VERSION >= (5, 2, 0) else ()
+
 
 def aov_name(node: Any) -> str:
     """The pass that an AOV Output node writes."""

@@ -112,7 +112,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             self.register_pass(scene, renderlayer, own.name, len(own.channels), own.channels, own.kind)
 
     def _render(self, depsgraph: Any, frame: Frame, view: str) -> Arrays | None:
-        """A view's picture and passes, or as much as there is when the user stops the render; None: nothing."""
+        """The picture of a view and its passes, or as much as there is when the user stops; None: nothing."""
         # Imported here: an installation without the native module still registers.
         import shlight
 

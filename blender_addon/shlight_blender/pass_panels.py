@@ -13,7 +13,7 @@ from .engine_panel import EnginePanel, with_names_aside
 DATA = ("z", "mist", "position", "normal", "uv")
 INDEXES = ("object_index", "material_index")
 LIGHT = {"Diffuse": ("diffuse_direct", "diffuse_color"), "Glossy": ("glossy_direct", "glossy_color")}
-OTHER = ("emit", "environment", "shadow")
+OTHER = ("emit", "environment")
 
 
 class PassPanel(EnginePanel):

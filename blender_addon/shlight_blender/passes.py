@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Passes of a view layer: what its switches ask for, by Blender's names, and the arrays of `shlight.render` for them."""
+"""Passes of a view layer: what its switches ask for, by Blender's names, and what `shlight.render` has for them."""
 
 from __future__ import annotations
 
@@ -51,6 +51,11 @@ class LayerPass:
         return None if not lights else np.sum(lights, axis=0)
 
 
+def stores_denoising_data(view_layer: Any) -> bool:
+    """Whether a view layer has denoising data: the switch is that of Cycles' add-on."""
+    return bool(getattr(getattr(view_layer, "cycles", None), "denoising_store_passes", False))
+
+
 def layer_passes(scene: Any, view_layer: Any) -> list[LayerPass]:
     """All passes but Combined that the view layer asks for and shlight has."""
     found = [LayerPass(*row) for switch, row in PASSES.items() if getattr(view_layer, switch, False)]
@@ -58,7 +63,7 @@ def layer_passes(scene: Any, view_layer: Any) -> list[LayerPass]:
         if getattr(view_layer, f"use_pass_cryptomatte_{kind}"):
             for i in range((_levels(view_layer) + 1) // 2):
                 found.append(LayerPass(f"{name}{i:02d}", "rgba", "COLOR", f"cryptomatte_{kind}", 4 * i))
-    if getattr(getattr(view_layer, "cycles", None), "denoising_store_passes", False):
+    if stores_denoising_data(view_layer):
         found += [LayerPass(*row) for row in DENOISING]
     for aov in view_layer.aovs:
         if aov.is_valid:
@@ -117,9 +122,12 @@ def pass_wishes(scene: Any, view_layer: Any) -> PassWishes:
 
 
 def pass_arguments(scene: Any, view_layer: Any) -> dict[str, Any]:
-    """Arguments of `shlight.render` for the passes of a view layer."""
+    """Arguments of `shlight.render` for the passes of a view layer; none where it asks for no more than Combined."""
+    own_passes = layer_passes(scene, view_layer)
+    if not own_passes:
+        return {}
     wishes = pass_wishes(scene, view_layer)
-    sources = [own.source for own in layer_passes(scene, view_layer) if not own.source.startswith("aov_")]
+    sources = [own.source for own in own_passes if not own.source.startswith("aov_")]
     mist = getattr(scene.world, "mist_settings", None)
     reach = (0.0, 100.0, 1.0) if mist is None else (mist.start, mist.depth, FALLOFFS[mist.falloff])
     return {

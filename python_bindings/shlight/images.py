@@ -64,7 +64,7 @@ def write_layers(
     """Writes passes as `shlight.render` returns them as one 32-bit float OpenEXR file, compressed without loss.
 
     Channels are named as in Blender's files of up to version 4.5, "ViewLayer.Depth.Z" for instance: light groups
-    "Combined_NAME", AOVs NAME, and other names than those of passes as they are. view_layer: the first part of the names.
+    "Combined_NAME", AOVs NAME, and other names than those of passes as they are. view_layer: what names begin with.
     Raises ValueError for arrays that are no images of one size, OSError when the file cannot be written.
     """
     images = {name: _checked_layer(name, checked_array(name, image, np.float32)) for name, image in passes.items()}

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from shlight.metrics import rel_mse
-from shlight_blender import pass_panels, passes
+from shlight_blender import compat, pass_panels, passes
 
 oiio = pytest.importorskip("OpenImageIO")
 
@@ -23,8 +22,8 @@ GROUPS = ("key", "fill", "sky")
 
 def scene_with_groups(studio: Any) -> Any:
     scene = studio.scene
-    matt = studio.material("ShaderNodeBsdfDiffuse", "Matt", Color=(0.6, 0.5, 0.3, 1))
-    glossy = studio.material("ShaderNodeBsdfGlossy", "Glossy", Color=(0.9, 0.7, 0.4, 1), Roughness=0.5)
+    matt = studio.material("ShaderNodeBsdfDiffuse", "Matt", Color=(0.6, 0.5, 0.3))
+    glossy = studio.material("ShaderNodeBsdfGlossy", "Glossy", Color=(0.9, 0.7, 0.4), Roughness=0.5)
     for material, index in ((matt, 4), (glossy, 7)):
         material.pass_index = index
     floor = studio.plane(8, matt, "Floor")
@@ -49,6 +48,8 @@ def scene_with_groups(studio: Any) -> Any:
     for name in (*SWITCHES, *MATTES):
         setattr(view_layer, f"use_pass_{name}", True)
     view_layer.cycles.denoising_store_passes = True
+    if hasattr(scene.render.image_settings, "media_type"):
+        scene.render.image_settings.media_type = "MULTI_LAYER_IMAGE"
     scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
     scene.shlight.noise_threshold = 0.002
     return view_layer
@@ -82,10 +83,18 @@ def shares(levels: NDArray[np.float32]) -> dict[float, NDArray[np.float64]]:
     }
 
 
+def relative_error(image: NDArray[np.float32], expected: NDArray[np.float32]) -> float:
+    """relMSE over all channels, of whatever number; far away is as good as far away."""
+    near, far = np.minimum(image, 100.0).astype(np.float64), np.minimum(expected, 100.0).astype(np.float64)
+    return float(np.mean((near - far) ** 2 / (far**2 + 0.01 * np.abs(far).mean() ** 2 + 1e-12)))
+
+
 def test_passes_are_those_of_cycles(studio: Any) -> None:
     scene_with_groups(studio)
     studio.scene.cycles.samples = 1024
     (own, own_notes), (reference, notes) = rendered(studio, "SHLIGHT"), rendered(studio, "CYCLES")
+    for name in compat.DENOISING_LEFT_OUT:
+        reference.pop(f"ViewLayer.{name}")
     assert set(own) == set(reference)
     assert {name: own[name].shape for name in own} == {name: reference[name].shape for name in own}
     worst = {}
@@ -96,7 +105,9 @@ def test_passes_are_those_of_cycles(studio: Any) -> None:
             assert set(mine) == set(theirs)
             worst[name] = max([np.abs(mine[i] - theirs[i]).max() for i in mine], default=0.0) ** 2
         else:
-            worst[name] = rel_mse(np.minimum(image, 100.0), np.minimum(expected, 100.0))
+            # Where a ray sees nothing, Cycles 5.2 has a share of the largest float as its denoising depth.
+            known = expected[..., 0] < 1e30
+            worst[name] = relative_error(image[known], expected[known])
     print({name: f"{error:.1e}" for name, error in worst.items()})
     # Shares differ by the rays that find an edge; the world's direct light is Cycles' noise.
     allowed = {name: 5e-3 if ".Crypto" in name or name.endswith("sky") else 1e-3 for name in worst}

@@ -86,12 +86,14 @@ def all_kinds_of_light(far: bool) -> shlight.Scene:
     if not far:
         shiny = nodes.principled((0.8, 0.2, 0.1), roughness=0.6, several_bounces=True, emission_strength=0.02)
     scene.add_mesh(vertices, faces, normals=normals, bsdf=shiny, group="ball")
-    scene.add_mesh(SQUARE + [0.5, -1.0, 1.2], FACES, bsdf=nodes.mix(nodes.transparent((0.9, 0.5, 0.6)), shiny, 0.4))
+    scene.add_mesh(
+        SQUARE + np.array([0.5, -1.0, 1.2]), FACES, bsdf=nodes.mix(nodes.transparent((0.9, 0.5, 0.6)), shiny, 0.4)
+    )
     vertices, faces, _ = ball([1.2, 0.5, 0.6], 0.4)
     scene.add_mesh(vertices, faces, emission=(2.0, 1.0, 0.5), group="lantern")
-    scene.add_mesh(0.3 * SQUARE + [-2.0, 1.5, 0.5], FACES, emission=(0.0, 3.0, 3.0), group="sheet")
+    scene.add_mesh(0.3 * SQUARE + np.array([-2.0, 1.5, 0.5]), FACES, emission=(0.0, 3.0, 3.0), group="sheet")
     scene.add_sphere_light([2, -2, 4], 0.3, (60, 50, 40), group="key", camera=True)
-    scene.add_polygon_light(0.5 * SQUARE[::-1] + [0.0, 2.0, 3.0], (5, 5, 9), group="fill", spread=1.5)
+    scene.add_polygon_light(0.5 * SQUARE[::-1] + np.array([0.0, 2.0, 3.0]), (5, 5, 9), group="fill", spread=1.5)
     scene.add_spot_light([0, 2, 3], (0, -0.5, -1), 0.8, 0.3, (3, 3, 1), group="spot")
     scene.add_sun_light([0.3, 0.2, -1], 0.02, (0.5, 0.3, 0.3))
     sky = np.random.default_rng(0).random((8, 16, 3)).astype(np.float32) * 0.3
@@ -139,11 +141,11 @@ def test_a_group_is_the_picture_of_its_lights_alone() -> None:
     def scene_of(groups: tuple[str, ...]) -> shlight.Scene:
         scene = shlight.Scene()
         scene.add_mesh(FLOOR, FACES, bsdf=shlight.Bsdf.lambert(0.6) + shlight.Bsdf.ggx(0.4, (0.04, 0.04, 0.04)))
-        scene.add_mesh(0.4 * SQUARE + [0.2, 0.1, 0.8], FACES)
+        scene.add_mesh(0.4 * SQUARE + np.array([0.2, 0.1, 0.8]), FACES)
         if "key" in groups:
             scene.add_sphere_light([1, -1, 3], 0.3, (20, 16, 12), group="key")
         if "fill" in groups:
-            scene.add_polygon_light(SQUARE[::-1] + [-2, 1, 3], (2, 3, 4), group="fill")
+            scene.add_polygon_light(SQUARE[::-1] + np.array([-2, 1, 3]), (2, 3, 4), group="fill")
         if "point" in groups:
             scene.add_point_light([1, 1, 2], (2, 1, 1), group="point")
         if "sky" in groups:
@@ -184,7 +186,7 @@ def test_cryptomatte_names_things_and_shares_pixels() -> None:
     # https://en.wikipedia.org/wiki/MurmurHash lists these for the seed 0.
     assert [cryptomatte_hash(text) for text in ("", "test", "Hello, world!")] == [0, 0xBA6BD213, 0xC0363E43]
     scene = shlight.Scene()
-    left = SQUARE + [-1, 0, 0]
+    left = SQUARE + np.array([-1, 0, 0])
     both = np.stack([np.eye(4), np.eye(4)])
     both[1, 0, 3] = 2.0
     scene.add_mesh(
@@ -223,7 +225,7 @@ def test_aovs_are_what_materials_say() -> None:
 def test_passes_see_through_what_lets_light_through() -> None:
     scene = lit_floor(object_indices=1)
     veil = nodes.mix(nodes.transparent(), nodes.lambert(0.5), 0.25)
-    scene.add_mesh(SQUARE + [0, 0, 1], FACES, bsdf=veil, object_indices=2, object_names="veil")
+    scene.add_mesh(SQUARE + np.array([0, 0, 1]), FACES, bsdf=veil, object_indices=2, object_names="veil")
     options: dict[str, Any] = {"passes": ["depth", "object_index", "cryptomatte_object"], "max_samples": 1}
     through = shlight.render(scene, 8, 8, **options)
     kept = shlight.render(scene, 8, 8, alpha_threshold=0.2, **options)
@@ -255,7 +257,7 @@ def test_passes_as_a_file_have_blenders_names(tmp_path: Path) -> None:
     }
     for name, values in expected.items():
         np.testing.assert_array_equal(pixels[..., channels.index(f"ViewLayer.{name}")], values, err_msg=name)
-    with pytest.raises(ValueError, match="^passes must"):
+    with pytest.raises(ValueError, match=r"^passes must"):
         write_layers(tmp_path / "none.exr", {})
 
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ..compat import PASSES, REC709, working_space
-from ..passes import CRYPTOMATTES
+from ..compat import DENOISING_LEFT_OUT, PASSES, REC709, working_space
+from ..passes import CRYPTOMATTES, stores_denoising_data
 from ..report import Effect, ExportReport
 
 PASSES_WRITTEN = {"use_pass_combined", *PASSES, *(f"use_pass_cryptomatte_{kind}" for kind in CRYPTOMATTES)}
@@ -109,7 +109,8 @@ def _passes_not_written(view_layer: Any) -> list[str]:
         for name in dir(owner)
         if name.startswith("use_pass_") and getattr(owner, name)
     )
-    return [flag.removeprefix("use_pass_") for flag in flags if flag not in PASSES_WRITTEN | PASS_OPTIONS]
+    passes = [flag.removeprefix("use_pass_") for flag in flags if flag not in PASSES_WRITTEN | PASS_OPTIONS]
+    return passes + list(DENOISING_LEFT_OUT if stores_denoising_data(view_layer) else ())
 
 
 def _report_layer_collections(layer_collection: Any, report: ExportReport) -> None:

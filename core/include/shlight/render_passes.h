@@ -28,7 +28,6 @@ enum class Pass : std::uint8_t {
     diffuse_color,       ///< albedo of diffuse lobes
     glossy_direct,       ///< what glossy lobes reflect ÷ glossy_color
     glossy_color,        ///< albedo of glossy lobes
-    shadow,              ///< mean over lamps of the share of each that is not hidden; without emissive meshes
     denoising_normal,    ///< in the camera's frame, z forward, without mirror-like surfaces
     denoising_albedo,    ///< of all that is not mirror-like, and radiance of what shines
     denoising_depth,     ///< along camera rays [m]

@@ -141,9 +141,8 @@ class Shader:
         through = None if is_opaque else builder.result(tuple(seen))
         aovs = []
         for name, value in self.aovs.items():
-            is_color = not isinstance(value, Value)
-            parts = on_ray(list(value) if is_color else [value], Ray.CAMERA)
-            aovs.append((name, builder.result(list(parts)), is_color))
+            parts = [value] if isinstance(value, Value) else list(value)
+            aovs.append((name, builder.result(list(on_ray(parts, Ray.CAMERA))), len(parts) == 3))
         shadows = ProgramBuilder(builder.attributes)
         shadows.result(tuple(lit))
         return _Listed(builder, shadows, lobes, glow_result, through, aovs)
