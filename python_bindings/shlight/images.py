@@ -67,6 +67,10 @@ def write_layers(
     "Combined_NAME", AOVs NAME, and other names than those of passes as they are. view_layer: what names begin with.
     Raises ValueError for arrays that are no images of one size, OSError when the file cannot be written.
     """
+    if not isinstance(view_layer, str) or not view_layer or "\0" in view_layer:
+        raise ValueError("view_layer must be a string that is not empty")
+    if not isinstance(passes, Mapping) or not all(isinstance(name, str) for name in passes):
+        raise ValueError("passes must be a mapping of names to images")
     images = {name: _checked_layer(name, checked_array(name, image, np.float32)) for name, image in passes.items()}
     if len({image.shape[:2] for image in images.values()}) != 1:
         raise ValueError("passes must be at least one, and of the same height and width")

@@ -37,14 +37,17 @@ constexpr std::array kNames = {
 };
 
 Pass pass_from(const py::handle& item) {
-    const auto name = py::isinstance<py::str>(item) ? item.cast<std::string>() : std::string();
+    if (!py::isinstance<py::str>(item)) {
+        throw std::invalid_argument("passes must be a sequence of strings");
+    }
+    const auto name = item.cast<std::string>();
     const auto* known = std::find_if(kNames.begin(), kNames.end(), [&](const auto& own) { return own.first == name; });
     if (known == kNames.end()) {
         std::string all;
         for (const auto& own : kNames) {
             all += std::string(all.empty() ? "" : ", ") + own.first;
         }
-        throw std::invalid_argument("passes: " + py::repr(item).cast<std::string>() + " is none of " + all);
+        throw std::invalid_argument("passes: '" + name + "' is none of " + all);
     }
     return known->second;
 }
