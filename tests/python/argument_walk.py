@@ -80,6 +80,8 @@ MESH = {
     "material_names": ["Matt"],
     "material_pass_indices": 2,
 }
+OF_MATERIALS = ("bsdf", "emission", "group", "material_names", "material_pass_indices")
+OF_PLACES = ("transforms", "object_values", "object_names", "asset_names", "object_indices")
 PICTURE = Path(__file__).parents[2] / "docs" / "images" / "preview.png"
 RENDER = {"width": 2, "height": 2, "threads": 1, "progress": None}
 SETTINGS = {
@@ -139,11 +141,8 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     **{f"Scene.{name}": (of_scene(name), {**light, **SEEN_BY}) for name, light in LIGHTS.items()},
     "Scene.add_mesh": (of_scene("add_mesh"), MESH),
     "Scene.remove_lights": (of_scene("remove_lights"), {}),
-    "SceneMesh.set_bsdf": (of_mesh("set_bsdf"), {name: MESH[name] for name in ("bsdf", "emission")}),
-    "SceneMesh.set_transforms": (
-        of_mesh("set_transforms"),
-        {name: MESH[name] for name in ("transforms", "object_values")},
-    ),
+    "SceneMesh.set_bsdf": (of_mesh("set_bsdf"), {name: MESH[name] for name in OF_MATERIALS}),
+    "SceneMesh.set_transforms": (of_mesh("set_transforms"), {name: MESH[name] for name in OF_PLACES}),
     "SceneMesh.remove": (of_mesh("remove"), {}),
     "Scene.set_environment": (
         of_scene("set_environment"),
