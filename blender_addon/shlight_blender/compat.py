@@ -247,6 +247,13 @@ def uv_coordinates(layer: Any) -> NDArray[np.float32]:
     return values_of(layer.data, "uv", np.float32, 2)
 
 
+def smooth_vertex_normals(mesh: Any) -> NDArray[np.float32] | None:
+    """Normals of all vertices (vertices, 3) where those are the normals of all corners; None if that is not known."""
+    if getattr(mesh, "normals_domain", "") != "POINT":
+        return None
+    return values_of(mesh.vertex_normals, "vector", np.float32, 3)
+
+
 def smooth_corner_normals(mesh: Any) -> NDArray[np.float32] | None:
     """Normals of all corners (loops, 3) with smooth and custom shading applied; None if every face is flat."""
     if hasattr(mesh, "corner_normals"):

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import shlight
 
-from ..compat import mesh_triangles, slot_materials, smooth_corner_normals
+from ..compat import mesh_triangles, slot_materials, smooth_corner_normals, smooth_vertex_normals
 from ..passes import SURFACES
 from ..report import Effect, ExportReport
 from .changes import Changes
@@ -89,17 +89,24 @@ def mesh_arrays(mesh: Any, attribute_names: Iterable[str]) -> MeshArrays | None:
     if not len(triangles.corners):
         return None
     vertices, corner_vertices = triangles.vertices, triangles.corner_vertices
-    corner_normals = smooth_corner_normals(mesh)
-    normals = None
-    if corner_normals is not None:
-        normals = _repaired(corner_normals[triangles.corners], vertices, corner_vertices)
+    normals = smooth_vertex_normals(mesh)
+    if normals is None or not _good(normals).all():
+        normals = smooth_corner_normals(mesh)
+        if normals is not None:
+            normals = _repaired(normals[triangles.corners], vertices, corner_vertices)
     attributes = mesh_attributes(mesh, triangles, attribute_names)
     return MeshArrays(vertices, corner_vertices, normals, triangles.materials, attributes)
 
 
+def _good(normals: FloatArray) -> NDArray[np.bool_]:
+    """Which normals have a length; those of vertices without a face have none."""
+    good: NDArray[np.bool_] = np.einsum("...k,...k->...", normals, normals) > 1e-12
+    return good
+
+
 def _repaired(normals: FloatArray, vertices: FloatArray, triangles: NDArray[np.int32]) -> FloatArray:
     """Normals of length 1; where Blender has none (degenerate faces) the face's own, else +Z."""
-    good = np.einsum("ijk,ijk->ij", normals, normals)[:, :, None] > 1e-12
+    good = _good(normals)[:, :, None]
     if good.all():
         return normals
     a, b, c = (vertices[triangles[:, i]] for i in range(3))

@@ -22,8 +22,9 @@ Remark = Callable[[str], None]
 
 @dataclass
 class MeshArrays:
-    """A triangulated mesh in its own frame; normals (k, 3, 3) per corner, None where all faces are flat.
+    """A triangulated mesh in its own frame.
 
+    normals: per vertex (n, 3) or per corner (k, 3, 3); None where all faces are flat.
     attributes: numbers per corner (k, 3, c) by name.
     """
 
@@ -41,6 +42,8 @@ def with_even_emission(
 
     to_world, object_values: of the instance where emission that depends on the place or the object is looked up.
     """
+    if arrays.normals is not None and arrays.normals.ndim == 2:
+        arrays = replace(arrays, normals=arrays.normals[arrays.triangles])
     slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)
     varying = [slot for slot in np.unique(slots) if surfaces[slot].varying is not None]
     made, parts = list(surfaces), [_chosen(arrays, ~np.isin(slots, varying), slots)]
