@@ -9,6 +9,7 @@ from typing import Any
 from ..compat import DENOISING_LEFT_OUT, PASSES, REC709, working_space
 from ..passes import CRYPTOMATTES, stores_denoising_data
 from ..report import Effect, ExportReport
+from .nodes import all_nodes
 
 PASSES_WRITTEN = {"use_pass_combined", *PASSES, *(f"use_pass_cryptomatte_{kind}" for kind in CRYPTOMATTES)}
 # Says how precise another pass is, and is no pass itself.
@@ -96,6 +97,9 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
         report.add(place, "Freestyle lines are not supported; left out")
     if working_space() != REC709:
         report.add(place, f"working space {working_space()} is not supported; skies and pictures stay Rec. 709")
+    tree = getattr(scene.world, "node_tree", None)
+    if tree is not None and any(node.type == "OUTPUT_AOV" for node in all_nodes(tree)):
+        report.add(f"World '{scene.world.name}'", "AOVs of worlds are not supported; left out", Effect.SLIGHT)
     passes = ", ".join(_passes_not_written(view_layer))
     if passes:
         report.add(f"View layer '{view_layer.name}'", f"passes that are not supported: {passes}", Effect.SLIGHT)
