@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes: evaluated objects as meshes of the core, one for all instances of the same mesh and materials."""
+"""The meshes of a scene, which follow those of a depsgraph: one for all instances of the same mesh and materials."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -13,16 +13,16 @@ from numpy.typing import NDArray
 
 import shlight
 
-from ..compat import mesh_triangles, slot_materials, smooth_corner_normals, smooth_vertex_normals
+from ..compat import slot_materials
 from ..passes import SURFACES
 from ..report import Effect, ExportReport
 from .changes import Changes
 from .expressions import Surroundings
 from .materials import Surface, read_material
-from .mesh_attributes import COLOR, UV, mesh_attributes
-from .textured_meshes import MeshArrays, with_even_emission
+from .mesh_arrays import complete, flattened, object_arrays
+from .mesh_attributes import UV
+from .textured_meshes import with_even_emission
 
-FloatArray = NDArray[np.float32]
 Matrix = NDArray[np.float64]
 
 # Of one material in one place, more emissive triangles than these are one light to the core.
@@ -81,40 +81,6 @@ class KeptMesh:
         """How many lights it is to the core."""
         faces = [n for own, n in zip(self.surfaces, self.faces, strict=True) if own.emission.any()]
         return len(self.transforms) * sum(1 if n > MOST_SINGLE_FACES else int(n) for n in faces)
-
-
-def mesh_arrays(mesh: Any, attribute_names: Iterable[str]) -> MeshArrays | None:
-    """Triangles of an evaluated mesh with those of the attributes that it has, None if it has no triangles."""
-    triangles = mesh_triangles(mesh)
-    if not len(triangles.corners):
-        return None
-    vertices, corner_vertices = triangles.vertices, triangles.corner_vertices
-    normals = smooth_vertex_normals(mesh)
-    if normals is None or not _good(normals).all():
-        normals = smooth_corner_normals(mesh)
-        if normals is not None:
-            normals = _repaired(normals[triangles.corners], vertices, corner_vertices)
-    attributes = mesh_attributes(mesh, triangles, attribute_names)
-    return MeshArrays(vertices, corner_vertices, normals, triangles.materials, attributes)
-
-
-def _good(normals: FloatArray) -> NDArray[np.bool_]:
-    """Which normals have a length; those of vertices without a face have none."""
-    good: NDArray[np.bool_] = np.einsum("...k,...k->...", normals, normals) > 1e-12
-    return good
-
-
-def _repaired(normals: FloatArray, vertices: FloatArray, triangles: NDArray[np.int32]) -> FloatArray:
-    """Normals of length 1; where Blender has none (degenerate faces) the face's own, else +Z."""
-    good = _good(normals)[:, :, None]
-    if good.all():
-        return normals
-    a, b, c = (vertices[triangles[:, i]] for i in range(3))
-    face = np.cross(b - a, c - a)
-    face_length = np.linalg.norm(face, axis=1, keepdims=True)
-    face = np.where(face_length > 0.0, face / np.where(face_length > 0.0, face_length, 1.0), (0.0, 0.0, 1.0))
-    repaired: FloatArray = np.where(good, normals, face[:, None, :]).astype(np.float32)
-    return repaired
 
 
 class SceneMeshes:
@@ -192,11 +158,11 @@ class SceneMeshes:
         """The mesh of an instance, added to the scene where nothing shows it yet; flat: as it stands at to_world."""
         report = ExportReport()
         attributes = self._attributes(surfaces)
-        arrays = _arrays(instance.object, place, sorted(attributes), report)
+        arrays = object_arrays(instance.object, place, sorted(attributes), report)
         if arrays is not None:
-            _complete(arrays, instance.object, sorted(_attribute_names(surfaces)), report)
+            complete(arrays, instance.object, sorted(_attribute_names(surfaces)), report)
         if arrays is not None and flat:
-            arrays = _flattened(arrays, to_world)
+            arrays = flattened(arrays, to_world)
         is_cut = arrays is not None and _is_cut(surfaces)
         if arrays is not None and is_cut:
             values = self._surroundings.object_values.of(instance)
@@ -282,23 +248,6 @@ def _place(use: KeptMesh) -> None:
     use.stands = stands
 
 
-def _arrays(mesh_object: Any, place: str, names: Iterable[str], report: ExportReport) -> MeshArrays | None:
-    """The triangles of an object; None if it has none that can be drawn."""
-    mesh = mesh_object.to_mesh()
-    try:
-        arrays = mesh_arrays(mesh, names)
-    finally:
-        mesh_object.to_mesh_clear()
-    if arrays is None:
-        return None
-    if not np.isfinite(arrays.vertices).all():
-        report.add(place, "some of its vertices are not finite; left out", Effect.THING)
-        return None
-    if arrays.normals is not None and not np.isfinite(arrays.normals).all():
-        arrays.normals = None
-    return arrays
-
-
 def _attribute_names(surfaces: Sequence[Surface]) -> frozenset[str]:
     return frozenset(name for surface in surfaces for name in surface.attribute_names)
 
@@ -328,26 +277,7 @@ def _owner(instance: Any, depsgraph: Any) -> str | None:
     return str(shown.name_full)
 
 
-def _complete(arrays: MeshArrays, mesh_object: Any, names: Sequence[str], report: ExportReport) -> None:
-    """Reports attributes that the mesh has not; a colour is then transparent black, others are 0 with an alpha of 1."""
-    missing = [name for name in names if name not in arrays.attributes]
-    for name in missing:
-        what = f"attribute or UV map '{name}'" if name else "UV map"
-        text = f"it has no {what}, which its material reads; 0 is used, as in Cycles"
-        report.add(f"Object '{mesh_object.name}'", text, Effect.SLIGHT)
-    black = np.zeros((len(arrays.triangles), 3, 4), dtype=np.float32)
-    arrays.attributes |= {name: black for name in missing if name.startswith(COLOR)}
-
-
 def _is_flat(to_world: Matrix) -> bool:
     """True for a transform without inverse."""
     linear = to_world[:3, :3]
     return bool(abs(np.linalg.det(linear)) <= 1e-9 * np.linalg.norm(linear, axis=0).max() ** 3)
-
-
-def _flattened(arrays: MeshArrays, to_world: Matrix) -> MeshArrays | None:
-    """The mesh as it stands at `to_world`, without smooth normals; None if a line or a point is left of it."""
-    vertices = arrays.vertices @ to_world[:3, :3].T + to_world[:3, 3]
-    if np.linalg.matrix_rank(vertices - vertices[0]) < 2:
-        return None
-    return replace(arrays, vertices=vertices.astype(np.float32), normals=None)

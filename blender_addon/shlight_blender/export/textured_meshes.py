@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,26 +13,12 @@ from numpy.typing import NDArray
 from .emission import Input, VaryingEmission
 from .emission_pieces import MOST_PIECES, TOLERANCE, Colors, Pieces, cut, sampling_levels, share_colors
 from .materials import Surface
+from .mesh_arrays import MeshArrays
 from .mesh_attributes import attribute_component
 
 FloatArray = NDArray[np.float32]
 Array = NDArray[np.float64]
 Remark = Callable[[str], None]
-
-
-@dataclass
-class MeshArrays:
-    """A triangulated mesh in its own frame.
-
-    normals: per vertex (n, 3) or per corner (k, 3, 3); None where all faces are flat.
-    attributes: numbers per corner (k, 3, c) by name.
-    """
-
-    vertices: FloatArray
-    triangles: NDArray[np.int32]
-    normals: FloatArray | None
-    material_indices: NDArray[np.int32]
-    attributes: dict[str, FloatArray] = field(default_factory=dict)
 
 
 def with_even_emission(
