@@ -13,6 +13,7 @@
 #include "arguments.h"
 #include "shader_bindings.h"
 #include "shlight/emission_profile.h"
+#include "shlight/render_passes.h"
 
 namespace shlight::python {
 namespace {

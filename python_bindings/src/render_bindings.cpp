@@ -234,7 +234,7 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
         report = render(*compiled_scene, camera, columns, rows, settings, pixels, watch,
                         {values.mutable_data(), static_cast<std::size_t>(values.size())});
     }
-    const py::object result =
+    py::object result =
         pass_arguments.any() ? py::object(pass_dict(settings.passes, scene, image, values)) : py::object(image);
     if (with_report) {
         return py::make_tuple(result, Report{report, build_seconds});

@@ -10,7 +10,6 @@
 
 #include "shlight/bsdf.h"
 #include "shlight/ray_tracer.h"
-#include "shlight/render_passes.h"
 #include "shlight/surface_shader.h"
 #include "shlight/types.h"
 
@@ -20,6 +19,12 @@ namespace shlight {
 struct MeshAttribute {
     std::uint32_t components;   ///< 1 … 4
     std::vector<float> values;  ///< `components` for each vertex, or for each triangle, or for each triangle's corner
+};
+
+/// What passes tell of an object or a material.
+struct Label {
+    float index = 0;
+    float name = 0, asset = 0;  ///< identities, see cryptomatte_id(); 0: none
 };
 
 /// A material as the renderer meets it.

@@ -46,12 +46,6 @@ struct RenderPass {
     bool operator==(const RenderPass&) const = default;
 };
 
-/// What passes tell of an object or a material.
-struct Label {
-    float index = 0;
-    float name = 0, asset = 0;  ///< identities, see cryptomatte_id(); 0: none
-};
-
 /// MurmurHash3_x86_32 with the seed 0, by which Cryptomatte (github.com/Psyop/Cryptomatte) knows a name.
 std::uint32_t cryptomatte_hash(std::string_view name);
 /// The same as the bits of a float that is finite and not 0.
