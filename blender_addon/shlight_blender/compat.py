@@ -132,6 +132,39 @@ def slot_materials(evaluated: Any) -> tuple[Any, ...]:
     return tuple(materials)
 
 
+_LONG_PASS_NAMES = VERSION >= (5, 0, 0)
+
+
+def _pass_name(long: str, short: str) -> str:
+    return long if _LONG_PASS_NAMES else short
+
+
+# Of each switch of a view layer: the name of its pass, its channels, their kind, and what `shlight.render` calls it.
+PASSES: dict[str, tuple[str, str, str, str]] = {
+    "use_pass_z": ("Depth", "Z", "VALUE", "depth"),
+    "use_pass_mist": ("Mist", "Z", "VALUE", "mist"),
+    "use_pass_position": ("Position", "XYZ", "VECTOR", "position"),
+    "use_pass_normal": ("Normal", "XYZ", "VECTOR", "normal"),
+    "use_pass_uv": ("UV", "UVA", "VECTOR", "uv"),
+    "use_pass_object_index": (_pass_name("Object Index", "IndexOB"), "X", "VALUE", "object_index"),
+    "use_pass_material_index": (_pass_name("Material Index", "IndexMA"), "X", "VALUE", "material_index"),
+    "use_pass_diffuse_direct": (_pass_name("Diffuse Direct", "DiffDir"), "RGB", "COLOR", "diffuse_direct"),
+    "use_pass_diffuse_color": (_pass_name("Diffuse Color", "DiffCol"), "RGB", "COLOR", "diffuse_color"),
+    "use_pass_glossy_direct": (_pass_name("Glossy Direct", "GlossDir"), "RGB", "COLOR", "glossy_direct"),
+    "use_pass_glossy_color": (_pass_name("Glossy Color", "GlossCol"), "RGB", "COLOR", "glossy_color"),
+    "use_pass_emit": (_pass_name("Emission", "Emit"), "RGB", "COLOR", "emission"),
+    "use_pass_environment": (_pass_name("Environment", "Env"), "RGB", "COLOR", "environment"),
+}
+
+# Passes that Cycles adds to its denoising data, and shlight does not have.
+DENOISING_LEFT_OUT = ("Denoising Specular Albedo", "Denoising Roughness") if VERSION >= (5, 2, 0) else ()
+
+
+def aov_name(node: Any) -> str:
+    """The pass that an AOV Output node writes."""
+    return str(node.aov_name if hasattr(node, "aov_name") else node.name)
+
+
 REC709 = "Linear Rec.709"
 
 
@@ -228,6 +261,13 @@ def uv_coordinates(layer: Any) -> NDArray[np.float32]:
     if hasattr(layer, "uv"):
         return values_of(layer.uv, "vector", np.float32, 2)
     return values_of(layer.data, "uv", np.float32, 2)
+
+
+def smooth_vertex_normals(mesh: Any) -> NDArray[np.float32] | None:
+    """Normals of all vertices (vertices, 3) where those are the normals of all corners; None if that is not known."""
+    if getattr(mesh, "normals_domain", "") != "POINT":
+        return None
+    return values_of(mesh.vertex_normals, "vector", np.float32, 3)
 
 
 def smooth_corner_normals(mesh: Any) -> NDArray[np.float32] | None:

@@ -15,6 +15,7 @@ from . import record, running
 from .compat import write_pass
 from .frame import Frame, frame_of, memory_problem
 from .native import native_problem
+from .passes import Arrays, layer_passes, pass_arguments, stamp_cryptomattes, write_passes
 from .report import ExportCancelled, ExportError
 from .running import ENGINE
 from .status import status_of
@@ -51,15 +52,15 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             frame = frame_of(depsgraph.scene.render)
             if problem := native_problem() or memory_problem(frame):
                 raise ExportError(problem)
-            images = {}
+            views: dict[str, Arrays | None] = {}
             self._is_new_frame = True
             if not depsgraph.scene.render.use_persistent_data:
                 self._exported.clear()
             for view in _views(depsgraph.scene.render):
-                images[view] = self._render(depsgraph, frame, view)
+                views[view] = self._render(depsgraph, frame, view)
             if running.renders.stopped:
                 self._say_error(running.STOPPED)  # after an error Blender begins no other frame
-            self._deliver(depsgraph, frame, images)
+            self._deliver(depsgraph, frame, views)
         except ExportError as error:
             record.last.scene_error = str(error)
             self._fail(depsgraph, frame, str(error))
@@ -90,7 +91,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             pass
         except Exception:
             traceback.print_exc()
-        self._deliver(depsgraph, frame, {"": image})
+        self._deliver(depsgraph, frame, {"": None if image is None else {"combined": image}})
 
     def _begin(self, depsgraph: Any) -> None:
         """Starts the record of a render with its first view layer; the others add to it."""
@@ -104,8 +105,14 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             self._exported: dict[str, Any] = getattr(self, "_exported", {})  # by view layer
         self._view_layers.add(view_layer)
 
-    def _render(self, depsgraph: Any, frame: Frame, view: str) -> NDArray[np.float32] | None:
-        """The picture of a view, or as much of it as there is when the user stops the render; None: nothing."""
+    def update_render_passes(self, scene: Any = None, renderlayer: Any = None) -> None:
+        """Names the passes of a view layer, for the compositor."""
+        self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
+        for own in layer_passes(scene, renderlayer):
+            self.register_pass(scene, renderlayer, own.name, len(own.channels), own.channels, own.kind)
+
+    def _render(self, depsgraph: Any, frame: Frame, view: str) -> Arrays | None:
+        """The picture of a view and its passes, or as much as there is when the user stops; None: nothing."""
         # Imported here: an installation without the native module still registers.
         import shlight
 
@@ -116,6 +123,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             self._check("Exporting the scene")
             exported = self._export(depsgraph, frame, view)
             settings = render_settings(depsgraph.scene).arguments()
+            passes = pass_arguments(depsgraph.scene, depsgraph.view_layer)
             record.last.export_seconds = time.perf_counter() - start
             record.last.report.extend(exported.report)
             record.last.dark = exported.dark or record.last.dark
@@ -126,32 +134,36 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             self._check("Rendering")
             latest: NDArray[np.float32] | None = None
             next_update = start + FIRST_UPDATE
+            self._ends_with_passes = False
 
             def show(image: NDArray[np.float32], report: Any) -> bool:
                 nonlocal latest, next_update
                 latest = image
+                self._ends_with_passes = bool(passes)
                 self._status = status_of(report)
                 if (now := time.perf_counter()) >= next_update:
-                    self._deliver(depsgraph, frame, {view: image})
+                    self._deliver(depsgraph, frame, {view: {"combined": image}})
                     taken = time.perf_counter() - now
                     next_update = now + max(UPDATE_INTERVAL, taken / LARGEST_UPDATE_SHARE)
-                return True
+                return self._wait(self._status)
 
             self._status = "Rendering"
-            image, record.last.statistics = shlight.render(
+            result, record.last.statistics = shlight.render(
                 exported.scene,
                 frame.width,
                 frame.height,
                 progress=self._progress,
                 on_update=show,
                 return_report=True,
+                **passes,
                 **settings,
             )
         except ExportCancelled:
             return None
         except shlight.RenderCancelled:
-            return latest  # what the user has seen stays
-        return image
+            return None if latest is None else {"combined": latest}  # what the user has seen stays
+        stamp_cryptomattes(self.get_result(), depsgraph.view_layer, exported.names)
+        return result if isinstance(result, dict) else {"combined": result}
 
     def _export(self, depsgraph: Any, frame: Frame, view: str) -> Any:
         """The scene as one view sees it. With Persistent Data, what has not changed since the last render is kept."""
@@ -181,8 +193,9 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         return Eye(camera, self.camera_model_matrix(camera), self.camera_shift_x(camera))
 
     def _progress(self, fraction: float) -> bool:
+        """Passes stay with a picture that has been shown: then only `show` stops the render."""
         self.update_progress(fraction)
-        return self._wait(self._status)
+        return self._wait(self._status) or self._ends_with_passes
 
     def _wait(self, text: str) -> bool:
         """Says what is done; False if it is to stop."""
@@ -216,13 +229,17 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
     def _say_error(self, text: str) -> None:
         self.report({"ERROR"}, f"shlight: {text}")
 
-    def _deliver(self, depsgraph: Any, frame: Frame, images: dict[str, NDArray[np.float32] | None]) -> None:
+    def _deliver(self, depsgraph: Any, frame: Frame, views: dict[str, Arrays | None]) -> None:
         """Hands over pictures of views; empty ones for all if there are none: without, saving crashes Blender."""
-        for view, image in (images or dict.fromkeys(_views(depsgraph.scene.render))).items():
+        passes = layer_passes(depsgraph.scene, depsgraph.view_layer)
+        for own in passes:
+            self.add_pass(own.name, len(own.channels), own.channels, layer=depsgraph.view_layer.name)
+        for view, arrays in (views or dict.fromkeys(_views(depsgraph.scene.render))).items():
             result = self.begin_result(0, 0, frame.width, frame.height, layer=depsgraph.view_layer.name, view=view)
-            if image is not None:
+            if arrays is not None:
                 for layer in result.layers:
-                    write_pass(layer.passes["Combined"], image[::-1].reshape(-1, 4))
+                    write_pass(layer.passes["Combined"], arrays["combined"][::-1].reshape(-1, 4))
+                    write_passes(layer, passes, arrays)
             self.end_result(result)
 
     def view_update(self, context: Any, depsgraph: Any) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import bpy
 
-from . import report_panel
+from . import pass_panels, report_panel
 from .compare import panel as compare_panel
 from .compat import LAMPS, has_node_switch, nodes_by_engine, shadow_switch, uses_nodes
 from .engine_panel import EnginePanel, with_names_aside
@@ -27,11 +27,15 @@ EXCLUDED = {
 }
 # What shlight does not draw, in names of panels.
 NOT_DRAWN = ("_PT_freestyle", "_PT_gpencil", "_PT_grease_pencil")
-# Panels of EEVEE that edit what every engine reads.
+# Panels of EEVEE and Cycles that edit what every engine reads.
 INCLUDED = {
     "EEVEE_MATERIAL_PT_context_material",
     "EEVEE_MATERIAL_PT_surface",
     "EEVEE_WORLD_PT_surface",
+    "VIEWLAYER_PT_layer_passes",
+    "VIEWLAYER_PT_layer_passes_aov",
+    "VIEWLAYER_PT_layer_passes_cryptomatte",
+    "VIEWLAYER_PT_layer_passes_lightgroups",
 }
 # Types of objects that have a surface or give light.
 DRAWN_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META", "LIGHT"}
@@ -295,6 +299,7 @@ CLASSES = (
     SHLIGHT_RENDER_PT_performance,
     *report_panel.CLASSES,
     *compare_panel.CLASSES,
+    *pass_panels.CLASSES,
     SHLIGHT_WORLD_PT_baking,
     SHLIGHT_OBJECT_PT_ray_visibility,
     SHLIGHT_LIGHT_PT_light,
@@ -302,9 +307,15 @@ CLASSES = (
 )
 
 
+def _panels(base: Any = bpy.types.Panel) -> Iterator[Any]:
+    for panel in base.__subclasses__():
+        yield panel
+        yield from _panels(panel)
+
+
 def shared_panels() -> Iterator[Any]:
     """Blender's own panels that are shown for shlight too."""
-    for panel in bpy.types.Panel.__subclasses__():
+    for panel in _panels():
         engines = getattr(panel, "COMPAT_ENGINES", None)
         if engines is None or panel in CLASSES:
             continue
@@ -344,7 +355,7 @@ def unregister() -> None:
     while _own_polls:
         item, poll = _own_polls.popitem()
         item.poll = poll
-    for panel in bpy.types.Panel.__subclasses__():
+    for panel in _panels():
         if panel not in CLASSES:
             getattr(panel, "COMPAT_ENGINES", set()).discard(ENGINE)
     for panel in reversed(CLASSES):

@@ -104,6 +104,11 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
         max=4096,
         soft_max=256,
     )
+    use_pass_lights: bpy.props.BoolProperty(
+        name="Lights",
+        description="A pass for what each lamp gives to the picture, one for surfaces that shine and one for the world",
+        default=False,
+    )
     world_width: bpy.props.IntProperty(
         name="World Width",
         description="Width of the picture that a world of other nodes than one colour or a picture is baked to",

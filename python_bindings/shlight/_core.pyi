@@ -63,11 +63,12 @@ def shader_program(
 ) -> ShaderProgram: ...
 def surface_shader(
     program: ShaderProgram,
-    lobes: Sequence[tuple[str, float, int, int | None, int | None]],
+    lobes: Sequence[tuple[str, float, int, int | None, int | None, bool]],
     emission: int | None,
     transparency: int | None,
     shadow_program: ShaderProgram,
     attribute_names: Sequence[str],
+    aovs: Sequence[tuple[str, int, bool]],
 ) -> SurfaceShader: ...
 
 class Bsdf:
@@ -238,6 +239,7 @@ class _SeenBy(TypedDict, total=False):
     diffuse: bool  # True unless given
     glossy: bool  # True unless given
     camera: bool  # False unless given
+    group: str | None  # None unless given
 
 class _Lens(TypedDict, total=False):
     aperture_size: float  # 0 unless given
@@ -248,9 +250,23 @@ class _Lens(TypedDict, total=False):
 
 class SceneMesh:
     def set_bsdf(
-        self, bsdf: Bsdf | Shader | Sequence[Bsdf | Shader] | None, *, emission: ArrayLike | None = None
+        self,
+        bsdf: Bsdf | Shader | Sequence[Bsdf | Shader] | None,
+        *,
+        emission: ArrayLike | None = None,
+        group: str | None = None,
+        material_names: str | Sequence[str] | None = None,
+        material_pass_indices: ArrayLike | None = None,
     ) -> None: ...
-    def set_transforms(self, transforms: ArrayLike | None, *, object_values: ArrayLike | None = None) -> None: ...
+    def set_transforms(
+        self,
+        transforms: ArrayLike | None,
+        *,
+        object_values: ArrayLike | None = None,
+        object_names: str | Sequence[str] | None = None,
+        asset_names: str | Sequence[str] | None = None,
+        object_indices: ArrayLike | None = None,
+    ) -> None: ...
     def remove(self) -> None: ...
 
 class Scene:
@@ -271,6 +287,12 @@ class Scene:
         material_indices: ArrayLike | None = None,
         transforms: ArrayLike | None = None,
         object_values: ArrayLike | None = None,
+        group: str | None = None,
+        object_names: str | Sequence[str] | None = None,
+        asset_names: str | Sequence[str] | None = None,
+        object_indices: ArrayLike | None = None,
+        material_names: str | Sequence[str] | None = None,
+        material_pass_indices: ArrayLike | None = None,
     ) -> SceneMesh: ...
     def remove_lights(self) -> None: ...
     def add_sphere_light(
@@ -329,7 +351,12 @@ class Scene:
         **seen_by: Unpack[_SeenBy],
     ) -> None: ...
     def set_environment(
-        self, radiance: ArrayLike, *, to_world: ArrayLike | None = None, visible: bool = True
+        self,
+        radiance: ArrayLike,
+        *,
+        to_world: ArrayLike | None = None,
+        visible: bool = True,
+        group: str | None = None,
     ) -> None: ...
     def set_camera(self, to_world: ArrayLike, fov_x: float, **lens: Unpack[_Lens]) -> None: ...
     def set_camera_window(
@@ -392,6 +419,12 @@ def render(
     shadows: bool = True,
     shadow_rays: int = 16,
     transparent_bounces: int = 8,
+    passes: tuple[()] = (),
+    groups: Literal[False] = False,
+    aovs: Literal[False] = False,
+    alpha_threshold: float = 0.5,
+    mist: tuple[float, float, float] = ...,
+    cryptomatte_levels: int = 6,
     threads: int = 0,
     progress: Callable[[float], object] | None = None,
     on_update: Callable[[NDArray[np.float32], RenderReport], object] | None = None,
@@ -415,8 +448,73 @@ def render(
     shadows: bool = True,
     shadow_rays: int = 16,
     transparent_bounces: int = 8,
+    passes: tuple[()] = (),
+    groups: Literal[False] = False,
+    aovs: Literal[False] = False,
+    alpha_threshold: float = 0.5,
+    mist: tuple[float, float, float] = ...,
+    cryptomatte_levels: int = 6,
     threads: int = 0,
     progress: Callable[[float], object] | None = None,
     on_update: Callable[[NDArray[np.float32], RenderReport], object] | None = None,
     return_report: Literal[True],
 ) -> tuple[NDArray[np.float32], RenderReport]: ...
+@overload
+def render(
+    scene: Scene,
+    width: int,
+    height: int,
+    *,
+    order: Literal["auto"] | int = "auto",
+    tolerance: float = DEFAULT_TOLERANCE,
+    noise_threshold: float = 0.01,
+    min_samples: int | None = None,
+    max_samples: int | None = None,
+    pixel_samples: int | None = None,
+    time_limit: float | None = None,
+    pixel_filter: Literal["box", "gaussian", "blackman_harris"] = "box",
+    filter_width: float = 1.5,
+    shadows: bool = True,
+    shadow_rays: int = 16,
+    transparent_bounces: int = 8,
+    passes: Sequence[str] = (),
+    groups: bool = False,
+    aovs: bool = False,
+    alpha_threshold: float = 0.5,
+    mist: tuple[float, float, float] = ...,
+    cryptomatte_levels: int = 6,
+    threads: int = 0,
+    progress: Callable[[float], object] | None = None,
+    on_update: Callable[[NDArray[np.float32], RenderReport], object] | None = None,
+    return_report: Literal[False] = False,
+) -> dict[str, NDArray[np.float32]] | Any: ...
+@overload
+def render(
+    scene: Scene,
+    width: int,
+    height: int,
+    *,
+    order: Literal["auto"] | int = "auto",
+    tolerance: float = DEFAULT_TOLERANCE,
+    noise_threshold: float = 0.01,
+    min_samples: int | None = None,
+    max_samples: int | None = None,
+    pixel_samples: int | None = None,
+    time_limit: float | None = None,
+    pixel_filter: Literal["box", "gaussian", "blackman_harris"] = "box",
+    filter_width: float = 1.5,
+    shadows: bool = True,
+    shadow_rays: int = 16,
+    transparent_bounces: int = 8,
+    passes: Sequence[str] = (),
+    groups: bool = False,
+    aovs: bool = False,
+    alpha_threshold: float = 0.5,
+    mist: tuple[float, float, float] = ...,
+    cryptomatte_levels: int = 6,
+    threads: int = 0,
+    progress: Callable[[float], object] | None = None,
+    on_update: Callable[[NDArray[np.float32], RenderReport], object] | None = None,
+    return_report: Literal[True],
+) -> tuple[dict[str, NDArray[np.float32]] | Any, RenderReport]: ...
+def cryptomatte_hash(name: str) -> int: ...

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import secrets
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -19,10 +19,33 @@ import numpy.typing as npt
 
 from shlight._arrays import checked_array, checked_flag, checked_number
 
-__all__ = ["linear_to_srgb8", "read_exr", "read_texture", "write_exr", "write_png"]
+__all__ = ["linear_to_srgb8", "read_exr", "read_texture", "write_exr", "write_layers", "write_png"]
 
 _TEXTURE_NUMBERS = ("uint8", "uint16", "half", "float")
 _CHANNEL_NAMES = {1: ("Y",), 3: ("R", "G", "B"), 4: ("R", "G", "B", "A")}
+# Passes of `shlight.render` whose channels are not RGBA: what Blender's files call them, and their channels.
+_PASS_CHANNELS = {
+    "depth": ("Depth", "Z"),
+    "mist": ("Mist", "Z"),
+    "position": ("Position", "XYZ"),
+    "normal": ("Normal", "XYZ"),
+    "uv": ("UV", "UVA"),
+    "object_index": ("IndexOB", "X"),
+    "material_index": ("IndexMA", "X"),
+    "denoising_normal": ("Denoising Normal", "XYZ"),
+    "denoising_depth": ("Denoising Depth", "Z"),
+}
+_PASS_NAMES = {
+    "combined": "Combined",
+    "diffuse_direct": "DiffDir",
+    "diffuse_color": "DiffCol",
+    "glossy_direct": "GlossDir",
+    "glossy_color": "GlossCol",
+    "emission": "Emit",
+    "environment": "Env",
+    "denoising_albedo": "Denoising Albedo",
+}
+_CRYPTOMATTES = {f"cryptomatte_{kind.lower()}": f"Crypto{kind}" for kind in ("Object", "Material", "Asset")}
 
 
 def write_exr(path: str | os.PathLike[str], image: npt.ArrayLike) -> None:
@@ -33,6 +56,39 @@ def write_exr(path: str | os.PathLike[str], image: npt.ArrayLike) -> None:
     """
     pixels = _checked_image("image", checked_array("image", image, np.float32))
     _write(_checked_path(path), pixels, "openexr", "float", {"compression": "zip"})
+
+
+def write_layers(
+    path: str | os.PathLike[str], passes: Mapping[str, npt.ArrayLike], *, view_layer: str = "ViewLayer"
+) -> None:
+    """Writes passes as `shlight.render` returns them as one 32-bit float OpenEXR file, compressed without loss.
+
+    Channels are named as in Blender's files of up to version 4.5, "ViewLayer.Depth.Z" for instance: light groups
+    "Combined_NAME", AOVs NAME, and other names than those of passes as they are. view_layer: what names begin with.
+    Raises ValueError for arrays that are no images of one size, OSError when the file cannot be written.
+    """
+    if not isinstance(view_layer, str) or not view_layer or "\0" in view_layer:
+        raise ValueError("view_layer must be a string that is not empty")
+    if not isinstance(passes, Mapping) or not all(isinstance(name, str) for name in passes):
+        raise ValueError("passes must be a mapping of names to images")
+    images = {name: _checked_layer(name, checked_array(name, image, np.float32)) for name, image in passes.items()}
+    if len({image.shape[:2] for image in images.values()}) != 1:
+        raise ValueError("passes must be at least one, and of the same height and width")
+    names = [f"{view_layer}.{channel}" for name, image in images.items() for channel in _channels(name, image.shape[2])]
+    pixels = np.concatenate(list(images.values()), axis=2)
+    _write(_checked_path(path), pixels, "openexr", "float", {"compression": "zip"}, tuple(names))
+
+
+def _channels(name: str, count: int) -> list[str]:
+    """What the channels of a pass are called in a file."""
+    if name in _CRYPTOMATTES:
+        return [f"{_CRYPTOMATTES[name]}{i // 4:02d}.{'rgba'[i % 4]}" for i in range(count)]
+    layer, channels = _PASS_CHANNELS.get(name, (_PASS_NAMES.get(name, name.removeprefix("aov_")), ""))
+    if name.startswith("combined_"):
+        layer = f"Combined_{name.removeprefix('combined_')}"
+    if len(channels) != count:
+        channels = "X" if count == 1 else "RGBA"[:count]
+    return [f"{layer}.{channel}" for channel in channels]
 
 
 def read_exr(path: str | os.PathLike[str]) -> npt.NDArray[np.float32]:
@@ -126,6 +182,12 @@ def _checked_image(name: str, pixels: npt.NDArray[Any]) -> npt.NDArray[Any]:
     return pixels
 
 
+def _checked_layer(name: str, pixels: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    if pixels.ndim != 3 or pixels.size == 0 or (pixels.shape[2] > 4 and name not in _CRYPTOMATTES):
+        raise ValueError(f"{name} must have shape (height, width, channels), not {pixels.shape}")
+    return pixels
+
+
 def _checked_path(path: str | os.PathLike[str]) -> Path:
     try:
         checked = Path(path)
@@ -155,13 +217,18 @@ def _complete_or_absent(path: Path) -> Iterator[Path]:
 
 
 def _write(
-    path: Path, pixels: npt.NDArray[Any], file_format: str, channel_type: str, attributes: dict[str, str | int]
+    path: Path,
+    pixels: npt.NDArray[Any],
+    file_format: str,
+    channel_type: str,
+    attributes: dict[str, str | int],
+    names: tuple[str, ...] | None = None,
 ) -> None:
     import OpenImageIO as oiio
 
     height, width, channels = pixels.shape
     spec = oiio.ImageSpec(width, height, channels, channel_type)
-    spec.channelnames = _CHANNEL_NAMES[channels]
+    spec.channelnames = names or _CHANNEL_NAMES[channels]
     for name, value in attributes.items():
         spec.attribute(name, value)
     with _complete_or_absent(path) as temporary:

@@ -15,6 +15,7 @@ namespace {
 constexpr const char* kTraitsDoc =
     R"(shadows: False: it lights what it cannot see too. diffuse, glossy: False: diffuse or glossy reflection leaves it out.
 camera: True: the camera sees its radiance, added to that of what is behind it; not of a light of no size.
+group: name of its light group, or None.
 
 Raises ValueError naming the argument.)";
 
@@ -71,48 +72,50 @@ tangent: False: its radiance is irradiance / (pi sin^2(angle / 2)) everywhere; T
     cos^3 alpha) at an angle alpha to its middle, as Blender had it before version 4; angle is then at most 3.
 )";
 
-LightTraits traits_from(const py::object& shadows, const py::object& diffuse, const py::object& glossy,
-                        const py::object& camera) {
+LightTraits traits_from(SceneObject& scene, const py::object& shadows, const py::object& diffuse,
+                        const py::object& glossy, const py::object& camera, const py::object& group) {
     LightTraits traits;
     traits.casts_shadows = flag_from("shadows", shadows);
     traits.lights_diffuse = flag_from("diffuse", diffuse);
     traits.lights_glossy = flag_from("glossy", glossy);
     traits.seen_by_camera = flag_from("camera", camera);
+    traits.group = group_from(scene, group);
     return traits;
 }
 
 void add_sphere_light(SceneObject& self, const py::object& center, const py::object& radius, const py::object& radiance,
                       const py::object& facing_disk, const py::object& shadows, const py::object& diffuse,
-                      const py::object& glossy, const py::object& camera) {
+                      const py::object& glossy, const py::object& camera, const py::object& group) {
     self.scene.add_sphere_light(vector_from("center", center), real_from("radius", radius),
                                 rgb_from("radiance", radiance), flag_from("facing_disk", facing_disk),
-                                traits_from(shadows, diffuse, glossy, camera));
+                                traits_from(self, shadows, diffuse, glossy, camera, group));
     self.changed();
 }
 
 void add_polygon_light(SceneObject& self, const py::object& vertices, const py::object& radiance,
                        const py::object& spread, const py::object& shadows, const py::object& diffuse,
-                       const py::object& glossy, const py::object& camera) {
+                       const py::object& glossy, const py::object& camera, const py::object& group) {
     self.scene.add_polygon_light(points_from("vertices", vertices), rgb_from("radiance", radiance),
-                                 real_from("spread", spread), traits_from(shadows, diffuse, glossy, camera));
+                                 real_from("spread", spread),
+                                 traits_from(self, shadows, diffuse, glossy, camera, group));
     self.changed();
 }
 
 void add_disk_light(SceneObject& self, const py::object& center, const py::object& half_axis_u,
                     const py::object& half_axis_v, const py::object& radiance, const py::object& spread,
                     const py::object& shadows, const py::object& diffuse, const py::object& glossy,
-                    const py::object& camera) {
+                    const py::object& camera, const py::object& group) {
     self.scene.add_disk_light(vector_from("center", center), vector_from("half_axis_u", half_axis_u),
                               vector_from("half_axis_v", half_axis_v), rgb_from("radiance", radiance),
-                              real_from("spread", spread), traits_from(shadows, diffuse, glossy, camera));
+                              real_from("spread", spread), traits_from(self, shadows, diffuse, glossy, camera, group));
     self.changed();
 }
 
 void add_point_light(SceneObject& self, const py::object& position, const py::object& intensity,
                      const py::object& shadows, const py::object& diffuse, const py::object& glossy,
-                     const py::object& camera) {
+                     const py::object& camera, const py::object& group) {
     self.scene.add_point_light(vector_from("position", position), rgb_from("intensity", intensity),
-                               traits_from(shadows, diffuse, glossy, camera));
+                               traits_from(self, shadows, diffuse, glossy, camera, group));
     self.changed();
 }
 
@@ -120,21 +123,23 @@ void add_spot_light(SceneObject& self, const py::object& position, const py::obj
                     const py::object& spot_angle, const py::object& blend, const py::object& intensity,
                     const py::object& radius, const py::object& facing_disk, const py::object& times_cosine,
                     const py::object& shadows, const py::object& diffuse, const py::object& glossy,
-                    const py::object& camera) {
+                    const py::object& camera, const py::object& group) {
     self.scene.add_spot_light(vector_from("position", position),
                               make_spot_profile(axes_from("direction", direction), real_from("spot_angle", spot_angle),
                                                 real_from("blend", blend), flag_from("times_cosine", times_cosine)),
                               rgb_from("intensity", intensity), real_from("radius", radius),
-                              flag_from("facing_disk", facing_disk), traits_from(shadows, diffuse, glossy, camera));
+                              flag_from("facing_disk", facing_disk),
+                              traits_from(self, shadows, diffuse, glossy, camera, group));
     self.changed();
 }
 
 void add_sun_light(SceneObject& self, const py::object& direction, const py::object& angle,
                    const py::object& irradiance, const py::object& tangent, const py::object& shadows,
-                   const py::object& diffuse, const py::object& glossy, const py::object& camera) {
+                   const py::object& diffuse, const py::object& glossy, const py::object& camera,
+                   const py::object& group) {
     self.scene.add_sun_light(vector_from("direction", direction), real_from("angle", angle),
                              rgb_from("irradiance", irradiance), flag_from("tangent", tangent),
-                             traits_from(shadows, diffuse, glossy, camera));
+                             traits_from(self, shadows, diffuse, glossy, camera, group));
     self.changed();
 }
 
@@ -144,21 +149,23 @@ void bind_lights(py::class_<SceneObject>& scene) {
     scene
         .def("add_sphere_light", &add_sphere_light, with_traits(kSphereDoc).c_str(), "center"_a, "radius"_a,
              "radiance"_a, py::kw_only(), "facing_disk"_a = false, "shadows"_a = true, "diffuse"_a = true,
-             "glossy"_a = true, "camera"_a = false)
+             "glossy"_a = true, "camera"_a = false, "group"_a = py::none())
         .def("add_polygon_light", &add_polygon_light, with_traits(kPolygonDoc).c_str(), "vertices"_a, "radiance"_a,
              py::kw_only(), "spread"_a = std::numbers::pi, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true,
-             "camera"_a = false)
+             "camera"_a = false, "group"_a = py::none())
         .def("add_disk_light", &add_disk_light, with_traits(kDiskDoc).c_str(), "center"_a, "half_axis_u"_a,
              "half_axis_v"_a, "radiance"_a, py::kw_only(), "spread"_a = std::numbers::pi, "shadows"_a = true,
-             "diffuse"_a = true, "glossy"_a = true, "camera"_a = false)
+             "diffuse"_a = true, "glossy"_a = true, "camera"_a = false, "group"_a = py::none())
         .def("add_point_light", &add_point_light, with_traits(kPointDoc).c_str(), "position"_a, "intensity"_a,
-             py::kw_only(), "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true, "camera"_a = false)
+             py::kw_only(), "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true, "camera"_a = false,
+             "group"_a = py::none())
         .def("add_spot_light", &add_spot_light, with_traits(kSpotDoc).c_str(), "position"_a, "direction"_a,
              "spot_angle"_a, "blend"_a, "intensity"_a, py::kw_only(), "radius"_a = 0.0, "facing_disk"_a = false,
-             "times_cosine"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true, "camera"_a = false)
+             "times_cosine"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true, "camera"_a = false,
+             "group"_a = py::none())
         .def("add_sun_light", &add_sun_light, with_traits(kSunDoc).c_str(), "direction"_a, "angle"_a, "irradiance"_a,
              py::kw_only(), "tangent"_a = false, "shadows"_a = true, "diffuse"_a = true, "glossy"_a = true,
-             "camera"_a = false);
+             "camera"_a = false, "group"_a = py::none());
 }
 
 }  // namespace shlight::python

@@ -13,6 +13,7 @@
 #include "arguments.h"
 #include "shader_bindings.h"
 #include "shlight/emission_profile.h"
+#include "shlight/render_passes.h"
 
 namespace shlight::python {
 namespace {
@@ -105,7 +106,7 @@ std::uint32_t attribute_index(const AttributeNames& names, const std::string& na
 }
 
 /// A Bsdf, or what has a method `compiled` that makes a shader.
-void add_material(MeshUse& use, const AttributeNames& names, const py::handle& item) {
+void add_material(MeshUse& use, const AttributeNames& names, const py::handle& item, SceneObject& scene) {
     use.bsdfs.emplace_back();
     use.shaders.emplace_back();
     if (py::isinstance<Bsdf>(item)) {
@@ -120,9 +121,12 @@ void add_material(MeshUse& use, const AttributeNames& names, const py::handle& i
     for (const std::string& name : shader.attribute_names) {
         use.shaders.back().attributes.push_back(attribute_index(names, name));
     }
+    for (std::size_t i = 0; i < shader.aov_names.size(); ++i) {
+        use.shaders.back().aovs.push_back(aov_number(scene, shader.aov_names[i], shader.shader->aovs[i].is_color));
+    }
 }
 
-void set_bsdfs(MeshUse& use, const AttributeNames& names, const py::object& value) {
+void set_bsdfs(MeshUse& use, const AttributeNames& names, const py::object& value, SceneObject& scene) {
     use.shaders.clear();
     use.bsdfs.clear();
     if (value.is_none()) {
@@ -130,10 +134,10 @@ void set_bsdfs(MeshUse& use, const AttributeNames& names, const py::object& valu
         return;
     }
     if (py::isinstance<Bsdf>(value) || py::hasattr(value, "compiled")) {
-        add_material(use, names, value);
+        add_material(use, names, value, scene);
     } else {
         for (const py::handle item : items_of(value)) {
-            add_material(use, names, item);
+            add_material(use, names, item, scene);
         }
     }
     if (use.bsdfs.empty()) {
@@ -186,6 +190,42 @@ void add_attributes(MeshShape& mesh, AttributeNames& names, const std::string& a
         mesh.attributes.push_back(attribute_from(place, mesh, array));
         names.push_back(name);
     }
+}
+
+/// One string for all, or one for each of so many; 0 where Python leaves them out.
+std::vector<float> identities(const char* name, const py::object& value, std::size_t count) {
+    if (value.is_none()) {
+        return std::vector<float>(count);
+    }
+    if (py::isinstance<py::str>(value)) {
+        return std::vector<float>(count, cryptomatte_id(value.cast<std::string>()));
+    }
+    std::vector<float> result;
+    for (const py::handle item : items_of(value)) {
+        if (!py::isinstance<py::str>(item)) {
+            throw std::invalid_argument(std::string(name) + " must be strings");
+        }
+        result.push_back(cryptomatte_id(item.cast<std::string>()));
+    }
+    if (result.size() != count) {
+        throw std::invalid_argument(std::string(name) + " must be one string, or " + std::to_string(count));
+    }
+    return result;
+}
+
+/// Likewise, of integers.
+std::vector<float> pass_indices(const char* name, const py::object& value, std::size_t count) {
+    if (value.is_none()) {
+        return std::vector<float>(count);
+    }
+    const bool is_one = py::isinstance<py::int_>(value);
+    const py::object all = is_one ? py::object(py::make_tuple(value)) : value;
+    const std::vector<std::uint32_t> own = indices(name, all, {is_one ? 1 : static_cast<py::ssize_t>(count)});
+    std::vector<float> result(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        result[i] = static_cast<float>(own[is_one ? 0 : i]);
+    }
+    return result;
 }
 
 std::vector<Rgb> emission_from(const py::object& value) {
@@ -266,32 +306,48 @@ Environment environment_from(const char* name, const py::handle& value, const gl
     return Environment(picture);
 }
 
-void set_materials(MeshUse& use, const AttributeNames& names, const py::object& bsdf, const py::object& emission) {
-    set_bsdfs(use, names, bsdf);
-    use.emission = emission_from(emission);
+void set_materials(MeshUse& use, const AttributeNames& names, const MaterialArguments& arguments, SceneObject& scene) {
+    set_bsdfs(use, names, arguments.bsdf, scene);
+    use.emission = emission_from(arguments.emission);
+    use.group = group_from(scene, arguments.group);
+    const std::size_t count = use.material_count();
+    const std::vector<float> index = pass_indices("material_pass_indices", arguments.pass_indices, count);
+    const std::vector<float> name = identities("material_names", arguments.names, count);
+    use.material_labels.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+        use.material_labels.push_back({index[i], name[i], 0});
+    }
 }
 
-void set_places(MeshUse& use, const py::object& transforms, const py::object& object_values) {
+void set_places(MeshUse& use, const PlaceArguments& arguments) {
     use.transforms = {glm::dmat4(1)};
-    use.object_values.clear();
-    if (!transforms.is_none()) {
-        const AnyArray<double> array = numbers<double>("transforms", transforms, {kAny, 4, 4});
+    if (!arguments.transforms.is_none()) {
+        const AnyArray<double> array = numbers<double>("transforms", arguments.transforms, {kAny, 4, 4});
         use.transforms.clear();
         for (py::ssize_t i = 0; i < array.shape(0); ++i) {
             use.transforms.push_back(matrix_at(array.data() + 16 * i));
         }
     }
-    if (!object_values.is_none()) {
-        const auto count = static_cast<py::ssize_t>(use.transforms.size());
-        const AnyArray<float> array = numbers<float>("object_values", object_values, {count, kAny});
-        for (py::ssize_t i = 0; i < count; ++i) {
-            const float* row = array.data() + i * array.shape(1);
+    const std::size_t count = use.transforms.size();
+    use.object_values.clear();
+    if (!arguments.object_values.is_none()) {
+        const AnyArray<float> array =
+            numbers<float>("object_values", arguments.object_values, {static_cast<py::ssize_t>(count), kAny});
+        for (std::size_t i = 0; i < count; ++i) {
+            const float* row = array.data() + static_cast<py::ssize_t>(i) * array.shape(1);
             use.object_values.emplace_back(row, row + array.shape(1));
         }
     }
+    const std::vector<float> index = pass_indices("object_indices", arguments.object_indices, count);
+    const std::vector<float> name = identities("object_names", arguments.object_names, count);
+    const std::vector<float> asset = identities("asset_names", arguments.asset_names, count);
+    use.object_labels.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+        use.object_labels.push_back({index[i], name[i], asset[i]});
+    }
 }
 
-Mesh mesh_from(const MeshArguments& arguments, AttributeNames& names) {
+Mesh mesh_from(const MeshArguments& arguments, AttributeNames& names, SceneObject& scene) {
     Mesh mesh;
     mesh.vertices = copy_vectors("vertices", numbers<float>("vertices", arguments.vertices, {kAny, 3}));
     const std::vector<std::uint32_t> corners = indices("triangles", arguments.triangles, {kAny, 3});
@@ -302,14 +358,15 @@ Mesh mesh_from(const MeshArguments& arguments, AttributeNames& names) {
         set_normals(mesh, arguments.normals);
     }
     add_attributes(mesh, names, "uvs", arguments.uvs);
+    mesh.uv = names.empty() ? MeshShader::kNoAttribute : 0;
     add_attributes(mesh, names, "colors", arguments.colors);
     add_attributes(mesh, names, "attributes", arguments.attributes);
-    set_materials(mesh, names, arguments.bsdf, arguments.emission);
+    set_materials(mesh, names, arguments.materials, scene);
     if (!arguments.material_indices.is_none()) {
         mesh.material_indices =
             indices("material_indices", arguments.material_indices, {static_cast<py::ssize_t>(mesh.triangles.size())});
     }
-    set_places(mesh, arguments.transforms, arguments.object_values);
+    set_places(mesh, arguments.places);
     return mesh;
 }
 

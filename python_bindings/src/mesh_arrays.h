@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "scene_bindings.h"
 #include "shlight/environment.h"
 #include "shlight/mesh.h"
 #include "shlight/types.h"
@@ -31,20 +32,30 @@ glm::dmat3 rotation_from(const char* name, const pybind11::handle& value);
 /// A radiance, shape (3,), or a lat-long picture, shape (height, width, 3), which `to_world` turns.
 Environment environment_from(const char* name, const pybind11::handle& value, const glm::dmat3& to_world);
 
-/// The arguments of Scene.add_mesh; None where Python leaves one out.
+/// Arguments of Scene.add_mesh about materials; None where Python leaves one out.
+struct MaterialArguments {
+    pybind11::object bsdf, emission, group, names, pass_indices;
+};
+
+/// Those about instances.
+struct PlaceArguments {
+    pybind11::object transforms, object_values, object_names, asset_names, object_indices;
+};
+
+/// All of them.
 struct MeshArguments {
-    pybind11::object vertices, triangles, normals, uvs, colors, attributes, bsdf, emission, material_indices,
-        transforms, object_values;
+    pybind11::object vertices, triangles, normals, uvs, colors, attributes, material_indices;
+    MaterialArguments materials;
+    PlaceArguments places;
 };
 
 /// The names of a mesh's attributes, in their order.
 using AttributeNames = std::vector<std::string>;
 
-/// Shapes and types are checked here, the rest by Scene::add_mesh. names: is given those of the mesh.
-Mesh mesh_from(const MeshArguments& arguments, AttributeNames& names);
-/// Each as of Scene.add_mesh.
-void set_materials(MeshUse& use, const AttributeNames& names, const pybind11::object& bsdf,
-                   const pybind11::object& emission);
-void set_places(MeshUse& use, const pybind11::object& transforms, const pybind11::object& object_values);
+/// Shapes and types are checked here, the rest by Scene::add_mesh. names: is given those of the mesh. Groups and AOVs
+/// become known to the scene, here and below.
+Mesh mesh_from(const MeshArguments& arguments, AttributeNames& names, SceneObject& scene);
+void set_materials(MeshUse& use, const AttributeNames& names, const MaterialArguments& arguments, SceneObject& scene);
+void set_places(MeshUse& use, const PlaceArguments& arguments);
 
 }  // namespace shlight::python

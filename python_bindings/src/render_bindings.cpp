@@ -17,6 +17,7 @@
 
 #include "arguments.h"
 #include "bindings.h"
+#include "pass_arrays.h"
 #include "render_calls.h"
 #include "whole_objects.h"
 
@@ -46,6 +47,16 @@ shadow_rays: per camera ray and light, at most, and again for each roughness of 
     of them where light and shadow are plain. 0: no shadows.
 transparent_bounces: surfaces that let light through which a shadow ray passes, at most, 0 ... 1024; a camera ray
     passes one more.
+passes: names of what else is wanted of the picture, by the units and values of Blender's render engine Cycles.
+    Of the ray through a pixel's middle: "depth" [m] along the view axis, 1e10 where nothing is; "position",
+    "object_index", "material_index". Means over the filter: "normal", "uv", "mist", "emission", "environment",
+    "diffuse_direct" and "glossy_direct", which are divided by "diffuse_color" and "glossy_color"; "denoising_normal",
+    "denoising_albedo", "denoising_depth"; "cryptomatte_object", "cryptomatte_material", "cryptomatte_asset".
+groups: also the part of the picture that the lights of each group give, "combined_NAME"; those of lights without a group
+    are "combined_". They add up to the picture.
+aovs: also what materials have as `Shader.with_aovs`, "aov_NAME".
+alpha_threshold: 0 ... 1, a surface that lets more than 1 - this through is passed over by normals, places and indices.
+mist: start and depth [m] and the power of its falloff. cryptomatte_levels: 2 ... 16 identities of a pixel.
 threads: at most; 0: all cores. The image does not depend on it, and on a time limit only by the number of passes.
 progress: is called with the finished share, 0 ... 1, about every 10 ms; returning False cancels.
 on_update: is called as on_update(image, report) after each pass and a few times a second during long ones, with the
@@ -54,7 +65,8 @@ on_update: is called as on_update(image, report) after each pass and a few times
 return_report: return (image, RenderReport).
 
 Returns (height, width, 4) float32, linear, row 0 on top, RGB premultiplied; alpha is the share of
-what is not empty: a surface, or an environment that the camera sees.
+what is not empty: a surface, or an environment that the camera sees. Where passes, groups or aovs are asked for: a dict
+of arrays (height, width, channels), "combined" among them.
 Raises ValueError naming the argument, RenderCancelled.)";
 
 /// A report with what only Python's side knows.
@@ -188,18 +200,21 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
                         const py::object& min_samples, const py::object& max_samples, const py::object& pixel_samples,
                         const py::object& time_limit, const py::object& pixel_filter, const py::object& filter_width,
                         const py::object& shadows, const py::object& shadow_rays, const py::object& transparent_bounces,
+                        const py::object& passes, const py::object& groups, const py::object& aovs,
+                        const py::object& alpha_threshold, const py::object& mist, const py::object& cryptomatte_levels,
                         const py::object& threads, const py::object& progress, const py::object& on_update,
                         const py::object& return_report) {
     auto& scene = object_from<SceneObject>("scene", scene_object, "Scene");
     const int most_shadow_rays = int_from("shadow_rays", shadow_rays);
-    const RenderSettings settings = {
-        order_from(order),
-        real_from("tolerance", tolerance),
-        sampling_from(noise_threshold, min_samples, max_samples, pixel_samples, time_limit),
-        filter_from(pixel_filter, filter_width),
-        flag_from("shadows", shadows) ? most_shadow_rays : 0,
-        int_from("threads", threads),
-        int_from("transparent_bounces", transparent_bounces)};
+    const PassArguments pass_arguments = {passes, groups, aovs, alpha_threshold, mist, cryptomatte_levels};
+    RenderSettings settings = {order_from(order),
+                               real_from("tolerance", tolerance),
+                               sampling_from(noise_threshold, min_samples, max_samples, pixel_samples, time_limit),
+                               filter_from(pixel_filter, filter_width),
+                               flag_from("shadows", shadows) ? most_shadow_rays : 0,
+                               int_from("threads", threads),
+                               int_from("transparent_bounces", transparent_bounces),
+                               pass_settings_from(pass_arguments)};
     const int columns = int_from("width", width);
     const int rows = int_from("height", height);
     const bool with_report = flag_from("return_report", return_report);
@@ -208,18 +223,23 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
     const Progress report_progress = progress_from(progress);
     const Camera camera = camera_of(scene);
     const auto [compiled_scene, build_seconds] = compiled(scene, settings.threads, report_progress);
+    add_named_passes(pass_arguments, scene, *compiled_scene, settings.passes);
     py::array_t<float> image({rows, columns, 4});
+    py::array_t<float> values({rows, columns, static_cast<int>(PassLayout(settings.passes).stride())});
     const std::span<float> pixels(image.mutable_data(), static_cast<std::size_t>(image.size()));
     const RenderWatch watch = {report_progress, update_from(on_update, columns, rows, build_seconds)};
     RenderReport report;
     {
         const py::gil_scoped_release release;
-        report = render(*compiled_scene, camera, columns, rows, settings, pixels, watch);
+        report = render(*compiled_scene, camera, columns, rows, settings, pixels, watch,
+                        {values.mutable_data(), static_cast<std::size_t>(values.size())});
     }
+    py::object result =
+        pass_arguments.any() ? py::object(pass_dict(settings.passes, scene, image, values)) : py::object(image);
     if (with_report) {
-        return py::make_tuple(image, Report{report, build_seconds});
+        return py::make_tuple(result, Report{report, build_seconds});
     }
-    return image;
+    return result;
 }
 
 }  // namespace
@@ -258,12 +278,18 @@ void bind_render(py::module_& m) {
                                "Time for each stage, summed over threads: camera rays; views, of the materials there; "
                                "light, without shadows; shadows; pixels, adding up.")
         .def("__repr__", &Report::repr);
+    m.def(
+        "cryptomatte_hash", [](const std::string& name) { return cryptomatte_hash(name); }, "name"_a);
     m.def("render", &render_scene, kRenderDoc, "scene"_a, "width"_a, "height"_a, py::kw_only(), "order"_a = "auto",
           "tolerance"_a = kDefaultTolerance, "noise_threshold"_a = PixelSampling().noise_threshold,
           "min_samples"_a = py::none(), "max_samples"_a = py::none(), "pixel_samples"_a = py::none(),
           "time_limit"_a = py::none(), "pixel_filter"_a = "box", "filter_width"_a = PixelFilter().width,
           "shadows"_a = true, "shadow_rays"_a = RenderSettings().shadow_rays, "transparent_bounces"_a = 8,
-          "threads"_a = 0, "progress"_a = py::none(), "on_update"_a = py::none(), "return_report"_a = false);
+          "passes"_a = py::tuple(), "groups"_a = false, "aovs"_a = false,
+          "alpha_threshold"_a = PassSettings().alpha_threshold,
+          "mist"_a = py::make_tuple(MistRange().start, MistRange().depth, MistRange().falloff),
+          "cryptomatte_levels"_a = PassSettings().cryptomatte_levels, "threads"_a = 0, "progress"_a = py::none(),
+          "on_update"_a = py::none(), "return_report"_a = false);
 }
 
 }  // namespace shlight::python

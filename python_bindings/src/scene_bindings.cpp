@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "scene_bindings.h"
 
+#include <algorithm>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -36,6 +39,10 @@ emission: emitted radiance [W m^-2 sr^-1] of both sides, RGB, or (m, 3) with one
 material_indices: (k,) integers, the material of each triangle; None: 0 for all.
 transforms: (i, 4, 4), one object-to-world matrix per instance, for column vectors; None: one at the identity.
 object_values: (i, v), numbers of each instance, which shlight.nodes.object_value() reads.
+group: name of the light group of what it emits, or None.
+object_names, asset_names: what Cryptomatte knows its instances by: one string for all, or one for each instance.
+object_indices: integers >= 0 for the pass object_index: one for all, or one for each instance.
+material_names, material_pass_indices: likewise, of its materials.
 
 Returns the SceneMesh, which can be changed and removed.
 Raises ValueError naming the argument; the scene is then as it was.)";
@@ -45,12 +52,12 @@ constexpr const char* kSceneMeshDoc = R"(A mesh of a Scene, as Scene.add_mesh re
 It belongs to that scene alone; copies of the scene have meshes of their own. A render that runs shows what was there
 when it began. All methods raise ValueError once the mesh has been removed.)";
 
-constexpr const char* kSetBsdfDoc = R"(Give the mesh other materials; bsdf and emission as of Scene.add_mesh.
+constexpr const char* kSetBsdfDoc = R"(Give the mesh other materials; arguments as of Scene.add_mesh.
 
 Raises ValueError naming the argument; the mesh is then as it was.)";
 
 constexpr const char* kSetTransformsDoc =
-    R"(Place the mesh elsewhere; transforms and object_values as of Scene.add_mesh.
+    R"(Place the mesh elsewhere; arguments as of Scene.add_mesh.
 
 Raises ValueError naming the argument; the mesh is then as it was.)";
 
@@ -62,6 +69,7 @@ radiance: [W m^-2 sr^-1], not negative: RGB, the same from everywhere, or (heigh
     go from -x over +y, +x (the middle) and -y back to -x, as in Blender.
 to_world: (3, 3), a rotation of the picture, for column vectors; None: none.
 visible: the camera sees it behind the scene, where the picture is then opaque.
+group: name of its light group, or None.
 
 Raises ValueError naming the argument.)";
 
@@ -77,32 +85,46 @@ struct MeshHandle {
 MeshHandle add_mesh(const py::object& self, const py::object& vertices, const py::object& triangles,
                     const py::object& normals, const py::object& uvs, const py::object& colors,
                     const py::object& attributes, const py::object& bsdf, const py::object& emission,
-                    const py::object& material_indices, const py::object& transforms, const py::object& object_values) {
+                    const py::object& material_indices, const py::object& transforms, const py::object& object_values,
+                    const py::object& group, const py::object& object_names, const py::object& asset_names,
+                    const py::object& object_indices, const py::object& material_names,
+                    const py::object& material_pass_indices) {
     MeshHandle handle = {self, 0, {}};
-    Mesh mesh = mesh_from({vertices, triangles, normals, uvs, colors, attributes, bsdf, emission, material_indices,
-                           transforms, object_values},
-                          handle.names);
-    handle.number = handle.scene().scene.add_mesh(std::move(mesh));
-    handle.scene().meshes_changed();
+    SceneObject& scene = handle.scene();
+    Mesh mesh = mesh_from({vertices,
+                           triangles,
+                           normals,
+                           uvs,
+                           colors,
+                           attributes,
+                           material_indices,
+                           {bsdf, emission, group, material_names, material_pass_indices},
+                           {transforms, object_values, object_names, asset_names, object_indices}},
+                          handle.names, scene);
+    handle.number = scene.scene.add_mesh(std::move(mesh));
+    scene.meshes_changed();
     return handle;
 }
 
-void set_bsdf(const MeshHandle& self, const py::object& bsdf, const py::object& emission) {
-    Scene& scene = self.scene().scene;
-    MeshUse use = scene.mesh(self.number);
-    set_materials(use, self.names, bsdf, emission);
-    scene.use_mesh(self.number, std::move(use));
-    self.scene().changed();
+void set_bsdf(const MeshHandle& self, const py::object& bsdf, const py::object& emission, const py::object& group,
+              const py::object& material_names, const py::object& material_pass_indices) {
+    SceneObject& scene = self.scene();
+    const MeshUse& before = scene.scene.mesh(self.number);
+    MeshUse use = before;
+    set_materials(use, self.names, {bsdf, emission, group, material_names, material_pass_indices}, scene);
+    scene.scene.use_mesh(self.number, std::move(use));
+    scene.changed();
 }
 
-void set_transforms(const MeshHandle& self, const py::object& transforms, const py::object& object_values) {
-    Scene& scene = self.scene().scene;
-    MeshUse use = scene.mesh(self.number);
-    const std::vector<glm::dmat4> before = use.transforms;
-    set_places(use, transforms, object_values);
-    const bool moves = use.transforms != before;
-    scene.use_mesh(self.number, std::move(use));
-    moves ? self.scene().meshes_changed() : self.scene().changed();
+void set_transforms(const MeshHandle& self, const py::object& transforms, const py::object& object_values,
+                    const py::object& object_names, const py::object& asset_names, const py::object& object_indices) {
+    SceneObject& scene = self.scene();
+    const MeshUse& before = scene.scene.mesh(self.number);
+    MeshUse use = before;
+    set_places(use, {transforms, object_values, object_names, asset_names, object_indices});
+    const bool moves = use.transforms != before.transforms;
+    scene.scene.use_mesh(self.number, std::move(use));
+    moves ? scene.meshes_changed() : scene.changed();
 }
 
 void remove_mesh(const MeshHandle& self) {
@@ -116,20 +138,48 @@ void remove_lights(SceneObject& self) {
 }
 
 void set_environment(SceneObject& self, const py::object& radiance, const py::object& to_world,
-                     const py::object& visible) {
+                     const py::object& visible, const py::object& group) {
     const glm::dmat3 rotation = to_world.is_none() ? glm::dmat3(1) : rotation_from("to_world", to_world);
     const bool seen = flag_from("visible", visible);
-    self.scene.set_environment(environment_from("radiance", radiance, rotation), seen);
+    self.scene.set_environment(environment_from("radiance", radiance, rotation), seen, group_from(self, group));
     self.changed();
 }
 
 }  // namespace
 
+std::uint32_t group_from(SceneObject& scene, const py::object& name) {
+    if (name.is_none()) {
+        return 0;
+    }
+    const std::string wanted = py::isinstance<py::str>(name) ? name.cast<std::string>() : std::string();
+    if (wanted.empty()) {
+        throw std::invalid_argument("group must be a string that is not empty, or None");
+    }
+    const auto known = std::find(scene.groups.begin(), scene.groups.end(), wanted);
+    const auto number = static_cast<std::uint32_t>(known - scene.groups.begin()) + 1;
+    if (known == scene.groups.end()) {
+        scene.groups.push_back(wanted);
+    }
+    return number;
+}
+
+std::uint32_t aov_number(SceneObject& scene, const std::string& name, bool is_color) {
+    const std::pair wanted(name, is_color);
+    const auto known = std::find(scene.aovs.begin(), scene.aovs.end(), wanted);
+    const auto number = static_cast<std::uint32_t>(known - scene.aovs.begin());
+    if (known == scene.aovs.end()) {
+        scene.aovs.push_back(wanted);
+    }
+    return number;
+}
+
 void bind_scene(py::module_& m) {
     py::class_<MeshHandle>(m, "SceneMesh", kSceneMeshDoc, without_constructor())
-        .def("set_bsdf", &set_bsdf, kSetBsdfDoc, "bsdf"_a, py::kw_only(), "emission"_a = py::none())
+        .def("set_bsdf", &set_bsdf, kSetBsdfDoc, "bsdf"_a, py::kw_only(), "emission"_a = py::none(),
+             "group"_a = py::none(), "material_names"_a = py::none(), "material_pass_indices"_a = py::none())
         .def("set_transforms", &set_transforms, kSetTransformsDoc, "transforms"_a, py::kw_only(),
-             "object_values"_a = py::none())
+             "object_values"_a = py::none(), "object_names"_a = py::none(), "asset_names"_a = py::none(),
+             "object_indices"_a = py::none())
         .def("remove", &remove_mesh, "Take the mesh out of its scene.");
     py::class_<SceneObject> scene(m, "Scene", kSceneDoc, constructed_when_new());
     scene.def(py::init<>())
@@ -145,11 +195,13 @@ void bind_scene(py::module_& m) {
         .def("add_mesh", &add_mesh, kAddMeshDoc, "vertices"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
              "uvs"_a = py::none(), "colors"_a = py::none(), "attributes"_a = py::none(), "bsdf"_a = py::none(),
              "emission"_a = py::none(), "material_indices"_a = py::none(), "transforms"_a = py::none(),
-             "object_values"_a = py::none())
+             "object_values"_a = py::none(), "group"_a = py::none(), "object_names"_a = py::none(),
+             "asset_names"_a = py::none(), "object_indices"_a = py::none(), "material_names"_a = py::none(),
+             "material_pass_indices"_a = py::none())
         .def("remove_lights", &remove_lights,
              "Take out all lights that the add_..._light methods have added; emissive meshes and the environment stay.")
         .def("set_environment", &set_environment, kEnvironmentDoc, "radiance"_a, py::kw_only(),
-             "to_world"_a = py::none(), "visible"_a = true);
+             "to_world"_a = py::none(), "visible"_a = true, "group"_a = py::none());
     bind_cameras(scene);
     bind_lights(scene);
 }

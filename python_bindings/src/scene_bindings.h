@@ -8,7 +8,9 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "shlight/camera.h"
 #include "shlight/scene.h"
@@ -22,6 +24,8 @@ struct SceneObject {
     std::shared_ptr<const CompiledScene> compiled;
     std::shared_ptr<const CompiledScene> before;  // compiled with the same meshes in the same places, or null
     std::uint64_t revision = 0;
+    std::vector<std::string> groups;                 ///< LightTraits::group of the first is 1
+    std::vector<std::pair<std::string, bool>> aovs;  ///< by RenderPass::number; whether it is a colour
 
     /// Anything but a mesh or its place.
     void changed() {
@@ -33,6 +37,12 @@ struct SceneObject {
         before.reset();
     }
 };
+
+/// LightTraits::group for a name, or for None; a name that is not known becomes so. Throws std::invalid_argument naming
+/// `group` for what is neither.
+std::uint32_t group_from(SceneObject& scene, const pybind11::object& name);
+/// RenderPass::number of an AOV, which may become known.
+std::uint32_t aov_number(SceneObject& scene, const std::string& name, bool is_color);
 
 /// Scene.add_sphere_light and its like.
 void bind_cameras(pybind11::class_<SceneObject>& scene);

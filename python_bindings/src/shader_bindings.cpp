@@ -23,9 +23,11 @@ namespace {
 using ImagePointer = std::shared_ptr<const ImageTexture>;
 using StepTuple = std::tuple<int, double, std::uint32_t, std::uint32_t, std::vector<std::uint32_t>>;
 using TableTuple = std::tuple<AnyArray<float>, std::vector<std::uint32_t>>;
-/// kind of lobe, ior, and numbers of results: weight, alpha, normal
+/// kind of lobe, ior, and numbers of results: weight, alpha, normal; and ShadedLobe::several_bounces
 using LobeTuple =
-    std::tuple<std::string, double, std::uint32_t, std::optional<std::uint32_t>, std::optional<std::uint32_t>>;
+    std::tuple<std::string, double, std::uint32_t, std::optional<std::uint32_t>, std::optional<std::uint32_t>, bool>;
+/// name, number of the result, whether it is a colour
+using AovTuple = std::tuple<std::string, std::uint32_t, bool>;
 
 /// kind (0: constant, 1: input, 2: operation), constant, source or operation, index or parameter, and arguments; of an
 /// input the component is the only argument.
@@ -130,13 +132,20 @@ LobeShape shape_of(const std::string& kind, double ior) {
 
 ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTuple>& lobes,
                          std::optional<std::uint32_t> emission, std::optional<std::uint32_t> transparency,
-                         const ShaderProgram& shadow_program, std::vector<std::string> attribute_names) {
-    auto shader = std::make_shared<SurfaceShader>(SurfaceShader{program, {}, emission, transparency, shadow_program});
-    for (const auto& [kind, ior, weight, alpha, normal] : lobes) {
-        shader->lobes.push_back({shape_of(kind, ior), weight, alpha, normal});
+                         const ShaderProgram& shadow_program, std::vector<std::string> attribute_names,
+                         const std::vector<AovTuple>& aovs) {
+    auto shader =
+        std::make_shared<SurfaceShader>(SurfaceShader{program, {}, emission, transparency, shadow_program, {}});
+    for (const auto& [kind, ior, weight, alpha, normal, several_bounces] : lobes) {
+        shader->lobes.push_back({shape_of(kind, ior), weight, alpha, normal, several_bounces});
+    }
+    std::vector<std::string> aov_names;
+    for (const auto& [name, value, is_color] : aovs) {
+        shader->aovs.push_back({value, is_color});
+        aov_names.push_back(name);
     }
     check_surface_shader(*shader);
-    return {std::move(shader), std::move(attribute_names)};
+    return {std::move(shader), std::move(attribute_names), std::move(aov_names)};
 }
 
 /// uint8 or float; (height, width, channels), row 0 at v = 0.
@@ -223,7 +232,7 @@ void bind_shader(py::module_& m) {
         "steps"_a, "tables"_a, "images"_a, "results"_a);
     const py::class_<ShaderObject> shader(m, "SurfaceShader", without_constructor());
     m.def("surface_shader", &shader_from, "program"_a, "lobes"_a, "emission"_a, "transparency"_a, "shadow_program"_a,
-          "attribute_names"_a);
+          "attribute_names"_a, "aovs"_a);
 }
 
 }  // namespace shlight::python

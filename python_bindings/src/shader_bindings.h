@@ -15,6 +15,7 @@ namespace shlight::python {
 struct ShaderObject {
     std::shared_ptr<const SurfaceShader> shader;
     std::vector<std::string> attribute_names;
+    std::vector<std::string> aov_names;
 };
 
 }  // namespace shlight::python

@@ -15,7 +15,7 @@ from shlight_blender.export import bake
 
 FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
 ended = []
-drawn = {"panels": [], "nodes": {}, "viewport_updates": 0, "messages": [], "kept": []}
+drawn = {"panels": [], "nodes": {}, "viewport_updates": 0, "messages": [], "kept": [], "previews": []}
 
 
 def watched(original, name):
@@ -63,9 +63,24 @@ def steps():
         bpy.data.objects["Cube"].location.x += 0.1
         yield
         yield
+    yield from note_previews()
     set_sky(scene)
     for number in range(2):
         yield from final_render(scene, FOLDER / f"final_{number}.exr")
+
+
+def note_previews():
+    """Notes the mean colour of the previews of two materials."""
+    for color in ((0.8, 0.05, 0.05, 1), (0.05, 0.05, 0.8, 1)):
+        material = bpy.data.materials.new("Preview")
+        material.use_nodes = True
+        material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = color
+        material.asset_mark()
+        material.asset_generate_preview()
+        while bpy.app.is_job_running("RENDER_PREVIEW") or not any(material.preview.image_pixels_float):
+            yield
+        pixels = list(material.preview.image_pixels_float)
+        drawn["previews"].append([sum(pixels[channel::4]) for channel in range(3)])
 
 
 def note_nodes(scene):

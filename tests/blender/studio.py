@@ -219,7 +219,7 @@ class Studio:
         self.plane(2.2, glossy, location=(0.3, -0.6, 0.05))
         self.camera(location=(1.5, -4, 3.5), target=(0.2, -0.9, 0), lens=60)
         self.scene.render.resolution_x, self.scene.render.resolution_y = 32, 24
-        self.scene.cycles.samples = 256
+        self.scene.cycles.samples = 1024
 
     # --- pictures
 

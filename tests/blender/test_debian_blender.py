@@ -144,7 +144,7 @@ def run_in_window(*arguments: str, script: str, folder: Path, after: tuple[str, 
 READ_ONLY = re.compile(r"(?:Error: )?Traceback.*\n(?:  .*\n)*RuntimeError: .* can't run in readonly state.*")
 
 
-@pytest.mark.parametrize("steps", [50, pytest.param(150, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("steps", [50, pytest.param(300, marks=pytest.mark.slow)])
 def test_a_walk_in_the_window(tmp_path: Path, steps: int) -> None:
     """Random steps during renders: other files, undo, the add-on and Cycles disabled, scripts reloaded."""
     addons = tmp_path / ".config/blender/3.4/scripts/addons"
@@ -161,7 +161,7 @@ def test_a_walk_in_the_window(tmp_path: Path, steps: int) -> None:
 
 
 def test_window(tmp_path: Path) -> None:
-    """A real window: the engine selected, its panels drawn, the viewport in rendered mode, and final renders.
+    """A real window: the engine selected, its panels and previews drawn, a rendered viewport, and final renders.
 
     They run beside the window, as with F12, in a world that is baked for the first of them.
     """
@@ -184,6 +184,9 @@ def test_window(tmp_path: Path) -> None:
     assert drawn["nodes"]["SHLIGHT"] == drawn["nodes"]["CYCLES"]
     assert "ShaderNodeEmission" not in drawn["nodes"]["BLENDER_WORKBENCH"]
     assert drawn["viewport_updates"] >= 1
+    (red, _, no_blue), (no_red, _, blue) = drawn["previews"]
+    assert red > 2 * no_blue
+    assert blue > 2 * no_red
     assert drawn["messages"] == [[], []]
     assert drawn["kept"] == [1, 1]
     first, second = (read_exr(tmp_path / f"final_{i}.exr")[..., :3] for i in range(2))

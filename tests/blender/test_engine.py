@@ -122,9 +122,9 @@ def test_all_view_layers_are_reported_and_the_weightiest_warning_last(
     other.objects.link(sun)
     second = scene.view_layers.new("Second")
     second.layer_collection.children["Other"].exclude = True
-    second.use_pass_normal = True
+    second.use_pass_vector = True
     scene.render.use_motion_blur = True
-    heavy, middle, slight = "its scale is 0", "motion blur", "only the Combined pass"
+    heavy, middle, slight = "its scale is 0", "motion blur", "passes that are not supported"
     for keeps_the_engine in (False, True, True):
         scene.render.use_persistent_data = keeps_the_engine
         capfd.readouterr()

@@ -187,10 +187,8 @@ def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any
     scene = studio.scene
     scene.render.use_motion_blur = True
     view_layer = bpy.context.view_layer
-    view_layer.use_pass_normal = True
+    view_layer.use_pass_vector = True
     view_layer.cycles.use_pass_shadow_catcher = True
-    view_layer.aovs.add().name = "Mask"
-    view_layer.lightgroups.add(name="Key")
     scene.world = bpy.data.worlds.new("Sky")
     scene.world.use_nodes = False
     scene.world.color = (0.1, 0.1, 0.1)
@@ -206,7 +204,7 @@ def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any
     text = "\n".join(messages())
     for part in (
         "motion blur is not supported",
-        "only the Combined pass is written; not normal, shadow_catcher, AOV 'Mask', light group 'Key'",
+        "passes that are not supported: shadow_catcher, vector",
         "World 'Sky': hiding it from diffuse rays",
         "Object 'Hidden': objects hidden from the camera",
         "Object 'Catcher': shadow catchers",

@@ -57,8 +57,8 @@ def changed_pictures(studio: Any) -> Iterator[tuple[int, NDArray[np.float32]]]:
 def test_persistent_data_keeps_what_did_not_change(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """Pictures are as without it, bit for bit, and only the meshes are converted again whose triangles are others."""
     converted: list[str] = []
-    arrays = meshes._arrays
-    monkeypatch.setattr(meshes, "_arrays", lambda seen, *a: converted.append(seen.name) or arrays(seen, *a))
+    arrays = meshes.object_arrays
+    monkeypatch.setattr(meshes, "object_arrays", lambda seen, *a: converted.append(seen.name) or arrays(seen, *a))
     pictures: dict[bool, list[Any]] = {False: [], True: []}
     for keeps in pictures:
         fresh = type(studio)(studio.folder)

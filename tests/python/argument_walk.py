@@ -34,7 +34,7 @@ RANDOM = {**COEFFICIENTS, "method": "monte_carlo", "samples": 8, "seed": 1, "sam
 SHADED = {"bsdf": GGX, "cos_theta_o": 0.5, "tolerance": 1e-3, "threads": 0, "return_effort": True}
 AUTO = {**SHADED, "order": "auto", "method": "auto", "samples": None, "seed": None, "sampling": None}
 SAMPLED = {**SHADED, "method": "monte_carlo", "samples": 8, "seed": 1, "sampling": "mis"}
-SEEN_BY = {"shadows": True, "diffuse": True, "glossy": True, "camera": False}
+SEEN_BY = {"shadows": True, "diffuse": True, "glossy": True, "camera": False, "group": "key"}
 RGB = [1.0, 2.0, 3.0]
 LIGHTS: dict[str, dict[str, Any]] = {
     "add_sphere_light": {"center": [0, 0, 1], "radius": 0.1, "radiance": RGB, "facing_disk": False},
@@ -91,7 +91,15 @@ MESH = {
     "material_indices": [0],
     "transforms": [np.eye(4)],
     "object_values": [[1.0, 2.0]],
+    "group": "key",
+    "object_names": "Cube",
+    "asset_names": ["Cube"],
+    "object_indices": [1],
+    "material_names": ["Matt"],
+    "material_pass_indices": 2,
 }
+OF_MATERIALS = ("bsdf", "emission", "group", "material_names", "material_pass_indices")
+OF_PLACES = ("transforms", "object_values", "object_names", "asset_names", "object_indices")
 PICTURE = Path(__file__).parents[2] / "docs" / "images" / "preview.png"
 RENDER = {"width": 2, "height": 2, "threads": 1, "progress": None}
 SETTINGS = {
@@ -107,6 +115,12 @@ SETTINGS = {
     "shadows": True,
     "shadow_rays": 1,
     "transparent_bounces": 1,
+    "passes": ["depth"],
+    "groups": True,
+    "aovs": True,
+    "alpha_threshold": 0.5,
+    "mist": (1.0, 2.0, 1.0),
+    "cryptomatte_levels": 4,
     "on_update": None,
 }
 
@@ -145,15 +159,12 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     **{f"Scene.{name}": (of_scene(name), {**light, **SEEN_BY}) for name, light in LIGHTS.items()},
     "Scene.add_mesh": (of_scene("add_mesh"), MESH),
     "Scene.remove_lights": (of_scene("remove_lights"), {}),
-    "SceneMesh.set_bsdf": (of_mesh("set_bsdf"), {name: MESH[name] for name in ("bsdf", "emission")}),
-    "SceneMesh.set_transforms": (
-        of_mesh("set_transforms"),
-        {name: MESH[name] for name in ("transforms", "object_values")},
-    ),
+    "SceneMesh.set_bsdf": (of_mesh("set_bsdf"), {name: MESH[name] for name in OF_MATERIALS}),
+    "SceneMesh.set_transforms": (of_mesh("set_transforms"), {name: MESH[name] for name in OF_PLACES}),
     "SceneMesh.remove": (of_mesh("remove"), {}),
     "Scene.set_environment": (
         of_scene("set_environment"),
-        {"radiance": np.ones((2, 4, 3)), "to_world": np.eye(3), "visible": True},
+        {"radiance": np.ones((2, 4, 3)), "to_world": np.eye(3), "visible": True, "group": "sky"},
     ),
     "Scene.set_camera": (of_scene("set_camera"), {"to_world": np.eye(4), "fov_x": 1.0, **LENS}),
     "Scene.set_camera_window": (of_scene("set_camera_window"), {"to_world": np.eye(4), **WINDOW, **CLIPS, **LENS}),
@@ -181,6 +192,10 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "shade_disks": (shlight.shade_disks, {**DISK, **SHADED, "order": "auto", "method": "auto"}),
     "render": (shlight.render, {"scene": new_scene(), **RENDER, **SETTINGS, "return_report": True}),
     "images.write_exr": (images.write_exr, {"path": "a.exr", "image": picture(4, np.float32)}),
+    "images.write_layers": (
+        images.write_layers,
+        {"path": "a.exr", "passes": {"depth": picture(1, np.float32)}, "view_layer": "ViewLayer"},
+    ),
     "images.read_exr": (images.read_exr, {"path": "missing.exr"}),
     "images.read_texture": (images.read_texture, {"path": PICTURE, "associate": False}),
     "images.write_png": (images.write_png, {"path": "a.png", "image_srgb_uint8": picture(3, np.uint8)}),
@@ -211,6 +226,7 @@ RELATED = {
     "aperture_size": ("focus_distance",),
     "bsdf_coefficients": ("light_coefficients",),
     "centers": ("radii",),
+    "emission": ("material_names",),
     "clip_start": ("clip_end",),
     "half_axes_u": ("half_axes_v", "centers"),
     "half_axes_v": ("centers",),

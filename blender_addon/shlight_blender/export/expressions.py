@@ -16,6 +16,7 @@ import numpy as np
 from shlight.nodes import Color, Value, Vector
 from shlight.nodes.values import Varying, color, number, vector
 
+from ..passes import PassWishes
 from ..report import Effect, ExportReport
 from .camera import View
 from .nodes import Origin, node_name, origin
@@ -31,6 +32,7 @@ class Surroundings:
     camera_view: View | None = None
     depsgraph: Any = None
     object_values: ObjectValues = field(default_factory=ObjectValues)
+    passes: PassWishes = field(default_factory=PassWishes)
     view_is_used: bool = field(default=False, init=False)
 
     @property

@@ -36,6 +36,7 @@ class Traits(TypedDict):
     diffuse: bool
     glossy: bool
     camera: bool
+    group: str | None
 
 
 class Lamp(NamedTuple):
@@ -86,6 +87,7 @@ def add_lamp(
         "diffuse": all(shown.visible_diffuse for shown in shown_by),
         "camera": all(shown.visible_camera for shown in shown_by),
         "glossy": all(shown.visible_glossy for shown in shown_by),
+        "group": surroundings.passes.light_part(lamp_object.name, lamp_object.lightgroup),
     }
     parts = [part._replace(emission=unit * part.emission) for part in glow.parts]
     return LAMP_TYPES[lamp.type](scene, Lamp(lamp, power, parts, to_world, place, traits), report)

@@ -14,6 +14,7 @@ from shlight.nodes.rays import Ray, color_on_ray
 
 from ..compat import MATERIALS, lets_light_through, uses_nodes
 from ..report import Effect, ExportReport
+from .aovs import with_aovs
 from .emission import VaryingEmission
 from .expressions import Surroundings
 from .nodes import RGB, origin
@@ -31,6 +32,8 @@ class Surface:
     shader: Shader = field(default_factory=Shader)
     emission: RGB = field(default_factory=lambda: np.zeros(3))
     varying: VaryingEmission | None = None
+    name: str = "default_surface"  # what Cryptomatte knows it by
+    pass_index: int = 0
 
     @property
     def attribute_names(self) -> list[str]:
@@ -55,6 +58,11 @@ def read_material(material: Any, report: ExportReport, surroundings: Surrounding
     """The surface of a material (None: the default); `report` receives whatever of it is not supported."""
     if material is None:
         return default_surface()
+    surface = _read(material, report, surroundings)
+    return replace(surface, name=material.name, pass_index=int(material.pass_index))
+
+
+def _read(material: Any, report: ExportReport, surroundings: Surroundings) -> Surface:
     if not uses_nodes(material):
         return Surface(nodes.lambert([max(c, 0.0) for c in material.diffuse_color[:3]]))
     place = f"Material '{material.name}'"
@@ -67,7 +75,7 @@ def read_material(material: Any, report: ExportReport, surroundings: Surrounding
         if socket is not None and origin(socket).node is not None:
             report.add(place, f"{name.lower()} is not supported; left out")
     reader = ShaderReader(material, place, report, surroundings, SHADERS)
-    shader = reader.shader(output.inputs["Surface"])
+    shader = with_aovs(reader.shader(output.inputs["Surface"]), reader, material.node_tree)
     if not lets_light_through(material):
         passes = shader.transparency * (1.0 - nodes.rays.shadow_ray())
         shader = replace(shader, transparency=nodes.values.color(passes))

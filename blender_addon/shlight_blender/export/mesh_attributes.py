@@ -14,6 +14,8 @@ from .mesh_shape import pointiness, random_per_island
 
 Array = NDArray[np.float32]
 
+# The UV map for rendering.
+UV = ""
 # Prefix of the tangents of a UV map: xyz and the sign of the bitangent, per corner.
 TANGENT = "tangent:"
 # Prefix of a colour attribute; without a name, the one for rendering.
@@ -42,7 +44,7 @@ COMPONENTS = {
 def mesh_attributes(mesh: Any, triangles: Triangles, names: Iterable[str]) -> dict[str, Array]:
     """Those of these names that the mesh has, per corner of its triangles (k, 3, c).
 
-    "" is the UV map for rendering; the prefixes above name what is made of a mesh.
+    UV is the UV map for rendering; the prefixes above name what is made of a mesh.
     """
     found = {}
     for name in names:

@@ -1,27 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes: evaluated objects as meshes of the core, one for all instances of the same mesh and materials."""
+"""The meshes of a scene, which follow those of a depsgraph: one for all instances of the same mesh and materials."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 import shlight
 
-from ..compat import mesh_triangles, slot_materials, smooth_corner_normals
+from ..compat import slot_materials
+from ..passes import SURFACES
 from ..report import Effect, ExportReport
 from .changes import Changes
 from .expressions import Surroundings
 from .materials import Surface, read_material
-from .mesh_attributes import COLOR, mesh_attributes
-from .textured_meshes import MeshArrays, with_even_emission
+from .mesh_arrays import complete, flattened, object_arrays
+from .mesh_attributes import UV
+from .textured_meshes import with_even_emission
 
-FloatArray = NDArray[np.float32]
 Matrix = NDArray[np.float64]
 
 # Of one material in one place, more emissive triangles than these are one light to the core.
@@ -30,11 +31,26 @@ MOST_SINGLE_FACES = 16
 MANY_EMITTERS = 200
 
 
+class Label(NamedTuple):
+    """What passes know an object by."""
+
+    name: str
+    asset: str
+    pass_index: int
+
+
+def _label(shown: Any) -> Label:
+    """An asset is all that hangs on one object without a parent."""
+    root = shown
+    while root.parent is not None:
+        root = root.parent
+    return Label(shown.name, root.name, int(shown.pass_index))
+
+
 @dataclass
 class KeptSurface:
     """A material as it was read."""
 
-    name: str
     surface: Surface
     report: ExportReport
 
@@ -50,10 +66,12 @@ class KeptMesh:
     surfaces: list[Surface]
     faces: NDArray[np.int64]  # how many of each surface
     is_cut: bool  # its emission varies: it is cut into pieces for its first place
+    group: str | None  # see PassWishes.light_part
     report: ExportReport
     transforms: list[Matrix] = field(default_factory=list)
     object_values: list[list[float]] = field(default_factory=list)
-    stands: tuple[Any, ...] | None = None  # both, as the scene has them
+    labels: list[Label] = field(default_factory=list)
+    stands: tuple[Any, ...] | None = None  # all three, as the scene has them
 
     def emits(self) -> bool:
         """True if something of it gives light."""
@@ -63,33 +81,6 @@ class KeptMesh:
         """How many lights it is to the core."""
         faces = [n for own, n in zip(self.surfaces, self.faces, strict=True) if own.emission.any()]
         return len(self.transforms) * sum(1 if n > MOST_SINGLE_FACES else int(n) for n in faces)
-
-
-def mesh_arrays(mesh: Any, attribute_names: Iterable[str]) -> MeshArrays | None:
-    """Triangles of an evaluated mesh with those of the attributes that it has, None if it has no triangles."""
-    triangles = mesh_triangles(mesh)
-    if not len(triangles.corners):
-        return None
-    vertices, corner_vertices = triangles.vertices, triangles.corner_vertices
-    corner_normals = smooth_corner_normals(mesh)
-    normals = None
-    if corner_normals is not None:
-        normals = _repaired(corner_normals[triangles.corners], vertices, corner_vertices)
-    attributes = mesh_attributes(mesh, triangles, attribute_names)
-    return MeshArrays(vertices, corner_vertices, normals, triangles.materials, attributes)
-
-
-def _repaired(normals: FloatArray, vertices: FloatArray, triangles: NDArray[np.int32]) -> FloatArray:
-    """Normals of length 1; where Blender has none (degenerate faces) the face's own, else +Z."""
-    good = np.einsum("ijk,ijk->ij", normals, normals)[:, :, None] > 1e-12
-    if good.all():
-        return normals
-    a, b, c = (vertices[triangles[:, i]] for i in range(3))
-    face = np.cross(b - a, c - a)
-    face_length = np.linalg.norm(face, axis=1, keepdims=True)
-    face = np.where(face_length > 0.0, face / np.where(face_length > 0.0, face_length, 1.0), (0.0, 0.0, 1.0))
-    repaired: FloatArray = np.where(good, normals, face[:, None, :]).astype(np.float32)
-    return repaired
 
 
 class SceneMeshes:
@@ -121,18 +112,20 @@ class SceneMeshes:
             self.report.add(place, "its transform is not finite; left out", Effect.THING)
             return
         materials = slot_materials(mesh_object)
-        key = (mesh_object.data.as_pointer(), *(material and material.as_pointer() for material in materials))
+        group = self._surroundings.passes.light_part(SURFACES, mesh_object.lightgroup)
+        key = (mesh_object.data.as_pointer(), group, *(material and material.as_pointer() for material in materials))
         flat = _is_flat(to_world)
         if flat:  # a mesh of its own, which stands where it is
             key = (*key, len(self._seen))
         surfaces = [self._surface(material) for material in materials or [None]]
         if key not in self._seen:
             self._seen[key] = self._kept_mesh(key, instance, to_world, surfaces) or self._convert(
-                instance, to_world, place, surfaces, flat
+                instance, to_world, place, surfaces, group, flat
             )
         use = self._seen[key]
         use.transforms.append(np.eye(4) if flat else to_world)
         use.object_values.append(self._surroundings.object_values.of(instance))
+        use.labels.append(_label(mesh_object))
 
     def _kept_mesh(
         self, key: tuple[Any, ...], instance: Any, to_world: Matrix, surfaces: list[Surface]
@@ -145,23 +138,31 @@ class SceneMeshes:
         if instance.object.name_full in shapes or (kept.owner in shapes if kept.owner else bool(shapes)):
             return None
         first_place = kept.transforms[0]
-        kept.transforms, kept.object_values = [], []
+        kept.transforms, kept.object_values, kept.labels = [], [], []
         if not self._changes.materials:
             return kept if not kept.is_cut or np.array_equal(first_place, to_world) else None
-        if kept.is_cut or _is_cut(surfaces) or not _attribute_names(surfaces) <= kept.attributes:
+        if kept.is_cut or _is_cut(surfaces) or not self._attributes(surfaces) <= kept.attributes:
             return None
         kept.surfaces = surfaces
         if kept.mesh is not None:
-            kept.mesh.set_bsdf([own.shader for own in surfaces], emission=_emission(kept))
+            kept.mesh.set_bsdf(**_materials(kept))
         return kept
 
-    def _convert(self, instance: Any, to_world: Matrix, place: str, surfaces: list[Surface], flat: bool) -> KeptMesh:
+    def _attributes(self, surfaces: Sequence[Surface]) -> frozenset[str]:
+        """What a mesh has to have for its materials and the passes."""
+        return _attribute_names(surfaces) | ({UV} if self._surroundings.passes.uvs else set())
+
+    def _convert(
+        self, instance: Any, to_world: Matrix, place: str, surfaces: list[Surface], group: str | None, flat: bool
+    ) -> KeptMesh:
         """The mesh of an instance, added to the scene where nothing shows it yet; flat: as it stands at to_world."""
         report = ExportReport()
-        names = _attribute_names(surfaces)
-        arrays = _arrays(instance.object, place, sorted(names), report)
+        attributes = self._attributes(surfaces)
+        arrays = object_arrays(instance.object, place, sorted(attributes), report)
+        if arrays is not None:
+            complete(arrays, instance.object, sorted(_attribute_names(surfaces)), report)
         if arrays is not None and flat:
-            arrays = _flattened(arrays, to_world)
+            arrays = flattened(arrays, to_world)
         is_cut = arrays is not None and _is_cut(surfaces)
         if arrays is not None and is_cut:
             values = self._surroundings.object_values.of(instance)
@@ -169,7 +170,7 @@ class SceneMeshes:
             arrays, surfaces = with_even_emission(arrays, surfaces, at, values, partial(report.add, place))
         owner = _owner(instance, self._surroundings.depsgraph)
         none = np.zeros(len(surfaces), dtype=np.int64)
-        made = KeptMesh(None, owner, place, names, surfaces, none, is_cut, report)
+        made = KeptMesh(None, owner, place, attributes, surfaces, none, is_cut, group, report)
         if arrays is not None:
             slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)
             made.faces = np.bincount(slots, minlength=len(surfaces))
@@ -177,11 +178,11 @@ class SceneMeshes:
                 arrays.vertices,
                 arrays.triangles,
                 normals=arrays.normals,
+                uvs={UV: arrays.attributes[UV]} if UV in arrays.attributes else None,
                 attributes=arrays.attributes,
-                bsdf=[own.shader for own in surfaces],
-                emission=_emission(made),
                 material_indices=slots,
                 transforms=np.empty((0, 4, 4)),
+                **_materials(made),
             )
         return made
 
@@ -191,7 +192,7 @@ class SceneMeshes:
         if key not in self._surfaces:
             report = ExportReport()
             surface = read_material(material, report, self._surroundings)
-            self._surfaces[key] = KeptSurface("" if material is None else material.name, surface, report)
+            self._surfaces[key] = KeptSurface(surface, report)
         if key not in self._told:
             self._told.add(key)
             self.report.extend(self._surfaces[key].report)
@@ -199,8 +200,17 @@ class SceneMeshes:
 
     def operations(self) -> dict[str, int]:
         """How many operations a hit takes, by the name of each material whose values vary."""
-        counts = {own.name: own.surface.shader.operation_count for own in self._surfaces.values()}
-        return {name: count for name, count in counts.items() if name and count > 0}
+        surfaces = [own.surface for own in self._surfaces.values()]
+        return {own.name: own.shader.operation_count for own in surfaces if own.shader.operation_count > 0}
+
+    def names(self) -> dict[str, set[str]]:
+        """Of all that is drawn: of objects, materials and assets."""
+        labels = [label for use in self._kept.values() for label in use.labels]
+        return {
+            "object": {label.name for label in labels},
+            "material": {own.surface.name for own in self._surfaces.values()},
+            "asset": {label.asset for label in labels},
+        }
 
     def finish(self, ask: Callable[[], None]) -> bool:
         """Ends the walk: the scene has all meshes that were seen where they stand, and no others; `ask` is called for
@@ -226,32 +236,16 @@ def _place(use: KeptMesh) -> None:
     most = max(len(values) for values in use.object_values)
     values = [[*own, *[0.0] * (most - len(own))] for own in use.object_values] if most else None
     transforms = np.array(use.transforms)
-    stands = (transforms.tobytes(), values)
+    stands = (transforms.tobytes(), values, use.labels)
     if use.mesh is not None and stands != use.stands:
-        use.mesh.set_transforms(transforms, object_values=values)
+        use.mesh.set_transforms(
+            transforms,
+            object_values=values,
+            object_names=[label.name for label in use.labels],
+            asset_names=[label.asset for label in use.labels],
+            object_indices=[label.pass_index for label in use.labels],
+        )
     use.stands = stands
-
-
-def _arrays(mesh_object: Any, place: str, names: Iterable[str], report: ExportReport) -> MeshArrays | None:
-    """The triangles of an object; None if it has none that can be drawn."""
-    mesh = mesh_object.to_mesh()
-    try:
-        arrays = mesh_arrays(mesh, names)
-        if arrays is None:
-            return None
-        missing = [name for name in names if name not in arrays.attributes]
-        _report_missing(mesh_object, missing, report)
-        # A missing colour is transparent black, other missing attributes have an alpha of 1.
-        black = np.zeros((len(arrays.triangles), 3, 4), dtype=np.float32)
-        arrays.attributes |= {name: black for name in missing if name.startswith(COLOR)}
-    finally:
-        mesh_object.to_mesh_clear()
-    if not np.isfinite(arrays.vertices).all():
-        report.add(place, "some of its vertices are not finite; left out", Effect.THING)
-        return None
-    if arrays.normals is not None and not np.isfinite(arrays.normals).all():
-        arrays.normals = None
-    return arrays
 
 
 def _attribute_names(surfaces: Sequence[Surface]) -> frozenset[str]:
@@ -262,9 +256,15 @@ def _is_cut(surfaces: Sequence[Surface]) -> bool:
     return any(surface.varying is not None for surface in surfaces)
 
 
-def _emission(use: KeptMesh) -> NDArray[Any] | None:
-    """What the faces of each surface give; None: nothing of it shines."""
-    return np.array([own.emission for own in use.surfaces]) if use.emits() else None
+def _materials(use: KeptMesh) -> dict[str, Any]:
+    """What of `shlight.Scene.add_mesh` is about materials."""
+    return {
+        "bsdf": [own.shader for own in use.surfaces],
+        "emission": np.array([own.emission for own in use.surfaces]) if use.emits() else None,
+        "group": use.group,
+        "material_names": [own.name for own in use.surfaces],
+        "material_pass_indices": [own.pass_index for own in use.surfaces],
+    }
 
 
 def _owner(instance: Any, depsgraph: Any) -> str | None:
@@ -277,22 +277,7 @@ def _owner(instance: Any, depsgraph: Any) -> str | None:
     return str(shown.name_full)
 
 
-def _report_missing(mesh_object: Any, names: Sequence[str], report: ExportReport) -> None:
-    for name in names:
-        what = f"attribute or UV map '{name}'" if name else "UV map"
-        text = f"it has no {what}, which its material reads; 0 is used, as in Cycles"
-        report.add(f"Object '{mesh_object.name}'", text, Effect.SLIGHT)
-
-
 def _is_flat(to_world: Matrix) -> bool:
     """True for a transform without inverse."""
     linear = to_world[:3, :3]
     return bool(abs(np.linalg.det(linear)) <= 1e-9 * np.linalg.norm(linear, axis=0).max() ** 3)
-
-
-def _flattened(arrays: MeshArrays, to_world: Matrix) -> MeshArrays | None:
-    """The mesh as it stands at `to_world`, without smooth normals; None if a line or a point is left of it."""
-    vertices = arrays.vertices @ to_world[:3, :3].T + to_world[:3, 3]
-    if np.linalg.matrix_rank(vertices - vertices[0]) < 2:
-        return None
-    return replace(arrays, vertices=vertices.astype(np.float32), normals=None)

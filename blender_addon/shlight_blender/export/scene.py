@@ -13,6 +13,7 @@ import numpy as np
 import shlight
 
 from ..frame import Frame, frame_of
+from ..passes import PassWishes, pass_wishes
 from ..report import Effect, ExportCancelled, ExportError, ExportReport
 from .bake import Baked, Waiting, bake_world
 from .camera import Eye, View, set_camera
@@ -54,6 +55,7 @@ class _State(NamedTuple):
     world: Any = None
     material_override: Any = None
     moving_frame: float = 0.0  # of pictures that change with the frame
+    passes: PassWishes = PassWishes()
     shown: tuple[int, ...] = ()  # the objects of all instances that are seen
 
     @staticmethod
@@ -66,6 +68,7 @@ class _State(NamedTuple):
             (world and world.as_pointer(), scene.render.film_transparent, scene.shlight.world_width),
             override and override.as_pointer(),
             scene.frame_current_final if moving else 0.0,
+            pass_wishes(scene, view_layer) if viewport is None else PassWishes(),
             tuple(own.object.as_pointer() for own in depsgraph.object_instances if _is_seen(own, viewport)),
         )
 
@@ -108,6 +111,11 @@ class ExportedScene:
         return self._surroundings.view_is_used
 
     @property
+    def names(self) -> dict[str, set[str]]:
+        """What Cryptomatte may know: of each of `passes.CRYPTOMATTES`."""
+        return self._meshes.names()
+
+    @property
     def texture_bytes(self) -> int:
         """Of all textures that are kept."""
         return TEXTURES.size_in_bytes
@@ -144,11 +152,11 @@ class ExportedScene:
         report_unsupported_settings(blender_scene, view_layer, self._new_report("settings"))
         if changes.world:
             self._is_lit["world"] = self._world.read(
-                blender_scene, view_layer, self._new_report("world"), bake or _waiting_bake(waiting)
+                blender_scene, view_layer, self._state.passes, self._new_report("world"), bake or _waiting_bake(waiting)
             )
         if changes.materials:
             TEXTURES.begin_export()
-            self._surroundings = Surroundings(self._view)
+            self._surroundings = Surroundings(self._view, passes=self._state.passes)
         self._surroundings.depsgraph = depsgraph
         if changes:
             self._walk(depsgraph, changes, viewport, _asking(waiting))
@@ -166,7 +174,7 @@ class ExportedScene:
     def _find_more(self, changes: Changes, state: _State) -> None:
         """Adds what Blender does not list."""
         old, self._state = self._state, state
-        moved = state.moving_frame != old.moving_frame
+        moved = state.moving_frame != old.moving_frame or state.passes != old.passes
         looks_elsewhere = self.is_of_one_camera and self._surroundings.camera_view != self._view
         changes.world |= moved or state.world != old.world
         changes.materials |= moved or looks_elsewhere or state.material_override != old.material_override

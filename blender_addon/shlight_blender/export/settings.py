@@ -6,10 +6,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ..compat import REC709, working_space
+from ..compat import DENOISING_LEFT_OUT, PASSES, REC709, working_space
+from ..passes import CRYPTOMATTES, stores_denoising_data
 from ..report import Effect, ExportReport
+from .nodes import all_nodes
 
-PASSES_WRITTEN = {"use_pass_combined"}
+PASSES_WRITTEN = {"use_pass_combined", *PASSES, *(f"use_pass_cryptomatte_{kind}" for kind in CRYPTOMATTES)}
 # Says how precise another pass is, and is no pass itself.
 PASS_OPTIONS = {"use_pass_cryptomatte_accurate"}
 
@@ -78,8 +80,9 @@ def preview_settings(scene: Any) -> RenderSettings:
         tolerance=0.01,
         noise_threshold=0.1,
         min_samples=1,
-        max_samples=4,
+        max_samples=16,
         pixel_samples=None,
+        time_limit=0.15,
         threads=0,  # Blender asks for one
     )
 
@@ -94,9 +97,12 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
         report.add(place, "Freestyle lines are not supported; left out")
     if working_space() != REC709:
         report.add(place, f"working space {working_space()} is not supported; skies and pictures stay Rec. 709")
+    tree = getattr(scene.world, "node_tree", None)
+    if tree is not None and any(node.type == "OUTPUT_AOV" for node in all_nodes(tree)):
+        report.add(f"World '{scene.world.name}'", "AOVs of worlds are not supported; left out", Effect.SLIGHT)
     passes = ", ".join(_passes_not_written(view_layer))
     if passes:
-        report.add(f"View layer '{view_layer.name}'", f"only the Combined pass is written; not {passes}", Effect.SLIGHT)
+        report.add(f"View layer '{view_layer.name}'", f"passes that are not supported: {passes}", Effect.SLIGHT)
     _report_layer_collections(view_layer.layer_collection, report)
 
 
@@ -108,8 +114,7 @@ def _passes_not_written(view_layer: Any) -> list[str]:
         if name.startswith("use_pass_") and getattr(owner, name)
     )
     passes = [flag.removeprefix("use_pass_") for flag in flags if flag not in PASSES_WRITTEN | PASS_OPTIONS]
-    passes += [f"AOV '{aov.name}'" for aov in view_layer.aovs]
-    return passes + [f"light group '{group.name}'" for group in view_layer.lightgroups]
+    return passes + list(DENOISING_LEFT_OUT if stores_denoising_data(view_layer) else ())
 
 
 def _report_layer_collections(layer_collection: Any, report: ExportReport) -> None:

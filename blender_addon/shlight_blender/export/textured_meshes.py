@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,25 +13,12 @@ from numpy.typing import NDArray
 from .emission import Input, VaryingEmission
 from .emission_pieces import MOST_PIECES, TOLERANCE, Colors, Pieces, cut, sampling_levels, share_colors
 from .materials import Surface
+from .mesh_arrays import MeshArrays
 from .mesh_attributes import attribute_component
 
 FloatArray = NDArray[np.float32]
 Array = NDArray[np.float64]
 Remark = Callable[[str], None]
-
-
-@dataclass
-class MeshArrays:
-    """A triangulated mesh in its own frame; normals (k, 3, 3) per corner, None where all faces are flat.
-
-    attributes: numbers per corner (k, 3, c) by name.
-    """
-
-    vertices: FloatArray
-    triangles: NDArray[np.int32]
-    normals: FloatArray | None
-    material_indices: NDArray[np.int32]
-    attributes: dict[str, FloatArray] = field(default_factory=dict)
 
 
 def with_even_emission(
@@ -41,6 +28,8 @@ def with_even_emission(
 
     to_world, object_values: of the instance where emission that depends on the place or the object is looked up.
     """
+    if arrays.normals is not None and arrays.normals.ndim == 2:
+        arrays = replace(arrays, normals=arrays.normals[arrays.triangles])
     slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)
     varying = [slot for slot in np.unique(slots) if surfaces[slot].varying is not None]
     made, parts = list(surfaces), [_chosen(arrays, ~np.isin(slots, varying), slots)]

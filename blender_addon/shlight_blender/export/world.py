@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 import shlight
 
 from ..compat import uses_nodes
+from ..passes import WORLD, PassWishes
 from ..report import Effect, ExportReport
 from .bake import Baked, BakeError, Sun
 from .nodes import ConstantReader, Origin, all_nodes, origin
@@ -42,8 +43,9 @@ class SceneWorld:
         self._scene = scene
         self._suns: list[Sun] = []
         self._visible = True
+        self._group: str | None = None
 
-    def read(self, blender_scene: Any, view_layer: Any, report: ExportReport, bake: Bake) -> bool:
+    def read(self, blender_scene: Any, view_layer: Any, passes: PassWishes, report: ExportReport, bake: Bake) -> bool:
         """Sets the environment to the scene's, unless the view layer has another; True if it gives light.
 
         bake: see `ExportedScene.update`.
@@ -53,14 +55,15 @@ class SceneWorld:
         self._visible = not blender_scene.render.film_transparent
         world = getattr(view_layer, "world_override", None) or blender_scene.world
         read = _black() if world is None else _read_world(world, blender_scene, report, bake)
-        self._scene.set_environment(read.radiance, to_world=read.to_world, visible=self._visible)
+        self._group = None if world is None else passes.light_part(WORLD, world.lightgroup)
+        self._scene.set_environment(read.radiance, to_world=read.to_world, visible=self._visible, group=self._group)
         self._suns = read.suns
         return bool(read.radiance.any() or read.suns)
 
     def add_suns(self) -> None:
         """Adds the discs of the world's sky to the scene's lights."""
         for sun in self._suns:
-            self._scene.add_sun_light(sun.direction, sun.angle, sun.irradiance, camera=self._visible)
+            self._scene.add_sun_light(sun.direction, sun.angle, sun.irradiance, camera=self._visible, group=self._group)
 
 
 def _black() -> World:

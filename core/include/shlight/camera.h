@@ -46,8 +46,14 @@ class Camera {
     /// Whether rays through different points of the aperture differ.
     bool has_depth_of_field() const { return aperture_.size > 0; }
     /// The ray through a point of the window, and through the point of the aperture that one of the unit square is
-    /// moved to; its direction is a unit vector. Empty outside a panorama's image.
-    Ray ray(double x, double y, const glm::dvec2& square = glm::dvec2(0.5)) const;
+    /// moved to, none: its middle; its direction is a unit vector. Empty outside a panorama's image.
+    Ray ray(double x, double y, const std::optional<glm::dvec2>& square = {}) const;
+    /// Along the view axis, from the camera's place to a point; of a panorama the distance.
+    double depth(const Vec3d& point) const;
+    /// From the camera's place to a point; of an orthographic camera |depth|.
+    double distance(const Vec3d& point) const;
+    /// A world direction in the camera's frame, whose axes count as if they had length 1.
+    Vec3d turned_to_frame(const Vec3d& direction) const;
 
   private:
     void check() const;

@@ -22,6 +22,7 @@ struct LightTraits {
     bool lights_diffuse = true;   ///< false: diffuse lobes do not reflect it
     bool lights_glossy = true;    ///< likewise, glossy ones
     bool seen_by_camera = false;  ///< it adds its radiance to what camera rays that meet it bring, and hides nothing
+    std::uint32_t group = 0;      ///< that its light is kept apart in where a render is asked for it; 0: none
 };
 
 /// A sphere, or a disk that always faces the shading point: caps of half angle asin(R/d) and atan(R/d).

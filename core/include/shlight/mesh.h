@@ -21,12 +21,21 @@ struct MeshAttribute {
     std::vector<float> values;  ///< `components` for each vertex, or for each triangle, or for each triangle's corner
 };
 
+/// What passes tell of an object or a material.
+struct Label {
+    float index = 0;
+    float name = 0, asset = 0;  ///< identities, see cryptomatte_id(); 0: none
+};
+
 /// A material as the renderer meets it.
 struct Material {
     Bsdf bsdf;
     Rgb emission{0};                              ///< radiance of both sides
     std::shared_ptr<const SurfaceShader> shader;  ///< takes the place of both; null: they are constant
     std::vector<std::uint32_t> attributes;        ///< as of MeshShader
+    std::uint32_t group = 0;                      ///< of what it emits, see LightTraits::group
+    std::vector<std::uint32_t> aovs;              ///< as of MeshShader
+    Label label;
 };
 
 /// A material whose numbers vary.
@@ -34,6 +43,8 @@ struct MeshShader {
     std::shared_ptr<const SurfaceShader> shader;  ///< null: the material's Bsdf and emission
     /// Which of the mesh's attributes the program's attribute of this index is; kNoAttribute: none.
     std::vector<std::uint32_t> attributes;
+    /// RenderPass::number of each of the program's AOVs.
+    std::vector<std::uint32_t> aovs;
 
     static constexpr std::uint32_t kNoAttribute = 0xFFFFFFFFU;
 };
@@ -45,6 +56,7 @@ struct MeshShape {
     /// Smooth normals of any length in the mesh's frame: one per vertex, or three per triangle, or none (flat).
     std::vector<Vec3f> vertex_normals, corner_normals;
     std::vector<MeshAttribute> attributes;
+    std::uint32_t uv = MeshShader::kNoAttribute;  ///< the attribute that is Pass::uv
     std::vector<std::uint32_t> material_indices;  ///< one per triangle, or none (all 0)
 
     std::uint32_t material_index(std::size_t triangle) const {
@@ -60,13 +72,22 @@ struct MeshUse {
     std::vector<MeshShader> shaders;
     std::vector<glm::dmat4> transforms = {glm::dmat4(1)};  ///< object to world, one per instance
     std::vector<std::vector<float>> object_values;         ///< one per instance, or none: see ShaderSource
+    std::uint32_t group = 0;                               ///< of what its faces emit, see LightTraits::group
+    std::vector<Label> object_labels;                      ///< one per instance, or none
+    std::vector<Label> material_labels;                    ///< one per material, or none
 
     std::size_t material_count() const { return std::max({bsdfs.size(), emission.size(), shaders.size()}); }
     const Bsdf& bsdf(std::size_t material) const { return bsdfs[bsdfs.size() == 1 ? 0 : material]; }
     const Rgb& emitted(std::size_t material) const { return emission[emission.size() == 1 ? 0 : material]; }
     Material material(std::size_t index) const {
         const MeshShader shader = shaders.empty() ? MeshShader() : shaders[index];
-        return {bsdf(index), emitted(index), shader.shader, shader.attributes};
+        return {bsdf(index),
+                emitted(index),
+                shader.shader,
+                shader.attributes,
+                group,
+                shader.aovs,
+                index < material_labels.size() ? material_labels[index] : Label()};
     }
 };
 

@@ -9,6 +9,7 @@
 
 #include "shlight/camera.h"
 #include "shlight/parallel.h"
+#include "shlight/render_passes.h"
 #include "shlight/render_report.h"
 #include "shlight/scene.h"
 #include "shlight/types.h"
@@ -64,6 +65,7 @@ struct RenderSettings {
     int threads = 0;  ///< 0: all cores
     /// Surfaces that a shadow ray passes through as far as they are transparent, at most; a camera ray passes one more.
     int transparent_bounces = 8;
+    PassSettings passes;
 };
 
 /// Is shown the picture as it stands, as render's image, and what it has taken so far; returns false to leave it so.
@@ -78,16 +80,19 @@ struct RenderWatch {
 /// Throws std::invalid_argument naming the member or argument: order outside 0 … 64, tolerance ≤ 0 or not finite,
 /// first_samples, min_samples or max_samples outside 1 … 2^20 or not in this order, noise_threshold outside 0 … 1,
 /// time_limit not finite, filter_width outside 0.001 … 100, shadow_rays outside 0 … 2^20, more than 2^22 of both in the
-/// first pass, transparent_bounces outside 0 … 1024, threads < 0, width or height < 1, or more than 2^28 pixels.
+/// first pass, transparent_bounces outside 0 … 1024, threads < 0, width or height < 1, or more than 2^28 pixels; and as
+/// PassLayout's constructor.
 void check_render(const RenderSettings& settings, int width, int height);
 
 /// image: height × width × RGBA, row 0 on top, linear, premultiplied, the mean of all camera rays of each pixel; alpha
 /// is the share of them that met a surface or, where the camera sees it, the environment, or went beside a panorama's
 /// image. The picture depends on
 /// nothing but scene, camera, size and settings; not on the number of threads, and on a time limit only by the number
-/// of passes. Throws as check_render does, also for an image of another size; RenderCancelled when watch.progress
-/// returns false; what the watch's functions throw.
+/// of passes. passes: pixels × PassLayout::stride() of settings.passes, rows as of the image; the image does not depend
+/// on them. Throws as check_render does, also for an image or passes of another size; RenderCancelled when
+/// watch.progress returns false; what the watch's functions throw.
 RenderReport render(const CompiledScene& scene, const Camera& camera, int width, int height,
-                    const RenderSettings& settings, std::span<float> image, const RenderWatch& watch = {});
+                    const RenderSettings& settings, std::span<float> image, const RenderWatch& watch = {},
+                    std::span<float> passes = {});
 
 }  // namespace shlight

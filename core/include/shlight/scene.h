@@ -52,16 +52,26 @@ class CompiledScene {
     /// How many have extent.
     std::size_t extended_light_count() const;
     const Environment& environment() const;
+    /// As LightTraits::group.
+    std::uint32_t environment_group() const;
+    /// Of all that gives light or may be seen shining, in their order.
+    std::span<const std::uint32_t> light_groups() const;
     /// What camera rays that meet no surface see; null: nothing, which is transparent.
     const Environment* background() const;
+    /// Whether the camera sees any lamp.
+    bool shows_lamps() const;
     /// What lamps that the camera sees add to a camera ray, up to a surface at this distance along it, if there is one.
-    Rgb lamps_along(const Ray& ray, const std::optional<double>& surface) const;
+    /// by_group: is added to what each LightTraits::group of them adds, unless it is empty.
+    Rgb lamps_along(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group = {}) const;
     const SceneRays& rays() const;
     /// Precondition: not hit.missed(); direction is the ray's.
     SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
     /// Where another ray meets the plane of a surface, which may be outside of its triangle; the ray is taken to be
     /// longer than the hit's by no more than that one's length. Precondition: as of surface().
     SurfacePlace neighbour(const SurfacePlace& place, const Vec3d& normal, double length, const Ray& ray) const;
+    /// Of Pass::uv, in whose last component is 1; 0 where the mesh has none.
+    Vec3d uv(const RayHit& hit) const;
+    const Label& object_label(const RayHit& hit) const;
     /// What a material's program reads. place: 0 at the hit, 1 and 2 at its neighbours.
     void read(const ShaderInput& input, const Material& material, int place, std::span<const ShadedPlace> places,
               std::span<float> out) const;
@@ -108,8 +118,8 @@ class Scene {
     void remove_lamps() { lamps_.clear(); }
 
     /// Takes the place of the environment before, at first a black one that the camera does not see.
-    /// visible: the camera sees it behind the scene.
-    void set_environment(Environment environment, bool visible = true);
+    /// visible: the camera sees it behind the scene; group: as LightTraits has.
+    void set_environment(Environment environment, bool visible = true, std::uint32_t group = 0);
 
     /// Builds with at most `threads` threads, 0: all cores; calls `progress` meanwhile, with 0, as run_watched does.
     /// Throws std::invalid_argument for threads < 0 and for surfaces in a scene of less than 1e-6 m, std::bad_alloc or
@@ -126,6 +136,7 @@ class Scene {
     std::vector<Light> lamps_;
     Environment environment_;
     bool environment_visible_ = false;
+    std::uint32_t environment_group_ = 0;
 };
 
 }  // namespace shlight

@@ -41,6 +41,7 @@ DeltaLights::DeltaLights(std::span<const Light* const> lights) : lights_(lights.
         array->resize(size);
     }
     casts_shadows_.resize(size);
+    group_.resize(size);
     is_even_.resize(size);
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const auto* point = std::get_if<PointSource>(lights[i]);
@@ -60,6 +61,7 @@ DeltaLights::DeltaLights(std::span<const Light* const> lights) : lights_(lights.
         lights_diffuse_[i] = traits.lights_diffuse ? 1 : 0;
         lights_glossy_[i] = traits.lights_glossy ? 1 : 0;
         casts_shadows_[i] = traits.casts_shadows ? 1 : 0;
+        group_[i] = traits.group;
         is_even_[i] = std::holds_alternative<EvenProfile>(traits.profile) ? 1 : 0;
         if (is_even_[i] == 0) {
             uneven_.push_back(i);

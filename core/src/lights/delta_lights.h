@@ -42,6 +42,8 @@ class DeltaLights {
     /// With what fills the last vector up, which shines nowhere.
     std::size_t padded_size() const { return x_.size(); }
     bool casts_shadows(std::size_t i) const { return casts_shadows_[i] != 0; }
+    /// See LightTraits.
+    std::uint32_t group(std::size_t i) const { return group_[i]; }
     Rgb strength(std::size_t i) const { return {r_[i], g_[i], b_[i]}; }
     ColorArrays strengths(std::size_t begin) const { return {&r_[begin], &g_[begin], &b_[begin]}; }
     /// The absolute values of these.
@@ -73,7 +75,8 @@ class DeltaLights {
     std::vector<float> r_, g_, b_, abs_r_, abs_g_, abs_b_;
     std::vector<float> lights_diffuse_, lights_glossy_;  // 1 or 0
     std::vector<std::uint8_t> casts_shadows_, is_even_;  // likewise
-    std::vector<std::size_t> uneven_;                    // sources that have a profile
+    std::vector<std::uint32_t> group_;
+    std::vector<std::size_t> uneven_;  // sources that have a profile
 };
 
 }  // namespace shlight

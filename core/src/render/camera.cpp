@@ -91,8 +91,8 @@ Window Camera::window(int width, int height) const {
     return {-half_width_, half_width_, -half_height, half_height};
 }
 
-Ray Camera::ray(double x, double y, const glm::dvec2& square) const {
-    const glm::dvec2 lens = has_depth_of_field() ? aperture_.point(square) : glm::dvec2(0);
+Ray Camera::ray(double x, double y, const std::optional<glm::dvec2>& square) const {
+    const glm::dvec2 lens = square && has_depth_of_field() ? aperture_.point(*square) : glm::dvec2(0);
     // From there to the point in focus, per unit of its distance.
     const glm::dvec2 turn = lens / aperture_.focus_distance;
     if (panorama_) {
@@ -120,6 +120,19 @@ Ray Camera::from_lens(const Vec3d& origin, const Vec3d& per_depth) const {
     const double start = std::min(clip_.start * length, 4 * kFarthest);
     return {Vec3f(transform_point(to_world_, origin)), static_cast<float>(start), Vec3f(direction / length),
             static_cast<float>(clip_.end * length)};
+}
+
+double Camera::depth(const Vec3d& point) const {
+    return panorama_ ? distance(point) : -glm::dot(point - Vec3d(to_world_[3]), glm::normalize(Vec3d(to_world_[2])));
+}
+
+double Camera::distance(const Vec3d& point) const {
+    return projection_ == Projection::perspective ? glm::length(point - Vec3d(to_world_[3])) : std::abs(depth(point));
+}
+
+Vec3d Camera::turned_to_frame(const Vec3d& direction) const {
+    const auto along = [&](int axis) { return glm::dot(direction, glm::normalize(Vec3d(to_world_[axis]))); };
+    return {along(0), along(1), along(2)};
 }
 
 }  // namespace shlight

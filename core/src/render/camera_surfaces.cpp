@@ -42,6 +42,8 @@ void CameraSurfaces::trace(std::span<const CameraRay> rays, std::span<const Neig
     surfaces_.clear();
     results_.clear();
     light.assign(rays.size(), {});
+    hits.apart.reset(rays.size() / rays_per_pixel);
+    const Sink sink = {light, hits.apart, rays_per_pixel};
     throughput_.assign(rays.size(), Rgb(1));
     active_.clear();
     segments_.clear();
@@ -55,29 +57,29 @@ void CameraSurfaces::trace(std::span<const CameraRay> rays, std::span<const Neig
     }
     for (std::uint32_t depth = 0; !active_.empty(); ++depth) {
         const std::size_t first = surfaces_.size();
-        meet(rays, depth, light);
+        meet(rays, depth, sink);
         run_programs(neighbours, first);
-        pass_on(rays, first, light);
+        pass_on(rays, first, sink);
     }
     add_hits(rays, rays_per_pixel, hits);
 }
 
 /// The next surface of each ray, or what lies behind all of them.
-void CameraSurfaces::meet(std::span<const CameraRay> rays, std::uint32_t depth, std::vector<RayLight>& light) {
+void CameraSurfaces::meet(std::span<const CameraRay> rays, std::uint32_t depth, const Sink& sink) {
     met_.resize(segments_.size());
     scene_->rays().intersect(segments_, met_);
     for (std::size_t i = 0; i < active_.size(); ++i) {
         const std::size_t index = active_[i];
         const CameraRay& ray = rays[index];
         if (met_[i].missed()) {
-            light[index].radiance += throughput_[index] * scene_->lamps_along(segments_[i], std::nullopt);
-            leave_scene(ray, index, light);
+            add_lamps(index, segments_[i], std::nullopt, sink);
+            leave_scene(ray, index, sink);
             continue;
         }
         const SurfacePoint point = scene_->surface(met_[i], ray.ray.direction);
         const Vec3d direction = glm::normalize(Vec3d(ray.ray.direction));
         const double distance = glm::dot(point.position - Vec3d(ray.ray.origin), direction);
-        light[index].radiance += throughput_[index] * scene_->lamps_along(segments_[i], distance);
+        add_lamps(index, segments_[i], distance, sink);
         surfaces_.push_back(
             {index, depth, met_[i], point, -direction, distance, distance - ray.ray.t_min, throughput_[index], 0, 0});
     }
@@ -95,13 +97,37 @@ ShadedPlace CameraSurfaces::place_of(const Surface& surface, const NeighbourRays
     return place;
 }
 
-void CameraSurfaces::leave_scene(const CameraRay& ray, std::size_t index, std::vector<RayLight>& light) {
+void CameraSurfaces::leave_scene(const CameraRay& ray, std::size_t index, const Sink& sink) {
     const Environment* background = scene_->background();
     const Rgb& left = throughput_[index];
+    const Vec3d direction = glm::normalize(Vec3d(ray.ray.direction));
     if (background != nullptr) {
-        light[index].radiance += left * background->radiance(glm::normalize(Vec3d(ray.ray.direction)));
+        add_light(index, LightKind::environment, scene_->environment_group(), left * background->radiance(direction),
+                  sink);
+    } else if (!sink.apart.empty()) {
+        sink.apart.of(index / sink.rays_per_pixel)[LightParts::of_kind(LightKind::environment)] +=
+            left * scene_->environment().radiance(direction);
     }
-    light[index].opacity = background != nullptr ? 1.0F : 1.0F - (left.x + left.y + left.z) / 3;
+    sink.light[index].opacity = background != nullptr ? 1.0F : 1.0F - (left.x + left.y + left.z) / 3;
+}
+
+void CameraSurfaces::add_lamps(std::size_t index, const Ray& segment, const std::optional<double>& surface,
+                               const Sink& sink) {
+    const bool apart = !sink.apart.empty() && scene_->shows_lamps();
+    by_group_.assign(apart ? sink.apart.parts().count - kLightKinds : 0, Rgb(0));
+    sink.light[index].radiance += throughput_[index] * scene_->lamps_along(segment, surface, by_group_);
+    for (std::size_t group = 0; group < by_group_.size(); ++group) {
+        sink.apart.add(index / sink.rays_per_pixel, LightKind::emission, static_cast<std::uint32_t>(group),
+                       throughput_[index] * by_group_[group]);
+    }
+}
+
+void CameraSurfaces::add_light(std::size_t index, LightKind kind, std::uint32_t group, const Rgb& radiance,
+                               const Sink& sink) {
+    sink.light[index].radiance += radiance;
+    if (!sink.apart.empty() && radiance != Rgb(0)) {  // groups without light have no part
+        sink.apart.add(index / sink.rays_per_pixel, kind, group, radiance);
+    }
 }
 
 void CameraSurfaces::run_programs(std::span<const NeighbourRays> neighbours, std::size_t first) {
@@ -141,7 +167,7 @@ void CameraSurfaces::run_program(std::span<const NeighbourRays> neighbours, std:
 }
 
 Vec3d CameraSurfaces::vector(const Surface& surface, std::uint32_t result) const {
-    const auto at = [&](std::uint32_t i) { return double{results_[surface.results + (result + i) * surface.stride]}; };
+    const auto at = [&](std::uint32_t i) { return double{this->result(surface, result + i)}; };
     return {at(0), at(1), at(2)};
 }
 
@@ -152,29 +178,29 @@ Rgb CameraSurfaces::color(const Surface& surface, std::uint32_t result) const {
 }
 
 float CameraSurfaces::width(const Surface& surface, std::uint32_t result) const {
-    const float alpha = results_[surface.results + result * surface.stride];
+    const float alpha = this->result(surface, result);
     // A NaN is the least too.
     return std::min(alpha > kLeastWidth ? alpha : kLeastWidth, 1.0F);
 }
 
 /// Emission of the surfaces met last, and what is left of the rays behind them.
-void CameraSurfaces::pass_on(std::span<const CameraRay> rays, std::size_t first, std::vector<RayLight>& light) {
+void CameraSurfaces::pass_on(std::span<const CameraRay> rays, std::size_t first, const Sink& sink) {
     active_.clear();
     segments_.clear();
     for (std::size_t i = first; i < surfaces_.size(); ++i) {
         const Surface& surface = surfaces_[i];
         const Material& material = scene_->materials()[surface.point.material];
-        RayLight& own = light[surface.ray];
-        own.opacity = 1;
+        sink.light[surface.ray].opacity = 1;
         if (material.shader == nullptr) {
-            own.radiance += surface.throughput * material.emission;
+            add_light(surface.ray, LightKind::emission, material.group, surface.throughput * material.emission, sink);
             continue;
         }
         if (material.shader->emission) {
-            own.radiance += surface.throughput * color(surface, *material.shader->emission);
+            add_light(surface.ray, LightKind::emission, material.group,
+                      surface.throughput * color(surface, *material.shader->emission), sink);
         }
         if (material.shader->transparency) {
-            throughput_[surface.ray] *= glm::max(color(surface, *material.shader->transparency), Rgb(0));
+            throughput_[surface.ray] *= transparency(surface);
             if (surface.depth <= transparent_bounces_ && throughput_[surface.ray] != Rgb(0)) {
                 active_.push_back(surface.ray);
                 segments_.push_back(behind(rays[surface.ray].ray, surface.hit));
@@ -200,24 +226,45 @@ void CameraSurfaces::add_hits(std::span<const CameraRay> rays, std::size_t rays_
     }
 }
 
-void CameraSurfaces::find_normals(const Surface& surface, const SurfaceShader& shader) {
-    normals_.clear();
-    for (const ShadedLobe& lobe : shader.lobes) {
-        Vec3d normal = surface.point.shading_normal;
-        if (lobe.normal) {
-            const Vec3d own = vector(surface, *lobe.normal);
-            const double length = glm::length(own);
-            const bool differs =
-                length > 0 && std::isfinite(length) && glm::distance(own / length, normal) > kSameNormal;
-            normal = differs ? own / length : normal;
+Vec3d CameraSurfaces::normal(const Surface& surface, const ShadedLobe& lobe) const {
+    const Vec3d& smooth = surface.point.shading_normal;
+    if (!lobe.normal) {
+        return smooth;
+    }
+    const Vec3d own = vector(surface, *lobe.normal);
+    const double length = glm::length(own);
+    const bool differs = length > 0 && std::isfinite(length) && glm::distance(own / length, smooth) > kSameNormal;
+    return differs ? own / length : smooth;
+}
+
+Rgb CameraSurfaces::transparency(const Surface& surface) const {
+    const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get();
+    const bool passes = shader != nullptr && shader->transparency;
+    return passes ? glm::max(color(surface, *shader->transparency), Rgb(0)) : Rgb(0);
+}
+
+void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const {
+    lobes.clear();
+    if (const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get()) {
+        for (const ShadedLobe& lobe : shader->lobes) {
+            const LobeShape shape =
+                lobe.alpha ? with_width(lobe.shape, double{width(surface, *lobe.alpha)}) : lobe.shape;
+            lobes.push_back({shape, normal(surface, lobe), color(surface, lobe.weight), lobe.several_bounces});
         }
-        normals_.push_back(normal);
+        return;
+    }
+    const auto cosine = static_cast<float>(glm::dot(surface.point.shading_normal, surface.towards_viewer));
+    for (const Lobe& lobe : materials_[surface.point.material].lobes()) {
+        lobes.push_back({lobe.shape, surface.point.shading_normal, lobe.scale(cosine)});
     }
 }
 
 /// One hit for each normal that lobes have, and another for the lobes of bumps, whose view is the smooth normal.
 void CameraSurfaces::add_shaded(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader, Hits& hits) {
-    find_normals(surface, shader);
+    normals_.clear();
+    for (const ShadedLobe& lobe : shader.lobes) {
+        normals_.push_back(normal(surface, lobe));
+    }
     const std::size_t count = shader.lobes.size();
     for (std::size_t first = 0; first < count; ++first) {
         const auto shares = [&](std::size_t i) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,14 @@ struct RayLight {
     float opacity = 0;
 };
 
+/// A lobe as a camera ray meets it.
+struct SurfaceLobe {
+    LobeShape shape;
+    Vec3d normal;                  ///< unit
+    Rgb weight;                    ///< colour, as of a surface that nothing stands before
+    bool several_bounces = false;  ///< see ShadedLobe
+};
+
 /// Keeps its memory from batch to batch; one per thread.
 class CameraSurfaces {
   public:
@@ -46,32 +55,52 @@ class CameraSurfaces {
     void trace(std::span<const CameraRay> rays, std::span<const NeighbourRays> neighbours, std::size_t rays_per_pixel,
                Hits& hits, std::vector<RayLight>& light);
 
-  private:
     /// A surface that a camera ray has met.
     struct Surface {
         std::size_t ray;
-        std::uint32_t depth;  // surfaces that the ray has passed through
+        std::uint32_t depth;  ///< surfaces that the ray has passed through
         RayHit hit;
         SurfacePoint point;
         Vec3d towards_viewer;
-        double distance;      // from the ray's origin
-        double ray_length;    // from its beginning
-        Rgb throughput;       // share of its light that reaches the camera
-        std::size_t results;  // of its program: where the first is
-        std::size_t stride;   // and from result to result
+        double distance;      ///< from the ray's origin
+        double ray_length;    ///< from its beginning
+        Rgb throughput;       ///< share of its light that reaches the camera
+        std::size_t results;  ///< of its program: where the first is
+        std::size_t stride;   ///< and from result to result
     };
 
-    void meet(std::span<const CameraRay> rays, std::uint32_t depth, std::vector<RayLight>& light);
-    void leave_scene(const CameraRay& ray, std::size_t index, std::vector<RayLight>& light);
+    // Of the last call:
+    /// Of any one ray, the nearest first.
+    std::span<const Surface> surfaces() const { return surfaces_; }
+    void find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const;
+    /// The share of light that goes on straight through, not negative.
+    Rgb transparency(const Surface& surface) const;
+    /// A result of its program.
+    float result(const Surface& surface, std::uint32_t number) const {
+        return results_[surface.results + number * surface.stride];
+    }
+
+  private:
+    /// Where the light of the rays of a call goes.
+    struct Sink {
+        std::vector<RayLight>& light;  // of each ray
+        KeptApart& apart;
+        std::size_t rays_per_pixel;
+    };
+    void meet(std::span<const CameraRay> rays, std::uint32_t depth, const Sink& sink);
+    void leave_scene(const CameraRay& ray, std::size_t index, const Sink& sink);
+    void add_lamps(std::size_t index, const Ray& segment, const std::optional<double>& surface, const Sink& sink);
+    static void add_light(std::size_t index, LightKind kind, std::uint32_t group, const Rgb& radiance,
+                          const Sink& sink);
     void run_programs(std::span<const NeighbourRays> neighbours, std::size_t first);
     void run_program(std::span<const NeighbourRays> neighbours, std::span<const std::uint32_t> surfaces);
     /// neighbours: null where the program takes no differences.
     ShadedPlace place_of(const Surface& surface, const NeighbourRays* neighbours) const;
-    void pass_on(std::span<const CameraRay> rays, std::size_t first, std::vector<RayLight>& light);
+    void pass_on(std::span<const CameraRay> rays, std::size_t first, const Sink& sink);
     void add_hits(std::span<const CameraRay> rays, std::size_t rays_per_pixel, Hits& hits);
     void add_hit(const CameraRay& ray, const Surface& surface, Hits& hits);
-    /// Unit normals of the lobes.
-    void find_normals(const Surface& surface, const SurfaceShader& shader);
+    /// Unit.
+    Vec3d normal(const Surface& surface, const ShadedLobe& lobe) const;
     void add_shaded(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader, Hits& hits);
     /// Those of the lobes from `first` on that share its normal.
     template <class Shares>
@@ -88,6 +117,7 @@ class CameraSurfaces {
     std::vector<std::size_t> active_;  // rays that go on
     std::vector<Ray> segments_;        // what is left of them
     std::vector<Rgb> throughput_;      // of each ray
+    std::vector<Rgb> by_group_;        // of lamps along a ray
     std::vector<RayHit> met_;
     std::vector<Surface> surfaces_;
     std::vector<std::uint32_t> order_;

@@ -109,14 +109,19 @@ CameraVisibleLamps::CameraVisibleLamps(std::span<const Light> lights) {
     }
 }
 
-Rgb CameraVisibleLamps::radiance(const Ray& ray, const std::optional<double>& surface) const {
+Rgb CameraVisibleLamps::radiance(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group) const {
     const Vec3d direction = glm::normalize(Vec3d(ray.direction));
     const double end = std::min<double>(ray.t_max, surface.value_or(ray.t_max));
     const View view = {Vec3d(ray.origin) + double{ray.t_min} * direction, direction, end - ray.t_min, !surface};
     Rgb sum(0);
     for (const Light* lamp : lamps_) {
         if (std::visit([&](const auto& light) { return meets(light, view); }, *lamp)) {
-            sum += strength_of(*lamp) * static_cast<float>(profile_factor(traits_of(*lamp).profile, -direction));
+            const Rgb own =
+                strength_of(*lamp) * static_cast<float>(profile_factor(traits_of(*lamp).profile, -direction));
+            sum += own;
+            if (!by_group.empty()) {
+                by_group[traits_of(*lamp).group] += own;
+            }
         }
     }
     return sum;

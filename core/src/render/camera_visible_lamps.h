@@ -23,7 +23,8 @@ class CameraVisibleLamps {
     bool empty() const { return lamps_.empty(); }
     /// What they add to the radiance that comes back along a ray from its start to a surface at distance `surface`;
     /// nothing there: to t_max, and to suns behind it. They hide neither each other nor what is behind them.
-    Rgb radiance(const Ray& ray, const std::optional<double>& surface) const;
+    /// by_group: is added to what each group of lamps adds, unless it is empty.
+    Rgb radiance(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group) const;
 
   private:
     std::vector<const Light*> lamps_;

@@ -12,7 +12,7 @@
 namespace shlight {
 namespace {
 
-constexpr Vec3d kNowhere(0);
+constexpr Vec3d kOutside(0);
 
 /// At an angle to the axis, on the side that a point of the picture lies on.
 Vec3d fisheye(double angle, const glm::dvec2& from_middle) {
@@ -39,13 +39,13 @@ Vec3d direction_of(const CentralCylindrical& panorama, const glm::dvec2& uv) {
 Vec3d direction_of(const FisheyeEquidistant& panorama, const glm::dvec2& uv) {
     const glm::dvec2 from_middle = 2.0 * uv - 1.0;
     const double radius = glm::length(from_middle);
-    return radius > 1 ? kNowhere : fisheye(radius * panorama.fov / 2, from_middle);
+    return radius > 1 ? kOutside : fisheye(radius * panorama.fov / 2, from_middle);
 }
 
 Vec3d direction_of(const FisheyeEquisolid& panorama, const glm::dvec2& uv) {
     const glm::dvec2 from_middle = on_sensor(uv, panorama.sensor);
     const double sine = glm::length(from_middle) / (2 * panorama.lens);
-    return sine > std::sin(panorama.fov / 4) ? kNowhere : fisheye(2 * std::asin(std::min(sine, 1.0)), from_middle);
+    return sine > std::sin(panorama.fov / 4) ? kOutside : fisheye(2 * std::asin(std::min(sine, 1.0)), from_middle);
 }
 
 Vec3d direction_of(const FisheyeLensPolynomial& panorama, const glm::dvec2& uv) {
@@ -54,14 +54,14 @@ Vec3d direction_of(const FisheyeLensPolynomial& panorama, const glm::dvec2& uv) 
     for (std::size_t i = panorama.coefficients.size(); i-- > 0;) {
         angle = angle * glm::length(from_middle) - panorama.coefficients[i];
     }
-    return std::abs(angle) > panorama.fov / 2 ? kNowhere : fisheye(angle, from_middle);
+    return std::abs(angle) > panorama.fov / 2 ? kOutside : fisheye(angle, from_middle);
 }
 
 Vec3d direction_of(const MirrorBall&, const glm::dvec2& uv) {
     const glm::dvec2 on_ball = 2.0 * uv - 1.0;
     const double across = glm::dot(on_ball, on_ball);
     const double towards = std::sqrt(std::max(1 - across, 0.0));
-    return across > 1 ? kNowhere : Vec3d(2 * towards * on_ball, 1 - 2 * towards * towards);
+    return across > 1 ? kOutside : Vec3d(2 * towards * on_ball, 1 - 2 * towards * towards);
 }
 
 Vec3d direction_of(const EquiangularCubemapFace&, const glm::dvec2& uv) {

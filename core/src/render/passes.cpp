@@ -15,6 +15,8 @@ namespace {
 constexpr int kMostRounds = 256;
 /// The first pixels are those of a grid of this step.
 constexpr int kWidestGrid = 16;
+/// Rays through middles of pixels that are traced together.
+constexpr std::size_t kMiddlesAtOnce = 1024;
 constexpr double kLeastBetweenGrids = 0.05;  // seconds
 constexpr double kSoon = 0.2;                // likewise
 constexpr double kMostUnfinished = 0.999;    // share of the work
@@ -36,6 +38,7 @@ void add(RenderReport& sum, const RenderReport& part) {
 }  // namespace
 
 void Passes::run() {
+    write_middles();
     bool goes_on = first_pass();
     for (int round = 0; goes_on && round < kMostRounds; ++round) {
         const auto groups = most_urgent(refinement_.next_round(image_, picture_->settings.threads, waiting()));
@@ -50,9 +53,27 @@ void Passes::run() {
         }
         shown_.passes += goes_on ? 1 : 0;
     }
+    pass_image_.finish(picture_->settings.threads);
     if (watch_->progress && !watch_->progress(1.0)) {
         throw RenderCancelled();
     }
+}
+
+void Passes::write_middles() {
+    const auto columns = static_cast<std::size_t>(picture_->width);
+    const std::size_t count = (columns + kMiddlesAtOnce - 1) / kMiddlesAtOnce;
+    const auto write = [&](std::size_t task) {
+        const std::size_t first = task % count * kMiddlesAtOnce;
+        std::vector<Pixel> pixels;
+        for (std::size_t column = first; column < std::min(first + kMiddlesAtOnce, columns); ++column) {
+            pixels.push_back({static_cast<int>(column), static_cast<int>(task / count)});
+        }
+        batches_.local().write_middles(pixels, pass_image_.pixels(task / count * columns + first, pixels.size()));
+    };
+    const bool any = std::any_of(picture_->layout.places().begin(), picture_->layout.places().end(),
+                                 [](const PassLayout::Place& place) { return is_of_middle(place.pass.kind); });
+    parallel_for(any ? count * static_cast<std::size_t>(picture_->height) : 0, picture_->settings.threads, write,
+                 waiting());
 }
 
 /// All pixels; if somebody watches and it takes a while, those of wide grids come first, and what lies between is shown
@@ -181,17 +202,25 @@ void Passes::render(std::span<const Pixel> pixels, int from, int to, bool calm) 
     const std::uint32_t most = std::max<std::uint32_t>(
         refinement_.samples(0), std::min<std::uint32_t>(batch_samples_, kMostRaysPerPixel / std::max(shadow_rays, 1U)));
     std::vector<PixelSums> sums(pixels.size());
+    std::vector<double> pass_sums(pixels.size() * pass_image_.stride());
     std::uint32_t first_point = points_before(to);
     for (std::uint32_t first = refinement_.kept_samples(from); first < refinement_.samples(to);) {
         const std::uint32_t count = std::min(most, refinement_.samples(to) - first);
         const std::uint32_t number = to == 0 ? first : first + picture_->previews;
-        batches_.local().add(pixels, {number, count, shadow_rays, first_point, calm}, sums);
+        batches_.local().add(pixels, {number, count, shadow_rays, first_point, calm}, sums, pass_sums);
         first_point += count * shadow_rays;
         first += count;
     }
     const std::shared_lock lock(merging_);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         refinement_.merge(pixels[i], to, sums[i], image_);
+        if (!pass_image_.empty()) {
+            const std::size_t index =
+                static_cast<std::size_t>(pixels[i].row) * static_cast<std::size_t>(picture_->width) +
+                static_cast<std::size_t>(pixels[i].column);
+            pass_image_.merge(index, refinement_.kept_samples(from), refinement_.samples(to),
+                              std::span(pass_sums).subspan(i * pass_image_.stride(), pass_image_.stride()));
+        }
     }
 }
 

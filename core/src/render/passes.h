@@ -14,6 +14,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include "render/pass_image.h"
 #include "render/pixel_batch.h"
 #include "render/pixel_order.h"
 #include "render/refinement.h"
@@ -30,9 +31,12 @@ inline constexpr std::int64_t kMostRaysPerPixel = 1 << 22;
 /// One render: the first pass over all pixels, and passes over fewer of them.
 class Passes {
   public:
-    Passes(const Picture& picture, Refinement refinement, std::span<float> image, const RenderWatch& watch)
+    /// passes: see render().
+    Passes(const Picture& picture, Refinement refinement, std::span<float> image, std::span<float> passes,
+           const RenderWatch& watch)
         : picture_(&picture),
           image_(image),
+          pass_image_(picture.layout, passes),
           watch_(&watch),
           batch_samples_(picture.batch_samples()),
           refinement_(std::move(refinement)),
@@ -50,6 +54,8 @@ class Passes {
         std::function<void(std::size_t)> task;
     };
 
+    /// Passes of the rays through pixels' middles.
+    void write_middles();
     bool first_pass();
     Pass pass_of(const Grid& grid);
     Pass pass_of(const RefinementGroup& group);
@@ -69,6 +75,7 @@ class Passes {
 
     const Picture* picture_;
     std::span<float> image_;
+    PassImage pass_image_;
     const RenderWatch* watch_;
     std::uint32_t batch_samples_;
     Clock::time_point start_ = Clock::now();

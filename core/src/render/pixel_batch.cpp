@@ -2,6 +2,7 @@
 #include "render/pixel_batch.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -46,6 +47,59 @@ class StageClock {
     std::chrono::steady_clock::time_point since_;
 };
 
+/// The kind of each pass that is one.
+constexpr std::array<std::pair<Pass, LightKind>, kLightKinds> kKindPasses = {
+    std::pair(Pass::diffuse_direct, LightKind::diffuse), std::pair(Pass::glossy_direct, LightKind::glossy),
+    std::pair(Pass::emission, LightKind::emission), std::pair(Pass::environment, LightKind::environment)};
+
+bool needs_parts(const PassLayout& layout) {
+    return std::any_of(layout.places().begin(), layout.places().end(), [](const PassLayout::Place& place) {
+        const Pass kind = place.pass.kind;
+        return kind == Pass::light_group || kind == Pass::denoising_albedo ||
+               std::any_of(kKindPasses.begin(), kKindPasses.end(), [&](const auto& own) { return own.first == kind; });
+    });
+}
+
+/// Light that the picture's passes keep apart.
+LightParts parts_of(const Picture& picture) {
+    LightParts parts;
+    if (!needs_parts(picture.layout)) {
+        return parts;
+    }
+    const std::span<const std::uint32_t> groups = picture.scene->light_groups();
+    parts.count = LightParts::of_group(groups.empty() ? 0 : groups.back()) + 1;
+    parts.lobe_stride = picture.lobe_stride;
+    for (const MaterialLobes& material : picture.materials) {
+        for (std::size_t lobe = 0; lobe < picture.lobe_stride; ++lobe) {
+            const bool glossy = lobe < material.lobes().size() && is_glossy(material.lobes()[lobe].shape);
+            parts.of_lobe.push_back(glossy ? LightKind::glossy : LightKind::diffuse);
+        }
+    }
+    return parts;
+}
+
+/// Where the parts that are passes go.
+std::vector<PartPlace> part_places(const Picture& picture) {
+    std::vector<PartPlace> places;
+    for (const auto& [pass, kind] : kKindPasses) {
+        if (const PassLayout::Place* place = picture.layout.find(pass)) {
+            places.push_back({place->first, LightParts::of_kind(kind)});
+        }
+    }
+    if (const PassLayout::Place* place = picture.layout.find(Pass::denoising_albedo)) {
+        for (const LightKind kind : {LightKind::emission, LightKind::environment}) {
+            places.push_back({place->first, LightParts::of_kind(kind)});
+        }
+    }
+    for (const PassLayout::Place& place : picture.layout.places()) {
+        const std::size_t part = LightParts::of_group(place.pass.number);
+        if (place.pass.kind == Pass::light_group && part < picture.parts.count) {
+            places.push_back({place.first, part});
+        }
+    }
+    return places;
+}
+
 }  // namespace
 
 Vec3d PixelSums::variance() const {
@@ -80,6 +134,7 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
     : scene(&s),
       camera(&c),
       settings(r),
+      layout(r.passes),
       width(w),
       height(h),
       window(c.window(w, h)),
@@ -100,6 +155,7 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
             takes_differences || (material.shader != nullptr && material.shader->program.takes_differences());
         lobe_stride = std::max(lobe_stride, materials.back().lobes().size());
     }
+    parts = parts_of(*this);
     end_if(stopped);
     far = FarLights(s.lights(), materials, r.order);
     if (!s.environment().is_black()) {
@@ -115,23 +171,42 @@ std::uint32_t Picture::batch_samples() const {
 PixelBatch::PixelBatch(const Picture& picture)
     : picture_(&picture),
       surfaces_(*picture.scene, picture.materials, static_cast<std::uint32_t>(picture.settings.transparent_bounces)),
-      hits_(picture.lobe_stride),
+      surface_passes_(*picture.scene, *picture.camera, picture.settings.passes, picture.layout),
+      hits_(picture.lobe_stride, picture.parts),
       far_light_sum_(picture.far, picture.materials, picture.settings.tolerance),
       tracer_(picture.scene->rays(), static_cast<std::uint32_t>(picture.settings.transparent_bounces)),
       shadowed_far_lights_(tracer_, picture.materials, picture.scene->lights()),
       shadowed_deltas_(tracer_, picture.materials, picture.lobe_stride),
       unshadowed_(picture.lobe_stride),
-      shadowed_(tracer_, picture.materials, picture.lobe_stride),
-      shadowed_environment_(tracer_, picture.scene->environment(), picture.materials) {}
+      shadowed_(tracer_, picture.materials, picture.lobe_stride, picture.parts),
+      shadowed_environment_(tracer_, picture.scene->environment(), picture.materials),
+      part_places_(part_places(picture)) {}
 
-void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums) {
+void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums,
+                     std::span<double> pass_sums) {
     StageClock clock(report_);
     trace_camera_rays(pixels, samples);
+    if (surface_passes_.any_mean()) {
+        surface_passes_.add(surfaces_, rays_.size(), samples.count, pass_sums);
+    }
     clock.end(RenderStage::camera_rays);
     add_reflected(pixels, samples);
     StageClock last(report_);
     add_up(samples, sums);
+    if (!picture_->parts.empty()) {
+        add_up_parts(pass_sums);
+    }
     last.end(RenderStage::pixels);
+}
+
+void PixelBatch::write_middles(std::span<const Pixel> pixels, std::span<float> values) {
+    rays_.clear();
+    neighbours_.clear();
+    for (const Pixel& pixel : pixels) {
+        add_ray({pixel.column + 0.5, pixel.row + 0.5}, {}, 0, 1);
+    }
+    surfaces_.trace(rays_, neighbours_, 1, hits_, ray_light_);
+    surface_passes_.write_middles(surfaces_, rays_.size(), values);
 }
 
 double PixelBatch::reflected(std::span<const Pixel> pixels, std::uint32_t shadow_rays) {
@@ -165,16 +240,16 @@ RenderReport PixelBatch::report() const {
     return report;
 }
 
-Ray PixelBatch::camera_ray(double column, double row, const glm::dvec2& lens) const {
+Ray PixelBatch::camera_ray(double column, double row, const LensPoint& lens) const {
     const Window& window = picture_->window;
     return picture_->camera->ray(window.left + column / picture_->width * (window.right - window.left),
                                  window.top + row / picture_->height * (window.bottom - window.top), lens);
 }
 
 /// The pixel's point and this are one of four dimensions. A preview's is the one before the first, the sequence's last.
-glm::dvec2 PixelBatch::lens_point(std::uint32_t sample, std::uint32_t pixel_seed) const {
-    return picture_->camera->has_depth_of_field() ? sobol_beyond(sample - picture_->previews, pixel_seed)
-                                                  : glm::dvec2(0.5);
+PixelBatch::LensPoint PixelBatch::lens_point(std::uint32_t sample, std::uint32_t pixel_seed) const {
+    return picture_->camera->has_depth_of_field() ? LensPoint(sobol_beyond(sample - picture_->previews, pixel_seed))
+                                                  : std::nullopt;
 }
 
 void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples) {
@@ -186,20 +261,22 @@ void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRa
     const double step = 1 / std::sqrt(before + samples.count);
     for (std::size_t p = 0; p < pixels.size(); ++p) {
         for (std::uint32_t i = samples.first; i < samples.first + samples.count; ++i) {
-            const double column = pixels[p].column + 0.5 + picture_->filter_places[i].x;
-            const double row = pixels[p].row + 0.5 + picture_->filter_places[i].y;
-            const glm::dvec2 lens = lens_point(i, pixel_seeds_[p]);
-            const Ray ray = camera_ray(column, row, lens);
-            rays_.push_back({ray, i});
-            if (picture_->takes_differences) {
-                const Ray right = camera_ray(column + step, row, lens);
-                const Ray below = camera_ray(column, row + step, lens);
-                neighbours_.push_back({right.empty() ? ray : right, below.empty() ? ray : below});
-            }
+            const glm::dvec2 middle(pixels[p].column + 0.5, pixels[p].row + 0.5);
+            add_ray(middle + picture_->filter_places[i], lens_point(i, pixel_seeds_[p]), i, step);
         }
     }
     surfaces_.trace(rays_, neighbours_, samples.count, hits_, ray_light_);
     report_.hits += hits_.size();
+}
+
+void PixelBatch::add_ray(const glm::dvec2& place, const LensPoint& lens, std::uint32_t sample, double step) {
+    const Ray ray = camera_ray(place.x, place.y, lens);
+    rays_.push_back({ray, sample});
+    if (picture_->takes_differences) {
+        const Ray right = camera_ray(place.x + step, place.y, lens);
+        const Ray below = camera_ray(place.x, place.y + step, lens);
+        neighbours_.push_back({right.empty() ? ray : right, below.empty() ? ray : below});
+    }
 }
 
 void PixelBatch::sort_lights() {
@@ -269,8 +346,8 @@ void PixelBatch::add_environment(std::span<const Pixel> pixels, const SampleRang
     picture_->environment->shade(points_, environment_, report_);
     clock.end(RenderStage::light);
     seed_pixels(pixels, kEnvironmentSeed);
-    shadowed_environment_.add(*picture_->environment, samples, environment_, points_.size(), points_.of_hit,
-                              pixel_seeds_, hits_);
+    shadowed_environment_.add(*picture_->environment, picture_->scene->environment_group(), samples, environment_,
+                              points_.size(), points_.of_hit, pixel_seeds_, hits_);
     clock.end(RenderStage::shadows);
 }
 
@@ -302,6 +379,18 @@ void PixelBatch::add_up(const SampleRange& samples, std::span<PixelSums> sums) c
         sums[pixel].obstructed = sums[pixel].obstructed || hits_.obstructed[pixel] != 0;
         sums[pixel].shared_noise += glm::min(Vec3d(hits_.shared_noise[pixel]), kBrightestRay * kBrightestRay);
         sums[pixel].shadow_rays = samples.shadow_rays;
+    }
+}
+
+void PixelBatch::add_up_parts(std::span<double> pass_sums) const {
+    for (std::size_t pixel = 0; pixel < hits_.pixel_count(); ++pixel) {
+        const std::span<const Rgb> own = hits_.apart.of(pixel);
+        for (const auto& [first, part] : part_places_) {
+            for (int channel = 0; channel < 3; ++channel) {
+                pass_sums[pixel * picture_->layout.stride() + first + static_cast<std::size_t>(channel)] +=
+                    double{own[part][channel]};
+            }
+        }
     }
 }
 

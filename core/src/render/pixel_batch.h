@@ -12,6 +12,7 @@
 #include "lights/delta_lights.h"
 #include "lobes/material_lobes.h"
 #include "render/camera_surfaces.h"
+#include "render/surface_passes.h"
 #include "shading/direct_light.h"
 #include "shading/far_light_sum.h"
 #include "shading/far_lights.h"
@@ -65,6 +66,8 @@ struct Picture {
     const CompiledScene* scene;
     const Camera* camera;
     RenderSettings settings;
+    PassLayout layout;
+    LightParts parts;  ///< that the passes need
     int width, height;
     Window window;
     std::vector<glm::dvec2> pixel_points;   ///< of each camera ray of a pixel, evenly over the unit square
@@ -81,19 +84,32 @@ struct Picture {
     double light_error = 0;                         ///< see DirectLight::compute
 };
 
+/// Where a part of the light goes among the passes of a pixel.
+struct PartPlace {
+    std::size_t first, part;
+};
+
 /// Renders one batch after another; one per thread.
 class PixelBatch {
   public:
     explicit PixelBatch(const Picture& picture);
 
-    /// Adds these rays of each pixel to its sums.
-    void add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums);
+    /// Adds these rays of each pixel to its sums. pass_sums: pixels × layout.stride(), of what PassImage::merge takes.
+    void add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums,
+             std::span<double> pass_sums);
+    /// Passes of the ray through the middle of each pixel. values: pixels × layout.stride().
+    void write_middles(std::span<const Pixel> pixels, std::span<float> values);
     /// Brightness of what surfaces reflect in these pixels, by their first camera ray, summed up.
     double reflected(std::span<const Pixel> pixels, std::uint32_t shadow_rays);
     RenderReport report() const;
 
   private:
+    /// Of the unit square; none: the aperture's middle.
+    using LensPoint = std::optional<glm::dvec2>;
+
     void trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples);
+    /// place: in pixels; step: to its neighbours.
+    void add_ray(const glm::dvec2& place, const LensPoint& lens, std::uint32_t sample, double step);
     /// To the radiance of the hits.
     void add_reflected(std::span<const Pixel> pixels, const SampleRange& samples);
     /// Sums the dimmest lights up; the others are shaded one by one.
@@ -105,10 +121,11 @@ class PixelBatch {
     /// One for each pixel and what casts shadows.
     void seed_pixels(std::span<const Pixel> pixels, std::uint32_t light);
     void add_up(const SampleRange& samples, std::span<PixelSums> sums) const;
+    /// Parts of the light.
+    void add_up_parts(std::span<double> pass_sums) const;
     /// Through a point of the window, in pixels, and one of the aperture.
-    Ray camera_ray(double column, double row, const glm::dvec2& lens) const;
-    /// Of a camera ray, in the unit square.
-    glm::dvec2 lens_point(std::uint32_t sample, std::uint32_t pixel_seed) const;
+    Ray camera_ray(double column, double row, const LensPoint& lens) const;
+    LensPoint lens_point(std::uint32_t sample, std::uint32_t pixel_seed) const;
 
     const Picture* picture_;
     RenderReport report_;
@@ -116,6 +133,7 @@ class PixelBatch {
     std::vector<NeighbourRays> neighbours_;
     std::vector<RayLight> ray_light_;  // one for each
     CameraSurfaces surfaces_;
+    SurfacePasses surface_passes_;
     Hits hits_;
     ShadingPoints points_;
     FarLightSum far_light_sum_;
@@ -129,6 +147,7 @@ class PixelBatch {
     ShadowedLight shadowed_;
     std::vector<DirectLightParts> environment_;
     ShadowedEnvironment shadowed_environment_;
+    std::vector<PartPlace> part_places_;
     std::vector<std::uint32_t> pixel_seeds_;
     std::vector<float> brightness_;  // of each pixel by sums and sources without extent, if nothing blocks
 };

@@ -185,6 +185,22 @@ float PlacedMeshes::attribute(const MeshAttribute& attribute, std::uint32_t comp
     return static_cast<float>(sum);
 }
 
+Vec3d PlacedMeshes::uv(const RayHit& hit) const {
+    const MeshShape& mesh = *meshes_[placements_[hit.instance].mesh].mesh->shape;
+    if (mesh.uv == MeshShader::kNoAttribute) {
+        return Vec3d(0);
+    }
+    const MeshAttribute& own = mesh.attributes[mesh.uv];
+    return {attribute(own, 0, hit), attribute(own, 1, hit), 1};
+}
+
+const Label& PlacedMeshes::label(const RayHit& hit) const {
+    static constexpr Label kNoLabel;
+    const Placement& placement = placements_[hit.instance];
+    const std::vector<Label>& labels = meshes_[placement.mesh].mesh->object_labels;
+    return labels.empty() ? kNoLabel : labels[placement.number];
+}
+
 Vec3d PlacedMeshes::normal_at(const ShadedPlace& shaded, int place, bool smooth) const {
     if (place == 0) {
         return smooth ? shaded.shading_normal : shaded.geometric_normal;

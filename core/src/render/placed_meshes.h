@@ -50,6 +50,8 @@ class PlacedMeshes {
 
     /// As CompiledScene's.
     SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
+    Vec3d uv(const RayHit& hit) const;
+    const Label& label(const RayHit& hit) const;
     SurfacePlace neighbour(const SurfacePlace& place, const Vec3d& normal, double length, const Ray& ray) const;
     void read(const ShaderInput& input, const std::vector<std::uint32_t>& attributes, int place,
               std::span<const ShadedPlace> places, std::span<float> out) const;

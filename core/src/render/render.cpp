@@ -106,12 +106,16 @@ void check_render(const RenderSettings& settings, int width, int height) {
                 std::min<std::int64_t>(kMostPixelSamples, kMostRaysPerPixel / sampling.first_samples));
     check_range("transparent_bounces", settings.transparent_bounces, 0, 1024);
     check_range("threads", settings.threads, 0, std::numeric_limits<int>::max());
+    const PassLayout layout(settings.passes);
 }
 
 RenderReport render(const CompiledScene& scene, const Camera& camera, int width, int height,
-                    const RenderSettings& settings, std::span<float> image, const RenderWatch& watch) {
+                    const RenderSettings& settings, std::span<float> image, const RenderWatch& watch,
+                    std::span<float> passes) {
     check_render(settings, width, height);
-    check_size("image", image.size(), 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    check_size("image", image.size(), 4 * pixels);
+    check_size("passes", passes.size(), PassLayout(settings.passes).stride() * pixels);
     Refinement refinement(width, height, settings.sampling, camera.has_depth_of_field());
     const Progress waiting = watch.progress ? [&](double) { return watch.progress(0); } : Progress();
     std::optional<Picture> picture;
@@ -123,9 +127,10 @@ RenderReport render(const CompiledScene& scene, const Camera& camera, int width,
     picture->light_error =
         light_error(*picture, std::min(static_cast<std::uint32_t>(settings.shadow_rays), kLeastShadowRays), waiting);
     std::fill(image.begin(), image.end(), 0.0F);
-    Passes passes(*picture, std::move(refinement), image, watch);
-    passes.run();
-    return passes.report();
+    std::fill(passes.begin(), passes.end(), 0.0F);
+    Passes run(*picture, std::move(refinement), image, passes, watch);
+    run.run();
+    return run.report();
 }
 
 }  // namespace shlight

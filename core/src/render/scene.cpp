@@ -87,8 +87,11 @@ class CompiledScene::Impl {
         const Impl* scene_;
     };
 
-    Impl(std::vector<Light> lamps, Environment all_around, bool environment_visible)
-        : lights(std::move(lamps)), environment(std::move(all_around)), has_background(environment_visible) {}
+    Impl(std::vector<Light> lamps, Environment all_around, bool environment_visible, std::uint32_t group)
+        : lights(std::move(lamps)),
+          environment(std::move(all_around)),
+          has_background(environment_visible),
+          environment_group(group) {}
 
     void add(const std::shared_ptr<const SceneMesh>& mesh) {
         const auto first_placement = static_cast<std::uint32_t>(placed.placements().size());
@@ -107,6 +110,7 @@ class CompiledScene::Impl {
             before != nullptr && std::ranges::equal(placed.meshes(), before->placed.meshes(), meets_rays_alike);
         rays = alike ? std::make_unique<const SceneRays>(*before->rays, transparency) : built_rays(stopped);
         seen_lamps = CameraVisibleLamps(lights);
+        find_light_groups();
     }
 
     PlacedMeshes placed;
@@ -115,9 +119,11 @@ class CompiledScene::Impl {
     std::size_t extended_light_count = 0;
     Environment environment;
     bool has_background;
+    std::uint32_t environment_group;
     Transparency transparency{*this};
     std::unique_ptr<const SceneRays> rays;
     CameraVisibleLamps seen_lamps;
+    std::vector<std::uint32_t> light_groups;
 
   private:
     std::unique_ptr<const SceneRays> built_rays(const Stopped& stopped) const {
@@ -132,9 +138,10 @@ class CompiledScene::Impl {
         }
         return std::make_unique<const SceneRays>(geometries, instances, transparency, stopped);
     }
+    void find_light_groups();
     void add_emissive_faces(const TracedMesh& traced, std::uint32_t first_placement);
     void add_single_faces(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
-                          std::span<const Rgb> radiance);
+                          std::span<const Rgb> radiance, const LightTraits& traits);
     void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
                         const std::vector<Rgb>& radiance);
 };
@@ -180,6 +187,22 @@ void CompiledScene::Impl::Transparency::find(std::span<const Ray> rays, std::spa
     }
 }
 
+void CompiledScene::Impl::find_light_groups() {
+    if (!environment.is_black()) {
+        light_groups.push_back(environment_group);
+    }
+    for (const Light& light : lights) {
+        light_groups.push_back(traits_of(light).group);
+    }
+    for (const Material& material : materials) {
+        if (material.emission != Rgb(0) || (material.shader != nullptr && material.shader->emission)) {
+            light_groups.push_back(material.group);
+        }
+    }
+    std::sort(light_groups.begin(), light_groups.end());
+    light_groups.erase(std::unique(light_groups.begin(), light_groups.end()), light_groups.end());
+}
+
 void CompiledScene::Impl::add_emissive_faces(const TracedMesh& traced, std::uint32_t first_placement) {
     const std::shared_ptr<const SceneMesh>& mesh = traced.mesh;
     const MeshShape& shape = *mesh->shape;
@@ -192,6 +215,8 @@ void CompiledScene::Impl::add_emissive_faces(const TracedMesh& traced, std::uint
             radiance.push_back(emitted);
         }
     }
+    LightTraits traits;
+    traits.group = mesh->group;
     for (std::uint32_t k = 0; k < mesh->transforms.size() && !emissive.empty(); ++k) {
         const bool baked = !traced.world_vertices.empty();
         std::vector<Vec3d> vertices;
@@ -199,16 +224,16 @@ void CompiledScene::Impl::add_emissive_faces(const TracedMesh& traced, std::uint
             vertices.push_back(baked ? Vec3d(v) : transform_point(mesh->transforms[k], Vec3d(v)));
         }
         if (emissive.size() > kMostSingleFaces) {
-            add_mesh_light({nullptr, radiance.front(), nullptr, first_placement + k, mesh}, vertices, emissive,
+            add_mesh_light({nullptr, radiance.front(), nullptr, first_placement + k, mesh, traits}, vertices, emissive,
                            radiance);
         } else {
-            add_single_faces(vertices, emissive, radiance);
+            add_single_faces(vertices, emissive, radiance, traits);
         }
     }
 }
 
 void CompiledScene::Impl::add_single_faces(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
-                                           std::span<const Rgb> radiance) {
+                                           std::span<const Rgb> radiance, const LightTraits& traits) {
     std::vector<Rgb> left(radiance.begin(), radiance.end());
     while (!left.empty()) {
         const Rgb color = left.front();
@@ -219,7 +244,7 @@ void CompiledScene::Impl::add_single_faces(std::span<const Vec3d> vertices, std:
             }
         }
         for (FaceOutline& outline : merge_faces(vertices, alike)) {
-            lights.emplace_back(make_polygon_light(std::move(outline), color, true));
+            lights.emplace_back(make_polygon_light(std::move(outline), color, true, traits));
         }
         std::erase(left, color);
     }
@@ -257,8 +282,17 @@ const Environment& CompiledScene::environment() const {
 const Environment* CompiledScene::background() const {
     return impl_->has_background ? &impl_->environment : nullptr;
 }
-Rgb CompiledScene::lamps_along(const Ray& ray, const std::optional<double>& surface) const {
-    return impl_->seen_lamps.empty() ? Rgb(0) : impl_->seen_lamps.radiance(ray, surface);
+std::span<const std::uint32_t> CompiledScene::light_groups() const {
+    return impl_->light_groups;
+}
+std::uint32_t CompiledScene::environment_group() const {
+    return impl_->environment_group;
+}
+bool CompiledScene::shows_lamps() const {
+    return !impl_->seen_lamps.empty();
+}
+Rgb CompiledScene::lamps_along(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group) const {
+    return impl_->seen_lamps.empty() ? Rgb(0) : impl_->seen_lamps.radiance(ray, surface, by_group);
 }
 const SceneRays& CompiledScene::rays() const {
     return *impl_->rays;
@@ -270,6 +304,12 @@ SurfacePoint CompiledScene::surface(const RayHit& hit, const Vec3f& direction) c
 SurfacePlace CompiledScene::neighbour(const SurfacePlace& place, const Vec3d& normal, double length,
                                       const Ray& ray) const {
     return impl_->placed.neighbour(place, normal, length, ray);
+}
+Vec3d CompiledScene::uv(const RayHit& hit) const {
+    return impl_->placed.uv(hit);
+}
+const Label& CompiledScene::object_label(const RayHit& hit) const {
+    return impl_->placed.label(hit);
 }
 void CompiledScene::read(const ShaderInput& input, const Material& material, int place,
                          std::span<const ShadedPlace> places, std::span<float> out) const {
@@ -337,9 +377,10 @@ void Scene::add_sun_light(const Vec3d& direction, double angle, const Rgb& irrad
     lamps_.push_back(make_sun_light(direction, angle, irradiance, tangent, traits));
 }
 
-void Scene::set_environment(Environment environment, bool visible) {
+void Scene::set_environment(Environment environment, bool visible, std::uint32_t group) {
     environment_ = std::move(environment);
     environment_visible_ = visible;
+    environment_group_ = group;
 }
 
 void Scene::check_size() const {
@@ -361,7 +402,7 @@ void Scene::check_size() const {
 std::shared_ptr<const CompiledScene> Scene::compile(int threads, const Progress& progress,
                                                     const CompiledScene* before) const {
     check_size();
-    auto impl = std::make_unique<CompiledScene::Impl>(lamps_, environment_, environment_visible_);
+    auto impl = std::make_unique<CompiledScene::Impl>(lamps_, environment_, environment_visible_, environment_group_);
     const auto build = [&](const Stopped& stopped) {
         for (const auto& [number, mesh] : meshes_) {
             end_if(stopped);

@@ -29,6 +29,9 @@ void check_surface_shader(const SurfaceShader& shader) {
         check("alpha", lobe.alpha, 1);
         check("normal", lobe.normal, 3);
     }
+    for (const ShadedAov& aov : shader.aovs) {
+        check("aov", aov.value, aov.is_color ? 3 : 1);
+    }
     check("emission", shader.emission, 3);
     check("transparency", shader.transparency, 3);
     if (shader.transparency && shader.shadow_program.result_count() != 3) {

@@ -33,7 +33,7 @@ std::optional<FarLight> far_light(const Light& light, std::size_t index) {
     if (!std::holds_alternative<EvenProfile>(traits.profile) || !traits.lights_diffuse || !traits.lights_glossy) {
         return std::nullopt;
     }
-    FarLight result = {Vec3d(0), Vec3d(0), false, traits.casts_shadows, 0, strength_of(light), index};
+    FarLight result = {Vec3d(0), Vec3d(0), false, traits.casts_shadows, traits.group, 0, strength_of(light), index};
     if (const auto* point = std::get_if<PointSource>(&light)) {
         result.position = point->position;
         return result;

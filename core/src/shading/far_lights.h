@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -24,8 +25,9 @@ struct FarLight {
     Vec3d normal;  ///< 0: it shines alike in all directions
     bool two_sided;
     bool casts_shadows;
-    double extent;  ///< no point of it is farther from its position
-    Rgb intensity;  ///< [W sr⁻¹] along the normal
+    std::uint32_t group;  ///< see LightTraits
+    double extent;        ///< no point of it is farther from its position
+    Rgb intensity;        ///< [W sr⁻¹] along the normal
     std::size_t index;
 
     /// On a surface that faces it, of intensity 1. way: to its position, of any length > 0.

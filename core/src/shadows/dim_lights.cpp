@@ -56,7 +56,8 @@ bool DimLights::is_dim(std::size_t light, std::size_t pixel) const {
 void DimLights::add(const ShadingPoints& points, std::uint32_t number, std::span<const std::uint32_t> pixel_seeds,
                     Hits& hits) {
     points_ = &points;
-    radiance_.resize(points.size());
+    radiance_.assign(points.size(), Rgb(0));
+    apart_.reset(hits.pixel_count());
     asked_.clear();
     rays_.start();
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
@@ -110,12 +111,7 @@ void DimLights::ask(std::size_t pixel, std::size_t questions, std::uint32_t seed
                 at.length / static_cast<double>(own_hits.size()), hits);
     }
     asked_.push_back({pixel, before, rays_.count()});
-    for (std::size_t point = points_->pixel_begin[pixel]; point < points_->pixel_begin[pixel + 1]; ++point) {
-        radiance_[point] = Rgb(0);
-        for (const Member& member : dim_) {
-            radiance_[point] += unblocked(point, member.index);
-        }
-    }
+    add_unblocked(pixel);
 }
 
 void DimLights::gather_points(std::size_t pixel, const LightRadiance& unshadowed) {
@@ -145,7 +141,7 @@ void DimLights::ask_hit(const Light& light, const LightRadiance& unshadowed, std
     const RayStart start(hits.frame[hit], hits.shadow_origin[hit], clearance(light, hits.frame[hit]));
     const auto ask = [&](const Rgb& value, const Vec3d& direction, double distance) {
         if (value != Rgb(0)) {
-            rays_.ask(value, start.towards(direction, distance));
+            rays_.ask(value, traits_of(light).group, start.towards(direction, distance));
         }
     };
     const LightSample sample = rectangle ? rectangle->sample(hits.frame[hit], place) : sampler_.sample(place);
@@ -170,24 +166,37 @@ void DimLights::ask_hit(const Light& light, const LightRadiance& unshadowed, std
     ask(value, sample.direction, sample.distance);
 }
 
-Rgb DimLights::unblocked(std::size_t point, std::size_t light) const {
-    const LightRadiance unshadowed = unshadowed_->light(light);
-    Rgb sum(0);
-    for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
-        sum += points_->weight(point, lobe) * unshadowed[lobe * points_->size() + point];
+void DimLights::add_unblocked(std::size_t pixel) {
+    for (std::size_t point = points_->pixel_begin[pixel]; point < points_->pixel_begin[pixel + 1]; ++point) {
+        for (const Member& member : dim_) {
+            const LightRadiance unshadowed = unshadowed_->light(member.index);
+            const std::uint32_t group = traits_of(*lights_[member.index]).group;
+            Rgb sum(0);
+            for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
+                const Rgb own = points_->weight(point, lobe) * unshadowed[lobe * points_->size() + point];
+                sum += own;
+                if (!apart_.empty()) {
+                    apart_.add(pixel, apart_.parts().kind(points_->material[point], lobe), group,
+                               static_cast<float>(points_->hit_count(point)) * own);
+                }
+            }
+            radiance_[point] += sum;
+        }
     }
-    return sum;
 }
 
 void DimLights::finish(Hits& hits) {
     rays_.trace();
-    for (const Asked& asked : asked_) {
+    for (const SharedRays::Asked& asked : asked_) {
         const SharedRays::Share share = rays_.share(asked.begin, asked.end);
         Rgb sum(0);
         for (std::size_t hit = hits.pixel_begin[asked.pixel]; hit < hits.pixel_begin[asked.pixel + 1]; ++hit) {
             const Rgb& radiance = radiance_[points_->of_hit[hit]];
             hits.radiance[hit] += share.seen * radiance;
             sum += radiance;
+        }
+        if (!apart_.empty()) {
+            rays_.keep_apart(asked, share, apart_.of(asked.pixel), hits.apart);
         }
         hits.add_shared(asked.pixel, share.variance * sum * sum, share.obstructed);
     }

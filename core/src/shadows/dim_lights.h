@@ -27,10 +27,10 @@ namespace shlight {
 /// Keeps its memory from light to light; one per thread.
 class DimLights {
   public:
-    /// Refers to the brightness.
+    /// Refers to the brightness and the parts.
     DimLights(const ShadowTracer& tracer, const LightBrightness& brightness, std::span<const MaterialLobes> materials,
-              std::size_t lobe_stride)
-        : brightness_(&brightness), materials_(materials), lobe_stride_(lobe_stride), rays_(tracer) {}
+              std::size_t lobe_stride, const LightParts& parts)
+        : brightness_(&brightness), materials_(materials), lobe_stride_(lobe_stride), rays_(tracer), apart_(parts) {}
 
     /// To be called before the first of these lights, which the brightness expects: they are referred to by number.
     void start(std::span<const Light* const> lights, const DirectLight& unshadowed, const SampleRange& samples);
@@ -45,9 +45,6 @@ class DimLights {
         std::size_t index;
         float up_to;
     };
-    struct Asked {
-        std::size_t pixel, begin, end;  // numbers of questions
-    };
 
     /// The dim lights of a pixel; returns their brightness.
     float gather(std::size_t pixel);
@@ -60,7 +57,8 @@ class DimLights {
                  double density, const Hits& hits);
     /// Adds the lights to the pixels that have asked for them.
     void finish(Hits& hits);
-    Rgb unblocked(std::size_t point, std::size_t light) const;
+    /// To what points of the pixel get if nothing blocks.
+    void add_unblocked(std::size_t pixel);
 
     const LightBrightness* brightness_;
     std::span<const MaterialLobes> materials_;
@@ -71,8 +69,9 @@ class DimLights {
     SampleRange samples_{};
     std::vector<std::uint8_t> may_share_;    // by light
     const ShadingPoints* points_ = nullptr;  // of the call of add()
-    std::vector<Asked> asked_;
+    std::vector<SharedRays::Asked> asked_;
     std::vector<Rgb> radiance_;       // by shading point, of the dim lights if nothing blocks
+    KeptApart apart_;                 // of that, by pixel
     std::vector<Member> dim_;         // lights of a pixel
     std::vector<Member> dim_points_;  // of a pixel, under one of them
     SeenLight seen_;

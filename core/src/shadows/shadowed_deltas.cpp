@@ -179,7 +179,8 @@ void ShadowedDeltas::find_shares(const ShadingPoints& points, const PixelRange& 
             const Rgb share = visible(q);
             for (std::size_t lobe = 0; lobe < lobes.size() && share != Rgb(0); ++lobe) {
                 const float value = values(points.of_hit[q.hit] - pixel.first_point, lobe, range)[asked.light];
-                hits.radiance[q.hit] += hits.weight(q.hit, lobe) * strength * share * value;
+                hits.reflect(q.hit, lobe, lights_->group(range.begin + asked.light),
+                             hits.weight(q.hit, lobe) * strength * share * value);
             }
         }
     }
@@ -195,8 +196,25 @@ void ShadowedDeltas::add_shares(const ShadingPoints& points, const PixelRange& p
             for (const std::size_t hit : points.hits_of(pixel.first_point + p)) {
                 hits.radiance[hit] += hits.weight(hit, lobe) * sum;
             }
+            if (!hits.apart.empty()) {
+                const std::size_t point = pixel.first_point + p;
+                const Rgb weight = static_cast<float>(points.hit_count(point)) * points.weight(point, lobe);
+                add_parts(values(p, lobe, range), range, weight, hits.apart.parts().kind(points.material[point], lobe),
+                          hits.apart.of(hits.of_pixel[points.hits_of(point).front()]));
+            }
         }
     }
+}
+
+void ShadowedDeltas::add_parts(const float* values, const DeltaRange& range, const Rgb& weight, LightKind kind,
+                               std::span<Rgb> apart) const {
+    Rgb sum(0);
+    for (std::size_t i = 0; i < range.count; ++i) {
+        const Rgb light = weight * values[i] * Rgb(seen_r_[i], seen_g_[i], seen_b_[i]);
+        apart[LightParts::of_group(lights_->group(range.begin + i))] += light;
+        sum += light;
+    }
+    apart[LightParts::of_kind(kind)] += sum;
 }
 
 std::uint64_t ShadowedDeltas::count_values(const ShadingPoints& points, const PixelRange& pixel,

@@ -72,6 +72,9 @@ class ShadowedDeltas {
     /// Of each source that all hits of the pixel see alike, the share that is seen; the others are added.
     void find_shares(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, Hits& hits);
     void add_shares(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, Hits& hits);
+    /// To Hits::apart what hits of one point, whose weights have this sum, get of the sources by a lobe of a kind.
+    void add_parts(const float* values, const DeltaRange& range, const Rgb& weight, LightKind kind,
+                   std::span<Rgb> apart) const;
     std::uint64_t count_values(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range) const;
 
     float* values(std::size_t point_in_pixel, std::size_t lobe, const DeltaRange& range) {

@@ -20,11 +20,12 @@ ShadowedEnvironment::ShadowedEnvironment(const ShadowTracer& tracer, const Envir
                                          std::span<const MaterialLobes> materials)
     : materials_(materials), rays_(tracer, environment, materials) {}
 
-void ShadowedEnvironment::add(const EnvironmentShading& shading, const SampleRange& samples,
+void ShadowedEnvironment::add(const EnvironmentShading& shading, std::uint32_t group, const SampleRange& samples,
                               std::span<const DirectLightParts> unshadowed, std::size_t point_count,
                               std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds,
                               Hits& hits) {
     shading_ = &shading;
+    group_ = group;
     samples_ = samples;
     unshadowed_ = unshadowed;
     point_count_ = point_count;
@@ -89,7 +90,7 @@ void ShadowedEnvironment::shade_unblocked(const LitRange& pixel, Hits& hits) con
     for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
         for (std::size_t lobe = 0; lobe < materials_[hits.material[lit_[i]]].lobes().size(); ++lobe) {
             const DirectLightParts whole = unblocked(hits, lit_[i], lobe);
-            hits.radiance[lit_[i]] += whole.smooth + whole.spots;
+            hits.reflect(lit_[i], lobe, group_, whole.smooth + whole.spots);
         }
     }
 }
@@ -150,11 +151,11 @@ Rgb ShadowedEnvironment::shade_hit(std::size_t hit, std::size_t lobe, const Envi
     const DirectLightParts whole = unblocked(hits, hit, lobe);
     if (is_mirror(materials_[hits.material[hit]].lobes()[lobe].shape)) {
         // One ray, that is all of its light.
-        hits.radiance[hit] += whole.smooth * Rgb(quotient(of_hit.smooth.seen, of_hit.smooth.all));
+        hits.reflect(hit, lobe, group_, whole.smooth * Rgb(quotient(of_hit.smooth.seen, of_hit.smooth.all)));
         return Rgb(0);
     }
-    hits.radiance[hit] += seen_part(whole.smooth, of_hit.smooth, of_material.kept_smooth);
-    hits.radiance[hit] += seen_part(whole.spots, of_hit.spots, of_material.kept_spots);
+    hits.reflect(hit, lobe, group_, seen_part(whole.smooth, of_hit.smooth, of_material.kept_smooth));
+    hits.reflect(hit, lobe, group_, seen_part(whole.spots, of_hit.spots, of_material.kept_spots));
     return deviation(whole.smooth, of_hit.smooth) + deviation(whole.spots, of_hit.spots);
 }
 

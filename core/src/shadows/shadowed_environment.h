@@ -26,9 +26,9 @@ class ShadowedEnvironment {
                         std::span<const MaterialLobes> materials);
 
     /// Adds the environment to the hits' radiance and noise. samples: what the hits are of; unshadowed: see
-    /// EnvironmentShading; point_of_hit: the shading point of each hit, none shared by pixels; pixel_seeds: one per
-    /// pixel. A hit's radiance counts as part of the sum over the hits of its pixel.
-    void add(const EnvironmentShading& shading, const SampleRange& samples,
+    /// EnvironmentShading; group: its, see LightTraits; point_of_hit: the shading point of each hit, none shared by
+    /// pixels; pixel_seeds: one per pixel. A hit's radiance counts as part of the sum over the hits of its pixel.
+    void add(const EnvironmentShading& shading, std::uint32_t group, const SampleRange& samples,
              std::span<const DirectLightParts> unshadowed, std::size_t point_count,
              std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds, Hits& hits);
     std::uint64_t rays_traced() const { return rays_.rays_traced(); }
@@ -67,6 +67,7 @@ class ShadowedEnvironment {
 
     SampleRange samples_{};  // of the call of add()
     const EnvironmentShading* shading_ = nullptr;
+    std::uint32_t group_ = 0;
     std::span<const DirectLightParts> unshadowed_;
     std::size_t point_count_ = 0;
     std::span<const std::uint32_t> point_of_hit_;

@@ -35,7 +35,7 @@ void ShadowedFarLights::add(const FarLightSum& far_light_sum, const ShadingPoint
         if (samples.shadow_rays > 0) {
             ask(far_light_sum, questions, pixel_seeds[pixel], pixel, hits);
         } else {
-            rays_.know(Rgb(1));
+            rays_.know(Rgb(1), 0);
         }
         rays_.trace();
         const SharedRays::Share share = rays_.share(0, rays_.count());
@@ -45,6 +45,10 @@ void ShadowedFarLights::add(const FarLightSum& far_light_sum, const ShadingPoint
                 hits.radiance[hit] += share.seen * far_light_sum.radiance(point);
                 sum += far_light_sum.radiance(point);
             }
+        }
+        if (!hits.apart.empty()) {
+            find_apart(far_light_sum, points, pixel, hits.apart.parts());
+            rays_.keep_apart({pixel, 0, rays_.count()}, share, apart_, hits.apart);
         }
         hits.add_shared(pixel, share.variance * sum * sum, share.obstructed);
     }
@@ -61,9 +65,40 @@ void ShadowedFarLights::ask(const FarLightSum& far_light_sum, std::size_t questi
         const auto hit = static_cast<std::size_t>(place.y * count);
         const float own = value(light, hits, first, hit) / static_cast<float>(far_light_sum.density(drawn));
         if (own > 0 && light.casts_shadows) {
-            rays_.ask(Rgb(own), ray(light, hits, first + hit));
+            rays_.ask(Rgb(own), light.group, ray(light, hits, first + hit));
         } else if (own > 0) {
-            rays_.know(Rgb(own));
+            rays_.know(Rgb(own), light.group);
+        }
+    }
+}
+
+/// Light by light, and then what makes up for what the sum is off by.
+void ShadowedFarLights::find_apart(const FarLightSum& far_light_sum, const ShadingPoints& points, std::size_t pixel,
+                                   const LightParts& parts) {
+    apart_.assign(parts.count, Rgb(0));
+    for (std::size_t point = points.pixel_begin[pixel]; point < points.pixel_begin[pixel + 1]; ++point) {
+        point_apart_.assign(parts.count, Rgb(0));
+        const std::uint32_t material = points.material[point];
+        const double cosine = points.cos_theta_o[point];
+        const Vec3d view(std::sqrt(1 - cosine * cosine), 0, cosine);
+        for (std::size_t i = 0; i < far_light_sum.size(); ++i) {
+            const FarLight& light = far_light_sum.light(i);
+            const Vec3d way = light.position - points.frame[point].origin;
+            const Vec3d direction = glm::normalize(points.frame[point].to_local(way));
+            const Rgb irradiance = light.intensity * static_cast<float>(light.irradiance(way));
+            for (std::size_t lobe = 0; lobe < materials_[material].lobes().size(); ++lobe) {
+                const LobeShape shape = materials_[material].shape(lobe, points.widths(point)[lobe]);
+                const Rgb own =
+                    points.weight(point, lobe) * irradiance * static_cast<float>(lobe_value(shape, direction, view));
+                point_apart_[LightParts::of_kind(parts.kind(material, lobe))] += own;
+                point_apart_[LightParts::of_group(light.group)] += own;
+            }
+        }
+        const std::span<Rgb> own(point_apart_);
+        complete(own.first(kLightKinds), far_light_sum.radiance(point), LightParts::of_kind(LightKind::diffuse));
+        complete(own.subspan(kLightKinds), far_light_sum.radiance(point), far_light_sum.light(0).group);
+        for (std::size_t part = 0; part < parts.count; ++part) {
+            apart_[part] += static_cast<float>(points.hit_count(point)) * own[part];
         }
     }
 }

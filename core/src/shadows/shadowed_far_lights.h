@@ -39,7 +39,13 @@ class ShadowedFarLights {
     float value(const FarLight& light, const Hits& hits, std::size_t first, std::size_t hit) const;
     Ray ray(const FarLight& light, const Hits& hits, std::size_t hit) const;
 
+    /// Parts of the sum's light that points of the pixel get if nothing blocks.
+    void find_apart(const FarLightSum& far_light_sum, const ShadingPoints& points, std::size_t pixel,
+                    const LightParts& parts);
+
     SharedRays rays_;
+    std::vector<Rgb> apart_;        // parts of a pixel's light if nothing blocks
+    std::vector<Rgb> point_apart_;  // likewise of a point's
     std::span<const MaterialLobes> materials_;
     std::span<const Light> lights_;
 };

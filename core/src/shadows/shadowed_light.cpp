@@ -8,12 +8,12 @@
 
 namespace shlight {
 ShadowedLight::ShadowedLight(const ShadowTracer& tracer, std::span<const MaterialLobes> materials,
-                             std::size_t lobe_stride)
+                             std::size_t lobe_stride, const LightParts& parts)
     : materials_(materials),
       lobe_stride_(lobe_stride),
       rays_(tracer, materials, lobe_stride),
       brightness_(lobe_stride),
-      dim_(tracer, brightness_, materials, lobe_stride) {}
+      dim_(tracer, brightness_, materials, lobe_stride, parts) {}
 
 void ShadowedLight::add(std::span<const Light* const> lights, const DirectLight& unshadowed, std::uint32_t first,
                         const SampleRange& samples, std::span<const std::uint32_t> pixel_seeds, Hits& hits) {
@@ -23,6 +23,7 @@ void ShadowedLight::add(std::span<const Light* const> lights, const DirectLight&
     for (std::size_t i = 0; i < lights.size(); ++i) {
         unshadowed_ = unshadowed.light(i);
         shadows_ = samples.shadow_rays > 0 && traits_of(*lights[i]).casts_shadows;
+        group_ = traits_of(*lights[i]).group;
         add_light(*lights[i], i, first + static_cast<std::uint32_t>(i), pixel_seeds, hits);
     }
     dim_.add(*points_, first, pixel_seeds, hits);
@@ -111,7 +112,7 @@ void ShadowedLight::shade_unblocked(const LitRange& pixel, Hits& hits) const {
     for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
         for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
             if (shines(i, lobe)) {
-                hits.radiance[lit_.hit[i]] += scaled_radiance(hits, lit_.hit[i], lobe);
+                hits.reflect(lit_.hit[i], lobe, group_, scaled_radiance(hits, lit_.hit[i], lobe));
             }
         }
     }
@@ -149,7 +150,7 @@ void ShadowedLight::shade_lobe(const LitRange& pixel, std::size_t lobe, Hits& hi
         const PointSums& of_point = point_sums_[points_->of_hit[hit] - first_point];
         const Vec3d share = quotient(static_cast<double>(of_point.hits) * sums.seen, of_point.all);
         const Rgb unblocked = scaled_radiance(hits, hit, lobe);
-        hits.radiance[hit] += unblocked * Rgb(share);
+        hits.reflect(hit, lobe, group_, unblocked * Rgb(share));
         // The lobes of a hit share its rays.
         deviation_[i] += deviation(unblocked, sums);
     }

@@ -27,7 +27,8 @@ namespace shlight {
 /// Keeps its memory from light to light; one per thread.
 class ShadowedLight {
   public:
-    ShadowedLight(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride);
+    ShadowedLight(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride,
+                  const LightParts& parts);
     ~ShadowedLight() = default;
     // The parts refer to each other.
     ShadowedLight(const ShadowedLight&) = delete;
@@ -89,6 +90,7 @@ class ShadowedLight {
 
     SampleRange samples_{};       // of the call of add()
     bool shadows_ = false;        // whether the light being added casts any
+    std::uint32_t group_ = 0;     // of that light
     LightRadiance unshadowed_{};  // of that light
     const ShadingPoints* points_ = nullptr;
     LightBrightness brightness_;

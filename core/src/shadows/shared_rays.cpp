@@ -10,8 +10,8 @@ void SharedRays::start() {
     rays_.clear();
 }
 
-void SharedRays::ask(const Rgb& value, const Ray& ray) {
-    questions_.push_back({value, static_cast<std::uint32_t>(rays_.size())});
+void SharedRays::ask(const Rgb& value, std::uint32_t group, const Ray& ray) {
+    questions_.push_back({value, group, static_cast<std::uint32_t>(rays_.size())});
     rays_.push_back(ray);
 }
 
@@ -37,6 +37,27 @@ SharedRays::Share SharedRays::share(std::size_t begin, std::size_t end) const {
         share.variance += Rgb(off * off);
     }
     return share;
+}
+
+void SharedRays::keep_apart(const Asked& asked, const Share& share, std::span<const Rgb> unblocked, KeptApart& apart) {
+    const std::span<const Rgb> all = unblocked.subspan(kLightKinds);
+    seen_.assign(all.size(), Rgb(0));
+    asked_of_.assign(all.size(), Rgb(0));
+    for (const Question& question : std::span(questions_).subspan(asked.begin, asked.end - asked.begin)) {
+        seen_[question.group] += question.value * visible(question);
+        asked_of_[question.group] += question.value;
+    }
+    Rgb sum(0);
+    for (std::size_t group = 0; group < all.size(); ++group) {
+        const Rgb known(glm::greaterThan(asked_of_[group], Rgb(0)));
+        seen_[group] = all[group] * glm::mix(share.seen, Rgb(quotient(seen_[group], asked_of_[group])), known);
+        sum += share.seen * all[group];
+    }
+    complete(seen_, sum, 0);
+    const std::span<Rgb> own = apart.of(asked.pixel);
+    for (std::size_t part = 0; part < own.size(); ++part) {
+        own[part] += part < kLightKinds ? share.seen * unblocked[part] : seen_[part - kLightKinds];
+    }
 }
 
 }  // namespace shlight

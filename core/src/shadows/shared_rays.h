@@ -12,6 +12,7 @@
 
 #include "shlight/ray_tracer.h"
 #include "shlight/types.h"
+#include "tracing/light_parts.h"
 #include "tracing/shadow_tracer.h"
 
 namespace shlight {
@@ -25,25 +26,33 @@ class SharedRays {
         bool obstructed = false;  ///< whether any ray met anything
     };
 
+    /// Questions of a pixel: those numbered begin … end - 1.
+    struct Asked {
+        std::size_t pixel, begin, end;
+    };
+
     explicit SharedRays(const ShadowTracer& tracer) : tracer_(&tracer) {}
 
     void start();
-    /// value: what the question stands for if nothing blocks, ≥ 0.
-    void ask(const Rgb& value, const Ray& ray);
+    /// value: what the question stands for if nothing blocks, ≥ 0; group: see LightTraits.
+    void ask(const Rgb& value, std::uint32_t group, const Ray& ray);
     /// Likewise, of a light that nothing blocks.
-    void know(const Rgb& value) { questions_.push_back({value, kNoRay}); }
+    void know(const Rgb& value, std::uint32_t group) { questions_.push_back({value, group, kNoRay}); }
     /// Questions so far.
     std::size_t count() const { return questions_.size(); }
     void trace();
     /// What those numbered begin … end - 1 tell; nothing is seen if none of them has a value.
     Share share(std::size_t begin, std::size_t end) const;
+    /// Adds to the parts of a pixel what comes through of these that are `unblocked`: of each group as the questions
+    /// for it tell, but together share.seen of all.
+    void keep_apart(const Asked& asked, const Share& share, std::span<const Rgb> unblocked, KeptApart& apart);
     std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
     static constexpr std::uint32_t kNoRay = std::numeric_limits<std::uint32_t>::max();
     struct Question {
         Rgb value;
-        std::uint32_t ray;
+        std::uint32_t group, ray;
     };
 
     Rgb visible(const Question& question) const { return question.ray == kNoRay ? Rgb(1) : visible_[question.ray]; }
@@ -53,6 +62,7 @@ class SharedRays {
     std::vector<Question> questions_;
     std::vector<Ray> rays_;
     std::vector<Rgb> visible_;
+    std::vector<Rgb> seen_, asked_of_;  // of groups
 };
 
 }  // namespace shlight

@@ -13,6 +13,7 @@ void Hits::clear() {
     lobe_width.clear();
     sample.clear();
     radiance.clear();
+    of_pixel.clear();
     noise.clear();
     shared_noise.clear();
     obstructed.clear();
@@ -32,6 +33,7 @@ void Hits::add(const SurfacePoint& surface, const ShadingFrame& shading_frame, f
     lobe_width.resize(size() * lobe_stride, 1);
     sample.push_back(sample_index);
     radiance.emplace_back(0);
+    of_pixel.push_back(static_cast<std::uint32_t>(pixel_count()));
     noise.emplace_back(0);
 }
 

@@ -11,14 +11,15 @@
 #include "base/shading_frame.h"
 #include "shlight/surface_point.h"
 #include "shlight/types.h"
+#include "tracing/light_parts.h"
 
 namespace shlight {
 
 /// Hits in the order of pixels, and of samples within each. A camera ray has several where it goes on through a
 /// transparent surface, or where lobes of a surface have normals of their own.
 struct Hits {
-    /// stride: lobes of any material, at most.
-    explicit Hits(std::size_t stride) : lobe_stride(stride) {}
+    /// stride: lobes of any material, at most. parts: outlive this.
+    explicit Hits(std::size_t stride, const LightParts& parts = kWholeLight) : lobe_stride(stride), apart(parts) {}
 
     std::size_t lobe_stride;
     std::vector<ShadingFrame> frame;
@@ -29,10 +30,12 @@ struct Hits {
     /// Weight of lobe i of hit h at h · lobe_stride + i: its colour as the viewer sees it. 0 for lobes that the
     /// material does not have.
     std::vector<Rgb> lobe_weight;
-    std::vector<float> lobe_width;      ///< likewise, of lobes whose width varies
-    std::vector<std::uint32_t> sample;  ///< number of the camera ray within its pixel
-    std::vector<Rgb> radiance;          ///< reflected to the camera, summed up
-    std::vector<Rgb> noise;             ///< the part of its variance that comes from shadow rays
+    std::vector<float> lobe_width;        ///< likewise, of lobes whose width varies
+    std::vector<std::uint32_t> sample;    ///< number of the camera ray within its pixel
+    std::vector<Rgb> radiance;            ///< reflected to the camera, summed up
+    KeptApart apart;                      ///< by pixel: parts of that, and of what camera rays bring besides
+    std::vector<std::uint32_t> of_pixel;  ///< number of the pixel
+    std::vector<Rgb> noise;               ///< the part of its variance that comes from shadow rays
     /// By pixel: the variance of the sum of its hits' radiance by what they have in common of few shadow rays.
     std::vector<Rgb> shared_noise;
     std::vector<std::uint8_t> obstructed;        ///< by pixel: whether any shadow ray has met something
@@ -51,6 +54,13 @@ struct Hits {
     }
     std::size_t pixel_count() const { return pixel_begin.size() - 1; }
     void clear();
+    /// Adds what a lobe of a hit reflects of a light of a group.
+    void reflect(std::size_t hit, std::size_t lobe, std::uint32_t group, const Rgb& light) {
+        radiance[hit] += light;
+        if (!apart.empty()) {
+            apart.add(of_pixel[hit], apart.parts().kind(material[hit], lobe), group, light);
+        }
+    }
     /// weights, widths: of the material's lobes.
     void add(const SurfacePoint& surface, const ShadingFrame& shading_frame, float view_cosine,
              std::span<const Rgb> weights, std::span<const float> widths, std::uint32_t sample_index);

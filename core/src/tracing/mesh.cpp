@@ -118,6 +118,9 @@ void check_shape(const MeshShape& shape) {
     if (!shape.material_indices.empty()) {
         check_size("material_indices", shape.material_indices.size(), shape.triangles.size());
     }
+    if (shape.uv != MeshShader::kNoAttribute && shape.uv >= shape.attributes.size()) {
+        reject("uv: there is no such attribute");
+    }
     check_attributes(shape);
 }
 
@@ -126,6 +129,12 @@ void check_use(const MeshShape& shape, const MeshUse& use) {
     check_shaders(shape, use);
     if (!use.object_values.empty()) {
         check_size("object_values", use.object_values.size(), use.transforms.size());
+    }
+    if (!use.object_labels.empty()) {
+        check_size("object_labels", use.object_labels.size(), use.transforms.size());
+    }
+    if (!use.material_labels.empty()) {
+        check_size("material_labels", use.material_labels.size(), use.material_count());
     }
     for (const glm::dmat4& transform : use.transforms) {
         check_transform("transforms", transform);

@@ -83,10 +83,16 @@ def _bounces(roughness: Value, cosine: Value, mean_fresnel: Color) -> Color:
     return color(1.0 + again * ((1.0 - own) / own))
 
 
-def rising_lobes(weight: Vector, ior: Value, alpha: Value, at: Vector | None) -> tuple[Lobe, ...]:
+def rising_lobes(
+    weight: Vector, ior: Value, alpha: Value, at: Vector | None, *, several_bounces: bool = False
+) -> tuple[Lobe, ...]:
     """Lobes of the rise of Fresnel's curve; of a varying index by interpolation."""
+
+    def lobe(own: Color, of_ior: float) -> Lobe:
+        return Lobe("ggx_dielectric", own, alpha, at, of_ior, several_bounces)
+
     if ior.constant is not None:
-        return (Lobe("ggx_dielectric", color(weight), alpha, at, max(ior.constant, 1.0 + 1e-6)),)
+        return (lobe(color(weight), max(ior.constant, 1.0 + 1e-6)),)
     lobes = []
     for i, node in enumerate(IOR_NODES):
         share: Value = number(1.0)
@@ -94,7 +100,7 @@ def rising_lobes(weight: Vector, ior: Value, alpha: Value, at: Vector | None) ->
             share = minimum(share, (ior - IOR_NODES[i - 1]) / (node - IOR_NODES[i - 1]))
         if i + 1 < len(IOR_NODES):
             share = minimum(share, (IOR_NODES[i + 1] - ior) / (IOR_NODES[i + 1] - node))
-        lobes.append(Lobe("ggx_dielectric", color(weight * maximum(share, 0.0)), alpha, at, node))
+        lobes.append(lobe(color(weight * maximum(share, 0.0)), node))
     return tuple(lobes)
 
 
@@ -113,7 +119,11 @@ def _dielectric(
         brighter = _bounces(roughness, cosine, mean_fresnel)
         own = color(own * brighter)
         dimmed = color(brighter * energy.albedo(roughness, cosine))
-    lobes = (Lobe("ggx", color(own * f0), alpha, at), *rising_lobes(own * (1.0 - f0), ior, alpha, at))
+    several = {"several_bounces": several_bounces}
+    lobes = (
+        Lobe("ggx", color(own * f0), alpha, at, **several),
+        *rising_lobes(own * (1.0 - f0), ior, alpha, at, **several),
+    )
     reflected = _mix(f0, 1.0, energy.rise(roughness, cosine, ior)) * dimmed
     return lobes, color(clamp(1.0 - _largest(reflected)))
 
@@ -129,8 +139,14 @@ def _metal(
     if several_bounces:
         cosine = clamp(dot(towards_viewer(), at), 1e-4)
         own = color(own * _bounces(roughness, cosine, color(_mix(f0, 1.0, 1.0 / 21.0) - dip * (1.0 / 126.0))))
-    lobes = (Lobe("ggx", color(own * f0), alpha, at), Lobe("ggx_schlick", color(own * (1.0 - f0)), alpha, at))
-    return lobes if dip.constant == (0.0, 0.0, 0.0) else (*lobes, Lobe("ggx_dip", color(-(own * dip)), alpha, at))
+    several = {"several_bounces": several_bounces}
+    lobes = (
+        Lobe("ggx", color(own * f0), alpha, at, **several),
+        Lobe("ggx_schlick", color(own * (1.0 - f0)), alpha, at, **several),
+    )
+    if dip.constant == (0.0, 0.0, 0.0):
+        return lobes
+    return (*lobes, Lobe("ggx_dip", color(-(own * dip)), alpha, at, **several))
 
 
 def glossy(tint: Varying, roughness: Number, *, several_bounces: bool = False, at: Vector | None = None) -> Shader:
@@ -141,7 +157,7 @@ def glossy(tint: Varying, roughness: Number, *, several_bounces: bool = False, a
     weight = c
     if several_bounces:
         weight = color(c * _bounces(r, clamp(dot(towards_viewer(), n), 1e-4), _clamped(c)))
-    return Shader((Lobe("ggx", weight, r * r, n),))
+    return Shader((Lobe("ggx", weight, r * r, n, several_bounces=several_bounces),))
 
 
 def _oren_nayar_rise(cosine: Value) -> Value:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -42,6 +43,7 @@ class Lobe:
     alpha: Value | None = None  # roughness², of GGX
     normal: Vector | None = None  # None: the smooth one
     ior: float = 1.5  # of "ggx_dielectric"
+    several_bounces: bool = False  # the weight makes up for what microfacets of GGX lose to each other
 
 
 class _Listed(NamedTuple):
@@ -49,9 +51,10 @@ class _Listed(NamedTuple):
 
     camera: ProgramBuilder
     shadow: ProgramBuilder
-    lobes: list[tuple[str, float, int, int | None, int | None]]
+    lobes: list[tuple[str, float, int, int | None, int | None, bool]]
     emission: int | None
     transparency: int | None
+    aovs: list[tuple[str, int, bool]]
 
 
 @dataclass(frozen=True)
@@ -61,20 +64,34 @@ class Shader:
     lobes: tuple[Lobe, ...] = ()
     emission: Color = field(default_factory=lambda: color(BLACK))  # radiance towards the viewer
     transparency: Color = field(default_factory=lambda: color(BLACK))  # share of light that goes on straight through
+    aovs: Mapping[str, Value | Color] = field(default_factory=dict)  # see with_aovs
 
     def __add__(self, other: Shader) -> Shader:
         return Shader(
             _merged(self.lobes + other.lobes),
             color(self.emission + other.emission),
             color(self.transparency + other.transparency),
+            {**self.aovs, **other.aovs},
         )
 
     def __mul__(self, factor: Varying) -> Shader:
         by = color(factor, "factor")
         lobes = tuple(replace(lobe, weight=color(lobe.weight * by)) for lobe in self.lobes)
-        return Shader(lobes, color(self.emission * by), color(self.transparency * by))
+        return Shader(lobes, color(self.emission * by), color(self.transparency * by), self.aovs)
 
     __rmul__ = __mul__
+
+    def with_aovs(self, aovs: Mapping[str, Varying]) -> Shader:
+        """The same, with values that `shlight.render` delivers as passes by these names: numbers, or colours (RGBA)."""
+        own = {
+            name: value
+            if isinstance(value, Value)
+            else number(value)
+            if isinstance(value, int | float)
+            else color(value)
+            for name, value in aovs.items()
+        }
+        return replace(self, aovs={**self.aovs, **own})
 
     def compiled(self) -> _core.SurfaceShader:
         """What the core runs."""
@@ -116,15 +133,19 @@ class Shader:
             if lobe.normal is not None and id(lobe.normal) not in normals:
                 normals[id(lobe.normal)] = builder.result(tuple(lobe.normal))
             normal = None if lobe.normal is None else normals[id(lobe.normal)]
-            lobes.append((lobe.kind, lobe.ior, weight, alpha, normal))
+            lobes.append((lobe.kind, lobe.ior, weight, alpha, normal, lobe.several_bounces))
         glow = color_on_ray(self.emission, Ray.CAMERA)
         seen, lit = (color_on_ray(self.transparency, kind) for kind in (Ray.CAMERA, Ray.SHADOW))
         glow_result = None if glow.constant == BLACK else builder.result(tuple(glow))
         is_opaque = seen.constant == lit.constant == BLACK
         through = None if is_opaque else builder.result(tuple(seen))
+        aovs = []
+        for name, value in self.aovs.items():
+            parts = [value] if isinstance(value, Value) else list(value)
+            aovs.append((name, builder.result(list(on_ray(parts, Ray.CAMERA))), len(parts) == 3))
         shadows = ProgramBuilder(builder.attributes)
         shadows.result(tuple(lit))
-        return _Listed(builder, shadows, lobes, glow_result, through)
+        return _Listed(builder, shadows, lobes, glow_result, through, aovs)
 
     @cached_property
     def _program(self) -> _core.ShaderProgram:
@@ -135,7 +156,13 @@ class Shader:
         listed = self._listed
         shadow_program = listed.shadow.program()
         return _core.surface_shader(
-            self._program, listed.lobes, listed.emission, listed.transparency, shadow_program, listed.camera.attributes
+            self._program,
+            listed.lobes,
+            listed.emission,
+            listed.transparency,
+            shadow_program,
+            listed.camera.attributes,
+            listed.aovs,
         )
 
 
@@ -143,7 +170,7 @@ def _merged(lobes: tuple[Lobe, ...]) -> tuple[Lobe, ...]:
     """The same with one lobe for each shape and normal."""
     found: dict[tuple[Any, ...], Lobe] = {}
     for lobe in lobes:
-        key = (lobe.kind, lobe.ior, id(lobe.normal), _identity(lobe.alpha))
+        key = (lobe.kind, lobe.ior, id(lobe.normal), _identity(lobe.alpha), lobe.several_bounces)
         same = found.get(key)
         found[key] = lobe if same is None else replace(lobe, weight=color(same.weight + lobe.weight))
     return tuple(found.values())

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panels of passes and light groups, beside Blender's own for AOVs, Cryptomatte and the list of light groups."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+from .compat import PASSES
+from .engine_panel import EnginePanel, with_names_aside
+
+DATA = ("z", "mist", "position", "normal", "uv")
+INDEXES = ("object_index", "material_index")
+LIGHT = {"Diffuse": ("diffuse_direct", "diffuse_color"), "Glossy": ("glossy_direct", "glossy_color")}
+OTHER = ("emit", "environment")
+
+
+class PassPanel(EnginePanel):
+    """A part of the panel of a view layer's passes."""
+
+    bl_context = "view_layer"
+    bl_parent_id = "VIEWLAYER_PT_layer_passes"
+
+
+class SHLIGHT_VIEWLAYER_PT_passes_data(PassPanel, bpy.types.Panel):
+    """Passes of surfaces."""
+
+    bl_label = "Data"
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        layout = with_names_aside(self.layout)
+        view_layer = context.view_layer
+        column = layout.column(heading="Include", align=True)
+        _draw_switches(column, view_layer, DATA)
+        cycles = getattr(view_layer, "cycles", None)
+        if cycles is not None:
+            column.prop(cycles, "denoising_store_passes", text="Denoising Data")
+        _draw_switches(layout.column(heading="Indexes", align=True), view_layer, INDEXES)
+        layout.prop(view_layer, "pass_alpha_threshold")
+
+
+class SHLIGHT_VIEWLAYER_PT_passes_light(PassPanel, bpy.types.Panel):
+    """Passes of parts of the light."""
+
+    bl_label = "Light"
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        layout = with_names_aside(self.layout)
+        for heading, names in LIGHT.items():
+            _draw_switches(layout.column(heading=heading, align=True), context.view_layer, names)
+        column = layout.column(heading="Other", align=True)
+        _draw_switches(column, context.view_layer, OTHER)
+        column.prop(context.scene.shlight, "use_pass_lights")
+
+
+def _draw_switches(column: Any, view_layer: Any, names: tuple[str, ...]) -> None:
+    for name in names:
+        if f"use_pass_{name}" in PASSES:
+            column.prop(view_layer, f"use_pass_{name}")
+
+
+class SHLIGHT_OBJECT_PT_light_group(EnginePanel, bpy.types.Panel):
+    """The light group of an object."""
+
+    bl_label = "Light Group"
+    bl_context = "object"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        """Shown for objects."""
+        return bool(context.object) and super().poll(context)
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        _draw_group(with_names_aside(self.layout), context.object, context.view_layer)
+
+
+class SHLIGHT_WORLD_PT_light_group(EnginePanel, bpy.types.Panel):
+    """The light group of the world."""
+
+    bl_label = "Light Group"
+    bl_context = "world"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        """Shown if there is a world."""
+        return bool(context.world) and super().poll(context)
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        _draw_group(with_names_aside(self.layout), context.world, context.view_layer)
+
+
+def _draw_group(layout: Any, owner: Any, view_layer: Any) -> None:
+    layout.prop_search(owner, "lightgroup", view_layer, "lightgroups", text="Light Group", results_are_suggestions=True)
+
+
+CLASSES = (
+    SHLIGHT_VIEWLAYER_PT_passes_data,
+    SHLIGHT_VIEWLAYER_PT_passes_light,
+    SHLIGHT_OBJECT_PT_light_group,
+    SHLIGHT_WORLD_PT_light_group,
+)

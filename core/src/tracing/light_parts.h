@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+//
+// Parts of the light that are kept apart beside the picture.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// Each light that a camera ray brings counts towards a kind and towards a group.
+enum class LightKind : std::uint8_t { diffuse, glossy, emission, environment };
+inline constexpr std::size_t kLightKinds = 4;
+
+struct LightParts {
+    /// 0: light is not kept apart; otherwise one for each kind, then one for each group.
+    std::size_t count = 0;
+    std::size_t lobe_stride = 1;
+    std::vector<LightKind> of_lobe;  ///< of lobe i of material m at m · lobe_stride + i
+
+    bool empty() const { return count == 0; }
+    static std::size_t of_kind(LightKind kind) { return static_cast<std::size_t>(kind); }
+    /// See LightTraits::group.
+    static std::size_t of_group(std::uint32_t group) { return kLightKinds + group; }
+    LightKind kind(std::size_t material, std::size_t lobe) const { return of_lobe[material * lobe_stride + lobe]; }
+};
+
+/// Light that is not kept apart.
+inline const LightParts kWholeLight;
+
+/// What is kept apart of pixels.
+class KeptApart {
+  public:
+    /// parts: outlive this.
+    explicit KeptApart(const LightParts& parts) : parts_(&parts) {}
+
+    const LightParts& parts() const { return *parts_; }
+    bool empty() const { return parts_->empty(); }
+    /// Forgets all light; pixels: how many.
+    void reset(std::size_t pixels) { light_.assign(pixels * parts_->count, Rgb(0)); }
+    /// Precondition: not empty().
+    void add(std::size_t pixel, LightKind kind, std::uint32_t group, const Rgb& light) {
+        const std::span<Rgb> own = of(pixel);
+        own[LightParts::of_kind(kind)] += light;
+        own[LightParts::of_group(group)] += light;
+    }
+    /// By kind and group.
+    std::span<Rgb> of(std::size_t pixel) { return std::span(light_).subspan(pixel * parts_->count, parts_->count); }
+    std::span<const Rgb> of(std::size_t pixel) const {
+        return std::span(light_).subspan(pixel * parts_->count, parts_->count);
+    }
+
+  private:
+    const LightParts* parts_;
+    std::vector<Rgb> light_;
+};
+
+/// Adds to parts what they lack of a sum, in proportion to their magnitudes; where all are 0, to the one numbered
+/// `otherwise`.
+void complete(std::span<Rgb> parts, const Rgb& sum, std::size_t otherwise);
+
+}  // namespace shlight

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+//
+// Passes of a render as Python asks for them and gets them.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <string>
+#include <vector>
+
+#include "scene_bindings.h"
+#include "shlight/render_passes.h"
+
+namespace shlight::python {
+
+/// Arguments of shlight.render.
+struct PassArguments {
+    pybind11::object passes, groups, aovs, alpha_threshold, mist, cryptomatte_levels;
+
+    /// Whether any is asked for.
+    bool any() const;
+};
+
+/// Those that have a name of their own. Throws as arguments.h does.
+PassSettings pass_settings_from(const PassArguments& arguments);
+/// Adds the scene's light groups and AOVs, where the arguments ask for them.
+void add_named_passes(const PassArguments& arguments, const SceneObject& scene, const CompiledScene& compiled,
+                      PassSettings& settings);
+
+/// "combined" and each pass by its name, as views of the values (height, width, stride).
+pybind11::dict pass_dict(const PassSettings& settings, const SceneObject& scene, const pybind11::array& image,
+                         const pybind11::array& values);
+
+}  // namespace shlight::python

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: MIT
+"""Passes of view layers and light groups against those of Cycles, and that they are named and complete."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from shlight_blender import compat, pass_panels, passes
+
+oiio = pytest.importorskip("OpenImageIO")
+
+SWITCHES = ("z", "mist", "position", "normal", "uv", "object_index", "material_index", "diffuse_direct")
+SWITCHES += ("diffuse_color", "glossy_direct", "glossy_color", "emit", "environment")
+MATTES = ("cryptomatte_object", "cryptomatte_material", "cryptomatte_asset")
+GROUPS = ("key", "fill", "sky")
+
+
+def scene_with_groups(studio: Any) -> Any:
+    scene = studio.scene
+    matt = studio.material("ShaderNodeBsdfDiffuse", "Matt", Color=(0.6, 0.5, 0.3))
+    glossy = studio.material("ShaderNodeBsdfGlossy", "Glossy", Color=(0.9, 0.7, 0.4), Roughness=0.5)
+    for material, index in ((matt, 4), (glossy, 7)):
+        material.pass_index = index
+    floor = studio.plane(8, matt, "Floor")
+    floor.data.uv_layers.new(name="UVMap")
+    floor.pass_index = 3
+    child = studio.box((1, 1, 1), glossy, "Box", location=(0.5, 0, 0.5))
+    child.parent = floor
+    node = glossy.node_tree.nodes.new("ShaderNodeOutputAOV")
+    setattr(node, "aov_name" if hasattr(node, "aov_name") else "name", "tint")
+    node.inputs["Color"].default_value = (1.0, 0.5, 0.25, 1.0)
+    studio.lamp("POINT", 300, (3, -3, 4), shadow_soft_size=0.4).lightgroup = "key"
+    studio.area(150, (-3, -1, 3), size=1.5).lightgroup = "fill"
+    studio.plain_world((0.1, 0.15, 0.2))
+    scene.world.lightgroup = "sky"
+    scene.world.mist_settings.start, scene.world.mist_settings.depth = 4.0, 8.0
+    studio.camera()
+    view_layer = scene.view_layers[0]
+    for name in GROUPS:
+        view_layer.lightgroups.add(name=name)
+    aov = view_layer.aovs.add()
+    aov.name, aov.type = "tint", "COLOR"
+    for name in (*SWITCHES, *MATTES):
+        setattr(view_layer, f"use_pass_{name}", True)
+    view_layer.cycles.denoising_store_passes = True
+    if hasattr(scene.render.image_settings, "media_type"):
+        scene.render.image_settings.media_type = "MULTI_LAYER_IMAGE"
+    scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
+    scene.shlight.noise_threshold = 0.002
+    return view_layer
+
+
+def rendered(studio: Any, engine: str) -> tuple[dict[str, NDArray[np.float32]], dict[str, str]]:
+    """Passes (height, width, channels) by "layer.name", and what the file says of itself."""
+    path = studio.folder / f"{engine}.exr"
+    studio.scene.render.engine = engine
+    studio.scene.render.filepath = str(path)
+    bpy.ops.render.render(write_still=True)
+    file, found, part = oiio.ImageInput.open(str(path)), {}, 0
+    notes = {own.name: str(own.value) for own in file.spec().extra_attribs}
+    while file.seek_subimage(part, 0):
+        spec = file.spec()
+        pixels = file.read_image("float").reshape(spec.height, spec.width, -1)
+        for channel, name in enumerate(spec.channelnames):
+            found.setdefault(name.rpartition(".")[0], []).append(pixels[..., channel])
+        part += 1
+    file.close()
+    return {name: np.stack(channels, axis=-1) for name, channels in found.items()}, notes
+
+
+def shares(levels: NDArray[np.float32]) -> dict[float, NDArray[np.float64]]:
+    """Of each identity of a Cryptomatte pass, its share of each pixel."""
+    pairs = levels.reshape(*levels.shape[:2], -1, 2)
+    return {
+        float(identity): np.where(pairs[..., 0] == identity, pairs[..., 1], 0).sum(axis=-1)
+        for identity in np.unique(pairs[..., 0])
+        if identity != 0
+    }
+
+
+def relative_error(image: NDArray[np.float32], expected: NDArray[np.float32]) -> float:
+    """relMSE over all channels, of whatever number; far away is as good as far away."""
+    near, far = np.minimum(image, 100.0).astype(np.float64), np.minimum(expected, 100.0).astype(np.float64)
+    return float(np.mean((near - far) ** 2 / (far**2 + 0.01 * np.abs(far).mean() ** 2 + 1e-12)))
+
+
+def test_passes_are_those_of_cycles(studio: Any) -> None:
+    scene_with_groups(studio)
+    studio.scene.cycles.samples = 1024
+    (own, own_notes), (reference, notes) = rendered(studio, "SHLIGHT"), rendered(studio, "CYCLES")
+    for name in compat.DENOISING_LEFT_OUT:
+        reference.pop(f"ViewLayer.{name}")
+    assert set(own) == set(reference)
+    assert {name: own[name].shape for name in own} == {name: reference[name].shape for name in own}
+    worst = {}
+    for name, expected in reference.items():
+        image = own[name]
+        if ".Crypto" in name:
+            mine, theirs = shares(image), shares(expected)
+            assert set(mine) == set(theirs)
+            worst[name] = max([np.abs(mine[i] - theirs[i]).max() for i in mine], default=0.0) ** 2
+        else:
+            # Where a ray sees nothing, Cycles 5.2 has a share of the largest float as its denoising depth.
+            known = expected[..., 0] < 1e30
+            worst[name] = relative_error(image[known], expected[known])
+    print({name: f"{error:.1e}" for name, error in worst.items()})
+    # Shares differ by the rays that find an edge; the world's direct light is Cycles' noise.
+    allowed = {name: 5e-3 if ".Crypto" in name or name.endswith("sky") else 1e-3 for name in worst}
+    allowed["ViewLayer.GlossDir"] = allowed["ViewLayer.Glossy Direct"] = 3e-3
+    assert {name: error for name, error in worst.items() if not error <= allowed[name]} == {}
+    keys = [key for key in notes if key.startswith("cryptomatte/") and not key.endswith("manifest")]
+    assert keys
+    assert {key: own_notes[key] for key in keys} == {key: notes[key] for key in keys}
+
+
+def test_places_are_exact_where_cycles_looks_through_the_middles_too(studio: Any) -> None:
+    scene_with_groups(studio)
+    cycles = studio.scene.cycles
+    cycles.samples, cycles.pixel_filter_type, cycles.filter_width = 1, "BLACKMAN_HARRIS", 0.01
+    (own, _), (reference, _) = rendered(studio, "SHLIGHT"), rendered(studio, "CYCLES")
+    for name in ("Depth", "Position", "Normal", "UV"):
+        image, expected = own[f"ViewLayer.{name}"], reference[f"ViewLayer.{name}"]
+        at_edges = np.abs(image - expected).max(axis=-1) > 0.01  # where the rays differ by the width of the filter
+        assert at_edges.mean() <= 2e-3
+        np.testing.assert_allclose(image[~at_edges], expected[~at_edges], rtol=1e-5, atol=2e-5)
+
+
+def test_a_pass_for_each_lamp_adds_up_in_every_layer_and_view(studio: Any) -> None:
+    scene_with_groups(studio)
+    scene = studio.scene
+    scene.shlight.use_pass_lights = True
+    scene.view_layers.new("Second")
+    shown = studio.link("Shown", None)
+    inside = bpy.data.collections.new("Inside")
+    lamp = studio.lamp("POINT", 50, (-1, 2, 2))
+    lamp.name = "Hidden away"
+    for collection in list(lamp.users_collection):
+        collection.objects.unlink(lamp)
+    inside.objects.link(lamp)
+    shown.instance_type, shown.instance_collection = "COLLECTION", inside
+    own, _ = rendered(studio, "SHLIGHT")
+    for layer in ("ViewLayer", "Second"):
+        picture = own[f"{layer}.Combined"][..., :3]
+        lights = {name: light for name, light in own.items() if name.startswith(f"{layer}.Light_")}
+        assert f"{layer}.Light_Hidden away" in lights
+        assert sum(light.max() > 0 for light in lights.values()) == 4
+        assert np.abs(sum(lights.values()) - picture).max() <= 2e-6 * picture.max()
+    grouped = sum(own[f"ViewLayer.Combined_{name}"] for name in GROUPS)
+    rest = own["ViewLayer.Combined"][..., :3] - own["ViewLayer.Light_Hidden away"]
+    assert np.abs(grouped - rest).max() <= 2e-6 * rest.max()
+
+
+def test_panels_offer_the_passes_that_there_are(studio: Any) -> None:
+    view_layer = scene_with_groups(studio)
+    for name in ("", "_aov", "_cryptomatte", "_lightgroups"):
+        assert "SHLIGHT" in getattr(bpy.types, f"VIEWLAYER_PT_layer_passes{name}").COMPAT_ENGINES
+    offered = {*pass_panels.DATA, *pass_panels.INDEXES, *sum(pass_panels.LIGHT.values(), ()), *pass_panels.OTHER}
+    assert {switch.removeprefix("use_pass_") for switch in passes.PASSES} <= offered
+    assert len({own.name for own in passes.layer_passes(studio.scene, view_layer)}) == len(SWITCHES) + 9 + 3 + 1 + 3

@@ -1,0 +1,296 @@
+# SPDX-License-Identifier: MIT
+"""Passes and light groups of shlight.render: against closed forms, against renders of fewer lights, and their sums."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scene_cases import FACES, FLOOR, SQUARE, from_above, lit_floor
+
+import shlight
+from shlight import nodes
+from shlight.images import write_layers
+from shlight.metrics import rel_mse
+
+Array = NDArray[np.float64]
+WIDTH, HEIGHT, FOV = 24, 16, 0.9
+
+
+def rotation(angle: float) -> Array:
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+
+
+def looking_down(scene: shlight.Scene) -> Array:
+    """Sets a perspective camera; returns directions (height, width, 3) through the pixels' middles, not normalized."""
+    to_world = np.eye(4)
+    to_world[:3, :3] = rotation(1.2)
+    to_world[:3, 3] = 0.0, -5.0, 3.5
+    scene.set_camera(to_world, FOV)
+    half = math.tan(FOV / 2)
+    x = half * ((np.arange(WIDTH) + 0.5) * 2 / WIDTH - 1)
+    y = -half * HEIGHT / WIDTH * ((np.arange(HEIGHT) + 0.5) * 2 / HEIGHT - 1)
+    local = np.stack([*np.meshgrid(x, y), np.full((HEIGHT, WIDTH), -1.0)], axis=-1)
+    return np.asarray(local @ to_world[:3, :3].T)
+
+
+def ball(center: Any, radius: float, steps: int = 16) -> tuple[Array, NDArray[np.int64], Array]:
+    theta, phi = np.linspace(0, np.pi, steps + 1), np.linspace(0, 2 * np.pi, 2 * steps, endpoint=False)
+    t, p = np.meshgrid(theta, phi, indexing="ij")
+    normals = np.stack([np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)], axis=-1).reshape(-1, 3)
+    i, j = np.meshgrid(np.arange(steps), np.arange(2 * steps), indexing="ij")
+    a, b = (i * 2 * steps + j).ravel(), (i * 2 * steps + (j + 1) % (2 * steps)).ravel()
+    faces = np.concatenate([np.stack([a, a + 2 * steps, b], 1), np.stack([b, a + 2 * steps, b + 2 * steps], 1)])
+    return radius * normals + center, faces, normals
+
+
+def test_places_of_a_floor_are_those_of_rays_through_the_middles() -> None:
+    scene = lit_floor(uvs=FLOOR[:, :2] / 18 + 0.5, object_indices=7, material_pass_indices=[5])
+    directions = looking_down(scene)
+    names = ["depth", "position", "normal", "uv", "object_index", "material_index", "mist"]
+    passes = shlight.render(scene, WIDTH, HEIGHT, max_samples=1, passes=names, mist=(4.0, 8.0, 2.0))
+    along = -3.5 / directions[..., 2]
+    position = np.array([0.0, -5.0, 3.5]) + along[..., None] * directions
+    on_floor = (along > 0) & (np.abs(position[..., :2]) < 9).all(axis=-1)
+    assert on_floor.any()
+    assert not on_floor.all()
+    distance = np.linalg.norm(position - [0.0, -5.0, 3.5], axis=-1)
+    expected = {
+        "depth": np.where(on_floor, along, 1e10)[..., None],
+        "position": np.where(on_floor[..., None], position, 0.0),
+        "normal": np.where(on_floor[..., None], [0.0, 0.0, 1.0], 0.0),
+        "uv": np.where(on_floor[..., None], position / 18 + [0.5, 0.5, 1.0], 0.0),
+        "object_index": np.where(on_floor, 7.0, 0.0)[..., None],
+        "material_index": np.where(on_floor, 5.0, 0.0)[..., None],
+        "mist": np.where(on_floor, np.clip((distance - 4) / 8, 0, 1) ** 2, 1.0)[..., None],
+    }
+    assert list(passes) == ["combined", *names]
+    for name, values in expected.items():
+        np.testing.assert_allclose(passes[name], values, rtol=1e-5, atol=1e-5, err_msg=name)
+
+
+def all_kinds_of_light(far: bool) -> shlight.Scene:
+    """Varying, mixed and transparent materials, and every way in which light reaches them.
+
+    far: also 400 lights that are summed up, which lobes of varying width do without.
+    """
+    scene = shlight.Scene()
+    scene.add_mesh(FLOOR / 3, FACES, bsdf=nodes.oren_nayar((0.5, 0.4, 0.3), 0.3))
+    vertices, faces, normals = ball([-1.0, 0.0, 0.8], 0.7)
+    shiny = nodes.lambert((0.8, 0.2, 0.1)) + nodes.emission(0.02)
+    if not far:
+        shiny = nodes.principled((0.8, 0.2, 0.1), roughness=0.6, several_bounces=True, emission_strength=0.02)
+    scene.add_mesh(vertices, faces, normals=normals, bsdf=shiny, group="ball")
+    scene.add_mesh(
+        SQUARE + np.array([0.5, -1.0, 1.2]), FACES, bsdf=nodes.mix(nodes.transparent((0.9, 0.5, 0.6)), shiny, 0.4)
+    )
+    vertices, faces, _ = ball([1.2, 0.5, 0.6], 0.4)
+    scene.add_mesh(vertices, faces, emission=(2.0, 1.0, 0.5), group="lantern")
+    scene.add_mesh(0.3 * SQUARE + np.array([-2.0, 1.5, 0.5]), FACES, emission=(0.0, 3.0, 3.0), group="sheet")
+    scene.add_sphere_light([2, -2, 4], 0.3, (60, 50, 40), group="key", camera=True)
+    scene.add_polygon_light(0.5 * SQUARE[::-1] + np.array([0.0, 2.0, 3.0]), (5, 5, 9), group="fill", spread=1.5)
+    scene.add_spot_light([0, 2, 3], (0, -0.5, -1), 0.8, 0.3, (3, 3, 1), group="spot")
+    scene.add_sun_light([0.3, 0.2, -1], 0.02, (0.5, 0.3, 0.3))
+    sky = np.random.default_rng(0).random((8, 16, 3)).astype(np.float32) * 0.3
+    scene.set_environment(sky, group="sky")
+    random = np.random.default_rng(4)
+    for i in range(400 if far else 0):
+        place = random.normal(size=3)
+        place *= 1000.0 / np.linalg.norm(place)
+        place[2] = abs(place[2])
+        scene.add_point_light(place, random.uniform(500, 2000, 3), group=f"far {i % 3}")
+    return scene
+
+
+def groups_of(passes: dict[str, Any]) -> dict[str, Array]:
+    return {
+        name.removeprefix("combined_"): light.astype(np.float64)
+        for name, light in passes.items()
+        if name.startswith("combined_")
+    }
+
+
+@pytest.mark.parametrize("far", [False, True])
+def test_parts_of_the_light_add_up_to_the_picture_and_do_not_change_it(far: bool) -> None:
+    scene = all_kinds_of_light(far)
+    looking_down(scene)
+    names = ["diffuse_direct", "diffuse_color", "glossy_direct", "glossy_color", "emission", "environment"]
+    options: dict[str, Any] = {"max_samples": 16, "pixel_filter": "blackman_harris", "return_report": True}
+    options["tolerance"] = 0.01
+    passes, report = shlight.render(scene, WIDTH, HEIGHT, passes=names, groups=True, **options)
+    picture, _ = shlight.render(scene, WIDTH, HEIGHT, **options)
+    np.testing.assert_array_equal(passes["combined"], picture)
+    assert (report.summed_lights > 100) == far
+    groups = groups_of(passes)
+    expected = {"", "ball", "lantern", "sheet", "key", "fill", "spot", "sky"}
+    assert set(groups) == (expected | {"far 0", "far 1", "far 2"} if far else expected)
+    assert all(light.max() > 0 for light in groups.values())
+    largest = float(picture[..., :3].max())
+    assert np.abs(sum(groups.values()) - picture[..., :3]).max() <= 2e-6 * largest
+    diffuse, glossy = (passes[f"{kind}_direct"] * passes[f"{kind}_color"] for kind in ("diffuse", "glossy"))
+    kinds = diffuse + glossy + passes["emission"] + passes["environment"]
+    assert np.abs(kinds - picture[..., :3]).max() <= 2e-6 * largest
+
+
+def test_a_group_is_the_picture_of_its_lights_alone() -> None:
+    def scene_of(groups: tuple[str, ...]) -> shlight.Scene:
+        scene = shlight.Scene()
+        scene.add_mesh(FLOOR, FACES, bsdf=shlight.Bsdf.lambert(0.6) + shlight.Bsdf.ggx(0.4, (0.04, 0.04, 0.04)))
+        scene.add_mesh(0.4 * SQUARE + np.array([0.2, 0.1, 0.8]), FACES)
+        if "key" in groups:
+            scene.add_sphere_light([1, -1, 3], 0.3, (20, 16, 12), group="key")
+        if "fill" in groups:
+            scene.add_polygon_light(SQUARE[::-1] + np.array([-2, 1, 3]), (2, 3, 4), group="fill")
+        if "point" in groups:
+            scene.add_point_light([1, 1, 2], (2, 1, 1), group="point")
+        if "sky" in groups:
+            scene.set_environment((0.2, 0.3, 0.4), group="sky")
+        return from_above(scene)
+
+    names = ("key", "fill", "point", "sky")
+    options: dict[str, Any] = {"max_samples": 64, "noise_threshold": 0.002, "shadow_rays": 64}
+    groups = groups_of(shlight.render(scene_of(names), 32, 32, groups=True, **options))
+    for name in names:
+        alone = shlight.render(scene_of((name,)), 32, 32, **options)[..., :3]
+        assert rel_mse(groups[name], alone) <= 1e-3, name
+
+
+def test_far_lights_are_told_apart() -> None:
+    scene = shlight.Scene()
+    scene.add_mesh(FLOOR, FACES)
+    for side in (-1, 1):
+        for i in range(200):
+            angle = 2 * np.pi * i / 200
+            place = [600 * side, 5 * np.cos(angle), 400 + 5 * np.sin(angle)]
+            scene.add_point_light(place, (100, 100, 100), group=str(side))
+    scene.add_mesh(SQUARE @ [[0, 0, 1], [0, 1, 0], [1, 0, 0]] + [0.5, 0, 1], FACES)
+    from_above(scene)
+    passes, report = shlight.render(scene, 16, 16, groups=True, max_samples=16, tolerance=0.05, return_report=True)
+    assert report.summed_lights > 300
+    groups = groups_of(passes)
+    way = np.array([600.0, 0.0, 400.0])
+    irradiance = 200 * 100 * way[2] / np.linalg.norm(way) ** 3 / np.pi * 0.8
+    # Left of the wall the lights of the right are hidden, and those of the left shine.
+    np.testing.assert_allclose(groups["-1"][8, 7], irradiance * np.ones(3), rtol=0.03)
+    assert groups["1"][8, 7].max() <= 0.02 * irradiance
+
+
+def test_cryptomatte_names_things_and_shares_pixels() -> None:
+    from shlight._core import cryptomatte_hash
+
+    # https://en.wikipedia.org/wiki/MurmurHash lists these for the seed 0.
+    assert [cryptomatte_hash(text) for text in ("", "test", "Hello, world!")] == [0, 0xBA6BD213, 0xC0363E43]
+    scene = shlight.Scene()
+    left = SQUARE + np.array([-1, 0, 0])
+    both = np.stack([np.eye(4), np.eye(4)])
+    both[1, 0, 3] = 2.0
+    scene.add_mesh(
+        left, FACES, transforms=both, object_names=["left", "right"], asset_names="pair", material_names=["matt"]
+    )
+    from_above(scene, 4.0)
+    names = [f"cryptomatte_{kind}" for kind in ("object", "material", "asset")]
+    passes = shlight.render(scene, 15, 15, passes=names, cryptomatte_levels=3, noise_threshold=0, max_samples=64)
+    identity = {name: np.uint32(cryptomatte_hash(name)).view(np.float32) for name in ("left", "right", "pair", "matt")}
+    mattes = {name: passes[name].reshape(15, 15, 4, 2) for name in names}
+    middle = mattes["cryptomatte_object"][7, 7]  # half of each
+    assert set(middle[:2, 0]) == {identity["left"], identity["right"]}
+    np.testing.assert_allclose(middle[:, 1], [0.5, 0.5, 0, 0], atol=1e-6)
+    for kind in ("asset", "material"):
+        np.testing.assert_allclose(
+            mattes[f"cryptomatte_{kind}"][7, 7, 0], [identity["pair" if kind == "asset" else "matt"], 1]
+        )
+    shares = mattes["cryptomatte_object"][..., 1]
+    np.testing.assert_allclose(shares.sum(axis=-1), passes["combined"][..., 3], atol=1e-6)
+    assert (np.diff(shares, axis=-1) <= 0).all()
+
+
+def test_aovs_are_what_materials_say() -> None:
+    scene = shlight.Scene()
+    place = nodes.position()
+    scene.add_mesh(
+        FLOOR / 9, FACES, bsdf=nodes.lambert(0.5).with_aovs({"height": 3.0 + place.x, "tint": (1.0, 0.5, 0.25)})
+    )
+    from_above(scene, 1.0)
+    passes = shlight.render(scene, 4, 4, aovs=True, max_samples=1)
+    x = np.broadcast_to([[-0.75, -0.25, 0.25, 0.75]], (4, 4))
+    np.testing.assert_allclose(passes["aov_height"][..., 0], 3.0 + x, atol=1e-6)
+    np.testing.assert_allclose(passes["aov_tint"], np.broadcast_to([1.0, 0.5, 0.25, 1.0], (4, 4, 4)))
+
+
+def test_passes_see_through_what_lets_light_through() -> None:
+    scene = lit_floor(object_indices=1)
+    veil = nodes.mix(nodes.transparent(), nodes.lambert(0.5), 0.25)
+    scene.add_mesh(SQUARE + np.array([0, 0, 1]), FACES, bsdf=veil, object_indices=2, object_names="veil")
+    options: dict[str, Any] = {"passes": ["depth", "object_index", "cryptomatte_object"], "max_samples": 1}
+    through = shlight.render(scene, 8, 8, **options)
+    kept = shlight.render(scene, 8, 8, alpha_threshold=0.2, **options)
+    assert through["depth"][4, 4, 0] == pytest.approx(10.0, abs=1e-5)
+    assert kept["depth"][4, 4, 0] == pytest.approx(9.0, abs=1e-5)
+    assert (through["object_index"] == 1).all()
+    assert set(np.unique(kept["object_index"])) == {1, 2}
+    assert kept["cryptomatte_object"][4, 4, 1] == pytest.approx(0.25)
+
+
+def test_passes_as_a_file_have_blenders_names(tmp_path: Path) -> None:
+    oiio = pytest.importorskip("OpenImageIO")
+    scene = lit_floor(object_names="floor", bsdf=nodes.lambert(0.5).with_aovs({"half": 0.5}))
+    scene.set_environment((1, 1, 1), group="sky")
+    names = ["depth", "normal", "diffuse_direct", "cryptomatte_object"]
+    passes = shlight.render(scene, 8, 4, passes=names, groups=True, aovs=True, max_samples=1, cryptomatte_levels=4)
+    write_layers(tmp_path / "layers.exr", passes)
+    file = oiio.ImageInput.open(str(tmp_path / "layers.exr"))
+    channels, pixels = list(file.spec().channelnames), file.read_image("float")
+    file.close()
+    expected = {
+        "Combined.A": passes["combined"][..., 3],
+        "Depth.Z": passes["depth"][..., 0],
+        "Normal.Y": passes["normal"][..., 1],
+        "DiffDir.G": passes["diffuse_direct"][..., 1],
+        "CryptoObject01.g": passes["cryptomatte_object"][..., 5],
+        "Combined_sky.R": passes["combined_sky"][..., 0],
+        "half.X": passes["aov_half"][..., 0],
+    }
+    for name, values in expected.items():
+        np.testing.assert_array_equal(pixels[..., channels.index(f"ViewLayer.{name}")], values, err_msg=name)
+    with pytest.raises(ValueError, match=r"^passes must"):
+        write_layers(tmp_path / "none.exr", {})
+
+
+@pytest.mark.parametrize(
+    ("argument", "options"),
+    [
+        ("passes", {"passes": ["deep"]}),
+        ("passes", {"passes": "depth"}),
+        ("passes", {"passes": ["depth", "depth"]}),
+        ("groups", {"groups": 1}),
+        ("aovs", {"aovs": "all"}),
+        ("alpha_threshold", {"alpha_threshold": 2.0}),
+        ("mist", {"mist": (1.0, 2.0)}),
+        ("mist", {"mist": (1.0, math.inf, 2.0)}),
+        ("cryptomatte_levels", {"cryptomatte_levels": 1}),
+    ],
+)
+def test_wrong_arguments_are_named(argument: str, options: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match=f"^{argument}"):
+        shlight.render(lit_floor(), 4, 4, **options)
+
+
+@pytest.mark.parametrize(
+    ("argument", "options"),
+    [
+        ("group", {"group": 3}),
+        ("group", {"group": ""}),
+        ("object_names", {"object_names": ["a", "b"]}),
+        ("material_names", {"material_names": [1]}),
+        ("object_indices", {"object_indices": [-1]}),
+        ("object_indices", {"object_indices": 0.5}),
+    ],
+)
+def test_wrong_labels_are_named(argument: str, options: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match=f"^{argument}"):
+        shlight.Scene().add_mesh(FLOOR, FACES, **options)
