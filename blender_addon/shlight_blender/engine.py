@@ -71,22 +71,24 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
     def _render_preview(self, depsgraph: Any) -> None:
         """The picture of a material, a light or a world in Blender's panels, empty if there can be none."""
         frame, image = frame_of(depsgraph.scene.render), None
+        if native_problem():
+            self._deliver(depsgraph, frame, {})
+            return
+        import shlight
+
+        from .export import ExportedScene, everything, kept_world, preview_settings
+
         try:
-            if not native_problem():
-                import shlight
-
-                from .export import ExportedScene, everything, kept_world, preview_settings
-
-                exported = ExportedScene()
-                exported.look_from(depsgraph, frame=frame)
-                exported.update(depsgraph, everything(), bake=kept_world)
-                image = shlight.render(
-                    exported.scene,
-                    frame.width,
-                    frame.height,
-                    progress=lambda share: not self.test_break(),
-                    **preview_settings(depsgraph.scene).arguments(),
-                )
+            exported = ExportedScene()
+            exported.look_from(depsgraph, frame=frame)
+            exported.update(depsgraph, everything(), bake=kept_world)
+            image = shlight.render(
+                exported.scene,
+                frame.width,
+                frame.height,
+                progress=lambda _: not self.test_break(),
+                **preview_settings(depsgraph.scene).arguments(),
+            )
         except (ExportError, shlight.RenderCancelled):
             pass
         except Exception:
@@ -243,20 +245,20 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             self.end_result(result)
 
     def view_update(self, context: Any, depsgraph: Any) -> None:
-        """Takes over what has changed for a viewport."""
-        self._viewport().update(context, depsgraph)
+        """Takes over what has changed for a viewport, or says there why it stays empty."""
+        if not hasattr(self, "_viewport"):
+            if problem := native_problem():
+                self.update_stats("", f"shlight: {problem}")
+                return
+            from .viewport import RenderedViewport
+
+            self._viewport = RenderedViewport(self)
+        self._viewport.update(context, depsgraph)
 
     def view_draw(self, context: Any, depsgraph: Any) -> None:
-        """Draws a viewport as far as it is rendered."""
-        self._viewport().draw(context, depsgraph)
-
-    def _viewport(self) -> Any:
-        """What the viewport shows that this engine was made for."""
-        from .viewport import RenderedViewport
-
-        if not hasattr(self, "_own_viewport"):
-            self._own_viewport = RenderedViewport(self)
-        return self._own_viewport
+        """Draws a viewport as far as it is rendered; Blender has called `view_update` before."""
+        if hasattr(self, "_viewport"):
+            self._viewport.draw(context, depsgraph)
 
 
 def _views(render: Any) -> list[str]:

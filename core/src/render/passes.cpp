@@ -87,7 +87,8 @@ bool Passes::first_pass() {
         const bool soon = seconds_left(rest) < kSoon;
         if (goes_on && grid.step > 1 && !soon) {
             fill_between(grid.step, picture_->width, picture_->height, image_);
-            goes_on = seconds() - shown_.seconds < kLeastBetweenGrids || show();
+            const bool is_due = shown_.seconds == 0 || seconds() - shown_.seconds >= kLeastBetweenGrids;
+            goes_on = !is_due || show();
         }
         grid = {soon && grid.step > 1 ? 1 : grid.step / 2, grid.step};
     }

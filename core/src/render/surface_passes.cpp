@@ -35,7 +35,6 @@ SurfacePasses::SurfacePasses(const CompiledScene& scene, const Camera& camera, c
         place_[static_cast<std::size_t>(kind)] = place.first;
         const bool is_aov = kind == Pass::aov_value || kind == Pass::aov_color;
         any_aov_ = any_aov_ || is_aov;
-        any_of_middle_ = any_of_middle_ || is_of_middle(kind);
         any_mean_ = any_mean_ || is_aov || kind == Pass::normal || kind == Pass::uv || kind == Pass::mist ||
                     kind == Pass::diffuse_color || kind == Pass::glossy_color || kind == Pass::denoising_normal ||
                     kind == Pass::denoising_albedo || kind == Pass::denoising_depth || is_matte(kind);

@@ -26,9 +26,8 @@ class SurfacePasses {
     SurfacePasses(const CompiledScene& scene, const Camera& camera, const PassSettings& settings,
                   const PassLayout& layout);
 
-    /// Whether any pass is one of these.
+    /// Whether any pass is a mean that add() sums up.
     bool any_mean() const { return any_mean_; }
-    bool any_of_middle() const { return any_of_middle_; }
     /// Adds to the sums of pixels what their rays, of which each has as many, have met. sums: pixels × layout.stride().
     void add(const CameraSurfaces& surfaces, std::size_t rays, std::size_t rays_per_pixel, std::span<double> sums);
     /// Writes what the one ray of each pixel has met. values: pixels × layout.stride().
@@ -68,7 +67,7 @@ class SurfacePasses {
     const PassSettings* settings_;
     const PassLayout* layout_;
     std::array<std::size_t, static_cast<std::size_t>(Pass::cryptomatte_asset) + 1> place_;
-    bool any_mean_ = false, any_of_middle_ = false, any_aov_ = false;
+    bool any_mean_ = false, any_aov_ = false;
     std::size_t matte_size_ = 0;  // numbers
     std::vector<RayState> rays_;
     std::vector<SurfaceLobe> lobes_;
