@@ -48,9 +48,10 @@ class RenderedViewport:
 
     def draw(self, context: Any, depsgraph: Any) -> None:
         """Draws the newest picture, and has another one made if the view has changed."""
-        if self._changes:
+        view_changed = self._needed(context, depsgraph) != self._shown
+        if self._changes and (view_changed or not self._error):
             self._follow(context, depsgraph, True)
-        elif self._needed(context, depsgraph.scene) != self._shown:
+        elif view_changed:
             self._follow(context, depsgraph, self._exported.is_of_one_camera)
         picture = self._maker.picture
         if picture is not self._picture:
@@ -59,16 +60,16 @@ class RenderedViewport:
             self._draw_texture(context.region, depsgraph.scene, picture)
         self._say(self._error or self._maker.error or (picture.status if picture else ""))
 
-    def _needed(self, context: Any, scene: Any) -> tuple[Any, ...]:
+    def _needed(self, context: Any, depsgraph: Any) -> tuple[Any, ...]:
         from .export import viewport_settings
 
-        return ViewportView.of(context, scene), viewport_settings(scene)
+        return ViewportView.of(context, depsgraph), viewport_settings(depsgraph.scene)
 
     def _follow(self, context: Any, depsgraph: Any, scene_may_change: bool) -> None:
         """Brings the scene up to date and has its picture made."""
-        from .export import Changes
+        from .export import Changes, ExportedScene, everything
 
-        needed = view, settings = self._needed(context, depsgraph.scene)
+        needed = view, settings = self._needed(context, depsgraph)
         start = time.perf_counter()
         try:
             self._exported.look_through(view)
@@ -80,6 +81,8 @@ class RenderedViewport:
         except Exception as error:
             if not isinstance(error, ExportError):
                 traceback.print_exc()
+            # The scene may have been left half changed.
+            self._exported, self._changes = ExportedScene(), everything()
             self._error, self._shown = f"shlight: {error}", needed
             return
         if changed:

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from .frame import Frame
+from .frame import Frame, frame_of
 
 Matrix = NDArray[np.float64]
 
@@ -22,6 +22,8 @@ class ViewportView:
     """The view of a region; equal if the pictures are.
 
     to_world, projection: 4 x 4, row by row, as `export.camera.set_projection` takes them.
+    aperture: as of `export.lens.aperture_of`. panorama: as of `export.lens.panorama_of`; None: the picture is plane.
+    window: what of the whole panorama the region's frame shows: left, right, bottom and top; 0 ... 1 is all of it.
     """
 
     frame: Frame
@@ -29,34 +31,49 @@ class ViewportView:
     projection: tuple[float, ...]
     clips: tuple[float, float]
     orthographic: bool
+    aperture: dict[str, float]
+    panorama: dict[str, Any] | None
+    window: tuple[float, ...]
 
     @staticmethod
-    def of(context: Any, scene: Any) -> ViewportView:
+    def of(context: Any, depsgraph: Any) -> ViewportView:
         """The view of the region that is drawn."""
-        view, space = context.region_data, context.space_data
+        from .export import aperture_of, panorama_of
+
+        scene, view, space = depsgraph.scene, context.region_data, context.space_data
         to_world = np.linalg.inv(np.array(view.view_matrix, dtype=np.float64))
         projection = np.array(view.window_matrix, dtype=np.float64)
         by_camera = view.view_perspective == "CAMERA" and space.camera is not None
-        lens = space.camera.data if by_camera and space.camera.type == "CAMERA" else space
+        camera = space.camera if by_camera and space.camera.type == "CAMERA" else None
+        lens = camera.evaluated_get(depsgraph).data if camera else space
         clips = float(lens.clip_start), float(lens.clip_end)
         if not view.is_perspective and not by_camera:
             # An orthographic view of no camera shows what lies behind its eye too.
             to_world[:3, 3] += clips[1] * to_world[:3, 2]
             clips = 0.0, 2.0 * clips[1]
+        frame = _frame(context, scene, projection if by_camera else None)
+        panoramic = camera is not None and lens.type == "PANO"
         return ViewportView(
-            _frame(context, scene, projection if by_camera else None),
+            frame,
             tuple(to_world.ravel()),
             tuple(projection.ravel()),
             clips,
             not view.is_perspective,
+            aperture_of(lens, to_world, depsgraph) if camera else {},
+            panorama_of(lens, frame_of(scene.render), scene.render) if panoramic else None,
+            _panorama_window(scene, camera, projection, frame) if panoramic else (),
         )
 
     def set_camera(self, scene: Any) -> Any:
-        """Gives it to a shlight.Scene; returns the `export.camera.View`."""
-        from .export import set_projection
+        """Gives it to a shlight.Scene; returns the `export.camera.View`; ExportError as of `set_panorama`."""
+        from .export import set_panorama, set_projection
 
         to_world, projection = (np.reshape(matrix, (4, 4)) for matrix in (self.to_world, self.projection))
-        return set_projection(scene, to_world, projection, self.frame, self.clips, orthographic=self.orthographic)
+        if self.window:
+            return set_panorama(scene, to_world, self.window, self.clips, self.panorama, self.aperture)
+        return set_projection(
+            scene, to_world, projection, self.frame, self.clips, self.aperture, orthographic=self.orthographic
+        )
 
 
 def pixel_size(scene: Any) -> int:
@@ -83,11 +100,27 @@ def _frame(context: Any, scene: Any, camera_projection: Matrix | None) -> Frame:
     return Frame(width, height, left, bottom, right, top)
 
 
-def _camera_border(scene: Any, camera: Any, projection: Matrix) -> tuple[Matrix, Matrix]:
-    """The lower left and upper right corner of the scene's render border, as shares of the region."""
+def _camera_frame(scene: Any, camera: Any, projection: Matrix) -> tuple[Matrix, Matrix]:
+    """The lower left and upper right corner of what renders show, as shares of the region."""
     corners = np.array([(*corner, 1.0) for corner in camera.data.view_frame(scene=scene)]) @ projection.T
     shares = 0.5 + 0.5 * corners[:, :2] / corners[:, 3:]
-    low, high = shares.min(axis=0), shares.max(axis=0)
+    return shares.min(axis=0), shares.max(axis=0)
+
+
+def _panorama_window(scene: Any, camera: Any, projection: Matrix, frame: Frame) -> tuple[float, ...]:
+    """A panorama fills the camera's frame, as in Cycles, and goes on around it where it can."""
+    low, high = _camera_frame(scene, camera, projection)
+    shift, full = [camera.data.shift_x, camera.data.shift_y], [frame.full_width, frame.full_height]
+    start, end = (
+        (np.array(corner) / full - low) / (high - low) + shift
+        for corner in ((frame.left, frame.bottom), (frame.right, frame.top))
+    )
+    return float(start[0]), float(end[0]), float(start[1]), float(end[1])
+
+
+def _camera_border(scene: Any, camera: Any, projection: Matrix) -> tuple[Matrix, Matrix]:
+    """The lower left and upper right corner of the scene's render border, as shares of the region."""
+    low, high = _camera_frame(scene, camera, projection)
     render = scene.render
     least = np.array([render.border_min_x, render.border_min_y])
     most = np.array([render.border_max_x, render.border_max_y])

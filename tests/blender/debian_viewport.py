@@ -126,6 +126,21 @@ def world():
     bpy.data.worlds["World"].node_tree.nodes["Background"].inputs["Color"].default_value = (0.1, 0.2, 0.4, 1)
 
 
+def depth_of_field():
+    lens = bpy.context.scene.camera.data
+    lens.dof.use_dof, lens.dof.focus_object, lens.dof.aperture_fstop = True, bpy.data.objects["Floor"], 0.1
+
+
+def panorama():
+    lens = bpy.context.scene.camera.data
+    lens.type, lens.cycles.panorama_type = "PANO", "EQUIRECTANGULAR"
+
+
+def perspective():
+    bpy.context.scene.camera.data.type = "PERSP"
+    bpy.context.scene.camera.data.dof.use_dof = False
+
+
 CHANGES = {
     "select": lambda: cube().select_set(not cube().select_get()),
     "move a lamp": lambda: setattr(bpy.data.objects["Light"], "location", (1, -3, 4)),
@@ -144,6 +159,9 @@ CHANGES = {
     "undo": undo,
     "orthographic": lambda: setattr(area().spaces[0].region_3d, "view_perspective", "ORTHO"),
     "camera": lambda: setattr(area().spaces[0].region_3d, "view_perspective", "CAMERA"),
+    "depth of field": depth_of_field,
+    "panorama": panorama,
+    "in focus": perspective,
     "local view": local_view,
 }
 

@@ -4,8 +4,9 @@
 from ..frame import Frame, frame_of, whole_frame
 from ..report import ExportError, ExportReport
 from .bake import bake_in_background, kept_world
-from .camera import Eye, set_projection
+from .camera import Eye, set_panorama, set_projection
 from .changes import Changes, changes_of, everything
+from .lens import aperture_of, panorama_of
 from .scene import ExportedScene, export_scene
 from .settings import RenderSettings, preview_settings, render_settings, viewport_settings
 
@@ -17,14 +18,17 @@ __all__ = [
     "Eye",
     "Frame",
     "RenderSettings",
+    "aperture_of",
     "bake_in_background",
     "changes_of",
     "everything",
     "export_scene",
     "frame_of",
     "kept_world",
+    "panorama_of",
     "preview_settings",
     "render_settings",
+    "set_panorama",
     "set_projection",
     "viewport_settings",
     "whole_frame",

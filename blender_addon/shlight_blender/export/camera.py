@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -61,13 +61,15 @@ def set_camera(scene: shlight.Scene, eye: Eye, depsgraph: Any, frame: Frame, ren
     aperture = aperture_of(lens, to_world, depsgraph)
     clips = float(lens.clip_start), float(lens.clip_end)
     if lens.type == "PANO":
-        panorama = panorama_of(lens, frame, render)
-        if panorama is None:
-            raise ExportError(f"{place}: a panorama of its type is not supported; choose another Panorama Type")
         if render.use_multiview and lens.stereo.use_spherical_stereo:
             report.add(place, "spherical stereo is not supported; each eye sees all directions from one point")
-        shift = eye.shift_x, float(lens.shift_y)
-        return _set_panorama(scene, to_world, frame, shift, clips, {**panorama, **aperture})
+        window = (
+            frame.left / frame.full_width + eye.shift_x,
+            frame.right / frame.full_width + eye.shift_x,
+            frame.bottom / frame.full_height + float(lens.shift_y),
+            frame.top / frame.full_height + float(lens.shift_y),
+        )
+        return set_panorama(scene, to_world, window, clips, panorama_of(lens, frame, render), aperture)
     projection = _projection(eye, camera, depsgraph, frame, render)
     return set_projection(scene, to_world, projection, frame, clips, aperture, orthographic=lens.type == "ORTHO")
 
@@ -102,23 +104,32 @@ def set_projection(
     return _view(to_world, projection, orthographic=orthographic)
 
 
-def _set_panorama(
+def set_panorama(
     scene: shlight.Scene,
     to_world: Matrix,
-    frame: Frame,
-    shift: tuple[float, float],
+    window: Sequence[float],
     clips: tuple[float, float],
-    panorama: Mapping[str, Any],
+    panorama: Mapping[str, Any] | None,
+    aperture: Mapping[str, Any],
 ) -> View:
+    """Gives `scene` a camera whose picture is no plane; ExportError without a panorama.
+
+    to_world: 4 x 4, without scale. window: left, right, bottom and top of the whole panorama, which is 0 ... 1.
+    panorama, aperture: as of `panorama_of` and `aperture_of`.
+    """
+    if panorama is None:
+        raise ExportError("the camera's type of panorama is not supported; choose another Panorama Type")
+    left, right, bottom, top = window
     scene.set_panorama_camera(
         to_world,
-        left=frame.left / frame.full_width + shift[0],
-        right=frame.right / frame.full_width + shift[0],
-        bottom=frame.bottom / frame.full_height + shift[1],
-        top=frame.top / frame.full_height + shift[1],
+        left=left,
+        right=right,
+        bottom=bottom,
+        top=top,
         clip_start=clips[0],
         clip_end=clips[1],
         **panorama,
+        **aperture,
     )
     right, up, back = np.linalg.inv(to_world)[:3]
     rows = (right, back, up) if panorama["panorama_type"] == "mirrorball" else (-back, -right, up)
