@@ -201,8 +201,11 @@ def _checked_path(path: str | os.PathLike[str]) -> Path:
 
 
 @contextmanager
-def _complete_or_absent(path: Path) -> Iterator[Path]:
-    """A new empty file beside `path`, renamed to it when the block ends well and removed when not."""
+def complete_or_absent(path: Path) -> Iterator[Path]:
+    """A new empty file beside `path`, renamed to it when the block ends well and removed when not.
+
+    It is on the disk before it is renamed, so that no crash of the machine leaves half of it under this name.
+    """
     temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
     try:
         temporary.touch(exist_ok=False)
@@ -210,6 +213,8 @@ def _complete_or_absent(path: Path) -> Iterator[Path]:
         raise OSError(error.errno, error.strerror, str(path)) from None
     try:
         yield temporary
+        with temporary.open("rb") as file:
+            os.fsync(file.fileno())
         temporary.replace(path)
     except BaseException:
         temporary.unlink(missing_ok=True)
@@ -231,7 +236,7 @@ def _write(
     spec.channelnames = names or _CHANNEL_NAMES[channels]
     for name, value in attributes.items():
         spec.attribute(name, value)
-    with _complete_or_absent(path) as temporary:
+    with complete_or_absent(path) as temporary:
         target = oiio.ImageOutput.create(file_format)
         if target is None:
             raise OSError(f"{path}: {oiio.geterror().strip()}")

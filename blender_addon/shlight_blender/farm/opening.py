@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A scene opened for final renders that write no file but the picture's, and what the user changes of it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from .. import register as register_addon
+from ..comparison.scene import SceneError, open_scene
+from ..frame import frame_of
+from ..running import ENGINE
+from .quiet import quiet
+
+NUMBERS = {"FLOAT": float, "INT": int}
+FLAGS = {"1": True, "true": True, "on": True, "0": False, "false": False, "off": False}
+
+
+def open_for_farm(path: Path) -> Any:
+    """Opens a Blender file, whose own scripts do not run, or runs a script with build_scene()."""
+    with quiet():
+        scene = open_scene(path)
+    bpy.context.window.scene = scene
+    bpy.ops.preferences.addon_enable(module="cycles")  # the pixel filter is one of its settings
+    register_addon()
+    render = scene.render
+    render.engine = ENGINE
+    render.use_crop_to_border = True
+    render.use_stamp = False
+    render.use_persistent_data = False
+    return scene
+
+
+def closed_to_others(scene: Any) -> list[str]:
+    """What the file asks to be done with pictures and is not done, in words."""
+    render, left_out = scene.render, []
+    if render.use_compositing and getattr(scene, "node_tree", None) is not None:
+        left_out.append("compositing is left out; do it with the files")
+    if render.use_sequencer and scene.sequence_editor is not None:
+        left_out.append("the sequencer is left out")
+    return [f"Scene '{scene.name}': {text}" for text in left_out]
+
+
+def apply_settings(scene: Any, settings: Mapping[str, Any]) -> None:
+    """Sets properties by their path from the scene, "shlight.noise_threshold" for instance; ValueError if it cannot."""
+    for path, value in settings.items():
+        owner_path, _, name = path.rpartition(".")
+        try:
+            owner = scene.path_resolve(owner_path) if owner_path else scene
+            rule = owner.bl_rna.properties[name]
+        except (ValueError, KeyError, AttributeError):
+            raise ValueError(f"set: the scene has no property '{path}'") from None
+        if rule.is_readonly or rule.type not in {*NUMBERS, "BOOLEAN", "ENUM", "STRING"}:
+            raise ValueError(f"set: '{path}' cannot be set")
+        setattr(owner, name, _value_of(path, value, rule))
+
+
+def _value_of(path: str, value: Any, rule: Any) -> Any:
+    """What is given as the property wants it."""
+    try:
+        if rule.type in NUMBERS and not getattr(rule, "is_array", False):
+            number = NUMBERS[rule.type](value)
+            if not rule.hard_min <= number <= rule.hard_max:
+                raise ValueError(f"set: {path} must be {rule.hard_min:g} … {rule.hard_max:g}, got {value}")
+            return number
+        if rule.type == "BOOLEAN":
+            return FLAGS[str(value).lower()]
+        if rule.type == "ENUM" and str(value) not in rule.enum_items:
+            raise ValueError(f"set: {path} must be one of {', '.join(rule.enum_items.keys())}, got {value}")
+    except (KeyError, TypeError, ValueError) as error:
+        if str(error).startswith("set: "):
+            raise
+        raise ValueError(f"set: {path} cannot be {value!r}") from None
+    return str(value)
+
+
+def set_size(render: Any, scale: float) -> tuple[int, int]:
+    """Scales the picture; width and height of what is rendered of it."""
+    for axis in ("resolution_x", "resolution_y"):
+        full = getattr(render, axis) * render.resolution_percentage / 100
+        setattr(render, axis, max(4, round(full * scale)))  # Blender has no smaller ones
+    render.resolution_percentage = 100
+    frame = frame_of(render)
+    return frame.width, frame.height
+
+
+def views_of(scene: Any, wanted: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
+    """Names of views or cameras, and what is added to files' names; nothing of a file gets into those as it is."""
+    render = scene.render
+    if render.use_multiview:
+        suffixes = {view.name: view.file_suffix for view in render.views if view.use}
+        chosen = wanted or tuple(suffixes)
+    else:
+        suffixes = {seen.name: f"_{seen.name}" for seen in scene.objects if seen.type == "CAMERA"}
+        chosen = wanted or ("",)
+    for name in chosen:
+        if name and name not in suffixes:
+            raise SceneError(f"there is no view or camera '{name}' in it, but {', '.join(suffixes) or 'none'}")
+    views = tuple((name, re.sub(r"[^\w.-]", "_", suffixes[name]) if name else "") for name in dict.fromkeys(chosen))
+    if len({suffix for _, suffix in views}) < len(views):
+        raise SceneError("views have the same suffix for their files")
+    return views

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""The command line of `shlight render`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import Any
+
+from shlight.commands import CommandError, Parser, run_command
+from shlight.farm.frames import parse_frames
+from shlight.farm.render import render_frames
+from shlight.farm.tls import Tls
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Runs the command; its exit code: 2 for a request that cannot be met, 1 where frames failed."""
+    arguments = sys.argv[1:] if argv is None else argv
+    return run_command("render", lambda: _work(arguments), when_interrupted="the files that are there are whole")
+
+
+def _work(arguments: list[str]) -> None:
+    values = vars(_parser().parse_args(arguments))
+    tls = [values.pop(name) for name in ("tls_ca", "tls_cert", "tls_key")]
+    if any(tls) and not all(tls):
+        raise CommandError("--tls-ca, --tls-cert and --tls-key belong together", 2)
+    try:
+        outcome = render_frames(
+            values.pop("scene"),
+            values.pop("frames"),
+            values.pop("out"),
+            views=[name for names in values.pop("views") for name in names.split(",")],
+            settings=dict(values.pop("settings")),
+            tls=Tls(*tls) if all(tls) else None,
+            **values,
+        )
+    except ValueError as error:
+        raise CommandError(str(error), 2) from None
+    if outcome.failed:
+        raise CommandError(f"{len(outcome.failed)} failed; the same command renders them again", 1)
+
+
+def _frames(text: str) -> list[int]:
+    try:
+        return parse_frames(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def _setting(text: str) -> tuple[str, str]:
+    name, sign, value = text.partition("=")
+    if not name or not sign:
+        raise argparse.ArgumentTypeError(f"'{text}' is no setting such as shlight.noise_threshold=0.005")
+    return name, value
+
+
+def _scale(text: str) -> float:
+    try:
+        return float(text.removesuffix("%")) / (100.0 if text.endswith("%") else 1.0)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is no factor such as 0.5 or 50%") from None
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = Parser(
+        prog="shlight render",
+        description="Renders frames of a scene to OpenEXR files: in this process, in several on this machine, or on the "
+        "workers of a Dask scheduler. Frames whose files are whole and of this scene and these settings are kept.",
+    )
+    add: Any = parser.add_argument
+    add("scene", help="a Blender file, or a script with a function build_scene()")
+    add(
+        "--frames", type=_frames, required=True, metavar="A-B[:STEP]", help="frames such as 7, 1-250, 1-250:10 or 1,5,9"
+    )
+    add("--out", required=True, metavar="FILE", help="files such as shot_####.exr; #### becomes the frame")
+    add("--views", action="append", default=[], metavar="NAME,…", help="views of the scene, or cameras (default: all "
+        "views, or the scene's camera)")  # fmt: skip
+    add("--scale", type=_scale, default=1.0, metavar="X", help="of width and height, such as 0.5 or 50%%")
+    add("--set", type=_setting, action="append", default=[], dest="settings", metavar="NAME=VALUE",
+        help="a property of the scene, such as shlight.noise_threshold=0.005")  # fmt: skip
+    add("--tile", type=int, metavar="N", help="side of the tiles of a picture, 0: none (default: 1024 for more than "
+        "2^24 pixels)")  # fmt: skip
+    add("--force", action="store_true", help="render frames whose files are whole too")
+    add("--retries", type=int, default=1, metavar="N", help="of a frame that has failed (default: %(default)s)")
+    add(
+        "--threads",
+        type=int,
+        metavar="N",
+        help="of each worker (default: all cores, shared by workers on this machine)",
+    )
+    group: Any = parser.add_argument_group("workers").add_argument
+    group("--workers", type=int, metavar="N", help="processes on this machine, 0: this one alone, without Dask (default: "
+          "one for each core, and none for a single picture)")  # fmt: skip
+    group("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://host:8786 or tls://host:8786")
+    group("--send", action="store_true", help="send the file, its textures and libraries to workers")
+    for name, text in (("ca", "authority that has signed"), ("cert", "own certificate"), ("key", "its key")):
+        group(f"--tls-{name}", metavar="FILE", help=f"{text}, PEM; all connections are encrypted")
+    return parser

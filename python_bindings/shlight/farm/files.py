@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""OpenEXR files of pictures: written whole or by tiles, and known again by the hash in their header."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shlight.farm.pictures import Box, Picture, Rendered
+from shlight.images import complete_or_absent
+
+KEY = "shlight:key"
+TILE = 64  # side of the file's tiles
+ROWS = 256  # that are read at once
+
+
+def encode(picture: Picture, rendered: Rendered) -> bytes:
+    """The file of a picture: 32-bit float OpenEXR, compressed without loss. OSError where it cannot be made."""
+    with tempfile.TemporaryDirectory(prefix="shlight-") as folder:
+        path = Path(folder) / "picture.exr"
+        target = _opened(path, _spec(picture, rendered))
+        done = target.write_image(np.ascontiguousarray(rendered.pixels))
+        if not (target.close() and done):
+            raise OSError(f"{path}: {target.geterror().strip() or 'the file could not be written'}")
+        return path.read_bytes()
+
+
+def write(path: Path, data: bytes) -> None:
+    """Puts a file in its place, whole or not at all."""
+    with complete_or_absent(path) as temporary:
+        temporary.write_bytes(data)
+
+
+class TiledFile:
+    """A picture that is written tile by tile, as they come, and appears under its name when all are there."""
+
+    def __init__(self, picture: Picture) -> None:
+        self._picture = picture
+        self._missing = set(picture.boxes)
+        self._stack = ExitStack()
+        self._target: Any = None
+        self._temporary = Path()
+
+    def add(self, box: Box, tile: Rendered) -> bool:
+        """Writes one; whether the file is complete with it. OSError leaves no file."""
+        if self._target is None:
+            spec = _spec(self._picture, tile)
+            spec.tile_width = spec.tile_height = TILE
+            spec.attribute("openexr:lineOrder", "randomY")  # else what comes early would be kept in memory
+            self._temporary = self._stack.enter_context(complete_or_absent(self._picture.path))
+            self._target = _opened(self._temporary, spec)
+        left, top, right, bottom = box
+        pixels = np.ascontiguousarray(tile.pixels, dtype=np.float32)
+        if not self._target.write_tiles(left, right, top, bottom, 0, 1, pixels):
+            raise OSError(f"{self._picture.path}: {self._target.geterror().strip()}")
+        self._missing.discard(box)
+        if self._missing:
+            return False
+        if not self._target.close():
+            raise OSError(f"{self._picture.path}: {self._target.geterror().strip()}")
+        self._stack.close()
+        return True
+
+    def drop(self) -> None:
+        """Leaves no file of one that is not complete."""
+        if self._target is not None and self._missing:
+            self._target.close()
+            self._stack.__exit__(OSError, OSError(), None)
+
+
+def is_whole(picture: Picture) -> bool:
+    """Whether its file is there, is of this scene and these settings, and can be read to its end."""
+    import OpenImageIO as oiio
+
+    if not picture.path.is_file():
+        return False
+    source = oiio.ImageInput.open(str(picture.path))
+    if source is None:
+        oiio.geterror()
+        return False
+    try:
+        spec = source.spec()
+        if spec.getattribute(KEY) != picture.key or (spec.width, spec.height) != picture.size:
+            return False
+        return all(_rows(source, spec, top) is not None for top in range(0, spec.height, ROWS))
+    finally:
+        source.geterror()
+        source.close()
+
+
+def _rows(source: Any, spec: Any, top: int) -> NDArray[Any] | None:
+    end = min(top + ROWS, spec.height)
+    if spec.tile_width:
+        return source.read_tiles(0, spec.width, top, end, 0, 1, "float")
+    return source.read_scanlines(top, end, 0, 0, spec.nchannels, "float")
+
+
+def _spec(picture: Picture, rendered: Rendered) -> Any:
+    import OpenImageIO as oiio
+
+    spec = oiio.ImageSpec(*picture.size, len(rendered.channels), "float")
+    spec.channelnames = rendered.channels
+    # OpenImageIO would add the time; without it the same picture is the same file.
+    fixed = {"compression": "zip", "DateTime": "1970:01:01 00:00:00", KEY: picture.key}
+    for name, value in {**rendered.attributes, **fixed}.items():
+        spec.attribute(name, value)
+    return spec
+
+
+def _opened(path: Path, spec: Any) -> Any:
+    import OpenImageIO as oiio
+
+    target = oiio.ImageOutput.create("openexr")
+    if target is None or not target.open(os.fspath(path), spec):
+        raise OSError(f"{path}: {(target or oiio).geterror().strip()}")
+    return target

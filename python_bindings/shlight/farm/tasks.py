@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: MIT
+"""One task: a picture or a tile, where it is rendered."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cache
+
+from shlight.farm import files
+from shlight.farm.pictures import Picture, Rendered, Source
+
+
+@dataclass(frozen=True)
+class Task:
+    """A tile of a picture, or all of it."""
+
+    picture: Picture
+    number: int  # of the tile
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a task gives back: the file of a picture, or a tile; and what the user is to know."""
+
+    made: bytes | Rendered
+    messages: Sequence[str]
+
+
+def perform_on_worker(source: Source, task: Task, threads: int) -> Result:
+    """As `perform`, always in the same thread of a worker's process: Blender stays in the one where it began."""
+    return _render_thread().submit(perform, source, task, threads).result()
+
+
+def perform(source: Source, task: Task, threads: int) -> Result:
+    """Renders it."""
+    picture = task.picture
+    rendered = source.render(picture.frame, picture.view, picture.boxes[task.number], threads)
+    if picture.is_whole:
+        return Result(files.encode(picture, rendered), rendered.messages)
+    return Result(rendered, rendered.messages)
+
+
+@cache
+def _render_thread() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(1, thread_name_prefix="shlight render")

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: MIT
+"""Encryption and mutual authentication of all connections."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Tls:
+    """PEM files: the authority that has signed the certificates of all, the own certificate, and its key."""
+
+    ca: str
+    cert: str
+    key: str
+
+    def check(self) -> None:
+        """Raises OSError naming a file that cannot be read."""
+        for path in (self.ca, self.cert, self.key):
+            with Path(path).open("rb"):
+                pass
+
+    def security(self) -> Any:
+        """What Dask wants; scheduler, workers and client of a cluster on this machine share the certificate."""
+        from distributed.security import Security
+
+        roles = ("scheduler", "worker", "client")
+        own = {
+            f"tls_{role}_{kind}": value for role in roles for kind, value in (("cert", self.cert), ("key", self.key))
+        }
+        return Security(tls_ca_file=self.ca, require_encryption=True, **own)
