@@ -58,9 +58,13 @@ class SceneRays {
     /// The same of surfaces that are not opaque alone.
     void transmittance(std::span<const Ray> rays, std::uint32_t transparent_bounces, std::span<Rgb> visible) const;
 
+    /// About all surfaces.
+    const class OccluderBoxes& boxes() const { return *boxes_; }
+
   private:
     class Part;
     std::shared_ptr<const Part> opaque_, transparent_;  // null: there are none
+    std::shared_ptr<const OccluderBoxes> boxes_;
     const SurfaceTransparency* transparency_;
 };
 

@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "lights/light_bounds.h"
 #include "shlight/sampling.h"
 
 namespace shlight {
 ShadowedLight::ShadowedLight(const ShadowTracer& tracer, std::span<const MaterialLobes> materials,
                              std::size_t lobe_stride, const LightParts& parts)
-    : materials_(materials),
+    : tracer_(&tracer),
+      materials_(materials),
       lobe_stride_(lobe_stride),
       rays_(tracer, materials, lobe_stride),
       brightness_(lobe_stride),
@@ -31,19 +34,37 @@ void ShadowedLight::add(std::span<const Light* const> lights, const DirectLight&
 
 void ShadowedLight::add_light(const Light& light, std::size_t index, std::uint32_t number,
                               std::span<const std::uint32_t> pixel_seeds, Hits& hits) {
+    const std::optional<LightBounds> bounds = bounds_of(light);
+    std::size_t asked = 0;  // the pixels before this one
+    bool is_free = !shadows_;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
         if (!(brightness_.of_pixel(index, pixel) > 0) || dim_.is_dim(index, pixel)) {
             continue;
         }
+        if (shadows_ && bounds && pixel >= asked) {
+            asked = gather_starts(pixel, hits);
+            is_free = !tracer_->may_block(starts_, *bounds);
+        }
         const LitRange range = find_lit(light, hits, pixel);
         if (range.size() > 0) {
-            pixels_.push_back({range, pixel, samples_of(index, pixel), hash(pixel_seeds[pixel], number)});
+            const std::uint32_t seed = hash(pixel_seeds[pixel], number);
+            pixels_.push_back({range, pixel, samples_of(index, pixel), seed, is_free});
         }
         if (lit_.hit.size() >= kHitsAtOnce) {
             shade_lit(light, hits);
         }
     }
     shade_lit(light, hits);
+}
+
+std::size_t ShadowedLight::gather_starts(std::size_t pixel, const Hits& hits) {
+    starts_.clear();
+    for (; pixel < hits.pixel_count() && starts_.size() < kHitsAtOnce; ++pixel) {
+        for (std::size_t hit = hits.pixel_begin[pixel]; hit < hits.pixel_begin[pixel + 1]; ++hit) {
+            starts_.emplace_back(hits.shadow_origin[hit]);
+        }
+    }
+    return pixel;
 }
 
 SampleRange ShadowedLight::samples_of(std::size_t index, std::size_t pixel) const {
@@ -77,13 +98,15 @@ bool ShadowedLight::is_glossy(std::uint32_t material) const {
 
 void ShadowedLight::shade_lit(const Light& light, Hits& hits) {
     rays_.start(light, hits, lit_);
-    for (const LitPixel& pixel : shadows_ ? std::span(pixels_) : std::span<const LitPixel>()) {
-        rays_.draw(pixel.range, first_phase(pixel.samples), pixel.seed);
+    for (const LitPixel& pixel : pixels_) {
+        if (!pixel.is_free) {
+            rays_.draw(pixel.range, first_phase(pixel.samples), pixel.seed);
+        }
     }
     rays_.trace();
     partly_.clear();
     for (const LitPixel& pixel : pixels_) {
-        const ShadowRays::Verdict verdict = shadows_ ? rays_.verdict(pixel.range) : ShadowRays::Verdict::free;
+        const ShadowRays::Verdict verdict = pixel.is_free ? ShadowRays::Verdict::free : rays_.verdict(pixel.range);
         if (verdict == ShadowRays::Verdict::free) {
             shade_unblocked(pixel.range, hits);
             continue;

@@ -56,6 +56,7 @@ class ShadowedLight {
         std::size_t pixel;
         SampleRange samples;
         std::uint32_t seed;
+        bool is_free;  // without any ray
     };
 
     void add_light(const Light& light, std::size_t index, std::uint32_t number,
@@ -73,6 +74,8 @@ class ShadowedLight {
     bool shines(std::size_t lit_index, std::size_t lobe) const {
         return lit_.shines[lit_index * lobe_stride_ + lobe] != 0;
     }
+    /// Pixels from this one on that may be asked together whether anything blocks a light; returns the next one.
+    std::size_t gather_starts(std::size_t pixel, const Hits& hits);
     void shade_unblocked(const LitRange& pixel, Hits& hits) const;
     void shade(const LitRange& pixel, Hits& hits);
     void shade_lobe(const LitRange& pixel, std::size_t lobe, Hits& hits);
@@ -84,6 +87,7 @@ class ShadowedLight {
         std::uint32_t hits = 0;
     };
 
+    const ShadowTracer* tracer_;
     std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
     ShadowRays rays_;
@@ -100,6 +104,7 @@ class ShadowedLight {
     std::vector<RaySums> hit_sums_;          // of one lobe, by lit hit of a pixel
     std::vector<PointSums> point_sums_;      // likewise, by shading point
     std::vector<Rgb> deviation_;             // of the light by lit hit of a pixel, from its few rays
+    std::vector<Vec3f> starts_;              // of the shadow rays of some pixels
 };
 
 }  // namespace shlight

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "shlight/scene_rays.h"
+#include "tracing/occluder_boxes.h"
 
 namespace shlight {
 
@@ -20,6 +21,10 @@ class ShadowTracer {
     }
     void transmittance(std::span<const Ray> rays, std::span<Rgb> visible) const {
         rays_->transmittance(rays, transparent_bounces_, visible);
+    }
+    /// See OccluderBoxes.
+    bool may_block(std::span<const Vec3f> points, const LightBounds& light) const {
+        return rays_->boxes().may_block(points, light);
     }
     void intersect_opaque(std::span<const Ray> rays, std::span<RayHit> hits) const {
         rays_->intersect_opaque(rays, hits);
