@@ -49,6 +49,8 @@ class SceneRays {
     SceneRays& operator=(const SceneRays&) = delete;
     ~SceneRays();
 
+    /// Whether all surfaces are.
+    bool is_opaque() const { return transparent_ == nullptr; }
     /// The first surface that each ray meets, opaque or not.
     void intersect(std::span<const Ray> rays, std::span<RayHit> hits) const;
     void intersect_opaque(std::span<const Ray> rays, std::span<RayHit> hits) const;

@@ -16,6 +16,8 @@ class ShadowTracer {
     ShadowTracer(const SceneRays& rays, std::uint32_t transparent_bounces)
         : rays_(&rays), transparent_bounces_(transparent_bounces) {}
 
+    /// Whether the share of light along a ray is 0 or 1 everywhere.
+    bool is_opaque() const { return rays_->is_opaque(); }
     void visibility(std::span<const Ray> rays, std::span<Rgb> visible) const {
         rays_->visibility(rays, transparent_bounces_, visible);
     }
