@@ -153,30 +153,33 @@ void ShadowedLight::shade(const LitRange& pixel, Hits& hits) {
 
 void ShadowedLight::shade_lobe(const LitRange& pixel, std::size_t lobe, Hits& hits) {
     const auto lit_hits = std::span(lit_.hit).subspan(pixel.begin, pixel.size());
-    const auto [first, last] = std::minmax_element(lit_hits.begin(), lit_hits.end(), [&](std::size_t a, std::size_t b) {
-        return points_->of_hit[a] < points_->of_hit[b];
-    });
-    const std::uint32_t first_point = points_->of_hit[*first];
     hit_sums_.assign(lit_hits.size(), {});
-    point_sums_.assign(points_->of_hit[*last] - first_point + 1, {});
+    material_sums_.clear();
     for (std::size_t i = 0; i < lit_hits.size(); ++i) {
         if (!shines(pixel.begin + i, lobe)) continue;
         hit_sums_[i] = rays_.sum(pixel.begin + i, lobe);
-        PointSums& of_point = point_sums_[points_->of_hit[lit_hits[i]] - first_point];
-        of_point.all += hit_sums_[i].all;
-        ++of_point.hits;
+        MaterialSums& sums = sums_of(hits, lit_hits[i], lobe);
+        sums.unblocked += Vec3d(scaled_radiance(hits, lit_hits[i], lobe));
+        sums.rays += Vec3d(glm::abs(hits.weight(lit_hits[i], lobe))) * hit_sums_[i].all;
     }
     for (std::size_t i = 0; i < lit_hits.size(); ++i) {
         if (!shines(pixel.begin + i, lobe)) continue;
-        const std::size_t hit = lit_hits[i];
-        const RaySums& sums = hit_sums_[i];
-        const PointSums& of_point = point_sums_[points_->of_hit[hit] - first_point];
-        const Vec3d share = quotient(static_cast<double>(of_point.hits) * sums.seen, of_point.all);
-        const Rgb unblocked = scaled_radiance(hits, hit, lobe);
-        hits.reflect(hit, lobe, group_, unblocked * Rgb(share));
+        const MaterialSums& all = sums_of(hits, lit_hits[i], lobe);
+        const Vec3d seen = Vec3d(glm::abs(hits.weight(lit_hits[i], lobe))) * hit_sums_[i].seen;
+        hits.reflect(lit_hits[i], lobe, group_, Rgb(all.unblocked * quotient(seen, all.rays)));
         // The lobes of a hit share its rays.
-        deviation_[i] += deviation(unblocked, sums);
+        deviation_[i] += deviation(scaled_radiance(hits, lit_hits[i], lobe), hit_sums_[i]);
     }
+}
+
+ShadowedLight::MaterialSums& ShadowedLight::sums_of(const Hits& hits, std::size_t hit, std::size_t lobe) {
+    const std::uint32_t material = hits.material[hit];
+    // A mirror's one ray does not tell of other hits.
+    const bool is_apart = is_mirror(materials_[material].shape(lobe, hits.widths(hit)[lobe]));
+    const auto known = std::find_if(material_sums_.begin(), material_sums_.end(), [&](const MaterialSums& sums) {
+        return sums.material == material && (!is_apart || sums.hit == hit);
+    });
+    return known != material_sums_.end() ? *known : material_sums_.emplace_back(MaterialSums{material, hit, {}, {}});
 }
 
 }  // namespace shlight
