@@ -267,9 +267,7 @@ RaySums ShadowRays::sum(std::size_t lit_index, std::size_t lobe) {
     const bool mirror = is_mirror(shape);
     weighed_.clear();
     const auto add = [&](const Run& run) {
-        for (std::size_t i = run.begin; i < run.end; ++i) {
-            weighed_.add(i, drawn_[i].way);
-        }
+        weighed_.add(run.begin, run.end, [&](std::size_t ray) -> const Vec3f& { return drawn_[ray].way; });
     };
     for (const bool first_phase : {true, false}) {
         if (!mirror) {
