@@ -36,6 +36,15 @@ inline Mesh floor_mesh(float half_size, float height = 0, const Bsdf& bsdf = Bsd
     return mesh;
 }
 
+/// A sail at height 1 that blocks nothing about the z-axis, but only rays can tell: its box is there.
+inline Mesh sail_mesh() {
+    Mesh mesh;
+    mesh.vertices = {{-3, -9, 1}, {9, -9, 1}, {9, 3, 1.1F}};
+    mesh.triangles = {{0, 1, 2}};
+    mesh.bsdfs = {Bsdf::lambert(Rgb(0.5F))};
+    return mesh;
+}
+
 /// A closed sphere of latitude and longitude, with smooth normals if asked for.
 inline Mesh sphere_mesh(const Vec3d& center, double radius, std::uint32_t rings, bool smooth) {
     Mesh mesh;

@@ -185,6 +185,7 @@ TEST(RenderShadows, APenumbraCountsEachPartOfTheLightByItsSolidAngle) {
 TEST(RenderShadows, RaysAreSparedWhereAllAgree) {
     Scene scene;
     scene.add_mesh(floor_mesh(10));
+    scene.add_mesh(sail_mesh());
     scene.add_sphere_light({0, 0, 2}, 0.5, Rgb(1));
     const Image lit = render_image(scene, camera_above(1), 8, 8, with_rays(16, 16));
     EXPECT_EQ(lit.report.shadow_rays, 4 * lit.report.hits);

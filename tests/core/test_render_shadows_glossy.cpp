@@ -32,6 +32,7 @@ struct Reflection {
         blocker.transforms = {frame_matrix({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {blocked_up_to - 20, 0, 0})};
         scene.add_mesh(blocker);
         scene.add_mesh(floor_mesh(10, 3));
+        scene.add_mesh(sail_mesh());
     }
 
     /// Where the ray through a pixel's centre meets the floor, and the direction back.

@@ -49,6 +49,8 @@ class SceneRays {
     SceneRays& operator=(const SceneRays&) = delete;
     ~SceneRays();
 
+    /// Whether all surfaces are.
+    bool is_opaque() const { return transparent_ == nullptr; }
     /// The first surface that each ray meets, opaque or not.
     void intersect(std::span<const Ray> rays, std::span<RayHit> hits) const;
     void intersect_opaque(std::span<const Ray> rays, std::span<RayHit> hits) const;
@@ -58,9 +60,13 @@ class SceneRays {
     /// The same of surfaces that are not opaque alone.
     void transmittance(std::span<const Ray> rays, std::uint32_t transparent_bounces, std::span<Rgb> visible) const;
 
+    /// About all surfaces.
+    const class OccluderBoxes& boxes() const { return *boxes_; }
+
   private:
     class Part;
     std::shared_ptr<const Part> opaque_, transparent_;  // null: there are none
+    std::shared_ptr<const OccluderBoxes> boxes_;
     const SurfaceTransparency* transparency_;
 };
 

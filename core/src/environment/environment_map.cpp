@@ -45,54 +45,45 @@ Vec3d direction_of(const glm::dvec2& texel, int width, int height) {
     return {std::sin(tilt) * std::cos(longitude), std::sin(tilt) * std::sin(longitude), std::cos(tilt)};
 }
 
-RadiancePyramid::RadiancePyramid(std::vector<Rgb> pixels, int width, int height, Levels wanted)
-    : texel_solid_angle_(2 * pi / width * pi / height) {
-    levels_.push_back({width, height, std::move(pixels)});
+RadiancePyramid::RadiancePyramid(const std::vector<Rgb>& pixels, int width, int height, Levels wanted)
+    : levels_{{width, height, 0}}, pixels_(pixels) {
     while (wanted == Levels::all && (levels_.back().width > 1 || levels_.back().height > 1)) {
-        const Level& fine = levels_.back();
-        Level coarse = {(fine.width + 1) / 2, (fine.height + 1) / 2, {}};
+        const Level fine = levels_.back();
+        const Level coarse = {(fine.width + 1) / 2, (fine.height + 1) / 2, static_cast<int>(pixels_.size())};
         for (int row = 0; row < coarse.height; ++row) {
             for (int column = 0; column < coarse.width; ++column) {
                 // Of an odd number of rows or columns the last counts twice.
                 const int right = std::min(2 * column + 1, fine.width - 1);
                 const int below = std::min(2 * row + 1, fine.height - 1);
-                const auto at = [&](int c, int r) { return fine.pixels[texel_index(c, r, fine.width)]; };
+                const auto at = [&](int c, int r) {
+                    return pixels_[static_cast<std::size_t>(fine.first) + texel_index(c, r, fine.width)];
+                };
                 const double upper = std::sin((2 * row + 0.5) / fine.height * pi);
                 const double lower = std::sin((below + 0.5) / fine.height * pi);
                 const auto share = static_cast<float>(lower / (upper + lower));
-                coarse.pixels.push_back((1 - share) * 0.5F * (at(2 * column, 2 * row) + at(right, 2 * row)) +
-                                        share * 0.5F * (at(2 * column, below) + at(right, below)));
+                pixels_.push_back((1 - share) * 0.5F * (at(2 * column, 2 * row) + at(right, 2 * row)) +
+                                  share * 0.5F * (at(2 * column, below) + at(right, below)));
             }
         }
-        levels_.push_back(std::move(coarse));
+        levels_.push_back(coarse);
     }
 }
 
-Rgb RadiancePyramid::level_radiance(std::size_t level, const Vec3d& direction) const {
-    const Level& l = levels_[level];
-    const glm::dvec2 place = texel_of(direction, l.width, l.height) - 0.5;
+Rgb RadiancePyramid::radiance(const Vec3d& direction) const {
+    const glm::dvec2 place = texel_of(direction, width(), height()) - 0.5;
     const double left = std::floor(place.x);
-    const double y = std::clamp(place.y, 0.0, l.height - 1.0);
-    const int above = std::min(static_cast<int>(y), std::max(l.height - 2, 0));
-    const int below = std::min(above + 1, l.height - 1);
+    const double y = std::clamp(place.y, 0.0, height() - 1.0);
+    const int above = std::min(static_cast<int>(y), std::max(height() - 2, 0));
+    const int below = std::min(above + 1, height() - 1);
     const auto first = static_cast<int>(left);
-    const std::array columns = {(first + l.width) % l.width, (first + 1) % l.width};
+    const std::array columns = {(first + width()) % width(), (first + 1) % width()};
     const auto s = static_cast<float>(place.x - left);
     const auto t = static_cast<float>(y - above);
     const auto row = [&](int r) {
-        return (1 - s) * l.pixels[texel_index(columns[0], r, l.width)] +
-               s * l.pixels[texel_index(columns[1], r, l.width)];
+        return (1 - s) * pixels_[texel_index(columns[0], r, width())] +
+               s * pixels_[texel_index(columns[1], r, width())];
     };
     return (1 - t) * row(above) + t * row(below);
-}
-
-Rgb RadiancePyramid::radiance(const Vec3d& direction, double solid_angle) const {
-    const double wanted = 0.5 * std::log2(solid_angle / texel_solid_angle_);
-    const double level = std::clamp(wanted, 0.0, static_cast<double>(levels_.size() - 1));
-    const auto finer = static_cast<std::size_t>(level);
-    const auto t = static_cast<float>(level - static_cast<double>(finer));
-    const Rgb fine = level_radiance(finer, direction);
-    return t > 0 ? (1 - t) * fine + t * level_radiance(finer + 1, direction) : fine;
 }
 
 RadianceSampler::RadianceSampler(std::span<const Rgb> pixels, int width, int height) : width_(width), height_(height) {

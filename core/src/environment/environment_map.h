@@ -31,24 +31,24 @@ Vec3d direction_of(const glm::dvec2& texel, int width, int height);
 class RadiancePyramid {
   public:
     enum class Levels { all, first };
-    RadiancePyramid(std::vector<Rgb> pixels, int width, int height, Levels wanted = Levels::all);
+    RadiancePyramid(const std::vector<Rgb>& pixels, int width, int height, Levels wanted = Levels::all);
 
-    Rgb radiance(const Vec3d& direction) const { return level_radiance(0, direction); }
-    /// Blurred over about this solid angle.
-    Rgb radiance(const Vec3d& direction, double solid_angle) const;
+    /// Its rows follow each other from the pixel number `first` on.
+    struct Level {
+        int width, height, first;
+    };
+
+    Rgb radiance(const Vec3d& direction) const;
     int width() const { return levels_[0].width; }
     int height() const { return levels_[0].height; }
-    const Rgb* pixels() const { return levels_[0].pixels.data(); }
+    /// The finest one first.
+    std::span<const Level> levels() const { return levels_; }
+    /// Of all levels.
+    const Rgb* pixels() const { return pixels_.data(); }
 
   private:
-    struct Level {
-        int width, height;
-        std::vector<Rgb> pixels;
-    };
-    Rgb level_radiance(std::size_t level, const Vec3d& direction) const;
-
     std::vector<Level> levels_;
-    double texel_solid_angle_;  // at the equator of level 0
+    std::vector<Rgb> pixels_;
 };
 
 /// Directions as densely as the light's luminance, of cells between the centres of four texels.

@@ -9,6 +9,8 @@
 #include <mutex>
 #include <numbers>
 
+#include "environment/map_lookup.h"
+#include "lobes/lobe_rays.h"
 #include "lobes/rotated_lobe.h"
 #include "lobes/turned_lobes.h"
 #include "lobes/view_grid.h"
@@ -17,8 +19,27 @@
 namespace shlight {
 namespace {
 
-/// Directions along each side of the unit square that a narrow lobe is summed over.
-constexpr int kDirections = 16;
+/// Directions that a narrow lobe is summed over; along each side of the unit square.
+constexpr std::size_t kDirectionsAcross = 16;
+constexpr std::size_t kDirections = kDirectionsAcross * kDirectionsAcross;
+static_assert(kDirections % kLobeRayLanes == 0 && kDirections % kLookupLanes == 0);
+
+/// Points of the unit square that these are made of.
+struct DirectionPoints {
+    DirectionPoints() {
+        for (std::size_t i = 0; i < kDirections; ++i) {
+            u[i] = (static_cast<float>(i % kDirectionsAcross) + 0.5F) / kDirectionsAcross;
+            v[i] = (static_cast<float>(i / kDirectionsAcross) + 0.5F) / kDirectionsAcross;
+        }
+    }
+    std::array<float, kDirections> u, v;
+};
+
+/// What is known of them; elements are written before they are read.
+struct DirectionArrays {
+    std::array<std::array<float, kDirections>, 8> values;
+};
+
 /// Relative to the lobe's albedo and the picture's mean: harmonics that err by more are not left alone.
 constexpr double kDirectionError = 5e-3;
 
@@ -176,22 +197,32 @@ class EnvironmentShading::Point {
 
     /// The mean of what the directions show of the remainder, weighed with f·cos over their density.
     Rgb by_directions(const LobeShape& shape, bool with_spots) const {
-        const RadiancePyramid& remainder = with_spots ? map_->whole_remainder : map_->remainder;
-        Vec3d sum(0);
-        double weights = 0;
-        for (int i = 0; i < kDirections * kDirections; ++i) {
-            const int row = i / kDirections;
-            const glm::dvec2 point = glm::dvec2(i % kDirections + 0.5, row + 0.5) / double{kDirections};
-            const Vec3d direction = sample_lobe(shape, view_, point);
-            if (direction.z > 0) {
-                const double density = lobe_density(shape, view_, direction);
-                const double weight = lobe_value(shape, direction, view_) / density;
-                const double solid_angle = 1 / (density * kDirections * kDirections);
-                sum += weight * Vec3d(remainder.radiance(to_map_ * direction, solid_angle));
-                weights += weight;
-            }
+        static const DirectionPoints points;
+        DirectionArrays lanes;
+        auto& [x, y, z, value, density, red, green, blue] = lanes.values;
+        const RayVectors directions = {x.data(), y.data(), z.data()};
+        sample_lobe_rays(shape, view_, points.u.data(), points.v.data(), kDirections, directions);
+        const ShadingFrame own = {Vec3d(0), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        weigh_lobe_rays(shape, own, view_, directions, kDirections, value.data(), density.data());
+        const glm::mat3 to_map(to_map_);
+        for (std::size_t i = 0; i < kDirections; ++i) {
+            const Vec3f turned = to_map * Vec3f(x[i], y[i], z[i]);
+            x[i] = turned.x;
+            y[i] = turned.y;
+            z[i] = turned.z;
+            const bool above = density[i] > 0;
+            value[i] = above ? value[i] / density[i] : 0.0F;
+            density[i] = 1 / ((above ? density[i] : 1.0F) * kDirections);  // the solid angle
         }
-        return weights > 0 ? Rgb(sum / weights) : Rgb(0);
+        look_up_blurred(with_spots ? map_->whole_remainder : map_->remainder, {x.data(), y.data(), z.data()},
+                        density.data(), kDirections, {red.data(), green.data(), blue.data()});
+        Rgb sum(0);
+        float weights = 0;
+        for (std::size_t i = 0; i < kDirections; ++i) {
+            sum += value[i] * Rgb(red[i], green[i], blue[i]);
+            weights += value[i];
+        }
+        return weights > 0 ? sum / weights : Rgb(0);
     }
 
     Rgb mirrored() const { return map_->picture.radiance(to_map_ * shlight::mirrored(view_)); }

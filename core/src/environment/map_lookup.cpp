@@ -5,8 +5,10 @@
 #define HWY_TARGET_INCLUDE "environment/map_lookup.cpp"
 #include <hwy/foreach_target.h>
 // Highway's vocabulary, and what is compiled once per instruction set, come after it.
+#include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include <cmath>
 #include <cstdint>
 #include <numbers>
 
@@ -20,51 +22,54 @@ static_assert(kLookupLanes % kLaneCount<Floats> == 0);
 
 using Integers = hn::RebindToSigned<Floats>;
 
-/// As texel_of().
-struct Texel {
+/// As texel_of(), of a picture of size 1 × 1.
+struct Place {
     V<Floats> x, y;
 };
 
-HWY_INLINE Texel texel_in_lanes(V<Floats> x, V<Floats> y, V<Floats> z, int width, int height) {
+HWY_INLINE Place place_in_lanes(V<Floats> x, V<Floats> y, V<Floats> z) {
     const Floats d;
     const auto across = hn::Sqrt(hn::MulAdd(x, x, hn::Mul(y, y)));
     const auto longitude = arctangent(d, y, x);
     const auto latitude = arctangent(d, z, across);
-    return {hn::NegMulAdd(longitude, all(d, width / (2 * std::numbers::pi)), all(d, 0.5 * width)),
-            hn::NegMulAdd(latitude, all(d, height / std::numbers::pi), all(d, 0.5 * height))};
+    return {hn::NegMulAdd(longitude, all(d, 1 / (2 * std::numbers::pi)), all(d, 0.5)),
+            hn::NegMulAdd(latitude, all(d, 1 / std::numbers::pi), all(d, 0.5))};
 }
 
 /// Index of a column that may be one width off.
-HWY_INLINE V<Integers> wrapped(V<Integers> column, int width) {
+HWY_INLINE V<Integers> wrapped(V<Integers> column, V<Integers> width) {
     const Integers d;
-    const auto all_columns = hn::Set(d, width);
-    column = hn::Add(column, hn::IfThenElseZero(hn::Lt(column, hn::Zero(d)), all_columns));
-    return hn::Sub(column, hn::IfThenElseZero(hn::Gt(column, hn::Sub(all_columns, hn::Set(d, 1))), all_columns));
+    column = hn::Add(column, hn::IfThenElseZero(hn::Lt(column, hn::Zero(d)), width));
+    return hn::Sub(column, hn::IfThenElseZero(hn::Gt(column, hn::Sub(width, hn::Set(d, 1))), width));
 }
 
-HWY_INLINE V<Integers> clamped(V<Integers> row, int last) {
+HWY_INLINE V<Integers> clamped(V<Integers> row, V<Integers> last) {
     const Integers d;
-    return hn::Min(hn::Max(row, hn::Zero(d)), hn::Set(d, last));
+    return hn::Min(hn::Max(row, hn::Zero(d)), last);
 }
 
 /// Four texels about a place and their shares.
 class Neighbourhood {
   public:
-    HWY_INLINE Neighbourhood(const Texel& texel, int width, int height) {
+    /// first: of the picture's pixels.
+    HWY_INLINE Neighbourhood(const Place& place, V<Integers> width, V<Integers> height, V<Integers> first) {
         const Floats d;
         const Integers di;
         const auto half = all(d, 0.5);
-        const auto x = hn::Sub(texel.x, half);
+        const auto one = hn::Set(di, 1);
+        const auto last = hn::Sub(height, one);
+        const auto x = hn::MulSub(place.x, hn::ConvertTo(d, width), half);
         const auto left = hn::Floor(x);
-        const auto y = hn::Min(hn::Max(hn::Sub(texel.y, half), hn::Zero(d)), all(d, height - 1));
+        const auto y =
+            hn::Min(hn::Max(hn::MulSub(place.y, hn::ConvertTo(d, height), half), hn::Zero(d)), hn::ConvertTo(d, last));
         const auto above = hn::Floor(y);
         across_ = hn::Sub(x, left);
         down_ = hn::Sub(y, above);
         const auto column = wrapped(hn::ConvertTo(di, left), width);
-        const auto next = wrapped(hn::Add(column, hn::Set(di, 1)), width);
-        const auto row = clamped(hn::ConvertTo(di, above), height - 1);
-        const auto upper = hn::Mul(row, hn::Set(di, width));
-        const auto lower = hn::Mul(clamped(hn::Add(row, hn::Set(di, 1)), height - 1), hn::Set(di, width));
+        const auto next = wrapped(hn::Add(column, one), width);
+        const auto row = clamped(hn::ConvertTo(di, above), last);
+        const auto upper = hn::Add(first, hn::Mul(row, width));
+        const auto lower = hn::Add(first, hn::Mul(clamped(hn::Add(row, one), last), width));
         texels_ = {hn::Add(upper, column), hn::Add(upper, next), hn::Add(lower, column), hn::Add(lower, next)};
         for (auto& texel_index : texels_) {
             texel_index = hn::Mul(texel_index, hn::Set(di, 3));
@@ -87,13 +92,16 @@ class Neighbourhood {
 };
 
 /// As RadianceSampler::density().
-HWY_INLINE V<Floats> density_in_lanes(const RadianceSampler& sampler, const Texel& texel, int width, int height) {
+HWY_INLINE V<Floats> density_in_lanes(const RadianceSampler& sampler, const Place& place, V<Integers> width,
+                                      V<Integers> height) {
     const Floats d;
     const Integers di;
     const auto half = all(d, 0.5);
-    const auto row = clamped(hn::ConvertTo(di, hn::Floor(hn::Add(texel.y, half))), height);
-    const auto column = wrapped(hn::ConvertTo(di, hn::Floor(hn::Sub(texel.x, half))), width);
-    const auto cell = hn::Add(hn::Mul(row, hn::Set(di, width)), column);
+    const auto y = hn::MulAdd(place.y, hn::ConvertTo(d, height), half);
+    const auto x = hn::MulSub(place.x, hn::ConvertTo(d, width), half);
+    const auto row = clamped(hn::ConvertTo(di, hn::Floor(y)), height);
+    const auto column = wrapped(hn::ConvertTo(di, hn::Floor(x)), width);
+    const auto cell = hn::Add(hn::Mul(row, width), column);
     const auto up_to = hn::GatherIndex(d, sampler.cells(), cell);
     const auto is_first = hn::Eq(column, hn::Zero(di));
     const auto before =
@@ -102,22 +110,61 @@ HWY_INLINE V<Floats> density_in_lanes(const RadianceSampler& sampler, const Texe
     return hn::Mul(hn::GatherIndex(d, sampler.row_densities(), row), share);
 }
 
+HWY_INLINE Place load_place(const MapDirections& directions, std::size_t i) {
+    const Floats d;
+    return place_in_lanes(hn::LoadU(d, directions.x + i), hn::LoadU(d, directions.y + i),
+                          hn::LoadU(d, directions.z + i));
+}
+
 void look_up(const EnvironmentMap& map, const MapDirections& directions, std::size_t count, const MapValues& values) {
     const Floats d;
-    const int width = map.picture.width();
-    const int height = map.picture.height();
+    const Integers di;
+    const auto width = hn::Set(di, map.picture.width());
+    const auto height = hn::Set(di, map.picture.height());
     const float* whole = &map.picture.pixels()->x;
     const float* smooth = &map.smooth.pixels()->x;
     for (std::size_t i = 0; i < count; i += kLaneCount<Floats>) {
-        const Texel texel = texel_in_lanes(hn::LoadU(d, directions.x + i), hn::LoadU(d, directions.y + i),
-                                           hn::LoadU(d, directions.z + i), width, height);
-        const Neighbourhood about(texel, width, height);
+        const Place place = load_place(directions, i);
+        const Neighbourhood about(place, width, height, hn::Zero(di));
         for (std::size_t channel = 0; channel < 3; ++channel) {
             const auto without = about.channel(smooth + channel);
             hn::StoreU(without, d, values.smooth[channel] + i);
             hn::StoreU(hn::Sub(about.channel(whole + channel), without), d, values.spots[channel] + i);
         }
-        hn::StoreU(density_in_lanes(map.sampler, texel, width, height), d, values.density + i);
+        hn::StoreU(density_in_lanes(map.sampler, place, width, height), d, values.density + i);
+    }
+}
+
+HWY_INLINE Neighbourhood on_level(const RadiancePyramid& pyramid, V<Floats> level, const Place& place) {
+    const Integers di;
+    static_assert(sizeof(RadiancePyramid::Level) == 3 * sizeof(int));
+    const int* first = &pyramid.levels()[0].width;
+    const auto at = hn::Mul(hn::ConvertTo(di, level), hn::Set(di, 3));
+    return {place, hn::GatherIndex(di, first, at), hn::GatherIndex(di, first + 1, at),
+            hn::GatherIndex(di, first + 2, at)};
+}
+
+void look_up_blurred(const RadiancePyramid& pyramid, const MapDirections& directions, const float* solid_angles,
+                     std::size_t count, const std::array<float*, 3>& radiance) {
+    const Floats d;
+    const auto last = all(d, static_cast<double>(pyramid.levels().size() - 1));
+    // At the equator of level 0.
+    const double texel = 2 * std::numbers::pi / pyramid.width() * std::numbers::pi / pyramid.height();
+    const auto offset = all(d, 0.5 * std::log2(texel));
+    const float* channels = &pyramid.pixels()->x;
+    for (std::size_t i = 0; i < count; i += kLaneCount<Floats>) {
+        const auto wanted = hn::MulSub(all(d, 0.5), hn::Log2(d, hn::LoadU(d, solid_angles + i)), offset);
+        const auto level = hn::Min(hn::Max(wanted, hn::Zero(d)), last);
+        const auto finer = hn::Floor(level);
+        const auto share = hn::Sub(level, finer);
+        const Place place = load_place(directions, i);
+        const Neighbourhood fine = on_level(pyramid, finer, place);
+        const Neighbourhood coarse = on_level(pyramid, hn::Min(hn::Add(finer, all(d, 1)), last), place);
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            const auto of_fine = fine.channel(channels + channel);
+            const auto blurred = hn::MulAdd(share, hn::Sub(coarse.channel(channels + channel), of_fine), of_fine);
+            hn::StoreU(blurred, d, radiance[channel] + i);
+        }
     }
 }
 
@@ -129,9 +176,15 @@ HWY_AFTER_NAMESPACE();
 namespace shlight {
 
 HWY_EXPORT(look_up);
+HWY_EXPORT(look_up_blurred);
 
 void look_up(const EnvironmentMap& map, const MapDirections& directions, std::size_t count, const MapValues& values) {
     HWY_DYNAMIC_DISPATCH(look_up)(map, directions, count, values);
+}
+
+void look_up_blurred(const RadiancePyramid& pyramid, const MapDirections& directions, const float* solid_angles,
+                     std::size_t count, const std::array<float*, 3>& radiance) {
+    HWY_DYNAMIC_DISPATCH(look_up_blurred)(pyramid, directions, solid_angles, count, radiance);
 }
 
 }  // namespace shlight

@@ -20,7 +20,11 @@ constexpr std::size_t kMiddlesAtOnce = 1024;
 constexpr double kLeastBetweenGrids = 0.05;  // seconds
 constexpr double kSoon = 0.2;                // likewise
 constexpr double kMostUnfinished = 0.999;    // share of the work
-constexpr auto kUpdateInterval = std::chrono::milliseconds(250);
+/// Of the time before, between updates; seconds; times what showing the picture took.
+constexpr double kUpdateShare = 0.25;
+constexpr double kLeastUpdateInterval = 0.05;
+constexpr double kMostUpdateInterval = 0.25;
+constexpr double kShowTimes = 10;
 
 void add(RenderReport& sum, const RenderReport& part) {
     std::transform(sum.order_counts.begin(), sum.order_counts.end(), part.order_counts.begin(),
@@ -47,7 +51,11 @@ void Passes::run() {
         std::vector<Pass> passes;
         std::transform(groups.begin(), groups.end(), std::back_inserter(passes),
                        [this](const RefinementGroup& group) { return pass_of(group); });
-        goes_on = show() && !passes.empty() && fits(passes);
+        goes_on = show() && !passes.empty();
+        if (goes_on && !fits(passes)) {
+            run_pass(pass_of(refinement_.unrendered()));
+            goes_on = false;
+        }
         for (const Pass& pass : passes) {
             goes_on = goes_on && run_pass(pass);
         }
@@ -76,21 +84,22 @@ void Passes::write_middles() {
                  waiting());
 }
 
-/// All pixels; if somebody watches and it takes a while, those of wide grids come first, and what lies between is shown
-/// as they are.
+/// All pixels that it takes; if somebody watches and it takes a while, those of wide grids come first, and what lies
+/// between is shown as they are.
 bool Passes::first_pass() {
+    const int last = refinement_.first_step();
     const double pixels = 1.0 * picture_->width * picture_->height;
     bool goes_on = true;
-    for (Grid grid = {watch_->on_update ? kWidestGrid : 1, 0}; goes_on && grid.step > 0;) {
+    for (Grid grid = {watch_->on_update ? kWidestGrid : last, 0}; goes_on && grid.step >= last;) {
         goes_on = run_pass(pass_of(grid));
-        const double rest = (pixels - pixels / (grid.step * grid.step)) * refinement_.samples(0);
+        const double rest = pixels * (1.0 / (last * last) - 1.0 / (grid.step * grid.step)) * refinement_.samples(0);
         const bool soon = seconds_left(rest) < kSoon;
-        if (goes_on && grid.step > 1 && !soon) {
+        if (goes_on && grid.step > 1 && (grid.step == last || !soon)) {
             fill_between(grid.step, picture_->width, picture_->height, image_);
             const bool is_due = shown_.seconds == 0 || seconds() - shown_.seconds >= kLeastBetweenGrids;
-            goes_on = !is_due || show();
+            goes_on = grid.step == last || !is_due || show();
         }
-        grid = {soon && grid.step > 1 ? 1 : grid.step / 2, grid.step};
+        grid = {soon && grid.step > last ? last : grid.step / 2, grid.step};
     }
     shown_.passes = goes_on ? 1 : 0;
     return goes_on;
@@ -130,16 +139,20 @@ bool Passes::fits(std::span<const Pass> passes) const {
 bool Passes::run_pass(const Pass& pass) {
     const double rays_after = std::max(refinement_.rays_left() - (rays_done_ - rays_before_round_) - pass.rays, 0.0);
     bool goes_on = true;
-    auto last = Clock::now();
+    double last = seconds();
+    const auto is_due = [&] {
+        const double usual = std::clamp(kUpdateShare * last, kLeastUpdateInterval, kMostUpdateInterval);
+        return seconds() - last > std::max(usual, kShowTimes * show_seconds_);
+    };
     const auto tell = [&](double share) {
         const double done = share * pass.rays;
         const double all = rays_done_ + pass.rays + rays_after;
         share_ = std::max(share_, std::min((rays_done_ + done) / all, kMostUnfinished));
-        if (watch_->on_update && Clock::now() - last > kUpdateInterval && share < 1) {
+        if (watch_->on_update && is_due() && share < 1) {
             shown_.seconds_left =
                 done > 0 || rays_done_ > 0 ? seconds() * (all - rays_done_ - done) / (rays_done_ + done) : 0.0;
             goes_on = show();
-            last = Clock::now();
+            last = seconds();
         }
         return goes_on && (!watch_->progress || watch_->progress(share_));
     };
@@ -176,7 +189,9 @@ bool Passes::show() {
         snapshot_.assign(image_.begin(), image_.end());
     }
     shown_.seconds = seconds();
-    return watch_->on_update(snapshot_, shown_);
+    const bool goes_on = watch_->on_update(snapshot_, shown_);
+    show_seconds_ = seconds() - shown_.seconds;
+    return goes_on;
 }
 
 /// For each camera ray and light.

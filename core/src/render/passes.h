@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// A picture in passes: the first over all pixels, later ones over those that need more camera rays. What a pixel gets
-// does not depend on when it is rendered, so that a picture after some passes is that of a render which ends there.
+// A picture in passes: the first over all pixels or a grid of them, later ones over those that need more camera rays.
+// What a pixel gets does not depend on when it is rendered, so that a picture after some passes is that of a render
+// which ends there.
 #pragma once
 
 #include <chrono>
@@ -28,7 +29,7 @@ inline constexpr std::uint32_t kLeastShadowRays = 4;
 /// Camera rays and shadow rays of a light that a pixel has in a batch, at most.
 inline constexpr std::int64_t kMostRaysPerPixel = 1 << 22;
 
-/// One render: the first pass over all pixels, and passes over fewer of them.
+/// One render: the first pass, over all pixels or a grid of them, and passes over those that need more rays.
 class Passes {
   public:
     /// passes: see render().
@@ -83,6 +84,7 @@ class Passes {
     double rays_before_round_ = 0;
     double rays_done_ = 0;       // by passes that have ended
     RenderReport shown_;         // with each picture
+    double show_seconds_ = 0;    // that the last took
     std::shared_mutex merging_;  // shared by those that write pixels
     std::vector<float> snapshot_;
     Refinement refinement_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "shlight/parallel.h"
@@ -116,7 +117,8 @@ std::vector<RefinementGroup> Refinement::next_round(std::span<const float> image
 Refinement::Row Refinement::next_of(int row, std::span<const float> image) const {
     Row found;
     for (int column = 0; column < width_; ++column) {
-        const int from = states_[index(column, row)].level;
+        const int state = states_[index(column, row)].level;
+        const int from = kept_samples(state) == 0 ? -1 : state;
         const Wanted level = wanted(column, row, image);
         found.errors += level.error;
         found.rays_left += level.next > from ? samples(std::max(level.enough, level.next)) - kept_samples(from) : 0;
@@ -147,6 +149,7 @@ int Refinement::sufficient_level(double variance) const {
 Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float> image) const {
     const std::size_t i = index(column, row);
     const State& state = states_[i];
+    const int level = std::max(state.level, 0);
     const Vec3d value = color(image, i);
     const Vec3d scale = value * value + least_square_;
     const double alpha = image[4 * i + 3];
@@ -155,26 +158,55 @@ Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float
     if (least_square_ > 0) {  // or else the picture is black
         variance = std::max(variance, mean(Vec3d(state.variance) / scale));
     }
-    const int enough = std::max<int>(sufficient_level(variance), state.level);
+    const int enough = std::max(sufficient_level(variance), level);
     // One ray knows nothing of its pixel, and what is known to need more need not be supposed to.
-    if ((enough == state.level || state.level == 0) && good_enough_ > 0 && least_square_ > 0) {
+    if ((enough == level || level == 0) && good_enough_ > 0 && least_square_ > 0) {
         // The less likely the more rays have missed it, unless what is out of focus is as thin everywhere.
-        const double missed = depth_of_field_ ? 1 : std::max(samples(state.level) / kMissingRays, 1.0);
-        supposed = squared_error(neighbours_variance(column, row, scale, image), state.level) * kNeighbourShare /
-                   (missed * missed);
+        const double missed = depth_of_field_ ? 1 : std::max(samples(level) / kMissingRays, 1.0);
+        supposed =
+            squared_error(neighbours_variance(column, row, scale, image), level) * kNeighbourShare / (missed * missed);
     }
-    const int next = enough > state.level || supposed > good_enough_ ? state.level + 1 : enough;
-    return {enough, std::min(next, most_level_), squared_error(variance, state.level), supposed};
+    if (state.level < 0) {
+        supposed = std::max(error_between(column, row, image), kEdgeVariance * kNeighbourShare);
+    }
+    const int next = enough > level || supposed > good_enough_ ? level + 1 : enough;
+    return {enough, std::min(next, most_level_), squared_error(variance, level), supposed};
 }
 
 bool Refinement::is_calm(int column, int row) const {
+    const int reach = kept_samples(states_[index(column, row)].level) == 0 ? 2 * first_step() - 1 : 1;
     bool calm = true;
-    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, height_ - 1); ++y) {
-        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, width_ - 1); ++x) {
+    for (int y = std::max(row - reach, 0); y <= std::min(row + reach, height_ - 1); ++y) {
+        for (int x = std::max(column - reach, 0); x <= std::min(column + reach, width_ - 1); ++x) {
             calm = calm && !states_[index(x, y)].obstructed;
         }
     }
     return calm;
+}
+
+RefinementGroup Refinement::unrendered() const {
+    RefinementGroup group = {-1, 0, false, 1.0 * samples(0), {}, {}};
+    for (int row = 0; row < height_; ++row) {
+        for (int column = 0; column < width_; ++column) {
+            if (states_[index(column, row)].level < 0) {
+                group.pixels.push_back({column, row});
+            }
+        }
+    }
+    return group;
+}
+
+double Refinement::error_between(int column, int row, std::span<const float> image) const {
+    const Vec3d value = color(image, index(column, row));
+    double largest = 0;
+    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, height_ - 1); ++y) {
+        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, width_ - 1); ++x) {
+            const Vec3d other = color(image, index(x, y));
+            const Vec3d scale = other * other + std::max(least_square_, std::numeric_limits<double>::min());
+            largest = std::max(largest, mean((other - value) * (other - value) / scale));
+        }
+    }
+    return largest;
 }
 
 double Refinement::neighbours_variance(int column, int row, const Vec3d& scale, std::span<const float> image) const {

@@ -47,6 +47,11 @@ class Refinement {
     /// Whether the first level is one ray through the middle, in whose place later ones come: of sets of four and more
     /// that are spread evenly none has a point in the middle, where one alone must be.
     bool has_preview() const { return first_samples_ == 1 && most_level_ > 0; }
+    /// The first pass takes every so many-th pixel of every so many-th row: rays that others replace are worth their
+    /// time only where they tell of pixels around them.
+    int first_step() const { return has_preview() && least_level_ > 0 ? 2 : 1; }
+    /// Pixels without any ray, for the first level.
+    RefinementGroup unrendered() const;
     /// As samples, of those that later levels go on with.
     std::uint32_t kept_samples(int level) const { return level == 0 && has_preview() ? 0 : samples(level); }
     int most_level() const { return most_level_; }
@@ -78,8 +83,11 @@ class Refinement {
     Wanted wanted(int column, int row, std::span<const float> image) const;
     double squared_error(double variance, int level) const;
     int sufficient_level(double variance) const;
-    /// Whether shadow rays from the pixel and those around it have met nothing.
+    /// Whether shadow rays from the pixel and those around it have met nothing; one that has no rays of its own, or
+    /// only a replaced one, looks farther.
     bool is_calm(int column, int row) const;
+    /// Squared, of what is shown of a pixel that has no rays, if it is as one beside it.
+    double error_between(int column, int row, std::span<const float> image) const;
     double neighbours_variance(int column, int row, const Vec3d& scale, std::span<const float> image) const;
 
     int width_, height_;

@@ -124,9 +124,7 @@ bool EnvironmentRays::all_free(const LitRange& pixel) const {
 void EnvironmentRays::gather(std::size_t lit_index) {
     weighed_.clear();
     for (const Run& own : {run(lit_index, true), run(lit_index, false)}) {
-        for (std::size_t ray = own.begin; ray < own.mirror; ++ray) {
-            weighed_.add(ray, directions_[ray]);
-        }
+        weighed_.add(own.begin, own.mirror, [&](std::size_t ray) -> const Vec3f& { return directions_[ray]; });
     }
 }
 

@@ -29,6 +29,20 @@ struct RaySums {
     RaySums& operator*=(const Vec3d& factor);
 };
 
+/// The same of rays whose values are alike in all channels, and of which each is hidden or not.
+struct GreySums {
+    double all = 0, seen = 0, squares = 0, seen_squares = 0;
+
+    void add(double value, bool visible) {
+        const double own = visible ? value : 0.0;
+        all += value;
+        squares += value * value;
+        seen += own;
+        seen_squares += own * own;
+    }
+    explicit operator RaySums() const { return {Vec3d(all), Vec3d(seen), Vec3d(squares), Vec3d(seen_squares)}; }
+};
+
 /// a / b, 0 where b is not positive.
 Vec3d quotient(const Vec3d& a, const Vec3d& b);
 

@@ -267,9 +267,7 @@ RaySums ShadowRays::sum(std::size_t lit_index, std::size_t lobe) {
     const bool mirror = is_mirror(shape);
     weighed_.clear();
     const auto add = [&](const Run& run) {
-        for (std::size_t i = run.begin; i < run.end; ++i) {
-            weighed_.add(i, drawn_[i].way);
-        }
+        weighed_.add(run.begin, run.end, [&](std::size_t ray) -> const Vec3f& { return drawn_[ray].way; });
     };
     for (const bool first_phase : {true, false}) {
         if (!mirror) {
@@ -283,6 +281,8 @@ RaySums ShadowRays::sum(std::size_t lit_index, std::size_t lobe) {
     if (!mirror) {
         weighed_.weigh(shape, hits_->frame[hit], hits_->view(hit), shared);
     }
+    const bool is_grey = colors_.empty() && tracer_->is_opaque();
+    GreySums grey;
     RaySums sums;
     for (std::size_t i = 0; i < weighed_.size(); ++i) {
         const std::size_t ray = weighed_.number(i);
@@ -292,10 +292,14 @@ RaySums ShadowRays::sum(std::size_t lit_index, std::size_t lobe) {
         }
         const Drawn& drawn = drawn_[ray];
         const float weight = shared ? drawn.weight / (1 + drawn.light_spread * weighed_.density(i)) : drawn.weight;
-        const Vec3d color = colors_.empty() ? Vec3d(1) : Vec3d(colors_[ray]);
-        sums.add(double{weight * weighed_.value(i)} * color, visible_[ray]);
+        const double value{weight * weighed_.value(i)};
+        if (is_grey) {
+            grey.add(value, visible_[ray].x > 0);
+        } else {
+            sums.add(value * (colors_.empty() ? Vec3d(1) : Vec3d(colors_[ray])), visible_[ray]);
+        }
     }
-    return sums;
+    return is_grey && !mirror ? RaySums(grey) : sums;
 }
 
 }  // namespace shlight

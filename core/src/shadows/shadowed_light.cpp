@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "lights/light_bounds.h"
 #include "shlight/sampling.h"
 
 namespace shlight {
 ShadowedLight::ShadowedLight(const ShadowTracer& tracer, std::span<const MaterialLobes> materials,
                              std::size_t lobe_stride, const LightParts& parts)
-    : materials_(materials),
+    : tracer_(&tracer),
+      materials_(materials),
       lobe_stride_(lobe_stride),
       rays_(tracer, materials, lobe_stride),
       brightness_(lobe_stride),
@@ -31,19 +34,37 @@ void ShadowedLight::add(std::span<const Light* const> lights, const DirectLight&
 
 void ShadowedLight::add_light(const Light& light, std::size_t index, std::uint32_t number,
                               std::span<const std::uint32_t> pixel_seeds, Hits& hits) {
+    const std::optional<LightBounds> bounds = bounds_of(light);
+    std::size_t asked = 0;  // the pixels before this one
+    bool is_free = !shadows_;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
         if (!(brightness_.of_pixel(index, pixel) > 0) || dim_.is_dim(index, pixel)) {
             continue;
         }
+        if (shadows_ && bounds && pixel >= asked) {
+            asked = gather_starts(pixel, hits);
+            is_free = !tracer_->may_block(starts_, *bounds);
+        }
         const LitRange range = find_lit(light, hits, pixel);
         if (range.size() > 0) {
-            pixels_.push_back({range, pixel, samples_of(index, pixel), hash(pixel_seeds[pixel], number)});
+            const std::uint32_t seed = hash(pixel_seeds[pixel], number);
+            pixels_.push_back({range, pixel, samples_of(index, pixel), seed, is_free});
         }
         if (lit_.hit.size() >= kHitsAtOnce) {
             shade_lit(light, hits);
         }
     }
     shade_lit(light, hits);
+}
+
+std::size_t ShadowedLight::gather_starts(std::size_t pixel, const Hits& hits) {
+    starts_.clear();
+    for (; pixel < hits.pixel_count() && starts_.size() < kHitsAtOnce; ++pixel) {
+        for (std::size_t hit = hits.pixel_begin[pixel]; hit < hits.pixel_begin[pixel + 1]; ++hit) {
+            starts_.emplace_back(hits.shadow_origin[hit]);
+        }
+    }
+    return pixel;
 }
 
 SampleRange ShadowedLight::samples_of(std::size_t index, std::size_t pixel) const {
@@ -77,13 +98,15 @@ bool ShadowedLight::is_glossy(std::uint32_t material) const {
 
 void ShadowedLight::shade_lit(const Light& light, Hits& hits) {
     rays_.start(light, hits, lit_);
-    for (const LitPixel& pixel : shadows_ ? std::span(pixels_) : std::span<const LitPixel>()) {
-        rays_.draw(pixel.range, first_phase(pixel.samples), pixel.seed);
+    for (const LitPixel& pixel : pixels_) {
+        if (!pixel.is_free) {
+            rays_.draw(pixel.range, first_phase(pixel.samples), pixel.seed);
+        }
     }
     rays_.trace();
     partly_.clear();
     for (const LitPixel& pixel : pixels_) {
-        const ShadowRays::Verdict verdict = shadows_ ? rays_.verdict(pixel.range) : ShadowRays::Verdict::free;
+        const ShadowRays::Verdict verdict = pixel.is_free ? ShadowRays::Verdict::free : rays_.verdict(pixel.range);
         if (verdict == ShadowRays::Verdict::free) {
             shade_unblocked(pixel.range, hits);
             continue;
@@ -130,30 +153,33 @@ void ShadowedLight::shade(const LitRange& pixel, Hits& hits) {
 
 void ShadowedLight::shade_lobe(const LitRange& pixel, std::size_t lobe, Hits& hits) {
     const auto lit_hits = std::span(lit_.hit).subspan(pixel.begin, pixel.size());
-    const auto [first, last] = std::minmax_element(lit_hits.begin(), lit_hits.end(), [&](std::size_t a, std::size_t b) {
-        return points_->of_hit[a] < points_->of_hit[b];
-    });
-    const std::uint32_t first_point = points_->of_hit[*first];
     hit_sums_.assign(lit_hits.size(), {});
-    point_sums_.assign(points_->of_hit[*last] - first_point + 1, {});
+    material_sums_.clear();
     for (std::size_t i = 0; i < lit_hits.size(); ++i) {
         if (!shines(pixel.begin + i, lobe)) continue;
         hit_sums_[i] = rays_.sum(pixel.begin + i, lobe);
-        PointSums& of_point = point_sums_[points_->of_hit[lit_hits[i]] - first_point];
-        of_point.all += hit_sums_[i].all;
-        ++of_point.hits;
+        MaterialSums& sums = sums_of(hits, lit_hits[i], lobe);
+        sums.unblocked += Vec3d(scaled_radiance(hits, lit_hits[i], lobe));
+        sums.rays += Vec3d(glm::abs(hits.weight(lit_hits[i], lobe))) * hit_sums_[i].all;
     }
     for (std::size_t i = 0; i < lit_hits.size(); ++i) {
         if (!shines(pixel.begin + i, lobe)) continue;
-        const std::size_t hit = lit_hits[i];
-        const RaySums& sums = hit_sums_[i];
-        const PointSums& of_point = point_sums_[points_->of_hit[hit] - first_point];
-        const Vec3d share = quotient(static_cast<double>(of_point.hits) * sums.seen, of_point.all);
-        const Rgb unblocked = scaled_radiance(hits, hit, lobe);
-        hits.reflect(hit, lobe, group_, unblocked * Rgb(share));
+        const MaterialSums& all = sums_of(hits, lit_hits[i], lobe);
+        const Vec3d seen = Vec3d(glm::abs(hits.weight(lit_hits[i], lobe))) * hit_sums_[i].seen;
+        hits.reflect(lit_hits[i], lobe, group_, Rgb(all.unblocked * quotient(seen, all.rays)));
         // The lobes of a hit share its rays.
-        deviation_[i] += deviation(unblocked, sums);
+        deviation_[i] += deviation(scaled_radiance(hits, lit_hits[i], lobe), hit_sums_[i]);
     }
+}
+
+ShadowedLight::MaterialSums& ShadowedLight::sums_of(const Hits& hits, std::size_t hit, std::size_t lobe) {
+    const std::uint32_t material = hits.material[hit];
+    // A mirror's one ray does not tell of other hits.
+    const bool is_apart = is_mirror(materials_[material].shape(lobe, hits.widths(hit)[lobe]));
+    const auto known = std::find_if(material_sums_.begin(), material_sums_.end(), [&](const MaterialSums& sums) {
+        return sums.material == material && (!is_apart || sums.hit == hit);
+    });
+    return known != material_sums_.end() ? *known : material_sums_.emplace_back(MaterialSums{material, hit, {}, {}});
 }
 
 }  // namespace shlight

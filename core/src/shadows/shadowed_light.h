@@ -56,6 +56,7 @@ class ShadowedLight {
         std::size_t pixel;
         SampleRange samples;
         std::uint32_t seed;
+        bool is_free;  // without any ray
     };
 
     void add_light(const Light& light, std::size_t index, std::uint32_t number,
@@ -73,17 +74,23 @@ class ShadowedLight {
     bool shines(std::size_t lit_index, std::size_t lobe) const {
         return lit_.shines[lit_index * lobe_stride_ + lobe] != 0;
     }
+    /// Pixels from this one on that may be asked together whether anything blocks a light; returns the next one.
+    std::size_t gather_starts(std::size_t pixel, const Hits& hits);
     void shade_unblocked(const LitRange& pixel, Hits& hits) const;
     void shade(const LitRange& pixel, Hits& hits);
     void shade_lobe(const LitRange& pixel, std::size_t lobe, Hits& hits);
     Rgb scaled_radiance(const Hits& hits, std::size_t hit, std::size_t lobe) const;
 
-    /// Rays of all hits of a shading point.
-    struct PointSums {
-        Vec3d all{0};
-        std::uint32_t hits = 0;
+    /// Of a pixel's hits that have a material, or of one where that is a mirror: what they reflect if nothing blocks,
+    /// and what their rays make of that.
+    struct MaterialSums {
+        std::uint32_t material;
+        std::size_t hit;
+        Vec3d unblocked{0}, rays{0};
     };
+    MaterialSums& sums_of(const Hits& hits, std::size_t hit, std::size_t lobe);
 
+    const ShadowTracer* tracer_;
     std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
     ShadowRays rays_;
@@ -95,11 +102,12 @@ class ShadowedLight {
     const ShadingPoints* points_ = nullptr;
     LightBrightness brightness_;
     DimLights dim_;
-    LitHits lit_;                            // of some pixels
-    std::vector<LitPixel> pixels_, partly_;  // all of these; and those whose rays do not agree
-    std::vector<RaySums> hit_sums_;          // of one lobe, by lit hit of a pixel
-    std::vector<PointSums> point_sums_;      // likewise, by shading point
-    std::vector<Rgb> deviation_;             // of the light by lit hit of a pixel, from its few rays
+    LitHits lit_;                              // of some pixels
+    std::vector<LitPixel> pixels_, partly_;    // all of these; and those whose rays do not agree
+    std::vector<RaySums> hit_sums_;            // of one lobe, by lit hit of a pixel
+    std::vector<MaterialSums> material_sums_;  // likewise
+    std::vector<Rgb> deviation_;               // of the light by lit hit of a pixel, from its few rays
+    std::vector<Vec3f> starts_;                // of the shadow rays of some pixels
 };
 
 }  // namespace shlight

@@ -13,34 +13,41 @@ namespace shlight {
 /// Keeps its memory from hit to hit.
 class WeighedRays {
   public:
-    void clear() {
-        numbers_.clear();
-        x_.clear();
-        y_.clear();
-        z_.clear();
-    }
-    /// number: among the rays of all hits; way: along the axes of the world.
-    void add(std::size_t number, const Vec3f& way) {
-        numbers_.push_back(number);
-        x_.push_back(way.x);
-        y_.push_back(way.y);
-        z_.push_back(way.z);
+    void clear() { count_ = 0; }
+    /// Those numbered begin … end - 1 among the rays of all hits; way(number): along the axes of the world.
+    template <class Way>
+    void add(std::size_t begin, std::size_t end, const Way& way) {
+        grow(count_ + end - begin + kLobeRayLanes);
+        for (std::size_t number = begin; number < end; ++number, ++count_) {
+            const Vec3f& own = way(number);
+            numbers_[count_] = number;
+            x_[count_] = own.x;
+            y_[count_] = own.y;
+            z_[count_] = own.z;
+        }
     }
     /// By a lobe at the hit, see weigh_lobe_rays(). with_densities: or else these are not known.
     void weigh(const LobeShape& shape, const ShadingFrame& frame, const Vec3d& view, bool with_densities) {
-        for (std::vector<float>* array : {&x_, &y_, &z_, &values_, &densities_}) {
-            array->resize(size() + kLobeRayLanes);
-        }
         weigh_lobe_rays(shape, frame, view, {x_.data(), y_.data(), z_.data()}, size(), values_.data(),
                         with_densities ? densities_.data() : nullptr);
     }
 
-    std::size_t size() const { return numbers_.size(); }
+    std::size_t size() const { return count_; }
     std::size_t number(std::size_t i) const { return numbers_[i]; }
     float value(std::size_t i) const { return values_[i]; }
     float density(std::size_t i) const { return densities_[i]; }
 
   private:
+    void grow(std::size_t size) {
+        if (size > numbers_.size()) {
+            numbers_.resize(2 * size);
+            for (std::vector<float>* array : {&x_, &y_, &z_, &values_, &densities_}) {
+                array->resize(2 * size);
+            }
+        }
+    }
+
+    std::size_t count_ = 0;
     std::vector<std::size_t> numbers_;
     std::vector<float> x_, y_, z_, values_, densities_;
 };

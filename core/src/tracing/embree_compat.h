@@ -17,11 +17,12 @@ inline void intersect1(RTCScene scene, RTCRayHit* ray_hit) {
     rtcIntersect1(scene, ray_hit, nullptr);
 }
 
-inline void occluded8(const int* valid, RTCScene scene, RTCRay8* rays) {
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-    rtcOccluded8(valid, scene, rays, &arguments);
+inline void occluded(const int* valid, RTCScene scene, RTCRay8* rays) {
+    rtcOccluded8(valid, scene, rays, nullptr);
+}
+
+inline void occluded(const int* valid, RTCScene scene, RTCRay16* rays) {
+    rtcOccluded16(valid, scene, rays, nullptr);
 }
 
 #else
@@ -32,11 +33,16 @@ inline void intersect1(RTCScene scene, RTCRayHit* ray_hit) {
     rtcIntersect1(scene, &context, ray_hit);
 }
 
-inline void occluded8(const int* valid, RTCScene scene, RTCRay8* rays) {
+inline void occluded(const int* valid, RTCScene scene, RTCRay8* rays) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     rtcOccluded8(valid, scene, &context, rays);
+}
+
+inline void occluded(const int* valid, RTCScene scene, RTCRay16* rays) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded16(valid, scene, &context, rays);
 }
 
 #endif

@@ -96,6 +96,34 @@ void build(RTCDevice device, RTCScene scene, const Stopped& stopped) {
     throw_on_error(device);
 }
 
+/// Not as coherent rays: those of a hit to a light or the sky part too soon for Embree to gain from that.
+template <class Packet, std::size_t kWidth>
+void trace_packets(RTCScene scene, std::span<const Ray> rays, std::span<std::uint8_t> blocked) {
+    for (std::size_t first = 0; first < rays.size(); first += kWidth) {
+        const std::size_t count = std::min(kWidth, rays.size() - first);
+        alignas(64) std::array<int, kWidth> valid{};
+        Packet packet{};
+        for (std::size_t i = 0; i < count; ++i) {
+            const Ray& ray = rays[first + i];
+            valid[i] = -1;
+            packet.org_x[i] = ray.origin.x;
+            packet.org_y[i] = ray.origin.y;
+            packet.org_z[i] = ray.origin.z;
+            packet.tnear[i] = ray.t_min;
+            packet.dir_x[i] = ray.direction.x;
+            packet.dir_y[i] = ray.direction.y;
+            packet.dir_z[i] = ray.direction.z;
+            packet.tfar[i] = ray.t_max;
+            packet.mask[i] = 0xFFFFFFFFU;
+        }
+        embree::occluded(valid.data(), scene, &packet);
+        // Embree marks a blocked ray by tfar = -∞.
+        for (std::size_t i = 0; i < count; ++i) {
+            blocked[first + i] = packet.tfar[i] < 0 ? 1 : 0;
+        }
+    }
+}
+
 }  // namespace
 
 class RayTracer::Impl {
@@ -127,13 +155,16 @@ class RayTracer::Impl {
             rtcAttachGeometryByID(scene_.get(), geometry.get(), static_cast<unsigned>(i));
         }
         build(device_.get(), scene_.get(), stopped);
+        has_wide_packets_ = rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
     }
 
     RTCScene scene() const { return scene_.get(); }
+    bool has_wide_packets() const { return has_wide_packets_; }
 
   private:
     Device device_;
     EmbreeScene scene_;
+    bool has_wide_packets_ = false;  // of 16 rays
 };
 
 RayTracer::RayTracer(std::span<const TracedGeometry> geometries, std::span<const TracedInstance> instances,
@@ -172,29 +203,10 @@ void RayTracer::intersect(std::span<const Ray> rays, std::span<RayHit> hits) con
 }
 
 void RayTracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
-    constexpr std::size_t kWidth = 8;
-    for (std::size_t first = 0; first < rays.size(); first += kWidth) {
-        const std::size_t count = std::min(kWidth, rays.size() - first);
-        alignas(32) std::array<int, kWidth> valid{};
-        RTCRay8 packet{};
-        for (std::size_t i = 0; i < count; ++i) {
-            const Ray& ray = rays[first + i];
-            valid[i] = -1;
-            packet.org_x[i] = ray.origin.x;
-            packet.org_y[i] = ray.origin.y;
-            packet.org_z[i] = ray.origin.z;
-            packet.tnear[i] = ray.t_min;
-            packet.dir_x[i] = ray.direction.x;
-            packet.dir_y[i] = ray.direction.y;
-            packet.dir_z[i] = ray.direction.z;
-            packet.tfar[i] = ray.t_max;
-            packet.mask[i] = 0xFFFFFFFFU;
-        }
-        embree::occluded8(valid.data(), impl_->scene(), &packet);
-        // Embree marks a blocked ray by tfar = -∞.
-        for (std::size_t i = 0; i < count; ++i) {
-            blocked[first + i] = packet.tfar[i] < 0 ? 1 : 0;
-        }
+    if (impl_->has_wide_packets()) {
+        trace_packets<RTCRay16, 16>(impl_->scene(), rays, blocked);
+    } else {
+        trace_packets<RTCRay8, 8>(impl_->scene(), rays, blocked);
     }
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "tracing/occluder_boxes.h"
+
 namespace shlight {
 namespace {
 
@@ -85,10 +87,11 @@ SceneRays::SceneRays(std::span<const SceneGeometry> geometries, std::span<const 
                      const SurfaceTransparency& transparency, const Stopped& stopped)
     : opaque_(Part::make(geometries, instances, false, stopped)),
       transparent_(Part::make(geometries, instances, true, stopped)),
+      boxes_(std::make_shared<const OccluderBoxes>(geometries, instances)),
       transparency_(&transparency) {}
 
 SceneRays::SceneRays(const SceneRays& same, const SurfaceTransparency& transparency)
-    : opaque_(same.opaque_), transparent_(same.transparent_), transparency_(&transparency) {}
+    : opaque_(same.opaque_), transparent_(same.transparent_), boxes_(same.boxes_), transparency_(&transparency) {}
 
 SceneRays::~SceneRays() = default;
 

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+//
+// Boxes about the surfaces of a scene: they prove that nothing lies between many points and a light, which spares all
+// of their shadow rays. A box tree of its own, since Embree does not tell of its own one.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "shlight/scene_rays.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// At first empty.
+struct Box {
+    static Box around(const Vec3d& center, const Vec3d& half) { return {center - half, center + half}; }
+    void include(const Vec3d& point) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+
+    Vec3d low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+};
+
+/// Where a light lies.
+struct LightBounds {
+    Box box;
+    bool is_far;  ///< infinitely: the box holds unit vectors towards it
+};
+
+/// Immutable; any number of threads may read it.
+class OccluderBoxes {
+  public:
+    OccluderBoxes(std::span<const SceneGeometry> geometries, std::span<const TracedInstance> instances);
+
+    /// False: no surface lies between any of the points, at least one, and any place of the light.
+    bool may_block(std::span<const Vec3f> points, const LightBounds& light) const;
+
+  private:
+    /// Some triangles that follow each other in their mesh.
+    struct Cluster {
+        Box box;
+        Vec3d normal;        // about that of all; of any length
+        double least, most;  // of its dot product with any place on them
+    };
+    /// Its first child is the next node.
+    struct Node {
+        Box box;
+        std::uint32_t second_child;  // 0: there are none, but a cluster
+        std::uint32_t cluster;
+    };
+    struct Shaft;
+
+    static Cluster cluster_of(const SceneGeometry& geometry, std::span<const Triangle> triangles);
+    static Cluster placed(const Cluster& cluster, const TracedInstance& instance);
+    void build(std::uint32_t begin, std::uint32_t end);
+    static bool meets(const Shaft& shaft, const Box& box);
+    /// Whether the plane of the cluster parts it from all ways to the light.
+    static bool lies_beside(const Shaft& shaft, const Cluster& cluster);
+
+    std::vector<Cluster> clusters_;
+    std::vector<Node> nodes_;
+};
+
+}  // namespace shlight
