@@ -55,6 +55,24 @@ def test_a_width_that_varies(light: str, ior: float | None) -> None:
     assert error.max() <= (2e-3 if light == "environment" else 1e-3)
 
 
+@pytest.mark.parametrize("light", ["sphere", "polygon"])
+def test_a_lobe_that_only_some_hits_have(light: str) -> None:
+    base = shlight.Bsdf.lambert((0.1, 0.2, 0.3))
+    f0 = (0.5, 0.3, 0.1)
+    glossy = [shlight.Bsdf.ggx(float(r), f0) + base if r > 0.5 else base for r in STRIPS]
+    constant = floor(glossy, light, np.repeat(np.arange(len(STRIPS)), 2))
+    u = nodes.uv().x
+    varying = floor(nodes.ggx(u, f0) * (u > 0.5) + nodes.lambert((0.1, 0.2, 0.3)), light)
+    error = np.abs(varying - constant)[..., :3] / (constant[..., :3] + 0.1 * constant[..., :3].mean())
+    assert error.max() <= 2e-3  # the tolerance of either picture
+
+
+def test_lobes_of_one_shape_are_one() -> None:
+    u = nodes.uv().x
+    shader = nodes.principled((0.5, 0.4, 0.3), metallic=u, roughness=u)
+    assert sorted(lobe.kind for lobe in shader.lobes) == ["ggx", "ggx_dielectric", "ggx_schlick", "lambert"]
+
+
 def test_a_program_is_as_long_as_what_varies() -> None:
     half = nodes.values.number(0.5)
     assert nodes.lambert(nodes.mix_color((1, 0, 0), (0, 1, 0), half * half, "overlay")).operation_count == 0

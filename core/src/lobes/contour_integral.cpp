@@ -33,14 +33,17 @@ constexpr std::array<double, 4> kGauss = {0.417959183673469387755102040816327, 0
 /// Pieces of the outline that may be waiting or done; past that the estimate stands as it is.
 constexpr int kMostPieces = 96;
 
-/// From this tolerance on, of a radiance of 0 … 1, floats will do.
-constexpr double kLeastSingle = 1e-5;
+/// From this tolerance on, over the albedo, floats will do.
+constexpr double kLeastSingle = 1e-6;
 
 /// A lower view mirrors itself in the horizon so closely that half vectors there lose their digits; what it sees
 /// differs by less than 1e-6 ÷ the lobe's width.
 constexpr double kLeastViewCosine = 1e-6;
 
-/// Points along a radius: the factors beside the bell vary slowly.
+/// Speed of a boost after which another sweep would change the parameter of an outline by little.
+constexpr double kEvenEnough = 0.05;
+
+/// Points along a radius: the factors beside the bell vary slowly. tolerance: over the albedo.
 int points_for(double tolerance) {
     return tolerance > 4e-3 ? 4 : tolerance > 2e-4 ? 6 : tolerance > 1e-5 ? 12 : 24;
 }
@@ -88,10 +91,13 @@ class Path {
             const Vec3d& b = columns_[j];
             return (a.x * b.x + a.y * b.y) / (alpha * alpha) + a.z * b.z;
         };
-        for (int sweep = 0; sweep < 4; ++sweep) {
+        double largest = 1;
+        for (int sweep = 0; sweep < 4 && largest > kEvenEnough; ++sweep) {
+            largest = 0;
             for (int axis = 1; axis <= 2; ++axis) {
                 const double ratio = -2 * form(0, axis) / (form(0, 0) + form(axis, axis));
                 boost_by_half(axis, std::clamp(ratio, -1 + 1e-14, 1 - 1e-14));
+                largest = std::max(largest, std::abs(ratio));
             }
             turn_by_half(form(1, 1) - form(2, 2), 2 * form(1, 2));
         }
@@ -150,10 +156,10 @@ class Path {
 /// The outline of one region, piece by piece.
 class Outline {
   public:
-    Outline(const LobeShape& shape, double cos_theta_o, double tolerance)
-        : bell_{shape, cos_theta_o, &gauss_rule(points_for(tolerance))},
+    Outline(const LobeShape& shape, double cos_theta_o, double tolerance, double albedo)
+        : bell_{shape, cos_theta_o, &gauss_rule(points_for(tolerance / albedo))},
           tolerance_(tolerance),
-          single_(tolerance >= kLeastSingle) {}
+          single_(tolerance >= kLeastSingle * albedo) {}
 
     /// share: part of the tolerance.
     void add(const OutlineArc& arc, const Vec3d& view, double alpha, double share) {
@@ -275,13 +281,13 @@ class Outline {
 }  // namespace
 
 OutlineIntegral outline_integral(const LobeShape& shape, double cos_theta_o, std::span<const OutlineArc> arcs,
-                                 double tolerance) {
+                                 double tolerance, double albedo) {
     if (!(cos_theta_o > 0)) {
         return {0, 0, 0};
     }
     const double cosine = std::max(cos_theta_o, kLeastViewCosine);
     const Vec3d view(std::sqrt((1 - cosine) * (1 + cosine)), 0, cosine);
-    Outline outline(shape, cosine, tolerance);
+    Outline outline(shape, cosine, tolerance, albedo);
     for (const OutlineArc& arc : arcs) {
         outline.add(arc, view, lobe_width(shape), 1.0 / static_cast<double>(arcs.size()));
     }

@@ -30,9 +30,10 @@ struct OutlineIntegral {
     int points;    ///< values of f·cos that it took
 };
 
-/// arcs: the whole outline, in the shading frame. tolerance: of the value, absolute.
+/// arcs: the whole outline, in the shading frame. tolerance: of the value, absolute. albedo: of the lobe at this view,
+/// as far as it is known; what a radial rule or floats err by is a share of it.
 /// Precondition: no mirror, 0 ≤ cos_theta_o ≤ 1.
 OutlineIntegral outline_integral(const LobeShape& shape, double cos_theta_o, std::span<const OutlineArc> arcs,
-                                 double tolerance);
+                                 double tolerance, double albedo = 1);
 
 }  // namespace shlight

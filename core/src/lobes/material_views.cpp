@@ -54,8 +54,14 @@ void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPos
     index_ = lobe;
     fit_ = material.fit(lobe);
     positions_ = &positions;
+    weighed_.clear();
+    std::copy_if(positions.all().begin(), positions.all().end(), std::back_inserter(weighed_),
+                 [&](std::uint32_t view) { return weight(view) != Rgb(0); });
     find_widths(widths, material.grid(lobe));
-    layout_ = !neighbours_.empty() ? neighbours_.front() : fit_ != nullptr ? fit_->table() : nullptr;
+    layout_ = fit_ != nullptr ? fit_->table() : nullptr;
+    if (!neighbours_.empty() && !is_black()) {
+        layout_ = neighbours_[FitGrid::kNeighbours * weighed_.front()];
+    }
     chooses_ = material.auto_order() && layout_ != nullptr;
     judged_ = judged;
     relative_tolerance_ = 0;
@@ -74,11 +80,14 @@ void LobeViews::find_widths(const LobeWidths& widths, const FitGrid* grid) {
     if (grid == nullptr) {
         return;
     }
-    for (std::size_t view = 0; view < count; ++view) {
+    neighbours_.resize(FitGrid::kNeighbours * count);
+    neighbour_weights_.resize(FitGrid::kNeighbours * count);
+    for (const std::uint32_t view : weighed_) {
         widths_[view] = widths.values[view * widths.stride + index_];
         const FitGrid::Neighbours found = grid->neighbours(double{widths_[view]});
-        neighbours_.insert(neighbours_.end(), found.tables.begin(), found.tables.end());
-        neighbour_weights_.insert(neighbour_weights_.end(), found.weights.begin(), found.weights.end());
+        const auto first = static_cast<std::ptrdiff_t>(FitGrid::kNeighbours * view);
+        std::copy(found.tables.begin(), found.tables.end(), neighbours_.begin() + first);
+        std::copy(found.weights.begin(), found.weights.end(), neighbour_weights_.begin() + first);
     }
 }
 
@@ -89,23 +98,28 @@ void LobeViews::interpolate(std::size_t column, std::size_t width, std::span<con
         return;
     }
     columns_.resize(neighbours_.size());
-    std::transform(neighbours_.begin(), neighbours_.end(), columns_.begin(),
-                   [column](const FitTable* table) { return table->values().data() + column; });
+    for (const std::uint32_t view : views) {
+        const auto first = static_cast<std::ptrdiff_t>(FitGrid::kNeighbours * view);
+        std::transform(neighbours_.begin() + first, neighbours_.begin() + first + FitGrid::kNeighbours,
+                       columns_.begin() + first,
+                       [column](const FitTable* table) { return table->values().data() + column; });
+    }
     positions_->interpolate(TableNeighbours{columns_.data(), neighbour_weights_.data()}, layout_->row_size(), width,
                             views, out, stride);
 }
 
 void LobeViews::find_albedos() {
     const std::size_t count = positions_->size();
-    albedo_.resize(count);
+    albedo_.assign(count, 0);
     if (layout_ == nullptr) {
-        std::transform(positions_->cosine().begin(), positions_->cosine().end(), albedo_.begin(),
-                       [&](double cosine) { return static_cast<float>(lobe_->albedo(cosine)); });
+        for (const std::uint32_t view : weighed_) {
+            albedo_[view] = static_cast<float>(lobe_->albedo(positions_->cosine()[view]));
+        }
         return;
     }
     heads_.grow(count * FitTable::kHeadWidth);
-    interpolate(0, FitTable::kHeadWidth, positions_->all(), heads_.data(), FitTable::kHeadWidth);
-    for (std::size_t view = 0; view < count; ++view) {
+    interpolate(0, FitTable::kHeadWidth, weighed_, heads_.data(), FitTable::kHeadWidth);
+    for (const std::uint32_t view : weighed_) {
         albedo_[view] = heads_.data()[view * FitTable::kHeadWidth + FitTable::kAlbedo];
     }
 }
@@ -133,6 +147,9 @@ void LobeViews::choose_orders(double tolerance, std::span<const float> allowance
         black_[view] = std::isinf(allowances[view]) ? 1 : 0;
         any_black_ = any_black_ || black_[view] != 0;
         tolerance_[view] = static_cast<float>(tolerance * allowances[view]);
+        if (black_[view] != 0) {
+            continue;
+        }
         if (table == nullptr) {
             within_tolerance_[view] = only != 1 || 0.5F <= tolerance_[view] ? 1 : 0;
             continue;

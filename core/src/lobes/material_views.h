@@ -68,6 +68,7 @@ class LobeViews {
     const Rgb& weight(std::size_t view) const { return weights_.values[view * weights_.stride + index_]; }
     /// Reflects nothing at all.
     bool is_black(std::size_t view) const { return black_[view] != 0; }
+    bool is_black() const { return weighed_.empty(); }
     bool any_black() const { return any_black_; }
     /// For lights that are not small; 0: their outline is integrated, or the lobe is a mirror.
     int order(std::size_t view) const { return order_[view]; }
@@ -77,6 +78,7 @@ class LobeViews {
     const float* tolerances() const { return tolerance_.data(); }
     /// Of the radiance.
     double absolute_tolerance(std::size_t view) const { return double{tolerance_[view]} * albedo_[view]; }
+    double albedo(std::size_t view) const { return albedo_[view]; }
 
     /// What suffices beside absolute_tolerance(): a share of what the light brings; 0: nothing does.
     double relative_tolerance() const { return relative_tolerance_; }
@@ -111,6 +113,7 @@ class LobeViews {
     double relative_tolerance_ = 0;
     std::vector<float> albedo_, tolerance_;
     std::vector<std::uint8_t> black_, order_, within_tolerance_;
+    std::vector<std::uint32_t> weighed_;  // views at which the weight is not 0, of which alone anything else is known
     AlignedFloats heads_;
     std::vector<float> widths_;                // padded
     std::vector<const FitTable*> neighbours_;  // of each view, in the grid; empty: the width is the same

@@ -262,8 +262,9 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
 /// One hit for each normal that lobes have, and another for the lobes of bumps, whose view is the smooth normal.
 void CameraSurfaces::add_shaded(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader, Hits& hits) {
     normals_.clear();
-    for (const ShadedLobe& lobe : shader.lobes) {
-        normals_.push_back(normal(surface, lobe));
+    for (std::size_t i = 0; i < shader.lobes.size(); ++i) {
+        const bool known = i > 0 && shader.lobes[i].normal == shader.lobes[i - 1].normal;
+        normals_.push_back(known ? normals_.back() : normal(surface, shader.lobes[i]));
     }
     const std::size_t count = shader.lobes.size();
     for (std::size_t first = 0; first < count; ++first) {

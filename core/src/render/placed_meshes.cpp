@@ -161,21 +161,21 @@ float PlacedMeshes::attribute(const MeshAttribute& attribute, std::uint32_t comp
         return attribute.components == 1 ? at(0) : (at(0) + at(1) + at(2)) * (1 / 3.0F);
     }
     const MeshShape& mesh = *meshes_[placements_[hit.instance].mesh].mesh->shape;
-    const std::size_t count = attribute.values.size() / attribute.components;
+    const std::size_t size = attribute.values.size();
     const std::uint32_t own = attribute.components == 1 && component < 3 ? 0 : component;
     const auto value = [&](std::size_t index) { return attribute.values[index * attribute.components + own]; };
     const std::size_t triangle = hit.triangle;
     const Triangle& vertices = mesh.triangles[triangle];
     const std::array<double, 3> weights = weights_of(hit);
-    if (own >= attribute.components || count == 0) {
+    if (own >= attribute.components || size == 0) {
         return component == kAlpha ? 1.0F : 0.0F;
     }
     double sum = 0;
-    if (count == 3 * mesh.triangles.size()) {
+    if (size == 3 * mesh.triangles.size() * attribute.components) {
         for (std::size_t i = 0; i < 3; ++i) {
             sum += weights[i] * value(3 * triangle + i);
         }
-    } else if (count == mesh.vertices.size()) {
+    } else if (size == mesh.vertices.size() * attribute.components) {
         for (int i = 0; i < 3; ++i) {
             sum += weights[static_cast<std::size_t>(i)] * value(vertices[i]);
         }

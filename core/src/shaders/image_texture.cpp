@@ -10,6 +10,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <hwy/cache_control.h>
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -131,6 +133,22 @@ glm::vec4 decoded(const glm::vec4& stored, TexelEncoding encoding) {
                                                        linear_from_srgb(stored.z), stored.w);
 }
 
+void Texels::prefetch(const glm::vec2& place) const {
+    const auto inside = [](float along, std::int64_t size) {
+        return static_cast<std::int64_t>((along - std::floor(along)) * static_cast<float>(size - 1));
+    };
+    const std::int64_t first = (inside(place.y, height) * width + inside(place.x, width)) * channels_;
+    const std::int64_t row = width * channels_;
+    const auto fetch = [&](const auto* numbers) {
+        hwy::Prefetch(numbers + first);
+        hwy::Prefetch(numbers + (first >= row ? first - row : first));
+    };
+    bytes_ != nullptr    ? fetch(bytes_)
+    : floats_ != nullptr ? fetch(floats_)
+    : halves_ != nullptr ? fetch(halves_)
+                         : fetch(shorts_);
+}
+
 template <class Number>
 glm::vec4 Texels::of_numbers(const Number* texel) const {
     const float first = to_float(texel[0]);
@@ -156,9 +174,9 @@ TexturePixels::TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint
             std::transform(numbers.begin(), numbers.end(), numbers.begin(), [](auto x) { return finite(x); });
         },
         pixels);
-    levels_.push_back({width, height, channels, std::move(pixels)});
+    add({width, height, channels, std::move(pixels)});
     while (levels_.back().width > 1 || levels_.back().height > 1) {
-        levels_.push_back(halved(levels_.size() - 1));
+        add(halved(levels_.size() - 1));
     }
 }
 
@@ -170,31 +188,29 @@ std::size_t TexturePixels::size_in_bytes() const {
     return bytes;
 }
 
-Texels TexturePixels::texels(std::size_t level, const ByteTable& bytes) const {
-    const Level& own = levels_[level];
+Texels TexturePixels::texels(const Level& level, const ByteTable& bytes) {
     Texels result{};
-    result.width = own.width;
-    result.height = own.height;
+    result.width = level.width;
+    result.height = level.height;
     const auto data_of = [&](const auto* numbers) { return numbers != nullptr ? numbers->data() : nullptr; };
-    result.bytes_ = data_of(std::get_if<std::vector<std::uint8_t>>(&own.pixels));
-    result.shorts_ = data_of(std::get_if<std::vector<std::uint16_t>>(&own.pixels));
-    result.halves_ = data_of(std::get_if<std::vector<Half>>(&own.pixels));
-    result.floats_ = data_of(std::get_if<std::vector<float>>(&own.pixels));
+    result.bytes_ = data_of(std::get_if<std::vector<std::uint8_t>>(&level.pixels));
+    result.shorts_ = data_of(std::get_if<std::vector<std::uint16_t>>(&level.pixels));
+    result.halves_ = data_of(std::get_if<std::vector<Half>>(&level.pixels));
+    result.floats_ = data_of(std::get_if<std::vector<float>>(&level.pixels));
     result.table_ = bytes.data();
-    result.channels_ = own.channels;
+    result.channels_ = level.channels;
     return result;
 }
 
-Texels TexturePixels::stored(std::size_t level) const {
-    return texels(level, bytes_as_stored());
-}
-
-Texels TexturePixels::linear(std::size_t level) const {
-    Texels result = texels(level, encoding_ == TexelEncoding::srgb ? bytes_from_srgb() : bytes_as_stored());
-    result.from_srgb_ = encoding_ == TexelEncoding::srgb;
-    result.of_vectors_ = encoding_ == TexelEncoding::normal;
-    result.are_means_ = result.of_vectors_ && level > 0;
-    return result;
+void TexturePixels::add(Level level) {
+    // The numbers stay where they are when a level moves.
+    levels_.push_back(std::move(level));
+    stored_.push_back(texels(levels_.back(), bytes_as_stored()));
+    const bool srgb = encoding_ == TexelEncoding::srgb;
+    Texels& linear = linear_.emplace_back(texels(levels_.back(), srgb ? bytes_from_srgb() : bytes_as_stored()));
+    linear.from_srgb_ = srgb;
+    linear.of_vectors_ = encoding_ == TexelEncoding::normal;
+    linear.are_means_ = linear.of_vectors_ && levels_.size() > 1;
 }
 
 void TexturePixels::store(Level& level, std::size_t texel, const glm::vec4& linear) const {
@@ -236,7 +252,7 @@ TexturePixels::Level TexturePixels::halved(std::size_t level) const {
     for (std::uint32_t x = 0; x < to.width; ++x) {
         columns.push_back(cover(x, to.width, from.width));
     }
-    const Texels texels = linear(level);
+    const Texels& texels = linear(level);
     for (std::uint32_t y = 0; y < to.height; ++y) {
         const Cover rows = cover(y, to.height, from.height);
         for (std::uint32_t x = 0; x < to.width; ++x) {
@@ -258,9 +274,9 @@ TexturePixels::Level TexturePixels::halved(std::size_t level) const {
 }
 
 /// One picture, continued beyond its edges. Places are in texels of the level.
-class ImageTexture::Lookup {
+class ImageTexture::Reader {
   public:
-    Lookup(const TexturePixels& pixels, TextureExtension extension) : pixels_(&pixels), extension_(extension) {}
+    Reader(const TexturePixels& pixels, TextureExtension extension) : pixels_(&pixels), extension_(extension) {}
 
     /// As stored.
     glm::vec4 closest(const glm::vec2& place) const {
@@ -268,7 +284,7 @@ class ImageTexture::Lookup {
                      static_cast<std::int64_t>(std::floor(place.y)));
     }
     glm::vec4 cubic(const glm::vec2& place) const {
-        const Texels texels = pixels_->stored(0);
+        const Texels& texels = pixels_->stored(0);
         const Corner corner(place);
         const std::array<float, 4> wx = cubic_weights(corner.share.x);
         const std::array<float, 4> wy = cubic_weights(corner.share.y);
@@ -284,10 +300,8 @@ class ImageTexture::Lookup {
     glm::vec4 bilinear(const glm::vec2& place) const { return bilinear(pixels_->stored(0), place); }
     /// In linear light, between two levels; place: 0 … 1 over the picture.
     glm::vec4 trilinear(float level, const glm::vec2& place) const {
-        const auto top = static_cast<float>(pixels_->level_count() - 1);
-        const float clamped = std::clamp(level, 0.0F, top);
-        const auto low = static_cast<std::size_t>(clamped);
-        const float share = clamped - static_cast<float>(low);
+        const auto low = static_cast<std::size_t>(level);
+        const float share = level - static_cast<float>(low);
         const glm::vec4 fine = bilinear_at(low, place);
         return share > 0 ? glm::mix(fine, bilinear_at(low + 1, place), share) : fine;
     }
@@ -306,15 +320,16 @@ class ImageTexture::Lookup {
     };
 
     glm::vec4 bilinear_at(std::size_t level, const glm::vec2& place) const {
-        const Texels texels = pixels_->linear(level);
+        const Texels& texels = pixels_->linear(level);
         return bilinear(texels, place * glm::vec2(texels.width, texels.height));
     }
     glm::vec4 bilinear(const Texels& texels, const glm::vec2& place) const {
         const Corner c(place);
         const bool inside = c.x >= 0 && c.y >= 0 && c.x + 1 < texels.width && c.y + 1 < texels.height;
         const auto read = [&](std::int64_t x, std::int64_t y) { return inside ? texels(x, y) : texel(texels, x, y); };
-        return glm::mix(glm::mix(read(c.x, c.y), read(c.x + 1, c.y), c.share.x),
-                        glm::mix(read(c.x, c.y + 1), read(c.x + 1, c.y + 1), c.share.x), c.share.y);
+        const glm::vec2 rest = 1.0F - c.share;
+        return rest.y * (rest.x * read(c.x, c.y) + c.share.x * read(c.x + 1, c.y)) +
+               c.share.y * (rest.x * read(c.x, c.y + 1) + c.share.x * read(c.x + 1, c.y + 1));
     }
     glm::vec4 texel(const Texels& texels, std::int64_t column, std::int64_t row) const {
         if (column < 0 || column >= texels.width || row < 0 || row >= texels.height) {
@@ -360,7 +375,7 @@ glm::vec4 ImageTexture::finished(const glm::vec4& stored, TexelEncoding encoding
     return encoding == TexelEncoding::normal ? glm::vec4(glm::vec3(color), 1) : decoded(color, encoding);
 }
 
-glm::vec4 ImageTexture::sample(const glm::vec2& place, const TextureFootprint& footprint) const {
+ImageTexture::Lookup ImageTexture::look(const glm::vec2& place, const TextureFootprint& footprint) const {
     const Tile* tile = &tiles_.front();
     glm::vec2 inside = place;
     if (tiled_) {
@@ -369,45 +384,62 @@ glm::vec4 ImageTexture::sample(const glm::vec2& place, const TextureFootprint& f
             return static_cast<float>(own.u) == number.x && static_cast<float>(own.v) == number.y;
         });
         if (found == tiles_.end()) {
-            return kMissing;
+            return {};
         }
         tile = &*found;
         inside -= number;
     }
-    const Lookup lookup(*tile->pixels, extension_);
-    const TexelEncoding encoding = tile->pixels->encoding();
-    const glm::vec2 size(tile->pixels->width(), tile->pixels->height());
-    glm::vec2 texels = inside * size;
+    const TexturePixels& pixels = *tile->pixels;
+    const glm::vec2 size(pixels.width(), pixels.height());
+    const glm::vec2 texels = inside * size;
     if (!(std::abs(texels.x) < kFarthest && std::abs(texels.y) < kFarthest)) {
-        texels = inside = glm::vec2(0);
+        inside = glm::vec2(0);
     }
     glm::vec2 along = footprint.right * size;
     glm::vec2 across = footprint.below * size;
     if (glm::dot(along, along) < glm::dot(across, across)) {
         std::swap(along, across);
     }
-    const float longest = glm::length(along);
-    if (!(longest > 1)) {
-        const glm::vec4 stored = interpolation_ == TextureInterpolation::closest  ? lookup.closest(texels)
-                                 : interpolation_ == TextureInterpolation::linear ? lookup.bilinear(texels)
-                                                                                  : lookup.cubic(texels);
+    Lookup lookup = {&pixels, inside, glm::length(along), 0, 0, glm::vec2(0)};
+    if (lookup.longest > 1) {
+        // The area of the footprint over its longest side.
+        const float width = std::abs(along.x * across.y - along.y * across.x) / lookup.longest;
+        const float least = std::max({width, lookup.longest / kMostProbes, 1.0F});
+        const auto top = static_cast<float>(pixels.level_count() - 1);
+        lookup.level = std::isfinite(least) ? std::clamp(std::log2(least), 0.0F, top) : top;
+        lookup.probes = std::isfinite(lookup.longest) ? static_cast<int>(std::ceil(lookup.longest / least)) : 1;
+        lookup.step = std::isfinite(lookup.longest) ? along / size / static_cast<float>(lookup.probes) : glm::vec2(0);
+    }
+    const auto low = static_cast<std::size_t>(lookup.level);
+    pixels.linear(low).prefetch(inside);
+    if (lookup.level > static_cast<float>(low)) {
+        pixels.linear(low + 1).prefetch(inside);
+    }
+    return lookup;
+}
+
+glm::vec4 ImageTexture::read(const Lookup& lookup) const {
+    if (lookup.pixels == nullptr) {
+        return kMissing;
+    }
+    const Reader reader(*lookup.pixels, extension_);
+    const TexelEncoding encoding = lookup.pixels->encoding();
+    if (lookup.probes == 0) {
+        const glm::vec2 texels = lookup.place * glm::vec2(lookup.pixels->width(), lookup.pixels->height());
+        const glm::vec4 stored = interpolation_ == TextureInterpolation::closest  ? reader.closest(texels)
+                                 : interpolation_ == TextureInterpolation::linear ? reader.bilinear(texels)
+                                                                                  : reader.cubic(texels);
         return finished(stored, encoding);
     }
-    // The area of the footprint over its longest side.
-    const float width = std::abs(along.x * across.y - along.y * across.x) / longest;
-    const float least = std::max({width, longest / kMostProbes, 1.0F});
-    const float level = std::isfinite(least) ? std::log2(least) : static_cast<float>(tile->pixels->level_count());
-    const int probes = std::isfinite(longest) ? static_cast<int>(std::ceil(longest / least)) : 1;
-    const glm::vec2 step = std::isfinite(longest) ? along / size / static_cast<float>(probes) : glm::vec2(0);
     glm::vec4 sum(0);
-    for (int i = 0; i < probes; ++i) {
-        sum +=
-            lookup.trilinear(level, inside + (static_cast<float>(i) + 0.5F - 0.5F * static_cast<float>(probes)) * step);
+    for (int i = 0; i < lookup.probes; ++i) {
+        const float from_middle = static_cast<float>(i) + 0.5F - 0.5F * static_cast<float>(lookup.probes);
+        sum += reader.trilinear(lookup.level, lookup.place + from_middle * lookup.step);
     }
-    sum /= static_cast<float>(probes);
+    sum /= static_cast<float>(lookup.probes);
     if (encoding == TexelEncoding::normal) {
         const float mean_length = std::min(glm::length(glm::vec3(sum) * 2.0F - 1.0F), 1.0F);
-        sum.w = glm::mix(1.0F, mean_length, std::min(longest - 1, 1.0F));
+        sum.w = glm::mix(1.0F, mean_length, std::min(lookup.longest - 1, 1.0F));
     }
     if (unassociate_ && sum.w > 0) {
         sum = glm::vec4(glm::vec3(sum) / sum.w, sum.w);

@@ -47,6 +47,8 @@ class Texels {
   public:
     std::int64_t width, height;
 
+    /// Asks for the texels about a place of the picture, which repeats from 0 … 1 on, ahead of their use.
+    void prefetch(const glm::vec2& place) const;
     /// Precondition: inside.
     glm::vec4 operator()(std::int64_t column, std::int64_t row) const {
         const std::int64_t first = (row * width + column) * channels_;
@@ -91,6 +93,9 @@ class TexturePixels {
     /// pixels: rows from v = 0 on, of 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. What is not finite
     /// becomes 0, or the largest number of its type.
     TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint32_t height, int channels, TexelEncoding encoding);
+    TexturePixels(const TexturePixels&) = delete;
+    TexturePixels& operator=(const TexturePixels&) = delete;
+    ~TexturePixels() = default;
 
     std::uint32_t width() const { return levels_.front().width; }
     std::uint32_t height() const { return levels_.front().height; }
@@ -99,8 +104,8 @@ class TexturePixels {
     TexelEncoding encoding() const { return encoding_; }
 
     /// The texels of a level: as stored, or in linear light.
-    Texels stored(std::size_t level) const;
-    Texels linear(std::size_t level) const;
+    const Texels& stored(std::size_t level) const { return stored_[level]; }
+    const Texels& linear(std::size_t level) const { return linear_[level]; }
 
   private:
     /// Half as wide and high as the one before, rounded up.
@@ -111,11 +116,13 @@ class TexturePixels {
         int channels;
         TexelNumbers pixels;
     };
-    Texels texels(std::size_t level, const std::array<float, 256>& bytes) const;
+    void add(Level level);
+    static Texels texels(const Level& level, const std::array<float, 256>& bytes);
     Level halved(std::size_t level) const;
     void store(Level& level, std::size_t texel, const glm::vec4& linear) const;
 
     std::vector<Level> levels_;
+    std::vector<Texels> stored_, linear_;  // of each level
     TexelEncoding encoding_;
 };
 
@@ -134,11 +141,24 @@ class ImageTexture {
                  bool unassociate, bool tiled);
 
     const TexturePixels& pixels() const { return *tiles_.front().pixels; }
+    /// A lookup but for the texels, which are on their way.
+    struct Lookup {
+        const TexturePixels* pixels;  ///< null: it is between the tiles
+        glm::vec2 place;              ///< 0 … 1 over the picture
+        float longest;                ///< side of the footprint, in texels
+        float level;
+        int probes;      ///< along that side; 0: the footprint is within a texel
+        glm::vec2 step;  ///< from probe to probe
+    };
+    Lookup look(const glm::vec2& place, const TextureFootprint& footprint) const;
     /// Linear RGBA. Without a footprint it is what the interpolation makes of the picture.
-    glm::vec4 sample(const glm::vec2& place, const TextureFootprint& footprint) const;
+    glm::vec4 read(const Lookup& lookup) const;
+    glm::vec4 sample(const glm::vec2& place, const TextureFootprint& footprint) const {
+        return read(look(place, footprint));
+    }
 
   private:
-    class Lookup;
+    class Reader;
     glm::vec4 finished(const glm::vec4& stored, TexelEncoding encoding) const;
 
     std::vector<Tile> tiles_;

@@ -38,12 +38,12 @@ float power(float base, float exponent) {
     return base < 0 && exponent != std::trunc(exponent) ? 0.0F : std::pow(base, exponent);
 }
 
-/// What std::max and std::min leave open: a NaN loses.
+/// What std::max and std::min leave open: a NaN loses. Without a call, so that loops over lanes are vectors'.
 float larger(float a, float b) {
-    return std::fmax(a, b);
+    return a > b || std::isnan(b) ? a : b;
 }
 float smaller(float a, float b) {
-    return std::fmin(a, b);
+    return a < b || std::isnan(b) ? a : b;
 }
 
 std::uint32_t rotated(std::uint32_t x, int by) {
@@ -133,11 +133,18 @@ void look_up(const OperationLanes& lanes) {
 
 void sample_image(const OperationLanes& lanes) {
     const float* const* a = lanes.arguments;
-    for (std::size_t i = 0; i < lanes.count; ++i) {
-        const TextureFootprint footprint = {{a[2][i], a[3][i]}, {a[4][i], a[5][i]}};
-        const glm::vec4 color = lanes.image->sample({a[0][i], a[1][i]}, footprint);
-        for (int channel = 0; channel < 4; ++channel) {
-            lanes.results[channel][i] = color[channel];
+    // Texels of some lookups come from memory while others are read.
+    std::array<ImageTexture::Lookup, 16> lookups{};
+    for (std::size_t i = 0; i < lanes.count + lookups.size(); ++i) {
+        ImageTexture::Lookup& lookup = lookups[i % lookups.size()];
+        if (i >= lookups.size()) {
+            const glm::vec4 color = lanes.image->read(lookup);
+            for (int channel = 0; channel < 4; ++channel) {
+                lanes.results[channel][i - lookups.size()] = color[channel];
+            }
+        }
+        if (i < lanes.count) {
+            lookup = lanes.image->look({a[0][i], a[1][i]}, {{a[2][i], a[3][i]}, {a[4][i], a[5][i]}});
         }
     }
 }

@@ -107,7 +107,7 @@ void DirectLight::integrate(const ShadingPoints& points, std::span<const std::ui
         seen_.look(light, points.frame[some[i]], points.error[some[i]], tolerance_, i);
     }
     for (std::size_t lobe = 0; lobe < views_.lobe_count(); ++lobe) {
-        if (reflects(traits_of(light), views_.lobe(lobe).shape())) {
+        if (!views_.lobe(lobe).is_black() && reflects(traits_of(light), views_.lobe(lobe).shape())) {
             seen_.shade(views_.lobe(lobe), views_.positions().all(), tolerance_, true, batch_,
                         [&](std::span<const std::uint32_t> numbers) {
                             add(points, some, numbers, light, light_index, lobe, report);

@@ -317,7 +317,7 @@ void LobeBatch::integrate_outline(const LobeViews& lobe, std::size_t item, std::
     const std::uint32_t view = item_views_[item];
     const double tolerance = lobe.absolute_tolerance(view);
     const OutlineIntegral integral =
-        outline_integral(lobe.shape(view), lobe.positions().cosine()[view], arcs, tolerance);
+        outline_integral(lobe.shape(view), lobe.positions().cosine()[view], arcs, tolerance, lobe.albedo(view));
     item_values_[item] = static_cast<float>(integral.value);
     efforts_[items_[item]] = integral.points;
     missed_[items_[item]] = integral.error <= tolerance ? 0 : 1;

@@ -28,6 +28,7 @@ void SeenLights::clear() {
     polygons_.clear();
     disks_.clear();
     numbers_.clear();
+    holds_all_ = false;
 }
 
 void SeenLights::look(const Light& light, const ShadingFrame& frame, double error, double tolerance,
@@ -78,6 +79,7 @@ void SeenLights::look_at(const MeshLight& light, const ShadingFrame& frame, doub
 void SeenLights::add_polygon(std::size_t first, std::uint32_t number, bool filled_up) {
     const std::size_t count = vertices_.size() - first;
     const std::size_t size = filled_up ? (count + kSizeStep - 1) / kSizeStep * kSizeStep : count;
+    holds_all_ = false;
     polygons_.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count),
                          static_cast<std::uint32_t>(size), number});
 }
@@ -85,6 +87,7 @@ void SeenLights::add_polygon(std::size_t first, std::uint32_t number, bool fille
 void SeenLights::add_disk(const Ellipse<double>& disk, std::uint32_t number) {
     const SphericalEllipse<double> ellipse(disk, true);
     if (!ellipse.empty()) {
+        holds_all_ = false;
         polygons_.push_back({static_cast<std::uint32_t>(disks_.size()), 0, 0, number});
         disks_.push_back(ellipse);
     }
@@ -184,6 +187,7 @@ std::size_t SeenLights::gather(std::size_t first) {
         }
         numbers_.push_back(polygon.number);
     }
+    holds_all_ = numbers_.size() == polygons_.size() && disks_.empty();
     return first;
 }
 

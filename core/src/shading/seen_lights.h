@@ -58,9 +58,11 @@ class SeenLights {
             batch.shade(lobe, circles_.arrays(), views(cap_numbers_, view_of), with_statistics);
             visit(std::span<const std::uint32_t>(cap_numbers_));
         }
-        sort(lobe, view_of, tolerance);
+        if (!holds_all_) {
+            sort(lobe, view_of, tolerance);
+        }
         for (std::size_t first = 0; first < polygons_.size();) {
-            first = gather(first);
+            first = holds_all_ ? polygons_.size() : gather(first);
             batch.shade(lobe, gathered_, views(numbers_, view_of), with_statistics);
             visit(std::span<const std::uint32_t>(numbers_));
         }
@@ -109,6 +111,7 @@ class SeenLights {
     std::vector<std::uint32_t> sizes_, order_;
     PolygonBatch gathered_;
     std::vector<std::uint32_t> numbers_;  // of gathered_
+    bool holds_all_ = false;              // whether these are all polygons, whatever the lobe
 
     std::vector<std::uint32_t> views_;
     std::vector<Vec3d> corners_;

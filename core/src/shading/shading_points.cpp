@@ -48,17 +48,15 @@ void ShadingPoints::clear() {
 }
 
 bool ShadingPoints::joins(const Hits& hits, std::size_t hit, std::size_t point) const {
-    if (material[point] != hits.material[hit]) {
+    const Members& members = members_[point];
+    const Vec3d turn = hits.frame[hit].z - members.first_normal;
+    if (glm::dot(turn, turn) > members.spread * members.spread || material[point] != hits.material[hit]) {
         return false;
     }
     // The point's frame is that of its first hit until all are known.
-    const Members& members = members_[point];
-    double difference = glm::length(hits.frame[hit].z - frame[point].z);
-    if (difference > members.spread) {
-        return false;
-    }
-    difference += glm::length(towards_viewer(hits, hit) - members.first_towards_viewer) +
-                  glm::length(hits.frame[hit].origin - frame[point].origin) / members.nearest_light;
+    const double difference = glm::length(turn) +
+                              glm::length(towards_viewer(hits, hit) - members.first_towards_viewer) +
+                              glm::length(hits.frame[hit].origin - frame[point].origin) / members.nearest_light;
     return difference + members.narrowest * relative_difference(hits.widths(hit), members.first_widths) <=
            members.spread;
 }
@@ -73,8 +71,8 @@ void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes
     lobe_width.resize(lobe_width.size() + lobe_stride_, 0);
     const double narrowest = lobes.narrowest(hits.cos_theta_o[hit], hits.widths(hit));
     const double spread = std::sqrt(3 * tolerance) * std::min(kWidestSpread, narrowest);
-    members_.push_back({towards_viewer(hits, hit), hits.widths(hit), narrowest, spread, nearest_light, Vec3d(0),
-                        Vec3d(0), Vec3d(0), 0, 0});
+    members_.push_back({hits.frame[hit].z, towards_viewer(hits, hit), narrowest, spread, nearest_light,
+                        hits.widths(hit), Vec3d(0), Vec3d(0), Vec3d(0), 0, 0});
 }
 
 void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t point) {

@@ -52,11 +52,11 @@ class ShadingPoints {
   private:
     /// The hits of a point: what the first one demands of the others, and their sum.
     struct Members {
-        Vec3d first_towards_viewer;
-        std::span<const float> first_widths;
+        Vec3d first_normal, first_towards_viewer;
         double narrowest;      // least distance over which f·cos changes
         double spread;         // allowed difference from the first
         double nearest_light;  // distance
+        std::span<const float> first_widths;
         Vec3d position, normal, towards_viewer;
         std::uint32_t count;
         std::size_t first_hit;  // in hits_by_point_

@@ -177,10 +177,14 @@ def _merged(lobes: tuple[Lobe, ...]) -> tuple[Lobe, ...]:
 
 
 def _identity(value: Value | None) -> Any:
-    """Equal for numbers that are known to be equal."""
+    """Equal for numbers that are known to be equal: the same value, or the same operation on the same values."""
     if value is None:
         return None
-    return value.constant if value.constant is not None else (id(value.step), value.output)
+    if value.constant is not None:
+        return value.constant
+    step = value.step
+    known_by = tuple((id(a.step), a.output) for a in step.arguments) or id(step)
+    return (step.name, id(step.data), known_by, value.output)
 
 
 def _spread(lobe: Lobe) -> Lobe:
