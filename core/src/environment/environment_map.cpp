@@ -7,6 +7,7 @@
 #include <functional>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 namespace shlight {
 namespace {
@@ -45,8 +46,8 @@ Vec3d direction_of(const glm::dvec2& texel, int width, int height) {
     return {std::sin(tilt) * std::cos(longitude), std::sin(tilt) * std::sin(longitude), std::cos(tilt)};
 }
 
-RadiancePyramid::RadiancePyramid(const std::vector<Rgb>& pixels, int width, int height, Levels wanted)
-    : levels_{{width, height, 0}}, pixels_(pixels) {
+RadiancePyramid::RadiancePyramid(std::vector<Rgb> pixels, int width, int height, Levels wanted)
+    : levels_{{width, height, 0}}, pixels_(std::move(pixels)) {
     while (wanted == Levels::all && (levels_.back().width > 1 || levels_.back().height > 1)) {
         const Level fine = levels_.back();
         const Level coarse = {(fine.width + 1) / 2, (fine.height + 1) / 2, static_cast<int>(pixels_.size())};

@@ -31,7 +31,7 @@ Vec3d direction_of(const glm::dvec2& texel, int width, int height);
 class RadiancePyramid {
   public:
     enum class Levels { all, first };
-    RadiancePyramid(const std::vector<Rgb>& pixels, int width, int height, Levels wanted = Levels::all);
+    RadiancePyramid(std::vector<Rgb> pixels, int width, int height, Levels wanted = Levels::all);
 
     /// Its rows follow each other from the pixel number `first` on.
     struct Level {

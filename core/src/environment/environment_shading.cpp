@@ -28,8 +28,9 @@ static_assert(kDirections % kLobeRayLanes == 0 && kDirections % kLookupLanes == 
 struct DirectionPoints {
     DirectionPoints() {
         for (std::size_t i = 0; i < kDirections; ++i) {
+            const std::size_t row = i / kDirectionsAcross;
             u[i] = (static_cast<float>(i % kDirectionsAcross) + 0.5F) / kDirectionsAcross;
-            v[i] = (static_cast<float>(i / kDirectionsAcross) + 0.5F) / kDirectionsAcross;
+            v[i] = (static_cast<float>(row) + 0.5F) / kDirectionsAcross;
         }
     }
     std::array<float, kDirections> u, v;
