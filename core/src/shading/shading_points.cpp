@@ -11,6 +11,8 @@ namespace {
 
 /// For materials without a narrow lobe: of cosθ and the horizon.
 constexpr double kWidestSpread = 1.3;
+/// Of the difference of two unit vectors in floats.
+constexpr double kNormalRounding = 1e-6;
 
 Vec3d towards_viewer(const Hits& hits, std::size_t hit) {
     const double cosine = hits.cos_theta_o[hit];
@@ -45,16 +47,42 @@ void ShadingPoints::clear() {
     of_hit.clear();
     pixel_begin.assign(1, 0);
     members_.clear();
+    for (std::vector<float>* array : {&first_x_, &first_y_, &first_z_, &nearness_}) {
+        array->clear();
+    }
+}
+
+/// Where hits of a pixel share no points, each looks at all of them: several at a time.
+std::size_t ShadingPoints::next_near(const Vec3f& normal, std::size_t point) const {
+    constexpr std::size_t kAtOnce = 8;
+    const auto is_near = [&](std::size_t i) {
+        const float x = first_x_[i] - normal.x;
+        const float y = first_y_[i] - normal.y;
+        const float z = first_z_[i] - normal.z;
+        return x * x + y * y + z * z <= nearness_[i] ? 1 : 0;
+    };
+    for (; point + kAtOnce <= size(); point += kAtOnce) {
+        int any = 0;
+        for (std::size_t i = point; i < point + kAtOnce; ++i) {
+            any |= is_near(i);
+        }
+        if (any != 0) {
+            break;
+        }
+    }
+    while (point < size() && is_near(point) == 0) {
+        ++point;
+    }
+    return point;
 }
 
 bool ShadingPoints::joins(const Hits& hits, std::size_t hit, std::size_t point) const {
-    const Members& members = members_[point];
-    const Vec3d turn = hits.frame[hit].z - members.first_normal;
-    if (glm::dot(turn, turn) > members.spread * members.spread || material[point] != hits.material[hit]) {
+    if (material[point] != hits.material[hit]) {
         return false;
     }
     // The point's frame is that of its first hit until all are known.
-    const double difference = glm::length(turn) +
+    const Members& members = members_[point];
+    const double difference = glm::length(hits.frame[hit].z - frame[point].z) +
                               glm::length(towards_viewer(hits, hit) - members.first_towards_viewer) +
                               glm::length(hits.frame[hit].origin - frame[point].origin) / members.nearest_light;
     return difference + members.narrowest * relative_difference(hits.widths(hit), members.first_widths) <=
@@ -71,8 +99,13 @@ void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes
     lobe_width.resize(lobe_width.size() + lobe_stride_, 0);
     const double narrowest = lobes.narrowest(hits.cos_theta_o[hit], hits.widths(hit));
     const double spread = std::sqrt(3 * tolerance) * std::min(kWidestSpread, narrowest);
-    members_.push_back({hits.frame[hit].z, towards_viewer(hits, hit), narrowest, spread, nearest_light,
-                        hits.widths(hit), Vec3d(0), Vec3d(0), Vec3d(0), 0, 0});
+    const Vec3f normal(hits.frame[hit].z);
+    first_x_.push_back(normal.x);
+    first_y_.push_back(normal.y);
+    first_z_.push_back(normal.z);
+    nearness_.push_back(static_cast<float>((spread + kNormalRounding) * (spread + kNormalRounding)));
+    members_.push_back({towards_viewer(hits, hit), hits.widths(hit), narrowest, spread, nearest_light, Vec3d(0),
+                        Vec3d(0), Vec3d(0), 0, 0});
 }
 
 void ShadingPoints::add_member(const Hits& hits, std::size_t hit, std::size_t point) {
@@ -109,9 +142,10 @@ void ShadingPoints::assign(const Hits& hits, std::span<const MaterialLobes> mate
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
         const std::size_t first_point = size();
         for (std::size_t hit = hits.pixel_begin[pixel]; hit < hits.pixel_begin[pixel + 1]; ++hit) {
-            std::size_t point = first_point;
+            const Vec3f normal(hits.frame[hit].z);
+            std::size_t point = next_near(normal, first_point);
             while (point < size() && !joins(hits, hit, point)) {
-                ++point;
+                point = next_near(normal, point + 1);
             }
             if (point == size()) {
                 start(hits, hit, materials[hits.material[hit]], nearest(lights, deltas, hits.frame[hit].origin),

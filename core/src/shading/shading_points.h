@@ -52,17 +52,19 @@ class ShadingPoints {
   private:
     /// The hits of a point: what the first one demands of the others, and their sum.
     struct Members {
-        Vec3d first_normal, first_towards_viewer;
+        Vec3d first_towards_viewer;
+        std::span<const float> first_widths;
         double narrowest;      // least distance over which f·cos changes
         double spread;         // allowed difference from the first
         double nearest_light;  // distance
-        std::span<const float> first_widths;
         Vec3d position, normal, towards_viewer;
         std::uint32_t count;
         std::size_t first_hit;  // in hits_by_point_
     };
 
     void clear();
+    /// The first point from this one on whose normal is not too far from the hit's; size() if there is none.
+    std::size_t next_near(const Vec3f& normal, std::size_t point) const;
     bool joins(const Hits& hits, std::size_t hit, std::size_t point) const;
     void start(const Hits& hits, std::size_t hit, const MaterialLobes& lobes, double nearest_light, double tolerance);
     void add_member(const Hits& hits, std::size_t hit, std::size_t point);
@@ -71,6 +73,8 @@ class ShadingPoints {
 
     std::size_t lobe_stride_ = 1;
     std::vector<Members> members_;
+    /// Of each point: the normal of its first hit, and the square of how far from that another may be, in floats.
+    std::vector<float> first_x_, first_y_, first_z_, nearness_;
     std::vector<std::size_t> hits_by_point_;  // numbers of hits, in the order of their points
 };
 
