@@ -109,7 +109,8 @@ def test_passes_are_those_of_cycles(studio: Any) -> None:
             known = expected[..., 0] < 1e30
             worst[name] = relative_error(image[known], expected[known])
     print({name: f"{error:.1e}" for name, error in worst.items()})
-    # Shares differ by the rays that find an edge; the world's direct light is Cycles' noise.
+    # Shares differ by the rays that find an edge; the world's and glossy direct light are Cycles' noise, which makes
+    # half of the latter's error against 16384 samples.
     allowed = {name: 5e-3 if ".Crypto" in name or name.endswith("sky") else 1e-3 for name in worst}
     allowed["ViewLayer.GlossDir"] = allowed["ViewLayer.Glossy Direct"] = 3e-3
     assert {name: error for name, error in worst.items() if not error <= allowed[name]} == {}
