@@ -6,14 +6,13 @@ from __future__ import annotations
 import importlib.util
 import os
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from shlight.commands import CommandError
 from shlight.farm.pictures import Source
-from shlight.farm.tasks import Result, Task, perform, perform_on_worker
+from shlight.farm.tasks import Result, Task, perform_on_worker
 from shlight.farm.tls import Tls
 
 # A frame that has taken down so many workers is given up; of a scheduler elsewhere its own configuration counts.
@@ -134,32 +133,6 @@ class Workers:
         if message.get("action") == "remove-worker" and not message.get("expected"):
             lost = len(message.get("processing-tasks", ()))
             self._say(f"worker {message.get('worker')} is lost" + (f"; {lost} of its tasks begin anew" if lost else ""))
-
-
-class ThisProcess:
-    """Tasks that this process does, one after the other."""
-
-    def __init__(self, source: Source, threads: int) -> None:
-        self._source, self._threads = source, threads
-        self._tasks: list[Task] = []
-
-    def submit(self, task: Task) -> None:
-        """Puts a task behind the others."""
-        self._tasks.append(task)
-
-    def ended(self) -> list[tuple[Task, Callable[[], Result]]]:
-        """The next task, which is done when its result is asked for."""
-        task = self._tasks.pop(0)
-        future: Future[Result] = Future()
-        try:
-            future.set_result(perform(self._source, task, self._threads))
-        except Exception as error:
-            future.set_exception(error)
-        return [(task, future.result)]
-
-    def cancel(self, tasks: Callable[[Task], bool]) -> None:
-        """Tasks that are not needed any more."""
-        self._tasks = [task for task in self._tasks if not tasks(task)]
 
 
 def default_workers(tasks: int) -> int:
