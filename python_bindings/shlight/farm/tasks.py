@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import atexit
+import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -30,7 +32,10 @@ class Result:
 
 def perform_on_worker(source: Source, task: Task, threads: int) -> Result:
     """As `perform`, always in the same thread of a worker's process: Blender stays in the one where it began."""
-    return _render_thread().submit(perform, source, task, threads).result()
+    try:
+        return _render_thread().submit(perform, source, task, threads).result()
+    finally:
+        _end_at_once()
 
 
 def perform(source: Source, task: Task, threads: int) -> Result:
@@ -40,6 +45,12 @@ def perform(source: Source, task: Task, threads: int) -> Result:
     if picture.is_whole:
         return Result(files.encode(picture, rendered), rendered.messages)
     return Result(rendered, rendered.messages)
+
+
+@cache
+def _end_at_once() -> None:
+    """A worker has nothing to keep, and Blender's own end may hang. What is registered last is called first."""
+    atexit.register(os._exit, 0)
 
 
 @cache
