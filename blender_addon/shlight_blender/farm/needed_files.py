@@ -10,6 +10,8 @@ import zipfile
 from collections.abc import Iterable
 from pathlib import Path
 
+from shlight.farm import tasks
+
 WITH_PATHS = ("images", "libraries", "fonts", "sounds", "movieclips", "volumes", "cache_files")
 
 
@@ -69,9 +71,7 @@ def packed(key: str, paths: Iterable[str], folder: Path) -> Path:
 
 def unpacked(key: str) -> Path:
     """The folder on a worker that stands for the root of the sender's files; made once."""
-    from distributed import get_worker
-
-    archive = Path(get_worker().local_directory) / f"shlight-{key}.bin"
+    archive = tasks.received_files / f"shlight-{key}.bin"
     folder = archive.with_suffix("")
     if not folder.is_dir():
         partial = archive.with_suffix(".partial")

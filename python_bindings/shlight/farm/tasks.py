@@ -9,9 +9,12 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 
 from shlight.farm import files
 from shlight.farm.pictures import Picture, Rendered, Source
+
+received_files = Path()  # the folder of files that a worker got sent
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,10 @@ class Result:
 
 def perform_on_worker(source: Source, task: Task, threads: int) -> Result:
     """As `perform`, always in the same thread of a worker's process: Blender stays in the one where it began."""
+    from distributed import get_worker
+
+    global received_files
+    received_files = Path(get_worker().local_directory)
     try:
         return _render_thread().submit(perform, source, task, threads).result()
     finally:
