@@ -6,6 +6,7 @@ from __future__ import annotations
 import importlib.util
 import os
 from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ from shlight.farm.tls import Tls
 WORKER_DEATHS = 2
 CONNECT_SECONDS = 15
 POLL_SECONDS = 0.5
+LOST = "the scheduler is lost; the same command started again goes on"
 
 
 def check_dask() -> None:
@@ -96,10 +98,10 @@ class Workers:
         """Tasks that have ended, each with what gives its result or raises; none after half a second."""
         from distributed import wait
 
-        with self._client.as_current(), suppress(TimeoutError):
+        with self._client.as_current(), suppress(TimeoutError, CancelledError):
             wait(list(self._tasks), timeout=POLL_SECONDS, return_when="FIRST_COMPLETED")
-        if self._client.status != "running":
-            raise CommandError("the scheduler is lost; start the same command again to go on", 1)
+        if self._client.status != "running" or any(future.status in ("cancelled", "lost") for future in self._tasks):
+            raise CommandError(LOST, 1)
         done = [future for future in self._tasks if future.done()]
         return [(self._tasks.pop(future), self._result_of(future)) for future in done]
 
@@ -112,6 +114,10 @@ class Workers:
             except KilledWorker as error:
                 deaths = f"{error.allowed_failures + 1} workers died while they rendered it"
                 raise RuntimeError(f"{deaths}, killed or out of memory") from None
+            except (CancelledError, OSError) as error:
+                if isinstance(error, CancelledError) or self._client.status != "running":
+                    raise CommandError(LOST, 1) from None
+                raise
 
         return result
 
