@@ -25,8 +25,10 @@ LOST = "the scheduler is lost; the same command started again goes on"
 
 def check_dask() -> None:
     """Raises CommandError where Dask distributed is missing."""
-    if importlib.util.find_spec("distributed") is None:
-        raise CommandError("Dask distributed is missing: pip install 'shlight[farm]'", 1)
+    try:
+        import distributed  # noqa: F401
+    except ImportError:
+        raise CommandError("Dask distributed is missing: pip install 'shlight[farm]'", 1) from None
 
 
 @contextmanager
