@@ -6,8 +6,6 @@ from __future__ import annotations
 import multiprocessing
 import os
 from collections.abc import Mapping
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Any
 
@@ -29,18 +27,31 @@ def open_scene_file(
         pass
     if not 0.0 < scale <= 100.0:
         raise ValueError(f"scale must be above 0 and at most 100, got {scale}")
-    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), _say_nothing) as pool:
-        try:
-            return pool.submit(describe, path, views, settings, scale, sent).result()
-        except BrokenProcessPool:
-            raise CommandError(f"{path}: Blender crashed when it opened it", 1) from None
-        except (ValueError, OSError):
-            raise
-        except Exception as error:  # SceneError among them, whose module needs bpy
-            raise CommandError(f"{path}: {error}", 2) from None
+    spawning = multiprocessing.get_context("spawn")
+    receiver, sender = spawning.Pipe(duplex=False)
+    process = spawning.Process(target=_describe, args=(sender, path, views, settings, scale, sent), daemon=True)
+    process.start()
+    sender.close()
+    try:
+        found: SceneFile | Exception = receiver.recv()
+    except EOFError:
+        raise CommandError(f"{path}: Blender crashed when it opened it", 1) from None
+    finally:
+        process.kill()  # nothing is left to do but Blender's own end, which may hang
+        process.join()
+        receiver.close()
+    if isinstance(found, Exception):
+        raise found
+    return found
 
 
-def _say_nothing() -> None:
-    """Blender's chatter is no output of the command."""
+def _describe(sender: Any, path: Path, *arguments: Any) -> None:
+    """In a process of its own, whose standard output is none of the command's."""
     with Path(os.devnull).open("wb") as nothing:
         os.dup2(nothing.fileno(), 1)
+    try:
+        sender.send(describe(path, *arguments))
+    except (ValueError, OSError) as error:
+        sender.send(error)
+    except Exception as error:  # SceneError among them, whose module needs bpy
+        sender.send(ValueError(f"{path}: {error}"))

@@ -10,6 +10,8 @@ import zipfile
 from collections.abc import Iterable
 from pathlib import Path
 
+from shlight.farm import tasks
+
 WITH_PATHS = ("images", "libraries", "fonts", "sounds", "movieclips", "volumes", "cache_files")
 
 
@@ -22,10 +24,10 @@ def of_open_scene(path: Path) -> tuple[list[str], list[str]]:
         if image.source in {"SEQUENCE", "TILED"} and image.filepath:
             paths.discard(named := Path(bpy.path.abspath(image.filepath, library=image.library)).resolve())
             paths.update(_siblings(named))
-    for module in list(sys.modules.values()):
-        file = Path(getattr(module, "__file__", None) or "/")
-        if path.suffix == ".py" and file.resolve().parent == path.parent:
-            paths.add(file.resolve())
+    if path.suffix == ".py":
+        modules = {name: getattr(module, "__file__", None) for name, module in list(sys.modules.items())}
+        own = (Path(file).resolve() for name, file in modules.items() if file and not name.endswith("main__"))
+        paths.update(file for file in own if file.parent == path.parent and file.is_file())
     found = sorted(str(name) for name in {path, *paths} if name.is_file())
     return found, sorted(str(name) for name in paths if not name.exists())
 
@@ -69,9 +71,7 @@ def packed(key: str, paths: Iterable[str], folder: Path) -> Path:
 
 def unpacked(key: str) -> Path:
     """The folder on a worker that stands for the root of the sender's files; made once."""
-    from distributed import get_worker
-
-    archive = Path(get_worker().local_directory) / f"shlight-{key}.bin"
+    archive = tasks.received_files / f"shlight-{key}.bin"
     folder = archive.with_suffix("")
     if not folder.is_dir():
         partial = archive.with_suffix(".partial")

@@ -40,7 +40,8 @@ def closed_to_others(scene: Any) -> list[str]:
     render, left_out = scene.render, []
     if render.use_compositing and getattr(scene, "node_tree", None) is not None:
         left_out.append("compositing is left out; do it with the files")
-    if render.use_sequencer and scene.sequence_editor is not None:
+    editor = scene.sequence_editor
+    if render.use_sequencer and (getattr(editor, "strips", None) or getattr(editor, "sequences", None)):
         left_out.append("the sequencer is left out")
     return [f"Scene '{scene.name}': {text}" for text in left_out]
 

@@ -118,7 +118,7 @@ def _read(path: Path) -> tuple[tuple[str, ...], Any, dict[str, str]]:
         names += spec.channelnames
         pixels: Any = source.read_image(part, 0, 0, spec.nchannels, "float")
         parts.append(np.atleast_3d(pixels))
-        attributes |= {a.name: a.value for a in spec.extra_attribs if a.name.startswith(KEPT_ATTRIBUTES)}
+        attributes |= {a.name: str(a.value) for a in spec.extra_attribs if a.name.startswith(KEPT_ATTRIBUTES)}
         part += 1
     source.geterror()
     source.close()

@@ -6,26 +6,29 @@ from __future__ import annotations
 import importlib.util
 import os
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future
+from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from shlight.commands import CommandError
 from shlight.farm.pictures import Source
-from shlight.farm.tasks import Result, Task, perform, perform_on_worker
+from shlight.farm.tasks import Result, Task, perform_on_worker
 from shlight.farm.tls import Tls
 
 # A frame that has taken down so many workers is given up; of a scheduler elsewhere its own configuration counts.
 WORKER_DEATHS = 2
 CONNECT_SECONDS = 15
 POLL_SECONDS = 0.5
+LOST = "the scheduler is lost; the same command started again goes on"
 
 
 def check_dask() -> None:
     """Raises CommandError where Dask distributed is missing."""
-    if importlib.util.find_spec("distributed") is None:
-        raise CommandError("Dask distributed is missing: pip install 'shlight[farm]'", 1)
+    try:
+        import distributed  # noqa: F401
+    except ImportError:
+        raise CommandError("Dask distributed is missing: pip install 'shlight[farm]'", 1) from None
 
 
 @contextmanager
@@ -97,10 +100,10 @@ class Workers:
         """Tasks that have ended, each with what gives its result or raises; none after half a second."""
         from distributed import wait
 
-        with self._client.as_current(), suppress(TimeoutError):
+        with self._client.as_current(), suppress(TimeoutError, CancelledError):
             wait(list(self._tasks), timeout=POLL_SECONDS, return_when="FIRST_COMPLETED")
-        if self._client.status != "running":
-            raise CommandError("the scheduler is lost; start the same command again to go on", 1)
+        if self._client.status != "running" or any(future.status in ("cancelled", "lost") for future in self._tasks):
+            raise CommandError(LOST, 1)
         done = [future for future in self._tasks if future.done()]
         return [(self._tasks.pop(future), self._result_of(future)) for future in done]
 
@@ -113,6 +116,10 @@ class Workers:
             except KilledWorker as error:
                 deaths = f"{error.allowed_failures + 1} workers died while they rendered it"
                 raise RuntimeError(f"{deaths}, killed or out of memory") from None
+            except (CancelledError, OSError) as error:
+                if isinstance(error, CancelledError) or self._client.status != "running":
+                    raise CommandError(LOST, 1) from None
+                raise
 
         return result
 
@@ -134,32 +141,6 @@ class Workers:
         if message.get("action") == "remove-worker" and not message.get("expected"):
             lost = len(message.get("processing-tasks", ()))
             self._say(f"worker {message.get('worker')} is lost" + (f"; {lost} of its tasks begin anew" if lost else ""))
-
-
-class ThisProcess:
-    """Tasks that this process does, one after the other."""
-
-    def __init__(self, source: Source, threads: int) -> None:
-        self._source, self._threads = source, threads
-        self._tasks: list[Task] = []
-
-    def submit(self, task: Task) -> None:
-        """Puts a task behind the others."""
-        self._tasks.append(task)
-
-    def ended(self) -> list[tuple[Task, Callable[[], Result]]]:
-        """The next task, which is done when its result is asked for."""
-        task = self._tasks.pop(0)
-        future: Future[Result] = Future()
-        try:
-            future.set_result(perform(self._source, task, self._threads))
-        except Exception as error:
-            future.set_exception(error)
-        return [(task, future.result)]
-
-    def cancel(self, tasks: Callable[[Task], bool]) -> None:
-        """Tasks that are not needed any more."""
-        self._tasks = [task for task in self._tasks if not tasks(task)]
 
 
 def default_workers(tasks: int) -> int:

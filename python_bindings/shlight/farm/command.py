@@ -64,8 +64,8 @@ def _scale(text: str) -> float:
 def _parser() -> argparse.ArgumentParser:
     parser = Parser(
         prog="shlight render",
-        description="Renders frames of a scene to OpenEXR files: in this process, in several on this machine, or on the "
-        "workers of a Dask scheduler. Frames whose files are whole and of this scene and these settings are kept.",
+        description="Renders frames of a scene to OpenEXR files: in processes on this machine, or on "
+        "the workers of a Dask scheduler. Frames whose files are whole and of this scene and these settings are kept.",
     )
     add: Any = parser.add_argument
     add("scene", help="a Blender file, or a script with a function build_scene()")
@@ -86,11 +86,11 @@ def _parser() -> argparse.ArgumentParser:
         "--threads",
         type=int,
         metavar="N",
-        help="of each worker (default: all cores, shared by workers on this machine)",
+        help="of each worker (default: all cores, shared by workers here)",
     )
     group: Any = parser.add_argument_group("workers").add_argument
-    group("--workers", type=int, metavar="N", help="processes on this machine, 0: this one alone, without Dask (default: "
-          "one for each core, and none for a single picture)")  # fmt: skip
+    group("--workers", type=int, metavar="N", help="processes on this machine, 0: one without Dask "
+          "(default: one for each core, and none for a single picture)")  # fmt: skip
     group("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://host:8786 or tls://host:8786")
     group("--send", action="store_true", help="send the file, its textures and libraries to workers")
     for name, text in (("ca", "authority that has signed"), ("cert", "own certificate"), ("key", "its key")):

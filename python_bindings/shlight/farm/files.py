@@ -97,7 +97,7 @@ def is_whole(picture: Picture) -> bool:
 def _rows(source: Any, spec: Any, top: int) -> NDArray[Any] | None:
     end = min(top + ROWS, spec.height)
     if spec.tile_width:
-        return source.read_tiles(0, spec.width, top, end, 0, 1, "float")
+        return source.read_tiles(0, spec.width, top, end, 0, 1, 0, spec.nchannels, "float")
     return source.read_scanlines(top, end, 0, 0, spec.nchannels, "float")
 
 

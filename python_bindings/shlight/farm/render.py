@@ -14,8 +14,9 @@ from typing import Any
 
 from shlight.commands import CommandError, work_folder
 from shlight.farm import files
-from shlight.farm.cluster import ThisProcess, Workers, check_dask, connected, default_workers
+from shlight.farm.cluster import Workers, check_dask, connected, default_workers
 from shlight.farm.frames import check_out, file_of
+from shlight.farm.one_process import OneProcess
 from shlight.farm.pictures import Picture, Rendered, Source, picture_of
 from shlight.farm.progress import FarmProgress
 from shlight.farm.tasks import Result, Task
@@ -57,7 +58,7 @@ def render_frames(
     views: views of the scene, or names of cameras; none: all views, or the scene's camera.
     settings: properties of the scene such as {"shlight.noise_threshold": 0.005}. scale: of width and height.
     scheduler: the address of a Dask scheduler; None: `workers` processes on this machine, as many as it has cores
-        unless it is given, and for a single picture, or with 0 workers, this process alone, without Dask.
+        unless it is given, and for a single picture, or with 0 workers, one process without Dask.
     tls: for all connections. send: workers get the file and what it needs sent, and need not see it.
     force: files that are whole and of this scene and these settings are rendered too.
     tile: pictures are rendered in tiles of this side; None: those of more than 2^24 pixels in tiles of 1024; 0: none.
@@ -93,9 +94,9 @@ def render_frames(
         return outcome
     Path(out).absolute().parent.mkdir(parents=True, exist_ok=True)
     with ExitStack() as stack:
-        pool: Workers | ThisProcess
+        pool: Workers | OneProcess
         if scheduler is None and (workers == 0 or (workers is None and len(tasks) == 1)):
-            pool = ThisProcess(source, threads or 0)
+            pool = OneProcess(source, threads or 0)
         else:
             count = default_workers(len(tasks)) if workers is None else workers
             if threads is None and scheduler is None:
@@ -103,7 +104,7 @@ def render_frames(
             archive = _archive(source, Path(out), stack) if send else None
             client = stack.enter_context(connected(scheduler, count, tls, progress.say))
             pool = Workers(client, source, threads or 0, progress.say, archive)
-            stack.callback(pool.close)
+        stack.callback(pool.close)
         _Run(pool, outcome, progress, retries, stack).run(tasks)
     progress.end(outcome.failed)
     return outcome
@@ -142,7 +143,7 @@ class _Run:
     """Tasks on their way to files."""
 
     def __init__(
-        self, pool: Workers | ThisProcess, outcome: Outcome, progress: FarmProgress, retries: int, stack: ExitStack
+        self, pool: Workers | OneProcess, outcome: Outcome, progress: FarmProgress, retries: int, stack: ExitStack
     ) -> None:
         self._pool = pool
         self._outcome = outcome

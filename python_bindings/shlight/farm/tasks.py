@@ -3,13 +3,18 @@
 
 from __future__ import annotations
 
+import atexit
+import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 
 from shlight.farm import files
 from shlight.farm.pictures import Picture, Rendered, Source
+
+received_files = Path()  # the folder of files that a worker got sent
 
 
 @dataclass(frozen=True)
@@ -30,7 +35,14 @@ class Result:
 
 def perform_on_worker(source: Source, task: Task, threads: int) -> Result:
     """As `perform`, always in the same thread of a worker's process: Blender stays in the one where it began."""
-    return _render_thread().submit(perform, source, task, threads).result()
+    from distributed import get_worker
+
+    global received_files
+    received_files = Path(get_worker().local_directory)
+    try:
+        return _render_thread().submit(perform, source, task, threads).result()
+    finally:
+        _end_at_once()
 
 
 def perform(source: Source, task: Task, threads: int) -> Result:
@@ -40,6 +52,12 @@ def perform(source: Source, task: Task, threads: int) -> Result:
     if picture.is_whole:
         return Result(files.encode(picture, rendered), rendered.messages)
     return Result(rendered, rendered.messages)
+
+
+@cache
+def _end_at_once() -> None:
+    """A worker has nothing to keep, and Blender's own end may hang. What is registered last is called first."""
+    atexit.register(os._exit, 0)
 
 
 @cache

@@ -27,7 +27,5 @@ class Tls:
         from distributed.security import Security
 
         roles = ("scheduler", "worker", "client")
-        own = {
-            f"tls_{role}_{kind}": value for role in roles for kind, value in (("cert", self.cert), ("key", self.key))
-        }
+        own = {f"tls_{role}_cert": self.cert for role in roles} | {f"tls_{role}_key": self.key for role in roles}
         return Security(tls_ca_file=self.ca, require_encryption=True, **own)

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: MIT
+"""`shlight render` with real processes, and a real scheduler over loopback."""
+
+from __future__ import annotations
+
+import datetime
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("distributed", reason="the farm needs Dask: pip install 'shlight[farm]'")
+psutil = pytest.importorskip("psutil")
+
+from shlight.images import read_exr  # noqa: E402
+
+COMMAND = [sys.executable, "-c", "import sys; from shlight.farm.command import main; sys.exit(main(sys.argv[1:]))"]
+SECONDS = 50
+
+# The camera of frame 5 has no size while the file "fault" is there. A texture lies beside the script.
+SCENE = """
+import bpy
+from pathlib import Path
+HERE = Path(__file__).parent
+def spoil(scene, *_):
+    scene.camera.scale = (0, 0, 0) if scene.frame_current == 5 and (HERE / "fault").exists() else (1, 1, 1)
+def build_scene():
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = 96, 64
+    bpy.ops.mesh.primitive_plane_add(size=9)
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(0.4, 0, 0.5))
+    bpy.ops.object.light_add(type='AREA', location=(1, 0, 3))
+    lamp = bpy.context.object
+    lamp.data.energy = 300
+    for frame in (1, 24):
+        lamp.location.x = frame / 12
+        lamp.keyframe_insert("location", frame=frame)
+    bpy.ops.object.camera_add(location=(0, 0, 5))
+    scene.camera = bpy.context.object
+    bpy.app.handlers.frame_change_pre.append(spoil)
+    return scene
+"""
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    path = tmp_path / "scene.py"
+    path.write_text(SCENE)
+    return path
+
+
+def start(*arguments: object) -> subprocess.Popen[str]:
+    command = [*COMMAND, *map(str, arguments)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def run(*arguments: object) -> tuple[int, str]:
+    with start(*arguments) as process:
+        try:
+            output, _ = process.communicate(timeout=SECONDS)
+        finally:
+            process.kill()
+        print(output)
+        return process.returncode, output
+
+
+def wait_for(path: Path) -> None:
+    end = time.monotonic() + SECONDS
+    while not path.exists():
+        assert time.monotonic() <= end, f"{path} did not appear"
+        time.sleep(0.05)
+
+
+def renderers(pid: int) -> list[int]:
+    """Processes below this one that have loaded Blender."""
+    below = psutil.Process(pid).children(recursive=True)
+    return [own.pid for own in below if "/bpy/" in Path(f"/proc/{own.pid}/maps").read_text()]
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_survives_a_killed_worker_and_a_frame_that_fails(scene: Path, tmp_path: Path) -> None:
+    (tmp_path / "fault").touch()
+    out, alone = tmp_path / "out", tmp_path / "alone"
+    options = [scene, "--frames", "1-8", "--set", "shlight.noise_threshold=0.002", "--workers"]
+    process = start(*options, 2, "--out", out / "x_##.exr")
+    wait_for(out / "x_01.exr")
+    os.kill(renderers(process.pid)[-1], signal.SIGKILL)
+    output, _ = process.communicate(timeout=SECONDS)
+    print(output)
+    assert process.returncode == 1
+    assert " is lost" in output
+    assert "  frame 5: Camera 'Camera': its transform is not finite or has scale 0" in output
+    assert names(out) == [f"x_0{frame}.exr" for frame in (1, 2, 3, 4, 6, 7, 8)]
+
+    (tmp_path / "fault").unlink()
+    assert run(*options, 0, "--out", alone / "x_##.exr")[0] == 0
+    (out / "x_07.exr").write_bytes((out / "x_07.exr").read_bytes()[:-100])
+    code, output = run(*options, 2, "--out", out / "x_##.exr")
+    assert code == 0
+    assert "2 rendered, 6 kept, 0 failed" in output  # the one that failed, and the one that is not whole
+    for frame in range(1, 9):
+        assert (out / f"x_0{frame}.exr").read_bytes() == (alone / f"x_0{frame}.exr").read_bytes()
+
+
+def test_tiles_are_the_same_pixels_everywhere(scene: Path, tmp_path: Path) -> None:
+    options = [scene, "--frames", 1, "--scale", 2, "--tile", 64]
+    for workers in (0, 2):
+        assert run(*options, "--workers", workers, "--out", tmp_path / f"{workers}.exr")[0] == 0
+    assert run(*options[:-1], 0, "--out", tmp_path / "whole.exr")[0] == 0
+    alone, farm, whole = (read_exr(tmp_path / f"{name}.exr") for name in ("0", "2", "whole"))
+    assert alone.shape == (128, 192, 4)
+    np.testing.assert_array_equal(farm, alone)
+    assert np.abs(farm - whole).mean() <= 0.005 * whole.mean()
+
+
+def certificates(folder: Path) -> list[str]:
+    """Options that name an authority and a certificate for all."""
+    from cryptography import x509
+    from cryptography.hazmat.primitives import hashes, serialization
+    from cryptography.hazmat.primitives.asymmetric import ec
+
+    key = ec.generate_private_key(ec.SECP256R1())
+    name = x509.Name([x509.NameAttribute(x509.NameOID.COMMON_NAME, "farm")])
+    now = datetime.datetime.now(datetime.UTC)
+    builder = x509.CertificateBuilder(name, name, key.public_key(), x509.random_serial_number())
+    builder = builder.not_valid_before(now).not_valid_after(now + datetime.timedelta(days=1))
+    certificate = builder.add_extension(x509.BasicConstraints(ca=True, path_length=None), critical=True)
+    (folder / "cert.pem").write_bytes(certificate.sign(key, hashes.SHA256()).public_bytes(serialization.Encoding.PEM))
+    text = serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
+    (folder / "key.pem").write_bytes(key.private_bytes(*text))
+    cert, key_file = str(folder / "cert.pem"), str(folder / "key.pem")
+    return ["--tls-ca-file", cert, "--tls-cert", cert, "--tls-key", key_file]
+
+
+@pytest.fixture
+def tls(tmp_path: Path) -> Iterator[tuple[str, list[str], subprocess.Popen[str]]]:
+    """A scheduler and a worker that speak TLS: its address, options for it, and its process."""
+    options = certificates(tmp_path)
+    port = 20000 + os.getpid() % 20000
+    address = f"tls://127.0.0.1:{port}"
+    dask = [sys.executable, "-m", "distributed.cli"]
+    scheduler = ["dask_scheduler", "--protocol", "tls", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
+    worker = ["dask_worker", address, "--nthreads", "1", "--local-directory", str(tmp_path / "dask"), "--no-dashboard"]
+    processes = []
+    for name, *arguments in (scheduler, worker):
+        code = f"from distributed.cli.{name} import main; main()"
+        processes.append(subprocess.Popen([dask[0], "-c", code, *arguments, *options], text=True, cwd=tmp_path))
+    yield address, ["--tls-ca", *options[1:]], processes[0]
+    for process in processes:
+        process.terminate()
+        process.wait(SECONDS)
+
+
+def test_workers_elsewhere_get_the_file_sent_over_tls(
+    scene: Path, tmp_path: Path, tls: tuple[str, list[str], subprocess.Popen[str]]
+) -> None:
+    address, options, scheduler = tls
+    frames = [scene, "--scheduler", address, "--send", *options, "--out", tmp_path / "sent_##.exr", "--frames"]
+    assert run(*frames, "1-2")[0] == 0
+    assert run(scene, "--frames", "1-2", "--workers", 0, "--out", tmp_path / "here_##.exr")[0] == 0
+    for frame in ("01", "02"):
+        assert (tmp_path / f"sent_{frame}.exr").read_bytes() == (tmp_path / f"here_{frame}.exr").read_bytes()
+
+    process = start(*frames, "1-400")
+    wait_for(tmp_path / "sent_04.exr")
+    scheduler.kill()
+    output, _ = process.communicate(timeout=SECONDS)
+    print(output[-2000:])
+    assert process.returncode == 1
+    assert "shlight render: the scheduler is lost" in output
+    assert not [name for name in names(tmp_path) if name.startswith(".")]
+
+
+def test_an_interrupt_leaves_whole_files_and_no_processes(scene: Path, tmp_path: Path) -> None:
+    process = start(scene, "--frames", "1-400", "--workers", 2, "--out", tmp_path / "x_###.exr")
+    wait_for(tmp_path / "x_002.exr")
+    below = psutil.Process(process.pid).children(recursive=True)
+    process.send_signal(signal.SIGINT)
+    output, _ = process.communicate(timeout=SECONDS)
+    assert process.returncode == 130
+    assert "interrupted; the files that are there are whole" in output
+    assert not psutil.wait_procs(below, timeout=10)[1]
+    assert not [name for name in names(tmp_path) if name.startswith(".")]
+    assert read_exr(tmp_path / "x_002.exr").shape == (64, 96, 4)
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        (["--out", "x.exr"], "out must have #"),
+        (["--out", "x_#.exr", "--set", "shlight.noise_threshold=2"], "set: shlight.noise_threshold must be 0 … 1"),
+        (["--out", "x_#.exr", "--set", "shlight.nois=2"], "the scene has no property 'shlight.nois'"),
+        (["--out", "x_#.exr", "--views", "left"], "there is no view or camera 'left'"),
+        (["--out", "x_#.exr", "--scheduler", "tcp://127.0.0.1:1", "--workers", "2"], "cannot be given both"),
+        (["--out", "x_#.exr", "--tls-ca", "x"], "belong together"),
+    ],
+)
+def test_bad_requests_are_one_line(scene: Path, options: list[str], text: str) -> None:
+    code, output = run(scene, "--frames", "1-2", *options)
+    assert code == 2
+    assert text in output
+    assert output.count("\n") == 1
