@@ -62,42 +62,40 @@ def _draw_switches(column: Any, view_layer: Any, names: tuple[str, ...]) -> None
             column.prop(view_layer, f"use_pass_{name}")
 
 
-class SHLIGHT_OBJECT_PT_light_group(EnginePanel, bpy.types.Panel):
+class LightGroupPanel(EnginePanel):
+    """The light group of what `bl_context` names."""
+
+    bl_label = "Light Group"
+    bl_options = {"DEFAULT_CLOSED"}
+    layout: Any  # Blender's
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        """Shown if there is something that may have a group."""
+        return bool(getattr(context, cls.bl_context)) and super().poll(context)
+
+    def draw(self, context: Any) -> None:
+        """Draws the panel."""
+        with_names_aside(self.layout).prop_search(
+            getattr(context, self.bl_context),
+            "lightgroup",
+            context.view_layer,
+            "lightgroups",
+            text="Light Group",
+            results_are_suggestions=True,
+        )
+
+
+class SHLIGHT_OBJECT_PT_light_group(LightGroupPanel, bpy.types.Panel):
     """The light group of an object."""
 
-    bl_label = "Light Group"
     bl_context = "object"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        """Shown for objects."""
-        return bool(context.object) and super().poll(context)
-
-    def draw(self, context: Any) -> None:
-        """Draws the panel."""
-        _draw_group(with_names_aside(self.layout), context.object, context.view_layer)
 
 
-class SHLIGHT_WORLD_PT_light_group(EnginePanel, bpy.types.Panel):
+class SHLIGHT_WORLD_PT_light_group(LightGroupPanel, bpy.types.Panel):
     """The light group of the world."""
 
-    bl_label = "Light Group"
     bl_context = "world"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        """Shown if there is a world."""
-        return bool(context.world) and super().poll(context)
-
-    def draw(self, context: Any) -> None:
-        """Draws the panel."""
-        _draw_group(with_names_aside(self.layout), context.world, context.view_layer)
-
-
-def _draw_group(layout: Any, owner: Any, view_layer: Any) -> None:
-    layout.prop_search(owner, "lightgroup", view_layer, "lightgroups", text="Light Group", results_are_suggestions=True)
 
 
 CLASSES = (
