@@ -14,7 +14,9 @@
 
 #include "disks/disk_polygon.h"
 #include "error_message.h"
+#include "lobes/material_lobes.h"
 #include "math/gauss_legendre.h"
+#include "math/triangle_cubature.h"
 #include "random_disk.h"
 #include "render_scenes.h"
 #include "shlight/polygon.h"
@@ -37,7 +39,7 @@ double polygon_error(const Ellipse<double>& disk, int order) {
         return 0;
     }
     std::vector<Vec3d> corners;
-    append_disk_polygon(ellipse, disk_polygon_size(ellipse, 1, 1e-4), corners);
+    append_disk_polygon(ellipse, disk_polygon_size(ellipse, 1, 0.1, 1e-4), corners);
     const auto count = static_cast<std::size_t>(coefficient_count(order));
     std::vector<double> exact(count);
     std::vector<double> found(count);
@@ -61,6 +63,47 @@ TEST(DiskPolygon, IsWithinATenThousandthOfTheDisk) {
         }
         EXPECT_LE(error, 1e-4) << c.name;
     }
+}
+
+/// ∫ f·cos over the polygon of so many vertices: Gauss's product rule in each triangle about the cone's axis.
+double reflected(const SphericalEllipse<double>& ellipse, int size, const LobeShape& shape, const Vec3d& wo) {
+    std::vector<Vec3d> corners;
+    append_disk_polygon(ellipse, size, corners);
+    const Vec3d& axis = ellipse.cone().axis;
+    double sum = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Vec3d a = glm::normalize(corners[i]);
+        const Vec3d b = glm::normalize(corners[(i + 1) % corners.size()]);
+        visit_triangle(axis, a, b, glm::dot(axis, glm::cross(a, b)), product_rule(10),
+                       [&](const Vec3d& wi, double weight) { sum += weight * lobe_value(shape, wi, wo); });
+    }
+    return sum;
+}
+
+TEST(DiskPolygon, ReflectsWhatTheDiskDoes) {
+    // Disks that are up to as large as the distance on which the lobe changes there, half of them about its peak.
+    RandomInput random(22);
+    std::vector<double> errors;
+    while (errors.size() < 300) {
+        const LobeShape shape = GgxShape{random.log_uniform(0.01, 0.7), Fresnel::one, 1.5};
+        const Vec3d wo = random.at_tilt(random.uniform(0, 1.4));
+        const double far = random.chance(0.5) ? 6 * lobe_width(shape) : 3;
+        const Vec3d center = glm::normalize(mirrored(wo) + random.uniform(0, far) * random.direction());
+        const Vec3d normal = glm::normalize(center + 0.7 * random.direction());
+        const Vec3d u = glm::normalize(glm::cross(normal, random.direction()));
+        const double half = random.uniform(0.05, 1) * distance_of_change(shape, center, wo);
+        const SphericalEllipse<double> ellipse(
+            {center, half * u, random.uniform(0.3, 1) * half * glm::cross(normal, u)}, true);
+        if (center.z < 0.02 || ellipse.empty() || ellipse.cut()) {
+            continue;
+        }
+        const double near = distance_of_change(shape, ellipse.cone().axis, wo);
+        const int size = disk_polygon_size(ellipse, narrowest(shape, wo.z), near, 1e-4);
+        const double exact = reflected(ellipse, 256, shape, wo);
+        errors.push_back(std::abs(reflected(ellipse, size, shape, wo) / exact - 1));
+    }
+    std::sort(errors.begin(), errors.end());
+    EXPECT_LE(errors[errors.size() * 95 / 100], 1e-4);
 }
 
 TEST(DiskLight, BadInputIsNamed) {

@@ -2,12 +2,18 @@
 #include "lobes/material_lobes.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace shlight {
 
 double narrowest(const LobeShape& lobe, double cos_theta_o) {
     // At its peak a lobe is 2α wide across the plane of incidence's normal, and cosθ_o times that along it.
     return is_glossy(lobe) ? std::min(1.0, 2 * lobe_width(lobe) * std::max(cos_theta_o, kLeastFittedCosine)) : 1.0;
+}
+
+double distance_of_change(const LobeShape& lobe, const Vec3d& wi, const Vec3d& wo) {
+    const Vec3d half = wi + wo;
+    return std::min(1.0, std::hypot(half.x, half.y, lobe_width(lobe) * half.z));
 }
 
 bool spread_alike(const Lobe& a, const Lobe& b) {

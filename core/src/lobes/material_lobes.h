@@ -16,6 +16,9 @@ namespace shlight {
 
 /// The least distance [rad] over which f·cos of a lobe changes at this view; 0 for a mirror.
 double narrowest(const LobeShape& lobe, double cos_theta_o);
+/// The distance over which it changes around a direction wi, all unit vectors: on the sphere where the bell is round, a
+/// step of wi is at most 1/α long, over the length of the half vector there.
+double distance_of_change(const LobeShape& lobe, const Vec3d& wi, const Vec3d& wo);
 
 /// Whether directions are spread alike by both lobes of a material, at all hits.
 bool spread_alike(const Lobe& a, const Lobe& b);

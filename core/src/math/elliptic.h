@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Jacobi's elliptic functions of real arguments by arithmetic–geometric means (Gauss; Abramowitz & Stegun 16.4, 17.6).
+// Jacobi's elliptic functions of real arguments by arithmetic–geometric means (Gauss; Abramowitz & Stegun 16.12, 17.6).
 #pragma once
 
 #include <array>
@@ -35,15 +35,17 @@ class EllipticFunctions {
     struct Values {
         Real sn, cn, dn;
     };
-    /// dn from a sum of squares: where it is small, 1 - m sn² would cancel.
+    /// By Gauss's (descending Landen's) transformation. Its 1 - ratio sn² is formed as a sum, which cannot cancel.
     Values at(Real u) const {
-        Real phi = scale_ * u;
+        const Real phi = mean_ * u;
+        Values f = {std::sin(phi), std::cos(phi), 1};
         for (int i = steps_; i-- > 0;) {
-            phi = (phi + std::asin(levels_[static_cast<std::size_t>(i)].ratio * std::sin(phi))) / 2;
+            const Level& level = levels_[static_cast<std::size_t>(i)];
+            const Real over = 1 / (1 + level.ratio * f.sn * f.sn);
+            const Real dn = (2 * level.b / (level.a + level.b) + level.ratio * f.cn * f.cn) * over;
+            f = {(1 + level.ratio) * f.sn * over, f.cn * f.dn * over, dn};
         }
-        const Real cn = std::cos(phi);
-        return {std::sin(phi), cn,
-                std::sqrt(complement_ * complement_ + (1 - complement_) * (1 + complement_) * cn * cn)};
+        return f;
     }
 
     /// u with sn u : cn u = k'⁻¹ sin τ : cos τ, growing with τ: 4K more for a whole turn.

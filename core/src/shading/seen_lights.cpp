@@ -156,9 +156,12 @@ std::uint32_t SeenLights::size_of(const Polygon& polygon, const LobeViews& lobe,
         return polygon.size;
     }
     const std::uint32_t view = view_of[polygon.number];
-    const double width = narrowest(lobe.shape(view), lobe.positions().cosine()[view]);
-    return static_cast<std::uint32_t>(
-        disk_polygon_size(disks_[polygon.first], width, std::min(tolerance, kDiskTolerance)));
+    const LobeShape shape = lobe.shape(view);
+    const SphericalEllipse<double>& disk = disks_[polygon.first];
+    const Vec3d towards_viewer = lobe.positions().direction(view);
+    return static_cast<std::uint32_t>(disk_polygon_size(disk, narrowest(shape, towards_viewer.z),
+                                                        distance_of_change(shape, disk.cone().axis, towards_viewer),
+                                                        std::min(tolerance, kDiskTolerance)));
 }
 
 void SeenLights::sort(const LobeViews& lobe, std::span<const std::uint32_t> view_of, double tolerance) {
