@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import datetime
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -21,7 +22,7 @@ psutil = pytest.importorskip("psutil")
 from shlight.images import read_exr  # noqa: E402
 
 COMMAND = "import sys; from shlight.farm.command import main; sys.exit(main(sys.argv[1:]))"
-SECONDS = 50
+SECONDS = 120
 
 # The camera of frame 5 has no size while the file "fault" is there.
 SCENE = """
@@ -47,6 +48,16 @@ def build_scene():
     bpy.app.handlers.frame_change_pre.append(spoil)
     return scene
 """
+
+STEREO = """
+    scene.camera.data.stereo.convergence_mode = "PARALLEL"
+    scene.camera.data.stereo.pivot = "CENTER"
+    scene.camera.data.stereo.interocular_distance = 0.4
+    for name, x in (("left eye", -0.2), ("right eye", 0.2)):
+        eye = bpy.data.objects.new(name, scene.camera.data)
+        eye.location = (x, 0, 5)
+        scene.collection.objects.link(eye)
+    return scene"""
 
 # Four planes with a picture each: a symbolic link beside the file, one named by its absolute path, a sequence of three,
 # and one of a library that is linked by its absolute path.
@@ -101,6 +112,47 @@ bpy.context.object.data.energy = 300
 bpy.ops.object.camera_add(location=(0, 0, 5))
 scene.camera = bpy.context.object
 bpy.ops.wm.save_as_mainfile(filepath=str(folder / "scene.blend"), relative_remap=False)
+"""
+
+# What it would write, and run, lies in the second folder.
+HOSTILE = """
+import sys
+import bpy
+from pathlib import Path
+folder, target = Path(sys.argv[1]), Path(sys.argv[2])
+bpy.ops.wm.read_factory_settings(use_empty=True)
+scene = bpy.context.scene
+render = scene.render
+render.resolution_x, render.resolution_y = 32, 32
+bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=2)
+cloth = bpy.context.object.modifiers.new("cloth", "CLOTH")
+cloth.point_cache.use_disk_cache = True
+bpy.ops.mesh.primitive_cube_add(size=3)
+fluid = bpy.context.object.modifiers.new("fluid", "FLUID")
+fluid.fluid_type = "DOMAIN"
+fluid.domain_settings.cache_directory = str(target / "fluid")
+bpy.ops.object.light_add(type='AREA', location=(0, 0, 3))
+bpy.ops.object.camera_add(location=(0, 0, 5))
+scene.camera = bpy.context.object
+code = f"import os; os.system('touch {target}/code')"
+bpy.data.texts.new("run.py").write(code)
+bpy.data.texts["run.py"].use_module = True
+driver = scene.camera.driver_add("location", 0).driver
+driver.expression = f"__import__('os').system('touch {target}/driver') * 0"
+scene.use_nodes = True
+tree = scene.node_tree
+layers = tree.nodes.new("CompositorNodeRLayers")
+node = tree.nodes.new("CompositorNodeOutputFile")
+node.base_path = str(target)
+tree.links.new(layers.outputs["Image"], node.inputs[0])
+render.use_compositing = True
+render.filepath = str(target / "picture")
+render.use_overwrite = True
+render.use_multiview = True
+render.views_format = "MULTIVIEW"
+for view, suffix in zip(render.views, ("../../x", f"{target}/y"), strict=True):
+    view.file_suffix = suffix
+bpy.ops.wm.save_as_mainfile(filepath=str(folder / "hostile.blend"))
 """
 
 # Nobody sees the folders any more once they are packed.
@@ -191,6 +243,40 @@ def test_tiles_are_the_same_pixels_everywhere(scene: Path, tmp_path: Path) -> No
     assert alone.shape == (128, 192, 4)
     np.testing.assert_array_equal(farm, alone)
     assert np.abs(farm - whole).mean() <= 0.005 * whole.mean()
+
+
+def test_views_are_eyes_and_cameras(scene: Path, tmp_path: Path) -> None:
+    """The eyes of parallel stereoscopy see what cameras see that stand where they are."""
+    scene.write_text(scene.read_text().replace("    return scene", STEREO))
+    options = [scene, "--frames", 1, "--workers", 0, "--out"]
+    assert run(*options, tmp_path / "camera.exr", "--views", "left eye,right eye")[0] == 0
+    assert run(*options, tmp_path / "view.exr", "--set", "render.use_multiview=true")[0] == 0
+    assert run(*options, tmp_path / "one.exr", "--set", "render.use_multiview=true", "--views", "right")[0] == 0
+    left, right, one = (read_exr(tmp_path / f"{name}.exr") for name in ("view_L", "view_R", "one_R"))
+    for seen, eye in ((left, "left"), (right, "right"), (one, "right")):
+        camera = read_exr(tmp_path / f"camera_{eye}_eye.exr")
+        assert np.abs(seen - camera).mean() <= 0.005 * camera.mean()  # the noise threshold
+    assert np.abs(left - right).mean() >= 0.05 * left.mean()
+    assert names(tmp_path) == [
+        "camera_left_eye.exr", "camera_right_eye.exr", "one_R.exr", "scene.py", "view_L.exr", "view_R.exr",
+    ]  # fmt: skip
+
+
+def test_a_hostile_file_writes_nothing_and_runs_nothing(tmp_path: Path) -> None:
+    own, target, out = tmp_path / "own", tmp_path / "target", tmp_path / "a" / "b" / "c"
+    own.mkdir()
+    target.mkdir()
+    run(own, target, code=HOSTILE)  # whatever the exit code, with which Blender's fluids may end
+    for made in (target, own / "blendcache_hostile"):
+        shutil.rmtree(made, ignore_errors=True)
+    target.mkdir()
+    before = set(tmp_path.rglob("*"))
+    code, output = run(own / "hostile.blend", "--frames", "1-2", "--workers", 0, "--out", out / "x_#.exr")
+    assert code == 0
+    assert "compositing is left out" in output
+    assert "the fluid of 'Cube' is left out" in output
+    written = [path for path in sorted(set(tmp_path.rglob("*")) - before) if path.is_file()]
+    assert [path.parent for path in written] == 4 * [out]
 
 
 def certificates(folder: Path) -> list[str]:
