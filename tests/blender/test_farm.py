@@ -126,7 +126,6 @@ render = scene.render
 render.resolution_x, render.resolution_y = 32, 32
 bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=2)
 cloth = bpy.context.object.modifiers.new("cloth", "CLOTH")
-cloth.point_cache.use_disk_cache = True
 bpy.ops.mesh.primitive_cube_add(size=3)
 fluid = bpy.context.object.modifiers.new("fluid", "FLUID")
 fluid.fluid_type = "DOMAIN"
@@ -152,6 +151,8 @@ render.use_multiview = True
 render.views_format = "MULTIVIEW"
 for view, suffix in zip(render.views, ("../../x", f"{target}/y"), strict=True):
     view.file_suffix = suffix
+bpy.ops.wm.save_as_mainfile(filepath=str(folder / "hostile.blend"))
+cloth.point_cache.use_disk_cache = True  # of a file that has a name
 bpy.ops.wm.save_as_mainfile(filepath=str(folder / "hostile.blend"))
 """
 
