@@ -324,6 +324,13 @@ def uses_nodes(owner: Any) -> bool:
     return owner.node_tree is not None and (not has_node_switch(owner) or bool(owner.use_nodes))
 
 
+def compositing_nodes(scene: Any) -> Any:
+    """The node tree that the compositor runs, None without one; it is a group of its own since Blender 5.0."""
+    if hasattr(scene, "compositing_node_group"):
+        return scene.compositing_node_group
+    return scene.node_tree if scene.use_nodes else None
+
+
 def nodes_by_engine() -> Iterator[Any]:
     """Items of the Shader editor's Add menu that are shown under a condition.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import datetime
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -20,10 +21,10 @@ psutil = pytest.importorskip("psutil")
 
 from shlight.images import read_exr  # noqa: E402
 
-COMMAND = [sys.executable, "-c", "import sys; from shlight.farm.command import main; sys.exit(main(sys.argv[1:]))"]
-SECONDS = 50
+COMMAND = "import sys; from shlight.farm.command import main; sys.exit(main(sys.argv[1:]))"
+SECONDS = 120
 
-# The camera of frame 5 has no size while the file "fault" is there. A texture lies beside the script.
+# The camera of frame 5 has no size while the file "fault" is there.
 SCENE = """
 import bpy
 from pathlib import Path
@@ -48,6 +49,128 @@ def build_scene():
     return scene
 """
 
+STEREO = """
+    scene.camera.data.stereo.convergence_mode = "PARALLEL"
+    scene.camera.data.stereo.pivot = "CENTER"
+    scene.camera.data.stereo.interocular_distance = 0.4
+    for name, x in (("left eye", -0.2), ("right eye", 0.2)):
+        eye = bpy.data.objects.new(name, scene.camera.data)
+        eye.location = (x, 0, 5)
+        scene.collection.objects.link(eye)
+    return scene"""
+
+# Four planes with a picture each: a symbolic link beside the file, one named by its absolute path, a sequence of three,
+# and one of a library that is linked by its absolute path.
+FILES = """
+import sys
+import bpy
+from pathlib import Path
+folder, elsewhere = Path(sys.argv[1]), Path(sys.argv[2])
+def picture(path, color):
+    path.parent.mkdir(exist_ok=True)
+    image = bpy.data.images.new("new", 4, 4)
+    image.pixels = [*color, 1] * 16
+    image.filepath_raw, image.file_format = str(path), "PNG"
+    image.save()
+    bpy.data.images.remove(image)
+def plane(x, path):
+    bpy.ops.mesh.primitive_plane_add(size=1, location=(x, 0, 0))
+    material = bpy.data.materials.new("seen")
+    material.use_nodes = True
+    texture = material.node_tree.nodes.new("ShaderNodeTexImage")
+    texture.image = bpy.data.images.load(str(path))
+    surface = material.node_tree.nodes["Principled BSDF"]
+    material.node_tree.links.new(texture.outputs["Color"], surface.inputs["Base Color"])
+    bpy.context.object.data.materials.append(material)
+    return texture
+bpy.ops.wm.read_factory_settings(use_empty=True)
+picture(elsewhere / "library.png", (0, 0, 1))
+plane(1.5, elsewhere / "library.png")
+bpy.data.images[0].filepath = "//library.png"
+bpy.context.object.name = "Linked"
+bpy.ops.wm.save_as_mainfile(filepath=str(elsewhere / "library.blend"), relative_remap=False)
+bpy.ops.wm.read_factory_settings(use_empty=True)
+scene = bpy.context.scene
+scene.render.resolution_x, scene.render.resolution_y = 96, 32
+picture(elsewhere / "beside.png", (1, 0, 0))
+(folder / "beside.png").symlink_to(elsewhere / "beside.png")
+picture(elsewhere / "absolute.png", (0, 1, 0))
+for frame in (1, 2, 3):
+    picture(folder / "sequence" / f"s_00{frame}.png", (frame / 3, 1, 1))
+plane(-1.5, folder / "beside.png").image.filepath = "//beside.png"
+plane(-0.5, elsewhere / "absolute.png")
+texture = plane(0.5, folder / "sequence" / "s_001.png")
+texture.image.filepath = "//sequence/s_001.png"
+texture.image.source = "SEQUENCE"
+texture.image_user.frame_duration = 3
+texture.image_user.use_auto_refresh = True
+with bpy.data.libraries.load(str(elsewhere / "library.blend"), link=True) as (_, wanted):
+    wanted.objects = ["Linked"]
+scene.collection.objects.link(wanted.objects[0])
+bpy.ops.object.light_add(type='AREA', location=(0, 0, 3))
+bpy.context.object.data.energy = 300
+bpy.ops.object.camera_add(location=(0, 0, 5))
+scene.camera = bpy.context.object
+bpy.ops.wm.save_as_mainfile(filepath=str(folder / "scene.blend"), relative_remap=False)
+"""
+
+# What it would write, and run, lies in the second folder.
+HOSTILE = """
+import sys
+import bpy
+from pathlib import Path
+folder, target = Path(sys.argv[1]), Path(sys.argv[2])
+bpy.ops.wm.read_factory_settings(use_empty=True)
+scene = bpy.context.scene
+render = scene.render
+render.resolution_x, render.resolution_y = 32, 32
+bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4, size=2)
+cloth = bpy.context.object.modifiers.new("cloth", "CLOTH")
+bpy.ops.mesh.primitive_cube_add(size=3)
+fluid = bpy.context.object.modifiers.new("fluid", "FLUID")
+fluid.fluid_type = "DOMAIN"
+fluid.domain_settings.cache_directory = str(target / "fluid")
+bpy.ops.object.light_add(type='AREA', location=(0, 0, 3))
+bpy.ops.object.camera_add(location=(0, 0, 5))
+scene.camera = bpy.context.object
+code = f"import os; os.system('touch {target}/code')"
+bpy.data.texts.new("run.py").write(code)
+bpy.data.texts["run.py"].use_module = True
+driver = scene.camera.driver_add("location", 0).driver
+driver.expression = f"__import__('os').system('touch {target}/driver') * 0"
+scene.use_nodes = True
+tree = scene.node_tree
+layers = tree.nodes.new("CompositorNodeRLayers")
+node = tree.nodes.new("CompositorNodeOutputFile")
+node.base_path = str(target)
+tree.links.new(layers.outputs["Image"], node.inputs[0])
+render.use_compositing = True
+render.filepath = str(target / "picture")
+render.use_overwrite = True
+render.use_multiview = True
+render.views_format = "MULTIVIEW"
+for view, suffix in zip(render.views, ("../../x", f"{target}/y"), strict=True):
+    view.file_suffix = suffix
+bpy.ops.wm.save_as_mainfile(filepath=str(folder / "hostile.blend"))
+cloth.point_cache.use_disk_cache = True  # of a file that has a name
+bpy.ops.wm.save_as_mainfile(filepath=str(folder / "hostile.blend"))
+"""
+
+# Nobody sees the folders any more once they are packed.
+HIDE_WHAT_IS_SENT = """
+import os, sys
+from shlight.farm.command import main
+from shlight_blender.farm import needed_files
+pack = needed_files.packed
+def pack_and_hide(*arguments):
+    archive = pack(*arguments)
+    for folder in sys.argv[1:3]:
+        os.rename(folder, folder + "_hidden")
+    return archive
+needed_files.packed = pack_and_hide
+sys.exit(main(sys.argv[3:]))
+"""
+
 
 @pytest.fixture
 def scene(tmp_path: Path) -> Path:
@@ -56,13 +179,13 @@ def scene(tmp_path: Path) -> Path:
     return path
 
 
-def start(*arguments: object) -> subprocess.Popen[str]:
-    command = [*COMMAND, *map(str, arguments)]
+def start(*arguments: object, code: str = COMMAND) -> subprocess.Popen[str]:
+    command = [sys.executable, "-c", code, *map(str, arguments)]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
 
-def run(*arguments: object) -> tuple[int, str]:
-    with start(*arguments) as process:
+def run(*arguments: object, code: str = COMMAND) -> tuple[int, str]:
+    with start(*arguments, code=code) as process:
         try:
             output, _ = process.communicate(timeout=SECONDS)
         finally:
@@ -123,6 +246,40 @@ def test_tiles_are_the_same_pixels_everywhere(scene: Path, tmp_path: Path) -> No
     assert np.abs(farm - whole).mean() <= 0.005 * whole.mean()
 
 
+def test_views_are_eyes_and_cameras(scene: Path, tmp_path: Path) -> None:
+    """The eyes of parallel stereoscopy see what cameras see that stand where they are."""
+    scene.write_text(scene.read_text().replace("    return scene", STEREO))
+    options = [scene, "--frames", 1, "--workers", 0, "--out"]
+    assert run(*options, tmp_path / "camera.exr", "--views", "left eye,right eye")[0] == 0
+    assert run(*options, tmp_path / "view.exr", "--set", "render.use_multiview=true")[0] == 0
+    assert run(*options, tmp_path / "one.exr", "--set", "render.use_multiview=true", "--views", "right")[0] == 0
+    left, right, one = (read_exr(tmp_path / f"{name}.exr") for name in ("view_L", "view_R", "one_R"))
+    for seen, eye in ((left, "left"), (right, "right"), (one, "right")):
+        camera = read_exr(tmp_path / f"camera_{eye}_eye.exr")
+        assert np.abs(seen - camera).mean() <= 0.005 * camera.mean()  # the noise threshold
+    assert np.abs(left - right).mean() >= 0.05 * left.mean()
+    assert names(tmp_path) == [
+        "camera_left_eye.exr", "camera_right_eye.exr", "one_R.exr", "scene.py", "view_L.exr", "view_R.exr",
+    ]  # fmt: skip
+
+
+def test_a_hostile_file_writes_nothing_and_runs_nothing(tmp_path: Path) -> None:
+    own, target, out = tmp_path / "own", tmp_path / "target", tmp_path / "a" / "b" / "c"
+    own.mkdir()
+    target.mkdir()
+    run(own, target, code=HOSTILE)  # whatever the exit code, with which Blender's fluids may end
+    for made in (target, own / "blendcache_hostile"):
+        shutil.rmtree(made, ignore_errors=True)
+    target.mkdir()
+    before = set(tmp_path.rglob("*"))
+    code, output = run(own / "hostile.blend", "--frames", "1-2", "--workers", 0, "--out", out / "x_#.exr")
+    assert code == 0
+    assert "compositing is left out" in output
+    assert "the fluid of 'Cube' is left out" in output
+    written = [path for path in sorted(set(tmp_path.rglob("*")) - before) if path.is_file()]
+    assert [path.parent for path in written] == 4 * [out]
+
+
 def certificates(folder: Path) -> list[str]:
     """Options that name an authority and a certificate for all."""
     from cryptography import x509
@@ -161,18 +318,28 @@ def tls(tmp_path: Path) -> Iterator[tuple[str, list[str], subprocess.Popen[str]]
         process.wait(SECONDS)
 
 
-def test_workers_elsewhere_get_the_file_sent_over_tls(
-    scene: Path, tmp_path: Path, tls: tuple[str, list[str], subprocess.Popen[str]]
+def test_workers_elsewhere_get_all_files_sent_over_tls(
+    tmp_path: Path, tls: tuple[str, list[str], subprocess.Popen[str]]
 ) -> None:
     address, options, scheduler = tls
+    folder, elsewhere = tmp_path / "scene", tmp_path / "elsewhere"
+    folder.mkdir()
+    elsewhere.mkdir()
+    assert run(folder, elsewhere, code=FILES)[0] == 0
+    scene = folder / "scene.blend"
+    assert run(scene, "--frames", "1-3", "--workers", 0, "--out", tmp_path / "here_##.exr")[0] == 0
     frames = [scene, "--scheduler", address, "--send", *options, "--out", tmp_path / "sent_##.exr", "--frames"]
-    assert run(*frames, "1-2")[0] == 0
-    assert run(scene, "--frames", "1-2", "--workers", 0, "--out", tmp_path / "here_##.exr")[0] == 0
-    for frame in ("01", "02"):
+    assert run(folder, elsewhere, *frames, "1-3", code=HIDE_WHAT_IS_SENT)[0] == 0
+    for frame in ("01", "02", "03"):
         assert (tmp_path / f"sent_{frame}.exr").read_bytes() == (tmp_path / f"here_{frame}.exr").read_bytes()
+    colors = [read_exr(tmp_path / f"here_0{frame}.exr")[16, 12::24, :3] for frame in (1, 3)]
+    assert [color.argmax() for color in colors[0][[0, 1, 3]]] == [0, 1, 2]  # of each plane's own picture
+    assert colors[0][2][0] <= 0.5 * colors[1][2][0]
 
+    for hidden in (folder, elsewhere):
+        hidden.with_name(f"{hidden.name}_hidden").rename(hidden)
     process = start(*frames, "1-400")
-    wait_for(tmp_path / "sent_04.exr")
+    wait_for(tmp_path / "sent_05.exr")
     scheduler.kill()
     output, _ = process.communicate(timeout=SECONDS)
     print(output[-2000:])

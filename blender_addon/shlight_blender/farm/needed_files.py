@@ -4,32 +4,41 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import re
 import sys
 import zipfile
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 from shlight.farm import tasks
 
-WITH_PATHS = ("images", "libraries", "fonts", "sounds", "movieclips", "volumes", "cache_files")
+WITH_PATHS = ("libraries", "images", "fonts", "sounds", "movieclips", "volumes", "cache_files")
 
 
 def of_open_scene(path: Path) -> tuple[list[str], list[str]]:
     """The scene's own file and what Blender has read for it; those that are missing. Absolute paths, sorted."""
     import bpy
 
-    paths = {Path(bpy.path.abspath(name)).resolve() for name in bpy.utils.blend_paths(absolute=True)}
+    paths = {_absolute(name) for name in bpy.utils.blend_paths(absolute=True)}
     for image in bpy.data.images:
         if image.source in {"SEQUENCE", "TILED"} and image.filepath:
-            paths.discard(named := Path(bpy.path.abspath(image.filepath, library=image.library)).resolve())
+            paths.discard(named := _absolute(image.filepath, image.library))
             paths.update(_siblings(named))
     if path.suffix == ".py":
         modules = {name: getattr(module, "__file__", None) for name, module in list(sys.modules.items())}
-        own = (Path(file).resolve() for name, file in modules.items() if file and not name.endswith("main__"))
+        own = (_absolute(file) for name, file in modules.items() if file and not name.endswith("main__"))
         paths.update(file for file in own if file.parent == path.parent and file.is_file())
     found = sorted(str(name) for name in {path, *paths} if name.is_file())
     return found, sorted(str(name) for name in paths if not name.exists())
+
+
+def _absolute(name: str, library: Any = None) -> Path:
+    """Symbolic links stay, so that it is found again under the name that the scene gives it."""
+    import bpy
+
+    return Path(os.path.abspath(bpy.path.abspath(name, library=library)))  # noqa: PTH100
 
 
 def _siblings(path: Path) -> Iterable[Path]:

@@ -12,6 +12,7 @@ import bpy
 
 from .. import register as register_addon
 from ..comparison.scene import SceneError, open_scene
+from ..compat import compositing_nodes
 from ..frame import frame_of
 from ..running import ENGINE
 from .quiet import quiet
@@ -22,8 +23,12 @@ FLAGS = {"1": True, "true": True, "on": True, "0": False, "false": False, "off":
 
 def open_for_farm(path: Path) -> Any:
     """Opens a Blender file, whose own scripts do not run, or runs a script with build_scene()."""
-    with quiet():
-        scene = open_scene(path)
+    bpy.app.handlers.load_post.append(_close_caches)  # Blender evaluates the scene before it returns
+    try:
+        with quiet():
+            scene = open_scene(path)
+    finally:
+        bpy.app.handlers.load_post.remove(_close_caches)
     bpy.context.window.scene = scene
     bpy.ops.preferences.addon_enable(module="cycles")  # the pixel filter is one of its settings
     register_addon()
@@ -35,14 +40,39 @@ def open_for_farm(path: Path) -> Any:
     return scene
 
 
+@bpy.app.handlers.persistent
+def _close_caches(*_: Any) -> None:
+    """Simulations that are not baked write no files; those of fluids cannot be had without."""
+    for modifier in _replayed_fluids().values():
+        modifier.show_viewport = modifier.show_render = False
+    owners = [modifier for seen in bpy.data.objects for modifier in seen.modifiers]
+    owners += [system for seen in bpy.data.objects for system in seen.particle_systems]
+    owners += [scene.rigidbody_world for scene in bpy.data.scenes if scene.rigidbody_world]
+    for owner in owners:
+        cache = getattr(owner, "point_cache", None)
+        if cache is not None and cache.use_disk_cache and not cache.is_baked:
+            cache.use_disk_cache = False
+
+
+def _replayed_fluids() -> dict[str, Any]:
+    """Modifiers by their objects' names."""
+    fluids = [(seen.name, each) for seen in bpy.data.objects for each in seen.modifiers if each.type == "FLUID"]
+    return {
+        name: each
+        for name, each in fluids
+        if each.fluid_type == "DOMAIN" and each.domain_settings.cache_type == "REPLAY"
+    }
+
+
 def closed_to_others(scene: Any) -> list[str]:
     """What the file asks to be done with pictures and is not done, in words."""
     render, left_out = scene.render, []
-    if render.use_compositing and getattr(scene, "node_tree", None) is not None:
+    if render.use_compositing and compositing_nodes(scene) is not None:
         left_out.append("compositing is left out; do it with the files")
     editor = scene.sequence_editor
     if render.use_sequencer and (getattr(editor, "strips", None) or getattr(editor, "sequences", None)):
         left_out.append("the sequencer is left out")
+    left_out += [f"the fluid of '{name}' is left out; it is replayed, and not baked" for name in _replayed_fluids()]
     return [f"Scene '{scene.name}': {text}" for text in left_out]
 
 

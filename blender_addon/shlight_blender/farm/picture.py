@@ -53,7 +53,7 @@ class _Kept:
     def __init__(self, render: Any) -> None:
         self._render = render
         self._values = {name: getattr(render, name) for name in self.NAMES}
-        self._uses = [(view, view.use) for view in render.views]
+        self._views = [(view, view.use, view.file_suffix) for view in render.views]
 
     def change(self, scene: Any, view: str, box: Box | None, folder: Path) -> None:
         """One view, one tile, and one file in a folder."""
@@ -64,8 +64,9 @@ class _Kept:
         _choose_format(scene)
         if multiview:
             render.image_settings.views_format = "INDIVIDUAL"
-            for other, _ in self._uses:
+            for number, (other, _, _) in enumerate(self._views):
                 other.use = other.name == view
+                other.file_suffix = f"_{number}"  # what the file gives may lead out of the folder
         elif view:
             scene.camera = scene.objects[view]
         if box is not None:
@@ -77,8 +78,8 @@ class _Kept:
         """As they were."""
         for name, value in self._values.items():
             setattr(self._render, name, value)
-        for view, use in self._uses:
-            view.use = use
+        for view, use, suffix in self._views:
+            view.use, view.file_suffix = use, suffix
 
 
 def _choose_format(scene: Any) -> None:

@@ -74,17 +74,25 @@ class SceneFile:
             scene = open_for_farm(path)
             if root != Path("/"):
                 needed_files.move_absolute_paths(root)
+                self._check_sent(path)
             apply_settings(scene, dict(self.settings))
             set_size(scene.render, self.scale)
             _open_key = self.key
         return bpy.context.scene
+
+    def _check_sent(self, path: Path) -> None:
+        """RuntimeError where Blender does not find a file that was sent; it would be magenta in the picture."""
+        sent = {Path(name).name for name, _ in self.files}
+        lost = [name for name in needed_files.of_open_scene(path)[1] if Path(name).name in sent]
+        if lost:
+            raise RuntimeError(f"'{lost[0]}' is missing although it was sent")
 
 
 def describe(path: Path, views: tuple[str, ...], settings: Mapping[str, Any], scale: float, sent: bool) -> SceneFile:
     """Opens it in this process, and finds what it needs. SceneError, ValueError or OSError where that cannot be."""
     from .opening import apply_settings, closed_to_others, open_for_farm, set_size, views_of
 
-    path = path.resolve()
+    path = Path(os.path.abspath(path))  # noqa: PTH100, symbolic links stay
     scene = open_for_farm(path)
     apply_settings(scene, settings)
     size = set_size(scene.render, scale)

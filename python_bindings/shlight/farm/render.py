@@ -6,8 +6,10 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from functools import partial
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -73,41 +75,55 @@ def render_frames(
     _check(wanted, out, scheduler, workers, tile, retries)
     if tls is not None:
         tls.check()
-    if scheduler is not None or (workers or 0) > 0:
+    several = scheduler is not None or (workers or 0) > 0 or (workers is None and len(wanted) > 1)
+    if several:
         check_dask()
-    if isinstance(scene, (str, os.PathLike)):
-        source = _opened(Path(scene), views, dict(settings or {}), scale, send)
-    else:
-        source = scene
+    with ExitStack() as stack:
+
+        def connect(tasks: int) -> Any:
+            count = default_workers(tasks) if workers is None else workers
+            return stack.enter_context(connected(scheduler, count, tls, partial(print, flush=True)))
+
+        # Workers need as long to begin as Blender needs to open the file.
+        aside = stack.enter_context(ThreadPoolExecutor(1))
+        opening = aside.submit(_opened, scene, views, dict(settings or {}), scale, send)
+        client = connect(len(wanted)) if several else None
+        source = opening.result()
+        outcome, pictures = _pictures(source, wanted, out, tile, force)
+        progress = FarmProgress(len(pictures), len(outcome.kept))
+        tasks = [Task(picture, number) for picture in pictures for number in range(len(picture.boxes))]
+        if tasks:
+            Path(out).absolute().parent.mkdir(parents=True, exist_ok=True)
+            if client is None and workers is None and len(tasks) > 1:
+                client = connect(len(tasks))
+            pool: Workers | OneProcess
+            if client is None:
+                pool = OneProcess(source, threads or 0)
+            else:
+                if scheduler is None:
+                    count = default_workers(len(tasks)) if workers is None else workers
+                    client.cluster.scale(count)
+                    threads = threads or max(1, len(os.sched_getaffinity(0)) // count)
+                archive = _archive(source, Path(out), stack) if send else None
+                pool = Workers(client, source, threads or 0, progress.say, archive)
+            stack.callback(pool.close)
+            _Run(pool, outcome, progress, retries, stack).run(tasks)
+    progress.end(outcome.failed)
+    return outcome
+
+
+def _pictures(
+    source: Source, frames: list[int], out: str, tile: int | None, force: bool
+) -> tuple[Outcome, list[Picture]]:
+    """What is kept, and the pictures that are to be rendered."""
     pictures = [
         picture_of(source, frame, view, file_of(out, frame, suffix), tile)
-        for frame in wanted
+        for frame in frames
         for view, suffix in source.views
     ]
     outcome = Outcome(kept=[picture.path for picture in pictures if not force and files.is_whole(picture)])
     kept = set(outcome.kept)
-    pictures = [picture for picture in pictures if picture.path not in kept]
-    progress = FarmProgress(len(pictures), len(kept))
-    tasks = [Task(picture, number) for picture in pictures for number in range(len(picture.boxes))]
-    if not tasks:
-        progress.end(outcome.failed)
-        return outcome
-    Path(out).absolute().parent.mkdir(parents=True, exist_ok=True)
-    with ExitStack() as stack:
-        pool: Workers | OneProcess
-        if scheduler is None and (workers == 0 or (workers is None and len(tasks) == 1)):
-            pool = OneProcess(source, threads or 0)
-        else:
-            count = default_workers(len(tasks)) if workers is None else workers
-            if threads is None and scheduler is None:
-                threads = max(1, len(os.sched_getaffinity(0)) // count)
-            archive = _archive(source, Path(out), stack) if send else None
-            client = stack.enter_context(connected(scheduler, count, tls, progress.say))
-            pool = Workers(client, source, threads or 0, progress.say, archive)
-        stack.callback(pool.close)
-        _Run(pool, outcome, progress, retries, stack).run(tasks)
-    progress.end(outcome.failed)
-    return outcome
+    return outcome, [picture for picture in pictures if picture.path not in kept]
 
 
 def _check(
@@ -125,10 +141,17 @@ def _check(
         raise ValueError("workers and scheduler cannot be given both")
 
 
-def _opened(scene: Path, views: Sequence[str], settings: dict[str, Any], scale: float, send: bool) -> Source:
+def _opened(
+    scene: str | os.PathLike[str] | Source, views: Sequence[str], settings: dict[str, Any], scale: float, send: bool
+) -> Source:
     """The source that an installed package makes of a scene's file."""
+    if not isinstance(scene, (str, os.PathLike)):
+        return scene
     openers = metadata.entry_points(group=SOURCES)
-    return next(iter(openers)).load()(scene, views=tuple(views), settings=settings, scale=scale, sent=send)
+    source: Source = next(iter(openers)).load()(
+        Path(scene), views=tuple(views), settings=settings, scale=scale, sent=send
+    )
+    return source
 
 
 def _archive(source: Any, out: Path, stack: ExitStack) -> Path:
