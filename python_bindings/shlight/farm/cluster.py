@@ -43,6 +43,8 @@ def connected(scheduler: str | None, workers: int, tls: Tls | None, say: Callabl
         # A large scene holds Python's lock for long while it is exported.
         "distributed.scheduler.worker-ttl": None,
         "distributed.admin.tick.limit": "1h",
+        # A paused worker would wait for ever: the scene stays open. One that takes too much is ended.
+        "distributed.worker.memory.pause": False,
         "distributed.comm.timeouts.connect": f"{CONNECT_SECONDS}s",
     }
     with ExitStack() as stack:
