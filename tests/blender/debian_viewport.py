@@ -128,7 +128,7 @@ def world():
 
 def depth_of_field():
     lens = bpy.context.scene.camera.data
-    lens.dof.use_dof, lens.dof.focus_object, lens.dof.aperture_fstop = True, bpy.data.objects["Floor"], 0.1
+    lens.dof.use_dof, lens.dof.focus_object, lens.dof.aperture_fstop = True, bpy.data.objects["Floor"], 1.0
 
 
 def panorama():

@@ -121,8 +121,8 @@ Refinement::Row Refinement::next_of(int row, std::span<const float> image) const
         const int from = kept_samples(state) == 0 ? -1 : state;
         const Wanted level = wanted(column, row, image);
         found.errors += level.error;
-        found.rays_left += level.next > from ? samples(std::max(level.enough, level.next)) - kept_samples(from) : 0;
-        if (level.next > from) {
+        found.rays_left += level.next > state ? samples(std::max(level.enough, level.next)) - kept_samples(from) : 0;
+        if (level.next > state) {
             RefinementGroup& group = group_of(from, level.next, is_calm(column, row), found.groups);
             group.pixels.push_back({column, row});
             group.gains.push_back(level.error + level.supposed_error);
