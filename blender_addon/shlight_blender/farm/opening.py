@@ -10,12 +10,13 @@ from typing import Any
 
 import bpy
 
+from shlight.quiet import quiet
+
 from .. import register as register_addon
 from ..comparison.scene import SceneError, open_scene
 from ..compat import compositing_nodes
 from ..frame import frame_of
 from ..running import ENGINE
-from .quiet import quiet
 
 NUMBERS = {"FLOAT": float, "INT": int}
 FLAGS = {"1": True, "true": True, "on": True, "0": False, "false": False, "off": False}

@@ -11,12 +11,12 @@ import bpy
 import numpy as np
 
 from shlight.farm import Rendered
+from shlight.quiet import quiet
 
 from .. import record
 from ..comparison.scene import leave_plain
 from ..frame import Frame, frame_of
 from ..passes import layer_passes
-from .quiet import quiet
 
 Box = tuple[int, int, int, int]
 

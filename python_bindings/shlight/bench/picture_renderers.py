@@ -10,7 +10,6 @@ import re
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 
 import shlight
 from shlight import images
+from shlight.quiet import quiet
 
 from .picture_scenes import PictureScene, Thing
 
@@ -113,7 +113,7 @@ class Cycles:
         bpy = self._bpy
         scene = bpy.context.scene
         scene.cycles.samples, scene.cycles.seed = samples, seed
-        with _silent():
+        with quiet():
             start = time.perf_counter()
             bpy.ops.render.render()
             taken = time.perf_counter() - start
@@ -121,19 +121,6 @@ class Cycles:
             path = Path(folder) / "picture.exr"
             bpy.data.images["Render Result"].save_render(str(path))
             return taken, images.read_exr(path)
-
-
-@contextmanager
-def _silent() -> Iterator[None]:
-    """Blender writes to standard output without Python."""
-    kept = os.dup(1)
-    with Path(os.devnull).open("w") as nothing:
-        os.dup2(nothing.fileno(), 1)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 1)
-        os.close(kept)
 
 
 def _set_cycles(scene: Any, size: int, denoised: bool) -> None:

@@ -1,5 +1,5 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's lines on standard output, a few for every frame, kept from the user."""
+# SPDX-License-Identifier: MIT
+"""Lines that Blender writes to standard output without Python, a few for every frame, kept from the user."""
 
 from __future__ import annotations
 
