@@ -43,6 +43,10 @@ constexpr double kLeastViewCosine = 1e-6;
 /// Speed of a boost after which another sweep would change the parameter of an outline by little.
 constexpr double kEvenEnough = 0.05;
 
+/// A lobe of a smaller albedo gets all of it from the rise towards grazing angles, which varies fast: the rule along a
+/// radius then errs by a share of this one.
+constexpr double kLeastAlbedo = 0.02;
+
 /// Points along a radius: the factors beside the bell vary slowly. tolerance: over the albedo.
 int points_for(double tolerance) {
     return tolerance > 4e-3 ? 4 : tolerance > 2e-4 ? 6 : tolerance > 1e-5 ? 12 : 24;
@@ -157,7 +161,7 @@ class Path {
 class Outline {
   public:
     Outline(const LobeShape& shape, double cos_theta_o, double tolerance, double albedo)
-        : bell_{shape, cos_theta_o, &gauss_rule(points_for(tolerance / albedo))},
+        : bell_{shape, cos_theta_o, &gauss_rule(points_for(tolerance / std::max(albedo, kLeastAlbedo)))},
           tolerance_(tolerance),
           single_(tolerance >= kLeastSingle * albedo) {}
 
