@@ -401,34 +401,37 @@ class Scene:
         **lens: Unpack[_Lens],
     ) -> None: ...
 
+class _RenderOptions(TypedDict, total=False):
+    order: Literal["auto"] | int  # "auto" unless given
+    tolerance: float  # DEFAULT_TOLERANCE unless given
+    noise_threshold: float  # 0.01 unless given
+    min_samples: int | None
+    max_samples: int | None
+    pixel_samples: int | None
+    time_limit: float | None
+    pixel_filter: Literal["box", "gaussian", "blackman_harris"]  # "box" unless given
+    filter_width: float  # 1.5 unless given
+    shadows: bool  # True unless given
+    shadow_rays: int  # 16 unless given
+    transparent_bounces: int  # 8 unless given
+    alpha_threshold: float  # 0.5 unless given
+    mist: tuple[float, float, float]
+    cryptomatte_levels: int  # 6 unless given
+    threads: int  # 0, all, unless given
+    progress: Callable[[float], object] | None
+    on_update: Callable[[NDArray[np.float32], RenderReport], object] | None
+
 @overload
 def render(
     scene: Scene,
     width: int,
     height: int,
     *,
-    order: Literal["auto"] | int = "auto",
-    tolerance: float = DEFAULT_TOLERANCE,
-    noise_threshold: float = 0.01,
-    min_samples: int | None = None,
-    max_samples: int | None = None,
-    pixel_samples: int | None = None,
-    time_limit: float | None = None,
-    pixel_filter: Literal["box", "gaussian", "blackman_harris"] = "box",
-    filter_width: float = 1.5,
-    shadows: bool = True,
-    shadow_rays: int = 16,
-    transparent_bounces: int = 8,
     passes: tuple[()] = (),
     groups: Literal[False] = False,
     aovs: Literal[False] = False,
-    alpha_threshold: float = 0.5,
-    mist: tuple[float, float, float] = ...,
-    cryptomatte_levels: int = 6,
-    threads: int = 0,
-    progress: Callable[[float], object] | None = None,
-    on_update: Callable[[NDArray[np.float32], RenderReport], object] | None = None,
     return_report: Literal[False] = False,
+    **options: Unpack[_RenderOptions],
 ) -> NDArray[np.float32]: ...
 @overload
 def render(
@@ -436,28 +439,11 @@ def render(
     width: int,
     height: int,
     *,
-    order: Literal["auto"] | int = "auto",
-    tolerance: float = DEFAULT_TOLERANCE,
-    noise_threshold: float = 0.01,
-    min_samples: int | None = None,
-    max_samples: int | None = None,
-    pixel_samples: int | None = None,
-    time_limit: float | None = None,
-    pixel_filter: Literal["box", "gaussian", "blackman_harris"] = "box",
-    filter_width: float = 1.5,
-    shadows: bool = True,
-    shadow_rays: int = 16,
-    transparent_bounces: int = 8,
     passes: tuple[()] = (),
     groups: Literal[False] = False,
     aovs: Literal[False] = False,
-    alpha_threshold: float = 0.5,
-    mist: tuple[float, float, float] = ...,
-    cryptomatte_levels: int = 6,
-    threads: int = 0,
-    progress: Callable[[float], object] | None = None,
-    on_update: Callable[[NDArray[np.float32], RenderReport], object] | None = None,
     return_report: Literal[True],
+    **options: Unpack[_RenderOptions],
 ) -> tuple[NDArray[np.float32], RenderReport]: ...
 @overload
 def render(
@@ -465,28 +451,11 @@ def render(
     width: int,
     height: int,
     *,
-    order: Literal["auto"] | int = "auto",
-    tolerance: float = DEFAULT_TOLERANCE,
-    noise_threshold: float = 0.01,
-    min_samples: int | None = None,
-    max_samples: int | None = None,
-    pixel_samples: int | None = None,
-    time_limit: float | None = None,
-    pixel_filter: Literal["box", "gaussian", "blackman_harris"] = "box",
-    filter_width: float = 1.5,
-    shadows: bool = True,
-    shadow_rays: int = 16,
-    transparent_bounces: int = 8,
     passes: Sequence[str] = (),
     groups: bool = False,
     aovs: bool = False,
-    alpha_threshold: float = 0.5,
-    mist: tuple[float, float, float] = ...,
-    cryptomatte_levels: int = 6,
-    threads: int = 0,
-    progress: Callable[[float], object] | None = None,
-    on_update: Callable[[NDArray[np.float32], RenderReport], object] | None = None,
     return_report: Literal[False] = False,
+    **options: Unpack[_RenderOptions],
 ) -> dict[str, NDArray[np.float32]] | Any: ...
 @overload
 def render(
@@ -494,27 +463,10 @@ def render(
     width: int,
     height: int,
     *,
-    order: Literal["auto"] | int = "auto",
-    tolerance: float = DEFAULT_TOLERANCE,
-    noise_threshold: float = 0.01,
-    min_samples: int | None = None,
-    max_samples: int | None = None,
-    pixel_samples: int | None = None,
-    time_limit: float | None = None,
-    pixel_filter: Literal["box", "gaussian", "blackman_harris"] = "box",
-    filter_width: float = 1.5,
-    shadows: bool = True,
-    shadow_rays: int = 16,
-    transparent_bounces: int = 8,
     passes: Sequence[str] = (),
     groups: bool = False,
     aovs: bool = False,
-    alpha_threshold: float = 0.5,
-    mist: tuple[float, float, float] = ...,
-    cryptomatte_levels: int = 6,
-    threads: int = 0,
-    progress: Callable[[float], object] | None = None,
-    on_update: Callable[[NDArray[np.float32], RenderReport], object] | None = None,
     return_report: Literal[True],
+    **options: Unpack[_RenderOptions],
 ) -> tuple[dict[str, NDArray[np.float32]] | Any, RenderReport]: ...
 def cryptomatte_hash(name: str) -> int: ...

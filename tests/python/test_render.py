@@ -53,6 +53,15 @@ def test_report_of_a_picture_that_is_not_square() -> None:
     assert sum(report.stage_seconds.values()) <= 2 * report.render_seconds
 
 
+def test_pixels_that_have_enough_are_left_as_they_are() -> None:
+    """A floor whose only edges are those of its shadow: three of four pixels end with their first ray."""
+    scene = lit_floor()
+    scene.add_mesh(FLOOR / 90 + np.array([0.2, 0.2, 0.5]), FACES)
+    _, report = shlight.render(scene, 64, 64, min_samples=1, max_samples=4, return_report=True)
+    assert report.passes <= 8  # one for each level, and for what neighbours suppose
+    assert report.hits <= 2 * 64 * 64
+
+
 def test_no_lights_is_black_and_background_is_transparent() -> None:
     scene = shlight.Scene()
     scene.add_mesh(FLOOR[:, :] / 18, FACES)  # x and y from -0.5 to 0.5
