@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -56,6 +57,19 @@ class Studio(PlainStudio):
         from shlight_blender.export import export_scene
 
         return export_scene(bpy.context.evaluated_depsgraph_get()).report.lines(**options)
+
+
+def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
+    """Ends this process once all is reported, without the end of Python.
+
+    Where anything still refers to the module then, Blender 4.5 waits for ever for its own thread for audio devices.
+    """
+
+    def end() -> None:
+        session.config.get_terminal_writer().flush()
+        os._exit(exitstatus)
+
+    session.config.add_cleanup(end)
 
 
 @pytest.fixture(scope="session")
