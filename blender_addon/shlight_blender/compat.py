@@ -286,6 +286,14 @@ def write_pass(render_pass: Any, pixels: NDArray[np.float32]) -> None:
     render_pass.rect.foreach_set(pixels.ravel() if IS_BLENDER_4 else pixels)
 
 
+def choose_layers(settings: Any) -> None:
+    """Image settings of an OpenEXR file with a layer for each pass, in floats."""
+    if hasattr(settings, "media_type"):
+        settings.media_type = "MULTI_LAYER_IMAGE"
+    settings.file_format = "OPEN_EXR_MULTILAYER"
+    settings.color_depth = "32"
+
+
 def set_sample_range(cycles: Any, first: int, count: int, of: int) -> None:
     """The next render of Cycles takes `count` samples from number `first` on of a sequence laid out for `of`.
 

@@ -15,6 +15,7 @@ from shlight.quiet import quiet
 
 from .. import record
 from ..comparison.scene import leave_plain
+from ..compat import choose_layers
 from ..frame import Frame, frame_of
 from ..passes import layer_passes
 
@@ -86,11 +87,7 @@ def _choose_format(scene: Any) -> None:
     """A layer of the file for each pass, where there are more than one."""
     layers = [layer for layer in scene.view_layers if layer.use]
     if len(layers) > 1 or any(layer_passes(scene, layer) for layer in layers):
-        settings = scene.render.image_settings
-        if hasattr(settings, "media_type"):  # Blender 5
-            settings.media_type = "MULTI_LAYER_IMAGE"
-        settings.file_format = "OPEN_EXR_MULTILAYER"
-        settings.color_depth = "32"
+        choose_layers(scene.render.image_settings)
 
 
 def _set_border(render: Any, whole: Frame, box: Box) -> None:
