@@ -89,6 +89,7 @@ class Workers:
         self._source, self._threads = source, threads
         self._say = say
         self._tasks: dict[Any, Task] = {}
+        self._hindrances: set[str] = set()
         if archive is not None:
             client.upload_file(str(archive), load=False)
         client.subscribe_topic("all", self._hear)
@@ -107,7 +108,24 @@ class Workers:
         if self._client.status != "running" or any(future.status in ("cancelled", "lost") for future in self._tasks):
             raise CommandError(LOST, 1)
         done = [future for future in self._tasks if future.done()]
+        if not done:
+            self._say_what_hinders()
         return [(self._tasks.pop(future), self._result_of(future)) for future in done]
+
+    def _say_what_hinders(self) -> None:
+        """Workers that do nothing, once for each time; the tasks that they were given wait."""
+        with suppress(OSError, TimeoutError):
+            workers = self._client.scheduler_info()["workers"]
+            hindrances = {
+                f"worker {address} is paused, since it lacks memory"
+                for address, worker in workers.items()
+                if worker["status"] == "paused"
+            }
+            if not workers:
+                hindrances = {"the scheduler has no workers"}
+            for hindrance in sorted(hindrances - self._hindrances):
+                self._say(f"waiting: {hindrance}")
+            self._hindrances = hindrances
 
     def _result_of(self, future: Any) -> Callable[[], Result]:
         def result() -> Result:
