@@ -23,7 +23,8 @@ class Progress:
 
     def begin(self, title: str) -> None:
         self._begun += 1
-        self._title, self._since = f"{self._begun}/{self._parts} {title}", time.monotonic()
+        self._title = f"{self._begun}/{self._parts} {title}" if self._parts > 1 else title
+        self._since = time.monotonic()
         if not self._moving:
             print(self._title, file=self._stream, flush=True)
 
