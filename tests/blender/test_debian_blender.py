@@ -7,6 +7,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -39,7 +40,12 @@ pytestmark = pytest.mark.skipif(bool(WHY_NOT), reason=WHY_NOT or "-")
 
 
 def run_blender(
-    *arguments: str, script: str, folder: Path, before: tuple[str, ...] = (), after: tuple[str, ...] = ()
+    *arguments: str,
+    script: str,
+    folder: Path,
+    before: tuple[str, ...] = (),
+    after: tuple[str, ...] = (),
+    seconds: float = 240,
 ) -> subprocess.CompletedProcess[str]:
     """Runs Blender with the source tree's add-on on its path and nothing of the user's configuration."""
     environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTHON", "BLENDER"))}
@@ -53,11 +59,19 @@ def run_blender(
         "--python-expr", f"import sys; sys.path[:0] = {paths!r}", "--python", str(HERE / script),
         "--", str(folder), *after,
     ]  # fmt: skip
-    try:
-        return subprocess.run(command, capture_output=True, text=True, env=environment, timeout=240, check=False)
-    except subprocess.TimeoutExpired as late:
-        said = [part.decode(errors="replace") for part in (late.stdout, late.stderr) if isinstance(part, bytes)]
-        pytest.fail(f"{script} did not end:\n" + "".join(said))
+    pipe = subprocess.PIPE
+    with subprocess.Popen(
+        command, stdout=pipe, stderr=pipe, text=True, env=environment, start_new_session=True
+    ) as process:
+        try:
+            output, errors = process.communicate(timeout=seconds)
+        except BaseException as stop:
+            os.killpg(process.pid, signal.SIGKILL)  # the screen too
+            if isinstance(stop, subprocess.TimeoutExpired):
+                output, errors = process.communicate()
+                pytest.fail(f"{script} did not end:\n{output}{errors}")
+            raise
+    return subprocess.CompletedProcess(command, process.returncode, output, errors)
 
 
 def spoken(done: Any) -> str:
@@ -130,13 +144,15 @@ def test_the_menu_of_nodes_is_left_as_it_was(pictures: dict[str, Any]) -> None:
     assert pictures["left_menu"]
 
 
-def run_in_window(*arguments: str, script: str, folder: Path, after: tuple[str, ...] = ()) -> tuple[int, str]:
+def run_in_window(
+    *arguments: str, script: str, folder: Path, after: tuple[str, ...] = (), seconds: float = 240
+) -> tuple[int, str]:
     """Runs Blender with a window; returns its exit code and what it says."""
     if shutil.which("xvfb-run") is None:
         pytest.skip("xvfb-run is not installed")
     window = ("-noaudio", "--window-geometry", "0", "0", "1280", "800", *arguments)
     screen = ("xvfb-run", "-a", "-s", "-screen 0 1280x800x24 +extension GLX")
-    done = run_blender(*window, script=script, folder=folder, before=screen, after=after)
+    done = run_blender(*window, script=script, folder=folder, before=screen, after=after, seconds=seconds)
     return done.returncode, spoken(done)
 
 
@@ -151,7 +167,9 @@ def test_a_walk_in_the_window(tmp_path: Path, steps: int) -> None:
     addons.mkdir(parents=True)
     (addons / "shlight_blender").symlink_to(ROOT / "blender_addon/shlight_blender")
     walk = (os.environ.get("SHLIGHT_SEED", "1"), str(steps))
-    code, output = run_in_window("--enable-event-simulate", script="debian_walk.py", folder=tmp_path, after=walk)
+    code, output = run_in_window(
+        "--enable-event-simulate", script="debian_walk.py", folder=tmp_path, after=walk, seconds=60 + 3 * steps
+    )
     output = READ_ONLY.sub("", output)
     assert code in {0, 1}, output  # 1 after a render that was stopped, which is an operator's error
     assert "step 0: quit" in output, output
