@@ -255,6 +255,8 @@ def test_files_without_scene(tmp_path: Path, empty_scene: bpy.types.Scene) -> No
     for content in (b"", b"not a scene\n", whole[: len(whole) // 5], whole[: len(whole) * 9 // 10]):
         assert reason("a.blend", content).startswith("Blender cannot read it")
     assert reason("a.py", b"") == "there is no function build_scene() in it"
+    chosen = b"import bpy\ndef build_scene():\n    bpy.context.scene.render.engine = 'SHLIGHT'\n"
+    assert reason("a.py", chosen) == "there is no scene in it"  # and the engine is
     assert reason("a.py", b"1 / 0") == "ZeroDivisionError: division by zero"
     assert reason("a.py", b"def build_scene(): return") == "there is no scene in it"
     assert reason("a.py", b"def build_scene(): raise SystemExit('no,\\n no')") == "SystemExit: no, no"

@@ -11,6 +11,7 @@ from typing import Any
 
 import bpy
 
+from .. import register as register_addon
 from ..compat import set_sample_range
 from ..export.expressions import Surroundings
 from ..export.materials import read_material
@@ -28,7 +29,11 @@ class SceneError(Exception):
 
 
 def open_scene(path: Path) -> Any:
-    """Opens a Blender file, or runs the function build_scene() of a Python script, and returns the scene."""
+    """Opens a Blender file, or runs the function build_scene() of a Python script, and returns the scene.
+
+    The add-on is registered before, since a script may choose the engine and set its properties.
+    """
+    register_addon()
     scene = _build(path) if path.suffix == ".py" else open_blend(path)
     if scene is None:
         raise SceneError("there is no scene in it")

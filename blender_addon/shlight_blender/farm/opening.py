@@ -12,7 +12,6 @@ import bpy
 
 from shlight.quiet import quiet
 
-from .. import register as register_addon
 from ..comparison.scene import SceneError, open_scene
 from ..compat import compositing_nodes
 from ..frame import frame_of
@@ -32,7 +31,6 @@ def open_for_farm(path: Path) -> Any:
         bpy.app.handlers.load_post.remove(_close_caches)
     bpy.context.window.scene = scene
     bpy.ops.preferences.addon_enable(module="cycles")  # the pixel filter is one of its settings
-    register_addon()
     render = scene.render
     render.engine = ENGINE
     render.use_crop_to_border = True
