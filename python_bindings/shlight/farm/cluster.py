@@ -89,7 +89,7 @@ class Workers:
         self._source, self._threads = source, threads
         self._say = say
         self._tasks: dict[Any, Task] = {}
-        self._hindrances: set[str] = set()
+        self._said: set[str] = set()
         if archive is not None:
             client.upload_file(str(archive), load=False)
         client.subscribe_topic("all", self._hear)
@@ -113,19 +113,18 @@ class Workers:
         return [(self._tasks.pop(future), self._result_of(future)) for future in done]
 
     def _say_what_hinders(self) -> None:
-        """Workers that do nothing, once for each time; the tasks that they were given wait."""
+        """Once, of workers that do nothing; the tasks that they were given wait."""
         with suppress(OSError, TimeoutError):
-            workers = self._client.scheduler_info()["workers"]
             hindrances = {
                 f"worker {address} is paused, since it lacks memory"
-                for address, worker in workers.items()
+                for address, worker in self._client.scheduler_info()["workers"].items()  # now and then empty
                 if worker["status"] == "paused"
             }
-            if not workers:
-                hindrances = {"the scheduler has no workers"}
-            for hindrance in sorted(hindrances - self._hindrances):
+            if not self._client.nthreads():
+                hindrances.add("the scheduler has no workers")
+            for hindrance in sorted(hindrances - self._said):
                 self._say(f"waiting: {hindrance}")
-            self._hindrances = hindrances
+            self._said |= hindrances
 
     def _result_of(self, future: Any) -> Callable[[], Result]:
         def result() -> Result:

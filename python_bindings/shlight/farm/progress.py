@@ -27,7 +27,7 @@ class FarmProgress:
         if kept:
             self.say(f"{kept} whole already; --force renders them too")
         if frames:
-            self._bar.begin("frames" if self._moving else f"rendering {frames} frames")
+            self._bar.begin("frames" if self._moving else f"rendering {frames} {'frame' if frames == 1 else 'frames'}")
 
     def say(self, text: str) -> None:
         """A line of its own."""
