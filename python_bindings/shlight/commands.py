@@ -10,6 +10,7 @@ import tempfile
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import NoReturn
 
@@ -72,6 +73,17 @@ def work_folder(out: Path) -> Iterator[Path]:
         raise CommandError(f"cannot write to {out}: {error.strerror}", 2) from None
     with folder as name:
         yield Path(name)
+
+
+@contextmanager
+def interrupts_blocked() -> Iterator[None]:
+    """Ctrl-C waits meanwhile, and never reaches threads and processes that begin meanwhile: they end with this one."""
+    resource_tracker.ensure_running()  # it would be begun with the first process, and end the block
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager

@@ -183,7 +183,8 @@ def scene(tmp_path: Path) -> Path:
 
 def start(*arguments: object, code: str = COMMAND) -> subprocess.Popen[str]:
     command = [sys.executable, "-c", code, *map(str, arguments)]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    pipe = subprocess.PIPE
+    return subprocess.Popen(command, stdout=pipe, stderr=subprocess.STDOUT, text=True, start_new_session=True)
 
 
 def run(*arguments: object, code: str = COMMAND) -> tuple[int, str]:
@@ -354,10 +355,11 @@ def test_an_interrupt_leaves_whole_files_and_no_processes(scene: Path, tmp_path:
     process = start(scene, "--frames", "1-400", "--workers", 2, "--out", tmp_path / "x_###.exr")
     wait_for(tmp_path / "x_002.exr")
     below = psutil.Process(process.pid).children(recursive=True)
-    process.send_signal(signal.SIGINT)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does
     output, _ = process.communicate(timeout=SECONDS)
     assert process.returncode == 130
     assert "interrupted; the files that are there are whole" in output
+    assert "Traceback" not in output
     assert not psutil.wait_procs(below, timeout=10)[1]
     assert not [name for name in names(tmp_path) if name.startswith(".")]
     assert read_exr(tmp_path / "x_002.exr").shape == (64, 96, 4)

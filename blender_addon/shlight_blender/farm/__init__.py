@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from shlight.commands import CommandError
+from shlight.commands import CommandError, interrupts_blocked
 
 from ..comparison.supervision import check_blender
 from .source import SceneFile, describe
@@ -30,7 +30,8 @@ def open_scene_file(
     spawning = multiprocessing.get_context("spawn")
     receiver, sender = spawning.Pipe(duplex=False)
     process = spawning.Process(target=_describe, args=(sender, path, views, settings, scale, sent), daemon=True)
-    process.start()
+    with interrupts_blocked():
+        process.start()
     sender.close()
     try:
         found: SceneFile | Exception = receiver.recv()

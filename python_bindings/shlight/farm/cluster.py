@@ -11,7 +11,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from shlight.commands import CommandError
+from shlight.commands import CommandError, interrupts_blocked
 from shlight.farm.pictures import Source
 from shlight.farm.tasks import Result, Task, perform_on_worker
 from shlight.farm.tls import Tls
@@ -52,15 +52,16 @@ def connected(scheduler: str | None, workers: int, tls: Tls | None, say: Callabl
         security = tls.security() if tls else None
         address: Any = scheduler
         if scheduler is None:
-            address = LocalCluster(
-                n_workers=workers,
-                threads_per_worker=1,
-                host="127.0.0.1",
-                protocol="tls" if tls else "tcp",
-                security=security,
-                dashboard_address="127.0.0.1:0",
-                silence_logs="CRITICAL",
-            )
+            with interrupts_blocked():
+                address = LocalCluster(
+                    n_workers=workers,
+                    threads_per_worker=1,
+                    host="127.0.0.1",
+                    protocol="tls" if tls else "tcp",
+                    security=security,
+                    dashboard_address="127.0.0.1:0",
+                    silence_logs="CRITICAL",
+                )
             stack.callback(_close, address)
         try:
             client = Client(address, security=security, timeout=CONNECT_SECONDS, set_as_default=False)

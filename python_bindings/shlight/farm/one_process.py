@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import multiprocessing
-import signal
 from collections.abc import Callable
 from typing import Any
 
+from shlight.commands import interrupts_blocked
 from shlight.farm.pictures import Source
 from shlight.farm.tasks import Result, Task, perform
 
@@ -60,12 +60,12 @@ class OneProcess:
         spawning = multiprocessing.get_context("spawn")
         self._channel, other_end = spawning.Pipe()
         self._process = spawning.Process(target=_serve, args=(other_end, self._source, self._threads), daemon=True)
-        self._process.start()
+        with interrupts_blocked():
+            self._process.start()
         other_end.close()
 
 
 def _serve(channel: Any, source: Source, threads: int) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # of the terminal; this process is ended by the one that began it
     while True:
         task = channel.recv()
         try:
