@@ -116,12 +116,13 @@ class Workers:
     def _say_what_hinders(self) -> None:
         """Once, of workers that do nothing; the tasks that they were given wait."""
         with suppress(OSError, TimeoutError):
+            workers = self._client.scheduler_info()["workers"]
             hindrances = {
                 f"worker {address} is paused, since it lacks memory"
-                for address, worker in self._client.scheduler_info()["workers"].items()  # now and then empty
+                for address, worker in workers.items()
                 if worker["status"] == "paused"
             }
-            if not self._client.nthreads():
+            if not workers and not self._client.nthreads():  # the client's own refresh can leave the first one empty
                 hindrances.add("the scheduler has no workers")
             for hindrance in sorted(hindrances - self._said):
                 self._say(f"waiting: {hindrance}")
