@@ -21,9 +21,8 @@ from .running import ENGINE
 from .status import status_of
 
 MOST_WARNINGS = 20
-# Of pictures in the making, in seconds. Blender opens the render window meanwhile, and is not ready for the first
-# before that.
-FIRST_UPDATE = 0.1
+# Of pictures in the making, in seconds.
+FIRST_UPDATE = 0.05
 UPDATE_INTERVAL = 0.25
 LARGEST_UPDATE_SHARE = 0.1  # of the time
 

@@ -76,7 +76,7 @@ void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std
     const Vec3d variance = old_share * Vec3d(state.variance) +
                            (1 - old_share) * (sums.variance() + sums.shadow_variance()) +
                            old_share * (1 - old_share) * difference * difference;
-    state = {Rgb(variance), level, state.obstructed || sums.obstructed};
+    state = {Rgb(variance), 0, static_cast<std::int16_t>(level), round_, state.obstructed || sums.obstructed, false};
 }
 
 void Refinement::set_mean(std::span<const float> image) {
@@ -111,15 +111,25 @@ std::vector<RefinementGroup> Refinement::next_round(std::span<const float> image
         return std::tuple(a.from, a.to, b.calm) < std::tuple(b.from, b.to, a.calm);
     });
     noise_ = std::sqrt(errors / static_cast<double>(states_.size()));
+    ++round_;
     return groups;
 }
 
-Refinement::Row Refinement::next_of(int row, std::span<const float> image) const {
+/// Most pixels have enough after few rounds, and are looked at again only where something near them has changed; the
+/// picture's mean moves little by then.
+Refinement::Row Refinement::next_of(int row, std::span<const float> image) {
     Row found;
     for (int column = 0; column < width_; ++column) {
-        const int state = states_[index(column, row)].level;
+        State& own = states_[index(column, row)];
+        if (own.has_enough && !is_touched(column, row)) {
+            found.errors += double{own.error};
+            continue;
+        }
+        const int state = own.level;
         const int from = kept_samples(state) == 0 ? -1 : state;
         const Wanted level = wanted(column, row, image);
+        own.has_enough = level.next <= state;
+        own.error = static_cast<float>(level.error);
         found.errors += level.error;
         found.rays_left += level.next > state ? samples(std::max(level.enough, level.next)) - kept_samples(from) : 0;
         if (level.next > state) {
@@ -149,7 +159,7 @@ int Refinement::sufficient_level(double variance) const {
 Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float> image) const {
     const std::size_t i = index(column, row);
     const State& state = states_[i];
-    const int level = std::max(state.level, 0);
+    const int level = std::max<int>(state.level, 0);
     const Vec3d value = color(image, i);
     const Vec3d scale = value * value + least_square_;
     const double alpha = image[4 * i + 3];
@@ -171,6 +181,17 @@ Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float
     }
     const int next = enough > level || supposed > good_enough_ ? level + 1 : enough;
     return {enough, std::min(next, most_level_), squared_error(variance, level), supposed};
+}
+
+bool Refinement::is_touched(int column, int row) const {
+    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, height_ - 1); ++y) {
+        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, width_ - 1); ++x) {
+            if (states_[index(x, y)].merged == round_) {
+                return true;
+            }
+        }
+    }
+    return false;
 }
 
 bool Refinement::is_calm(int column, int row) const {

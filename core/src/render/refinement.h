@@ -59,8 +59,11 @@ class Refinement {
   private:
     struct State {
         Rgb variance{0};  // of one ray, its shadow rays included
-        int level = -1;
+        float error = 0;  // squared; as it was when a round looked at it
+        std::int16_t level = -1;
+        std::uint16_t merged = 0;  // the number of the round
         bool obstructed = false;
+        bool has_enough = false;  // when a round looked at it
     };
     /// The level that is known to do, and the next one, which may be higher for what is only supposed.
     struct Wanted {
@@ -78,7 +81,9 @@ class Refinement {
         double errors = 0, rays_left = 0;
     };
 
-    Row next_of(int row, std::span<const float> image) const;
+    Row next_of(int row, std::span<const float> image);
+    /// Whether rays of the pixel or of those around it were merged since the last round.
+    bool is_touched(int column, int row) const;
     void set_mean(std::span<const float> image);
     Wanted wanted(int column, int row, std::span<const float> image) const;
     double squared_error(double variance, int level) const;
@@ -97,6 +102,7 @@ class Refinement {
     bool depth_of_field_;
     double least_square_ = 0;  // 0.01 r̄²
     double noise_ = 0, rays_left_ = 0;
+    std::uint16_t round_ = 0;  // which merges since the last call of next_round() belong to
     std::vector<State> states_;
 };
 
