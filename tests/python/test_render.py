@@ -228,6 +228,17 @@ def test_the_picture_as_it_stands() -> None:
         shlight.render(lit_floor(), 48, 32, on_update=lambda image, report: 1 / 0)
 
 
+def test_no_time_is_left_in_the_end() -> None:
+    left: list[float] = []
+
+    def keep(_: Any, report: shlight.RenderReport) -> bool:
+        left.append(report.seconds_left)
+        return True
+
+    shlight.render(lit_floor(), 48, 32, on_update=keep)
+    assert max(left) > left[-1] == 0
+
+
 MESH_ERRORS: list[tuple[str, dict[str, Any]]] = [
     ("vertices", {"vertices": FLOOR[:, :2]}),
     ("vertices", {"vertices": np.full_like(FLOOR, NAN)}),

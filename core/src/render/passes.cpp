@@ -48,6 +48,7 @@ void Passes::run() {
         const auto groups = most_urgent(refinement_.next_round(image_, picture_->settings.threads, waiting()));
         rays_before_round_ = rays_done_;
         shown_.noise = refinement_.noise();
+        shown_.seconds_left = seconds_left(refinement_.rays_left());
         std::vector<Pass> passes;
         std::transform(groups.begin(), groups.end(), std::back_inserter(passes),
                        [this](const RefinementGroup& group) { return pass_of(group); });

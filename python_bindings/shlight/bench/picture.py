@@ -40,7 +40,7 @@ class Effort:
     reference_seconds: float  # of each half of a converged picture
 
 
-FULL = Effort(512, 3, 8.0, 120.0)
+FULL = Effort(512, 3, 8.0, 40.0)
 QUICK = Effort(256, 1, 2.0, 8.0)
 QUICK_SCENES = ("balls", "fence")
 
