@@ -177,7 +177,12 @@ Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float
             squared_error(neighbours_variance(column, row, scale, image), level) * kNeighbourShare / (missed * missed);
     }
     if (state.level < 0) {
-        supposed = std::max(error_between(column, row, image), kEdgeVariance * kNeighbourShare);
+        const double between = error_between(column, row, image);
+        supposed = std::max(between, kEdgeVariance * kNeighbourShare);
+        // As on a textured surface: one ray, which has no noise where no shadow is near, tells most of what is missing.
+        if (between >= supposed && is_calm(column, row)) {
+            return {enough, 0, squared_error(variance, level), supposed};
+        }
     }
     const int next = enough > level || supposed > good_enough_ ? level + 1 : enough;
     return {enough, std::min(next, most_level_), squared_error(variance, level), supposed};
