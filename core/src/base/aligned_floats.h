@@ -7,14 +7,14 @@
 
 namespace shlight {
 
-/// Floats that begin on a cache line, in whole lines.
+/// Floats in whole cache lines.
 class AlignedFloats {
   public:
     static constexpr std::size_t kLine = 16;
     /// The next multiple of kLine.
     static constexpr std::size_t padded(std::size_t count) { return (count + kLine - 1) / kLine * kLine; }
 
-    /// At least this many; new ones are 0.
+    /// Grows to at least this many floats; added ones are 0.
     void grow(std::size_t count) {
         if (count > lines_.size() * kLine) {
             lines_.resize((count + kLine - 1) / kLine);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Systematic sampling: so many places on a line of parts, drawn in proportion to the parts' lengths.
+// Systematic sampling: a given number of evenly spaced places on a line that consists of parts.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 
 namespace shlight {
 
-/// Evenly spaced steps along the line, from a random start that is less than a step: so there is one at least.
+/// Steps along the line, evenly spaced from a random start within the first step, so that there is at least one.
 class EvenSteps {
   public:
-    /// length: of all parts together; random: any number.
+    /// length: total length of all parts; count: number of steps; random: any number.
     EvenSteps(float length, std::size_t count, std::uint32_t random)
         : step_(length / static_cast<float>(count)), next_(step_ * (static_cast<float>(random >> 9U) * 0x1p-23F)) {}
 
-    /// The next part of the line: visit(piece) for each step in it, of so many equal pieces 0 … pieces - 1.
+    /// Advances over the next part, cut into `pieces` equal pieces: visit(piece) for each step in it.
     template <class Visit>
     void within(float length, std::size_t pieces, const Visit& visit) {
         for (; next_ < before_ + length; next_ += step_) {

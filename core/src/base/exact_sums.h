@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Sums of products with one rounding in effect, for differences that decide how a light touches the shading point.
+// Sums of products that are exact but for about one rounding, for differences that decide how a light touches the
+// shading point.
 #pragma once
 
 #include <array>
@@ -27,13 +28,13 @@ class CompensatedSum {
     double high_ = 0, low_ = 0;
 };
 
-/// a b - c d, right to two roundings however much of it cancels (Kahan).
+/// a b - c d to within two roundings, even if the terms cancel (Kahan).
 inline double difference_of_products(double a, double b, double c, double d) {
     const double product = c * d;
     return std::fma(a, b, -product) - std::fma(c, d, -product);
 }
 
-/// a·(b×c) with one rounding in effect, however flat the three lie.
+/// a·(b×c) to about one rounding, even if the three vectors are nearly coplanar.
 inline double triple_product(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     CompensatedSum sum;
     for (int i = 0; i < 3; ++i) {
@@ -48,7 +49,7 @@ inline double triple_product(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     return sum.value();
 }
 
-/// |v|² - r² without the cancellation of |v| ≈ r: what plain arithmetic leaves to it is wrong by some 1e-15 of itself.
+/// |v|² - r² without cancellation at |v| ≈ r; plain arithmetic has an error of some 1e-15 |v|².
 inline double difference_of_squares(const std::array<double, 3>& v, double r) {
     const double minuend = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     const double subtrahend = r * r;

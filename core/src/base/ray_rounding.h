@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How far rays in float may miss a surface.
+// Rounding errors of rays in float.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 
 namespace shlight {
 
-/// In units of the largest coordinate involved: a few roundings of 2⁻²⁴ each in a ray's origin, in Embree's transform
-/// of it into an instance's frame, and in its edge tests.
+/// Largest error of a hit ÷ the largest coordinate involved: a few roundings of 2⁻²⁴ each in a ray's origin, in
+/// Embree's transform of it into an instance's frame, and in its edge tests.
 inline constexpr double kRayRounding = 16 * 0x1p-24;
 
-/// Where a ray to a point ends, as part of the way: all but the last few roundings.
+/// End of a ray to a point, as a fraction of the distance: it stops a few roundings short.
 inline constexpr float kRayEnd = 1.0F - 0x1p-22F;
 
 inline double largest_component(const Vec3d& v) {

@@ -8,7 +8,7 @@
 
 namespace shlight {
 
-/// Of squares in this range no difference that matters underflows, and no sum of a few overflows.
+/// Whether a square is in the range where no relevant difference underflows and no sum of a few squares overflows.
 inline bool is_safe_square(double square) {
     return square > 1e-280 && square < 1e280;
 }
@@ -19,13 +19,13 @@ inline double safe_length(const Vec3d& v) {
     return is_safe_square(square) ? std::sqrt(square) : std::hypot(v.x, v.y, v.z);
 }
 
-/// The power of two by which v, finite, is to be multiplied for its square to be safe; 1 if it is, or if v is 0.
+/// The power of two that makes the square of the finite vector v safe; 1 if it is safe, or if v is 0.
 inline double safe_scale(const Vec3d& v) {
     if (is_safe_square(glm::dot(v, v))) {
         return 1;
     }
     const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    // The inverse of the least and of the largest doubles is none, or none in full precision.
+    // Clamped because the reciprocals of the extreme doubles overflow or are subnormal.
     return largest > 0 ? std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1022, 1022)) : 1.0;
 }
 

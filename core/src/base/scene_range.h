@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What numbers a scene may hold: checks that throw std::invalid_argument naming the argument. docs/conventions.md.
+// Limits of the numbers in a scene, and checks that throw std::invalid_argument naming the argument.
+// docs/conventions.md.
 #pragma once
 
 #include <algorithm>
@@ -13,18 +14,18 @@
 
 namespace shlight {
 
-/// [m]: of coordinates and sizes. Embree multiplies three of them in float.
+/// Largest coordinate and size [m]. Embree multiplies three of them in float.
 inline constexpr double kFarthest = 1e10;
-/// [m]: what a scene with surfaces must reach. Embree takes triangles of less than 1e-18 m² for points, and a scene is
-/// cut into many that are smaller than it.
+/// Least extent of a scene with surfaces [m]. Embree takes triangles below 1e-18 m² for points, and a scene's triangles
+/// are much smaller than the scene.
 inline constexpr double kLeastReach = 1e-6;
-/// Of instances, of which a mesh has more than one.
+/// Largest scale of an instance; meshes with one instance have no limit.
 inline constexpr double kLargestScale = 1e7;
-/// Radiance and irradiance of lights, and intensity, which distances up to kFarthest weaken.
+/// Largest radiance and irradiance of lights, and largest intensity, which distances up to kFarthest reduce.
 inline constexpr float kBrightest = 1e15F;
 inline constexpr float kMostIntense = 1e30F;
 
-/// Of one number that is known to be finite, or what is left of overflow.
+/// Checks a number that is finite or infinite through overflow.
 inline void check_reach(const std::string& name, double reach) {
     if (!(std::abs(reach) <= kFarthest)) {
         reject(name + ": a scene reaches 1e10 m from the origin at most");

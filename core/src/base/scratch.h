@@ -7,13 +7,13 @@
 
 namespace shlight {
 
-/// An array that grows without giving values to its elements: what it held before it was cleared is still there.
+/// An array that grows without initialising its elements: after clear() they keep their old values.
 template <class T>
 class Scratch {
   public:
     void clear() { size_ = 0; }
     std::size_t size() const { return size_; }
-    /// Adds so many elements, which are to be overwritten.
+    /// Appends `count` elements, which the caller must overwrite.
     std::span<T> extend(std::size_t count) {
         if (size_ + count > elements_.size()) {
             elements_.resize(2 * (size_ + count));

@@ -15,7 +15,7 @@ constexpr double kSmallestViewCosine = 1e-4;
 ShadingFrame shading_frame(const Vec3d& position, const Vec3d& normal, const Vec3d& towards_viewer) {
     const Vec3d across = glm::cross(normal, towards_viewer);
     const double length = glm::length(across);
-    // Seen head-on the azimuth is free, and every lobe is round.
+    // Seen along the normal any azimuth will do, since every lobe is rotationally symmetric there.
     const Vec3d y = length > 1e-12 ? across / length : perpendicular(normal);
     return {position, glm::cross(y, normal), y, normal};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The frame in which the light at a surface point is integrated.
+// The frame of a surface point, in which its light is integrated.
 #pragma once
 
 #include "shlight/types.h"
@@ -20,11 +20,11 @@ struct ShadingFrame {
     }
 };
 
-/// The frame of a point with a normal, seen from direction `towards_viewer`; both unit vectors.
+/// The frame of a point; normal and towards_viewer are unit vectors.
 ShadingFrame shading_frame(const Vec3d& position, const Vec3d& normal, const Vec3d& towards_viewer);
 
-/// Cosine of the angle between normal and viewer. A smooth normal may turn away from a grazing viewer; there the
-/// surface is shaded as seen at a grazing angle.
+/// cosθ_o, at least 1e-4. An interpolated normal may turn away from a grazing viewer; the surface is then shaded as
+/// seen at that grazing angle.
 float view_cosine(const ShadingFrame& frame, const Vec3d& towards_viewer);
 
 }  // namespace shlight

@@ -44,7 +44,7 @@ inline void check_transform(const char* name, const glm::dmat4& matrix) {
             reject(std::string(name) + " is not affine: its last row must be 0 0 0 1");
         }
     }
-    // The determinant against the product of the axes' lengths: a measure of flatness that ignores scale.
+    // The determinant ÷ the product of the axes' lengths measures flatness independently of scale.
     const glm::dmat3 linear(matrix);
     const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
     if (!(std::abs(glm::determinant(linear)) > 1e-9 * lengths)) {

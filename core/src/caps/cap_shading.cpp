@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "caps/cap_shading.cpp"
 #include <hwy/foreach_target.h>
-// Highway's vocabulary, and what is compiled once per instruction set, come after it.
+// Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ HWY_INLINE Lights listed(const std::uint32_t* list, const Lights& chosen) {
     return result;
 }
 
-/// Numbers: Neighbours, Scattered or Same.
+/// Numbers: Contiguous, Gather or Broadcast.
 template <class Numbers>
 HWY_INLINE WarpPair warps_of(const WarpArrays& warps, const Numbers& numbers) {
     const DoublePair sin_tilt = numbers.pair(warps.sin_tilt);
@@ -115,11 +115,11 @@ class CapShading {
 
     HWY_INLINE WarpPair load_warps(const Lights& chosen) const {
         if (lobe_.stride == 0) {
-            return warps_of(lobe_.warps, Same(view_of_, kLanes));
+            return warps_of(lobe_.warps, Broadcast(view_of_, kLanes));
         }
         const Lights view_of = listed(view_of_, chosen);
-        return are_in_a_row(Floats(), view_of.data()) ? warps_of(lobe_.warps, Neighbours(view_of[0]))
-                                                      : warps_of(lobe_.warps, Scattered(view_of.data(), kLanes));
+        return are_in_a_row(Floats(), view_of.data()) ? warps_of(lobe_.warps, Contiguous(view_of[0]))
+                                                      : warps_of(lobe_.warps, Gather(view_of.data(), kLanes));
     }
 
     /// Each lane's own terms.

@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lobes/view_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Highway's vocabulary, and what is compiled once per instruction set, come after it.
+// Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include <array>
@@ -32,8 +32,7 @@ HWY_INLINE V<Doubles> sine_of_cosine(V<Doubles> cosine) {
     return hn::Sqrt(hn::Mul(hn::Sub(one, cosine), hn::Add(one, cosine)));
 }
 
-/// The view's neighbour that is fitted, and where it lies in a table of one row for each fitted view, before which
-/// stands the row of the view beyond the normal: the first of four rows, and four cubic weights.
+/// The fitted view nearest to a view, and its place in a FitTable: the first of four rows, and four cubic weights.
 struct ViewLanes {
     DoublePair cosine, sine;
     V<Floats> log_cosine;
@@ -55,7 +54,7 @@ HWY_INLINE ViewLanes view_in_lanes(const DoublePair& cos_theta_o) {
     // artanh(sinθ) = log((1 + sinθ) / cosθ).
     const auto stretch = hn::Sub(hn::Log(d, hn::Add(rounded(view.sine), all(d, 1))), view.log_cosine);
     const auto position = hn::Max(hn::Zero(d), hn::Mul(stretch, hn::Set(d, step)));
-    // Counted from the row beyond the normal; the stencil begins one row before the view.
+    // Row 0 is the view beyond the normal; the stencil begins one row before the view.
     view.row = hn::Min(hn::ConvertTo(di, position), hn::Set(di, kWarpedViews - 3));
     const auto t = hn::Sub(position, hn::Sub(hn::ConvertTo(d, view.row), all(d, 1)));
     const auto t1 = hn::Sub(t, all(d, 1));
@@ -68,11 +67,11 @@ HWY_INLINE ViewLanes view_in_lanes(const DoublePair& cos_theta_o) {
     return view;
 }
 
-/// x^(-2/3) for 1 ≤ x < 1000 or so: Newton's method for r⁻³ = x², from a third of the exponent.
+/// x^(-2/3) for 1 ≤ x < 1000 or so, by Newton's method for r⁻³ = x² from an estimate by the exponent.
 HWY_INLINE V<Floats> power_minus_two_thirds(V<Floats> x) {
     const Floats d;
     const hn::RebindToSigned<Floats> di;
-    // The bits of a float are about its logarithm: those of r are k - ⅔ those of x, with k found by least error.
+    // A float's bits are nearly its logarithm: those of r are k - ⅔ those of x. The k used has the least error.
     const auto bits = hn::ConvertTo(d, hn::BitCast(di, x));
     auto r = hn::BitCast(d, hn::ConvertTo(di, hn::MulAdd(bits, all(d, -2.0 / 3), all(d, 1.77491e9))));
     const auto square = hn::Mul(x, x);
@@ -83,15 +82,15 @@ HWY_INLINE V<Floats> power_minus_two_thirds(V<Floats> x) {
     return r;
 }
 
-/// The narrowness w / (1 + w^1.5)^(2/3) of the width w = 5 α cos^0.4 θ_o, of which lobe_warp() makes its warp. A
-/// float's rounding of it is one of the warp, which all that is warped shares.
+/// The narrowness w / (1 + w^1.5)^(2/3) of the width w = 5 α cos^0.4 θ_o, as in lobe_warp(). Rounding it to float does
+/// no harm, because all that is warped shares the rounded value.
 HWY_INLINE V<Floats> narrowness_in_lanes(V<Floats> alpha, V<Floats> log_cosine) {
     const Floats d;
     const auto width = hn::Mul(hn::Mul(all(d, 5), alpha), hn::Exp(d, hn::Mul(all(d, 0.4), log_cosine)));
     return hn::Mul(width, power_minus_two_thirds(hn::MulAdd(width, hn::Sqrt(width), all(d, 1))));
 }
 
-/// As Warp's constructor, with one division for all quotients.
+/// Warp's constructor in lanes, with one division for all quotients.
 HWY_INLINE WarpLanes<Doubles> warp_in_lanes(V<Doubles> sine, V<Doubles> cosine, V<Doubles> narrowness) {
     const Doubles d;
     const auto one = all(d, 1);
@@ -120,7 +119,7 @@ HWY_INLINE WarpLanes<Doubles> warp_in_lanes(V<Doubles> sine, V<Doubles> cosine, 
             hn::Mul(reach, over_length)};
 }
 
-/// sine, cosine: of the fitted view.
+/// sine, cosine: sinθ_o and cosθ_o of the fitted view.
 HWY_INLINE WarpPair warps_in_lanes(V<Floats> alpha, V<Floats> log_cosine, const DoublePair& sine,
                                    const DoublePair& cosine) {
     const Doubles d;
@@ -141,7 +140,7 @@ HWY_INLINE void store_pair(const DoublePair& pair, double* to) {
 void find_views_in_lanes(const double* cos_theta_o, std::size_t count, const ViewOutput& out) {
     const Floats d;
     for (std::size_t i = 0; i < count; i += kLanes) {
-        const DoublePair given = Neighbours(i).pair(cos_theta_o);
+        const DoublePair given = Contiguous(i).pair(cos_theta_o);
         const ViewLanes view = view_in_lanes(given);
         store_pair(each([](V<Doubles> c) HWY_ATTR { return sine_of_cosine(c); }, given), out.sine + i);
         store_pair(view.sine, out.fitted_sine + i);
@@ -167,7 +166,7 @@ HWY_INLINE void store_warp(const WarpLanes<Doubles>& warp, std::size_t i, const 
 
 void warp_views_in_lanes(const float* alpha, const ViewOutput& views, std::size_t count, const WarpOutput& out) {
     for (std::size_t i = 0; i < count; i += kLanes) {
-        const Neighbours from(i);
+        const Contiguous from(i);
         const WarpPair warps = warps_in_lanes(hn::LoadU(Floats(), alpha + i), hn::LoadU(Floats(), views.log_cosine + i),
                                               from.pair(views.fitted_sine), from.pair(views.fitted_cosine));
         store_warp(warps.low, i, out);

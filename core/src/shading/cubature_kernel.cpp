@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shading/cubature_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Highway's vocabulary, and what is compiled once per instruction set, come after it.
+// Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -152,7 +152,7 @@ void choose_rules(const float* widths, const Arrays& lights, const ViewArrays& v
     std::size_t i = 0;
     for (; i + kLanes <= rules.size(); i += kLanes) {
         const Views view(view_of.data() + i, kLanes);
-        const auto rule = rule_of(widths, lights, views, Neighbours(i), view, view.load(tolerances));
+        const auto rule = rule_of(widths, lights, views, Contiguous(i), view, view.load(tolerances));
         hn::StoreU(hn::U8FromU32(rule), d8, rules.data() + i);
     }
     if (const std::size_t rest = rules.size() - i; rest > 0) {
@@ -161,7 +161,7 @@ void choose_rules(const float* widths, const Arrays& lights, const ViewArrays& v
             last[lane] = static_cast<std::uint32_t>(i + std::min(lane, rest - 1));
         }
         const Views view(view_of.data() + i, rest);
-        const auto rule = rule_of(widths, lights, views, Scattered(last.data(), kLanes), view, view.load(tolerances));
+        const auto rule = rule_of(widths, lights, views, Gather(last.data(), kLanes), view, view.load(tolerances));
         store_some(d8, hn::U8FromU32(rule), rest, rules.data() + i);
     }
 }
@@ -170,9 +170,9 @@ template <class Arrays>
 void choose_any_rules(const float* widths, const Arrays& lights, const ViewArrays& views, const float* tolerances,
                       std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
     if (views.shared) {
-        choose_rules<Same>(widths, lights, views, tolerances, view_of, rules);
+        choose_rules<Broadcast>(widths, lights, views, tolerances, view_of, rules);
     } else {
-        choose_rules<Scattered>(widths, lights, views, tolerances, view_of, rules);
+        choose_rules<Gather>(widths, lights, views, tolerances, view_of, rules);
     }
 }
 
@@ -278,7 +278,7 @@ void integrate(const Lobe& lobe, const float* widths, const CircleArrays& circle
     for (std::size_t i = 0; i < values.size(); i += kLanes) {
         const std::size_t count = std::min(kLanes, values.size() - i);
         const SeenCircle s =
-            seen(circles, views, widths, Scattered(circle_of.data() + i, count), Views(view_of.data() + i, count));
+            seen(circles, views, widths, Gather(circle_of.data() + i, count), Views(view_of.data() + i, count));
         store_some(d, cap_rule.integral(lobe, s), count, values.data() + i);
     }
 }
@@ -288,9 +288,9 @@ void integrate_caps_in_lanes(const LobeShape& shape, const float* widths, const 
                              std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     with_lobe_lanes(shape, [&](const auto& lobe) {
         if (views.shared) {
-            integrate<Same>(lobe, widths, circles, circle_of, views, view_of, rule, values);
+            integrate<Broadcast>(lobe, widths, circles, circle_of, views, view_of, rule, values);
         } else {
-            integrate<Scattered>(lobe, widths, circles, circle_of, views, view_of, rule, values);
+            integrate<Gather>(lobe, widths, circles, circle_of, views, view_of, rule, values);
         }
     });
 }

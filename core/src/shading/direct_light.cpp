@@ -94,7 +94,7 @@ void DirectLight::shade(const ShadingPoints& points, std::span<const std::uint32
     for (std::size_t i = 0; i < lights.size(); ++i) {
         if (allowed_error_ > 0 && material.auto_order() && allowed_for != strengths_[i]) {
             allowed_for = strengths_[i];
-            views_.allow(allowed_error_, strengths_[i]);
+            views_.allow_error(allowed_error_, strengths_[i]);
         }
         integrate(points, some, *lights[i], i, report);
     }

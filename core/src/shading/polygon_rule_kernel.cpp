@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shading/polygon_rule_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Highway's vocabulary, and what is compiled once per instruction set, come after it.
+// Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -105,7 +105,7 @@ class PolygonGroup {
     }
 
     std::size_t triangle_count() const { return corner_count_ - 2; }
-    V<Floats> solid_angle() const { return hn::Abs(Neighbours(0).load(solid_angle_.data())); }
+    V<Floats> solid_angle() const { return hn::Abs(Contiguous(0).load(solid_angle_.data())); }
 
     /// Of a triangle. view_x, view_z: ω_o. The triangle is projected as visit_triangle() does.
     HWY_INLINE void place(std::size_t triangle, std::span<const TrianglePoint> rule, const DoublePair& view_x,
@@ -259,9 +259,9 @@ void integrate_polygons_in_lanes(const LobeShape& shape, const float* widths, st
                                  std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     with_lobe_lanes(shape, [&](const auto& lobe) {
         if (views.shared) {
-            integrate<Same>(lobe, widths, vertices, vertex_count, polygon_of, views, view_of, rule, values);
+            integrate<Broadcast>(lobe, widths, vertices, vertex_count, polygon_of, views, view_of, rule, values);
         } else {
-            integrate<Scattered>(lobe, widths, vertices, vertex_count, polygon_of, views, view_of, rule, values);
+            integrate<Gather>(lobe, widths, vertices, vertex_count, polygon_of, views, view_of, rule, values);
         }
     });
 }

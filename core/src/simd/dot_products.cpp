@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/dot_products.cpp"
 #include <hwy/foreach_target.h>
-// Highway's vocabulary, and what is compiled once per instruction set, come after it.
+// Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include <array>
@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 namespace {
 
-/// Lanes along the row. Several sums, because each addition waits for the one before it.
+/// Vectors run along the row. Several sums are kept, because an addition waits for the one before it.
 template <class T>
 HWY_INLINE T dot_product(const T* a, const T* b, std::size_t size) {
     constexpr std::size_t kSums = 4;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Products of rows with rows.
+// Dot products of rows with rows.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// From arrays into lanes: neighbours, by index, or one value for all. Included once per instruction set.
+// Loads from arrays into lanes: from consecutive places, by index, or one value for all. Included once per instruction
+// set.
 #if defined(SHLIGHT_KERNELS_GATHER_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_GATHER_INL_H_
 #undef SHLIGHT_KERNELS_GATHER_INL_H_
@@ -20,7 +21,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
-/// As many floats as there are lanes for double.
+/// Half a vector of floats: as many as Doubles has lanes.
 using HalfFloats = hn::Rebind<float, Doubles>;
 
 /// Stores the first `count` lanes.
@@ -35,7 +36,7 @@ HWY_INLINE void store_some(D d, V<D> value, std::size_t count, Scalar<D>* out) {
     std::copy_n(buffer.begin(), count, out);
 }
 
-/// As many doubles as there are lanes for float.
+/// Two vectors of doubles: as many as Floats has lanes.
 struct DoublePair {
     V<Doubles> low, high;
 };
@@ -49,10 +50,10 @@ HWY_INLINE V<Floats> rounded_sum(const DoublePair& a, const DoublePair& b) {
     return rounded({hn::Add(a.low, b.low), hn::Add(a.high, b.high)});
 }
 
-/// Those from an index on.
-class Neighbours {
+/// Loads consecutive values from an index on.
+class Contiguous {
   public:
-    explicit Neighbours(std::size_t first) : first_(first) {}
+    explicit Contiguous(std::size_t first) : first_(first) {}
     DoublePair pair(const double* values) const {
         const Doubles d;
         return {hn::LoadU(d, values + first_), hn::LoadU(d, values + first_ + kLaneCount<Doubles>)};
@@ -63,10 +64,10 @@ class Neighbours {
     std::size_t first_;
 };
 
-/// Those that a list of indices names; beyond its end the last one again.
-class Scattered {
+/// Loads the values that a list of indices names. Lanes beyond the list's end repeat its last value.
+class Gather {
   public:
-    Scattered(const std::uint32_t* list, std::size_t count) {
+    Gather(const std::uint32_t* list, std::size_t count) {
         const hn::RebindToSigned<Floats> di;
         const hn::RebindToUnsigned<Floats> du;
         if (count >= kLaneCount<Floats>) {
@@ -91,10 +92,10 @@ class Scattered {
     V<hn::RebindToSigned<Floats>> index_;
 };
 
-/// The first, in all lanes; to be used where a list of indices can only name that one.
-class Same {
+/// Loads the first value into all lanes, for lists whose indices are all 0.
+class Broadcast {
   public:
-    Same(const std::uint32_t*, std::size_t) {}
+    Broadcast(const std::uint32_t*, std::size_t) {}
     DoublePair pair(const double* values) const {
         const auto value = hn::Set(Doubles(), *values);
         return {value, value};
@@ -103,8 +104,7 @@ class Same {
     V<Floats> load(const float* values) const { return hn::Set(Floats(), *values); }
 };
 
-/// Directions' sums ω_i + ω_o: near the mirror direction x and y are small differences, which the caller forms with
-/// care.
+/// ω_i + ω_o. Near the mirror direction x and y are small differences, whose digits the caller must keep.
 struct HalfSum {
     V<Floats> x, y, z;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Vocabulary of the batch kernels: one lane for each shading point. Included once per instruction set.
+// Types and functions that all batch kernels use; a lane holds one shading point. Included once per instruction set.
 #if defined(SHLIGHT_KERNELS_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_LANES_INL_H_
 #undef SHLIGHT_KERNELS_LANES_INL_H_
@@ -39,14 +39,14 @@ HWY_INLINE V<D> all(D d, double value) {
     return hn::Set(d, static_cast<Scalar<D>>(value));
 }
 
-/// √max(0, x): what rounding made negative is zero.
+/// √max(0, x), for numbers that only rounding can make negative.
 template <class D>
 HWY_INLINE V<D> root(D d, V<D> x) {
     return hn::Sqrt(hn::Max(hn::Zero(d), x));
 }
 
-/// atan t - t over t³ as a polynomial in t², for t² ≤ tan²(π/8); largest error of the arctangent relative to t: 2.7e-9
-/// and 5.5e-18 (Chebyshev interpolation).
+/// (atan t - t) / t³ as a polynomial in t² for t² ≤ tan²(π/8), by Chebyshev interpolation. Error of the arctangent
+/// relative to t: 2.7e-9 in float, 5.5e-18 in double.
 template <class D>
 HWY_INLINE V<D> arctangent_rest(D d, V<D> square) {
     if constexpr (std::is_same_v<Scalar<D>, float>) {
@@ -70,9 +70,8 @@ HWY_INLINE V<D> arctangent_rest(D d, V<D> square) {
     }
 }
 
-/// The angle of the point (x, y), -π … π, as std::atan2 but for signed zeros; 0 for (0, 0).
-///
-/// One division: in the octant 0 ≤ y ≤ x the quotient is y/x below π/8, otherwise (y-x)/(y+x), an eighth turn on.
+/// The angle of the point (x, y) in -π … π, as std::atan2 except for signed zeros; 0 for (0, 0). There is one division:
+/// in the octant 0 ≤ y ≤ x the tangent is y/x below π/8, and (y-x)/(y+x), an eighth of a turn further, above.
 template <class D>
 HWY_INLINE V<D> arctangent(D d, V<D> y, V<D> x) {
     constexpr double kPi = std::numbers::pi;

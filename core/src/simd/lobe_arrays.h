@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// One lobe at many views, as the batch kernels read it: what all lights at a view share.
+// One lobe at many views, in the arrays that batch kernels read. All lights at a view share them.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,10 @@ namespace shlight {
 /// ω_o = (x, 0, z) for each view.
 struct ViewArrays {
     const double *x, *z;
-    bool shared;  ///< there is one
+    bool shared;  ///< whether all lights have the same view
 };
 
-/// A warp for each view: what Warp holds, one array for each member.
+/// The members of Warp for many views, one array for each member.
 struct WarpArrays {
     const double *sin_tilt, *cos_tilt;
     const double *speed, *one_minus_speed, *gamma;

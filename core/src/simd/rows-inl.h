@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Between lanes (a vector holds one number of many lights) and rows (an array holds all numbers of one light):
-// transposes in registers, in squares of 128 bits. Included once per instruction set.
+// Transposes between lanes (a vector holds one number of many lights) and rows (an array holds all numbers of one
+// light), in registers, by squares of 128 bits. Included once per instruction set.
 #if defined(SHLIGHT_KERNELS_ROWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_ROWS_INL_H_
 #undef SHLIGHT_KERNELS_ROWS_INL_H_
@@ -26,11 +26,11 @@ namespace shlight::HWY_NAMESPACE {
 template <class D>
 inline constexpr std::size_t kSquare = 16 / sizeof(Scalar<D>);
 
-/// Where each lane's row begins. Lanes beyond the last light repeat it: they write the same numbers to the same place.
+/// Start of each lane's row. Lanes beyond the last light repeat it and write the same numbers to the same place.
 template <class T>
 using RowPointers = std::array<T*, kLaneCount<Lanes<T>>>;
 
-/// v[j]: column j of all lanes → row j of each block's lanes. Block b of the result's v[j] is lane b · kSquare + j.
+/// In: v[j] is column j of all lanes. Out: v[j] holds row j of each 128-bit block; block b is lane b · kSquare + j.
 template <class D>
 HWY_INLINE void transpose_squares(D d, std::array<V<D>, kSquare<D>>& v) {
     if constexpr (kSquare<D> == 4) {
@@ -68,7 +68,7 @@ HWY_INLINE V<D> spread_blocks(D d, const T* first, std::size_t step) {
     }
 }
 
-/// Columns `column` … `column + kSquare - 1` of all lanes' rows. Reads whole squares: rows must be readable that far.
+/// Columns `column` … `column + kSquare - 1` of all lanes' rows, which must be readable up to a whole square.
 template <class D, class T>
 HWY_INLINE std::array<V<D>, kSquare<D>> load_columns(D d, const T* const* rows, std::size_t column) {
     std::array<V<D>, kSquare<D>> v;
@@ -79,11 +79,11 @@ HWY_INLINE std::array<V<D>, kSquare<D>> load_columns(D d, const T* const* rows, 
     return v;
 }
 
-/// Collects the columns of a matrix as lanes and writes them to rows, a whole cache line of each row at a time.
+/// Collects the columns of a matrix as lanes and writes them to rows in whole cache lines.
 template <class T>
 class RowWriter {
   public:
-    /// Lines are streamed only if all rows begin at one.
+    /// Output::streamed takes effect only if every row begins on a cache line.
     RowWriter(const RowPointers<T>& rows, std::size_t order, Output output)
         : rows_(rows), streamed_(output == Output::streamed), rows_collide_(order * order * sizeof(T) % kPage == 0) {
         for (const T* row : rows) {
@@ -91,8 +91,8 @@ class RowWriter {
         }
     }
 
-    /// Where the next columns are to be put before anything else is asked for, column after column of kLaneCount values
-    /// each. At most 4 kMaxOrder of them, two bands.
+    /// Buffer for the next columns, kLaneCount values each, to be filled before any other call. columns: at most 4
+    /// kMaxOrder, which is two bands.
     T* take(std::size_t columns) {
         if (waiting_ + columns > kColumns) {
             write_lines();
@@ -101,7 +101,7 @@ class RowWriter {
         return column(waiting_ - columns);
     }
 
-    /// Writes what waits.
+    /// Writes the columns that are still in the buffer.
     void finish() {
         write_lines();
         for (std::size_t c = 0; c < waiting_; ++c) {
@@ -114,23 +114,23 @@ class RowWriter {
 
   private:
     using D = Lanes<T>;
-    using Neighbours = std::array<T*, kSquare<D>>;
+    using RowGroup = std::array<T*, kSquare<D>>;
     static constexpr std::size_t kLine = 64 / sizeof(T);
     static constexpr std::size_t kPage = 4096;
     static constexpr std::size_t kParts = kLine / kLaneCount<D>;             // vectors in a line
-    static constexpr std::size_t kLinesAtOnce = 16 / (kParts * kSquare<D>);  // what registers hold
+    static constexpr std::size_t kLinesAtOnce = 16 / (kParts * kSquare<D>);  // as many as fit into registers
     static constexpr std::size_t kColumns = 4 * kMaxOrder + kLine;           // rows of order 16, or two bands
 
     T* column(std::size_t c) { return buffer_.data() + c * kLaneCount<D>; }
 
-    /// Writes whole lines, and moves the rest to the front.
+    /// Writes all complete cache lines, and moves the remaining columns to the front.
     HWY_NOINLINE void write_lines() {
         const std::size_t lines = waiting_ / kLine;
         for (std::size_t lane = 0; lane < kLaneCount<D>; lane += kSquare<D>) {
             if (streamed_ && rows_collide_) {
                 stage_lines(lane, lines);
             } else {
-                Neighbours rows;
+                RowGroup rows;
                 for (std::size_t j = 0; j < rows.size(); ++j) {
                     rows[j] = rows_[lane + j] + column_;
                 }
@@ -143,14 +143,13 @@ class RowWriter {
         waiting_ -= done;
     }
 
-    /// The lines of one row after the other: lines of several rows in turn, at the same place in their pages, take
-    /// three times as long to stream. The first row is streamed at once; the others meanwhile go into a copy in the
-    /// first cache.
+    /// Streams the lines of one row after another: lines of several rows in turn, at the same offset in their pages,
+    /// take three times as long. The first row is streamed at once; the others are first copied into the L1 cache.
     void stage_lines(std::size_t lane, std::size_t lines) {
         const D d;
         constexpr std::size_t kPitch = kColumns + kLine;
         alignas(64) std::array<T, (kSquare<D> - 1) * kPitch> staged;
-        Neighbours rows;
+        RowGroup rows;
         rows[0] = rows_[lane] + column_;
         for (std::size_t j = 1; j < rows.size(); ++j) {
             rows[j] = staged.data() + (j - 1) * kPitch;
@@ -164,8 +163,8 @@ class RowWriter {
         }
     }
 
-    /// streamed: how many of the rows, from the first, are written around the caches.
-    void transpose_lines(std::size_t lane, std::size_t lines, const Neighbours& rows, std::size_t streamed) {
+    /// streamed: number of rows, from the first on, that are written around the caches.
+    void transpose_lines(std::size_t lane, std::size_t lines, const RowGroup& rows, std::size_t streamed) {
         std::size_t line = 0;
         for (; line + kLinesAtOnce <= lines; line += kLinesAtOnce) {
             transpose_neighbours<kLinesAtOnce>(lane, line * kLine, rows, streamed);
@@ -175,10 +174,10 @@ class RowWriter {
         }
     }
 
-    /// kLines lines from column `first` on, of as many neighbouring rows as a block has lanes: rows further apart
-    /// collide at more orders, every fourth one of order 16.
+    /// Writes kLines cache lines from column `first` on, of as many adjacent rows as a 128-bit block has lanes. Rows
+    /// further apart would collide in the cache at more orders: every fourth row of order 16 does.
     template <std::size_t kLines>
-    HWY_INLINE void transpose_neighbours(std::size_t lane, std::size_t first, const Neighbours& rows,
+    HWY_INLINE void transpose_neighbours(std::size_t lane, std::size_t first, const RowGroup& rows,
                                          std::size_t streamed) {
         const D d;
         constexpr std::size_t kLanes = kLaneCount<D>;

@@ -11,7 +11,7 @@
 namespace shlight {
 namespace {
 
-/// As Highway's bits, best first: the better an instruction set, the lower its bit.
+/// Highway's bits of the instruction sets that can run here, best first: a better set has a lower bit.
 std::vector<std::int64_t> supported() {
     static const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
     if (targets.empty()) {
@@ -20,7 +20,7 @@ std::vector<std::int64_t> supported() {
     return targets;
 }
 
-/// Highway remembers the set of permitted targets; the best of them is what runs.
+/// Highway stores the set of permitted targets and runs the best of them.
 std::int64_t& forced() {
     static std::int64_t target = supported().front();
     return target;
@@ -32,7 +32,7 @@ void use(std::int64_t target) {
     forced() = target;
 }
 
-/// The bit of the target that is called `name`, which came as `argument`.
+/// The bit of the target with this name. argument: where the name came from, for the error message.
 std::int64_t target_of_name(const std::string& argument, const std::string& name) {
     std::string known;
     for (const std::int64_t target : supported()) {

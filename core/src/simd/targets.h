@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Which instruction set the batch kernels use. Each kernel is compiled for several, and the best that the machine has
-// is chosen when the first one runs.
+// The instruction set of the batch kernels. Each kernel is compiled for several sets, and the best one that the machine
+// has is chosen when the first kernel runs.
 #pragma once
 
 #include <cstdint>
@@ -10,22 +10,23 @@
 
 namespace shlight {
 
-/// Names of the instruction sets that were compiled and that this machine has, best first: Highway's names, such as
-/// "AVX3" (AVX-512), "AVX2", "SSE4" or "NEON". All give the same results within rounding.
+/// Names of the compiled instruction sets that this machine has, best first. The names are Highway's, such as "AVX3"
+/// (AVX-512), "AVX2", "SSE4" or "NEON". Results differ by rounding only.
 std::vector<std::string> kernel_targets();
 
-/// The one in use: the best, unless another was forced.
+/// Name of the instruction set in use: the best one, unless another was forced.
 std::string kernel_target();
 
 /// Uses one of kernel_targets() from now on, in all threads; for tests and measurements, while no kernel runs.
-/// Throws std::invalid_argument naming `target` if this is none of them.
+/// Throws std::invalid_argument naming `target` if it is none of kernel_targets().
 void force_kernel_target(const std::string& target);
 
-/// Uses the one that the environment variable SHLIGHT_KERNEL_TARGET names, or else the best. Throws
-/// std::invalid_argument naming the variable if that is none of them, std::runtime_error if this machine has none.
+/// Uses the set that the environment variable SHLIGHT_KERNEL_TARGET names, or the best one. Throws
+/// std::invalid_argument naming the variable if its value is none of kernel_targets(), std::runtime_error if that list
+/// is empty.
 void choose_kernel_target();
 
-/// Forces a target as long as it lives.
+/// Forces a target during its lifetime.
 class ForcedKernelTarget {
   public:
     explicit ForcedKernelTarget(const std::string& target);
