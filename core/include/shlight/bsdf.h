@@ -13,10 +13,10 @@
 
 namespace shlight {
 
-/// A weight that depends on the view angle alone, tabulated as the fits are.
+/// A weight that depends only on the view angle, tabulated at the view angles of the fits.
 class ViewWeight {
   public:
-    /// Throws std::invalid_argument unless there are as many nodes as the fits have, each in 0 … 1.
+    /// Throws std::invalid_argument unless there are kViewNodes nodes, all in 0 … 1.
     explicit ViewWeight(std::vector<float> nodes);
     float operator()(float cos_theta_o) const;
     const std::vector<float>& nodes() const { return nodes_; }
@@ -25,14 +25,14 @@ class ViewWeight {
     std::vector<float> nodes_;
 };
 
-/// color · weight(θ_o) · shape.
+/// One lobe of a material: f·cos = color · weight(θ_o) · shape.
 struct Lobe {
     LobeShape shape;
     std::shared_ptr<const WarpedFit> fit;  ///< null for a mirror
     Rgb color;
     std::shared_ptr<const ViewWeight> weight;  ///< null: 1
-    /// Not 0: the width varies from hit to hit, and is the same for lobes of a material with the same number. The
-    /// shape's own is then that of no hit, and there is no fit.
+    /// Not 0: the width varies from hit to hit, equally for all lobes of a material with the same number. The shape's
+    /// width is then unused, and there is no fit.
     std::uint32_t varying_width = 0;
 
     Rgb scale(float cos_theta_o) const { return weight ? color * (*weight)(cos_theta_o) : color; }
@@ -40,31 +40,31 @@ struct Lobe {
     double albedo(double cos_theta_o) const;
 };
 
-/// No float that is computed of a colour and a lobe leaves its range.
+/// Largest component of a colour; products of a colour and a lobe then stay within a float's range.
 inline constexpr float kLargestColor = 1e10F;
 
-/// A lobe narrower than this, some 1e-5 rad wide, is narrower than any pixel or light; where roughness varies, none is
-/// narrower.
+/// Roughness below which a lobe is a mirror. Such a lobe would be narrower than 1e-5 rad, less than any pixel or light.
+/// Varying roughness is at least this.
 inline constexpr float kLeastRoughness = 0.003F;
 
 class Bsdf {
   public:
     Bsdf() = default;  ///< black
 
-    /// color · weight · shape. Throws std::invalid_argument for a colour outside [0, kLargestColor].
+    /// One lobe. Throws std::invalid_argument for a colour outside [0, kLargestColor].
     static Bsdf lobe(const LobeShape& shape, const Rgb& color, std::shared_ptr<const ViewWeight> weight = nullptr);
     /// Throws std::invalid_argument for an albedo outside [0, kLargestColor].
     static Bsdf lambert(const Rgb& albedo);
-    /// GGX, height-correlated Smith, F = f0 + (1 - f0) s with s = (1 - cosθ_d)⁵, or with ior > 1 the exact dielectric
-    /// curve remapped to 0 … 1. Above an ior of 3.73 that curve dips under its value head-on; s is 0 there, as in
-    /// Cycles. alpha = roughness²; below kLeastRoughness it is a perfect mirror.
+    /// GGX with height-correlated Smith masking and F = f0 + (1 - f0) s; s = (1 - cosθ_d)⁵, or with ior > 1 the exact
+    /// dielectric curve remapped to 0 … 1. Above an ior of 3.73 that curve falls below its value at normal incidence; s
+    /// is 0 there, as in Cycles. alpha = roughness²; below kLeastRoughness the lobe is a perfect mirror.
     /// Throws for roughness outside [0, 1], f0 outside [0, kLargestColor], or an ior that is not finite and above 1.
     static Bsdf ggx(float roughness, const Rgb& f0, double ior = 0);
     /// top + base · (1 - max over RGB of top's directional albedo).
     static Bsdf layer(const Bsdf& top, const Bsdf& base);
 
     Bsdf operator+(const Bsdf& other) const;
-    /// Throws for a factor, and for one that makes a colour, outside [0, kLargestColor].
+    /// Multiplies all colours. Throws if the factor or a product is outside [0, kLargestColor].
     Bsdf scaled(const Rgb& factor) const;
 
     const std::vector<Lobe>& lobes() const { return lobes_; }

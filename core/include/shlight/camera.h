@@ -14,16 +14,16 @@
 
 namespace shlight {
 
-/// The rectangle that the image shows: on the plane z = -1 of the camera frame, in its units for an orthographic
-/// camera, or as shares of a panorama, whose whole is 0 … 1. Lens shift, sensor fit, pixel aspect and render borders
-/// all come down to it.
+/// The rectangle that the image shows: on the plane z = -1 of the camera frame; for an orthographic camera in units of
+/// its frame; for a panorama as shares 0 … 1 of the whole. It expresses lens shift, sensor fit, pixel aspect and render
+/// borders.
 struct Window {
     double left, right, bottom, top;
 };
 
 enum class Projection { perspective, orthographic };
 
-/// Distances along the view axis, of a panorama along the ray, between which surfaces are seen.
+/// Range of distances [m] in which surfaces are visible, along the view axis or along the ray of a panorama.
 struct ClipRange {
     double start = 0;
     double end = std::numeric_limits<double>::infinity();
@@ -41,18 +41,18 @@ class Camera {
     Camera(const glm::dmat4& to_world, const Panorama& panorama, const Window& window = {0, 1, 0, 1},
            const ClipRange& clip = {}, const Aperture& aperture = {});
 
-    /// What an image of this size shows.
+    /// The window of an image of this size.
     Window window(int width, int height) const;
     /// Whether rays through different points of the aperture differ.
     bool has_depth_of_field() const { return aperture_.size > 0; }
-    /// The ray through a point of the window, and through the point of the aperture that one of the unit square is
-    /// moved to, none: its middle; its direction is a unit vector. Empty outside a panorama's image.
+    /// The ray through a point of the window and a point of the aperture, given as a point of the unit square (default:
+    /// the aperture's middle). The direction is a unit vector. The ray is empty outside a panorama's image.
     Ray ray(double x, double y, const std::optional<glm::dvec2>& square = {}) const;
-    /// Along the view axis, from the camera's place to a point; of a panorama the distance.
+    /// Distance of a point from the camera along the view axis; for a panorama the distance itself.
     double depth(const Vec3d& point) const;
-    /// From the camera's place to a point; of an orthographic camera |depth|.
+    /// Distance of a point from the camera; for an orthographic camera |depth|.
     double distance(const Vec3d& point) const;
-    /// A world direction in the camera's frame, whose axes count as if they had length 1.
+    /// A world direction in the camera frame, ignoring the lengths of that frame's axes.
     Vec3d turned_to_frame(const Vec3d& direction) const;
 
   private:
@@ -60,10 +60,10 @@ class Camera {
     Ray from_lens(const Vec3d& origin, const Vec3d& per_depth) const;
 
     glm::dmat4 to_world_;
-    std::optional<Window> window_;  // none: from the field of view
+    std::optional<Window> window_;  // none: the field of view determines it
     double half_width_ = 0;
     Projection projection_ = Projection::perspective;
-    std::optional<Panorama> panorama_;  // in place of a projection
+    std::optional<Panorama> panorama_;  // replaces the projection
     ClipRange clip_;
     Aperture aperture_;
 };

@@ -2,9 +2,9 @@
 //
 // Disks and ellipses seen from the shading point, clipped by the horizon z ≥ 0.
 //
-// Seen from a point an ellipse is a cone of the second degree. In the parameter that makes its outline an elliptic
-// function, Stokes' integral along it converges exponentially however the ellipse lies; what is so small or thin that
-// the outline would cancel is swept by lines. docs/theory.md, 5, derives both.
+// Seen from a point an ellipse is a cone of the second degree. With an elliptic function as the parameter of its
+// boundary, Stokes' integral along the boundary converges exponentially for every position. Ellipses that are so small
+// or thin that the boundary integral cancels are integrated along lines. docs/theory.md, 5, derives both.
 #pragma once
 
 #include <span>
@@ -14,8 +14,7 @@
 namespace shlight {
 
 /// The points centre + a u + b v with a² + b² ≤ 1, in the shading frame. u and v are any two conjugate half axes:
-/// linearly independent, at right angles or not, in either order: the region counts, as with polygons, not its
-/// orientation.
+/// linearly independent, not necessarily perpendicular, in either order, as the orientation does not matter.
 template <class T>
 struct Ellipse {
     Vec3<T> center, half_axis_u, half_axis_v;
@@ -23,7 +22,7 @@ struct Ellipse {
 
 /// Coefficients of one disk, order² values. A disk seen edge-on has zero coefficients.
 /// clip: keep only what lies above the horizon.
-/// Precondition, not checked: as the batch function checks.
+/// Precondition, not checked: the arguments that the batch function accepts.
 template <class T>
 void disk_coefficients(const Ellipse<T>& disk, int order, bool clip, T* coefficients);
 

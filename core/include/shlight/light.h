@@ -15,14 +15,14 @@
 
 namespace shlight {
 
-/// What all lights have beside their shape and radiance.
+/// Properties of all lights other than shape and strength.
 struct LightTraits {
     EmissionProfile profile = EvenProfile{};
-    bool casts_shadows = true;    ///< false: it lights what it cannot see too
+    bool casts_shadows = true;    ///< false: nothing blocks it
     bool lights_diffuse = true;   ///< false: diffuse lobes do not reflect it
-    bool lights_glossy = true;    ///< likewise, glossy ones
-    bool seen_by_camera = false;  ///< it adds its radiance to what camera rays that meet it bring, and hides nothing
-    std::uint32_t group = 0;      ///< that its light is kept apart in where a render is asked for it; 0: none
+    bool lights_glossy = true;    ///< false: glossy lobes do not reflect it
+    bool seen_by_camera = false;  ///< camera rays that meet it gain its radiance; it hides nothing
+    std::uint32_t group = 0;      ///< light group, whose light a render can output separately; 0: none
 };
 
 /// A sphere, or a disk that always faces the shading point: caps of half angle asin(R/d) and atan(R/d).
@@ -34,63 +34,63 @@ struct SphereLight {
     LightTraits traits = {};
 };
 
-/// A planar polygon. One-sided ones shine to the side that sees the vertices counter-clockwise.
+/// A planar polygon. One-sided ones shine to the side from which the vertices run counter-clockwise.
 struct PolygonLight {
     std::vector<Vec3d> vertices;
     std::vector<Triangle> triangles;  ///< triangulation, wound as the vertices are
-    Vec3d normal;                     ///< unit, towards the side that sees the vertices counter-clockwise
+    Vec3d normal;                     ///< unit, towards that side
     Rgb radiance;
     bool two_sided;
     Vec3d center;    ///< mean of the vertices
-    double radius;   ///< largest distance of a vertex from it
-    double error;    ///< bound of the distance between this plane and a mesh face that float rays meet in its place
+    double radius;   ///< largest distance of a vertex from the centre
+    double error;    ///< bound of the distance between this plane and the mesh face that rays in float meet
     bool rectangle;  ///< four vertices and right angles
     LightTraits traits = {};
 };
 
-/// A disk or an ellipse: center + a half_axis_u + b half_axis_v, a² + b² ≤ 1, of any two conjugate half axes. One-sided
-/// ones shine to the side of half_axis_u × half_axis_v.
+/// A disk or an ellipse: center + a half_axis_u + b half_axis_v, a² + b² ≤ 1, with any two conjugate half axes.
+/// One-sided ones shine to the side of half_axis_u × half_axis_v.
 struct DiskLight {
     Vec3d center, half_axis_u, half_axis_v;
     Vec3d normal;  ///< unit, towards half_axis_u × half_axis_v
     Rgb radiance;
     bool two_sided;
-    double radius;  ///< half of the long axis
-    double error;   ///< as PolygonLight's
+    double radius;  ///< long half axis
+    double error;   ///< see PolygonLight
     LightTraits traits = {};
 };
 
 /// A cap of directions: a disk infinitely far away.
 struct SunLight {
-    Vec3d direction;    ///< unit, towards its middle
+    Vec3d direction;    ///< unit, towards its centre
     double half_angle;  ///< [rad], 0 < half_angle ≤ π/2
     Rgb radiance;
     LightTraits traits = {};
 };
 
-/// A sphere light that has shrunk to a point.
+/// A sphere light in the limit of radius 0.
 struct PointSource {
     Vec3d position;
     Rgb intensity;  ///< [W sr⁻¹]
     LightTraits traits = {};
 };
 
-/// A sun that has shrunk to a point.
+/// A sun in the limit of angle 0.
 struct ParallelSource {
     Vec3d direction;  ///< unit, towards it
-    Rgb irradiance;   ///< [W m⁻²] on a surface at right angles to it
+    Rgb irradiance;   ///< [W m⁻²] on a perpendicular surface
     LightTraits traits = {};
 };
 
 struct EmitterLevels;
 class FaceRadiance;
 
-/// The emissive faces of a mesh, where they are many: to both sides.
+/// The emissive faces of a mesh with many of them; both sides shine.
 struct MeshLight {
     std::shared_ptr<const EmitterLevels> shape;
-    Rgb radiance;                               ///< the mean by area
-    std::shared_ptr<const FaceRadiance> faces;  ///< null: all shine alike
-    // Which of the faces that rays meet are the light's.
+    Rgb radiance;                               ///< mean over the area
+    std::shared_ptr<const FaceRadiance> faces;  ///< null: all have the same radiance
+    // holds() finds the light's faces among those that rays meet.
     std::uint32_t instance;  ///< RayHit::instance
     std::shared_ptr<const SceneMesh> mesh;
     LightTraits traits = {};
@@ -103,13 +103,13 @@ struct MeshLight {
 using Light = std::variant<SphereLight, PolygonLight, DiskLight, MeshLight, SunLight, PointSource, ParallelSource>;
 
 const LightTraits& traits_of(const Light& light);
-/// Radiance, or of sources without extent: intensity or irradiance.
+/// Radiance, or for sources without extent intensity or irradiance.
 const Rgb& strength_of(const Light& light);
-/// Whether it is a source without extent.
+/// Whether the light has no extent.
 bool is_delta(const Light& light);
 
 /// Throws std::invalid_argument naming the argument: a number outside docs/conventions.md's range, a radius ≤ 0.
-/// Radiance may be negative: such a light takes light away.
+/// Radiance may be negative: such a light removes light.
 SphereLight make_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk,
                               const LightTraits& traits = {});
 
@@ -128,16 +128,16 @@ DiskLight make_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const V
 /// Throws std::invalid_argument naming the argument: a number outside docs/conventions.md's range.
 PointSource make_point_source(const Vec3d& position, const Rgb& intensity, const LightTraits& traits = {});
 
-/// A SphereLight, or for radius 0 a PointSource, that shines into a cone. intensity [W sr⁻¹]: along the cone's axis,
-/// from afar; of a sphere, radiance times π radius². traits.profile is replaced. Throws std::invalid_argument naming
-/// the argument: a number outside docs/conventions.md's range, a radius < 0.
+/// A SphereLight, or for radius 0 a PointSource, that shines into a cone. intensity [W sr⁻¹]: on the cone's axis, from
+/// afar; for a sphere it is radiance · π radius². traits.profile is replaced. Throws std::invalid_argument naming the
+/// argument: a number outside docs/conventions.md's range, a radius < 0.
 Light make_spot_light(const Vec3d& position, const SpotProfile& profile, const Rgb& intensity, double radius,
                       bool facing_disk, LightTraits traits = {});
 
-/// A SunLight, or for an angle of less than a millionth, whose width nothing can show, a ParallelSource.
-/// direction: the way the light travels, of any length > 0. angle: the sun's diameter [rad], 0 … π. irradiance [W m⁻²]:
-/// on a surface at right angles to the direction. tangent: of the radiance irradiance / (π tan²(angle/2) cos³α), see
-/// TangentProfile, in place of irradiance / (π sin²(angle/2)); traits.profile is then replaced.
+/// A SunLight, or for an angle below 1e-6, which is invisible, a ParallelSource.
+/// direction: in which the light travels, of any length > 0. angle: the sun's diameter [rad], 0 … π. irradiance [W
+/// m⁻²]: on a perpendicular surface. tangent: radiance irradiance / (π tan²(angle/2) cos³α), see TangentProfile, in
+/// place of irradiance / (π sin²(angle/2)); traits.profile is then replaced.
 /// Throws std::invalid_argument naming the argument: a number outside docs/conventions.md's range, a direction of
 /// length 0, an angle outside 0 … π, or above 3 if tangent.
 Light make_sun_light(const Vec3d& direction, double angle, const Rgb& irradiance, bool tangent,

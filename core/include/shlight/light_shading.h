@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Materials lit by area lights, without shadows: Eq. 5 of Zhou & Wei 2020 in each lobe's warp, fused, with the cheapest
-// way to integrate each light chosen for it.
+// Materials lit by area lights, without shadows: Eq. 5 of Zhou & Wei 2020 in each lobe's warped frame, or a cheaper
+// integral where one meets the tolerance, chosen for each light.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +14,17 @@
 namespace shlight {
 
 struct ShadeSettings {
-    int order = 0;  ///< 1 … 64: harmonics of this order for every light; 0: whatever meets the tolerance
-    double tolerance =
-        kDefaultTolerance;  ///< of the radiance ÷ the material's albedo at the view, in each colour channel
+    int order = 0;  ///< 1 … 64: harmonics of this order for every light; 0: the cheapest method within the tolerance
+    double tolerance = kDefaultTolerance;  ///< error of radiance ÷ albedo at the view, in each colour channel
 };
 
-/// Shades batch after batch of lights of one material. Keeps its memory; one per thread.
+/// Shades batches of lights with one material. Memory is reused; one per thread.
 ///
-/// Views: cos_theta_o of each light, or one for all of them; ω_o = (sinθ_o, 0, cosθ_o). Lights that share a view are
-/// cheaper as neighbours.
-/// radiance: reflected towards ω_o, of lights of unit radiance. effort: empty, or per light the largest order or number
-/// of values of f·cos that a lobe took; 0 where the light is hidden or mirrored.
-/// T: float or double. Results depend on nothing but a light and its view.
+/// Views: cos_theta_o of each light, or one for all; ω_o = (sinθ_o, 0, cosθ_o). Lights with the same view are cheaper
+/// if they are adjacent.
+/// radiance: reflected towards ω_o, from lights of unit radiance. effort: empty, or for each light the largest order or
+/// number of values of f·cos that a lobe took; 0 where the light is hidden or mirrored.
+/// T: float or double. A result depends only on the light and its view.
 class LightShader {
   public:
     /// Throws std::invalid_argument naming the argument: an order outside 0 … 64, a tolerance ≤ 0 or not finite.
@@ -47,9 +46,9 @@ class LightShader {
     void polygons(std::span<const Vec3<T>> vertices, int vertex_count, std::span<const double> cos_theta_o,
                   std::span<Rgb> radiance, std::span<std::int32_t> effort = {});
 
-    /// Disks and ellipses as disk_coefficients takes them; throws as that does, too. A lobe reflects what it reflects
-    /// of a polygon within about 1e-4 of the disk's L_00, or tolerance if that is less (docs/theory.md, 5.5);
-    /// of harmonics of a given order, of 1e-4.
+    /// Disks and ellipses as in disk_coefficients, which also defines the exceptions. A polygon replaces the disk, to
+    /// within about 1e-4 of its L_00, or the tolerance if that is smaller (docs/theory.md, 5.5); harmonics of a given
+    /// order are within 1e-4.
     template <class T>
     void disks(std::span<const Vec3<T>> centers, std::span<const Vec3<T>> half_axes_u,
                std::span<const Vec3<T>> half_axes_v, std::span<const double> cos_theta_o, std::span<Rgb> radiance,
@@ -59,7 +58,7 @@ class LightShader {
     std::unique_ptr<class LightShaderWork> work_;
 };
 
-/// The same of one batch.
+/// One batch.
 void shade_spheres(std::span<const Vec3d> centers, std::span<const double> radii, const Bsdf& bsdf,
                    std::span<const double> cos_theta_o, const ShadeSettings& settings, std::span<Rgb> radiance,
                    std::span<std::int32_t> effort = {});

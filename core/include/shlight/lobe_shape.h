@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Scalar lobe shapes f·cos: a BRDF times the cosine at the light's side, isotropic, without colour.
+// Shapes of lobes: scalar, isotropic f·cos, a BRDF times the cosine at the light, without colour.
 //
-// A shape answers for itself through the members below, and through the functions that visit whichever it is; nobody
-// else asks which. f·cos and the density over directions are also known in lanes, see lobes/lobe_lanes-inl.h.
-// All is in the shading frame; wi, wo: unit vectors towards light and view.
+// A shape is a struct with the members below; the functions at the end visit the variant, and no other code depends on
+// the type of shape. lobes/lobe_lanes-inl.h has f·cos and density in lanes.
+// All vectors are in the shading frame; wi, wo: unit vectors towards light and view.
 #pragma once
 
 #include <compare>
@@ -31,15 +31,15 @@ struct LambertShape {
     auto operator<=>(const LambertShape&) const = default;
 };
 
-/// Diffuse lobes that are not Lambert's, without parameters.
+/// Rough diffuse lobes.
 enum class Diffuse {
-    /// cosθ_i (1 + t), with t = (ω_i·ω_o - cosθ_i cosθ_o), over max(cosθ_i, cosθ_o) where it is positive: what
-    /// roughness adds in the improved Oren–Nayar model of Fujii (mimosa-pudica.net/improved-oren-nayar.html).
+    /// cosθ_i (1 + t), with t = ω_i·ω_o - cosθ_i cosθ_o, divided by max(cosθ_i, cosθ_o) where positive: the roughness
+    /// term of Fujii's improved Oren–Nayar model (mimosa-pudica.net/improved-oren-nayar.html).
     oren_nayar,
-    /// cosθ_i (π/2 - 2/3 - G(cosθ_i)): what that model's first bounce loses, which further bounces give back.
+    /// cosθ_i (π/2 - 2/3 - G(cosθ_i)): the energy that this model's first bounce loses and further bounces return.
     oren_nayar_loss,
-    /// Lambert's lobe of a bump, with ω_o the smooth normal: times the share of it that the smooth surface does not
-    /// hide (Estevez, Lecocq & Stein 2019, "A Microfacet-Based Shadowing Function to Solve the Bump Terminator
+    /// Lambert's lobe of a bumped normal, with ω_o the smooth normal, times the share that the smooth surface does not
+    /// shadow (Estevez, Lecocq & Stein 2019, "A Microfacet-Based Shadowing Function to Solve the Bump Terminator
     /// Problem").
     bumped
 };
@@ -60,28 +60,28 @@ struct DiffuseShape {
     auto operator<=>(const DiffuseShape&) const = default;
 };
 
-/// What multiplies D G / (4 cosθ_i cosθ_o).
+/// The Fresnel factor of D G / (4 cosθ_i cosθ_o).
 enum class Fresnel {
-    one,         ///< 1: the part that f0 scales, and metals without Fresnel
-    schlick,     ///< (1 - cosθ_d)⁵: the part that 1 - f0 scales
-    dielectric,  ///< max(0, F(ior, cosθ_d) - F(ior, 1)) / (1 - F(ior, 1)): the same from the exact Fresnel equations
-    dip          ///< cosθ_d (1 - cosθ_d)⁶: what metals' edge tint takes away (Kutz, Hašan & Edmondson 2021)
+    one,         ///< 1: the part with factor f0, and metals without Fresnel
+    schlick,     ///< (1 - cosθ_d)⁵: the part with factor 1 - f0
+    dielectric,  ///< max(0, F(ior, cosθ_d) - F(ior, 1)) / (1 - F(ior, 1)): that part by the Fresnel equations
+    dip          ///< cosθ_d (1 - cosθ_d)⁶: reduction by metals' edge tint (Kutz, Hašan & Edmondson 2021)
 };
 
 /// GGX with height-correlated Smith masking (Heitz 2014), f·cos = F D G₂ / (4 cosθ_o).
 /// A colour f0 needs two shapes: f0 · {one} + (1 - f0) · ({schlick or dielectric}) · …, see Bsdf::ggx.
 struct GgxShape {
     double alpha;                    ///< roughness² in Blender's terms, 0 … 1; 0 is a perfect mirror
-    Fresnel fresnel = Fresnel::one;  ///< which factor is folded in
+    Fresnel fresnel = Fresnel::one;  ///< the factor included in f·cos
     double ior = 1.5;                ///< used by Fresnel::dielectric only
 
     static constexpr bool kGlossy = true;
     double width() const { return alpha; }
     double value(const Vec3d& wi, const Vec3d& wo) const;
     double albedo(double cos_theta_o) const;
-    /// Directions are spread as the microfacets that the viewer sees reflect: the normals' density is
-    /// G₁ ⟨ω_o·h⟩ D / cosθ_o (Heitz 2018, "Sampling the GGX distribution of visible normals"; by spherical caps,
-    /// Dupuy & Benyoub 2023). f·cos over the density is then F G₂/G₁, never large for any roughness and view.
+    /// Reflects ω_o at visible microfacets; normals have the density G₁ ⟨ω_o·h⟩ D / cosθ_o (Heitz 2018, "Sampling the
+    /// GGX distribution of visible normals"; by spherical caps, Dupuy & Benyoub 2023). f·cos ÷ density is F G₂/G₁,
+    /// which is bounded for all roughnesses and views.
     Vec3d sample(const Vec3d& wo, const glm::dvec2& point) const;
     double density(const Vec3d& wo, const Vec3d& wi) const;
     double largest_density(const Vec3d& wo) const;
@@ -93,34 +93,35 @@ struct GgxShape {
 
 using LobeShape = std::variant<LambertShape, DiffuseShape, GgxShape>;
 
-/// Half width of the peak about the mirror direction [rad]; 1 where there is none.
+/// Half width of the peak at the mirror direction [rad]; 1 for shapes without a peak.
 double lobe_width(const LobeShape& shape);
-/// The same shape of another width; of a shape that has only one, itself.
+/// The shape with another width; unchanged if it has only one.
 LobeShape with_width(const LobeShape& shape, double width);
-/// Whether there is a peak: the lobe is shaded in a warp, and lights may spare it ("visible to glossy rays").
+/// Whether the shape has a peak: it is then shaded in a warped frame, and lights may exclude it ("visible to glossy
+/// rays").
 bool is_glossy(const LobeShape& shape);
-/// All of its light comes from one direction, and f·cos is 0 everywhere else: the width is 0.
+/// Whether the width is 0: all light comes from one direction, and f·cos is 0 elsewhere.
 bool is_mirror(const LobeShape& shape);
-/// Where that is, for a view in the xz-plane.
+/// The mirror direction of a view in the xz-plane.
 inline Vec3d mirrored(const Vec3d& wo) {
     return {-wo.x, 0, wo.z};
 }
 
 /// f·cos; 0 where either direction lies below the horizon.
 double lobe_value(const LobeShape& shape, const Vec3d& wi, const Vec3d& wo);
-/// The same of many directions (x[i], y[i], z[i]); 0 for a mirror.
+/// f·cos for many directions (x[i], y[i], z[i]); 0 for a mirror.
 void lobe_values(const LobeShape& shape, const double* x, const double* y, const double* z, std::size_t count,
                  const Vec3d& wo, float* values);
-/// ∫ f·cos dω. By cubature for what is not known in closed form.
+/// ∫ f·cos dω, by cubature unless a closed form is known.
 double lobe_albedo(const LobeShape& shape, double cos_theta_o);
 
-/// A direction that the lobe reflects to ω_o, above the horizon and in the xz-plane: unit, may lie below the horizon,
-/// continuous in the point (0 … 1)² but for one line. Of a mirror the only one.
+/// Maps a point of (0 … 1)² to a unit direction ω_i that the lobe reflects towards ω_o; the map is continuous except at
+/// one line. ω_i may lie below the horizon. wo: above the horizon, in the xz-plane. A mirror has only one direction.
 Vec3d sample_lobe(const LobeShape& shape, const Vec3d& wo, const glm::dvec2& point);
-/// Per solid angle, 0 below the horizon; no density is greater than the largest. Precondition: no mirror.
+/// Density of sample_lobe() per solid angle, 0 below the horizon, and its maximum. Precondition: not a mirror.
 double lobe_density(const LobeShape& shape, const Vec3d& wo, const Vec3d& wi);
 double largest_lobe_density(const LobeShape& shape, const Vec3d& wo);
-/// The simplest shape of the same density: lobes for which it is the same can share their directions.
+/// The simplest shape with the same density; lobes for which it is equal can share their sampled directions.
 LobeShape sampled_shape(const LobeShape& shape);
 
 }  // namespace shlight

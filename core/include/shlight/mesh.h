@@ -21,7 +21,7 @@ struct MeshAttribute {
     std::vector<float> values;  ///< `components` for each vertex, or for each triangle, or for each triangle's corner
 };
 
-/// What passes tell of an object or a material.
+/// Numbers that AOVs output for an object or a material.
 struct Label {
     float index = 0;
     float name = 0, asset = 0;  ///< identities, see cryptomatte_id(); 0: none
@@ -31,29 +31,29 @@ struct Label {
 struct Material {
     Bsdf bsdf;
     Rgb emission{0};                              ///< radiance of both sides
-    std::shared_ptr<const SurfaceShader> shader;  ///< takes the place of both; null: they are constant
-    std::vector<std::uint32_t> attributes;        ///< as of MeshShader
-    std::uint32_t group = 0;                      ///< of what it emits, see LightTraits::group
-    std::vector<std::uint32_t> aovs;              ///< as of MeshShader
+    std::shared_ptr<const SurfaceShader> shader;  ///< replaces both; null: they are constant
+    std::vector<std::uint32_t> attributes;        ///< see MeshShader
+    std::uint32_t group = 0;                      ///< light group of its emission, see LightTraits::group
+    std::vector<std::uint32_t> aovs;              ///< see MeshShader
     Label label;
 };
 
-/// A material whose numbers vary.
+/// A shader program bound to the attributes of a mesh.
 struct MeshShader {
     std::shared_ptr<const SurfaceShader> shader;  ///< null: the material's Bsdf and emission
-    /// Which of the mesh's attributes the program's attribute of this index is; kNoAttribute: none.
+    /// For each attribute of the program its index among the mesh's attributes, or kNoAttribute.
     std::vector<std::uint32_t> attributes;
-    /// RenderPass::number of each of the program's AOVs.
+    /// RenderPass::number for each AOV of the program.
     std::vector<std::uint32_t> aovs;
 
     static constexpr std::uint32_t kNoAttribute = 0xFFFFFFFFU;
 };
 
-/// Triangles with what is known at their corners.
+/// Triangles with normals and attributes.
 struct MeshShape {
     std::vector<Vec3f> vertices;
     std::vector<Triangle> triangles;  ///< vertex indices
-    /// Smooth normals of any length in the mesh's frame: one per vertex, or three per triangle, or none (flat).
+    /// Shading normals of any length in the mesh's frame: one per vertex, three per triangle, or none (flat).
     std::vector<Vec3f> vertex_normals, corner_normals;
     std::vector<MeshAttribute> attributes;
     std::uint32_t uv = MeshShader::kNoAttribute;  ///< the attribute that is Pass::uv
@@ -64,15 +64,15 @@ struct MeshShape {
     }
 };
 
-/// What a shape is made of, and where it stands. Surfaces are two-sided: the normal is turned to the viewer.
+/// The materials and the instances of a shape. Surfaces are two-sided: normals are turned to the viewer.
 struct MeshUse {
     std::vector<Bsdf> bsdfs = {Bsdf()};    ///< one per material, or one for all
     std::vector<Rgb> emission = {Rgb(0)};  ///< radiance of both sides: one per material, or one for all
-    /// One per material, or none. Emission of theirs is seen by the camera; what lights the scene is `emission`.
+    /// One per material, or none. The camera sees the emission of shaders; lights are made from `emission`.
     std::vector<MeshShader> shaders;
     std::vector<glm::dmat4> transforms = {glm::dmat4(1)};  ///< object to world, one per instance
-    std::vector<std::vector<float>> object_values;         ///< one per instance, or none: see ShaderSource
-    std::uint32_t group = 0;                               ///< of what its faces emit, see LightTraits::group
+    std::vector<std::vector<float>> object_values;         ///< one list per instance, or none: see ShaderSource
+    std::uint32_t group = 0;                               ///< light group of its emission, see LightTraits::group
     std::vector<Label> object_labels;                      ///< one per instance, or none
     std::vector<Label> material_labels;                    ///< one per material, or none
 
@@ -93,7 +93,7 @@ struct MeshUse {
 
 struct Mesh : MeshShape, MeshUse {};
 
-/// A mesh of a scene; others of the scene, or of scenes before, may have the same shape.
+/// A mesh of a scene. Its shape may be shared with other meshes, also of earlier scenes.
 struct SceneMesh : MeshUse {
     std::shared_ptr<const MeshShape> shape;
 };
@@ -101,10 +101,10 @@ struct SceneMesh : MeshUse {
 /// Throws std::invalid_argument naming the member that is wrong: sizes that do not fit, an index out of range,
 /// a number outside docs/conventions.md's range.
 void check_shape(const MeshShape& shape);
-/// The same of a shape's use; a transform must be affine and invertible.
+/// check_shape() for the use of a shape; a transform must be affine and invertible.
 void check_use(const MeshShape& shape, const MeshUse& use);
 
-/// A bound of the coordinates that its instances have in the world.
+/// A bound of the world coordinates of all instances.
 double reach(const MeshShape& shape, const MeshUse& use);
 
 }  // namespace shlight

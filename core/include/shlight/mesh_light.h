@@ -11,7 +11,7 @@
 
 namespace shlight {
 
-/// An outline: three or four vertices, wound as the triangles are.
+/// The boundary of a face: three or four vertices with the winding of the triangles.
 using FaceOutline = std::vector<Vec3d>;
 
 /// Joins pairs of triangles that share an edge, lie in one plane and make a convex quadrilateral, so that a

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Pictures that show more than a plane can: a direction for each point of them, as Cycles' panoramic cameras have it.
-// u goes from 0 at the picture's left edge to 1 at its right one, v likewise from bottom to top. The camera frame looks
-// along -z, y is up, x to the right.
+// Panoramic projections of Cycles: a direction for each point of a picture. u is 0 at the picture's left edge and 1 at
+// its right edge; v likewise from bottom to top. The camera frame looks along -z, y is up, x to the right.
 #pragma once
 
 #include <array>
@@ -14,7 +13,7 @@
 
 namespace shlight {
 
-/// Longitude and latitude grow evenly, to the right and upwards; both are 0 ahead [rad].
+/// Longitude grows linearly to the right and latitude upwards; both are 0 ahead [rad].
 struct Equirectangular {
     double longitude_min = -std::numbers::pi;
     double longitude_max = std::numbers::pi;
@@ -22,7 +21,7 @@ struct Equirectangular {
     double latitude_max = std::numbers::pi / 2;
 };
 
-/// A cylinder about y of radius 1, from height v_min to v_max; longitude u [rad] as of Equirectangular.
+/// A cylinder of radius 1 about y, from height v_min to v_max; u is the longitude [rad], as in Equirectangular.
 struct CentralCylindrical {
     double u_min = -std::numbers::pi;
     double u_max = std::numbers::pi;
@@ -30,18 +29,18 @@ struct CentralCylindrical {
     double v_max = 1;
 };
 
-/// The angle to the axis grows evenly with the distance from the picture's middle, to fov / 2 at its edges.
+/// The angle to the axis is proportional to the distance from the picture's centre, and fov / 2 at its edges.
 struct FisheyeEquidistant {
     double fov = std::numbers::pi;  ///< [rad]
 };
 
-/// What a fisheye's picture is caught on [m].
+/// Size of a fisheye camera's sensor [m].
 struct Sensor {
     double width = 0.036;
     double height = 0.036;
 };
 
-/// r = 2 lens sin(θ / 2) at a distance r from the sensor's middle, θ ≤ fov / 2 the angle to the axis.
+/// r = 2 lens sin(θ / 2) at a distance r from the sensor's centre; θ ≤ fov / 2 is the angle to the axis.
 struct FisheyeEquisolid {
     double lens = 0.0105;           ///< focal length [m]
     double fov = std::numbers::pi;  ///< [rad]
@@ -55,10 +54,10 @@ struct FisheyeLensPolynomial {
     Sensor sensor = {};
 };
 
-/// What a ball ahead mirrors to a camera far away.
+/// The reflection in a mirror ball ahead, seen by a distant camera.
 struct MirrorBall {};
 
-/// The face of a cube; angles at its middle grow evenly.
+/// One face of a cube map whose coordinates are proportional to angles.
 struct EquiangularCubemapFace {};
 
 using Panorama = std::variant<Equirectangular, CentralCylindrical, FisheyeEquidistant, FisheyeEquisolid,
@@ -67,7 +66,7 @@ using Panorama = std::variant<Equirectangular, CentralCylindrical, FisheyeEquidi
 /// Unit vector; none outside the lens's image.
 std::optional<Vec3d> panorama_direction(const Panorama& panorama, double u, double v);
 
-/// Unit vectors across a direction of panorama_direction, in which Cycles' aperture lies.
+/// Unit vectors perpendicular to a direction of panorama_direction(), which span Cycles' aperture.
 struct PanoramaAxes {
     Vec3d x, y;
 };

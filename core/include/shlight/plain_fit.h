@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// A lobe as plain spherical harmonics, without a warp, for those who want coefficients: the least-squares fit of f·cos
-// over the *upper hemisphere*.
+// A lobe in spherical harmonics without a warp, for users who want coefficients (Eq. 3 of Zhou & Wei 2020): the
+// least-squares fit of f·cos over the *upper hemisphere*.
 //
-// Light coefficients are clipped at the horizon exactly, so below it the expansion may be anything; fitting only what
-// counts spares the ringing of a projection over the whole sphere. docs/theory.md, 7.1, derives the fit.
-// The view direction lies in the xz-plane, ω_o = (sinθ_o, 0, cosθ_o): only cosine terms (m ≥ 0) are non-zero.
+// Light coefficients are clipped at the horizon exactly, so the expansion may have any values below it, and the ringing
+// of a projection over the whole sphere is avoided. docs/theory.md, 7.1, derives the fit. The view direction is ω_o =
+// (sinθ_o, 0, cosθ_o): only cosine terms (m ≥ 0) are non-zero.
 #pragma once
 
 #include <memory>
@@ -32,12 +32,12 @@ class PlainFit {
   private:
     double residual_at(std::size_t node, int order) const;
 
-    // One row for each tabulated view; empty for Lambert, which is known in closed form.
-    std::vector<double> reduced_;  // NormalEquations::reduce of the moments
+    // One row for each tabulated view; empty for Lambert, which has a closed form.
+    std::vector<double> reduced_;  // results of NormalEquations::reduce()
     std::vector<double> norms_;
 };
 
-/// The fit of a shape, shared by everyone who asks for the same one; the last ones asked for are kept. Thread-safe.
+/// The fit of a shape, shared by all callers; the most recent ones are kept. Thread-safe.
 std::shared_ptr<const PlainFit> plain_fit(const LobeShape& shape);
 
 }  // namespace shlight

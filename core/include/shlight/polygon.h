@@ -2,8 +2,8 @@
 //
 // Planar polygons seen from the shading point, clipped by the horizon z ≥ 0.
 //
-// By Stokes' theorem with Gauss points along the edges; those so small or thin that the edges would cancel, by Gauss
-// cubature. docs/theory.md, 4, derives both and says where one hands over to the other.
+// Coefficients come from Stokes' theorem with Gauss points along the edges, or by Gauss cubature for polygons so small
+// or thin that the edges would cancel. docs/theory.md, 4, derives both and says which is used when.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@
 namespace shlight {
 
 /// Coefficients of one polygon, order² values.
-/// vertices: k ≥ 3, planar, finite, in the shading frame, in either winding: the region counts, not its orientation.
+/// vertices: k ≥ 3, planar, finite, in the shading frame, in either winding, as the orientation does not matter.
 /// A polygon without area, or seen edge-on, has zero coefficients.
 /// clip: keep only what lies above the horizon.
 template <class T>

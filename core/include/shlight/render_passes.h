@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What a render delivers beside the picture: what the camera sees as numbers, and parts of the light. Passes are those
-// that Blender's render engine Cycles has, by its names, units and values where the camera sees nothing.
+// Outputs of a render beside the picture: surface data and parts of the light. Names, units and background values are
+// those of Blender's render engine Cycles.
 #pragma once
 
 #include <cstddef>
@@ -13,28 +13,29 @@
 namespace shlight {
 
 enum class Pass : std::uint8_t {
-    // What the ray through a pixel's middle meets first that is opaque enough, see PassSettings::alpha_threshold:
+    // Data of the first surface on the ray through a pixel's middle that is opaque enough
+    // (PassSettings::alpha_threshold):
     depth,           ///< along the view axis [m]; 1e10 where nothing is
     position,        ///< in the world [m]; 0 where nothing is
     object_index,    ///< Label::index of the object
     material_index,  ///< likewise, of the material
-    // Means over the pixel filter, as the picture is; 0 where nothing is:
+    // Means over the pixel filter; 0 where nothing is:
     normal,              ///< unit vectors in the world, turned to the viewer
-    uv,                  ///< of the mesh's Mesh::uv; the third channel is 1 where there is one
+    uv,                  ///< attribute Mesh::uv; the third channel is 1 where the mesh has one
     mist,                ///< 0 … 1, 1 where nothing is; see MistRange
     emission,            ///< radiance of surfaces and lamps that the camera sees
-    environment,         ///< likewise, of the environment, also where it is hidden from the camera
-    diffuse_direct,      ///< what diffuse lobes reflect ÷ diffuse_color
+    environment,         ///< radiance of the environment, even if it is hidden from the camera
+    diffuse_direct,      ///< light reflected by diffuse lobes ÷ diffuse_color
     diffuse_color,       ///< albedo of diffuse lobes
-    glossy_direct,       ///< what glossy lobes reflect ÷ glossy_color
+    glossy_direct,       ///< light reflected by glossy lobes ÷ glossy_color
     glossy_color,        ///< albedo of glossy lobes
     denoising_normal,    ///< in the camera's frame, z forward, without mirror-like surfaces
-    denoising_albedo,    ///< of all that is not mirror-like, and radiance of what shines
+    denoising_albedo,    ///< albedo of all but mirror-like lobes, plus emission
     denoising_depth,     ///< along camera rays [m]
     aov_value,           ///< numbers of shader programs
     aov_color,           ///< RGBA
-    light_group,         ///< the part of the picture's RGB that lights of one group give
-    cryptomatte_object,  ///< levels × (identity, share), those of larger share first
+    light_group,         ///< the part of the picture's RGB from lights of one group
+    cryptomatte_object,  ///< levels × (identity, share), by decreasing share
     cryptomatte_material,
     cryptomatte_asset
 };
@@ -46,12 +47,12 @@ struct RenderPass {
     bool operator==(const RenderPass&) const = default;
 };
 
-/// MurmurHash3_x86_32 with the seed 0, by which Cryptomatte (github.com/Psyop/Cryptomatte) knows a name.
+/// MurmurHash3_x86_32 with seed 0, which identifies a name in Cryptomatte (github.com/Psyop/Cryptomatte).
 std::uint32_t cryptomatte_hash(std::string_view name);
-/// The same as the bits of a float that is finite and not 0.
+/// The hash as the bits of a float, adjusted to be finite and not 0.
 float cryptomatte_id(std::string_view name);
 
-/// How far the mist pass reaches: its distance from the camera, less start, ÷ depth, to the power of falloff.
+/// The mist pass: ((distance from the camera - start) ÷ depth)^falloff, clamped to 0 … 1.
 struct MistRange {
     double start = 5, depth = 25;  ///< [m]
     double falloff = 2;
@@ -59,13 +60,13 @@ struct MistRange {
 
 struct PassSettings {
     std::vector<RenderPass> passes;
-    double alpha_threshold = 0.5;  ///< a surface that lets more than 1 - this through is not the first; 0: it is
+    double alpha_threshold = 0.5;  ///< opacity below which a surface is not the first; 0: every surface is
     MistRange mist;
-    int cryptomatte_levels = 6;  ///< identities that a pixel has, rounded up to an even number
+    int cryptomatte_levels = 6;  ///< identities per pixel, rounded up to an even number
 };
 
-/// Where the passes of a pixel are among its floats. Those that others are divided by have a place of their own even if
-/// they are not asked for.
+/// The layout of the passes among the floats of a pixel. Passes that divide others have a place even if they are not
+/// requested.
 class PassLayout {
   public:
     PassLayout() = default;
@@ -79,11 +80,11 @@ class PassLayout {
     };
 
     bool empty() const { return places_.empty(); }
-    /// Floats of a pixel.
+    /// Number of floats of a pixel.
     std::size_t stride() const { return stride_; }
-    /// In the order of the settings, then what others need.
+    /// Requested passes in the order of the settings, then those that others need.
     std::span<const Place> places() const { return places_; }
-    /// Null: there is no such pass.
+    /// The place of a pass; null if there is none.
     const Place* find(const RenderPass& pass) const;
     const Place* find(Pass kind) const { return find({kind, 0}); }
 

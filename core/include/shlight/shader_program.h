@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// Shader programs: numbers that vary over a surface, as a list of float operations that run over many hits at once.
+// Shader programs: numbers that vary over a surface, computed by a list of float operations for many hits at once.
 //
-// A program is straight-line code over values. Each step reads values of earlier steps and makes one or more new ones;
-// vectors and colours are three values. A value may be known at three places: at the hit, and where the camera rays of
-// the neighbouring pixels, to the right and below, would meet the plane of the surface. Differences of these are what
-// textures are filtered by, and what a bump map takes for a slope. Only what a difference is taken of is found three
+// A program is straight-line code. Each step reads values of earlier steps and makes one or more values; vectors and
+// colours are three values. A value may be needed at three places: at the hit, and where the camera rays of the pixels
+// to the right and below would meet the plane of the surface. Their differences filter textures and give bump maps
+// their slope. Only values of which a difference is taken are computed three times.
 // times.
 #pragma once
 
@@ -20,10 +20,10 @@ namespace shlight {
 
 class ImageTexture;
 
-/// What a program can read at a hit. Vectors are in world coordinates and turned to the viewer where they are normals.
+/// The inputs of a program at a hit. Vectors are in world coordinates, and normals are turned to the viewer.
 enum class ShaderSource : std::uint8_t {
     position,          ///< 3 components
-    normal,            ///< 3: the smooth normal
+    normal,            ///< 3: the interpolated normal
     geometric_normal,  ///< 3
     towards_viewer,    ///< 3: unit
     attribute,  ///< 4: the mesh attribute that the material binds to `index` as RGBA, and the mean of RGB; black if
@@ -33,11 +33,11 @@ enum class ShaderSource : std::uint8_t {
     object_value,      ///< 1: number `index` of the instance; 0 if there is none
     barycentric,       ///< 2: u and v of RayHit
     backfacing,        ///< 1: 1 where the triangle's corners run clockwise, else 0
-    ray_length,        ///< 1: from where the ray begins, of a camera ray its near plane
+    ray_length,        ///< 1: length of the ray; camera rays start at the near plane
     transparent_depth  ///< 1: surfaces that the ray has passed through
 };
 inline constexpr int kShaderSources = 12;
-/// Component of an attribute: the mean of its RGB, and of one number that number.
+/// Component of an attribute that is the mean of its RGB, or the value itself if it has one component.
 inline constexpr std::uint32_t kAttributeMean = 4;
 
 struct ShaderInput {
@@ -47,21 +47,21 @@ struct ShaderInput {
     bool operator==(const ShaderInput&) const = default;
 };
 
-/// An operation on floats. Those that are undefined at some arguments say what they make of them.
+/// An operation on floats, defined for all arguments; division by 0, for example, gives 0.
 struct ShaderOperation {
     std::string_view name;
     std::size_t argument_count = 0, result_count = 0;
-    /// Whether the step's `parameter` numbers a table, or an image; otherwise it must be 0.
+    /// Whether the step's `parameter` is the index of a table or an image; otherwise it must be 0.
     enum class Parameter : std::uint8_t { none, table, image } parameter{};
 };
 
-/// All operations but constants and inputs, which have no arguments. A step refers to its operation by number.
+/// All operations except constants and inputs. A step refers to its operation by index.
 std::span<const ShaderOperation> shader_operations();
 
-/// Reads tables by linear interpolation between even steps of 0 … 1, clamped.
+/// A table, read by linear interpolation between even steps of coordinates 0 … 1, which are clamped.
 struct ShaderTable {
     std::vector<float> values;         ///< the first coordinate runs fastest
-    std::vector<std::uint32_t> sizes;  ///< of each of 1 … 3 coordinates, ≥ 1
+    std::vector<std::uint32_t> sizes;  ///< number of entries along each of 1 … 3 coordinates, ≥ 1
 };
 
 struct ShaderStep {
@@ -72,40 +72,40 @@ struct ShaderStep {
     std::vector<std::uint32_t> arguments;  ///< values of earlier steps
 };
 
-/// Where a program's inputs come from.
+/// Supplies the inputs of a program.
 class ShaderReader {
   public:
     ShaderReader() = default;
     ShaderReader(const ShaderReader&) = delete;
     ShaderReader& operator=(const ShaderReader&) = delete;
     virtual ~ShaderReader() = default;
-    /// Of lanes first … first + out.size() - 1. place: 0 at the hit, 1 at the neighbour to the right, 2 at that below.
+    /// Reads lanes first … first + out.size() - 1. place: 0 at the hit, 1 at the right neighbour, 2 at the lower one.
     virtual void read(const ShaderInput& input, int place, std::size_t first, std::span<float> out) const = 0;
 };
 
 /// Immutable; any number of threads may run it.
 class ShaderProgram {
   public:
-    /// results: values that evaluate() returns. Throws std::invalid_argument for steps that do not fit each other.
+    /// results: indices of the values that evaluate() returns. Throws std::invalid_argument for inconsistent steps.
     ShaderProgram(std::vector<ShaderStep> steps, std::vector<ShaderTable> tables,
                   std::vector<std::shared_ptr<const ImageTexture>> images, const std::vector<std::uint32_t>& results);
 
     std::size_t result_count() const { return results_.size(); }
-    /// How many operations a hit takes.
+    /// Number of operations per hit.
     std::size_t operation_count() const { return operations_; }
     /// Whether it takes differences between neighbours.
     bool takes_differences() const { return takes_differences_; }
 
-    /// Memory of evaluate(), kept from call to call.
+    /// Working memory of evaluate(), which callers reuse.
     using Registers = std::vector<float>;
-    /// results[r · count + lane]. neighbours: or else all differences are 0.
+    /// Writes results[r · count + lane]. neighbours: whether neighbours exist; otherwise all differences are 0.
     void evaluate(const ShaderReader& reader, std::size_t count, bool neighbours, Registers& registers,
                   std::span<float> results) const;
 
   private:
     struct Value {
         std::uint32_t slot = 0;
-        bool everywhere = false;  // at all three places
+        bool everywhere = false;  // computed at all three places
     };
 
     void check(const std::vector<std::uint32_t>& results);
@@ -117,7 +117,7 @@ class ShaderProgram {
     std::vector<ShaderStep> steps_;
     std::vector<ShaderTable> tables_;
     std::vector<std::shared_ptr<const ImageTexture>> images_;
-    std::vector<std::uint32_t> first_value_;  // of each step
+    std::vector<std::uint32_t> first_value_;  // index of each step's first value
     std::vector<Value> values_;
     std::vector<std::uint32_t> results_;
     std::size_t slots_ = 0, operations_ = 0;

@@ -14,8 +14,8 @@ namespace shlight {
 template <class T>
 void shade(std::span<const T> light, std::span<const T> bsdf, int order, std::span<T> radiance);
 
-/// The same for a lobe given by its cosine terms (cosine_count(order) values), against one light's order'²
-/// coefficients, order' ≥ order. A material with the mirror plane y = 0 meets only the light's cosine part.
+/// The same for a lobe given by its cosine terms (cosine_count(order) values) and one light of order'² coefficients,
+/// order' ≥ order. A lobe with the mirror plane y = 0 has no other terms.
 template <class T>
 T shade_cosine(const T* light, const T* cosine_terms, int order);
 

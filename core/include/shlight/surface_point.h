@@ -7,12 +7,12 @@
 
 namespace shlight {
 
-/// A surface where a ray has met it, turned to the side that the ray came from.
+/// A point where a ray meets a surface; normals are turned to the side of the ray's origin.
 struct SurfacePoint {
     Vec3d position;
     Vec3d geometric_normal;  ///< unit
     Vec3d shading_normal;    ///< unit, on the side of the geometric normal
-    /// Bound of the distance between this point and the surface that float rays meet here.
+    /// Bound of the distance between this point and the surface that rays in float meet here [m].
     double error;
     std::uint32_t material;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A material whose numbers vary: a program that finds, at each hit, what its lobes weigh and how wide they are.
+// A material with a program that computes, at each hit, the weights and widths of its lobes.
 #pragma once
 
 #include <cstdint>
@@ -13,18 +13,18 @@
 
 namespace shlight {
 
-/// Numbers of results of the program; of colours and vectors that of the first of three.
+/// A lobe whose numbers are results of the program, given by index; colours and vectors by the first of three.
 struct ShadedLobe {
     LobeShape shape;
-    std::uint32_t weight;                 ///< colour; what is not finite counts as 0
-    std::optional<std::uint32_t> alpha;   ///< takes the place of that of a GgxShape; clamped to 0 … 1
-    std::optional<std::uint32_t> normal;  ///< world vector of any length; none, or without a direction: the smooth one
-    bool several_bounces = false;         ///< the weight makes up for what microfacets lose to each other
+    std::uint32_t weight;                 ///< colour; NaN and infinity count as 0
+    std::optional<std::uint32_t> alpha;   ///< replaces GgxShape::alpha; clamped to 0 … 1
+    std::optional<std::uint32_t> normal;  ///< world vector of any length; none or 0: the interpolated normal
+    bool several_bounces = false;         ///< the weight compensates the energy lost between microfacets
 };
 
-/// A number or colour that a program finds for a pass of its own.
+/// A number or colour that a program computes for an AOV.
 struct ShadedAov {
-    std::uint32_t value;  ///< as of ShadedLobe
+    std::uint32_t value;  ///< see ShadedLobe
     bool is_color;
 };
 
@@ -32,15 +32,15 @@ struct SurfaceShader {
     ShaderProgram program;
     std::vector<ShadedLobe> lobes;
     std::optional<std::uint32_t> emission;      ///< radiance towards the viewer
-    std::optional<std::uint32_t> transparency;  ///< share of the light that goes on straight through; none: opaque
-    ShaderProgram shadow_program;               ///< the same for shadow rays, its three results
+    std::optional<std::uint32_t> transparency;  ///< share of light that passes straight through; none: opaque
+    ShaderProgram shadow_program;               ///< its three results are the transparency for shadow rays
     std::vector<ShadedAov> aovs;
 };
 
-/// As lobes of a Bsdf, of colour 1: what they weigh is found at each hit.
+/// The lobes of a Bsdf with colour 1; their weights are computed at each hit.
 std::vector<Lobe> lobes_of(const SurfaceShader& shader);
 
-/// Throws std::invalid_argument where a number is that of no result.
+/// Throws std::invalid_argument if an index is not that of a result.
 void check_surface_shader(const SurfaceShader& shader);
 
 }  // namespace shlight

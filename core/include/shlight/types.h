@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Vocabulary that every other header shares: vectors, colours, orders and coefficient indices.
+// Types that all other headers use: vectors, colours, orders and coefficient indices.
 //
 // Conventions (docs/conventions.md):
 //   * Shading frame: right-handed, the shading point is the origin, z is the surface normal.
@@ -24,14 +24,14 @@ using Vec3d = Vec3<double>;
 /// Linear colour or radiance [W m⁻² sr⁻¹], Rec. 709 primaries.
 using Rgb = glm::vec<3, float, glm::defaultp>;
 
-/// The type in which a light of precision T is prepared.
+/// The type in which lights of precision T are prepared.
 template <class T>
 using Wider = std::conditional_t<std::is_same_v<T, float>, double, long double>;
 
 /// The highest order: bands 0 … 63.
 inline constexpr int kMaxOrder = 64;
 
-/// The default of shade_*, render() and the Blender add-on.
+/// Default tolerance of shade_*, render() and the Blender add-on.
 inline constexpr double kDefaultTolerance = 1e-3;
 
 /// Number of coefficients of an order.
@@ -39,23 +39,23 @@ constexpr int coefficient_count(int order) {
     return order * order;
 }
 
-/// Where band l, degree m (-l ≤ m ≤ l) is stored.
+/// Index of band l, degree m (-l ≤ m ≤ l).
 constexpr int coefficient_index(int l, int m) {
     return l * l + l + m;
 }
 
-/// Number of cosine terms (m ≥ 0) of an order: all that a light or a lobe with the mirror plane y = 0 has.
+/// Number of cosine terms (m ≥ 0) of an order; a light or lobe with the mirror plane y = 0 has no others.
 constexpr int cosine_count(int order) {
     return order * (order + 1) / 2;
 }
 
-/// Where band l, degree m ≥ 0 is stored in a list of cosine terms.
+/// Index of band l, degree m ≥ 0 in a list of cosine terms.
 constexpr int cosine_index(int l, int m) {
     return l * (l + 1) / 2 + m;
 }
 
-/// How rows of coefficients reach memory. streamed: around the caches, which is faster where they, with what other
-/// calls write beside them, are larger than the caches.
+/// How rows of coefficients are written. streamed: bypasses the caches, which is faster if the output, with other data
+/// written at the same time, is larger than they are.
 enum class Output { cached, streamed };
 
 /// Throws std::invalid_argument naming `order` unless 1 ≤ order ≤ kMaxOrder.

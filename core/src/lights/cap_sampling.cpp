@@ -43,7 +43,7 @@ LightSample CapSampler::sample(const glm::dvec2& point) const {
     const double toward_up = std::cos(azimuth);
     double from = 0;  // range of 1 - cos of the angle to the axis
     double to = one_minus_cos_;
-    // The horizon crosses this meridian where tan(angle) = -height / (tilt · toward_up).
+    // The horizon crosses this meridian at the angle to the axis with tan(angle) = -height / (tilt · toward_up).
     const double slope = tilt_ * toward_up;
     if (cut_ && (axis_height_ >= 0) != (slope >= 0)) {
         const double length = std::sqrt(axis_height_ * axis_height_ + slope * slope);
@@ -62,7 +62,7 @@ double CapSampler::solid_angle() const {
 
 std::optional<double> CapSampler::meets(const Vec3d& direction) const {
     const double cosine = glm::dot(direction, axis_);
-    // By the sine: cosines of small caps are all nearly 1.
+    // Compared by the sine, because cosines of small caps are all nearly 1.
     if (cap_.kind != CapView::Kind::inside && !(cosine > 0 && glm::length(glm::cross(direction, axis_)) <= sine_)) {
         return std::nullopt;
     }

@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lights/delta_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Highway's vocabulary, and what is compiled once per instruction set, come after it.
+// Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include <limits>
@@ -17,12 +17,12 @@ namespace {
 
 static_assert(kDeltaLanes % kLaneCount<Floats> == 0 && kDeltaLanes % kLaneCount<Doubles> == 0);
 
-/// Of the vector that begins at i.
+/// Vectors from a point to sources, and their squared lengths.
 struct Way {
     V<Doubles> x, y, z, w, square;
 };
 
-/// In double: a source may be near, and both far from the world's origin.
+/// The vectors to sources i, i + 1, … In double, since a source may be near and both far from the world's origin.
 HWY_INLINE Way way_to(const DeltaArrays& deltas, std::size_t i, const Vec3d& position) {
     const Doubles d;
     Way way;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Many sources without extent, seen from one point.
+// Directions and irradiance of many sources without extent at one point.
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,18 @@
 
 namespace shlight {
 
-/// One lane each: the position (x, y, z) for w = 1, the unit direction to a source infinitely far away for w = 0. All
-/// four 0: none, so that a vector can be filled up.
+/// Sources, one lane for each: position (x, y, z) and w = 1, or the unit direction to an infinitely distant source and
+/// w = 0. Padding at the end has x = y = z = w = 0.
 struct DeltaArrays {
     const double *x, *y, *z, *w;
     std::size_t count;  ///< a multiple of kDeltaLanes
 };
 
-/// The lanes of any machine divide it.
+/// A multiple of every machine's number of lanes.
 inline constexpr std::size_t kDeltaLanes = 16;
 
-/// Unit directions to the sources in the shading frame, and the irradiance on a surface at right angles, of a source of
-/// strength 1. All 0 for one that is below the horizon or nearer than least_distance.
+/// Unit directions to the sources in the shading frame, and the irradiance on a perpendicular surface from a source of
+/// strength 1. All are 0 for a source below the horizon or nearer than least_distance.
 struct DeltaViewArrays {
     double *x, *y, *z, *irradiance;
 };

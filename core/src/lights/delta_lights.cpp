@@ -14,7 +14,7 @@ namespace shlight {
 
 namespace {
 
-/// [m]: a point source is not seen from nearer; squares of less would make what it gives leave floats.
+/// Least distance of a point source that shines on a point [m]; the irradiance from nearer ones overflows in float.
 constexpr double kNearest = 1e-12;
 
 }  // namespace
@@ -100,7 +100,7 @@ void DeltaLights::reflect(const DeltaRange& range, const DeltaViews& views, cons
                           float* values) const {
     const double cosine = cos_theta_o;
     const Vec3d view(std::sqrt(1 - cosine * cosine), 0, cosine);
-    // A mirror shows a source without extent nowhere, or in no pixel's share.
+    // lobe_values() gives 0 for a mirror: it shows a source without extent with probability 0.
     lobe_values(shape, views.x.data(), views.y.data(), views.z.data(), range.count, view, values);
     const float* lights = &(is_glossy(shape) ? lights_glossy_ : lights_diffuse_)[range.begin];
     for (std::size_t i = 0; i < range.count; ++i) {
@@ -109,7 +109,7 @@ void DeltaLights::reflect(const DeltaRange& range, const DeltaViews& views, cons
 }
 
 Ray DeltaLights::ray(std::size_t i, const Vec3d& origin) const {
-    // The way from the rounded origin.
+    // The vector starts at the rounded origin, so that the ray ends at the source.
     const Vec3f start(origin);
     const float end = w_[i] > 0 ? kRayEnd : std::numeric_limits<float>::infinity();
     return {start, 0.0F, Vec3f(way(i, Vec3d(start))), end};

@@ -10,14 +10,14 @@ namespace {
 
 using std::numbers::pi;
 
-/// Of the midpoint rule for the solid angle.
+/// Number of meridians in the midpoint rule for the solid angle.
 constexpr int kMeridians = 32;
 
 double square(double x) {
     return x * x;
 }
 
-/// 2 sin(α/2), of sin α and cos α.
+/// 2 sin(α/2) from sin α and cos α: the radius in Lambert's equal-area projection.
 double equal_area(double sine, double cosine) {
     return std::sqrt(2 / (1 + cosine)) * sine;
 }
@@ -57,14 +57,14 @@ EllipseSampler::Meridian EllipseSampler::meridian(const Turn& parameter) const {
     const double radius_square = along * along + across * across;
     const double over = 1 / std::sqrt(radius_square);
     Meridian line{(along * over) * cone.long_axis + (across * over) * cone.short_axis, 0, 0, 0};
-    // To the rim, whose half angle here has this squared cotangent.
+    // The meridian ends at the rim, whose half angle has this squared cotangent.
     const double cot_square = square(along * over) * cot_square_long_ + square(across * over) * cot_square_short_;
     const double sine_square = 1 / (1 + cot_square);
     line.to = sine_square / (1 + std::sqrt(cot_square * sine_square));
     const double height = cone.axis.z;
     const double slope = line.across.z;
     if (ellipse_.cut() && (height >= 0) != (slope >= 0)) {
-        // As CapSampler: the horizon crosses where tan(angle) = -height / slope.
+        // The horizon crosses where tan(angle) = -height / slope, as in CapSampler.
         const double length = std::sqrt(height * height + slope * slope);
         const double crossing = height * height / (length * (length + std::abs(slope)));
         (height >= 0 ? line.to : line.from) = std::min(line.to, crossing);
@@ -89,7 +89,7 @@ double EllipseSampler::solid_angle() const {
     if (ellipse_.empty()) {
         return 0;
     }
-    // Of a whole light each quarter is alike.
+    // The four quarters of an uncut light have the same solid angle.
     const bool whole = !ellipse_.cut();
     const int count = whole ? kMeridians / 4 : kMeridians;
     const double range = whole ? pi / 2 : 2 * widest_;

@@ -17,7 +17,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kEvenSpread = 1e-6;      // [rad] below π
-constexpr double kLeastVolume = 1e-12;    // of axes ÷ the product of their lengths
+constexpr double kLeastVolume = 1e-12;    // volume of three axes ÷ the product of their lengths
 constexpr double kSmallHalfAngle = 0.01;  // [rad]
 
 /// tan h - h, by its series where the difference would cancel.
@@ -29,9 +29,9 @@ double tangent_minus_angle(double h) {
     return std::tan(h) - h;
 }
 
-/// How much larger than in the world an angle can be in the frame of this map: its condition number κ. With singular
-/// values a ≥ b ≥ c, the product of the squared Frobenius norms of the map and its inverse is 3 + Σ (r + 1/r) over the
-/// squared ratios r of pairs, so that κ² + 1/κ² is at most that less 7.
+/// The map's condition number κ, the largest factor by which it enlarges angles. With singular values a ≥ b ≥ c, the
+/// product of the squared Frobenius norms of the map and its inverse is 3 + Σ (r + 1/r) over the squared ratios r of
+/// pairs, so that κ² + 1/κ² is at most this product minus 7.
 double condition(const glm::dmat3& map) {
     const auto square = [](const glm::dmat3& m) {
         return glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]);
@@ -57,7 +57,7 @@ double tangent_factor(double cosine) {
     return 1 / (cosine * cosine * cosine);
 }
 
-/// The angle to a spot's axis in its own frame.
+/// The angle to a spot's axis, in the frame of the spot.
 double spot_angle_of(const SpotProfile& spot, const Vec3d& direction) {
     return angle_between(spot.to_local * direction, {0, 0, 1});
 }
@@ -141,7 +141,7 @@ SpotProfile make_spot_profile(const glm::dmat3& axes, double spot_angle, double 
     if (!(blend >= 0 && blend <= 1)) {
         reject("blend must be 0 … 1");
     }
-    // It shines along -z.
+    // A lamp shines along its -z.
     glm::dmat3 to_local = glm::inverse(axes);
     for (int column = 0; column < 3; ++column) {
         to_local[column].z = -to_local[column].z;

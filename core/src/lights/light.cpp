@@ -15,12 +15,12 @@
 namespace shlight {
 namespace {
 
-constexpr double kPlanar = 1e-4;         // of the extent: far above the rounding of float vertices, far below a picture
+constexpr double kPlanar = 1e-4;         // ÷ extent: above rounding of float vertices, invisible
 constexpr double kNarrowestSun = 1e-6;   // [rad]
 constexpr double kWidestTangentSun = 3;  // [rad]
-constexpr double kRepeated = 1e-9;       // of the extent: two vertices are one
+constexpr double kRepeated = 1e-9;       // ÷ extent: distance within which vertices are merged
 constexpr double kRightAngle = 1e-6;     // largest cosine: above the rounding of float vertices
-constexpr double kSmallestArea = 1e-9;   // of the extent squared
+constexpr double kSmallestArea = 1e-9;   // ÷ squared extent
 
 double extent_of(const std::vector<Vec3d>& vertices) {
     double extent = 0;
@@ -130,7 +130,7 @@ struct Strength {
     }
 };
 
-/// Corner by corner at right angles, within rounding.
+/// Whether all four corners are right angles, within rounding.
 bool is_rectangle(const std::vector<Vec3d>& vertices) {
     if (vertices.size() != 4) {
         return false;
@@ -188,7 +188,7 @@ PolygonLight make_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance
     const Vec3d normal = glm::normalize(area);
     flatten(vertices, normal, extent);
     std::vector<Triangle> triangles = EarClipper(vertices, normal, extent).run();
-    // What ear clipping leaves out by mistake of a polygon that crosses itself shows in the area.
+    // The triangles' area differs from the polygon's if the polygon crosses itself in a way that ear clipping misses.
     double covered = 0;
     for (const Triangle& t : triangles) {
         covered += glm::length(glm::cross(vertices[t.y] - vertices[t.x], vertices[t.z] - vertices[t.x]));
@@ -235,7 +235,7 @@ DiskLight make_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const V
     if (!(glm::length(across) > kSmallestArea)) {
         reject("half_axis_v: the half axes are parallel");
     }
-    // The eigenvalues of the half axes' products are the squares of the principal half axes.
+    // The squares of the principal half axes are the eigenvalues of the half axes' Gram matrix.
     const double radius =
         std::sqrt((u * u + v * v + std::hypot(u * u - v * v, 2 * glm::dot(half_axis_u, half_axis_v))) / 2);
     const double error = kRayRounding * (largest_component(center) + 2 * radius);

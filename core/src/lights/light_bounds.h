@@ -8,7 +8,7 @@
 
 namespace shlight {
 
-/// A box about a light; none about a mesh, whose faces are among the surfaces that may block it.
+/// A box around a light; none for a mesh, whose faces are among the surfaces that may block it.
 std::optional<LightBounds> bounds_of(const Light& light);
 
 }  // namespace shlight

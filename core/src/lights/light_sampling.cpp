@@ -6,7 +6,7 @@
 namespace shlight {
 namespace {
 
-/// Of a planar light.
+/// Normal of a polygon or disk light.
 const Vec3d& normal_of(const Light& light) {
     const auto* polygon = std::get_if<PolygonLight>(&light);
     return polygon != nullptr ? polygon->normal : std::get<DiskLight>(light).normal;

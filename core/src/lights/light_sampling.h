@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Directions to a light from a hit, spread over what of it lies above the horizon.
+// Directions from a hit to a light, distributed over the part of the light above the horizon.
 //
-// Samplers turn a point of the unit square into a direction and a weight: the mean of weight · g(direction) over evenly
-// spread points is the integral of g over the solid angle of the light above the horizon. They also meet a light with a
-// ray in a given direction.
+// Samplers map a point of the unit square to a direction and a weight: the mean of weight · g(direction) over evenly
+// spread points is the integral of g over the solid angle of the light above the horizon. They also intersect the light
+// with a ray in a given direction.
 #pragma once
 
 #include <optional>
@@ -21,11 +21,11 @@
 
 namespace shlight {
 
-/// Any of them. Precondition: the light is seen, and not a source without extent.
+/// The sampler of any light with extent. Precondition: SeenLight::look() returned true.
 class LightSampler {
     enum class Kind { cap, ellipse, polygon, mesh };
 
-    /// What `ask` returns of the sampler in use.
+    /// ask(sampler) for the sampler in use.
     template <class Ask>
     auto with(const Ask& ask) const {
         switch (kind_) {
@@ -43,12 +43,12 @@ class LightSampler {
 
   public:
     void reset(const SeenLight& seen);
-    /// As reset, but from a hit near the one before a mesh may be seen as it was there. The same light as before.
+    /// reset() for the same light from a nearby hit; a mesh may keep the contour found for the previous hit.
     void move(const SeenLight& seen);
     LightSample sample(const glm::dvec2& point) const {
         return with([&](const auto& sampler) { return sampler.sample(point); });
     }
-    /// As PolygonSampler's; not of a mesh.
+    /// See PolygonSampler::patch_count(); not for a mesh.
     std::size_t patch_count() const {
         return kind_ == Kind::polygon ? polygon_.patch_count() : kind_ == Kind::ellipse ? EllipseSampler::kPatches : 1;
     }

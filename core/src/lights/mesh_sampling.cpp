@@ -13,16 +13,17 @@
 namespace shlight {
 namespace {
 
-/// Of the radiance that the mesh gives a white surface: rays see the light itself, the outline only guides them.
+/// Tolerance of the outline, relative to the radiance reflected by a white surface. Rays hit the mesh itself, and the
+/// outline only guides them.
 constexpr double kTolerance = 2e-2;
-/// Of that, close to the mesh, where a level's error is much of the way there.
+/// Least share of the tolerance, used close to the mesh, where a level's error is comparable to the distance.
 constexpr double kLeastShare = 5e-3;
-/// Of what is shrunk away, at most.
+/// Largest part of its size by which an outline is shrunk.
 constexpr double kMostShrink = 0.1;
-/// Between hits that share an outline, ÷ distance to the mesh.
+/// Largest distance between hits that share an outline ÷ their distance to the mesh.
 constexpr double kNear = 0.05;
 
-/// Angle by which a plane figure is longest, of points about the origin.
+/// Angle of the direction in which plane points vary most about their middle.
 double longest_direction(std::span<const glm::dvec2> points, const glm::dvec2& middle) {
     double xx = 0;
     double xy = 0;
@@ -55,7 +56,7 @@ void MeshSampler::reset(const MeshLight& light, const ShadingFrame& frame) {
     const double part = std::clamp(distance / shape.radius - 1, kLeastShare, 1.0);
     kind_ = view_.look(shape, frame, part * kTolerance * shown_share(shape, distance));
     if (kind_ == MeshView::Kind::outline) {
-        // The mesh may lie inside its coarse outline, where rays would pass by.
+        // A coarse outline may be larger than the mesh, and rays to the difference would miss it.
         shrink_ = std::min(0.5 * view_.error() / shape.radius, kMostShrink);
         keep(frame);
         plane_ = view_.outline();
@@ -82,7 +83,7 @@ void MeshSampler::move(const MeshLight& light, const ShadingFrame& frame) {
     reset(light, frame);
 }
 
-/// The outline for hits near this one.
+/// Keeps the outline in world space, for hits near this one.
 void MeshSampler::keep(const ShadingFrame& frame) {
     edge_.clear();
     for (const FlatOutline::Vertex& v : view_.outline().line(0)) {
@@ -90,7 +91,7 @@ void MeshSampler::keep(const ShadingFrame& frame) {
     }
 }
 
-/// Shrinks the outline, and draws about it the rectangle that is as long as it.
+/// Shrinks the outline, and finds the enclosing rectangle along the outline's longest direction.
 void MeshSampler::enclose() {
     outline_.clear();
     for (const FlatOutline::Vertex& v : plane_.line(0)) {
@@ -145,7 +146,7 @@ int MeshSampler::layers(const Vec3d& direction) const {
     if (!(glm::dot(direction, plane_.axis()) > 0)) {
         return 0;
     }
-    // How often the outline winds about the direction: edges that cross the ray from it to the right.
+    // The winding number of the outline about the direction, counted over edges that cross the ray to its right.
     const glm::dvec2 p = plane_.shown(direction);
     int winding = 0;
     for (std::size_t i = 0; i < outline_.size(); ++i) {

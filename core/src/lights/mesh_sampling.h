@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Directions to a mesh that shines, as light_sampling.h describes samplers.
+// Directions to an emissive mesh; light_sampling.h says what samplers do.
 #pragma once
 
 #include <optional>
@@ -18,20 +18,20 @@
 
 namespace shlight {
 
-/// Directions to a mesh: of those to a rectangle about its outline, the ones that lie inside; others have no weight.
-/// How far its surface is in a direction is not known: rays tell.
+/// Samples the rectangle that encloses the mesh's outline; directions outside of the outline have weight 0. The
+/// distance to the surface is not known here: rays find it.
 class MeshSampler {
   public:
     void reset(const MeshLight& light, const ShadingFrame& frame);
-    /// As reset, with the outline of the last hit that was looked from if this one is close to that, as the light's
-    /// distance goes: what was its edge is hardly less so from here. The same light as before.
+    /// reset() for the same light, which keeps the outline if the hit moved little compared to the light's distance:
+    /// the mesh's contour then changes little.
     void move(const MeshLight& light, const ShadingFrame& frame);
     LightSample sample(const glm::dvec2& point) const;
-    /// Of what directions are drawn from.
+    /// Solid angle of the region from which directions are drawn.
     double solid_angle() const { return around_ ? around_->solid_angle() : rectangle_.solid_angle(); }
-    /// An infinite distance.
+    /// Infinity if the direction meets the mesh.
     std::optional<double> meets(const Vec3d& direction) const;
-    /// How many layers of the mesh lie in a direction, of those that its outline counts.
+    /// Number of layers of the mesh in a direction, as counted by its outline.
     int layers(const Vec3d& direction) const;
 
   private:
@@ -40,14 +40,14 @@ class MeshSampler {
 
     MeshView view_;
     MeshView::Kind kind_ = MeshView::Kind::hidden;
-    bool convex_ = false;               // whose coarse outlines may fold, but not its own
-    std::optional<CapSampler> around_;  // where there is no outline
+    bool convex_ = false;               // a fold of the outline is then an error of the coarse level
+    std::optional<CapSampler> around_;  // used if there is no outline
     Vec3d looked_from_{0};
-    double shrink_ = 0;                // of the outline, about its middle
-    std::vector<Vec3d> edge_;          // the outline in space
-    std::vector<Vec3d> local_;         // from the hit
-    FlatOutline plane_;                // the outline from the hit, before it was shrunk
-    std::vector<glm::dvec2> outline_;  // in that plane
+    double shrink_ = 0;                // share by which the outline is shrunk about its middle
+    std::vector<Vec3d> edge_;          // the outline in world space
+    std::vector<Vec3d> local_;         // the same in the shading frame
+    FlatOutline plane_;                // the outline in the plane of projection, before shrinking
+    std::vector<glm::dvec2> outline_;  // the shrunk outline in that plane
     PolygonSampler rectangle_;
 };
 

@@ -11,10 +11,10 @@
 namespace shlight {
 namespace {
 
-/// A triangle whose corners' distances differ by less than this factor is sampled by area, which costs no angles: the
-/// weight of its points varies by at most about the factor's cube.
+/// A triangle is sampled by area, which needs no angles, if its corners' distances differ by less than this factor: the
+/// weights of its points then vary by about the factor's cube.
 constexpr double kEvenDistances = 1.6;
-/// Below this solid angle the spherical triangle's angles lose digits.
+/// Solid angle below which a spherical triangle's angles lose digits.
 constexpr double kSmallest = 1e-5;
 
 /// The part of v at right angles to the unit vector `axis`, as a unit vector.
@@ -51,7 +51,7 @@ Vec3d SphericalTriangle::sample(const glm::dvec2& point) const {
     const double q = std::clamp(((v * t - u * s) * cos_alpha_ - v) / ((v * s + u * t) * sin_alpha_), -1.0, 1.0);
     const Vec3d corner = q * a_ + std::sqrt(1 - q * q) * towards_c_;
     const Vec3d chord = corner - b_;
-    const double drop = point.y * 0.5 * glm::dot(chord, chord);  // 1 - z of Arvo's text
+    const double drop = point.y * 0.5 * glm::dot(chord, chord);  // 1 - z in Arvo's paper
     return (1 - drop) * b_ + std::sqrt(std::max(0.0, drop * (2 - drop))) * orthogonal(corner, b_);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Directions to a polygon, as light_sampling.h describes samplers.
+// Directions to a polygon; light_sampling.h says what samplers do.
 #pragma once
 
 #include <array>
@@ -16,11 +16,12 @@
 
 namespace shlight {
 
-/// Points uniform in solid angle (Arvo 1995, "Stratified sampling of spherical triangles"): the first coordinate cuts
-/// off a triangle (a, b, c') of that share of the area, the second picks a point on the arc from b to c'.
+/// Samples a spherical triangle uniformly in solid angle (Arvo 1995, "Stratified sampling of spherical triangles"): the
+/// first coordinate cuts off a triangle (a, b, c') with that share of the area, the second picks a point on the arc
+/// from b to c'.
 class SphericalTriangle {
   public:
-    /// Corners of any length > 0.
+    /// Corners are vectors of any length > 0.
     SphericalTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c);
     Vec3d sample(const glm::dvec2& point) const;
 
@@ -38,31 +39,32 @@ inline bool line_meets(const Vec3d& direction, const Vec3d& a, const Vec3d& b, c
     return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
 }
 
-/// Uniform in solid angle over each triangle; triangles that are about equally far everywhere are sampled by area.
+/// Samples each triangle uniformly in solid angle, or by area if all its points are about equally far.
 class PolygonSampler {
   public:
-    /// A planar polygon in the shading frame, with its triangles and its unit normal. Keeps its memory.
+    /// A planar polygon in the shading frame, with its triangles and unit normal. Memory is reused.
     void reset(std::span<const Vec3d> corners, std::span<const Triangle> triangles, const Vec3d& normal);
     /// A planar quadrilateral in the shading frame.
     void reset(const std::array<Vec3d, 4>& corners);
     /// A convex planar polygon in the shading frame, with its unit normal.
     void reset(std::span<const Vec3d> corners, const Vec3d& normal);
-    /// Where nothing lies above the horizon, a sample of no weight and no distance.
+    /// If nothing lies above the horizon, a sample with weight and distance 0.
     LightSample sample(glm::dvec2 point) const;
-    /// Parts that are smooth images of the unit square, and a point of one of them; weights as if it were the light.
+    /// Number of patches, which are smooth images of the unit square; sample_patch() samples one as if it were the
+    /// light.
     std::size_t patch_count() const { return pieces_.size(); }
     LightSample sample_patch(std::size_t patch, const glm::dvec2& point) const;
-    /// Above the horizon.
+    /// Solid angle of the part above the horizon.
     double solid_angle() const { return total_; }
-    /// As CapSampler::meets.
+    /// See CapSampler::meets().
     std::optional<double> meets(const Vec3d& direction) const;
 
   private:
     struct Piece {
         Vec3d a, b, c;
         double solid_angle;
-        double area;                                 // where it is sampled by area
-        std::optional<SphericalTriangle> spherical;  // where it is not
+        double area;                                 // 0 unless it is sampled by area
+        std::optional<SphericalTriangle> spherical;  // set unless it is sampled by area
     };
     LightSample sample(const Piece& piece, const glm::dvec2& point) const;
     void start(const Vec3d& normal, const Vec3d& corner);
@@ -71,7 +73,7 @@ class PolygonSampler {
     std::vector<Piece> pieces_;
     double total_ = 0;
     Vec3d normal_{0};
-    double height_ = 0;  // of the plane over the hit, along the normal
+    double height_ = 0;  // distance of the plane from the hit, along the normal
 };
 
 }  // namespace shlight

@@ -10,18 +10,19 @@
 namespace shlight {
 namespace {
 
-/// Along each axis.
+/// Numbers of nodes along each axis, tried in turn.
 constexpr std::array kPoints = {4, 6, 9, 13, 19, 28, 42, kMaxGaussPoints};
-/// Steps that change nothing. Where a rim of the profile may lie across a patch it may fool two rules alike.
+/// Consecutive rules that must agree within the tolerance. Two rules may agree by chance if a rim of the profile
+/// crosses a patch.
 constexpr int kAgreements = 2;
 constexpr int kAgreementsOfRings = 1;
-/// A lobe takes nodes of its own where it may be denser than this many times the light's.
+/// A lobe gets additional nodes if its density may exceed the light's by this factor.
 constexpr double kNarrowLobe = 8;
-/// Nodes of its own are few for a lobe that lies on the light as a whole, and many where the light's outline cuts it.
-/// Lobes wider than this [rad] are cut often; pieces of rings that are fitted to the lobe then need fewer.
+/// A lobe narrower than this [rad] gets additional nodes even if rings exist: few are needed for a lobe within the
+/// light. Wider lobes are often cut by the light's edge, where pieces of rings fitted to the lobe need fewer nodes.
 constexpr double kLeastFocus = 0.01;
 
-/// Nodes of a rule at t² for each coordinate: samplers take roots, at the middle of a cap and in a corner of a
+/// Nodes of a rule in √ of each coordinate, since samplers take roots at the middle of a cap and in a corner of a
 /// triangle.
 template <class Visit>
 void for_nodes(const GaussRule& rule, const Visit& visit) {
@@ -64,7 +65,7 @@ void ProfileMean::add(const Reflection& reflection, const Vec3d& direction, doub
                       Sums& sums) const {
     double value = weight * lobe_value(*reflection.shape, direction, reflection.view);
     if (reflection.narrow) {
-        // The light's density is taken as even: one over its solid angle.
+        // Balance heuristic; the light's density is taken as one over its solid angle.
         value /= 1 + sampler_.solid_angle() * lobe_density(*reflection.shape, reflection.view, direction);
     }
     sums.even += value;
@@ -103,7 +104,7 @@ double ProfileMean::mean(const LobeShape& lobe, double cos_theta_o, double toler
     }
     const Reflection reflection{&lobe, view, narrow && !focused};
     double mean = range().low;
-    int agreements = -1;  // the first is compared with nothing
+    int agreements = -1;  // the first rule has nothing to be compared with
     for (const int points : kPoints) {
         const Sums sums = this->sums(reflection, points);
         const double before = mean;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Lights that do not shine evenly: the mean of their emission profile, as a lobe weighs the light.
+// The mean of a light's emission profile, weighted by a lobe's f·cos.
 //
-// Radiance of an even light, which is exact, times Σ w L f / Σ w f over nodes that fill the light, L the profile's
-// factor, f the lobe's f·cos. What the rule gets wrong of a narrow lobe it gets wrong in both sums. Nodes are those of
-// rings (profile_rings.h), with pieces fitted to a lobe that is narrower than the light, or else of a Gauss rule on the
-// unit square, mapped as shadow rays are; for such a lobe others are spread as it reflects, and both count by the
-// balance heuristic, as in shadow_rays.h. No chance is involved.
+// The radiance of a light with a profile is the exact radiance of the even light times Σ w L f / Σ w f over nodes on
+// the light, L being the profile's factor and f the lobe's f·cos. Errors of the rule for a narrow lobe are in both sums
+// and cancel. The nodes are those of rings (profile_rings.h), with pieces fitted to a lobe narrower than the light, or
+// else a Gauss rule on the unit square, mapped like shadow rays. In the latter case a narrow lobe adds nodes
+// distributed as it reflects, and the balance heuristic combines both, as in shadow_rays.h. The result is
+// deterministic.
 #pragma once
 
 #include "lights/light_sampling.h"
@@ -17,27 +18,27 @@
 
 namespace shlight {
 
-/// Keeps its memory from light to light; one per thread.
+/// Memory is reused from light to light; one per thread.
 class ProfileMean {
   public:
-    /// The light, which is seen and has an extent, and the hit. Both are kept by reference.
+    /// Precondition: the light has extent and is seen. The light and the frame are kept by reference.
     void reset(const Light& light, const ShadingFrame& frame);
 
     /// The bounds of what mean() returns.
     const ProfileRange& range() const { return seen_.profile().range(); }
-    /// Of the hit's lobe, by more and more nodes until half as many again along each axis change it by less than
-    /// the tolerance twice, or they are too many.
+    /// The mean for one lobe. The number of nodes along each axis grows by half until successive means agree within the
+    /// tolerance twice, or the largest rule is reached.
     double mean(const LobeShape& lobe, double cos_theta_o, double tolerance);
 
   private:
     struct Sums {
         double lit = 0, even = 0;
     };
-    /// A lobe at a view.
+    /// A lobe at one view.
     struct Reflection {
         const LobeShape* shape;
         Vec3d view;
-        bool narrow;  // has nodes of its own
+        bool narrow;  // whether it adds nodes
     };
     Sums sums(const Reflection& reflection, int points);
     /// visit(direction, weight, factor of the profile) at nodes that fill the light.

@@ -13,19 +13,19 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kRound = 1e-6;       // by which a map, or a disk, may fail to be round
-constexpr double kLeastSine = 1e-4;   // of a cap's half angle; of smaller ones cosines say too little
-constexpr double kSlack = 1e-9;       // of points that lie on a side
+constexpr double kRound = 1e-6;       // relative deviation of a map, or a disk, from a round one
+constexpr double kLeastSine = 1e-4;   // of a cap's half angle; the cosines of smaller ones have too few digits
+constexpr double kSlack = 1e-9;       // tolerance of points that lie on a side
 constexpr double kLeastPiece = 1e-9;  // [rad]
-constexpr int kScan = 32;             // steps around an ellipse in search of its turns
-constexpr double kFlat = 0.4;         // slope of an outline's distance that is nearly a turn
+constexpr int kScan = 32;             // steps around an ellipse in search of its extremal distances
+constexpr double kFlat = 0.4;         // slope of the distance that is nearly an extremum
 constexpr int kMostSteps = 60;
 constexpr double kRootError = 1e-12;
-/// Ends of pieces beside a focus, in its widths.
+/// Ends of pieces next to a focus, in units of its width.
 constexpr std::array kFocusEnds = {-6.0, -1.5, 1.5, 6.0};
 
-/// A root between two arguments at which the function has different signs: regula falsi that halves the value of an end
-/// which stays (Illinois).
+/// A root between two arguments with different signs of the function, by regula falsi with halved end values
+/// (Illinois).
 template <class Function>
 double root_between(double from, double to, const Function& f) {
     double at_from = f(from);
@@ -53,8 +53,8 @@ double angle_to_axis(const Vec3d& direction) {
     return std::atan2(std::hypot(direction.x, direction.y), direction.z);
 }
 
-/// Direction from the hit along which a lamp of the profile is seen head-on, in the world, and the angles at which the
-/// profile has kinks. No direction: its rings are no circles.
+/// World direction from a hit against which the lamp's axis points, and the angles to it at which the profile has
+/// kinks. No direction if lines of equal factor are not circles.
 struct Axis {
     std::optional<Vec3d> direction;
     std::array<double, 2> kinks{};
@@ -63,7 +63,7 @@ struct Axis {
 Axis axis_of(const EmissionProfile& profile) {
     if (const auto* spot = std::get_if<SpotProfile>(&profile); spot != nullptr && spot->stretch < 1 + kRound) {
         const double inner = spot->cosine + (1 - spot->cosine) * spot->blend;
-        // The third row of the map takes the height along the cone.
+        // The third row of the map gives the coordinate along the cone.
         const Vec3d along(spot->to_local[0].z, spot->to_local[1].z, spot->to_local[2].z);
         return {-glm::normalize(along), {std::acos(spot->cosine), std::acos(std::min(1.0, inner))}};
     }
@@ -91,7 +91,7 @@ void ProfileRings::Disk::find_turns() {
         turns = {far, far + pi};
         return;
     }
-    // Half of that of the squared distance, and its own.
+    // Half the first and second derivatives of the squared distance.
     const auto slope = [&](double t) { return glm::dot(at(t), v * std::cos(t) - u * std::sin(t)); };
     const auto bend = [&](double t) {
         const glm::dvec2 along = v * std::cos(t) - u * std::sin(t);
@@ -251,7 +251,7 @@ void ProfileRings::add_event(const Vec3d& direction) {
     }
 }
 
-/// The points of a side's circle that are nearest to the axis and farthest from it.
+/// Adds the points of a side's circle that are nearest to the axis and farthest from it.
 void ProfileRings::add_touching(const Side& side) {
     const Vec3d inwards = side.across > 0 ? Vec3d(-side.normal.z * side.normal.x, -side.normal.z * side.normal.y,
                                                   side.across * side.across) /
@@ -262,7 +262,7 @@ void ProfileRings::add_touching(const Side& side) {
     add_event(side.offset * side.normal - reach * inwards);
 }
 
-/// The two points in which the circles of two sides cross.
+/// Adds the two points in which the circles of two sides cross.
 void ProfileRings::add_crossings(const Side& a, const Side& b) {
     const Vec3d along = glm::cross(a.normal, b.normal);
     const double square = glm::dot(along, along);
@@ -284,7 +284,7 @@ void ProfileRings::add_disk_events() {
         const glm::dvec2 point = disk_->at(t);
         add_event(glm::normalize(Vec3d(point.x, point.y, disk_->height)));
     };
-    add(0);  // of a disk about the axis, whose outline has no turns
+    add(0);  // needed for a disk centred on the axis, which has no extremal distances
     for (const std::vector<double>* turns : {&disk_->turns, &disk_->near_turns}) {
         std::for_each(turns->begin(), turns->end(), add);
     }
@@ -354,7 +354,7 @@ void ProfileRings::add_cuts(double cosine, double sine) {
         if (std::abs(height) < swing) {
             const double half = std::acos(height / swing);
             for (const double cut : {side.azimuth + half, side.azimuth - half}) {
-                // Sides of a polygon go on beyond its corners.
+                // The circle of a polygon's side continues beyond its corners.
                 if (corner_sides_ == 0 || holds({sine * std::cos(cut), sine * std::sin(cut), cosine})) {
                     cuts_.push_back(cut);
                 }
@@ -401,7 +401,7 @@ void ProfileRings::find_arcs(double cosine, double sine) {
     };
     if (cuts_.empty()) {
         if (is_lit(0)) {
-            // In parts, over which a lobe differs less.
+            // In three parts, over each of which a lobe varies less.
             for (int i = 0; i < 3; ++i) {
                 arcs_.push_back({2 * pi / 3 * i, 2 * pi / 3});
             }

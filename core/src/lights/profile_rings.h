@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// A rule for integrals over a light that does not shine evenly, along the circles about the axis of its emission
-// profile: on each of them the profile is one number, and where it has a kink, at the rim of a cone or of a spread, or
-// where a circle begins to meet another side of the light, one piece of the rule ends and the next one begins. Between,
-// all is smooth, so that few nodes do.
+// A quadrature rule for a light with an emission profile, along circles about the profile's axis. The profile is
+// constant on each circle. A piece of the rule ends where the profile has a kink, at the rim of a cone or of a spread,
+// and where circles begin or cease to cross a side of the light. Between these angles all integrands are smooth, so
+// that few nodes suffice.
 #pragma once
 
 #include <cmath>
@@ -21,43 +21,44 @@
 
 namespace shlight {
 
-/// Keeps its memory from light to light; one per thread.
+/// Memory is reused from light to light; one per thread.
 class ProfileRings {
   public:
-    /// False, and nothing is to be asked, for lights that this rule does not know: whose axis is none in the world
-    /// (stretched cones), that are tiny, or neither caps, convex polygons nor disks.
-    /// Of a rectangle or disk under a spread, the part that shines on the hit.
+    /// False, and no other function may be called, for lights that this rule does not support: stretched cones, whose
+    /// axis is not an axis in world space, tiny lights, and lights that are neither caps, convex polygons nor disks. A
+    /// rectangle or disk with a spread is reduced to the part that shines on the hit.
     bool reset(const SeenLight& seen);
 
-    /// Pieces of the rule end on both sides of a unit direction of the shading frame at so many radians, and at
-    /// multiples that grow geometrically: for a lobe that is narrower than the light. Until the next reset().
+    /// Adds ends of pieces on both sides of a unit direction of the shading frame, at multiples of `width` [rad]: for a
+    /// lobe that is narrower than the light. Valid until the next reset().
     void focus(const Vec3d& direction, double width);
 
-    /// visit(direction, weight, factor): unit directions in the shading frame above the horizon; Σ weight ·
-    /// g(direction) is the integral of g over the light. factor: factor_of(direction), asked once for each circle.
-    /// `points` along each piece of a circle and across each piece between kinks.
+    /// visit(direction, weight, factor) with unit directions in the shading frame above the horizon; Σ weight ·
+    /// g(direction) is the integral of g over the light. factor: factor_of(direction), called once for each circle.
+    /// points: along each arc of a circle, and across each piece between kinks.
     template <class Factor, class Visit>
     void for_nodes(int points, const Factor& factor_of, const Visit& visit);
 
   private:
-    /// ω · normal ≥ offset, in the frame of the rings, whose z is their axis.
+    /// The half space ω · normal ≥ offset, in the frame of the rings, whose z is the profile's axis.
     struct Side {
         Vec3d normal;
         double offset;
-        double across, azimuth;  // of the normal: its distance from the axis, and where it points
+        double across, azimuth;  // of the normal: sine of its angle to the axis, and azimuth
     };
-    /// A disk in a plane at right angles to the axis.
+    /// A disk in a plane perpendicular to the axis.
     struct Disk {
-        double height;  // of its plane above the hit
+        double height;  // distance of the plane from the hit
         glm::dvec2 center, u, v;
-        double radius;                   // of a circle; 0: it is none
-        std::vector<double> turns;       // t of c + u cos t + v sin t where it is nearest and farthest to the axis
-        std::vector<double> near_turns;  // where it nearly is: the crossings' azimuths move fast there
+        double radius;                   // of a circle; 0: the disk is an ellipse
+        std::vector<double> turns;       // t of c + u cos t + v sin t at extremal distances to the axis
+        std::vector<double> near_turns;  // t of near extrema, where azimuths of crossings change fast
 
         glm::dvec2 at(double t) const { return center + u * std::cos(t) + v * std::sin(t); }
         bool holds(const glm::dvec2& point) const;
         void find_turns();
-        /// Azimuths at which the outline crosses the circle about the axis.
+        /// Adds the azimuths at which the disk's edge crosses a circle about the axis, given by its radius in the
+        /// plane.
         void add_cuts(double circle, std::vector<double>& cuts) const;
     };
     struct Arc {
@@ -77,19 +78,19 @@ class ProfileRings {
     void add_touching(const Side& side);
     void add_crossings(const Side& a, const Side& b);
     void add_disk_events();
-    /// What of the circle at this angle to the axis lies on the light.
+    /// The arcs on the light of the circle at this angle to the axis.
     void find_arcs(double cosine, double sine);
     void add_cuts(double cosine, double sine);
     void split_arcs(double sine);
 
     glm::dmat3 to_shading_{1};
     std::vector<Side> sides_;
-    std::size_t corner_sides_ = 0;  // of these, the first ones are a polygon's
+    std::size_t corner_sides_ = 0;  // number of sides, from the first on, that belong to a polygon
     std::optional<Disk> disk_;
     std::vector<double> events_;  // angles to the axis, rising
-    std::vector<double> cuts_;    // azimuths at which the circle of find_arcs crosses the light's outline
+    std::vector<double> cuts_;    // azimuths at which the circle of find_arcs() crosses the light's edge
     std::vector<Arc> arcs_, whole_arcs_;
-    double focus_azimuth_ = 0, focus_width_ = 0;  // 0: none
+    double focus_azimuth_ = 0, focus_width_ = 0;  // width 0: no focus
 };
 
 template <class Factor, class Visit>
@@ -98,7 +99,7 @@ void ProfileRings::for_nodes(int points, const Factor& factor_of, const Visit& v
     for (std::size_t piece = 0; piece + 1 < events_.size(); ++piece) {
         const double width = events_[piece + 1] - events_[piece];
         for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-            // Arcs begin and end like roots; the substitution makes that smooth.
+            // Arc lengths start and end like square roots; the substitution 3s² - 2s³ makes that smooth.
             const double s = rule.nodes[i];
             const double angle = events_[piece] + width * s * s * (3 - 2 * s);
             const double cosine = std::cos(angle);

@@ -11,16 +11,16 @@
 namespace shlight {
 namespace {
 
-/// Of an edge: less of a light than this is not worth its rounding.
+/// Least lit share of an edge. Thinner parts are not shaded; their rounding errors would dominate.
 constexpr double kThinnestPart = 1e-9;
 
-/// What a light looks like from a point: a cap of directions that holds it, in the world.
+/// A cap of world directions that contains a light, seen from a point.
 struct Bounds {
     Vec3d towards;  ///< unit
     double half_angle;
 };
 
-/// All directions: what is known from within the light.
+/// All directions, for points within a light.
 constexpr Bounds kEverywhere = {{0, 0, 1}, std::numbers::pi};
 
 Bounds sphere_bounds(const Vec3d& center, double radius, const Vec3d& position) {
@@ -59,8 +59,8 @@ bool surrounds(const Light& light, const Vec3d& position) {
     return sphere != nullptr && glm::length(sphere->center - position) <= (sphere->facing_disk ? 0.0 : sphere->radius);
 }
 
-/// Of a rectangle with a spread: the part of its two edges from the first vertex, each 0 … 1, beyond which nothing
-/// shines on a point.
+/// The lit part of a rectangle with a spread, as ranges 0 … 1 along the two edges from its first vertex. Nothing beyond
+/// them shines on the point.
 struct LitEdges {
     std::array<double, 2> from, to;
     bool empty() const { return !(to[0] - from[0] > kThinnestPart && to[1] - from[1] > kThinnestPart); }
@@ -86,12 +86,12 @@ std::optional<LitEdges> lit_edges(const PolygonLight& light, const Vec3d& positi
     return edges;
 }
 
-/// Sides of the polygon that stands for a disk of which a small part is lit: 1e-6 of it lies between them.
+/// Number of sides of the polygon that replaces a partly lit disk; the areas differ by 1e-6.
 constexpr int kSidesOfDisk = 256;
-/// Of a disk's short half axis: a lit circle with a smaller radius is singled out.
+/// Radius of a lit circle ÷ short half axis of the disk, below which only that part is shaded.
 constexpr double kSmallPart = 0.5;
 
-/// Keeps what of a convex polygon has dot(normal, v) ≤ limit.
+/// Cuts a convex polygon to its part with dot(normal, v) ≤ limit.
 void clip(std::vector<Vec3d>& corners, const Vec3d& normal, double limit) {
     std::vector<Vec3d> kept;
     for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -115,7 +115,7 @@ struct LitDisk {
     std::vector<Vec3d> corners;  ///< if there are any, the part is this convex polygon
 };
 
-/// To what of the disk lies in the circle of radius `reach` about a point of its plane, or a little more.
+/// Restricts a disk to a region that contains its part within `reach` of a point of its plane.
 void restrict(const DiskLight& light, const Vec3d& middle, double reach, LitDisk& lit) {
     const Vec3d way = middle - light.center;
     const double area = glm::length(glm::cross(light.half_axis_u, light.half_axis_v));
@@ -125,14 +125,14 @@ void restrict(const DiskLight& light, const Vec3d& middle, double reach, LitDisk
     }
     const Vec3d along = glm::normalize(light.half_axis_u);
     const Vec3d across = glm::cross(light.normal, along);
-    // In the disk's own units, in which it has the radius 1.
+    // Coordinates in units of the half axes, in which the disk has radius 1.
     const double a = glm::dot(glm::cross(way, light.half_axis_v), light.normal) / area;
     const double b = glm::dot(glm::cross(light.half_axis_u, way), light.normal) / area;
     if (std::hypot(a, b) + reach / short_half_axis < 1) {
         lit.ellipse = {middle, reach * along, reach * across};
         return;
     }
-    // Of equal area.
+    // A polygon with the disk's area.
     const double step = 2 * std::numbers::pi / kSidesOfDisk;
     const double scale = std::sqrt(step / std::sin(step));
     for (int i = 0; i < kSidesOfDisk; ++i) {
@@ -147,7 +147,7 @@ void restrict(const DiskLight& light, const Vec3d& middle, double reach, LitDisk
     }
 }
 
-/// The corners of that part, in the world.
+/// Corners of the lit part of a rectangle, in the world.
 std::array<Vec3d, 4> lit_rectangle(const PolygonLight& light, const LitEdges& edges) {
     const Vec3d& corner = light.vertices[0];
     const Vec3d along = light.vertices[1] - corner;
@@ -157,8 +157,8 @@ std::array<Vec3d, 4> lit_rectangle(const PolygonLight& light, const LitEdges& ed
             at(edges.from[0], edges.to[1])};
 }
 
-/// What of a disk shines on a point through its spread, or more, in the shading frame; all of it if the spread lights
-/// a good part.
+/// A region, in the shading frame, that contains the part of a disk that shines on a point through its spread; the
+/// whole disk if that part is large.
 LitDisk lit_part(const DiskLight& light, const ShadingFrame& frame) {
     LitDisk lit = {{light.center, light.half_axis_u, light.half_axis_v}, {}};
     const auto* spread = std::get_if<SpreadProfile>(&light.traits.profile);
@@ -180,7 +180,7 @@ std::optional<CapView> view(const SphereLight& light, const ShadingFrame& frame)
     const Vec3d center = frame.point_to_local(light.center);
     const double distance = glm::length(center);
     if (light.facing_disk) {
-        // The disk's upper rim: the centre's height plus the radius along the disk's steepest line.
+        // Height of the disk's upper rim: the centre's height plus the radius along the disk's steepest line.
         const double rim = center.z * distance + light.radius * std::hypot(center.x, center.y);
         if (distance > 0 && !(rim > 0)) {
             return std::nullopt;
@@ -229,7 +229,7 @@ std::optional<DeltaView> delta_view(const Light& light, const ShadingFrame& fram
     if (!(seen.direction.z > 0)) {
         return std::nullopt;
     }
-    // Scenes may have thousands of even ones, whose direction in the world is of no use.
+    // Most sources have no profile, and the world direction is computed for the others only.
     const EmissionProfile& profile = traits_of(light).profile;
     if (!std::holds_alternative<EvenProfile>(profile)) {
         seen.irradiance *= profile_factor(profile, -frame.to_world(seen.direction));
@@ -239,7 +239,7 @@ std::optional<DeltaView> delta_view(const Light& light, const ShadingFrame& fram
 
 ProfileView::ProfileView(const Light& light, const ShadingFrame& frame) {
     const EmissionProfile& profile = traits_of(light).profile;
-    // Within a sphere its surface shines inwards, in all directions.
+    // A point inside a sphere sees the sphere's surface shine inwards in all directions, without a profile.
     if (std::holds_alternative<EvenProfile>(profile) || surrounds(light, frame.origin)) {
         return;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Lights as a hit sees them: in its shading frame, with what lies on their dark side or below the horizon sorted out.
+// Lights in the shading frame of a hit, without parts that do not face the hit or lie below its horizon.
 #pragma once
 
 #include <array>
@@ -17,8 +17,9 @@
 
 namespace shlight {
 
-/// A sphere light. Within the sphere the whole hemisphere is lit: the limit of a point that touches it.
-/// infinite: a sun; center is then a unit vector, and radius the sine of its half angle.
+/// A sphere light or sun seen from a point. inside: the point is within the sphere, and the whole hemisphere is lit,
+/// which is the limit of a point that touches it. infinite: a sun, with `center` a unit vector and `radius` the sine of
+/// its half angle.
 struct CapView {
     enum class Kind { sphere, facing_disk, inside, infinite };
 
@@ -27,21 +28,21 @@ struct CapView {
     double radius;
 };
 
-/// Nothing for a cap that lies below the horizon.
+/// The cap of a light; nothing if it lies below the horizon.
 std::optional<CapView> view(const SphereLight& light, const ShadingFrame& frame);
 std::optional<CapView> view(const SunLight& light, const ShadingFrame& frame);
-/// The same of lights that are one of these, and nothing for others.
+/// The cap of a sphere light or sun; nothing for other lights.
 std::optional<CapView> cap_view(const Light& light, const ShadingFrame& frame);
 
-/// A source without extent.
+/// A source without extent, seen from a point.
 struct DeltaView {
     Vec3d direction;    ///< unit, in the shading frame
     double distance;    ///< may be infinite
-    double irradiance;  ///< on a surface at right angles, of a source of strength 1
+    double irradiance;  ///< on a perpendicular surface, from a source of strength 1
 };
 
-/// Nothing for a source below the horizon, one that does not shine this way, or one within `error` of the hit.
-/// Precondition: is_delta(light).
+/// Nothing for a source below the horizon, one whose profile is 0 in this direction, or one within twice `error` of the
+/// hit. Precondition: is_delta(light).
 std::optional<DeltaView> delta_view(const Light& light, const ShadingFrame& frame, double error);
 
 /// Whether a hit lies off the plane of a planar light, on a side that the light shines to. height: over that plane.
@@ -50,45 +51,45 @@ bool is_lit_side(const PlanarLight& light, double height, double error) {
     return (light.two_sided ? std::abs(height) : height) > 2 * (error + light.error);
 }
 
-/// A light's emission profile as a hit sees it. Refers to the light.
+/// A light's emission profile for one hit. Keeps a pointer to the light.
 class ProfileView {
   public:
-    ProfileView() = default;  ///< of an even light
+    ProfileView() = default;  ///< a constant factor 1
     ProfileView(const Light& light, const ShadingFrame& frame);
 
     /// Bounds of the factor over the light.
     const ProfileRange& range() const { return range_; }
-    /// Of a unit direction towards the light, in the shading frame.
+    /// Factor for a unit direction towards the light, in the shading frame.
     double factor(const Vec3d& direction) const {
         return profile_ == nullptr ? 1.0 : profile_factor(*profile_, -(to_world_ * direction));
     }
 
   private:
-    const EmissionProfile* profile_ = nullptr;  // null: 1
+    const EmissionProfile* profile_ = nullptr;  // null: the factor is 1
     glm::dmat3 to_world_{1};
     ProfileRange range_ = {1, 1};
 };
 
-/// A light with extent in a hit's frame: found once, then read by shading, by profiles and by shadow rays. Refers to
-/// the light and the frame. Keeps its memory from one to the next.
+/// A light with extent in the frame of a hit: computed once, then read by shading, profiles and shadow rays. Keeps
+/// pointers to the light and the frame. Memory is reused from light to light.
 class SeenLight {
   public:
-    /// Whether the light's bright side is seen at all: the hit lies off a polygon's or disk's plane, on a side that it
-    /// shines to, some of it is above the horizon, and its profile shines this way. A hit in the plane, within its
-    /// error, gets nothing: a polygon is dark edge-on, and a surface on which a light lies flat is not lit at random.
+    /// Returns whether the light shines on the hit: the hit lies off a polygon's or disk's plane on an emitting side,
+    /// some of the light is above the horizon, and its profile is not 0 here. A hit in the plane, within its error, is
+    /// dark: a polygon has no area edge-on, and a surface on which a light lies flat must not be lit at random.
     bool look(const Light& light, const ShadingFrame& frame, double error);
 
     const Light& light() const { return *light_; }
     const ShadingFrame& frame() const { return *frame_; }
     const ProfileView& profile() const { return profile_; }
-    /// Of a sphere or a sun.
+    /// The cap of a sphere or a sun.
     const std::optional<CapView>& cap() const { return cap_; }
-    /// In the shading frame, of a polygon, or of what of a light's spread shines on the hit: the smallest
-    /// rectangle with edges along the light's own that holds it, or a convex polygon.
+    /// Corners in the shading frame of a polygon light, or of the part that shines on the hit through a spread: the
+    /// smallest rectangle along the light's edges that contains it, or a convex polygon.
     std::span<const Vec3d> corners() const { return corners_; }
-    /// Whether the corners are those of a part, which is convex.
+    /// Whether the corners are those of a part of the light, which is convex.
     bool is_part() const { return is_part_; }
-    /// Of a disk without corners, in the shading frame.
+    /// A disk light without corners, in the shading frame.
     const Ellipse<double>& ellipse() const { return ellipse_; }
 
   private:
@@ -105,15 +106,15 @@ class SeenLight {
     Ellipse<double> ellipse_{};
 };
 
-/// SeenLight::look, or delta_view, where nothing else is asked for.
+/// Whether SeenLight::look() or delta_view() finds light, for callers that need nothing else.
 bool is_seen(const Light& light, const ShadingFrame& frame, double error);
 
-/// At least this far away lies every point of the light; 0 where that is not known.
+/// A lower bound of the distance to the light's points; 0 if none is known.
 double least_distance(const Light& light, const Vec3d& position);
-/// A distance over which the light of the hit changes as little as it does over the least distance for an even light.
+/// A distance over which the light on the hit changes as little as an even light's does over its least distance.
 double changing_distance(const Light& light, const Vec3d& position);
 
-/// The directions to the light.
+/// The cap of directions to the light.
 Circle circle_of(const CapView& cap);
 
 }  // namespace shlight

@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lights/whole_rectangle.cpp"
 #include <hwy/foreach_target.h>
-// Highway's vocabulary, and what is compiled once per instruction set, come after it.
+// Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ HWY_INLINE V<Integers> swapped(V<Integers> x, std::uint32_t low) {
     return hn::Or(hn::And(hn::ShiftRight<kShift>(x), mask), hn::ShiftLeft<kShift>(hn::And(x, mask)));
 }
 
-// As sampling.cpp has them, for one index.
+// The functions of math/sampling.cpp, in lanes.
 
 HWY_INLINE V<Integers> reverse_bits(V<Integers> x) {
     x = swapped<1>(x, 0x55555555U);
@@ -56,7 +56,7 @@ HWY_INLINE V<Integers> pascal(V<Integers> x) {
     return hn::Xor(x, hn::And(hn::ShiftRight<1>(x), hn::Set(d, 0x55555555U)));
 }
 
-/// Of the bits that a float holds: 0 … 1, neither included.
+/// The upper 23 bits as a number in the open interval (0, 1).
 HWY_INLINE V<Floats> unit(V<Integers> x) {
     const Floats d;
     const auto high = hn::ConvertTo(d, hn::BitCast(hn::RebindToSigned<Floats>(), hn::ShiftRight<9>(x)));
@@ -68,8 +68,8 @@ HWY_INLINE V<Floats> at(float corner, float along, float across, V<Floats> u, V<
     return hn::MulAdd(u, hn::Set(d, along), hn::MulAdd(v, hn::Set(d, across), hn::Set(d, corner)));
 }
 
-/// Of a point at the end of a way: dω = |cos at the light| dA / distance², by distances that no power takes out of a
-/// float's range.
+/// Weight of the point at the end of a vector: dω = |cos at the light| dA / distance². Distances are relative to the
+/// nearest one, so that powers stay within a float's range.
 HWY_INLINE V<Floats> weight(const WholeRectangle& r, V<Floats> x, V<Floats> y, V<Floats> z) {
     const Floats d;
     const auto square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
@@ -110,7 +110,7 @@ HWY_INLINE V<Floats> dot(V<Floats> x, V<Floats> y, V<Floats> z, const Vec3f& b) 
 
 void meet(const WholeRectangle& r, const ShadingFrame& frame, std::size_t count, const LightPointArrays& points) {
     const Floats d;
-    // Rows of the matrix from the frame to the world.
+    // Rows of the matrix from the shading frame to the world.
     const Vec3f row_x(frame.x.x, frame.y.x, frame.z.x);
     const Vec3f row_y(frame.x.y, frame.y.y, frame.z.y);
     const Vec3f row_z(frame.x.z, frame.y.z, frame.z.z);
@@ -152,7 +152,7 @@ HWY_AFTER_NAMESPACE();
 namespace shlight {
 namespace {
 
-/// Of the farthest point's distance to the nearest one's; weights go with the third power.
+/// Largest ratio of the farthest to the nearest point's distance; weights vary by its third power.
 constexpr double kEvenRectangle = 1.6;
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace shlight {
 namespace {
 
 constexpr std::size_t kSteps = 25;
-/// Grazing views reflect as this cosine does.
+/// Views with a smaller cosθ_o get the albedo at this cosine.
 constexpr double kGrazing = 0.01;
 constexpr std::size_t kMostTables = 64;
 
@@ -18,12 +18,12 @@ double step(std::size_t i) {
     return static_cast<double>(i) / (kSteps - 1);
 }
 
-/// Between which steps a share of them lies, and how far from the first.
-struct Between {
+/// The table interval that contains a share 0 … 1 of all steps: its first step, and the position within it, 0 … 1.
+struct Interval {
     std::size_t first;
     double rest;
 
-    explicit Between(double share) {
+    explicit Interval(double share) {
         const double place = std::clamp(share, 0.0, 1.0) * (kSteps - 1);
         first = std::min(static_cast<std::size_t>(place), kSteps - 2);
         rest = place - static_cast<double>(first);
@@ -34,23 +34,23 @@ struct Between {
 
 AlbedoTable::AlbedoTable(const LobeShape& shape) : widths_(is_glossy(shape) ? kSteps : 1) {
     for (std::size_t i = 0; i < widths_; ++i) {
-        const LobeShape own = with_width(shape, step(i) * step(i));
+        const LobeShape tabulated = with_width(shape, step(i) * step(i));
         for (std::size_t k = 0; k < kSteps; ++k) {
-            values_.push_back(static_cast<float>(lobe_albedo(own, std::max(step(k), kGrazing))));
+            values_.push_back(static_cast<float>(lobe_albedo(tabulated, std::max(step(k), kGrazing))));
         }
     }
 }
 
 double AlbedoTable::albedo(double width, double cos_theta_o) const {
-    const Between view(cos_theta_o);
+    const Interval view(cos_theta_o);
     const auto of_row = [&](std::size_t row) {
-        const float* own = &values_[row * kSteps + view.first];
-        return (1 - view.rest) * double{own[0]} + view.rest * double{own[1]};
+        const float* nodes = &values_[row * kSteps + view.first];
+        return (1 - view.rest) * double{nodes[0]} + view.rest * double{nodes[1]};
     };
     if (widths_ == 1) {
         return of_row(0);
     }
-    const Between row(std::sqrt(width));
+    const Interval row(std::sqrt(width));
     return (1 - row.rest) * of_row(row.first) + row.rest * of_row(row.first + 1);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Albedos of lobes of any width at any view, between even steps of √width and cosine.
+// Albedos of one lobe shape, tabulated over even steps of √width and of cosθ_o.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace shlight {
 /// Immutable; any number of threads may read it.
 class AlbedoTable {
   public:
-    /// Of all shapes that differ from this one in width.
+    /// Tabulates every width of the shape; its present width does not matter.
     explicit AlbedoTable(const LobeShape& shape);
     double albedo(double width, double cos_theta_o) const;
 
@@ -23,7 +23,7 @@ class AlbedoTable {
     std::vector<float> values_;
 };
 
-/// The same table for the same shape, whatever its width.
+/// The table of a shape, shared by all shapes that differ only in width.
 std::shared_ptr<const AlbedoTable> albedo_table(const LobeShape& shape);
 
 }  // namespace shlight

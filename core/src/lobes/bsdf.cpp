@@ -29,11 +29,11 @@ bool is_black(const Rgb& c) {
     return c == Rgb(0);
 }
 
-/// The dielectric curve nears a step at grazing angles for an ior near 1, and no rise for a large one: outside these
-/// limits it differs by more than 1e-2 from what is taken in its place only where cosθ_d < 3e-3.
+/// For an ior near 1 the dielectric Fresnel curve becomes a step at grazing angles, and for a large ior it is flat.
+/// Beyond these limits it differs by more than 1e-2 from its replacement only where cosθ_d < 3e-3.
 constexpr double kLeastIor = 1 + 1e-6, kLargestIor = 100;
 
-/// What the part of a reflectance that rises towards grazing angles is multiplied by. ior: 0 for Schlick's curve.
+/// The lobe with the Fresnel factor's rise from 0 at normal incidence to 1. ior: 0 for Schlick's curve.
 LobeShape edge_shape(double alpha, double ior) {
     return ior == 0 ? GgxShape{alpha, Fresnel::schlick}
                     : GgxShape{alpha, Fresnel::dielectric, std::max(ior, kLeastIor)};

@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lobes/contour_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Highway's vocabulary, and what is compiled once per instruction set, come after it.
+// Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -95,7 +95,7 @@ class BellLanes {
         const auto towards = hn::MulAdd(cos_o, cosine, hn::Mul(hn::Mul(all(d, sin_o_), x), cos_azimuth));
         const auto cos_i = hn::Sub(hn::Div(hn::Mul(hn::Add(towards, towards), cosine), square), cos_o);
         const auto cos_half = hn::Div(towards, hn::Sqrt(square));
-        const auto value = hn::Mul(lobe_.over_bell(d, cos_i, cos_half, view_), towards);
+        const auto value = hn::Mul(lobe_.over_ndf(d, cos_i, cos_half, view_), towards);
         return hn::IfThenElseZero(hn::Gt(cos_i, hn::Zero(d)), value);
     }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// One least-squares fit in the warped sphere. The norm is that of the warped sphere, so the cosine terms of different
-// degree m decouple: with a Fourier sum over the azimuth each m is a small fit in the height alone.
+// One least-squares fit of a lobe by harmonics over the warped hemisphere. The norm is uniform in solid angle, so
+// cosine terms of different degree m decouple: after a Fourier sum over the azimuth each m is a small fit in the height
+// u_z alone.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +18,7 @@
 namespace shlight {
 namespace {
 
-/// Azimuths in the middles of equal steps over half a turn: what is even in φ needs no more.
+/// Azimuths in the middles of equal steps over half a turn, which suffices for functions that are even in φ.
 struct AzimuthTable {
     std::vector<double> cosines, sines;
 
@@ -34,7 +35,7 @@ struct AzimuthTable {
         }
     }
 
-    /// a_m of Σ a_m cos mφ, m = 0 … waves-1. Azimuth by azimuth: sums that do not wait for each other.
+    /// Appends a_m of Σ a_m cos mφ, m = 0 … waves-1. The loop over azimuths is outside, so that sums are independent.
     void append_fourier(const std::vector<double>& values, std::vector<double>& out) const {
         out.resize(out.size() + waves_);
         double* a = &out[out.size() - waves_];
@@ -50,14 +51,14 @@ struct AzimuthTable {
     std::vector<double> transform_;
 };
 
-/// The lobe's density g over a grid in the warped frame, as Fourier coefficients over the azimuth.
+/// The lobe's density g = f·cos dω/du over a grid in the warped frame, as Fourier coefficients over the azimuth.
 struct WarpedDensity {
     std::vector<double> heights, weights;  ///< Gauss points over u_z = z_0 … 1
-    std::vector<double> fourier;           ///< heights × order: g = Σ_m fourier cos mφ + what is beyond the order
+    std::vector<double> fourier;           ///< heights × order: g ≈ Σ_m fourier cos mφ
     double square = 0;                     ///< ∫ g² du, of all degrees
 };
 
-/// Points over half a turn and over the heights. In its warp a lobe is still stretched by 1 : cosθ_o.
+/// Azimuths per half turn, and heights. A lobe stays stretched by 1 : cosθ_o after its warp.
 int azimuth_points(double cos_theta_o, int order) {
     return std::max({24, order + 8, static_cast<int>(std::min(128.0, 12 / cos_theta_o))});
 }
@@ -107,7 +108,7 @@ std::vector<double> moments(const WarpedDensity& d, const HeightBasis& basis) {
     return sums;
 }
 
-/// ∫ of the density less that of an expansion, over the warped hemisphere.
+/// ∫ (density - expansion) du over the warped hemisphere.
 double missing_light(const WarpedDensity& d, const HeightBasis& basis, std::span<const double> terms, int order) {
     double sum = 0;
     for (std::size_t i = 0; i < d.heights.size(); ++i) {
@@ -120,8 +121,9 @@ double missing_light(const WarpedDensity& d, const HeightBasis& basis, std::span
     return sum;
 }
 
-/// A cap's coefficients fall as λ_l ≤ √(8π/l³) (Funk–Hecke), and what the fit lacks lies in bands ≥ order, but for what
-/// λ takes from the low ones: that shows in the whole, missing light, which a large light receives undiminished.
+/// Eq. 39 of docs/theory.md. A cap's coefficients fall as λ_l ≤ √(8π/l³) (Funk–Hecke), and the fit's error lies in
+/// bands ≥ order, except for what the ridge λ takes from the low bands. That part is the missing light, which a large
+/// light receives undiminished.
 double shading_error(double squared_error, double missing_light, int order, double albedo) {
     return albedo > 0 ? (std::sqrt(2 * squared_error / (order * order * order)) + std::abs(missing_light)) / albedo
                       : 0.0;
@@ -133,7 +135,7 @@ void fit_row(const LobeShape& shape, int view, FitTable& table) {
     const double cosine = warped_view_cosine(view);
     const int highest = *std::max_element(table.orders().begin(), table.orders().end());
     const WarpedDensity d = warped_density(shape, cosine, highest);
-    // The lobe's own cubature: the grid here is too coarse for lobes whose order is out of reach.
+    // lobe_albedo() integrates adaptively; the grid here is too coarse for lobes whose order is out of reach.
     const double albedo = lobe_albedo(shape, cosine);
     const auto row = table.row(view);
     row[FitTable::kAlbedo] = static_cast<float>(albedo);

@@ -54,7 +54,7 @@ void FitTable::look_up(double cos_theta_o, std::size_t column, std::span<float> 
 
 FitTable fit_table(const LobeShape& shape, std::span<const int> orders) {
     FitTable table(orders);
-    // Isolated: a thread that waits here must not pick up unrelated work that may ask for this very fit.
+    // Isolated, because a thread that waits here must not start unrelated work that asks for this same fit.
     tbb::this_task_arena::isolate(
         [&] { tbb::parallel_for(0, kWarpedViews, [&](int view) { fit_row(shape, view, table); }); });
     const auto beyond = table.row(-1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The fits of one shape at all view angles, laid out for looking up many views at once.
+// The harmonic fits of one lobe shape at all view angles, laid out for many look-ups at once.
 #pragma once
 
 #include <array>
@@ -16,31 +16,32 @@
 
 namespace shlight {
 
-/// Orders that a hit may choose from. Beyond the last, cubature over the lobe is both cheaper and more accurate.
+/// Orders that a hit may choose from. Beyond the last one cubature over the lobe is cheaper and more accurate.
 inline constexpr std::array<int, 6> kWarpedOrders = {3, 4, 6, 8, 12, 16};
 
 /// View angles are equally spaced in artanh(sinθ_o): fine towards grazing views, where lobes change with cosθ_o.
 inline constexpr int kWarpedViews = 49;
 double warped_view_cosine(int view);
 
-/// A row for each view, for view_kernel.h: albedo, the shading error of each order, the cosine terms of each order; the
-/// errors' head and each order's terms begin on a cache line. All of it is interpolated, between views and tables.
+/// A row for each view, for view_kernel.h: a head with the albedo and the shading error of each order, then the cosine
+/// terms of each order. The head and the terms of each order begin on a cache line. All numbers are interpolated,
+/// between views and between tables.
 class FitTable {
   public:
-    /// Of zeros.
+    /// A table filled with zeros.
     explicit FitTable(std::span<const int> orders);
 
     std::span<const int> orders() const { return orders_; }
     /// Index of an order; precondition: it is one of orders().
     std::size_t which(int order) const;
 
-    /// Numbers from row to row, and of what is looked up at once: a head, or the terms of an order with padding.
+    /// Floats per row, per head, and per block of an order's terms with padding.
     std::size_t row_size() const { return row_size_; }
     static constexpr std::size_t kHeadWidth = AlignedFloats::kLine;
     std::size_t width(std::size_t which) const {
         return AlignedFloats::padded(static_cast<std::size_t>(cosine_count(orders_[which])));
     }
-    /// Columns.
+    /// Columns within a row.
     static constexpr std::size_t kAlbedo = 0, kShadingErrors = 1;
     std::size_t terms(std::size_t which) const { return first_[which]; }
 
@@ -52,7 +53,7 @@ class FitTable {
     std::span<const float> values() const { return {values_.data(), (kWarpedViews + 1) * row_size_}; }
     std::span<float> values() { return {values_.data(), (kWarpedViews + 1) * row_size_}; }
 
-    /// Of one view: `width` numbers from a column on.
+    /// Interpolates out.size() numbers from `column` on at one view.
     void look_up(double cos_theta_o, std::size_t column, std::span<float> out) const;
 
   private:
@@ -67,11 +68,11 @@ void fit_row(const LobeShape& shape, int view, FitTable& table);
 /// Fits all views of one shape.
 FitTable fit_table(const LobeShape& shape, std::span<const int> orders);
 
-/// The fits of GGX lobes of all roughnesses, which differ in nothing else: tables of some, each fitted when it is first
+/// The fits of GGX lobes that differ only in roughness: tables at some roughnesses, each fitted when it is first
 /// needed, between which cubic interpolation finds all others. Any number of threads may read it.
 class FitGrid {
   public:
-    /// Takes only Fresnel factor and ior of the shape. order: the only one, or 0 for kWarpedOrders.
+    /// Only Fresnel factor and ior of the shape are used. order: the only one, or 0 for kWarpedOrders.
     FitGrid(const GgxShape& shape, int order);
 
     static constexpr std::size_t kNeighbours = 4;
@@ -82,8 +83,6 @@ class FitGrid {
     Neighbours neighbours(double alpha) const;
     /// Precondition: not a mirror.
     FitTable interpolated(double alpha) const;
-    /// Fits all; their size in bytes.
-    std::size_t complete() const;
 
   private:
     const FitTable& table(int roughness) const;
@@ -97,7 +96,7 @@ class FitGrid {
     mutable std::vector<Entry> entries_;
 };
 
-/// Shared by everyone who asks for the same one; the last ones asked for are kept. Thread-safe.
+/// The grid of a Fresnel factor, ior and order, shared by all callers; the most recent ones are kept. Thread-safe.
 std::shared_ptr<const FitGrid> fit_grid(const GgxShape& shape, int order);
 
 }  // namespace shlight

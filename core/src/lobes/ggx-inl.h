@@ -19,7 +19,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
-/// F at ω_i·h = cosine, of a shape whose F is not 1.
+/// Fresnel factor at ω_i·h = cosine, for shapes whose factor is not 1.
 template <Fresnel kFresnel, class D>
 HWY_INLINE V<D> fresnel_in_lanes(D d, double ior, V<D> cosine) {
     const auto one = all(d, 1);
@@ -32,8 +32,8 @@ HWY_INLINE V<D> fresnel_in_lanes(D d, double ior, V<D> cosine) {
         const auto square = hn::Mul(edge, edge);
         return hn::Mul(hn::Mul(hn::Mul(square, square), square), hn::Sub(one, edge));
     }
-    // The exact curve less its value head-on, (a² (1 + b²) - 2 a_0²) / 2 with b = 1 + f, a = a_0 + e and f and e as
-    // multiples of `edge`: no difference of nearly equal numbers is left.
+    // The exact curve minus its value at normal incidence, (a² (1 + b²) - 2 a_0²) / 2 with b = 1 + f, a = a_0 + e,
+    // where f and e are multiples of `edge`: no difference of nearly equal numbers is left.
     const double head_on = (ior - 1) / (ior + 1);
     const auto c = hn::Sub(one, edge);
     const auto bent = hn::Mul(edge, hn::Sub(all(d, 2), edge));  // 1 - c²
@@ -47,16 +47,16 @@ HWY_INLINE V<D> fresnel_in_lanes(D d, double ior, V<D> cosine) {
     return hn::Max(hn::Zero(d), hn::Mul(rise, all(d, 1 / (1 - head_on * head_on))));
 }
 
-/// kFresnel as in the shape. What changes from view to view is in View.
+/// GGX with one Fresnel factor. View holds the numbers that change from view to view.
 template <Fresnel kFresnel>
 class GgxLanes {
   public:
     template <class D>
     struct View {
-        V<D> cosine, alpha2, masking;  // of ω_o
+        V<D> cosine, alpha2, masking;  // cosθ_o, α², √(α² + (1-α²) cos²θ_o)
     };
 
-    /// alpha of the shape is that of no view.
+    /// The shape's alpha is not used; view() takes one for each lane.
     explicit GgxLanes(const GgxShape& shape) : ior_(shape.ior) {}
 
     template <class D>
@@ -75,27 +75,27 @@ class GgxLanes {
                             [&] HWY_ATTR { return hn::Mul(hn::Sqrt(square), all(d, 0.5)); });
     }
 
-    /// As GgxShape::density.
+    /// Density per solid angle at which GgxShape::sample draws this direction.
     HWY_INLINE V<Floats> density(const HalfSum& sum, V<Floats> /*cos_i*/, const View<Floats>& view) const {
         return hn::Div(half_distribution(sum, view), hn::Add(view.cosine, view.masking));
     }
 
     /// F G₂ / cosθ_o.
     template <class D>
-    HWY_INLINE V<D> over_bell(D d, V<D> cos_i, V<D> cos_half, const View<D>& view) const {
+    HWY_INLINE V<D> over_ndf(D d, V<D> cos_i, V<D> cos_half, const View<D>& view) const {
         const auto visibility = hn::Div(hn::Add(cos_i, cos_i), hn::MulAdd(view.cosine, masking(d, view.alpha2, cos_i),
                                                                           hn::Mul(cos_i, view.masking)));
         return with_fresnel(d, visibility, [&] HWY_ATTR { return cos_half; });
     }
 
   private:
-    /// D / 2, whose bell is α² h_z² + h_x² + h_y², all over |h|².
+    /// D(h) / 2 = α² / (2π) · (|h|² / (α² h_z² + h_x² + h_y²))².
     HWY_INLINE V<Floats> half_distribution(const HalfSum& sum, const View<Floats>& view) const {
         const Floats d;
         const auto across = hn::MulAdd(sum.x, sum.x, hn::Mul(sum.y, sum.y));
         const auto up = hn::Mul(sum.z, sum.z);
         const auto sharpness = hn::Div(hn::Add(across, up), hn::MulAdd(view.alpha2, up, across));
-        // In this order nothing of a narrow lobe leaves a float's range.
+        // Multiplied in this order a narrow lobe stays within a float's range.
         const auto peak = hn::Mul(view.alpha2, all(d, 1 / (2 * std::numbers::pi)));
         return hn::Mul(hn::Mul(peak, sharpness), sharpness);
     }

@@ -13,10 +13,10 @@ namespace {
 
 using std::numbers::pi;
 
-/// Of what the hemisphere's outline gives.
+/// Absolute error of the albedo, which is integrated along the horizon.
 constexpr double kAlbedoTolerance = 1e-5;
 
-/// Unpolarised Fresnel reflectance at a dielectric of relative index ior ≥ 1, from outside.
+/// Unpolarised Fresnel reflectance of a dielectric of relative index ior ≥ 1, seen from outside.
 double fresnel_dielectric(double cosine, double ior) {
     const double g = std::sqrt(ior * ior - 1 + cosine * cosine);
     const double a = (g - cosine) / (g + cosine);
@@ -24,7 +24,7 @@ double fresnel_dielectric(double cosine, double ior) {
     return 0.5 * a * a * (1 + b * b);
 }
 
-/// At ω_i·h = cosine.
+/// Fresnel factor at ω_i·h = cosine.
 double fresnel_factor(const GgxShape& shape, double cosine) {
     switch (shape.fresnel) {
         case Fresnel::one:
@@ -50,21 +50,21 @@ double masking(double a2, double cosine) {
     return std::sqrt(a2 + (1 - a2) * cosine * cosine);
 }
 
-/// α² |s|² / (α² s_z² + s_x² + s_y²) of s = ω_i + ω_o: the root of π α² D, from sin²θ_h rather than 1 - cos²θ_h, on
-/// which the peak of a narrow lobe hangs.
+/// √(π α² D) = α² |s|² / (α² s_z² + s_x² + s_y²) of s = ω_i + ω_o. It uses sin²θ_h, since 1 - cos²θ_h would lose the
+/// digits that decide the peak of a narrow lobe.
 double sharpness(double a2, const Vec3d& sum) {
     return a2 * glm::dot(sum, sum) / (a2 * sum.z * sum.z + (sum.x * sum.x + sum.y * sum.y));
 }
 
-/// G₁ / (4 cosθ_o), with G₁ = 2 cosθ_o / (cosθ_o + masking), finite at grazing angles once cosθ_o is gone.
+/// G₁ / (4 cosθ_o) with G₁ = 2 cosθ_o / (cosθ_o + masking): cosθ_o cancels, so grazing angles are finite.
 double visible_share(double a2, double cos_theta_o) {
     return 0.5 / (cos_theta_o + masking(a2, cos_theta_o));
 }
 
 }  // namespace
 
-/// With D = α² / (π ((α²-1) cos²θ_h + 1)²) and G₂ / (4 cosθ_i cosθ_o)
-/// = ½ / (cosθ_o √(α² + (1-α²) cos²θ_i) + cosθ_i √(α² + (1-α²) cos²θ_o)), finite at grazing angles.
+/// F D G₂ / (4 cosθ_o) with D = α² / (π ((α²-1) cos²θ_h + 1)²) and G₂ / (4 cosθ_i cosθ_o) = ½ / (cosθ_o √(α² + (1-α²)
+/// cos²θ_i) + cosθ_i √(α² + (1-α²) cos²θ_o)), which is finite at grazing angles.
 double GgxShape::value(const Vec3d& wi, const Vec3d& wo) const {
     const double a2 = alpha * alpha;
     const Vec3d sum = wi + wo;
@@ -87,8 +87,8 @@ double GgxShape::albedo(double cos_theta_o) const {
 }
 
 Vec3d GgxShape::sample(const Vec3d& wo, const glm::dvec2& point) const {
-    // Where the microfacets are a hemisphere, it reflects the parallel rays that it sees evenly into the cap of
-    // z > -cosine of the view.
+    // Visible normals by spherical caps (Dupuy & Benyoub 2023): stretched by 1/α the microfacets are a hemisphere,
+    // which reflects parallel light evenly into the cap z > -cosine of the view.
     const Vec3d view = glm::normalize(Vec3d(alpha * wo.x, alpha * wo.y, wo.z));
     const double z = (1 - point.y) * (1 + view.z) - view.z;
     const double sine = std::sqrt(std::max(0.0, (1 - z) * (1 + z)));

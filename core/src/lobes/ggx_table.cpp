@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The fits that GGX lobes interpolate in, tabulated over roughness and view.
+// Fits of GGX lobes, tabulated over roughness and view, between which GGX lobes are interpolated.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -15,8 +15,8 @@
 namespace shlight {
 namespace {
 
-/// Roughnesses are equally spaced in log(α + kAlphaOffset): below the offset a lobe's image in its own warp no longer
-/// depends on α.
+/// Roughnesses are equally spaced in log(α + kAlphaOffset): below the offset a lobe's warped image no longer depends on
+/// α.
 constexpr int kRoughnesses = 32;
 constexpr double kAlphaOffset = 0.02;
 constexpr double kLeastTabulatedAlpha = 2e-4;
@@ -60,24 +60,12 @@ FitTable FitGrid::interpolated(double alpha) const {
     return sum;
 }
 
-std::size_t FitGrid::complete() const {
-    std::size_t bytes = 0;
-    for (int i = 0; i < kRoughnesses; ++i) {
-        bytes += table(i).values().size_bytes();
-    }
-    return bytes;
-}
-
 std::shared_ptr<const FitGrid> fit_grid(const GgxShape& shape, int order) {
     constexpr std::size_t kRecentGrids = 16;
     static RecentValues<std::pair<GgxShape, int>, FitGrid> recent(kRecentGrids);
     const bool has_ior = shape.fresnel == Fresnel::dielectric;
     const GgxShape key = {1, shape.fresnel, has_ior ? shape.ior : GgxShape{1}.ior};
     return recent.get({key, order}, [&] { return std::make_shared<const FitGrid>(key, order); });
-}
-
-std::size_t prepare_ggx_table() {
-    return fit_grid({1, Fresnel::one}, 0)->complete() + fit_grid({1, Fresnel::schlick}, 0)->complete();
 }
 
 }  // namespace shlight

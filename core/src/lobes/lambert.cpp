@@ -44,7 +44,7 @@ void fit_lambert(int order, float* cosine_terms) {
 }
 
 double lambert_error(int order) {
-    return order == 1 ? 0.5 : 0.0;  // of cosθ the mean explains three quarters of the square
+    return order == 1 ? 0.5 : 0.0;  // the mean of cosθ holds three quarters of ∫ cos²θ
 }
 
 std::vector<double> lambert_moments() {

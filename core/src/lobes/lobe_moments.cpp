@@ -17,26 +17,26 @@ namespace {
 
 constexpr int kPanelPoints = 16;
 
-/// A panel no longer than this holds fewer than three waves of band 63: sixteen points integrate them to 1e-10.
+/// Longest Gauss panel [rad]: it holds fewer than three waves of band 63, which sixteen points integrate to 1e-10.
 constexpr double kLongestPanel = std::numbers::pi / 12;
 
 struct Rule {
     std::vector<double> nodes, weights;
 };
 
-/// A point near which a function varies over a length `scale` rather than over one.
+/// A point near which a function varies over the length `scale`; far from it the length is one.
 struct Feature {
     double position, scale;
 };
 
-/// Gauss panels over (from, to), each no longer than kLongestPanel and than half its distance from a feature plus its
-/// scale.
+/// Gauss panels over (from, to). The length of each is at most kLongestPanel, and at most half its distance from a
+/// feature plus the feature's scale.
 Rule graded_rule(double from, double to, const std::vector<Feature>& features) {
     Rule rule;
     const GaussRule& gauss = gauss_rule(kPanelPoints);
     double start = from;
     while (start < to) {
-        // The bound holds at both ends of the panel if it is taken at the nearer one.
+        // The bound holds on the whole panel if it is evaluated at the end nearer to the feature.
         const auto allowed = [&](double x) {
             double length = kLongestPanel;
             for (const Feature& f : features) {
@@ -72,7 +72,7 @@ struct Azimuths {
     }
 };
 
-/// The lobe's Fourier moments over the azimuth at one θ: out[m] = ∫ f·cos cos mφ dφ; returns ∫ (f·cos)² dφ.
+/// Fourier moments of the lobe over the azimuth at one θ: out[m] = ∫ f·cos cos mφ dφ; returns ∫ (f·cos)² dφ.
 double azimuth_moments(const LobeShape& shape, double sine, double cosine, const Vec3d& wo, const Azimuths& phi,
                        std::vector<double>& out) {
     std::fill(out.begin(), out.end(), 0.0);
@@ -101,7 +101,7 @@ LobeMoments lobe_moments(const LobeShape& shape, double theta_o) {
     const double across = alpha * std::max(wo.z, 0.05);
     const Azimuths phi(graded_rule(0, std::numbers::pi, {{0.0, across / std::max(wo.x, across)}}));
 
-    LobeMoments result{std::vector<double>(kCosineMax, 0.0), 0.0, 0.0};
+    LobeMoments result{std::vector<double>(kCosineMax, 0.0), 0.0};
     std::vector<double> fourier(kMaxOrder);
     std::vector<double> sines(kMaxOrder);
     for (std::size_t i = 0; i < theta.nodes.size(); ++i) {
@@ -109,7 +109,6 @@ LobeMoments lobe_moments(const LobeShape& shape, double theta_o) {
         const double cosine = std::cos(theta.nodes[i]);
         const double weight = theta.weights[i] * sine;
         result.norm_squared += weight * azimuth_moments(shape, sine, cosine, wo, phi, fourier);
-        result.albedo += weight * fourier[0];
         powers(sine, kMaxOrder, sines.data());
         for (std::size_t m = 0; m < kMaxOrder; ++m) {
             fourier[m] *= weight * sines[m] * (m == 0 ? 1.0 : std::numbers::sqrt2);
@@ -129,10 +128,10 @@ LobeMoments lobe_moments(const LobeShape& shape, double theta_o) {
 
 std::vector<LobeMoments> moments_of_all_views(const LobeShape& shape) {
     std::vector<LobeMoments> views(kViewNodes);
-    // Isolated: a thread that waits here must not pick up unrelated work that may ask for this very lobe.
+    // Isolated, because a thread that waits here must not start unrelated work that asks for this same lobe.
     tbb::this_task_arena::isolate([&] {
         tbb::parallel_for(0, kViewNodes, [&](int node) {
-            // At exactly grazing view a lobe is a limit; a view a microradian above it is the same to float.
+            // At θ_o = π/2 a lobe is only defined as a limit; a view a microradian above is the same in float.
             views[node] = lobe_moments(shape, std::min(view_angle(node), std::numbers::pi / 2 - 1e-6));
         });
     });

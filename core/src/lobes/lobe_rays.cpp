@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lobes/lobe_rays.cpp"
 #include <hwy/foreach_target.h>
-// Highway's vocabulary, and what is compiled once per instruction set, come after it.
+// Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
@@ -22,7 +22,7 @@ namespace {
 
 static_assert(kLobeRayLanes % kLaneCount<Floats> == 0);
 
-/// The square of a narrower width would leave a float's range.
+/// Least lobe width; the square of a narrower one would underflow in float.
 constexpr double kLeastAlpha = 1e-9;
 
 struct Vectors {
@@ -43,7 +43,7 @@ HWY_INLINE Vectors scaled(const Vectors& a, V<Floats> factor) {
     return {hn::Mul(a.x, factor), hn::Mul(a.y, factor), hn::Mul(a.z, factor)};
 }
 
-/// By the largest part first: the square of a length may leave a float's range.
+/// Divides by the largest component first, because the square of the length may leave a float's range.
 HWY_INLINE Vectors normalized(const Vectors& a) {
     const auto one = hn::Set(Floats(), 1.0F);
     const auto largest = hn::Max(hn::Abs(a.x), hn::Max(hn::Abs(a.y), hn::Abs(a.z)));
@@ -52,7 +52,7 @@ HWY_INLINE Vectors normalized(const Vectors& a) {
     return scaled(b, hn::Div(one, hn::Sqrt(square)));
 }
 
-// As the shapes' sample() has it, with the same names.
+// The shapes' sample() in lanes, with the same names of variables.
 
 HWY_INLINE Vectors sample(const LambertShape& /*shape*/, const Vec3d& /*view*/, V<Floats> u, V<Floats> v) {
     const Floats d;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Rays of one view as a lobe spreads them, and what the lobe makes of any rays: in lanes, one for each ray.
+// Rays drawn from a lobe at one view, and the lobe's value and density for any rays, one lane for each ray.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@
 
 namespace shlight {
 
-/// More values than asked for are read and written, less than one more than this.
+/// Arrays of rays are read and written up to the next multiple of this.
 inline constexpr std::size_t kLobeRayLanes = 16;
 
-/// One vector for each ray.
+/// Vectors of rays, one array for each component.
 struct RayVectors {
     float *x, *y, *z;
 };
@@ -24,8 +24,8 @@ struct RayVectors {
 void sample_lobe_rays(const LobeShape& shape, const Vec3d& view, const float* u, const float* v, std::size_t count,
                       const RayVectors& directions);
 
-/// lobe_value() and lobe_density() of rays along the axes of the world, of any length. A mirror's are those of a very
-/// narrow lobe. densities: null where nobody asks for them.
+/// lobe_value() and lobe_density() of rays, whose vectors are in world axes and of any length. A mirror counts as a
+/// very narrow lobe. densities: may be null.
 void weigh_lobe_rays(const LobeShape& shape, const ShadingFrame& frame, const Vec3d& view, const RayVectors& ways,
                      std::size_t count, float* values, float* densities);
 

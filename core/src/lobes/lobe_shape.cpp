@@ -25,7 +25,7 @@ bool is_mirror(const LobeShape& shape) {
 
 namespace {
 
-/// Of the view; the inverse of less is none.
+/// Smallest cosθ_o with a finite reciprocal.
 constexpr double kLeastCosine = 1e-300;
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace shlight {
 
 double narrowest(const LobeShape& lobe, double cos_theta_o) {
-    // At its peak a lobe is 2α wide across the plane of incidence's normal, and cosθ_o times that along it.
+    // At its peak a lobe is 2α wide across the plane of incidence, and cosθ_o times that along it.
     return is_glossy(lobe) ? std::min(1.0, 2 * lobe_width(lobe) * std::max(cos_theta_o, kLeastFittedCosine)) : 1.0;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// "Model no more than a scene needs": a material's lobes, and how exactly each must be shaded at each view.
+// The lobes of a material, and how exactly each must be shaded at each view.
 #pragma once
 
 #include <algorithm>
@@ -14,22 +14,23 @@
 
 namespace shlight {
 
-/// The least distance [rad] over which f·cos of a lobe changes at this view; 0 for a mirror.
+/// Width of the lobe [rad]: the least angle over which its f·cos changes at this view; 0 for a mirror.
 double narrowest(const LobeShape& lobe, double cos_theta_o);
-/// The distance over which it changes around a direction wi, all unit vectors: on the sphere where the bell is round, a
-/// step of wi is at most 1/α long, over the length of the half vector there.
+/// The angle [rad] over which f·cos changes around a direction wi; all vectors are unit vectors. On the sphere of
+/// (h_x/α, h_y/α, h_z), where the GGX lobe is round, a step of wi is at most 1/α long, divided by the length of that
+/// vector.
 double distance_of_change(const LobeShape& lobe, const Vec3d& wi, const Vec3d& wo);
 
-/// Whether directions are spread alike by both lobes of a material, at all hits.
+/// Whether rays drawn from both lobes have the same distribution, at all hits.
 bool spread_alike(const Lobe& a, const Lobe& b);
 
-/// Weights of a material's lobes: of lobe i at view v, values[v · stride + i].
+/// Weights of a material's lobes; values[v · stride + i] is that of lobe i at view v.
 struct LobeWeights {
     std::span<const Rgb> values;
     std::size_t stride;  ///< 0: the views share their weights
 };
 
-/// Widths of lobes that vary, laid out as LobeWeights.
+/// Widths of lobes whose width varies over a surface, laid out as LobeWeights.
 struct LobeWidths {
     std::span<const float> values;  ///< empty: none varies
     std::size_t stride;
@@ -37,29 +38,28 @@ struct LobeWidths {
 
 class MaterialLobes {
   public:
-    /// order: the only one, 1 … 64, or 0 to meet the tolerance: of the radiance ÷ albedo of the whole material, in each
-    /// colour channel.
+    /// order: the only one, 1 … 64, or 0 to choose orders that meet the tolerance, which is an error of the radiance ÷
+    /// the albedo of the whole material, in each colour channel.
     MaterialLobes(std::span<const Lobe> lobes, int order, double tolerance);
 
-    /// Those that are not black.
+    /// The material's lobes, without black ones.
     std::span<const Lobe> lobes() const { return lobes_; }
-    /// What a lobe is shaded with; null for a mirror, and for one whose width varies.
+    /// The fit that shades a lobe; null for a mirror, and for a lobe whose width varies.
     const WarpedFit* fit(std::size_t lobe) const { return auto_order_ ? lobes_[lobe].fit.get() : fits_[lobe].get(); }
-    /// What a lobe whose width varies is shaded with; null for others.
+    /// The fits that shade a lobe whose width varies; null for others.
     const FitGrid* grid(std::size_t lobe) const { return grids_[lobe].get(); }
     /// Whether any lobe's width varies.
     bool varies() const {
         return std::any_of(lobes_.begin(), lobes_.end(), [](const Lobe& lobe) { return lobe.varying_width != 0; });
     }
-    /// Whether each view and light may have an order of its own; otherwise a fit has only one.
+    /// Whether orders are chosen per view and light; otherwise a fit has only one order.
     bool auto_order() const { return auto_order_; }
     double tolerance() const { return tolerance_; }
-    /// The lobes' weights at these views, in `values`, which is to outlive the result.
+    /// The lobes' weights at these views, stored in `values`, which must outlive the result.
     LobeWeights weights(std::span<const double> cos_theta_o, std::vector<Rgb>& values) const;
-    /// The least distance [rad] over which f·cos changes at this view: of its narrowest lobe; 0 for a mirror. widths:
-    /// of each lobe, where it varies.
+    /// Width of the narrowest lobe [rad], see narrowest() above. widths: of each lobe, read where it varies.
     double narrowest(double cos_theta_o, std::span<const float> widths) const;
-    /// A lobe's shape where its width, if it varies, is this.
+    /// A lobe's shape; `width` replaces its width if that varies.
     LobeShape shape(std::size_t lobe, float width) const {
         return lobes_[lobe].varying_width != 0 ? with_width(lobes_[lobe].shape, double{width}) : lobes_[lobe].shape;
     }

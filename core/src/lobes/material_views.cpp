@@ -12,8 +12,8 @@
 namespace shlight {
 namespace {
 
-/// Tolerances of a light of unit strength ÷ albedo: below the least rounding counts, and beyond the most no method's
-/// estimate of its error holds.
+/// Limits of a lobe's tolerance, an error ÷ albedo under a light of unit strength: below the least one rounding
+/// dominates, and beyond the most the methods' error estimates do not hold.
 constexpr double kLeastTolerance = 1e-6;
 constexpr double kMostTolerance = 0.1;
 
@@ -124,8 +124,8 @@ void LobeViews::find_albedos() {
     }
 }
 
-/// allowances: how much of the material's albedo there is for each of the lobe's; infinite where it has none itself.
-void LobeViews::choose_orders(double tolerance, std::span<const float> allowances) {
+/// tolerance_scales: albedo of the material ÷ albedo of this lobe at each view; infinite where the lobe is black.
+void LobeViews::choose_orders(double tolerance, std::span<const float> tolerance_scales) {
     const std::size_t count = positions_->size();
     const FitTable* table = layout_;
     const int only = table != nullptr  ? (chooses_ ? -1 : table->orders().front())
@@ -144,9 +144,9 @@ void LobeViews::choose_orders(double tolerance, std::span<const float> allowance
     }
     tolerance_.resize(count);
     for (std::size_t view = 0; view < count; ++view) {
-        black_[view] = std::isinf(allowances[view]) ? 1 : 0;
+        black_[view] = std::isinf(tolerance_scales[view]) ? 1 : 0;
         any_black_ = any_black_ || black_[view] != 0;
-        tolerance_[view] = static_cast<float>(tolerance * allowances[view]);
+        tolerance_[view] = static_cast<float>(tolerance * tolerance_scales[view]);
         if (black_[view] != 0) {
             continue;
         }
@@ -194,7 +194,7 @@ WarpArrays LobeViews::warp_arrays() {
 void LobeViews::interpolate_terms(std::size_t which, std::span<const std::uint32_t> used) {
     const FitTable& table = *layout_;
     if (stride_ == 0) {
-        // Wide enough for any of the orders.
+        // The stride fits every order.
         for (std::size_t i = 0; i < table.orders().size(); ++i) {
             stride_ = std::max(stride_, table.width(i));
         }
@@ -253,44 +253,44 @@ void MaterialViews::assign(const MaterialLobes& material, std::span<const double
     }
     for (std::size_t i = 0; i < lobe_count_; ++i) {
         if (weighed) {
-            find_allowances(i);
+            find_tolerance_scales(i);
         }
-        lobes_[i].choose_orders(material.tolerance(), allowances_);
+        lobes_[i].choose_orders(material.tolerance(), tolerance_scales_);
     }
 }
 
-void MaterialViews::find_allowances(std::size_t lobe) {
-    const LobeViews& own = lobes_[lobe];
-    allowances_.resize(positions_.size());
+void MaterialViews::find_tolerance_scales(std::size_t lobe) {
+    const LobeViews& lobe_views = lobes_[lobe];
+    tolerance_scales_.resize(positions_.size());
     for (std::size_t view = 0; view < positions_.size(); ++view) {
-        const Rgb light = own.weight(view) * own.albedo_[view];
-        float allowance = std::numeric_limits<float>::infinity();
+        const Rgb light = lobe_views.weight(view) * lobe_views.albedo_[view];
+        float scale = std::numeric_limits<float>::infinity();
         for (int channel = 0; channel < 3; ++channel) {
             if (light[channel] > 0) {
-                allowance = std::min(allowance, lobe_count_ == 1 ? 1.0F : whole_[view][channel] / light[channel]);
+                scale = std::min(scale, lobe_count_ == 1 ? 1.0F : whole_[view][channel] / light[channel]);
             }
         }
-        allowances_[view] = allowance;
+        tolerance_scales_[view] = scale;
     }
 }
 
-void MaterialViews::allow(double error, const Rgb& strength) {
+void MaterialViews::allow_error(double error, const Rgb& strength) {
     for (std::size_t i = 0; i < lobe_count_; ++i) {
-        find_allowances(i, error, strength);
-        lobes_[i].choose_orders(1, allowances_);
+        find_tolerance_scales(i, error, strength);
+        lobes_[i].choose_orders(1, tolerance_scales_);
         lobes_[i].relative_tolerance_ = tolerance_;
     }
 }
 
-void MaterialViews::find_allowances(std::size_t lobe, double error, const Rgb& strength) {
-    const LobeViews& own = lobes_[lobe];
+void MaterialViews::find_tolerance_scales(std::size_t lobe, double error, const Rgb& strength) {
+    const LobeViews& lobe_views = lobes_[lobe];
     const Rgb magnitude = glm::abs(strength);
     for (std::size_t view = 0; view < positions_.size(); ++view) {
-        const Rgb light = magnitude * own.weight(view) * own.albedo_[view];
+        const Rgb light = magnitude * lobe_views.weight(view) * lobe_views.albedo_[view];
         const double most = std::max({light.x, light.y, light.z});
-        allowances_[view] = own.weight(view) == Rgb(0)
-                                ? std::numeric_limits<float>::infinity()
-                                : static_cast<float>(std::clamp(error / most, kLeastTolerance, kMostTolerance));
+        tolerance_scales_[view] = lobe_views.weight(view) == Rgb(0)
+                                      ? std::numeric_limits<float>::infinity()
+                                      : static_cast<float>(std::clamp(error / most, kLeastTolerance, kMostTolerance));
     }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A material at many views: everything that all lights at a hit share.
+// A material at many views: the numbers that all lights at a hit share.
 #pragma once
 
 #include <cstdint>
@@ -16,20 +16,20 @@
 
 namespace shlight {
 
-/// Cosines of views, and where their lobes' tables are read.
+/// Cosines of views, and their positions in the lobes' tables.
 class ViewPositions {
   public:
-    /// tabulated: whether any lobe needs more than the cosines.
+    /// tabulated: whether any lobe reads tables, and not only the cosines.
     void assign(std::span<const double> cos_theta_o, bool tabulated);
 
     std::size_t size() const { return size_; }
     std::span<const double> cosine() const { return std::span(cosine_).first(size_); }
-    /// ω_o of each.
+    /// ω_o of each view.
     ViewArrays directions() const { return {sine_.data(), cosine_.data(), size_ == 1}; }
     Vec3d direction(std::size_t view) const { return {sine_[view], 0, cosine_[view]}; }
-    /// As view_kernel.h reads them.
+    /// The arrays of view_kernel.h.
     ViewOutput arrays();
-    /// `width` numbers from a column on of the rows `views`, as interpolate_views.
+    /// Interpolates `width` numbers from `column` on at the views listed, see interpolate_views().
     void interpolate(const FitTable& table, std::size_t column, std::size_t width, std::span<const std::uint32_t> views,
                      float* out, std::size_t stride) const;
     void interpolate(const TableNeighbours& neighbours, std::size_t row_size, std::size_t width,
@@ -41,17 +41,17 @@ class ViewPositions {
 
   private:
     std::size_t size_ = 0;
-    // Longer than size_, as view_kernel.h wants it.
+    // Padded beyond size_ to a multiple of kViewLanes.
     std::vector<double> cosine_, sine_, fitted_sine_, fitted_cosine_;
     std::vector<float> log_cosine_;
     std::vector<std::uint32_t> row_, all_;
     std::vector<float> weights_;
 };
 
-/// One lobe at these views. Keeps its memory from one assignment to the next.
+/// One lobe at all views of a ViewPositions. Memory is reused from one assignment to the next.
 class LobeViews {
   public:
-    /// Where its width varies, that of none of the views.
+    /// The shape, whose width is meaningless if it varies.
     const LobeShape& shape() const { return lobe_->shape; }
     LobeShape shape(std::size_t view) const {
         return lobe_->varying_width != 0 ? with_width(lobe_->shape, double{widths_[view]}) : lobe_->shape;
@@ -60,35 +60,34 @@ class LobeViews {
     const float* widths() const { return widths_.data(); }
     const ViewPositions& positions() const { return *positions_; }
 
-    /// Whether each light is integrated in the way that is cheapest for it, or else all by harmonics of one order.
+    /// Whether the cheapest method is chosen for each light; otherwise all lights take harmonics of one order.
     bool chooses() const { return chooses_; }
     /// Whether the views share the lobe's weight.
     bool has_one_weight() const { return weights_.stride == 0; }
-    /// What values of the lobe are multiplied by.
+    /// The colour that multiplies the lobe's f·cos.
     const Rgb& weight(std::size_t view) const { return weights_.values[view * weights_.stride + index_]; }
-    /// Reflects nothing at all.
+    /// Whether the lobe reflects nothing at this view, or at any view.
     bool is_black(std::size_t view) const { return black_[view] != 0; }
     bool is_black() const { return weighed_.empty(); }
     bool any_black() const { return any_black_; }
-    /// For lights that are not small; 0: their outline is integrated, or the lobe is a mirror.
+    /// Order for lights that are not small; 0: their contour is integrated, or the lobe is a mirror.
     int order(std::size_t view) const { return order_[view]; }
-    /// Whether the order keeps within the tolerance; only if that was to be judged.
+    /// Whether the order meets the tolerance; only if assign() was called with `judged`.
     bool within_tolerance(std::size_t view) const { return within_tolerance_[view] != 0; }
-    /// Of the radiance ÷ albedo of a light of unit strength; only if the lobe chooses.
+    /// Permitted error of radiance ÷ albedo under a light of unit strength; only if chooses().
     const float* tolerances() const { return tolerance_.data(); }
-    /// Of the radiance.
+    /// Permitted error of the radiance under a light of unit strength.
     double absolute_tolerance(std::size_t view) const { return double{tolerance_[view]} * albedo_[view]; }
     double albedo(std::size_t view) const { return albedo_[view]; }
 
-    /// What suffices beside absolute_tolerance(): a share of what the light brings; 0: nothing does.
+    /// Permitted error as a share of the light's radiance, where it exceeds absolute_tolerance(); 0: none.
     double relative_tolerance() const { return relative_tolerance_; }
     int largest_order() const { return layout_->orders().back(); }
-    /// Of the radiance; only if the lobe chooses.
+    /// Error of the radiance at largest_order(); only if chooses().
     double error_of_largest_order(std::size_t view) const;
 
-    /// As the kernels read it. order: of those views that `used` lists.
+    /// The kernels' arrays of the views in `used`, all of which have this order.
     LobeArrays arrays(int order, std::span<const std::uint32_t> used);
-    Warp warp(std::size_t view) const { return lobe_warp(shape(view), positions_->cosine()[view]); }
 
   private:
     friend class MaterialViews;
@@ -99,60 +98,60 @@ class LobeViews {
     void interpolate(std::size_t column, std::size_t width, std::span<const std::uint32_t> views, float* out,
                      std::size_t stride) const;
     void find_albedos();
-    void choose_orders(double tolerance, std::span<const float> allowances);
+    void choose_orders(double tolerance, std::span<const float> tolerance_scales);
     WarpArrays warp_arrays();
     void interpolate_terms(std::size_t which, std::span<const std::uint32_t> used);
 
     const Lobe* lobe_ = nullptr;
-    const WarpedFit* fit_ = nullptr;    // null: a mirror, or the width varies
-    const FitTable* layout_ = nullptr;  // of the fit or of the grid's tables; null: a mirror, or Lambert
+    const WarpedFit* fit_ = nullptr;    // null for a mirror, and where the width varies
+    const FitTable* layout_ = nullptr;  // table of the fit or of the grid; null for mirrors and Lambert
     ViewPositions* positions_ = nullptr;
     bool chooses_ = false, judged_ = false, any_black_ = false;
     LobeWeights weights_{};
-    std::size_t index_ = 0;  // of the lobe in its material
+    std::size_t index_ = 0;  // number of the lobe in its material
     double relative_tolerance_ = 0;
     std::vector<float> albedo_, tolerance_;
     std::vector<std::uint8_t> black_, order_, within_tolerance_;
-    std::vector<std::uint32_t> weighed_;  // views at which the weight is not 0, of which alone anything else is known
+    std::vector<std::uint32_t> weighed_;  // views with a weight above 0; other arrays are valid for these only
     AlignedFloats heads_;
     std::vector<float> widths_;                // padded
-    std::vector<const FitTable*> neighbours_;  // of each view, in the grid; empty: the width is the same
+    std::vector<const FitTable*> neighbours_;  // tables of the grid for each view; empty: one width for all
     std::vector<float> neighbour_weights_;
-    mutable std::vector<const float*> columns_;  // likewise, from a column on
+    mutable std::vector<const float*> columns_;  // their numbers from a column on
 
     bool has_warps_ = false;
     std::vector<double> warps_;  // the arrays of WarpOutput
-    std::size_t stride_ = 0;     // of terms_
+    std::size_t stride_ = 0;     // numbers per view in terms_
     AlignedFloats terms_;
-    std::vector<std::uint8_t> has_terms_;  // of each view: for which order, counted from 1
+    std::vector<std::uint8_t> has_terms_;  // for each view 1 + index of the order; 0: none
     std::vector<std::uint32_t> missing_;
 };
 
 class MaterialViews {
   public:
-    /// judged: whether each lobe's within_tolerance() will be asked for. material and weights are kept by reference.
+    /// judged: whether within_tolerance() will be called. material and weights are kept by reference.
     void assign(const MaterialLobes& material, std::span<const double> cos_theta_o, const LobeWeights& weights,
                 const LobeWidths& widths, bool judged);
 
-    /// Chooses anew, so that each lobe's radiance under a light of this strength is wrong by no more than `error`, or
-    /// the material's tolerance of that radiance. Precondition: auto_order() of the material.
-    void allow(double error, const Rgb& strength);
+    /// Chooses orders anew, so that each lobe's radiance under a light of this strength has an error of at most
+    /// `error`, or of the material's tolerance times that radiance. Precondition: auto_order() of the material.
+    void allow_error(double error, const Rgb& strength);
 
     std::size_t lobe_count() const { return lobe_count_; }
     LobeViews& lobe(std::size_t index) { return lobes_[index]; }
     const ViewPositions& positions() const { return positions_; }
 
   private:
-    void find_allowances(std::size_t lobe);
-    /// The same where an error is allowed whatever the albedo.
-    void find_allowances(std::size_t lobe, double error, const Rgb& strength);
+    void find_tolerance_scales(std::size_t lobe);
+    /// The scales for an error of the radiance that does not depend on the albedo.
+    void find_tolerance_scales(std::size_t lobe, double error, const Rgb& strength);
 
     ViewPositions positions_;
     std::size_t lobe_count_ = 0;
     double tolerance_ = 0;
     std::vector<LobeViews> lobes_;
     std::vector<Rgb> whole_;  // albedo of all lobes
-    std::vector<float> allowances_;
+    std::vector<float> tolerance_scales_;
 };
 
 }  // namespace shlight

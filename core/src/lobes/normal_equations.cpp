@@ -12,8 +12,8 @@
 namespace shlight {
 namespace {
 
-/// Tikhonov's λ, against Gram eigenvalues of at most 1. Fits that converge keep coefficients below ten and lose nothing
-/// above a relative error of about 1e-5; fits that do not would otherwise reach thousands.
+/// Tikhonov's λ; eigenvalues of the Gram matrix are at most 1. Fits that converge keep coefficients below ten and a
+/// relative error of about 1e-5. Without λ the coefficients of others would reach thousands.
 constexpr double kRidge = 1e-7;
 
 constexpr int triangle(int row, int column) {
@@ -50,13 +50,13 @@ NormalEquations::NormalEquations(const HeightBasis& basis, std::span<const doubl
             const auto values = basis.values(m + row, m);
             std::transform(values.begin(), values.end(), weights.begin(), weighted.begin(),
                            [](double value, double weight) { return 2 * std::numbers::pi * weight * value; });
-            const double* own = &factor[triangle(row, 0)];
+            const double* pivot_row = &factor[triangle(row, 0)];
             for (int column = 0; column <= row; ++column) {
                 const double* other = &factor[triangle(column, 0)];
                 double sum = std::inner_product(weighted.begin(), weighted.end(), basis.values(m + column, m).begin(),
                                                 row == column ? kRidge : 0.0);
                 for (int k = 0; k < column; ++k) {
-                    sum -= own[k] * other[k];
+                    sum -= pivot_row[k] * other[k];
                 }
                 factor[triangle(row, column)] = row == column ? std::sqrt(sum) : sum / other[column];
             }
@@ -81,7 +81,7 @@ void NormalEquations::reduce(std::span<double> moments) const {
 }
 
 void NormalEquations::solve(std::span<const double> reduced, int order, std::span<double> coefficients) const {
-    // Each unknown is taken out of all equations above it as soon as it is known: along rows of the factor.
+    // A solved unknown is subtracted from all equations above it, so that rows of the factor are read in order.
     std::array<double, kMaxOrder> rest;
     for (int m = 0; m < order; ++m) {
         for (int i = 0; i < order - m; ++i) {
@@ -99,7 +99,7 @@ void NormalEquations::solve(std::span<const double> reduced, int order, std::spa
 }
 
 double NormalEquations::squared_error(std::span<const double> reduced, int order, double norm_squared) const {
-    // min |F - Y f|² + λ|f|² = |F|² - |y|², and the fit's own error is that without the second term.
+    // min |F - Y f|² + λ|f|² = |F|² - |y|²; the fit's error is this minimum without its second term.
     std::array<double, kCosineMax> coefficients;
     solve(reduced, order, coefficients);
     const auto count = static_cast<std::size_t>(cosine_count(order));

@@ -15,7 +15,7 @@
 
 namespace shlight {
 
-/// P̄_l^m, without the √2 of m > 0, at some heights z.
+/// Values of P̄_l^m, without the factor √2 of m > 0, at a list of heights z.
 class HeightBasis {
   public:
     HeightBasis(std::span<const double> heights, int order);
@@ -31,10 +31,10 @@ class HeightBasis {
     std::vector<double> values_;  // cosine_count(order) × heights
 };
 
-/// Of all orders up to that of a basis. Cosine terms and their moments are in cosine_index layout.
+/// The fits of all orders up to that of a basis. Cosine terms and their moments are in cosine_index layout.
 class NormalEquations {
   public:
-    /// weights: of the heights, ∫ dz = Σ weights.
+    /// weights: quadrature weights of the heights, ∫ dz = Σ weights.
     NormalEquations(const HeightBasis& basis, std::span<const double> weights);
 
     /// y = L⁻¹ b, in place, for moments b = ∫ f Y_lm dω. Its entries serve every order.

@@ -18,7 +18,7 @@
 namespace shlight {
 namespace {
 
-/// Over the upper hemisphere, of order 64; exact with 64 Gauss points (degree ≤ 126).
+/// The fits of order 64 over the upper hemisphere. Their Gram matrix is exact with 64 Gauss points (degree ≤ 126).
 const NormalEquations& hemisphere() {
     static const NormalEquations equations = [] {
         const GaussRule& rule = gauss_rule(kMaxGaussPoints);
@@ -69,7 +69,7 @@ void PlainFit::coefficients(double cos_theta_o, int order, float* cosine_terms) 
         fit_lambert(order, cosine_terms);
         return;
     }
-    // The fit is linear in the lobe: what is interpolated between views may be solved afterwards.
+    // The fit is linear in the lobe, so that interpolation between views may come before the solution.
     std::array<double, kCosineMax> reduced, terms;
     interpolate_terms(std::span<const double>(reduced_), static_cast<float>(cos_theta_o), order, reduced.data());
     hemisphere().solve(reduced, order, terms);
@@ -78,7 +78,7 @@ void PlainFit::coefficients(double cos_theta_o, int order, float* cosine_terms) 
 }
 
 std::shared_ptr<const PlainFit> plain_fit(const LobeShape& shape) {
-    // Some 2 MB each: a scene that is exported anew for every picture asks again.
+    // A fit takes some 2 MB. They are kept because a scene that is exported anew for every picture asks again.
     constexpr std::size_t kRecentFits = 16;
     static RecentValues<LobeShape, PlainFit> recent(kRecentFits);
     return recent.get(shape, [&] { return std::make_shared<const PlainFit>(shape); });

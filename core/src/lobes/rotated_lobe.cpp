@@ -29,7 +29,8 @@ Rgb RotatedLobe::reflected(const ColorHarmonics& light, const float* lobe, int o
 }
 
 void RotatedLobe::set_zonal(int order) {
-    // An expansion about an axis is the sum of P_l(ω·axis) = 4π/(2l+1) Σ_m Y_lm(axis) Y_lm(ω).
+    // A zonal expansion about an axis is a sum of P_l(ω·axis) = 4π/(2l+1) Σ_m Y_lm(axis) Y_lm(ω) (Eqs. 6 and 7 of the
+    // paper).
     sh_basis(Vec3f(frame_[2]), order, coefficients_.data());
     for (int l = 0; l < order; ++l) {
         const float factor = terms_[static_cast<std::size_t>(cosine_index(l, 0))] *

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A lobe's harmonics in the frame of the light: it is the lobe that is turned, once for three colour channels.
+// A lobe's harmonics, rotated into the frame of the light: one rotation serves three colour channels.
 #pragma once
 
 #include <array>
@@ -18,15 +18,15 @@ namespace shlight {
 /// Harmonics of a light in three colour channels.
 using ColorHarmonics = std::array<std::vector<float>, 3>;
 
-/// At one shading point.
+/// Lobes at one shading point.
 class RotatedLobe {
   public:
     /// frame: a rotation, whose columns are the axes of the shading frame in the frame of the light.
     explicit RotatedLobe(const glm::dmat3& frame) : frame_(frame) {}
 
-    /// order² coefficients of f·cos, until the next call.
+    /// The order² coefficients of f·cos in the frame of the light; valid until the next call.
     const float* coefficients(const ShProjection& lobe, float cos_theta_o, int order);
-    /// What a lobe of such coefficients reflects of a light with as many or more.
+    /// Eq. 5 of the paper: Σ lobe · light over the bands below `order`; the light has at least as many coefficients.
     static Rgb reflected(const ColorHarmonics& light, const float* lobe, int order);
 
   private:

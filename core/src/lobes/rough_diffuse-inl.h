@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Diffuse lobes that are not Lambert's, in lanes (lobe_lanes-inl.h). Included once per instruction set.
+// Rough diffuse lobes in lanes (lobe_lanes-inl.h). Included once per instruction set.
 #if defined(SHLIGHT_KERNELS_ROUGH_DIFFUSE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_ROUGH_DIFFUSE_INL_H_
 #undef SHLIGHT_KERNELS_ROUGH_DIFFUSE_INL_H_
@@ -45,12 +45,12 @@ class DiffuseLanes {
         return hn::Mul(cos_i, all(Floats(), 1 / std::numbers::pi));
     }
     template <class D>
-    HWY_INLINE V<D> over_bell(D d, V<D> cos_i, V<D> cos_half, const View<D>& view) const {
+    HWY_INLINE V<D> over_ndf(D d, V<D> cos_i, V<D> cos_half, const View<D>& view) const {
         return times_pi(d, cos_i, hn::MulAdd(hn::Add(cos_half, cos_half), cos_half, all(d, -1)), view, 4);
     }
 
   private:
-    /// π f·cos times a factor; between: ω_i·ω_o.
+    /// `factor` · π · f·cos. between: ω_i·ω_o.
     template <class D>
     HWY_INLINE V<D> times_pi(D d, V<D> cos_i, V<D> between, const View<D>& view, double factor) const {
         const auto zero = hn::Zero(d);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Diffuse lobes that are not Lambert's, one direction at a time. All are spread about as Lambert's.
+// Rough diffuse lobes, one direction at a time. All draw rays with Lambert's density.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -14,16 +14,16 @@ namespace {
 
 using std::numbers::pi;
 
-/// Of what the hemisphere's outline gives.
+/// Absolute error of the albedo, which is integrated along the horizon.
 constexpr double kDiffuseAlbedoTolerance = 1e-5;
 
-/// What light and view have in common along the surface, over the larger of their cosines where they agree.
+/// Oren–Nayar's s/t: the product of both directions' tangential parts, divided by the larger cosine where positive.
 double agreement(const Vec3d& wi, const Vec3d& wo) {
     const double t = wi.x * wo.x + wi.y * wo.y;
     return t > 0 ? t / std::max(wi.z, wo.z) : t;
 }
 
-/// 2 / (1 + √(1 + α² tan²θ)) with α² = tan²θ_o / 8, θ between light and ω_o.
+/// G₁ of GGX, 2 / (1 + √(1 + α² tan²θ)), with α² = tan²θ_o / 8 and θ the angle between light and ω_o.
 double bump_shadow(const Vec3d& wi, const Vec3d& wo) {
     const double cosine = glm::dot(wi, wo);
     if (!(cosine > 0)) {
@@ -37,7 +37,7 @@ double bump_shadow(const Vec3d& wi, const Vec3d& wo) {
 }  // namespace
 
 double oren_nayar_loss(double cosine) {
-    // The series about grazing angles stands where the quotient would cancel.
+    // At grazing angles the quotient would cancel; its series is used there.
     const double edge = pi / 2 - 2.0 / 3;
     if (cosine < kGrazingLoss) {
         return cosine;

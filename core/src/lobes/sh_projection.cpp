@@ -16,7 +16,7 @@
 namespace shlight {
 namespace {
 
-/// Lobes kept, some 1 MB each.
+/// Number of lobes that are kept, some 1 MB each.
 constexpr std::size_t kRecentLobes = 32;
 
 }  // namespace

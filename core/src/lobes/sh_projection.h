@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// f·cos as harmonics of the whole sphere, 0 below the horizon: what an expansion of light that is not clipped at the
-// horizon is multiplied with. (Least-squares fits as in plain_fit.h may be anything down there.)
+// f·cos projected onto harmonics of the whole sphere (Eq. 3 of the paper), 0 below the horizon. It is multiplied with
+// expansions of light that are not clipped at the horizon. (The fits of plain_fit.h have arbitrary values there.)
 #pragma once
 
 #include <memory>
@@ -11,22 +11,22 @@
 
 namespace shlight {
 
-/// One shape at all view angles, ω_o = (sinθ_o, 0, cosθ_o): only cosine terms are not 0.
+/// One shape at all view angles, ω_o = (sinθ_o, 0, cosθ_o), for which all sine terms vanish.
 class ShProjection {
   public:
     /// Precondition: not a mirror.
     explicit ShProjection(const LobeShape& shape);
 
-    /// Whether only degree 0 is there, at all views alike.
+    /// Whether only terms of degree 0 exist and the view does not matter.
     bool is_zonal() const { return node_count() == 1; }
     /// Writes the cosine_count(order) cosine terms for one view angle.
     void coefficients(float cos_theta_o, int order, float* cosine_terms) const;
 
-    /// View angles that are tabulated: 1, or those of view_grid.h.
+    /// Number of tabulated view angles: 1, or that of view_grid.h.
     std::size_t node_count() const { return powers_.size() / kMaxOrder; }
     /// Σ_m f_lm² of the bands l = 0 … 63 at a node.
     const float* powers(std::size_t node) const { return &powers_[node * kMaxOrder]; }
-    /// The same of all bands that follow.
+    /// Σ f_lm² of all bands from 64 on.
     float tail(std::size_t node) const { return tails_[node]; }
 
   private:
@@ -36,7 +36,7 @@ class ShProjection {
     std::vector<float> powers_, tails_;
 };
 
-/// The lobe of a shape, shared by everyone who asks for the same one; the last ones asked for are kept. Thread-safe.
+/// The projection of a shape, shared by all callers; the most recent ones are kept. Thread-safe.
 std::shared_ptr<const ShProjection> sh_projection(const LobeShape& shape);
 
 }  // namespace shlight

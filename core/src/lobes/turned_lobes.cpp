@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lobes/turned_lobes.cpp"
 #include <hwy/foreach_target.h>
-// Highway's vocabulary, and what is compiled once per instruction set, come after it.
+// Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include <type_traits>
@@ -19,7 +19,7 @@ namespace {
 static_assert(kTurnedLanes % kLaneCount<Floats> == 0);
 static_assert(std::is_standard_layout_v<TurnedLobe> && sizeof(TurnedLobe) % sizeof(float) == 0);
 
-/// A vector of as many lobes' numbers for each degree of a band, or each multiple of an angle.
+/// Lane vectors, one for each degree of a band, and one for each multiple of an angle.
 using Band = std::array<float, 2 * kMaxOrder * kLaneCount<Floats>>;
 using Multiples = std::array<float, kMaxOrder * kLaneCount<Floats>>;
 
@@ -31,8 +31,8 @@ HWY_INLINE void store(V<Floats> value, float* vectors, int i) {
     hn::Store(value, Floats(), vectors + static_cast<std::size_t>(i) * kLaneCount<Floats>);
 }
 
-/// The same number of each lobe, given where the first has it.
-HWY_INLINE V<Floats> of_each(const float* first) {
+/// Gathers one number from each lobe of the lanes; `first` points to that of the first lobe.
+HWY_INLINE V<Floats> gather_each(const float* first) {
     const hn::RebindToSigned<Floats> di;
     constexpr int kStride = sizeof(TurnedLobe) / sizeof(float);
     return hn::GatherIndex(Floats(), first, hn::Mul(hn::Iota(di, 0), hn::Set(di, kStride)));
@@ -43,11 +43,11 @@ struct TurnLanes {
 
     HWY_INLINE void load_from(const BandRotation::Turn& first, int order) {
         for (int m = 0; m < order; ++m) {
-            store(of_each(&first.cosines[static_cast<std::size_t>(m)]), cosines.data(), m);
-            store(of_each(&first.sines[static_cast<std::size_t>(m)]), sines.data(), m);
+            store(gather_each(&first.cosines[static_cast<std::size_t>(m)]), cosines.data(), m);
+            store(gather_each(&first.sines[static_cast<std::size_t>(m)]), sines.data(), m);
         }
     }
-    /// Degrees m and -m.
+    /// Rotates the terms of degrees m and -m.
     HWY_INLINE void apply(int m, V<Floats>& even, V<Floats>& odd) const {
         const auto c = load(cosines.data(), m);
         const auto s = load(sines.data(), m);
@@ -90,7 +90,7 @@ HWY_INLINE void multiply(const std::vector<int>& from, const std::vector<int>& t
     }
 }
 
-/// Some lobes, one lane for each.
+/// A group of lobes, one in each lane.
 class LobeLanes {
   public:
     LobeLanes(const TurnedLobe& first, int order) : first_(&first) {
@@ -99,12 +99,12 @@ class LobeLanes {
         }
     }
 
-    /// As BandRotation::apply but for the last turn; degree m of the band is vector l + m of the result.
+    /// BandRotation::apply without its last turn; degree m of the band is vector l + m of the result.
     HWY_INLINE const float* turn(int l) {
         const QuarterTurn& quarter = QuarterTurn::get();
-        store(of_each(&first_->terms[at(l, 0)]), band_.data(), l);
+        store(gather_each(&first_->terms[at(l, 0)]), band_.data(), l);
         for (int m = 1; m <= l; ++m) {
-            auto even = of_each(&first_->terms[at(l, m)]);
+            auto even = gather_each(&first_->terms[at(l, m)]);
             auto odd = hn::Zero(Floats());
             turns_[0].apply(m, even, odd);
             store(even, band_.data(), l + m);
@@ -138,14 +138,14 @@ void reflect(const TurnedLobe* lobes, int order, const ColorHarmonics& light, Rg
     LobeLanes lanes(*lobes, order);
     std::array<V<Floats>, 3> sums;
     for (std::size_t c = 0; c < 3; ++c) {
-        sums[c] = hn::Mul(of_each(lobes->terms.data()), hn::Set(d, light[c][0]));
+        sums[c] = hn::Mul(gather_each(lobes->terms.data()), hn::Set(d, light[c][0]));
     }
     for (int l = 1; l < order; ++l) {
         const float* band = lanes.turn(l);
         const auto add = [&](int m, V<Floats> value) HWY_ATTR {
             for (std::size_t c = 0; c < 3; ++c) {
-                const float own = light[c][static_cast<std::size_t>(coefficient_index(l, m))];
-                sums[c] = hn::MulAdd(value, hn::Set(d, own), sums[c]);
+                const float coefficient = light[c][static_cast<std::size_t>(coefficient_index(l, m))];
+                sums[c] = hn::MulAdd(value, hn::Set(d, coefficient), sums[c]);
             }
         };
         add(0, load(band, l));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What lobes of any frames reflect of one light's harmonics: in lanes, one for each lobe. Turning a lobe of 64 bands
-// takes some 64³ products, by matrices that all lobes share.
+// Light given in harmonics, reflected by lobes with different frames, one lane for each lobe. Rotating a lobe of 64
+// bands takes some 64³ products with matrices that all lobes share.
 #pragma once
 
 #include <array>
@@ -15,17 +15,16 @@
 
 namespace shlight {
 
-/// The cosine terms of a lobe, those of all bands that it is not turned in 0, and the way from its frame to the
-/// light's.
+/// A lobe's cosine terms, 0 in bands that are not used, and the rotation from its frame to the light's.
 struct TurnedLobe {
     std::array<float, kCosineMax> terms;
     BandRotation rotation;
 };
 
-/// Lobes of one call are a multiple of this.
+/// The number of lobes in a call is a multiple of this.
 inline constexpr std::size_t kTurnedLanes = 16;
 
-/// Of the bands below an order.
+/// reflected[i]: Eq. 5 of the paper for lobes[i], summed over the bands below `order`.
 void reflect_turned(std::span<const TurnedLobe> lobes, int order, const ColorHarmonics& light,
                     std::span<Rgb> reflected);
 

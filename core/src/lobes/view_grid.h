@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The grid of view angles that tables of unwarped harmonics share, and interpolation on it.
+// The grid of view angles in tables of unwarped harmonics, and interpolation on it.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +12,10 @@ namespace shlight {
 inline constexpr int kViewNodes = 129;
 
 double view_angle(int node);
-/// The same as a number of steps, for any view.
+/// The position of any view on the grid, in steps.
 double view_position(double cos_theta_o);
 
-/// Two neighbouring nodes, for what varies slowly or only steers a choice: (1 - t) · low + t · (low + 1).
+/// The two nodes next to a view, for linear interpolation (1 - t) · low + t · (low + 1) of slowly varying numbers.
 struct ViewInterval {
     std::size_t low;
     double t;
@@ -23,12 +23,12 @@ struct ViewInterval {
     explicit ViewInterval(double cos_theta_o);
 };
 
-/// Cubic interpolation of cosine terms between four nodes. Beyond θ_o = 0 the table goes on by symmetry: a term of
-/// degree m is multiplied by (-1)^m when the view is mirrored.
-/// rows: kCosineMax terms for each node, or for all views alike; writes cosine_count(order) of them.
+/// Cubic interpolation of cosine terms between four nodes. Beyond θ_o = 0 the table continues by symmetry: mirroring
+/// the view multiplies a term of degree m by (-1)^m.
+/// rows: kCosineMax terms for each node, or one row for all views; writes cosine_count(order) terms.
 template <class T>
 void interpolate_terms(std::span<const T> rows, float cos_theta_o, int order, T* cosine_terms);
-/// The same of numbers that do not change when the view is mirrored, one for each node.
+/// The same for numbers that mirroring the view does not change, one for each node.
 float interpolate_even(std::span<const float> nodes, float cos_theta_o);
 
 }  // namespace shlight

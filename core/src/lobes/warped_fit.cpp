@@ -29,8 +29,8 @@ Warp lobe_warp(const LobeShape& shape, double cos_theta_o) {
     if (!is_glossy(shape)) {
         return {};
     }
-    // Found by minimising the residual of order 12: the lobe's width over the warped sphere, 5 α cos^0.4 θ_o for narrow
-    // ones, saturating where there is nothing to gain.
+    // Eq. 37 of docs/theory.md, found by minimising the residual of order 12: 5 α cos^0.4 θ_o for narrow lobes,
+    // saturating for wide ones, which gain nothing.
     const double cosine = std::clamp(cos_theta_o, kLeastFittedCosine, 1.0);
     const double width = 5 * lobe_width(shape) * std::pow(cosine, 0.4);
     return {std::acos(cosine), width / std::pow(1 + width * std::sqrt(width), 2.0 / 3)};
@@ -66,22 +66,6 @@ double WarpedFit::number(double cos_theta_o, std::size_t column) const {
     float value = 0;
     table_->look_up(cos_theta_o, column, {&value, 1});
     return value;
-}
-
-int WarpedFit::order_for(double cos_theta_o, double tolerance) const {
-    if (table_ && cos_theta_o < kLeastFittedCosine) {
-        return 0;
-    }
-    for (const int order : orders()) {
-        if (shading_error(cos_theta_o, order) <= tolerance) {
-            return order;
-        }
-    }
-    return 0;
-}
-
-Warp WarpedFit::warp(double cos_theta_o) const {
-    return lobe_warp(shape_, cos_theta_o);
 }
 
 void WarpedFit::coefficients(double cos_theta_o, int order, float* cosine_terms) const {

@@ -9,12 +9,12 @@
 namespace shlight {
 namespace {
 
-/// Rotation matrices of real harmonics, a band from the one before (Ivanic & Ruedenberg 1996 and its erratum 1998):
-/// element (m, n) is the coefficient of Y_lm in the turned Y_ln.
+/// Rotation matrices of real harmonics, each band from the one before (Ivanic & Ruedenberg 1996, erratum 1998). Element
+/// (m, n) is the coefficient of Y_lm in the rotated Y_ln.
 class BandMatrices {
   public:
     explicit BandMatrices(const glm::dmat3& rotation) {
-        // Band 1 is the vector (y, z, x).
+        // The harmonics of band 1 are proportional to (y, z, x).
         constexpr std::array<int, 3> kAxes = {1, 2, 0};
         band_.resize(9);
         for (int m = -1; m <= 1; ++m) {
@@ -85,7 +85,7 @@ class BandMatrices {
     std::vector<double> band_, before_;
 };
 
-/// Harmonics by what x → -x and a second mirror make of them: 0 … 3.
+/// Number 0 … 3 of a symmetry class: whether a harmonic is odd under x → -x, and under a second mirror.
 int symmetry(bool odd_in_x, bool odd_in_other) {
     return (odd_in_x ? 2 : 0) + (odd_in_other ? 1 : 0);
 }
@@ -184,7 +184,7 @@ BandRotation::BandRotation(const glm::dmat3& rotation) {
     const Vec3d& z = rotation[2];
     const double sine = std::hypot(z.x, z.y);
     second.set(z.z, sine);
-    // Near the poles the outer angles are only known together.
+    // Near the poles only the sum of the outer angles is known.
     if (sine > 1e-9) {
         first.set(-rotation[0].z / sine, rotation[1].z / sine);
         third.set(z.x / sine, z.y / sine);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// Turning expansions in spherical harmonics, band by band.
+// Rotation of expansions in spherical harmonics, band by band.
 //
-// A turn is about z by c, about y by b, about z by a; turns about z mix pairs of degrees only, and the one about y is
-// one about z between two quarter turns about x. Their matrices are fixed, and of their elements only those are not 0
-// whose harmonics have the right symmetries: under a quarter turn y takes the place of z, x stays. So a band costs (2l
-// + 1)² / 2 products.
+// A rotation is a turn about z by c, about y by b, and about z by a. Turns about z mix only pairs of degrees, and the
+// turn about y is one about z between two quarter turns about x. The quarter turn's matrices are fixed. It takes y to z
+// and keeps x, so that an element is 0 unless both harmonics have matching symmetries: a band costs (2l + 1)² / 2
+// products.
 #pragma once
 
 #include <array>
@@ -22,15 +22,15 @@ class QuarterTurn {
   public:
     static const QuarterTurn& get();
 
-    /// out: of g(ω) = f(turn⁻¹ ω), from the coefficients of band l of f; degrees -l … l.
+    /// in: coefficients of band l of f, degrees -l … l. out: those of g(ω) = f(turn⁻¹ ω).
     void apply(int l, const float* in, float* out) const;
     /// The opposite turn.
     void apply_inverse(int l, const float* in, float* out) const;
 
-    /// Degrees of one symmetry that go to degrees of another, and the matrix between them. Degree m is number l + m.
+    /// The matrix from degrees with one symmetry to degrees with another. Degree m has the number l + m.
     struct Block {
         std::vector<int> from, to;
-        std::vector<float> columns;  ///< of each degree of `from`, to.size() numbers
+        std::vector<float> columns;  ///< to.size() numbers for each degree of `from`
         std::vector<float> rows;     ///< the same, transposed
     };
     const std::array<Block, 4>& blocks(int l) const { return bands_[static_cast<std::size_t>(l)]; }
@@ -41,22 +41,22 @@ class QuarterTurn {
     std::vector<std::array<Block, 4>> bands_;
 };
 
-/// Expansions turned by one rotation.
+/// Rotates expansions by one rotation.
 class BandRotation {
   public:
-    /// Orthogonal, of determinant 1: takes the vectors of f's frame to those of the result's.
+    /// rotation: orthogonal with determinant 1; takes vectors of f's frame to those of the result's.
     explicit BandRotation(const glm::dmat3& rotation);
 
     /// coefficients: order² of f, replaced by those of g(ω) = f(rotation⁻¹ ω).
     void apply(int order, float* coefficients) const;
 
-    /// cos mφ, sin mφ.
+    /// A turn about z by φ: cos mφ and sin mφ.
     struct Turn {
         std::array<float, kMaxOrder> cosines, sines;
         void set(double cosine, double sine);
         void apply(int l, float* band) const;
     };
-    /// About z, about y, about z.
+    /// The turns about z, y and z, in the order in which they apply.
     const std::array<Turn, 3>& turns() const { return turns_; }
 
   private:

@@ -13,7 +13,7 @@
 namespace shlight {
 namespace {
 
-/// As the kernel does, and where the square of a direction leaves T.
+/// basis_rows() for directions of any length: where their squares leave T's range they are normalised in double.
 template <class T>
 void rows_of_directions(std::span<const Vec3<T>> directions, int order, T* basis, Output output = Output::cached) {
     if (basis_rows(directions.data(), directions.size(), order, basis, output)) {
@@ -25,7 +25,7 @@ void rows_of_directions(std::span<const Vec3<T>> directions, int order, T* basis
     basis_rows(units.data(), units.size(), order, basis, output);
 }
 
-/// Directions whose basis is in the cache at a time.
+/// Number of directions whose basis is in the cache at a time.
 constexpr std::size_t kBlock = 64;
 
 }  // namespace

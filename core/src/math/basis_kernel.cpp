@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "math/basis_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Highway's vocabulary, and what is compiled once per instruction set, come after it.
+// Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
@@ -25,13 +25,13 @@ struct Directions {
     V<Lanes<T>> x, y, z, sine_squared;
 };
 
-/// Directions of a vector's lanes as rows of three; false if one is not finite or zero.
+/// Loads directions, stored as rows of three, and normalises them; false if one is not finite or zero.
 template <class T>
 HWY_INLINE bool load(const T* rows, Directions<T>& u) {
     const Lanes<T> d;
     hn::LoadInterleaved3(d, rows, u.x, u.y, u.z);
     const auto largest = hn::Max(hn::Max(hn::Abs(u.x), hn::Abs(u.y)), hn::Abs(u.z));
-    // A NaN may be lost in a maximum, not in a sum.
+    // A maximum may drop a NaN, a sum does not.
     const auto sum = hn::Add(hn::Add(u.x, u.y), u.z);
     const auto finite = hn::And(hn::IsFinite(largest), hn::IsFinite(hn::Mul(sum, all(d, 0.125))));
     if (!hn::AllTrue(d, hn::And(finite, hn::Gt(largest, hn::Zero(d))))) {
@@ -73,7 +73,7 @@ HWY_NOINLINE void write(const Directions<T>& u, std::size_t order, const RowPoin
     writer.finish();
 }
 
-/// Directions near a pole, collected until they fill a vector.
+/// Collects directions near a pole until they fill a vector.
 template <class T>
 class PolarQueue {
   public:

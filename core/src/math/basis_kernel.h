@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The basis in many directions at once.
+// Eq. 2 of the paper, the basis of real harmonics, in many directions at once.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace shlight {
 
-/// rows[i]: where the order² values of direction i go. Directions of any length > 0; they are scaled by their largest
-/// component first, which keeps the squares of tiny and huge ones in range.
+/// rows: order² values for each direction. Directions may have any length > 0; they are divided by their largest
+/// component first, which keeps squares in range.
 /// Returns whether all directions were finite and not zero; if not, some rows may not have been written.
 bool basis_rows(const Vec3<float>* directions, std::size_t count, int order, float* rows,
                 Output output = Output::cached);

@@ -7,12 +7,12 @@
 
 namespace shlight {
 
-/// Cubic interpolation weights over four neighbours of equally spaced nodes, at `position` in units of their distance.
+/// Weights of cubic interpolation between four equally spaced nodes. position: in units of their distance.
 struct CubicStencil {
     int first;
     std::array<float, 4> weights;
 
-    /// least: index of the first node that may be used, count: nodes beyond index 0.
+    /// least: smallest node index that may be used; count: one more than the largest.
     CubicStencil(double position, int least, int count)
         : first(std::clamp(static_cast<int>(std::floor(position)) - 1, least, count - 4)) {
         const auto t = static_cast<float>(position - first);  // 1 … 2 between the middle nodes

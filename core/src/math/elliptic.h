@@ -10,14 +10,14 @@
 
 namespace shlight {
 
-/// Of the complementary modulus k' in (0, 1]; m = 1 - k'².
+/// sn, cn and dn for the complementary modulus k' in (0, 1]; the parameter is m = 1 - k'².
 template <class Real>
 class EllipticFunctions {
   public:
     explicit EllipticFunctions(Real complement) : complement_(complement) {
         Real a = 1;
         Real b = complement;
-        // Each mean doubles the digits; from k' = 1e-300 on it takes eleven of them to begin with.
+        // Each step doubles the number of correct digits; k' = 1e-300 takes eleven more steps to begin with.
         while (std::abs(a - b) > std::numeric_limits<Real>::epsilon() * a && steps_ < kMostSteps) {
             levels_[steps_++] = {a, b, (a - b) / (a + b)};
             const Real mean = (a + b) / 2;
@@ -35,7 +35,7 @@ class EllipticFunctions {
     struct Values {
         Real sn, cn, dn;
     };
-    /// By Gauss's (descending Landen's) transformation. Its 1 - ratio sn² is formed as a sum, which cannot cancel.
+    /// Gauss's (descending Landen's) transformation. 1 - ratio sn² is formed as a sum, which cannot cancel.
     Values at(Real u) const {
         const Real phi = mean_ * u;
         Values f = {std::sin(phi), std::cos(phi), 1};
@@ -48,10 +48,10 @@ class EllipticFunctions {
         return f;
     }
 
-    /// u with sn u : cn u = k'⁻¹ sin τ : cos τ, growing with τ: 4K more for a whole turn.
+    /// The argument u with sn u : cn u = k'⁻¹ sin τ : cos τ. It grows with τ, by 4K for a whole turn.
     Real argument(Real tau) const {
         constexpr Real kTurn = 2 * std::numbers::pi_v<Real>;
-        // Of all angles with a tangent the one in the quadrant of `angle`, on whose edge rounding may have it.
+        // The angle with this sine and cosine that lies in the quadrant of `angle`, which rounding may put on its edge.
         const auto next_to = [](Real angle, Real sine, Real cosine) {
             const Real other = std::atan2(sine, cosine);
             return other + kTurn * std::round((angle - other) / kTurn);

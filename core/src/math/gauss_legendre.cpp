@@ -30,7 +30,7 @@ GaussRule make_rule(int n) {
     const auto size = static_cast<std::size_t>(n);
     GaussRule rule{std::vector<double>(size), std::vector<double>(size)};
     for (std::size_t i = 0; i < size; ++i) {
-        // Newton from Tricomi's estimate converges to the last bit in four steps for every n here.
+        // Newton's method from Tricomi's estimate converges to the last bit in four steps for every n here.
         long double x = std::cos(std::numbers::pi_v<long double> * (static_cast<long double>(i) + 0.75L) /
                                  (static_cast<long double>(n) + 0.5L));
         for (int step = 0; step < 5; ++step) {

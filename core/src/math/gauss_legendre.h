@@ -11,7 +11,7 @@ struct GaussRule {
     std::vector<double> weights;  ///< sum 1
 };
 
-/// The largest rule that gauss_rule keeps.
+/// Number of points of the largest rule.
 inline constexpr int kMaxGaussPoints = 64;
 
 /// The rule of 1 … kMaxGaussPoints points, computed once.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Normalised associated Legendre functions in lanes, in the form that survives the pole (legendre.h has the constants
-// and what they mean):  P̂_l^m(z) = P̄_l^m(z) / sin^m θ, band after band. Included once per instruction set.
+// Normalised associated Legendre functions in lanes, divided by sin^m θ so that they are finite and exact at the poles:
+// P̂_l^m(z) = P̄_l^m(z) / sin^m θ, band after band (constants: legendre.h). Included once per instruction set.
 #if defined(SHLIGHT_KERNELS_LEGENDRE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_LEGENDRE_INL_H_
 #undef SHLIGHT_KERNELS_LEGENDRE_INL_H_
@@ -22,9 +22,9 @@ namespace shlight::HWY_NAMESPACE {
 
 /// P̂_l^0 … P̂_l^l for l = 0, 1, 2, … in lanes.
 ///
-/// kAtPole: on the differences of R_l = P̂_l / P̂_l(1), for lanes near a pole,
+/// kAtPole: for lanes near a pole, the recurrence (2) of docs/theory.md on the differences of R_l = P̂_l / P̂_l(1),
 ///   (l+m) (R_l - R_{l-1}) = (l-m-1) (R_{l-1} - R_{l-2}) - (2l-1) (1-|z|) R_{l-1},   1 - |z| = sin²θ / (1 + |z|),
-/// and P̂_l^m(-z) = (-1)^(l-m) P̂_l^m(z). Lanes away from the poles take the usual recurrence: sort them.
+/// with P̂_l^m(-z) = (-1)^(l-m) P̂_l^m(z). Other lanes take the usual recurrence, so callers must sort them.
 template <class T, bool kAtPole>
 class LegendreLanes {
     using D = Lanes<T>;
@@ -40,7 +40,7 @@ class LegendreLanes {
         put(other_, 0, hn::Zero(d));
     }
 
-    /// P̂_l^m of the present band, m = 0 … l.
+    /// P̂_l^m of the current band, m = 0 … l.
     HWY_INLINE V<D> operator[](std::size_t m) const { return get(row_, m); }
 
     /// Steps to the next band.
@@ -63,7 +63,7 @@ class LegendreLanes {
         hn::Store(value, D(), row.data() + m * kLaneCount<D>);
     }
 
-    /// other_ holds the band before.
+    /// other_ holds the previous band.
     HWY_INLINE void advance_by_z() {
         const D d;
         const T* step = &constants_.step[at(static_cast<int>(l_), 0)];
@@ -104,8 +104,8 @@ class LegendreLanes {
     alignas(64) Row state_;
 };
 
-/// scale · (x + iy)^m for m = 1 … count-1, and 1 + 0i for m = 0: cosine[m] + i sine[m], kLaneCount values each.
-/// With x + iy on the unit circle cos mφ and sin mφ; by rotation, because 2 cosφ · f_{m-1} - f_{m-2} loses digits.
+/// cosine[m] + i sine[m] = scale · (x + iy)^m for m = 1 … count-1, and 1 for m = 0; kLaneCount values for each m. On
+/// the unit circle these are cos mφ and sin mφ. The product is used since 2 cosφ · f_{m-1} - f_{m-2} loses digits.
 template <class D>
 HWY_INLINE void complex_powers_in_lanes(D d, V<D> x, V<D> y, double scale, std::size_t count, Scalar<D>* cosine,
                                         Scalar<D>* sine) {

@@ -7,12 +7,13 @@
 namespace shlight {
 namespace {
 
-/// Worked out in extended precision: products of 63 square roots would bring their rounding into every light.
+/// Constants are computed in extended precision, because products of 63 square roots would add their rounding to every
+/// light.
 using Real = long double;
 
 struct Exact {
     std::array<Real, kMaxOrder> diagonal{};
-    std::array<Real, kCosineMax> step{}, back{}, ladder{}, at_pole{}, climb{}, fall{};
+    std::array<Real, kCosineMax> step{}, back{}, ladder{}, at_pole{};
 };
 
 void fill_recurrence(Exact& c) {
@@ -45,15 +46,6 @@ void fill_pole(Exact& c) {
     }
 }
 
-void fill_degrees(Exact& c) {
-    for (int l = 0; l < kMaxOrder; ++l) {
-        for (int m = 1; m < l; ++m) {
-            c.climb[at(l, m)] = 2 * static_cast<Real>(m) / c.ladder[at(l, m)];
-            c.fall[at(l, m)] = c.ladder[at(l, m - 1)] / c.ladder[at(l, m)];
-        }
-    }
-}
-
 template <class T, std::size_t N>
 std::array<T, N> rounded(const std::array<Real, N>& values) {
     std::array<T, N> out{};
@@ -68,15 +60,12 @@ std::unique_ptr<const LegendreConstants<T>> make_constants() {
     auto exact = std::make_unique<Exact>();
     fill_recurrence(*exact);
     fill_pole(*exact);
-    fill_degrees(*exact);
     auto c = std::make_unique<LegendreConstants<T>>();
     c->diagonal = rounded<T>(exact->diagonal);
     c->step = rounded<T>(exact->step);
     c->back = rounded<T>(exact->back);
     c->ladder = rounded<T>(exact->ladder);
     c->at_pole = rounded<T>(exact->at_pole);
-    c->climb = rounded<T>(exact->climb);
-    c->fall = rounded<T>(exact->fall);
     return c;
 }
 

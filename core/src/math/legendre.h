@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Normalised associated Legendre functions in the form that survives the pole:
-//   P̂_l^m(z) = P̄_l^m(z) / sin^m θ,   P̄_l^m = K_l^m P_l^m,
-// polynomials of degree l - m in z, produced band after band.
+// Normalised associated Legendre functions, divided by sin^m θ so that they are finite and exact at the poles:
+//   P̂_l^m(z) = P̄_l^m(z) / sin^m θ,   P̄_l^m = K_l^m P_l^m (Eq. 2 of the paper),
+// which are polynomials of degree l - m in z, computed band after band.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@
 
 namespace shlight {
 
-/// Index of (l, m ≥ 0) as an array subscript.
+/// cosine_index(l, m) as an array subscript.
 constexpr std::size_t at(int l, int m) {
     return static_cast<std::size_t>(cosine_index(l, m));
 }
 
 inline constexpr std::size_t kCosineMax = static_cast<std::size_t>(cosine_count(kMaxOrder));
 
-/// Constants of the recurrences, the same for every light.
+/// Constants of the recurrences, which do not depend on the light.
 template <class T>
 struct LegendreConstants {
     std::array<T, kMaxOrder> diagonal;  ///< P̂_m^m
@@ -28,8 +28,6 @@ struct LegendreConstants {
     std::array<T, kCosineMax> back;     //
     std::array<T, kCosineMax> ladder;   ///< √((l-m)(l+m+1)), the ladder operators' factor
     std::array<T, kCosineMax> at_pole;  ///< P̂_l^m(1)
-    std::array<T, kCosineMax> climb;    ///< 2m / ladder, of a recurrence in m
-    std::array<T, kCosineMax> fall;     ///< ladder of m - 1 / ladder
 
     static const LegendreConstants& get();
 };
@@ -37,13 +35,14 @@ struct LegendreConstants {
 extern template struct LegendreConstants<float>;
 extern template struct LegendreConstants<double>;
 
-/// Below this sin²θ the pole is near: the recurrence in z would amplify the rounding of z, and of each step, by l².
+/// sin²θ below which LegendreRows uses differences, because the recurrence in z amplifies roundings by l² there.
 inline constexpr double kNearPole = 0.0156;
 
 /// P̂_l^0 … P̂_l^l for l = 0, 1, 2, … at one z = cosθ.
 ///
-/// Near the poles P̂_l^m leaves its value there by about l²/2 · (1 - |z|): a rounded z, and the rounding of each step of
-/// the usual recurrence, would be amplified by l². There the recurrence runs on the differences of R_l = P̂_l / P̂_l(1),
+/// Near a pole P̂_l^m differs from its value there by about l²/2 · (1 - |z|), so the usual recurrence would amplify the
+/// rounding of z, and of each step, by l². There the recurrence (2) of docs/theory.md runs on the differences of R_l =
+/// P̂_l / P̂_l(1),
 ///   (l+m) (R_l - R_{l-1}) = (l-m-1) (R_{l-1} - R_{l-2}) - (2l-1) (1-|z|) R_{l-1},   1 - |z| = sin²θ / (1 + |z|).
 template <class T>
 class LegendreRows {
@@ -58,7 +57,7 @@ class LegendreRows {
     }
 
     int band() const { return l_; }
-    /// P̂_l^m of the present band, m = 0 … l.
+    /// P̂_l^m of the current band, m = 0 … l.
     const T* row() const { return row_.data(); }
     T operator[](int m) const { return row_[m]; }
 
@@ -73,7 +72,7 @@ class LegendreRows {
     }
 
   private:
-    /// other_ holds the band before.
+    /// other_ holds the previous band.
     void advance_by_z() {
         const T* step = &constants_.step[at(l_, 0)];
         const T* back = &constants_.back[at(l_, 0)];
@@ -122,9 +121,8 @@ void powers(T base, int count, T* out) {
     }
 }
 
-/// out_cos[m] + i out_sin[m] = (x + i y)^m for m = 0 … count-1.
-/// With x + iy on the unit circle these are cos mφ and sin mφ; by rotation, because 2 cos φ · f_{m-1} - f_{m-2} loses
-/// digits.
+/// out_cos[m] + i out_sin[m] = (x + i y)^m for m = 0 … count-1. On the unit circle these are cos mφ and sin mφ. The
+/// product is used since 2 cos φ · f_{m-1} - f_{m-2} loses digits.
 template <class T>
 void complex_powers(T x, T y, int count, T* out_cos, T* out_sin) {
     T re = 1;

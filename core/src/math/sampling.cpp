@@ -44,7 +44,7 @@ std::uint32_t pascal(std::uint32_t x) {
 
 using DirectionNumbers = std::array<std::uint32_t, 32>;
 
-/// From the first ones, v_k = v_(k-s) ^ v_(k-s) >> s ^ v_(k-o), s being how many there are.
+/// Sobol direction numbers by v_k = v_(k-s) ^ v_(k-s) >> s ^ v_(k-o), from the first s. other: o.
 constexpr DirectionNumbers direction_numbers(std::initializer_list<std::uint32_t> first, std::size_t other) {
     DirectionNumbers numbers{};
     std::copy(first.begin(), first.end(), numbers.begin());
@@ -55,11 +55,11 @@ constexpr DirectionNumbers direction_numbers(std::initializer_list<std::uint32_t
     return numbers;
 }
 
-/// Of the polynomials x² + x + 1 and x³ + x + 1.
+/// Direction numbers of the primitive polynomials x² + x + 1 and x³ + x + 1.
 constexpr DirectionNumbers kThird = direction_numbers({0x80000000U, 0xC0000000U}, 1);
 constexpr DirectionNumbers kFourth = direction_numbers({0x80000000U, 0xC0000000U, 0x20000000U}, 2);
 
-/// A coordinate of the Sobol sequence, bit-reversed.
+/// One coordinate of a Sobol point, bit-reversed.
 std::uint32_t reversed_coordinate(const DirectionNumbers& numbers, std::uint32_t index) {
     std::uint32_t x = 0;
     for (std::size_t k = 0; index != 0; ++k, index >>= 1) {
@@ -106,7 +106,7 @@ glm::dvec2 SobolSequence::point(std::uint32_t index) const {
 }
 
 glm::dvec2 lattice_point(std::size_t i, std::size_t count, std::uint32_t seed) {
-    // The golden ratio's multiples are spread evenly, however many there are.
+    // Multiples of the golden ratio modulo 1 are evenly spread for any count.
     constexpr double kStep = std::numbers::phi - 1;
     const auto number = static_cast<double>(i);
     return {(number + unit(hash(seed, 0))) / static_cast<double>(count),
@@ -114,10 +114,10 @@ glm::dvec2 lattice_point(std::size_t i, std::size_t count, std::uint32_t seed) {
 }
 
 std::vector<glm::dvec2> nested_points(std::uint32_t count) {
-    // Sobol points sit in the corners of the smallest cells. The shift moves them inside: to 1/3 of a cell at every
-    // level, but to 7/12 for sets of four, of which there are most.
+    // Sobol points lie in corners of the smallest cells. The shift moves them inside: to 1/3 of a cell at every level,
+    // but to 7/12 for sets of four, which are the most frequent.
     constexpr std::uint32_t kShift = 0x25555555U;
-    // The first bit decides on all the others.
+    // All other bits are flipped if the first one is 1.
     const auto coordinate = [](std::uint32_t x) { return unit(((x >> 31) != 0 ? x ^ 0x7FFFFFFFU : x) ^ kShift); };
     std::vector<glm::dvec2> points(count);
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -127,7 +127,7 @@ std::vector<glm::dvec2> nested_points(std::uint32_t count) {
 }
 
 std::vector<glm::dvec2> hammersley(std::uint32_t count) {
-    // The radical inverses of 0 … count-1 are even for powers of two only; their ranks are for any count.
+    // Radical inverses of 0 … count-1 are evenly spaced for powers of two only; their ranks are for any count.
     std::vector<std::uint32_t> by_inverse(count);
     std::iota(by_inverse.begin(), by_inverse.end(), 0U);
     std::sort(by_inverse.begin(), by_inverse.end(),

@@ -9,7 +9,7 @@
 
 namespace shlight {
 
-/// A point a + first (b - a) + second (c - a) of a triangle; the weights of a rule sum to 1.
+/// The point a + first (b - a) + second (c - a) of a triangle. Weights of a rule sum to 1.
 struct TrianglePoint {
     double first, second, weight;
 };
@@ -20,10 +20,10 @@ std::span<const TrianglePoint> product_rule(int side);
 std::span<const TrianglePoint> three_point_rule();
 std::span<const TrianglePoint> seven_point_rule();
 
-/// Calls visit(direction, weight) for the points of a rule on a small triangle of unit vectors, with weights below zero
-/// for a triangle of the other winding. triple: a·(b×c), of which a narrow triangle's corners know few digits. The
-/// triangle is projected onto the plane that touches the
-/// sphere at its middle, where the density is smooth however unevenly far away the light's own vertices are.
+/// Calls visit(direction, weight) for the points of a rule on a small triangle of unit vectors; weights are negative if
+/// the winding is opposite. triple: a·(b×c), given because the corners of a narrow triangle determine few of its
+/// digits. The triangle is projected onto the plane that touches the sphere at its middle, where the density is smooth
+/// even if the light's vertices have very different distances.
 template <class Visit>
 void visit_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c, double triple, std::span<const TrianglePoint> rule,
                     const Visit& visit) {

@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "polygons/polygon_shading_kernel.cpp"
 #include <hwy/foreach_target.h>
-// Highway's vocabulary, and what is compiled once per instruction set, come after it.
+// Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
 #include <hwy/highway.h>
 
 #include <algorithm>

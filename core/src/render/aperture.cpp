@@ -15,7 +15,7 @@ glm::dvec2 turned(const glm::dvec2& p, double angle) {
     return {std::cos(angle) * p.x - std::sin(angle) * p.y, std::sin(angle) * p.x + std::cos(angle) * p.y};
 }
 
-/// Shirley & Chiu 1997: squares about the middle become circles.
+/// Concentric map from the square to the disk (Shirley & Chiu 1997).
 glm::dvec2 disk_point(const glm::dvec2& square) {
     const glm::dvec2 p = 2.0 * square - 1.0;
     if (p.x == 0 && p.y == 0) {
@@ -28,7 +28,8 @@ glm::dvec2 disk_point(const glm::dvec2& square) {
     return radius * glm::dvec2(std::cos(angle), std::sin(angle));
 }
 
-/// In the triangle of the middle and two corners that a share of x belongs to. The first looks along x.
+/// A point of the triangle between the centre and two corners that square.x selects. The first triangle is centred on
+/// x.
 glm::dvec2 polygon_point(const glm::dvec2& square, int corners) {
     const double triangle = std::min(std::floor(square.x * corners), corners - 1.0);
     const double outwards = std::sqrt(square.x * corners - triangle);

@@ -34,7 +34,7 @@ void check_window(const Window& window) {
     }
 }
 
-/// From where rays start: of an orthographic camera, all of the window.
+/// Checks the origins of rays, which for an orthographic camera lie in all of the window.
 void check_place(const glm::dmat4& to_world, const Window& window, Projection projection) {
     const double spread = projection == Projection::perspective ? 0 : 1;
     for (const double x : {window.left, window.right}) {
@@ -93,7 +93,7 @@ Window Camera::window(int width, int height) const {
 
 Ray Camera::ray(double x, double y, const std::optional<glm::dvec2>& square) const {
     const glm::dvec2 lens = square && has_depth_of_field() ? aperture_.point(*square) : glm::dvec2(0);
-    // From there to the point in focus, per unit of its distance.
+    // Slope from that point of the lens to the point in focus.
     const glm::dvec2 turn = lens / aperture_.focus_distance;
     if (panorama_) {
         const std::optional<Vec3d> ahead = panorama_direction(*panorama_, x, y);
@@ -113,10 +113,10 @@ Ray Camera::ray(double x, double y, const std::optional<glm::dvec2>& square) con
 }
 
 Ray Camera::from_lens(const Vec3d& origin, const Vec3d& per_depth) const {
-    // Per unit of depth, so that the clip range is measured along the view axis and not along the ray, as Blender does.
+    // The clip range is measured along the view axis and not along the ray, as in Blender.
     const Vec3d direction = transform_vector(to_world_, per_depth);
     const double length = glm::length(direction);
-    // What starts farther than anything may be sees nothing.
+    // Rays that start beyond all surfaces see nothing.
     const double start = std::min(clip_.start * length, 4 * kFarthest);
     return {Vec3f(transform_point(to_world_, origin)), static_cast<float>(start), Vec3f(direction / length),
             static_cast<float>(clip_.end * length)};

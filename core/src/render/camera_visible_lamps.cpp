@@ -8,7 +8,7 @@
 namespace shlight {
 namespace {
 
-/// The part of a camera ray on which lamps are seen.
+/// The part of a camera ray where lamps are visible.
 struct View {
     Vec3d start;
     Vec3d direction;  // unit
@@ -30,7 +30,7 @@ bool meets_sphere(const SphereLight& light, const View& view) {
     return view.covers(along - std::copysign(std::sqrt(half_chord_squared), inside ? -1.0 : 1.0));
 }
 
-/// The disk faces the ray's start.
+/// The disk is perpendicular to the line to the ray's start.
 bool meets_disk(const SphereLight& light, const View& view) {
     const Vec3d to_center = light.center - view.start;
     const double along = glm::dot(to_center, view.direction);
@@ -45,7 +45,7 @@ bool meets(const SphereLight& light, const View& view) {
     return light.facing_disk ? meets_disk(light, view) : meets_sphere(light, view);
 }
 
-/// Where a ray meets a plane from a side that the light in it shines to; 0 where it does not.
+/// Distance at which a ray meets the light's plane from an emitting side; 0 if it does not.
 template <class PlanarLight>
 double distance_to_plane(const PlanarLight& light, const Vec3d& in_plane, const View& view) {
     const double approach = -glm::dot(view.direction, light.normal);
@@ -82,11 +82,11 @@ bool meets(const DiskLight& light, const View& view) {
 }
 
 bool meets(const SunLight& light, const View& view) {
-    // A chord, which does not cancel at small angles as a cosine does.
+    // Compared by chords, because cosines of small angles lose digits.
     return view.reaches_suns && glm::length(view.direction - light.direction) <= 2 * std::sin(light.half_angle / 2);
 }
 
-/// The camera sees the faces of a mesh as surfaces.
+/// Camera rays meet the faces of a mesh as surfaces.
 bool meets(const MeshLight&, const View&) {
     return false;
 }
@@ -116,11 +116,11 @@ Rgb CameraVisibleLamps::radiance(const Ray& ray, const std::optional<double>& su
     Rgb sum(0);
     for (const Light* lamp : lamps_) {
         if (std::visit([&](const auto& light) { return meets(light, view); }, *lamp)) {
-            const Rgb own =
+            const Rgb radiance =
                 strength_of(*lamp) * static_cast<float>(profile_factor(traits_of(*lamp).profile, -direction));
-            sum += own;
+            sum += radiance;
             if (!by_group.empty()) {
-                by_group[traits_of(*lamp).group] += own;
+                by_group[traits_of(*lamp).group] += radiance;
             }
         }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Lamps where the camera looks at them.
+// Lamps that camera rays meet.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace shlight {
 
-/// Those lights that the camera sees (LightTraits::seen_by_camera).
+/// The lights with LightTraits::seen_by_camera.
 class CameraVisibleLamps {
   public:
     CameraVisibleLamps() = default;
@@ -21,9 +21,9 @@ class CameraVisibleLamps {
     explicit CameraVisibleLamps(std::span<const Light> lights);
 
     bool empty() const { return lamps_.empty(); }
-    /// What they add to the radiance that comes back along a ray from its start to a surface at distance `surface`;
-    /// nothing there: to t_max, and to suns behind it. They hide neither each other nor what is behind them.
-    /// by_group: is added to what each group of lamps adds, unless it is empty.
+    /// The radiance that the lamps add to a ray, up to a surface at distance `surface`; without a surface up to t_max,
+    /// and from suns. Lamps hide neither each other nor anything else. by_group: the radiance of each light group is
+    /// added to it, unless it is empty.
     Rgb radiance(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group) const;
 
   private:

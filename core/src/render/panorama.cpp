@@ -14,7 +14,7 @@ namespace {
 
 constexpr Vec3d kOutside(0);
 
-/// At an angle to the axis, on the side that a point of the picture lies on.
+/// The direction at an angle to the axis, at the azimuth of a point of the picture.
 Vec3d fisheye(double angle, const glm::dvec2& from_middle) {
     const double radius = glm::length(from_middle);
     const glm::dvec2 side = radius > 0 ? from_middle / radius : glm::dvec2(0, 1);
@@ -131,14 +131,14 @@ void check_kind(const EquiangularCubemapFace&) {}
 
 std::optional<Vec3d> panorama_direction(const Panorama& panorama, double u, double v) {
     const Vec3d found = std::visit([&](const auto& kind) { return direction_of(kind, glm::dvec2(u, v)); }, panorama);
-    // A polynomial may leave the numbers.
+    // A polynomial may overflow.
     const double length = glm::length(found);
     return length > 0 && std::isfinite(length) ? std::optional(found / length) : std::nullopt;
 }
 
 PanoramaAxes panorama_axes(const Panorama& panorama, const Vec3d& direction) {
-    // Cycles' frame of a mirror ball has the x axis of the camera frame, but is left-handed beside it; that of other
-    // panoramas has the view axis as its x axis.
+    // Cycles' frame of a mirror ball has the x axis of the camera frame, but is left-handed; that of other panoramas
+    // has the view axis as its x axis.
     const bool ball = std::holds_alternative<MirrorBall>(panorama);
     const Vec3d along = ball ? Vec3d(1, 0, 0) : Vec3d(0, 0, -1);
     const Vec3d across = along - glm::dot(along, direction) * direction;

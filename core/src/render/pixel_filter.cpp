@@ -10,13 +10,13 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Blackman and Harris 1978, the window of four terms with the lowest side lobes.
+/// Coefficients of the four-term window with the lowest side lobes (Blackman and Harris 1978).
 constexpr double kA0 = 0.35875;
 constexpr double kA1 = 0.48829;
 constexpr double kA2 = 0.14128;
 constexpr double kA3 = 0.01168;
 
-/// Of a filter over its support, -1 … 1: its integral from the middle to x ≥ 0, but for a factor.
+/// Integral of a filter on its support -1 … 1 from 0 to x ≥ 0, up to a factor.
 double integral(PixelFilter::Kind kind, double x) {
     switch (kind) {
         case PixelFilter::Kind::box:
@@ -43,7 +43,7 @@ double half_support(const PixelFilter& filter) {
     return 0.5;
 }
 
-/// Where, of the support, a share of one side lies between the middle and there.
+/// The x up to which the integral is a share of that of one side.
 double inverse(PixelFilter::Kind kind, double share) {
     const double wanted = share * integral(kind, 1.0);
     double low = 0;
@@ -55,8 +55,8 @@ double inverse(PixelFilter::Kind kind, double share) {
     return 0.5 * (low + high);
 }
 
-/// Cycles has a table of so many steps of the share, and is linear within them. That shows in the last one, which is
-/// spread over all of the filter's rim: beside bright edges it is a thousandth of their light.
+/// Number of steps in Cycles' table of the inverse, which is linear between them. The last step shows: it covers the
+/// whole rim of the filter, which holds a thousandth of the light next to bright edges.
 constexpr double kSteps = 511;
 
 }  // namespace

@@ -33,7 +33,7 @@ std::size_t channels(Pass kind, int levels) {
 
 }  // namespace
 
-/// Austin Appleby, public domain.
+/// MurmurHash3 by Austin Appleby, public domain.
 std::uint32_t cryptomatte_hash(std::string_view name) {
     std::uint32_t hash = 0;
     std::uint32_t block = 0;
@@ -55,7 +55,7 @@ std::uint32_t cryptomatte_hash(std::string_view name) {
 
 float cryptomatte_id(std::string_view name) {
     const std::uint32_t hash = cryptomatte_hash(name);
-    // Neither a number without its first bit nor one that is not finite, which programs may lose.
+    // Subnormal numbers, infinities and NaN are avoided, because programs may not preserve them.
     const std::uint32_t exponent = (hash >> 23U) & 0xFFU;
     return std::bit_cast<float>(exponent == 0 || exponent == 0xFFU ? hash ^ (1U << 23U) : hash);
 }

@@ -9,8 +9,8 @@
 namespace shlight {
 namespace {
 
-/// Lobes narrower than this are mirror-like to Cycles' denoiser; a surface of which they reflect more than so much of
-/// the light leaves its features to what it shows.
+/// Lobes narrower than kMirrorLike [rad] are mirrors for Cycles' denoiser. A surface from which such lobes reflect more
+/// than the share kMostMirrorLike contributes the features of what it reflects.
 constexpr double kMirrorLike = 0.075;
 constexpr double kMostMirrorLike = 0.75;
 
@@ -133,11 +133,11 @@ Rgb SurfacePasses::color(const SurfaceLobe& lobe, const Surface& surface) {
 
 const AlbedoTable& SurfacePasses::table(const LobeShape& shape) {
     const LobeShape of_any_width = with_width(shape, 0);
-    std::shared_ptr<const AlbedoTable>& own = tables_[of_any_width];
-    if (own == nullptr) {
-        own = albedo_table(of_any_width);
+    std::shared_ptr<const AlbedoTable>& known = tables_[of_any_width];
+    if (known == nullptr) {
+        known = albedo_table(of_any_width);
     }
-    return *own;
+    return *known;
 }
 
 void SurfacePasses::add_colors(const Surface& surface, double* pixel) {
@@ -152,7 +152,7 @@ void SurfacePasses::add_colors(const Surface& surface, double* pixel) {
     }
 }
 
-/// As Cycles has it: rays go on through what is mirror-like or lets light through.
+/// Denoising features as in Cycles, for which rays continue through mirror-like and transparent surfaces.
 void SurfacePasses::add_denoising(const Surface& surface, double share, const Rgb& transparency, RayState& ray,
                                   double* pixel) {
     if (has(Pass::denoising_depth)) {
@@ -167,21 +167,21 @@ void SurfacePasses::add_denoising(const Surface& surface, double share, const Rg
     Vec3d normal = mirrored * surface.point.shading_normal;
     Rgb albedo(0);
     for (const SurfaceLobe& lobe : lobes_) {
-        const Rgb own = color(lobe, surface);
-        const double weight = std::abs(mean(own));
+        const Rgb reflected = color(lobe, surface);
+        const double weight = std::abs(mean(reflected));
         const bool is_rough = !is_glossy(lobe.shape) || lobe_width(lobe.shape) > kMirrorLike;
         normal += weight * lobe.normal;
         all += weight;
         mirrored += is_rough ? 0.0 : weight;
-        albedo += is_rough ? own : Rgb(0);
+        albedo += is_rough ? reflected : Rgb(0);
     }
     ray.featured = all == 0 || mirrored < kMostMirrorLike * all;
     if (!ray.featured) {
         return;
     }
     if (has(Pass::denoising_normal)) {
-        const Vec3d own = camera_->turned_to_frame(all > 0 ? normal / all : Vec3d(0));
-        shlight::add(share * Vec3d(own.x, own.y, -own.z), at(Pass::denoising_normal, pixel));
+        const Vec3d turned = camera_->turned_to_frame(all > 0 ? normal / all : Vec3d(0));
+        shlight::add(share * Vec3d(turned.x, turned.y, -turned.z), at(Pass::denoising_normal, pixel));
     }
     if (has(Pass::denoising_albedo)) {
         shlight::add(Vec3d(surface.throughput * albedo), at(Pass::denoising_albedo, pixel));

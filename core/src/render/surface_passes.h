@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Passes of what camera rays meet, before any light: places, numbers and colours of surfaces.
+// AOVs of the surfaces that camera rays meet, independent of light: positions, numbers and colours.
 #pragma once
 
 #include <array>
@@ -19,18 +19,18 @@
 
 namespace shlight {
 
-/// Keeps its memory from batch to batch; one per thread.
+/// Memory is reused from batch to batch; one per thread.
 class SurfacePasses {
   public:
-    /// All outlive this.
+    /// The arguments must outlive this.
     SurfacePasses(const CompiledScene& scene, const Camera& camera, const PassSettings& settings,
                   const PassLayout& layout);
 
-    /// Whether any pass is a mean that add() sums up.
+    /// Whether any AOV is a mean over rays, which add() sums.
     bool any_mean() const { return any_mean_; }
-    /// Adds to the sums of pixels what their rays, of which each has as many, have met. sums: pixels × layout.stride().
+    /// Adds the surfaces that rays met to the sums of their pixels. sums: pixels × layout.stride().
     void add(const CameraSurfaces& surfaces, std::size_t rays, std::size_t rays_per_pixel, std::span<double> sums);
-    /// Writes what the one ray of each pixel has met. values: pixels × layout.stride().
+    /// Writes the AOVs of single rays through the pixels' middles. values: pixels × layout.stride().
     void write_middles(const CameraSurfaces& surfaces, std::size_t rays, std::span<float> values);
 
   private:
@@ -42,21 +42,22 @@ class SurfacePasses {
     Number* at(Pass kind, Number* pixel) const {
         return pixel + place_[static_cast<std::size_t>(kind)];
     }
-    /// What a ray has met so far.
+    /// State of a ray while its surfaces are visited from front to back.
     struct RayState {
-        bool found = false;     // what is opaque enough
-        bool featured = false;  // what the denoiser is told of
-        double reached = 0;     // how far
+        bool found = false;     // a surface was opaque enough
+        bool featured = false;  // a surface gave the denoising features
+        double reached = 0;     // distance counted in denoising_depth
     };
 
     bool is_opaque_enough(const Rgb& transparency) const;
-    // Of a surface with the lobes in lobes_. share: of its light that reaches the camera.
+    // Contributions of one surface, whose lobes are in lobes_. share: the fraction of its light that reaches the
+    // camera.
     void add_first(const Surface& surface, double share, double* pixel) const;
     void add_aovs(const CameraSurfaces& surfaces, const Surface& surface, double share, double* pixel) const;
     void add_mattes(const Surface& surface, double share, double* pixel) const;
     void add_colors(const Surface& surface, double* pixel);
     void add_denoising(const Surface& surface, double share, const Rgb& transparency, RayState& ray, double* pixel);
-    /// Of the light that the lobe reflects under a white sky, without what its microfacets lose to each other.
+    /// Albedo of a lobe under a white sky, without the energy lost between microfacets.
     Rgb color(const SurfaceLobe& lobe, const Surface& surface);
     const AlbedoTable& table(const LobeShape& shape);
     /// 1 - mist.
@@ -68,10 +69,10 @@ class SurfacePasses {
     const PassLayout* layout_;
     std::array<std::size_t, static_cast<std::size_t>(Pass::cryptomatte_asset) + 1> place_;
     bool any_mean_ = false, any_aov_ = false;
-    std::size_t matte_size_ = 0;  // numbers
+    std::size_t matte_size_ = 0;  // floats per pixel
     std::vector<RayState> rays_;
     std::vector<SurfaceLobe> lobes_;
-    std::map<LobeShape, std::shared_ptr<const AlbedoTable>> tables_;  // of shapes of width 0
+    std::map<LobeShape, std::shared_ptr<const AlbedoTable>> tables_;  // keys have width 0
 };
 
 }  // namespace shlight

@@ -18,9 +18,9 @@
 namespace shlight {
 namespace {
 
-/// Lookups along the longer side of a footprint, at most; what is longer is blurred across, too.
+/// Maximum number of look-ups along the longer side of a footprint; longer footprints are also blurred across.
 constexpr float kMostProbes = 24;
-/// Texel coordinates beyond this are not told apart by floats.
+/// Texel coordinates beyond this lie further apart than one texel in float.
 constexpr float kFarthest = 1e7F;
 
 constexpr glm::vec4 kMissing(1, 0, 1, 1);
@@ -35,7 +35,7 @@ float srgb_from_linear(float linear) {
 
 using ByteTable = std::array<float, 256>;
 
-/// What bytes stand for.
+/// The value of each byte.
 template <class Function>
 ByteTable byte_table(const Function& function) {
     ByteTable values{};
@@ -76,14 +76,14 @@ Integer finite(Integer value) requires std::integral<Integer> {
     return value;
 }
 
-// A number as a float, which what is not finite never is, and back to the nearest.
+// Conversions of stored numbers to float, and of float to the nearest stored number.
 float to_float(float value) {
     return value;
 }
 float to_float(std::uint16_t value) {
     return static_cast<float>(value) / 65535;
 }
-/// The exponent of a float has three bits more, which are set by a product that also makes subnormal numbers normal.
+/// A float's exponent has three bits more than a half's; the product corrects the bias, also of subnormal numbers.
 float to_float(Half value) {
     const std::uint32_t magnitude = value.bits & static_cast<std::uint32_t>(~kSignOfHalf & 0xFFFF);
     const float scaled = std::bit_cast<float>(magnitude << 13U) * 0x1p112F;
@@ -99,7 +99,7 @@ void assign(float value, Integer& to) requires std::integral<Integer> {
     to = static_cast<Integer>(std::lround(std::clamp(value, 0.0F, 1.0F) * largest));
 }
 void assign(float value, Half& to) {
-    // The product leaves the bits of a half, with its 13 bits fewer, rounded to even by the addition below.
+    // After the product, the upper bits are those of a half; the addition rounds the lower 13 bits to nearest even.
     const auto bits = std::bit_cast<std::uint32_t>(std::min(std::abs(value), 65504.0F) * 0x1p-112F);
     const std::uint32_t rounded = (bits + 0x0FFFU + ((bits >> 13U) & 1U)) >> 13U;
     to.bits = static_cast<std::uint16_t>(rounded | (std::signbit(value) ? std::uint32_t{kSignOfHalf} : 0U));
@@ -111,7 +111,7 @@ glm::vec4 encoded(const glm::vec4& linear, TexelEncoding encoding) {
                                                        srgb_from_linear(linear.z), linear.w);
 }
 
-/// Of the mean of unit vectors, as (n + 1) / 2.
+/// Encodes a mean of unit vectors, given as (n + 1) / 2: its direction, and √(1 - its length) as the fourth channel.
 glm::vec4 unit_with_spread(const glm::vec4& mean) {
     const glm::vec3 n = glm::vec3(mean) * 2.0F - 1.0F;
     const float length = glm::length(n);
@@ -119,7 +119,7 @@ glm::vec4 unit_with_spread(const glm::vec4& mean) {
                       : glm::vec4(0.5F, 0.5F, 1, 1);
 }
 
-/// Of a uniform cubic B-spline.
+/// Weights of a uniform cubic B-spline.
 std::array<float, 4> cubic_weights(float t) {
     const float s = 1 - t;
     return {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6, t * t * t / 6};
@@ -203,7 +203,7 @@ Texels TexturePixels::texels(const Level& level, const ByteTable& bytes) {
 }
 
 void TexturePixels::add(Level level) {
-    // The numbers stay where they are when a level moves.
+    // Moving a level keeps the addresses of its numbers, to which stored_ and linear_ point.
     levels_.push_back(std::move(level));
     stored_.push_back(texels(levels_.back(), bytes_as_stored()));
     const bool srgb = encoding_ == TexelEncoding::srgb;
@@ -225,14 +225,14 @@ void TexturePixels::store(Level& level, std::size_t texel, const glm::vec4& line
         level.pixels);
 }
 
-/// Each texel is the mean over its share of the area, also where a side is odd.
+/// The next level; each of its texels is the mean over an equal share of the area, also if a side is odd.
 TexturePixels::Level TexturePixels::halved(std::size_t level) const {
     const Level& from = levels_[level];
     Level to = {
         (from.width + 1) / 2, (from.height + 1) / 2, encoding_ == TexelEncoding::normal ? 4 : from.channels, {}};
     const std::size_t count = std::size_t{to.width} * to.height * static_cast<std::size_t>(to.channels);
     std::visit([&](const auto& numbers) { to.pixels = std::decay_t<decltype(numbers)>(count); }, from.pixels);
-    // Part i of `parts` covers i size/parts … (i + 1) size/parts, which is at most three texels.
+    // Part i of `parts` covers i size/parts … (i + 1) size/parts, which overlaps at most three texels.
     struct Cover {
         std::int64_t first;
         std::array<float, 3> weights;
@@ -273,12 +273,12 @@ TexturePixels::Level TexturePixels::halved(std::size_t level) const {
     return to;
 }
 
-/// One picture, continued beyond its edges. Places are in texels of the level.
+/// Reads one picture, continued beyond its edges. Places are in texels of the level.
 class ImageTexture::Reader {
   public:
     Reader(const TexturePixels& pixels, TextureExtension extension) : pixels_(&pixels), extension_(extension) {}
 
-    /// As stored.
+    /// The stored value of the closest texel.
     glm::vec4 closest(const glm::vec2& place) const {
         return texel(pixels_->stored(0), static_cast<std::int64_t>(std::floor(place.x)),
                      static_cast<std::int64_t>(std::floor(place.y)));
@@ -298,7 +298,7 @@ class ImageTexture::Reader {
         return sum;
     }
     glm::vec4 bilinear(const glm::vec2& place) const { return bilinear(pixels_->stored(0), place); }
-    /// In linear light, between two levels; place: 0 … 1 over the picture.
+    /// Linear light, interpolated between two levels; place: 0 … 1 over the picture.
     glm::vec4 trilinear(float level, const glm::vec2& place) const {
         const auto low = static_cast<std::size_t>(level);
         const float share = level - static_cast<float>(low);
@@ -307,7 +307,7 @@ class ImageTexture::Reader {
     }
 
   private:
-    /// The texel to the lower left of a place, and the shares of those to the right and above.
+    /// The texel to the lower left of a place, and the weights of the texels to the right and above.
     struct Corner {
         explicit Corner(const glm::vec2& place) {
             const glm::vec2 low = glm::floor(place - 0.5F);
@@ -371,7 +371,7 @@ glm::vec4 ImageTexture::finished(const glm::vec4& stored, TexelEncoding encoding
     if (unassociate_ && color.w != 0 && color.w != 1) {
         color = {color.x / color.w, color.y / color.w, color.z / color.w, color.w};
     }
-    // What is magnified does not spread.
+    // Normals that are magnified have no spread, so their mean has length 1.
     return encoding == TexelEncoding::normal ? glm::vec4(glm::vec3(color), 1) : decoded(color, encoding);
 }
 
@@ -380,8 +380,8 @@ ImageTexture::Lookup ImageTexture::look(const glm::vec2& place, const TextureFoo
     glm::vec2 inside = place;
     if (tiled_) {
         const glm::vec2 number = glm::floor(inside);
-        const auto found = std::find_if(tiles_.begin(), tiles_.end(), [&](const Tile& own) {
-            return static_cast<float>(own.u) == number.x && static_cast<float>(own.v) == number.y;
+        const auto found = std::find_if(tiles_.begin(), tiles_.end(), [&](const Tile& t) {
+            return static_cast<float>(t.u) == number.x && static_cast<float>(t.v) == number.y;
         });
         if (found == tiles_.end()) {
             return {};
@@ -402,7 +402,7 @@ ImageTexture::Lookup ImageTexture::look(const glm::vec2& place, const TextureFoo
     }
     Lookup lookup = {&pixels, inside, glm::length(along), 0, 0, glm::vec2(0)};
     if (lookup.longest > 1) {
-        // The area of the footprint over its longest side.
+        // Width of the footprint: its area ÷ its longest side.
         const float width = std::abs(along.x * across.y - along.y * across.x) / lookup.longest;
         const float least = std::max({width, lookup.longest / kMostProbes, 1.0F});
         const auto top = static_cast<float>(pixels.level_count() - 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Pictures that are looked up at texture coordinates, filtered by how far these move from camera ray to camera ray.
+// Pictures looked up at texture coordinates, filtered by the distance of these to the neighbouring camera rays'.
 #pragma once
 
 #include <array>
@@ -17,16 +17,16 @@
 
 namespace shlight {
 
-/// How far texture coordinates move from a camera ray to those of the neighbours.
+/// Differences of texture coordinates between a camera ray and its neighbours.
 struct TextureFootprint {
     glm::vec2 right{0}, below{0};
 };
 
 enum class TextureInterpolation : std::uint8_t { closest, linear, cubic };
-/// What lies beyond 0 … 1.
+/// How a picture continues beyond coordinates 0 … 1.
 enum class TextureExtension : std::uint8_t { repeat, extend, clip, mirror };
 
-/// What the numbers of a picture mean.
+/// Meaning of a picture's numbers.
 enum class TexelEncoding : std::uint8_t {
     linear,
     srgb,   ///< red, green and blue are encoded as sRGB
@@ -38,18 +38,19 @@ struct Half {
     std::uint16_t bits;
 };
 
-/// The numbers of a picture, in the type of its file. Integers stand for 0 … 1.
+/// The numbers of a picture in the file's type. Integers represent 0 … 1.
 using TexelNumbers =
     std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<Half>, std::vector<float>>;
 
-/// RGBA of the texels of one level, which must outlive this. Of unit vectors each is as long as the mean that it is.
+/// Reads RGBA of the texels of one level, which must outlive this. Unit vectors of coarser levels have their mean's
+/// length.
 class Texels {
   public:
     std::int64_t width, height;
 
-    /// Asks for the texels about a place of the picture, which repeats from 0 … 1 on, ahead of their use.
+    /// Prefetches the texels around a place 0 … 1 of the picture, which repeats beyond.
     void prefetch(const glm::vec2& place) const;
-    /// Precondition: inside.
+    /// Precondition: the texel is inside the picture.
     glm::vec4 operator()(std::int64_t column, std::int64_t row) const {
         const std::int64_t first = (row * width + column) * channels_;
         if (bytes_ != nullptr) {
@@ -74,24 +75,24 @@ class Texels {
     }
     template <class Number>
     glm::vec4 of_numbers(const Number* texel) const;
-    /// (n + 1) / 2 with n as long as it is to be.
+    /// (n + 1) / 2 with the length of n restored from the fourth channel.
     glm::vec4 vector(const glm::vec4& color) const;
 
-    // One of these, the others are null.
+    // One of these is not null.
     const std::uint8_t* bytes_;
     const std::uint16_t* shorts_;
     const Half* halves_;
     const float* floats_;
-    const float* table_;  // what bytes stand for
+    const float* table_;  // value of each byte
     std::int64_t channels_;
     bool from_srgb_, of_vectors_, are_means_;
 };
 
-/// Immutable; shared by all who look it up.
+/// A picture with all its levels. Immutable; shared by all its users.
 class TexturePixels {
   public:
-    /// pixels: rows from v = 0 on, of 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. What is not finite
-    /// becomes 0, or the largest number of its type.
+    /// pixels: rows from v = 0 on with 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. NaN becomes 0, and
+    /// infinity the largest number of its type.
     TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint32_t height, int channels, TexelEncoding encoding);
     TexturePixels(const TexturePixels&) = delete;
     TexturePixels& operator=(const TexturePixels&) = delete;
@@ -103,16 +104,16 @@ class TexturePixels {
     std::size_t size_in_bytes() const;
     TexelEncoding encoding() const { return encoding_; }
 
-    /// The texels of a level: as stored, or in linear light.
+    /// The texels of a level, as stored or in linear light.
     const Texels& stored(std::size_t level) const { return stored_[level]; }
     const Texels& linear(std::size_t level) const { return linear_[level]; }
 
   private:
-    /// Half as wide and high as the one before, rounded up.
+    /// A level, half as wide and high as the previous one, rounded up.
     struct Level {
         std::uint32_t width, height;
-        /// Means of unit vectors have length 1 and √(1 - their length) as a fourth channel, which bytes resolve where
-        /// the length is near 1.
+        /// Means of unit vectors are stored as unit vectors, with √(1 - the mean's length) in a fourth channel, which
+        /// bytes resolve well for lengths near 1.
         int channels;
         TexelNumbers pixels;
     };
@@ -122,11 +123,11 @@ class TexturePixels {
     void store(Level& level, std::size_t texel, const glm::vec4& linear) const;
 
     std::vector<Level> levels_;
-    std::vector<Texels> stored_, linear_;  // of each level
+    std::vector<Texels> stored_, linear_;  // one for each level
     TexelEncoding encoding_;
 };
 
-/// Stored values as linear light.
+/// Converts stored values to linear light.
 glm::vec4 decoded(const glm::vec4& stored, TexelEncoding encoding);
 
 class ImageTexture {
@@ -135,23 +136,23 @@ class ImageTexture {
         std::int64_t u, v;  ///< covers u … u + 1
         std::shared_ptr<const TexturePixels> pixels;
     };
-    /// tiles: one at (0, 0) that `extension` continues, or several that do not; between these is magenta.
-    /// unassociate: colours are divided by alpha.
+    /// tiles: one at (0, 0) that `extension` continues, or several tiles with magenta between them. unassociate:
+    /// whether to divide colours by alpha.
     ImageTexture(std::vector<Tile> tiles, TextureInterpolation interpolation, TextureExtension extension,
                  bool unassociate, bool tiled);
 
     const TexturePixels& pixels() const { return *tiles_.front().pixels; }
-    /// A lookup but for the texels, which are on their way.
+    /// A prepared look-up, whose texels are being prefetched.
     struct Lookup {
-        const TexturePixels* pixels;  ///< null: it is between the tiles
+        const TexturePixels* pixels;  ///< null: the place is between tiles
         glm::vec2 place;              ///< 0 … 1 over the picture
-        float longest;                ///< side of the footprint, in texels
+        float longest;                ///< longest side of the footprint [texels]
         float level;
-        int probes;      ///< along that side; 0: the footprint is within a texel
+        int probes;      ///< look-ups along that side; 0: the footprint is smaller than a texel
         glm::vec2 step;  ///< from probe to probe
     };
     Lookup look(const glm::vec2& place, const TextureFootprint& footprint) const;
-    /// Linear RGBA. Without a footprint it is what the interpolation makes of the picture.
+    /// Linear RGBA. With a footprint below a texel the picture is interpolated as TextureInterpolation says.
     glm::vec4 read(const Lookup& lookup) const;
     glm::vec4 sample(const glm::vec2& place, const TextureFootprint& footprint) const {
         return read(look(place, footprint));

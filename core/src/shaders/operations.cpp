@@ -15,7 +15,7 @@ namespace {
 
 using Parameter = ShaderOperation::Parameter;
 
-/// A function of floats, applied lane by lane.
+/// Applies a function of floats to each lane.
 template <auto kFunction, std::size_t... kArgument>
 void apply(const OperationLanes& lanes, std::index_sequence<kArgument...>) {
     float* out = lanes.results[0];
@@ -33,12 +33,12 @@ float arctangent2(float y, float x) {
     return x == 0 && y == 0 ? 0.0F : std::atan2(y, x);
 }
 
-/// 0 where the result would not be real.
+/// base^exponent, or 0 where that is not real.
 float power(float base, float exponent) {
     return base < 0 && exponent != std::trunc(exponent) ? 0.0F : std::pow(base, exponent);
 }
 
-/// What std::max and std::min leave open: a NaN loses. Without a call, so that loops over lanes are vectors'.
+/// Maximum and minimum in which a number wins over NaN, as opposed to std::max. Inlined, so that loops vectorise.
 float larger(float a, float b) {
     return a > b || std::isnan(b) ? a : b;
 }
@@ -61,7 +61,7 @@ std::uint32_t mixed(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     return (c ^ b) - rotated(b, 24);
 }
 
-/// And of three more before these.
+/// Jenkins's mixing of three words before three more are added.
 void stir(std::uint32_t& a, std::uint32_t& b, std::uint32_t& c) {
     a = (a - c) ^ rotated(c, 4);
     c += b;
@@ -77,7 +77,7 @@ void stir(std::uint32_t& a, std::uint32_t& b, std::uint32_t& c) {
     b += a;
 }
 
-/// 0 … 1, of the bits of 1 … 4 floats.
+/// Hash of the bits of 1 … 4 floats, as a number 0 … 1.
 template <std::size_t kCount>
 float hash_to_float(const std::array<float, kCount>& key) {
     const auto start = static_cast<std::uint32_t>(0xDEADBEEFU + (kCount << 2U) + 13);
@@ -91,7 +91,7 @@ float hash_to_float(const std::array<float, kCount>& key) {
     return static_cast<float>(mixed(state[0], state[1], state[2])) / static_cast<float>(0xFFFFFFFFU);
 }
 
-/// The values at both ends of an interval of a table's coordinate, and the share of the second.
+/// The table entries around a coordinate 0 … 1, and the weight of the second.
 struct Interval {
     std::size_t low, high;
     float share;
@@ -133,7 +133,7 @@ void look_up(const OperationLanes& lanes) {
 
 void sample_image(const OperationLanes& lanes) {
     const float* const* a = lanes.arguments;
-    // Texels of some lookups come from memory while others are read.
+    // Look-ups are prepared 16 lanes ahead, so that their texels arrive from memory while others are read.
     std::array<ImageTexture::Lookup, 16> lookups{};
     for (std::size_t i = 0; i < lanes.count + lookups.size(); ++i) {
         ImageTexture::Lookup& lookup = lookups[i % lookups.size()];

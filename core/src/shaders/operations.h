@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What the operations of shader programs compute.
+// The loops that evaluate operations of shader programs.
 #pragma once
 
 #include <cstddef>
@@ -19,11 +19,11 @@ struct OperationLanes {
     const ImageTexture* image;
 };
 
-/// As numbered by shader_operations().
+/// Loops in the order of shader_operations().
 using OperationLoop = void (*)(const OperationLanes& lanes);
 std::span<const OperationLoop> operation_loops();
 
-/// Numbers of the operations that take differences; they are not computed by a loop.
+/// Numbers of the operations that take differences, which have no loop.
 std::size_t difference_right();
 std::size_t difference_below();
 

@@ -17,7 +17,7 @@ namespace {
 using Kind = ShaderStep::Kind;
 using Parameter = ShaderOperation::Parameter;
 
-/// Lanes that run at a time, so that the values of a long program stay in the cache.
+/// Number of lanes evaluated at a time; the values of a long program then stay in the cache.
 constexpr std::size_t kLanes = 128;
 constexpr int kPlaces = 3;
 constexpr std::size_t kMostArguments = 8, kMostResults = 4;
@@ -100,19 +100,20 @@ void ShaderProgram::check(const std::vector<std::uint32_t>& results) {
     }
 }
 
-/// A value is needed at the neighbours if a difference is taken of what depends on it.
+/// Marks the values that are needed at neighbouring hits, because a difference of a dependent value is taken.
 void ShaderProgram::find_places() {
     for (std::size_t s = steps_.size(); s-- > 0;) {
         const ShaderStep& step = steps_[s];
-        const auto own = std::span(values_).subspan(first_value_[s], shlight::result_count(step));
-        bool everywhere = std::any_of(own.begin(), own.end(), [](const Value& value) { return value.everywhere; });
+        const auto outputs = std::span(values_).subspan(first_value_[s], shlight::result_count(step));
+        bool everywhere =
+            std::any_of(outputs.begin(), outputs.end(), [](const Value& value) { return value.everywhere; });
         if (is_difference(step)) {
             takes_differences_ = true;
             values_[step.arguments[0]].everywhere = true;
             everywhere = false;
         }
         everywhere = everywhere && step.kind != Kind::constant;
-        for (Value& value : own) {
+        for (Value& value : outputs) {
             value.everywhere = everywhere;
         }
         for (const std::uint32_t argument : step.arguments) {
@@ -121,7 +122,7 @@ void ShaderProgram::find_places() {
     }
 }
 
-/// Values share memory where one is read for the last time before the other is made.
+/// Assigns memory slots; a value may reuse the slot of one whose last use came before.
 void ShaderProgram::assign_slots(const std::vector<std::uint32_t>& results) {
     std::vector<std::size_t> last_use(values_.size(), 0);
     for (std::size_t s = 0; s < steps_.size(); ++s) {
@@ -171,7 +172,7 @@ void ShaderProgram::evaluate(const ShaderReader& reader, std::size_t count, bool
 
 void ShaderProgram::run(const ShaderStep& step, std::uint32_t first_value, const ShaderReader& reader,
                         std::size_t first, std::size_t count, bool neighbours, float* registers) const {
-    // A value that is known at one place is the same at the others.
+    // Values that are computed at one place only are the same at the others.
     const auto at = [&](std::uint32_t value, int place) {
         const std::size_t row = values_[value].slot * kPlaces + (values_[value].everywhere ? place : 0);
         return registers + row * kLanes;
