@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Adaptive cubature of any number of functions at once over the patches of a region.
+// Adaptive cubature of several functions at once over the patches of a region.
 //
-// On each piece of a patch Gauss's product rules (around a whole cap: Gauss and trapezoids) grow, along each side as
-// long as that side needs it, until two in a row agree; pieces on which large rules do not are halved. The difference
-// is the error of the smaller rule, the larger one's value is taken: the estimate is a careful one.
+// On each piece of a patch Gauss's product rules (around a whole cap: Gauss and trapezoids) grow along each side until
+// two rules in a row agree; pieces on which the largest rules disagree are halved. The difference is the error of the
+// smaller rule, and the larger one's value is used, so that the error estimate is pessimistic.
 #pragma once
 
 #include <algorithm>
@@ -20,13 +20,13 @@
 
 namespace shlight::methods {
 
-/// What an adaptive sum may take, and where it starts.
+/// Limits of an adaptive sum, and the rule that it starts from.
 struct CubaturePlan {
-    double tolerance;   ///< of the largest error among the sums, absolute
-    double rounding;    ///< of the functions' values, relative: what no rule can improve on
-    int smallest_side;  ///< of the first product rule
+    double tolerance;   ///< absolute bound of the largest error among the sums
+    double rounding;    ///< relative rounding error of the functions, below which no rule can go
+    int smallest_side;  ///< side of the first product rule
     int largest_side;   ///< pieces that need more are halved; ≤ 64
-    std::size_t work;   ///< values of the functions; beyond these the best sums so far are taken
+    std::size_t work;   ///< number of evaluations after which the best sums so far are used
 };
 
 /// T: of the values and sums. Integrand: void operator()(const Vec3d& direction, T* values) const, `count` of them.
@@ -109,7 +109,7 @@ void AdaptiveCubature<T, Integrand>::add(const Patch& patch, Piece piece, T* sum
     }
 }
 
-/// across: v is halved, not u. Whole circles are not halved, nor pieces that have become as short as rounding allows.
+/// across: whether v is halved, not u. Whole circles are not halved, nor pieces whose length is near rounding.
 template <class T, class Integrand>
 bool AdaptiveCubature<T, Integrand>::halve(const Patch& patch, const Piece& piece, bool across, T* sums) {
     constexpr double kShortest = 64 * std::numeric_limits<double>::epsilon();
@@ -132,7 +132,7 @@ auto AdaptiveCubature<T, Integrand>::rule(const Patch& patch, const Piece& piece
                                           std::size_t v_rule) -> Sums {
     const GaussRule& along = gauss_rule(kSides[u_rule]);
     const GaussRule& across = gauss_rule(kSides[v_rule]);
-    // The circle's trapezoids do as Gauss's points with twice as many, and cost no more work to place.
+    // Trapezoids on the circle are as accurate as half as many Gauss points, and as cheap to place.
     const int turns = 2 * kSides[v_rule];
     const std::size_t spokes = patch.goes_around() ? static_cast<std::size_t>(turns) : across.nodes.size();
     Sums sums(count_, T(0));

@@ -8,8 +8,8 @@ namespace {
 
 enum class ArcKind { partial, circle, great };
 
-/// C_l, D_l, E_l and F_l of one arc, band after band. C, E and F go back two bands: each step overwrites the row of its
-/// own parity.
+/// C_l, D_l, E_l and F_l of one arc, band after band. C, E and F refer to l - 2: each step overwrites the row of the
+/// same parity.
 template <class T, ArcKind kKind>
 class ArcRecurrence {
   public:

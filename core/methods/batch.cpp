@@ -30,7 +30,7 @@ std::uint32_t seed_of(const Options& options, std::size_t index) {
     return hash(options.seed, static_cast<std::uint32_t>(index));
 }
 
-/// light(i): checked, the light number i.
+/// light(i): light number i, after checks.
 template <class T, class Light>
 void each_cap(const Method& method, std::size_t count, int order, bool clip, Options options, std::size_t first,
               std::span<T> coefficients, const Light& light) {
@@ -59,7 +59,7 @@ void radiances_of(const LobeIntegrator& lobe, std::span<const SeenPolygon> polyg
     }
 }
 
-/// A material's lobes at the last view that was asked for.
+/// A material's lobes at the view requested last.
 class MaterialAtView {
   public:
     MaterialAtView(const ShadingMethod& method, const Bsdf& bsdf, const Options& options)
@@ -83,7 +83,7 @@ class MaterialAtView {
         }
     }
 
-    /// Lights that share the view; index: of the first one.
+    /// A run of lights with the same view; index: of the first one.
     template <class Region>
     void shade(std::span<const Region> regions, std::size_t index, std::span<Rgb> radiance,
                std::span<std::int32_t> effort) {

@@ -16,7 +16,7 @@ T lack(const CapAngles<T>& cap) {
 template <class T>
 constexpr T kTurn = 2 * std::numbers::pi_v<T>;
 
-/// sin²θ - cos²σ, positive where the circles cross; of its two forms the one with the smaller squares.
+/// sin²θ - cos²σ, positive where the circles cross, in the form with the smaller squares.
 template <class T>
 T squared_chord(const CapAngles<T>& cap, T sin_tilt) {
     const T cos_tilt = cap.axis.z;
@@ -37,16 +37,16 @@ CapOutline<T>::CapOutline(const CapAngles<T>& cap, bool clip) {
         edge = kTurn<T>;
         solid_angle = kTurn<T> * (cap.cos_half > 0 ? lack(cap) : 1 - cap.cos_half);
     } else if (cap.cos_half < 0) {
-        // Either the cap holds the upper hemisphere, or the two cover the sphere together: then the edges add, and the
-        // areas but for the whole sphere.
+        // Either the cap contains the upper hemisphere, or both together cover the sphere: then the edges add, and the
+        // areas add to more than the sphere by the overlap.
         edge = cap.axis.z > 0 ? T(0) : kTurn<T>;
         horizon = kTurn<T>;
         solid_angle = cap.axis.z > 0 ? kTurn<T> : -kTurn<T> * cap.cos_half;
     }
 }
 
-/// The area by Gauss and Bonnet, Ω/2 = ψ_0 (1 - cosσ) + (β - ψ_0), where ψ_0 is half the edge and β the turn at the
-/// crossing: Eq. 21 without its differences of large angles. A cap beyond a hemisphere is what its complement leaves.
+/// Area by Gauss–Bonnet: Ω/2 = ψ_0 (1 - cosσ) + (β - ψ_0), with ψ_0 half the edge and β the turn at the crossing. This
+/// is Eq. 21 without differences of large angles. A cap beyond a hemisphere uses its complement.
 template <class T>
 void CapOutline<T>::set_crossing(const CapAngles<T>& cap, T sin_tilt, T chord) {
     const T cosine = cap.cos_half;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What the horizon keeps of a cap, as the zonal methods want it: the edge as arcs (Zhou & Wei 2020, Fig. 2 and Eq. 19
-// to 21), in T from the directions and angles on.
+// The part of a cap above the horizon for zonal methods: its edge as arcs (Zhou & Wei 2020, Fig. 2 and Eqs. 19 to 21),
+// computed in T from directions and angles.
 #pragma once
 
 #include "method.h"
@@ -15,7 +15,7 @@ struct CapOutline {
     T edge = 0;             ///< length of the circle's arc about the cap's axis, 0 … 2π
     T horizon = 0;          ///< length of the horizon's arc about z, 0 … 2π
     bool crossing = false;  ///< whether the circles cross; else both lengths are 0 or 2π
-    Vec3<T> right, left;    ///< where they cross: the edge runs from right to left, the horizon from left to right
+    Vec3<T> right, left;    ///< crossings: the edge runs from right to left, the horizon from left to right
 
     CapOutline(const CapAngles<T>& cap, bool clip);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The library's own, to be measured beside the others.
+// The library's method, registered for comparison with the others.
 #include "method.h"
 #include "shlight/cap.h"
 #include "shlight/polygon.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A lobe at one view as harmonics of one order: Eq. 5, by the library's own kernels.
+// A lobe at one view in harmonics of one order, for Eq. 5 of Zhou & Wei 2020 by the library's kernels.
 #pragma once
 
 #include "method.h"
@@ -16,7 +16,7 @@ class HarmonicLobe : public LobeIntegrator {
                    std::span<Reflected> results) const override;
 
   protected:
-    /// Of one view; what it points to lives as long as this.
+    /// Arrays of one view, which point into this object.
     void set(const LobeArrays& lobe) { lobe_ = lobe; }
     const LobeArrays& lobe() const { return lobe_; }
 

@@ -18,7 +18,7 @@ double one_minus_cos(const Circle& cap) {
     return cap.cosine > 0 ? cap.sine * cap.sine / (1 + cap.cosine) : 1 - cap.cosine;
 }
 
-/// Unit vectors at right angles to a cap's axis and to one another, counter-clockwise: towards the zenith, and level.
+/// Unit vectors perpendicular to a cap's axis and to each other, counter-clockwise: one towards the zenith, one level.
 struct RimFrame {
     Vec3d up, level;
 
@@ -34,7 +34,7 @@ struct RimFrame {
     }
 };
 
-/// Pieces of a range, of equal length.
+/// Cuts a range into pieces of equal length.
 template <class Add>
 void cut(double from, double to, double longest, const Add& add) {
     const int count = std::max(1, static_cast<int>(std::ceil((to - from) / longest)));
@@ -51,7 +51,7 @@ void add_rim(const Circle& cap, const Vec3d& base, double half_turn, std::vector
     });
 }
 
-/// ∫ ω dω, half the sum of the edges' poles times their lengths (Lambert 1760).
+/// ∫ ω dω: half the sum of the edges' poles times their lengths (Lambert 1760).
 Vec3d mean_direction(const SphericalPolygon& polygon) {
     const auto& v = polygon.directions();
     Vec3d sum(0);
@@ -125,7 +125,7 @@ KeptRegion KeptRegion::of_cap(const Circle& cap, bool clip) {
     } else if (cap.cosine >= 0) {
         region.add_cut_cap(cap, 1);
     } else {
-        // The hemisphere without the rest of the sphere.
+        // The hemisphere minus the rest of the sphere.
         region.add_cap({Vec3d(0, 0, 1), 0, 1}, 1);
         region.add_cut_cap({-cap.axis, -cap.cosine, cap.sine}, -1);
     }
@@ -154,7 +154,7 @@ void KeptRegion::add_cut_cap(const Circle& cap, double sign) {
     // The rim is above the horizon where tilt sinσ cosψ ≥ -height cosσ.
     const double half_turn = std::atan2(std::sqrt((cap.sine - height) * (cap.sine + height)), -height * cap.cosine);
     add_rim(cap, base_, half_turn, edges_);
-    // Back along the horizon by way of its middle, in two arcs of at most a quarter turn.
+    // The horizon closes the boundary through its middle, in two arcs of at most a quarter turn.
     const RimFrame frame(cap.axis);
     const Vec3d center = (cap.axis - base_) - one_minus_cos(cap) * cap.axis;
     const Vec3d lift = cap.sine * std::cos(half_turn) * frame.up;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// What the horizon keeps of a light, cut into patches on which product rules converge fast.
+// The part of a light above the horizon, cut into patches on which product rules converge fast.
 //
-// A patch is swept by spokes: arcs of great circles from a hub to the light's outline. Azimuths about the hub count by
-// the direction in which the outline runs, so that the patches of a closed outline add up to what it encloses wherever
-// the hub lies. Seen from a hub inside, rings of a cap are whole, and the horizon is one smooth edge among others.
+// A patch is swept by spokes: arcs of great circles from a hub to the light's boundary. Azimuths about the hub are
+// signed by the direction of the boundary, so that the patches of a closed boundary add up to its interior for any hub.
+// With a hub inside, rings of a cap are complete, and the horizon is one smooth edge.
 #pragma once
 
 #include <vector>
@@ -15,8 +15,8 @@
 
 namespace shlight::methods {
 
-/// Part of an outline: the directions to base + offset + f(t), t = from … to, where f is a circle's cos t · x + sin t ·
-/// y, or t · x for an arc of a great circle. The base is common to a region, so that a small one keeps its digits.
+/// Part of a boundary: the directions of base + offset + f(t), t = from … to, where f is cos t · x + sin t · y on a
+/// circle, or t · x on an arc of a great circle. A region has one base, so that small regions keep their digits.
 struct Edge {
     bool straight;
     Vec3d offset, x, y;
@@ -25,7 +25,7 @@ struct Edge {
 
 /// An arc from a patch's hub to its edge.
 struct Spoke {
-    Vec3d across;  ///< unit, at right angles to the hub: where the spoke leaves for
+    Vec3d across;  ///< unit, perpendicular to the hub: direction in which the spoke starts
     double reach;  ///< length [rad]; magnified, see Patch
     double turn;   ///< signed azimuth about the hub per unit of v
 };
@@ -35,25 +35,25 @@ struct WeightedDirection {
     double weight;    ///< solid angle per du dv, signed
 };
 
-/// The unit square u, v: v along the edge, u from the hub to it. The angle from the hub is proportional to u, or with a
-/// magnification k that angle after tan(angle / 2) has grown k times, which spreads what is narrow about the hub.
+/// The unit square u, v, with v along the edge and u from the hub to it. The angle from the hub is proportional to u;
+/// with a magnification k, 2 atan(k tan(angle/2)) is, which widens narrow features at the hub.
 class Patch {
   public:
     Patch(const Vec3d& hub, double magnification, const Vec3d& base, const Edge& edge);
-    /// A whole cap about its own axis: v goes all around.
+    /// A whole cap about its axis: v goes around once.
     explicit Patch(const Circle& cap);
 
     bool goes_around() const { return whole_; }
     Spoke spoke(double v) const;
     WeightedDirection at(const Spoke& spoke, double u) const;
-    /// The same with its weights negated.
+    /// The patch with negated weights.
     Patch negative() const;
 
   private:
     Vec3d hub_;
     double magnification_ = 1, sign_ = 1;
     bool whole_;
-    double half_angle_ = 0;  // of a whole cap
+    double half_angle_ = 0;  // used for a whole cap
     Vec3d offset_{0};        // from the hub to the edge's base and offset
     Edge edge_;
 };
@@ -62,17 +62,17 @@ class KeptRegion {
   public:
     /// A cap of any half angle; clip: keep z ≥ 0.
     static KeptRegion of_cap(const Circle& cap, bool clip);
-    /// A polygon that was clipped before, or not.
+    /// A polygon, clipped by the caller or not.
     static KeptRegion of_polygon(const SphericalPolygon& polygon);
 
     bool empty() const { return edges_.empty() && caps_.empty(); }
-    /// Inside, where the region is convex.
+    /// A direction in the middle, which is inside if the region is convex.
     const Vec3d& middle() const { return base_; }
-    /// The largest angle between the middle and the outline; of a region that has one outline.
+    /// The largest angle between the middle and the boundary, for a region with one boundary.
     double extent() const;
-    /// Whole caps about their axes, all else about the middle.
+    /// Patches of whole caps about their axes, and of other regions about the middle.
     std::vector<Patch> patches() const;
-    /// All about one hub, anywhere above the horizon. Precondition: no half angle above π/2.
+    /// Patches about a hub anywhere above the horizon. Precondition: no half angle above π/2.
     std::vector<Patch> patches_about(const Vec3d& hub, double magnification) const;
 
   private:

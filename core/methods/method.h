@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Other ways to the same numbers: what the paper proposes and compares with, and plain numerical integration. They are
-// here to be measured; nothing that renders calls them.
+// Methods for the same integrals that the library is compared with: the paper's method, those that the paper compares
+// with, and plain numerical integration. Nothing that renders calls them.
 //
 // A method is one file that defines `Method name()` or `ShadingMethod name()`, and one line in registry.cpp.
 #pragma once
@@ -18,7 +18,7 @@
 
 namespace shlight::methods {
 
-/// Where random directions are taken from.
+/// Distribution of random directions.
 enum class Sampling {
     solid_angle,  ///< uniform over the light as seen from the shading point
     area,         ///< uniform over the light's surface: a sphere's whole surface, the polygon's plane
@@ -26,7 +26,7 @@ enum class Sampling {
     mis,          ///< solid_angle and bsdf, weighed by the balance heuristic (Veach & Guibas 1995; shading only)
 };
 
-/// What a method may be told beyond the light; each ignores what it has no use for.
+/// Options of methods; a method ignores those that do not apply.
 struct Options {
     double tolerance = 0;  ///< adaptive methods: error ÷ L_00, in shading radiance ÷ albedo; 0: what T can hold
     int order = 0;         ///< shading by harmonics: 1 … 64
@@ -35,15 +35,15 @@ struct Options {
     Sampling sampling = Sampling::solid_angle;
 };
 
-/// A cap as it was given, in doubles that hold it exactly.
+/// A cap as given by the caller, in doubles that represent it exactly.
 struct CapLight {
     enum class Kind { sphere, angle };
     Kind kind;
-    Vec3d axis;   ///< of any length > 0; of a sphere its centre
-    double size;  ///< of a sphere its radius, 0 < radius ≤ |axis|; else the half angle, in (0, π]
+    Vec3d axis;   ///< of any length > 0; the centre if it is a sphere
+    double size;  ///< radius of a sphere, 0 < radius ≤ |axis|; otherwise the half angle in (0, π]
 };
 
-/// The same as an axis and an angle, worked out in double and rounded once.
+/// A cap as unit axis and half angle, computed in double and rounded once.
 template <class T>
 struct CapAngles {
     Vec3<T> axis;  ///< unit
@@ -72,43 +72,42 @@ struct Method {
     int largest_order;
     bool adaptive;  ///< takes a tolerance
     bool random;    ///< takes samples, seed and sampling
-    Functions<float> single;
-    Functions<double> twofold;
+    Functions<float> f32;
+    Functions<double> f64;
 };
 
 template <class T>
 const Functions<T>& functions_of(const Method& method) {
     if constexpr (std::is_same_v<T, float>) {
-        return method.single;
+        return method.f32;
     } else {
-        return method.twofold;
+        return method.f64;
     }
 }
 
-/// ∫ f·cos over a light of unit radiance, and how many values of f·cos it took (0: none, harmonics).
+/// ∫ f·cos over a light of unit radiance, and the number of evaluations of f·cos (0: none, harmonics).
 struct Reflected {
     double value;
     int points;
 };
 
-/// A polygon in the shading frame, whole and what the horizon keeps of it.
+/// A polygon in the shading frame, and its part above the horizon.
 struct SeenPolygon {
     std::span<const Vec3d> vertices;
     SphericalPolygon kept;
     explicit SeenPolygon(std::span<const Vec3d> whole) : vertices(whole), kept(whole, true) {}
 };
 
-/// One lobe at one view, made once for many lights.
+/// One lobe at one view, for many lights.
 class LobeIntegrator {
   public:
     LobeIntegrator() = default;
     LobeIntegrator(const LobeIntegrator&) = delete;
     LobeIntegrator& operator=(const LobeIntegrator&) = delete;
     virtual ~LobeIntegrator() = default;
-    /// A cap in the shading frame; what lies below the horizon does not count. seed: of random methods, the light's
-    /// own.
+    /// Radiance from the part above the horizon of a cap in the shading frame. seed: of the light, for random methods.
     virtual Reflected radiance(const Circle& cap, std::uint32_t seed) const = 0;
-    /// Many of them, one seed each.
+    /// Many caps, with one seed each.
     virtual void radiances(std::span<const Circle> caps, std::span<const std::uint32_t> seeds,
                            std::span<Reflected> results) const {
         for (std::size_t i = 0; i < caps.size(); ++i) {
@@ -129,11 +128,11 @@ struct ShadingMethod {
     std::unique_ptr<LobeIntegrator> (*make)(const LobeShape& shape, double cos_theta_o, const Options& options);
 };
 
-/// All that are registered, in the order of charts.
+/// All registered methods, in the order of charts.
 std::span<const Method> all_methods();
 std::span<const ShadingMethod> all_shading_methods();
 
-/// Throws std::invalid_argument naming `method` and what there is.
+/// Throws std::invalid_argument naming `method` and listing the known names.
 const Method& find_method(std::string_view name);
 const ShadingMethod& find_shading_method(std::string_view name);
 

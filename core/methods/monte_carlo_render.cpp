@@ -23,10 +23,10 @@ namespace shlight::methods {
 namespace {
 
 constexpr int kMostSamples = 1 << 20;
-/// Camera rays that are followed at a time.
+/// Number of camera rays that are followed at a time.
 constexpr std::size_t kBatch = 4096;
 
-/// A light as a hit sees it.
+/// Samples the direction to a light from a hit.
 class LightInView {
   public:
     /// Precondition: the light is seen, and has an extent.
@@ -66,7 +66,7 @@ class LightInView {
                : ellipse_ ? ellipse_->density(direction)
                           : triangles_.density(direction);
     }
-    /// To the light's surface, in a direction of positive density.
+    /// Distance to the light's surface, in a direction of positive density.
     std::optional<double> distance(const Vec3d& direction) const {
         return cone_      ? cap_->meets(direction)
                : ellipse_ ? std::optional(ellipse_->distance(direction))
@@ -97,7 +97,7 @@ struct Picture {
 class Worker {
   public:
     explicit Worker(const Picture& picture) : picture_(&picture) {}
-    /// Pixels by their number in the image.
+    /// pixels: numbers of pixels in the image.
     void render(std::size_t first, std::size_t count, std::span<float> image);
 
   private:
@@ -115,8 +115,8 @@ class Worker {
     void push(const Ray& ray, const Rgb& radiance, std::size_t hit);
 
     const Picture* picture_;
-    std::vector<RandomNumbers> random_;  // of each pixel
-    std::vector<Vec3d> radiance_;        // likewise, summed up
+    std::vector<RandomNumbers> random_;  // one for each pixel
+    std::vector<Vec3d> radiance_;        // sums, one for each pixel
     std::vector<std::size_t> covered_;   // likewise
     std::vector<Ray> rays_;
     std::vector<std::size_t> pixel_of_camera_ray_;
@@ -126,8 +126,8 @@ class Worker {
     SurfaceReflection reflection_;
     LightInView light_;
     std::vector<Ray> shadow_rays_;
-    std::vector<Rgb> shadowed_;              // what each would bring
-    std::vector<std::size_t> pixel_of_ray_;  // to which
+    std::vector<Rgb> shadowed_;              // radiance that each ray adds if unblocked
+    std::vector<std::size_t> pixel_of_ray_;  // pixel that the ray adds to
     std::vector<Rgb> visible_;
 };
 
@@ -233,7 +233,7 @@ void Worker::shade(std::size_t hit) {
     }
 }
 
-/// By rays that the material draws: no other set knows a better way to a light that is everywhere.
+/// Environment light, sampled by the material only, because light from everywhere has no better density.
 void Worker::shade_environment(std::size_t hit, const RandomDirection& reflected) {
     const ShadingFrame& frame = hits_.frame[hit];
     const RayStart start(frame, hits_.shadow_origin[hit], Vec3d(0));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Pictures by plain Monte Carlo: what a renderer without analytic lighting does, to compare with.
+// Pictures by plain Monte Carlo, as a renderer without analytic lighting makes them, for comparison.
 //
 // Each sample of a pixel is a camera ray through a random point of its square. Where it meets a surface, every light
 // gets a direction uniform in its solid angle, and one direction as the material reflects serves all lights; both are

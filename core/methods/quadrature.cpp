@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostPoints = std::size_t{1} << 18;
 
-/// What T can hold.
+/// Relative error that results in T can have at best.
 template <class T>
 constexpr double kDefaultTolerance = std::is_same_v<T, float> ? 1e-6 : 1e-13;
 
@@ -32,7 +32,7 @@ struct One {
     void operator()(const Vec3d& /*direction*/, double* value) const { *value = 1; }
 };
 
-/// About a tenth: a measure for errors.
+/// Solid angle to about a tenth, the measure of errors.
 double solid_angle(std::span<const Patch> patches) {
     constexpr CubaturePlan kPlan = {std::numeric_limits<double>::infinity(), 0, 4, 64, 1};
     const One one;
@@ -50,9 +50,9 @@ void integrate(const KeptRegion& region, int order, const Options& options, T* c
     const std::vector<Patch> patches = region.patches();
     const double tolerance = options.tolerance > 0 ? options.tolerance : kDefaultTolerance<T>;
     const double whole = std::abs(solid_angle(patches)) * 0.5 * std::numbers::inv_sqrtpi;  // L_00
-    // Gauss's rule begins to converge with half a point per radian and degree.
+    // Gauss's rule starts to converge with half a point per radian and degree.
     const int smallest = 1 + static_cast<int>((order - 1) * std::min(region.extent(), 1.0) / 2);
-    // The basis is off by about its degree in roundings.
+    // Rounding errors of the basis grow with its degree.
     const double rounding = order * static_cast<double>(std::numeric_limits<T>::epsilon());
     const CubaturePlan plan = {tolerance * whole, rounding, smallest, std::max(20, 2 * smallest), kMostPoints};
     const Basis<T> basis{order};

@@ -13,8 +13,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// Below this solid angle [sr] a flat triangle does as well as a spherical one, whose angles lose digits: the density
-/// of one with unit corners varies by about the solid angle itself.
+/// Solid angle [sr] below which a flat triangle replaces a spherical one, whose angles lose digits: its density with
+/// unit corners varies by about the solid angle.
 constexpr double kSmallestSpherical = 0.01;
 
 double one_minus_cos(const Circle& cap) {
@@ -38,7 +38,7 @@ RandomDirection ConeSampler::sample(const glm::dvec2& point) const {
 }
 
 double ConeSampler::density(const Vec3d& direction) const {
-    // By the sine: cosines of small caps are all nearly 1.
+    // Compared by the sine, because cosines of small caps are all nearly 1.
     const double cosine = glm::dot(direction, cap_.axis);
     const double sine = glm::length(glm::cross(direction, cap_.axis));
     const bool inside = cap_.cosine >= 0 ? cosine >= 0 && sine <= cap_.sine : cosine >= 0 || sine >= cap_.sine;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Random directions from the origin with their densities: to a light, uniform in solid angle or over its surface, and
-// as a lobe reflects.
+// Random directions from the origin with their densities: towards a light, uniform in solid angle or over its surface,
+// or as a lobe reflects.
 //
-// A sampler turns a point of the unit square into a direction. The samplers of lights do not know of the horizon: what
-// of a light lies below counts as dark.
+// A sampler maps a point of the unit square to a direction. Samplers of lights ignore the horizon; callers treat
+// directions below it as dark.
 #pragma once
 
 #include <cmath>
@@ -23,7 +23,7 @@ namespace shlight::methods {
 
 struct RandomDirection {
     Vec3d direction;  ///< unit
-    double density;   ///< per solid angle; 0: counts nothing
+    double density;   ///< per solid angle; 0: the direction does not count
 };
 
 /// Uniform in the cone of a cap, of any half angle.
@@ -41,10 +41,10 @@ class ConeSampler {
     double density_;  // inside
 };
 
-/// Uniform over the whole surface of a sphere, of which the back counts nothing.
+/// Uniform over the whole surface of a sphere; points on its back do not count.
 class SphereSurfaceSampler {
   public:
-    /// circle: as which the sphere is seen.
+    /// circle: the sphere's contour.
     explicit SphereSurfaceSampler(const Circle& circle) : circle_(circle) {}
     RandomDirection sample(const glm::dvec2& point) const;
 
@@ -52,7 +52,7 @@ class SphereSurfaceSampler {
     Circle circle_;
 };
 
-/// Uniform over the disk at right angles to its axis that covers a cap of half angle < π/2.
+/// Uniform over the disk, perpendicular to its axis, that covers a cap of half angle < π/2.
 class DiskSampler {
   public:
     explicit DiskSampler(const Circle& cap);
@@ -63,8 +63,8 @@ class DiskSampler {
     Vec3d across_, up_;
 };
 
-/// Triangles, sampled in proportion to their solid angles or areas, and uniformly each. Those that a concave polygon's
-/// fan wants taken away are drawn too, and what is then outside counts nothing.
+/// Triangles, chosen in proportion to their solid angles or areas and sampled uniformly. Negative triangles in a
+/// concave polygon's fan are sampled too; points outside of the polygon do not count.
 class TriangleSampler {
   public:
     enum class Uniform { in_solid_angle, in_area };
@@ -73,11 +73,11 @@ class TriangleSampler {
     /// The triangles of a fan. Vertices of any length > 0, in one plane or, in solid angle, on one sphere.
     TriangleSampler(Uniform uniform, std::span<const Vec3d> polygon);
 
-    /// Keeps its memory.
+    /// Starts anew, reusing memory.
     void clear();
-    /// Corners of any length > 0, of one winding for triangles side by side.
+    /// Adds a triangle with corners of any length > 0; adjacent triangles have the same winding.
     void add(const Vec3d& first, const Vec3d& second, const Vec3d& third);
-    /// Nothing to sample: no area, or edge-on.
+    /// Whether there is nothing to sample: no area, or edge-on.
     bool empty() const { return pieces_.empty(); }
     /// Precondition: not empty.
     RandomDirection sample(glm::dvec2 point) const;
@@ -92,7 +92,7 @@ class TriangleSampler {
         bool spherical;  // or flat
 
         bool contains(const Vec3d& direction) const;
-        /// Of a direction inside, times the size.
+        /// Density of a direction inside, times the size.
         double relative_density(const Vec3d& direction) const;
     };
 
@@ -102,18 +102,18 @@ class TriangleSampler {
     int positive_ = 0, negative_ = 0;  // pieces by the sign of their volume
 };
 
-/// Uniform over the area of an ellipse anywhere; where that is seen edge-on it counts nothing.
+/// Uniform over the area of any ellipse; an ellipse seen edge-on has density 0.
 class EllipseAreaSampler {
   public:
     explicit EllipseAreaSampler(const Ellipse<double>& ellipse);
     RandomDirection sample(const glm::dvec2& point) const;
     /// 0 outside.
     double density(const Vec3d& direction) const;
-    /// To the ellipse's plane.
+    /// Distance to the ellipse's plane.
     double distance(const Vec3d& direction) const { return height_ / glm::dot(normal_, direction); }
 
   private:
-    /// Of a direction that meets it.
+    /// Density of a direction that meets the ellipse.
     double density_at(double distance) const { return distance * distance * distance / (area_ * std::abs(height_)); }
 
     Ellipse<double> ellipse_;

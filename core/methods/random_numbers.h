@@ -9,8 +9,8 @@
 
 namespace shlight::methods {
 
-/// Independent uniform random numbers, as plain Monte Carlo takes them: neither stratified nor of low discrepancy.
-/// Number i of a seed is a hash of both (shlight::hash, twice), so that it depends on nothing else; 2^32 of each seed.
+/// Independent uniform random numbers for plain Monte Carlo, neither stratified nor of low discrepancy. Number i of a
+/// seed is a hash of both (shlight::hash, twice); a seed has 2^32 numbers.
 class RandomNumbers {
   public:
     explicit RandomNumbers(std::uint32_t seed) : first_(seed), second_(hash(seed, 0x5EEDU)) {}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Reflected radiance by a given number of values of the true f·cos: rings about the axis of a cap that lies above the
-// horizon, product rules on the patches of other regions. Sums are scaled to the light's solid angle.
+// Reflected radiance from a given number of evaluations of the true f·cos: rings about the axis of a cap above the
+// horizon, product rules on the patches of other regions. Sums are scaled to the light's exact solid angle.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,10 +18,10 @@
 namespace shlight::methods {
 namespace {
 
-/// The library's own rules for caps, by their points.
+/// The library's rules for caps, by number of points.
 constexpr std::array kLibraryRules = {1, 4, 7, 24};
 
-/// Rings about a cap's axis: Gauss's rule for the area, and even steps around. Calls visit(direction, weight).
+/// Rings about a cap's axis, by Gauss's rule in area, with even steps around. Calls visit(direction, weight).
 template <class Visit>
 void visit_rings(const Circle& cap, int points, const Visit& visit) {
     const int count = std::clamp(static_cast<int>(std::lround(std::sqrt(points / 2.0))), 1, kMaxGaussPoints);

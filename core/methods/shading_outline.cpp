@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The true f·cos along the light's outline, in the plane of half vectors.
+// Integrates the true f·cos along the light's contour, in the plane of half vectors.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kDefaultTolerance = 1e-7;
 
-/// The sine of a half angle below which points of the circle are its centre to rounding; the value there will do.
+/// Sine of a half angle below which the circle's points round to its centre, where f·cos is evaluated instead.
 constexpr double kSmallestCap = 1e-7;
 
 class OutlineLobe : public LobeIntegrator {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Reflected radiance by adaptive cubature of the true f·cos: the truth for the other methods.
+// Reflected radiance by adaptive cubature of the true f·cos, the reference for other methods.
 //
-// About the mirror direction, with the angles near it magnified as much as the lobe is narrow, f·cos is broad; a light
-// that is small as seen from there is integrated about its own middle.
+// With polar coordinates about the mirror direction, magnified by the inverse of the lobe's width, f·cos is broad; a
+// light that is small in these coordinates is integrated about its middle.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,10 +16,10 @@
 namespace shlight::methods {
 namespace {
 
-/// The least that makes sense: pieces about the mirror direction may be larger than what is left of their sum.
+/// Least tolerance: pieces about the mirror direction may be larger than their sum.
 constexpr double kLeastTolerance = 1e-10;
 constexpr std::size_t kMostPoints = std::size_t{1} << 22;
-/// Lobes darker than this need no better.
+/// Albedo that replaces smaller ones in the tolerance.
 constexpr double kSmallestAlbedo = 1e-5;
 constexpr int kSmallestSide = 8;
 constexpr int kLargestSide = 27;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// As zhou_wei, but with the boundary integrals B_l by powers of the height z: Snyder 1996 (MSR-TR-96-11), as Zhou & Wei
-// 2020 compare with in Fig. 6. Each Legendre polynomial is expanded in monomials, whose coefficients alternate and grow
+// zhou_wei with the boundary integrals B_l from powers of the height z: Snyder 1996 (MSR-TR-96-11), the comparison in
+// Fig. 6 of Zhou & Wei 2020. Each Legendre polynomial is expanded in monomials, whose coefficients alternate and grow
 // like 2.4^l.
 #include <algorithm>
 #include <array>

@@ -23,8 +23,8 @@ struct Vertex {
     explicit Vertex(const Vec3<T>& p) : position(p), distance(glm::length(p)), direction(p / distance) {}
 };
 
-/// Solid angle of a triangle, signed by its winding (Van Oosterom & Strackee 1983); the triple product of edges, so
-/// that a small triangle keeps its digits.
+/// Solid angle of a triangle, signed by its winding (Van Oosterom & Strackee 1983). The triple product is that of
+/// edges, so that a small triangle keeps its digits.
 template <class T>
 T triangle_solid_angle(const Vertex<T>& a, const Vertex<T>& b, const Vertex<T>& c) {
     const T triple = glm::dot(
@@ -33,7 +33,7 @@ T triangle_solid_angle(const Vertex<T>& a, const Vertex<T>& b, const Vertex<T>& 
                                       glm::dot(c.direction, a.direction));
 }
 
-/// Takes the vertices of the clipped polygon one after the other; the edges' integrals and the fan's area add up.
+/// Receives the vertices of the clipped polygon in order, and sums the edges' integrals and the fan's area.
 template <class T>
 class PolygonIntegrals {
   public:
@@ -82,7 +82,7 @@ class PolygonIntegrals {
 
     int order_;
     int count_ = 0;
-    std::size_t present_ = 0;  // which of ends_ is the last vertex
+    std::size_t present_ = 0;  // index in ends_ of the last vertex
     Vertex<T> first_, last_;
     std::array<LobePoint<T>, 2> ends_;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The paper's own method: zonal integrals over a clipped cap by recurrences along its edge, in the Legendre functions
-// themselves.
+// The method of Zhou & Wei 2020: zonal integrals over a clipped cap by recurrences along its edge in Legendre functions
+// (Eqs. 6 to 22).
 #include <algorithm>
 
 #include "arc_recurrence.h"

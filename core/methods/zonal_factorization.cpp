@@ -12,13 +12,13 @@
 namespace shlight::methods {
 namespace {
 
-/// The direction that the recurrences see.
+/// The direction ω_d after rounding to T, which the recurrences use.
 template <class T>
 Vec3d rounded_direction(std::size_t lobe) {
     return Vec3d(Vec3<T>(lobe_directions()[lobe]));
 }
 
-/// Square, row by row.
+/// A square matrix, row by row.
 struct Matrix {
     explicit Matrix(std::size_t n) : size(n), values(n * n) {}
     double& operator()(std::size_t row, std::size_t column) { return values[row * size + column]; }
@@ -28,7 +28,7 @@ struct Matrix {
     std::vector<double> values;
 };
 
-/// Y_lm(ω_d): a row for each of the first 2l + 1 directions, a column for each m.
+/// Y_lm(ω_d) with a row for each of the first 2l + 1 directions and a column for each m (Eq. 6).
 template <class T>
 Matrix band_matrix(int l) {
     Matrix matrix(static_cast<std::size_t>(2 * l + 1));
@@ -42,7 +42,7 @@ Matrix band_matrix(int l) {
     return matrix;
 }
 
-/// By Gauss and Jordan, with pivots.
+/// The inverse by Gauss–Jordan elimination with pivots.
 Matrix inverse(Matrix a) {
     const std::size_t n = a.size;
     Matrix b(n);
@@ -75,7 +75,7 @@ Matrix inverse(Matrix a) {
     return b;
 }
 
-/// The singular values, squared: one-sided Jacobi turns pairs of columns until all are orthogonal.
+/// Squared singular values by one-sided Jacobi rotations, which turn pairs of columns until all are orthogonal.
 std::vector<double> squared_singular_values(Matrix a) {
     const std::size_t n = a.size;
     const auto product = [&](std::size_t p, std::size_t q) {
@@ -114,8 +114,8 @@ std::vector<double> squared_singular_values(Matrix a) {
     return squares;
 }
 
-/// From S_l(ω_d) to L_lm, band after band: a row of coefficients for each direction, both in whole groups of lobes, the
-/// surplus being zero.
+/// The matrices from S_l(ω_d) to L_lm, band after band: a row of coefficients for each direction. Both dimensions are
+/// padded with zeros to whole groups of lobes.
 template <class T>
 struct Factorization {
     std::vector<T> rows;
@@ -161,7 +161,7 @@ void surface_integrals(LobeTable<T>& integrals, T orientation, int order) {
     }
 }
 
-/// Σ_d S_l(ω_d) · row d. Four rows at a time, so that the sums need not be fetched and put back for each.
+/// Σ_d S_l(ω_d) · row d, four rows at a time, so that the sums are loaded and stored less often.
 template <class T>
 void combine(const LobeRow<T>& integral, const T* rows, std::size_t width, std::array<T, kLobeColumns>& sums) {
     static_assert(kLobeGroup == 4);

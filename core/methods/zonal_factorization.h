@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// From boundary integrals along a region's edge to the coefficients of the region, lobe by lobe.
+// Coefficients of a region from boundary integrals along its edge, lobe by lobe.
 //
-//   l (l+1) S_l = (2l-1) B_{l-1} + (l-2) (l-1) S_{l-2},   S_l = ∫ P_l(ω·ω_d) dω        (Zhou & Wei 2020, Eq. 9, 10)
+//   l (l+1) S_l = (2l-1) B_{l-1} + (l-2) (l-1) S_{l-2},   S_l = ∫ P_l(ω·ω_d) dω        (Zhou & Wei 2020, Eqs. 9, 10)
 //   B_l = ∮ P_l(ω·ω_d) ω_d · (ω × dω), the region on the left                         (Eq. 11, with P_l for P_{l-1})
-//   S_l(ω_d) = 4π/(2l+1) Σ_m Y_lm(ω_d) L_lm, solved for L_lm by one matrix per band     (Eq. 6 to 8)
+//   S_l(ω_d) = 4π/(2l+1) Σ_m Y_lm(ω_d) L_lm, solved for L_lm by one matrix per band     (Eqs. 6 to 8)
 //
-// All in T, as the paper does on its GPU. What is the same for every light is made once.
+// All arithmetic is in T, as the paper does on its GPU. Tables that all lights share are made once.
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@
 
 namespace shlight::methods {
 
-/// The columns of all tables are lobes, in whole groups: those of the next orders, and last a copy of the last.
+/// Columns of all tables are lobes in whole groups, padded with the lobes of the next orders or copies of the last.
 inline constexpr std::size_t kLobeGroup = 4;
 
-/// The columns that an order has to fill.
+/// Number of columns that an order uses, in whole groups.
 constexpr std::size_t lobe_columns(int order) {
     return (static_cast<std::size_t>(lobe_count(order)) + kLobeGroup - 1) / kLobeGroup * kLobeGroup;
 }

@@ -14,7 +14,7 @@ from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import NoReturn
 
-# What a shell reports of a process that a signal ended.
+# Exit codes that shells report for processes ended by SIGINT and SIGTERM.
 INTERRUPTED, TERMINATED = 130, 143
 
 

@@ -80,7 +80,7 @@ def write_layers(
 
 
 def _channels(name: str, count: int) -> list[str]:
-    """What the channels of a pass are called in a file."""
+    """The names of a pass's channels in a file."""
     if name in _CRYPTOMATTES:
         return [f"{_CRYPTOMATTES[name]}{i // 4:02d}.{'rgba'[i % 4]}" for i in range(count)]
     layer, channels = _PASS_CHANNELS.get(name, (_PASS_NAMES.get(name, name.removeprefix("aov_")), ""))

@@ -26,17 +26,17 @@ __all__ = ["coefficient_methods", "lobe_condition", "render_monte_carlo", "shadi
 
 DEFAULT_SAMPLES = 256
 SAMPLINGS = ("solid_angle", "area", "bsdf", "mis")
-# What polygon_coefficients takes for "exact", beside that.
+# Parts of the method "exact" that polygon_coefficients accepts as methods.
 PARTS_OF_EXACT = ("polygon_boundary", "polygon_edge_points", "polygon_cubature")
 
 
 def coefficient_methods() -> dict[str, _core.Method]:
-    """What `method=` of sphere_, cap_ and polygon_coefficients may be, by name, "exact" first."""
+    """The values of `method=` in sphere_, cap_ and polygon_coefficients by name, "exact" first."""
     return dict(_coefficient_methods())
 
 
 def shading_methods() -> dict[str, _core.ShadingMethod]:
-    """What `method=` of shade_spheres and shade_polygons may be beside "auto", by name."""
+    """The values of `method=` in shade_spheres and shade_polygons by name, except "auto"."""
     return dict(_shading_methods())
 
 
@@ -88,7 +88,7 @@ def coefficient_options(method: str, **given: Any) -> _core.MethodOptions:
 
 
 def shading_options(method: str, order: int, **given: Any) -> _core.MethodOptions:
-    """As coefficient_options. order: 0 where none was given."""
+    """Like coefficient_options, for shading. order: 0 if none was given."""
     found = _shading_methods()[method]
     takes = {"tolerance": True, "samples": found.sampled, "seed": found.random, "sampling": found.random}
     if found.harmonic and order == 0:

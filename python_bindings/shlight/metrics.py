@@ -52,7 +52,7 @@ def standard_error(half_a: npt.ArrayLike, half_b: npt.ArrayLike, radius: int = 2
 
 
 def reference_rel_mse(half_a: npt.ArrayLike, half_b: npt.ArrayLike) -> float:
-    """What `rel_mse` of a perfect image would be on average against the reference (a + b) / 2: the noise's share."""
+    """The expected `rel_mse` of a perfect image against the reference (a + b) / 2: the reference's noise."""
     a, b = _pair(half_a, half_b, ("half_a", "half_b"))
     return float(np.mean((a - b) ** 2 / 4 / _scale2((a + b) / 2)))
 

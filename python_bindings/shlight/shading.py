@@ -45,7 +45,7 @@ class _Settings(TypedDict, total=False):
 
 
 class _MethodSettings(_Settings, total=False):
-    """Those of lights that the other methods know, too."""
+    """Settings of lights that other methods support too."""
 
     samples: int | None
     seed: int | None
@@ -150,7 +150,7 @@ def shade_polygons(
     sampling: Sampling | None = None,
     return_effort: bool = False,
 ) -> Radiance | tuple[Radiance, Effort]:
-    """As shade_spheres, for planar polygons.
+    """Like shade_spheres, for planar polygons.
 
     vertices: (..., k, 3) with k ≥ 3, in the shading frame, in either winding: the region counts. A polygon without area
     or seen edge-on gives zeros. ValueError for vertices that are not planar and for a shading point in the polygon.
@@ -211,7 +211,7 @@ def shade_disks(
     method: str = "auto",
     return_effort: bool = False,
 ) -> Radiance | tuple[Radiance, Effort]:
-    """As shade_spheres, for disks and ellipses.
+    """Like shade_spheres, for disks and ellipses.
 
     centers, half_axes_u, half_axes_v: (..., 3), in the shading frame, as of disk_coefficients: the points
     centre + a u + b v with a² + b² ≤ 1, seen from either side. A disk seen edge-on gives zeros.

@@ -15,7 +15,7 @@ namespace {
     throw std::invalid_argument(std::string(name) + " must be " + expected + ", got " + Py_TYPE(value.ptr())->tp_name);
 }
 
-/// numpy's context in which nothing is said of numbers that do not fit.
+/// numpy's context manager that silences warnings about numbers out of range.
 class QuietConversion {
   public:
     QuietConversion() : context_(py::module_::import("numpy").attr("errstate")(py::arg("all") = "ignore")) {
@@ -36,7 +36,7 @@ class QuietConversion {
 
 struct Integer {
     std::int64_t value;
-    int overflow;  // its sign if it does not fit the value
+    int overflow;  // sign of a number that does not fit, or 0
 };
 
 Integer integer(const char* name, const py::handle& value) {
@@ -87,7 +87,7 @@ double real_from(const char* name, const py::handle& value) {
         const bool negative = py::reinterpret_borrow<py::int_>(value) < py::int_(0);
         return negative ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
     }
-    // Only numpy knows how to say no without a warning, to complex numbers for one.
+    // numpy converts and rejects without warnings, for example complex numbers.
     if (py::hasattr(value, "dtype")) {
         const AnyArray<double> array = array_from<double>(name, value);
         if (array.ndim() != 0) {
@@ -140,7 +140,7 @@ Rgb color_from(const char* name, const py::handle& value) {
     throw std::invalid_argument(std::string(name) + " must be a number or have shape (3,)");
 }
 
-/// For the batch functions, whose arguments Python checks before it broadcasts them.
+/// Used by the batch functions, whose arguments Python checks before broadcasting.
 void bind_arguments(py::module_& m) {
     m.def("checked_number",
           [](const std::string& name, const py::object& value) { return real_from(name.c_str(), value); });

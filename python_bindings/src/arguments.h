@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// What callers pass, of whatever type, as C++ values: the one way for all functions that users see. Everything throws a
-// ValueError or TypeError that starts with the argument's name; numpy's warnings of what does not fit are not given,
-// since that becomes infinite, which is refused as such.
+// Conversion of Python arguments of any type to C++ values, for all public functions. Errors are ValueError or
+// TypeError and start with the argument's name. numpy's overflow warnings are suppressed, since overflow gives
+// infinity, which is rejected.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -14,19 +14,19 @@
 
 namespace shlight::python {
 
-/// A number or an array of real numbers without axes; an integer beyond double's range is infinite.
+/// A number or a zero-dimensional array of real numbers; an integer beyond double's range is infinite.
 double real_from(const char* name, const py::handle& value);
 
-/// Something with __index__, but no bool.
+/// An object with __index__ that is not a bool.
 std::int64_t integer_from(const char* name, const py::handle& value, std::int64_t least, std::int64_t largest);
 
-/// An int whose range something else checks.
+/// An int whose range the caller's callee checks.
 int int_from(const char* name, const py::handle& value);
 
 /// True or False, of Python or numpy.
 bool flag_from(const char* name, const py::handle& value);
 
-/// Real numbers of any shape. kinds: numpy's letters of the types that are accepted.
+/// Real numbers of any shape. kinds: numpy's letters of accepted types.
 template <class T>
 AnyArray<T> array_from(const char* name, const py::handle& value, const char* kinds = "fiub");
 
@@ -37,7 +37,7 @@ extern template AnyArray<std::int64_t> array_from(const char* name, const py::ha
 /// A colour: one number, or RGB.
 Rgb color_from(const char* name, const py::handle& value);
 
-/// An object of a class that is bound. kind: its name.
+/// An object of a bound class. kind: its name.
 template <class T>
 T& object_from(const char* name, const py::handle& value, const char* kind) {
     if (!py::isinstance<T>(value)) {

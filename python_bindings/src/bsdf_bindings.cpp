@@ -54,7 +54,7 @@ LobeFits fits_of(const Bsdf& bsdf) {
     return fits;
 }
 
-/// f of one view angle: `channels` rows of order² coefficients, zero where m < 0.
+/// Coefficients at one view angle: `channels` rows of order² numbers, which are 0 where m < 0.
 void write_coefficients(const LobeFits& lobes, double cosine, int order, int channels, float* out) {
     const int row = coefficient_count(order);
     std::fill_n(out, channels * row, 0.0F);
@@ -93,11 +93,11 @@ Array<float> coefficients(const Bsdf& bsdf, const py::object& views, const py::o
     return out;
 }
 
-/// Lobes may err in the same direction: the sum of their errors bounds the error of their sum.
+/// Upper bound of the residual: errors of lobes are added, since they may have the same sign.
 double residual_at(const LobeFits& lobes, double cosine, int order) {
     check_cosine(cosine);
     double error = 0;
-    double squares = 0;  // of the norm from below: overlaps of the lobes, which are all positive, are left out
+    double squares = 0;  // lower bound of the squared norm, without the positive overlaps of lobes
     for (const auto& [lobe, fit] : lobes) {
         const Rgb scale = lobe.scale(static_cast<float>(cosine));
         const double size = std::max({scale.x, scale.y, scale.z}) * fit->norm(cosine);
@@ -158,7 +158,7 @@ Bsdf scaled(const Bsdf& bsdf, const py::object& factor) {
     return bsdf.scaled(color_from("factor", factor));
 }
 
-/// Of shlight.nodes: a value, or a vector or colour.
+/// Whether a value is an expression of shlight.nodes: a number, a vector or a colour.
 bool is_expression(const py::handle& value) {
     return py::hasattr(value, "step") || py::hasattr(value, "as_number");
 }
@@ -176,7 +176,7 @@ Bsdf constant_ggx(const py::object& roughness, const py::object& f0, const py::o
     const auto width = static_cast<float>(real_from("roughness", roughness));
     const Rgb head_on = color_from("f0", f0);
     const double index = ior.is_none() ? 0 : real_from("ior", ior);
-    if (!ior.is_none() && !(index > 1)) {  // 0 would mean none
+    if (!ior.is_none() && !(index > 1)) {  // 0 stands for None
         throw std::invalid_argument("ior must be finite and greater than 1");
     }
     const py::gil_scoped_release release;
@@ -280,7 +280,7 @@ shape (...), or (..., 3) if the material has colour. Zero where either direction
         .def(py::self + py::self)
         .def("__mul__", &scaled, py::arg("factor"), py::is_operator())
         .def("__rmul__", &scaled, py::arg("factor"), py::is_operator())
-        // Without this numpy would spread `array * bsdf` over the array's elements.
+        // Otherwise numpy would apply `array * bsdf` to each element of the array.
         .attr("__array_ufunc__") = py::none();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Batches spread over threads.
+// Batches distributed over threads.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -13,12 +13,12 @@
 
 namespace shlight::python {
 
-/// Lights a task takes at once: enough to hide the cost of handing it out and to sort them, few enough to share evenly.
+/// Number of lights per task: enough to hide the cost of a task and to sort lights, few enough to balance threads.
 inline std::size_t chunk_of(std::size_t total) {
     return std::clamp<std::size_t>(total / 32, 256, 2048);
 }
 
-/// How a result of so many bytes is best written: what exceeds a core's own cache goes around it.
+/// The faster way to write a result of this size: one larger than a core's cache bypasses the caches.
 inline Output output_of(std::size_t bytes) {
     return bytes > (std::size_t{2} << 20) ? Output::streamed : Output::cached;
 }

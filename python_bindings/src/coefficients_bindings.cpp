@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Flat batch functions; shlight/coefficients.py broadcasts in front of them.
+// Batch functions on flat arrays; shlight/coefficients.py broadcasts their arguments.
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -32,7 +32,7 @@ std::span<T> slice(T* data, int order, std::size_t first, std::size_t count) {
     return {data + first * row, count * row};
 }
 
-/// Finite sums have finite terms: these need a look only where a sum is not.
+/// Checks for finite numbers by the sum, which is finite only if all terms are; terms are searched only if it is not.
 template <class T>
 void check_sums(std::span<const T> sums, std::initializer_list<std::pair<const char*, std::span<const T>>> terms) {
     if (std::all_of(sums.begin(), sums.end(), [](T sum) { return std::isfinite(sum); })) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Which instruction set the kernels use; for tests and measurements.
+// Selection of the kernels' instruction set, for tests and measurements.
 #include <pybind11/stl.h>
 
 #include "bindings.h"

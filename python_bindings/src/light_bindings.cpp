@@ -11,7 +11,7 @@ using namespace pybind11::literals;
 namespace shlight::python {
 namespace {
 
-/// What every light's description ends with.
+/// The end of every light's docstring.
 constexpr const char* kTraitsDoc =
     R"(shadows: False: it lights what it cannot see too. diffuse, glossy: False: diffuse or glossy reflection leaves it out.
 camera: True: the camera sees its radiance, added to that of what is behind it; not of a light of no size.

@@ -88,7 +88,7 @@ glm::dmat4 matrix_at(const double* rows) {
     return matrix;
 }
 
-/// Empty for what has none, as an array without axes.
+/// The items of a sequence; empty for objects that are not iterable, such as arrays without axes.
 py::list items_of(const py::object& value) {
     try {
         return py::list(value);
@@ -105,7 +105,7 @@ std::uint32_t attribute_index(const AttributeNames& names, const std::string& na
     return found == names.end() ? MeshShader::kNoAttribute : static_cast<std::uint32_t>(found - names.begin());
 }
 
-/// A Bsdf, or what has a method `compiled` that makes a shader.
+/// item: a Bsdf, or an object with a method `compiled` that returns a shader.
 void add_material(MeshUse& use, const AttributeNames& names, const py::handle& item, SceneObject& scene) {
     use.bsdfs.emplace_back();
     use.shaders.emplace_back();
@@ -173,7 +173,7 @@ MeshAttribute attribute_from(const std::string& name, const MeshShape& mesh, con
     return {static_cast<std::uint32_t>(components), {all.begin(), all.end()}};
 }
 
-/// One array, under the argument's own name, or a dict of them.
+/// value: one array, named by the argument, or a dict of arrays.
 void add_attributes(MeshShape& mesh, AttributeNames& names, const std::string& argument, const py::object& value) {
     if (value.is_none()) {
         return;
@@ -192,7 +192,7 @@ void add_attributes(MeshShape& mesh, AttributeNames& names, const std::string& a
     }
 }
 
-/// One string for all, or one for each of so many; 0 where Python leaves them out.
+/// Identities of names: one string for all, or one for each of `count`; 0 for None.
 std::vector<float> identities(const char* name, const py::object& value, std::size_t count) {
     if (value.is_none()) {
         return std::vector<float>(count);
@@ -213,7 +213,7 @@ std::vector<float> identities(const char* name, const py::object& value, std::si
     return result;
 }
 
-/// Likewise, of integers.
+/// Pass indices: one integer for all, or one for each of `count`; 0 for None.
 std::vector<float> pass_indices(const char* name, const py::object& value, std::size_t count) {
     if (value.is_none()) {
         return std::vector<float>(count);
@@ -239,7 +239,7 @@ std::vector<Rgb> emission_from(const py::object& value) {
     return copy_vectors("emission", array);
 }
 
-/// Either of the two forms; the other stays empty.
+/// Normals per vertex or per corner; the other list stays empty.
 void set_normals(MeshShape& mesh, const py::object& value) {
     const AnyArray<float> array = array_from<float>("normals", value);
     const auto vertex_count = static_cast<py::ssize_t>(mesh.vertices.size());

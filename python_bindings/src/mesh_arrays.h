@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// numpy arrays → what the core's scene holds. Errors as of arguments.h.
+// Conversion of numpy arrays to the core's scene types. Errors as in arguments.h.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -22,27 +22,28 @@ Vec3d vector_from(const char* name, const pybind11::handle& value);
 Rgb rgb_from(const char* name, const pybind11::handle& value);
 /// Shape (n, 3).
 std::vector<Vec3d> points_from(const char* name, const pybind11::handle& value);
-/// A lamp's frame, see make_spot_profile: its axes as columns, shape (3, 3), or the way it shines, (3,).
+/// A lamp's frame, see make_spot_profile(): its axes as columns, shape (3, 3), or the direction in which it shines,
+/// (3,).
 glm::dmat3 axes_from(const char* name, const pybind11::handle& value);
 /// Shape (4, 4), to be multiplied with column vectors.
 glm::dmat4 matrix_from(const char* name, const pybind11::handle& value);
 
 /// Shape (3, 3), to be multiplied with column vectors.
 glm::dmat3 rotation_from(const char* name, const pybind11::handle& value);
-/// A radiance, shape (3,), or a lat-long picture, shape (height, width, 3), which `to_world` turns.
+/// A radiance, shape (3,), or a lat-long picture, shape (height, width, 3), rotated by `to_world`.
 Environment environment_from(const char* name, const pybind11::handle& value, const glm::dmat3& to_world);
 
-/// Arguments of Scene.add_mesh about materials; None where Python leaves one out.
+/// Arguments of Scene.add_mesh about materials; None if they are omitted.
 struct MaterialArguments {
     pybind11::object bsdf, emission, group, names, pass_indices;
 };
 
-/// Those about instances.
+/// Arguments about instances.
 struct PlaceArguments {
     pybind11::object transforms, object_values, object_names, asset_names, object_indices;
 };
 
-/// All of them.
+/// All arguments of Scene.add_mesh.
 struct MeshArguments {
     pybind11::object vertices, triangles, normals, uvs, colors, attributes, material_indices;
     MaterialArguments materials;
@@ -52,8 +53,8 @@ struct MeshArguments {
 /// The names of a mesh's attributes, in their order.
 using AttributeNames = std::vector<std::string>;
 
-/// Shapes and types are checked here, the rest by Scene::add_mesh. names: is given those of the mesh. Groups and AOVs
-/// become known to the scene, here and below.
+/// Checks shapes and types; Scene::add_mesh checks the rest. names: output, the mesh's attributes. Groups and AOVs are
+/// added to the scene's lists, also by the functions below.
 Mesh mesh_from(const MeshArguments& arguments, AttributeNames& names, SceneObject& scene);
 void set_materials(MeshUse& use, const AttributeNames& names, const MaterialArguments& arguments, SceneObject& scene);
 void set_places(MeshUse& use, const PlaceArguments& arguments);

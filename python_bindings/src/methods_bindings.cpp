@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Methods to compare with: flat batch functions like those of coefficients_bindings.cpp and shading_bindings.cpp.
+// Methods for comparison: batch functions on flat arrays, like coefficients_bindings.cpp and shading_bindings.cpp.
 #include <pybind11/stl.h>
 
 #include "arrays.h"

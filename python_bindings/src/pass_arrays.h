@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Passes of a render as Python asks for them and gets them.
+// Passes of a render: the arguments that request them and the arrays that return them.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -14,17 +14,17 @@
 
 namespace shlight::python {
 
-/// Arguments of shlight.render.
+/// Arguments of shlight.render about passes.
 struct PassArguments {
     pybind11::object passes, groups, aovs, alpha_threshold, mist, cryptomatte_levels;
 
-    /// Whether any is asked for.
+    /// Whether any pass is requested.
     bool any() const;
 };
 
-/// Those that have a name of their own. Throws as arguments.h does.
+/// The passes with fixed names. Throws as arguments.h does.
 PassSettings pass_settings_from(const PassArguments& arguments);
-/// Adds the scene's light groups and AOVs, where the arguments ask for them.
+/// Adds the requested light groups and AOVs of the scene.
 void add_named_passes(const PassArguments& arguments, const SceneObject& scene, const CompiledScene& compiled,
                       PassSettings& settings);
 

@@ -43,7 +43,7 @@ std::pair<std::shared_ptr<const CompiledScene>, double> compiled(SceneObject& ob
     if (object.compiled) {
         return {object.compiled, 0.0};
     }
-    // A copy, since other Python threads may add to the object meanwhile.
+    // A copy, since other Python threads may change the object meanwhile.
     const Scene scene = object.scene;
     const std::shared_ptr<const CompiledScene> before = object.before;
     const std::uint64_t revision = object.revision;

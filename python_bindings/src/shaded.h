@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What shading functions return.
+// Results of shading functions.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace shlight::python {
 
-/// Radiance (count, 3) and, if wanted, effort (count), as they are returned and as they are filled.
+/// Radiance (count, 3) and, if requested, effort (count): as numpy arrays and as spans to fill.
 struct Shaded {
     Array<float> radiance;
     Array<std::int32_t> effort;
@@ -26,7 +26,7 @@ struct Shaded {
         efforts = {effort.mutable_data(), with_effort ? count : 0};
     }
 
-    /// Of a part of the lights; empty without effort.
+    /// The efforts of some lights; empty without effort.
     std::span<std::int32_t> effort_of(std::size_t first, std::size_t count) const {
         return efforts.empty() ? efforts : efforts.subspan(first, count);
     }

@@ -23,7 +23,7 @@ namespace {
 using ImagePointer = std::shared_ptr<const ImageTexture>;
 using StepTuple = std::tuple<int, double, std::uint32_t, std::uint32_t, std::vector<std::uint32_t>>;
 using TableTuple = std::tuple<AnyArray<float>, std::vector<std::uint32_t>>;
-/// kind of lobe, ior, and numbers of results: weight, alpha, normal; and ShadedLobe::several_bounces
+/// Kind of lobe, ior, result indices of weight, alpha and normal, and ShadedLobe::several_bounces.
 using LobeTuple =
     std::tuple<std::string, double, std::uint32_t, std::optional<std::uint32_t>, std::optional<std::uint32_t>, bool>;
 /// name, number of the result, whether it is a colour
@@ -65,7 +65,7 @@ ShaderProgram program_from(const std::vector<StepTuple>& steps, const std::vecto
     return {std::move(own_steps), std::move(own_tables), std::move(images), results};
 }
 
-/// Inputs as arrays (places, lanes): a program can be tried without a scene.
+/// Reads inputs from arrays (places, lanes), so that a program can be run without a scene.
 class ArrayReader : public ShaderReader {
   public:
     using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
@@ -149,7 +149,7 @@ ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTup
 }
 
 /// uint8 or float; (height, width, channels), row 0 at v = 0.
-/// Precondition: numbers of this type, in order.
+/// Precondition: a contiguous array of this type.
 template <class Number>
 std::vector<Number> numbers_of(const py::array& pixels) {
     const auto* first = static_cast<const Number*>(pixels.data());
@@ -182,7 +182,7 @@ std::shared_ptr<TexturePixels> pixels_from(const py::array& pixels, int encoding
                                            static_cast<TexelEncoding>(encoding));
 }
 
-/// tiles: (u, v, pixels) of each.
+/// tiles: a list of (u, v, pixels).
 std::shared_ptr<ImageTexture> image_from(
     const std::vector<std::tuple<std::int64_t, std::int64_t, std::shared_ptr<TexturePixels>>>& tiles, int interpolation,
     int extension, bool unassociate, bool tiled) {

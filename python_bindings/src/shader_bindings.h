@@ -11,7 +11,7 @@
 
 namespace shlight::python {
 
-/// A material of a program, and the names of the attributes that its inputs are numbered by.
+/// A material with a program, and the names of the attributes to which its inputs refer by index.
 struct ShaderObject {
     std::shared_ptr<const SurfaceShader> shader;
     std::vector<std::string> attribute_names;

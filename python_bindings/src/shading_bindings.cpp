@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Flat batch functions; shlight/shading.py broadcasts in front of them.
+// Batch functions on flat arrays; shlight/shading.py broadcasts their arguments.
 #include <tbb/enumerable_thread_specific.h>
 
 #include "arrays.h"
@@ -12,18 +12,18 @@
 namespace shlight::python {
 namespace {
 
-/// work(shader, first, count) over parts of 0 … total-1, without the GIL; each thread has a shader of its own.
+/// Calls work(shader, first, count) for parts of 0 … total-1, without the GIL, with one shader per thread.
 template <class Work>
 void shade_parts(std::size_t total, const Bsdf& bsdf, const ShadeSettings& settings, int threads, const Work& work) {
     tbb::enumerable_thread_specific<LightShader> shaders([&] { return LightShader(bsdf, settings); });
     {
         const py::gil_scoped_release release;
-        shaders.local();  // a setting that is wrong is wrong for no lights, too
+        shaders.local();  // checks the settings even if there are no lights
     }
     in_chunks(total, threads, [&](std::size_t first, std::size_t count) { work(shaders.local(), first, count); });
 }
 
-/// The views of a part of the lights: those of each, or the one of all.
+/// The views of some lights: theirs, or the one for all.
 std::span<const double> part_of(std::span<const double> views, std::size_t first, std::size_t count) {
     return views.size() == 1 ? views : views.subspan(first, count);
 }

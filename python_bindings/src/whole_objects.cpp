@@ -13,7 +13,7 @@ PyObject* refuse(PyTypeObject* type, PyObject* /*args*/, PyObject* /*keywords*/)
     return nullptr;
 }
 
-/// pybind11 ignores __init__ of an object that has a value.
+/// pybind11 does not run __init__ for an object that already has a value.
 PyObject* construct(PyTypeObject* type, PyObject* /*args*/, PyObject* /*keywords*/) {
     try {
         auto self = py::reinterpret_steal<py::object>(py::detail::make_new_instance(type));

@@ -22,7 +22,7 @@ CapAngles cap_angles(const CapInput& input) {
     return cap_angles(axis, half_angle(input));
 }
 
-/// ∮ along the cap's own edge, ψ = -reach … reach from its highest point, and along the horizon, φ = -arc … arc.
+/// ∮ along the cap's edge, ψ = -reach … reach from its highest point, and along the horizon, φ = -arc … arc.
 struct KeptEdge {
     quad reach, horizon_arc;
 };
@@ -74,7 +74,7 @@ void add_edge_point(const OrderTables& tables, const Vec3q& p, quad dz, quad are
     }
 }
 
-/// A point on the cap's own edge, axis in the xz-plane, ψ from the highest one; and its derivative.
+/// A point on the cap's edge, with the axis in the xz-plane and ψ from the highest point; and its derivative.
 struct EdgePoint {
     Vec3q p, dp;
 
@@ -91,7 +91,7 @@ struct EdgePoint {
     quad area() const { return p.x * dp.y - p.y * dp.x; }
 };
 
-/// The part of the cosine terms that the cap's own edge gives, bands above 0.
+/// The cap edge's part of the cosine terms of bands above 0.
 void add_cap_edge(const CapAngles& cap, quad reach, int extra_nodes, const OrderTables& tables,
                   std::vector<quad>& sums) {
     const double wiggles = (tables.order + 1) * static_cast<double>(reach);
@@ -105,8 +105,8 @@ void add_cap_edge(const CapAngles& cap, quad reach, int extra_nodes, const Order
     }
 }
 
-/// ∫ (1 - z) dφ along the cap's own edge. It changes fast where the edge comes near the south pole, which is close to
-/// ψ = π: panels shrink towards that point.
+/// ∫ (1 - z) dφ along the cap's edge. The integrand changes fast where the edge is near the south pole, at ψ close to
+/// π: panels shrink towards that point.
 quad edge_area(const CapAngles& cap, quad reach, int extra_nodes) {
     const GaussRule& rule = gauss_rule(28 + extra_nodes);
     const auto panel = [&](quad from, quad to) {

@@ -7,7 +7,7 @@
 
 namespace shlight::truth {
 
-/// Tilt and half angle, and the axis' azimuth.
+/// A cap by tilt and half angle, and the azimuth of its axis.
 struct CapAngles {
     quad tilt, half;
     quad cos_azimuth, sin_azimuth;
@@ -16,7 +16,7 @@ struct CapAngles {
 quad half_angle(const CapInput& input);
 CapAngles cap_angles(const Vec3q& axis, quad half);
 
-/// order² coefficients of what a cap and the cap of half angle `horizon` about z have in common.
+/// order² coefficients of the intersection of a cap and the cap of half angle `horizon` about z.
 Coefficients cap_above(const CapAngles& cap, quad horizon, int order, int extra_nodes);
 Coefficients cap_by_slices(const CapAngles& cap, quad horizon, int order);
 

@@ -6,8 +6,8 @@
 //   ∫_R P̄_l^m(z) cos mφ dφ dz = ∮_∂R P̄_l^m(z) (sin mφ) / m dz   (m > 0),
 //   ∫_R P̄_l^0(z) dφ dz       = ∮_∂R (∫_z^1 P̄_l^0 dz') dφ.
 //
-// Along an arc both integrands are trigonometric polynomials, so that Gauss–Legendre rules in the arc's own parameter
-// converge faster than exponentially. Nothing is solved, no recurrence runs in m.
+// Along an arc both integrands are trigonometric polynomials, so that Gauss–Legendre rules in the arc's angle converge
+// faster than exponentially. No equation is solved, and no recurrence runs in m.
 #pragma once
 
 #include <span>

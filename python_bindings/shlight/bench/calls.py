@@ -56,12 +56,12 @@ KINDS: Mapping[str, Mapping[str, Call]] = {  # by section
     },
 }
 ALL: Mapping[str, Call] = {name: call for kinds in KINDS.values() for name, call in kinds.items()}
-# Those whose order may be left to the library: what it takes then depends on the lights, not on an order.
+# Calls that also run with order "auto": their time then depends on the lights, not on an order.
 AUTO = tuple(name for name in ALL if "Lambert" in name or "warped" in name or "glossy" in name)
 
 
 def label(name: str, order: Order) -> str:
-    """Of a row."""
+    """The name of a row."""
     return f"{name}, auto" if order == "auto" else f"{name}, n = {order}"
 
 

@@ -31,7 +31,7 @@ def _work(arguments: list[str]) -> None:
         width = max(len(section.name) for section in SECTIONS)
         print("\n".join(f"{section.name:{width}}  {section.title}" for section in SECTIONS))
         return
-    # What can be known to fail before anything is started.
+    # Errors that can be found before anything is measured.
     before = None if options.compare is None else read(options.compare)
     if options.read is None:
         if options.out.is_dir():

@@ -21,7 +21,7 @@ class Change:
 
     @property
     def ratio(self) -> float:
-        """Of the values: of ratios mostly."""
+        """New value ÷ old value; the values are mostly ratios themselves."""
         return self.new.value / self.old.value if self.old.value else float("nan")
 
     @property
@@ -32,20 +32,20 @@ class Change:
 
 
 def changes(new: Bench, old: Bench) -> list[Change]:
-    """Of the rows that both runs have."""
+    """The changes of all rows that both runs have."""
     before = {(row.section, row.name): row for row in old.rows}
     return [Change(row, before[row.section, row.name]) for row in new.rows if (row.section, row.name) in before]
 
 
 def differences(new: Bench, old: Bench) -> list[str]:
-    """What makes the two runs hard to compare, a line each."""
+    """Settings and machines that differ between the runs, a line each."""
     pairs = [(key, new.machine.get(key, "?"), old.machine.get(key, "?")) for key in SAME_TO_COMPARE]
     pairs += [(key, str(new.settings.get(key, "?")), str(old.settings.get(key, "?"))) for key in new.settings]
     return [f"not the same {key}: {now} now, {then} before" for key, now, then in pairs if now != then]
 
 
 def comparison(new: Bench, old: Bench) -> str:
-    """As text: a table of all rows in common, and what else to know."""
+    """The comparison as text: differing settings, and a table of all common rows."""
     found = changes(new, old)
     lines = [f"{line}\n" for line in differences(new, old)]
     if not found:

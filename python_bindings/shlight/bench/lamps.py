@@ -52,7 +52,7 @@ def under_mesh(lamp: Solid, bsdf: shlight.Bsdf) -> shlight.Scene:
 
 
 def ball_on_floor(bsdf: shlight.Bsdf) -> shlight.Scene:
-    """With a camera, and without a lamp."""
+    """A scene with a camera and without lamps."""
     scene = floored(bsdf)
     normals, faces = icosphere(4)
     scene.add_mesh(0.8 * normals + (0, 0, 0.8), faces, bsdf=bsdf, normals=normals)
@@ -61,7 +61,7 @@ def ball_on_floor(bsdf: shlight.Bsdf) -> shlight.Scene:
 
 
 def icosphere(subdivisions: int) -> Solid:
-    """Of radius 1: each face of an icosahedron in 4^subdivisions; vertices and triangles."""
+    """A unit sphere: vertices and triangles of an icosahedron with each face cut into 4^subdivisions."""
     golden = (1 + np.sqrt(5)) / 2
     near = [(0.0, a, b * golden) for a in (-1, 1) for b in (-1, 1)]
     vertices = np.array([np.roll(v, k) for k in range(3) for v in near]) / np.hypot(1, golden)

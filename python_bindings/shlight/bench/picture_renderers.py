@@ -26,7 +26,7 @@ Image = NDArray[np.float32]
 LLVM_PATH = "DRJIT_LIBLLVM_PATH"
 LEAST_LLVM = 17  # older ones fail where there is AVX-512
 THREADS = 2
-# Of shlight's references: what is left of its error is far below what any picture is compared at.
+# Settings of shlight's references, whose error is far below those of the compared pictures.
 CONVERGED: dict[str, Any] = {"noise_threshold": 1e-3, "min_samples": 64, "max_samples": 1024}
 
 

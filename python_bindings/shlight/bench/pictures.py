@@ -29,7 +29,7 @@ FEW_FACES, MANY_FACES = 1, 7  # subdivisions of an icosahedron
 
 
 def rooms(run: Run) -> Works:
-    """Whose results are pairs of a picture and a report."""
+    """Renders of the rooms, which return pairs of a picture and a report."""
     options = {"pixel_samples": RAYS, "return_report": True}
     return {name: _rendered(build(), run.size(ROOM_SIZE), **options) for name, build in ROOMS.items()}
 
@@ -60,7 +60,7 @@ def emitters(run: Run) -> list[Works]:
 
 
 def measure_stages(run: Run) -> list[Row]:
-    """Of the rooms. The rest is what decides on further rays, and waits."""
+    """Time of each stage in the rooms. The rest goes into decisions on further rays, and into waiting."""
     run = run.shorter()
     rows: list[Row] = []
     for i, (name, work) in enumerate(rooms(run).items()):

@@ -18,7 +18,7 @@ from shlight._arrays import Floats
 
 Clock = Callable[[], float]
 
-# Of the processor: the time of one thread, without that in which others had its core; and that of a wall.
+# CPU time of this process, in which waiting for a core does not count, and wall-clock time.
 ONE_THREAD: Clock = time.process_time
 WALL: Clock = time.perf_counter
 

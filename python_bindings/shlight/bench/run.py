@@ -27,11 +27,11 @@ class Run:
     step: Callable[[float, str], None] = field(default=lambda share, text: None)
 
     def count(self, order: int) -> int:
-        """As many lights as usual, or as their coefficients of this order fit into memory."""
+        """The usual number of lights, or fewer if their coefficients of this order exceed the memory limit."""
         return min(self.lights, int(RESULT_BYTES / (4 * order**2)))
 
     def size(self, usual: tuple[int, int]) -> tuple[int, int]:
-        """Of a picture: half as wide and as high in a quick run."""
+        """The size of a picture: half as wide and high in a quick run."""
         width, height = usual
         return (width // 2, height // 2) if self.lights < LIGHTS else usual
 

@@ -13,7 +13,7 @@ VERDICT = {True: "met", False: "NOT MET", None: ""}
 
 
 def machine(bench: Bench) -> str:
-    """Where the run ran, one line each."""
+    """The machine and settings of the run, one line each."""
     width = max(map(len, bench.machine))
     lines = [f"{key + ':':{width + 1}} {value}" for key, value in bench.machine.items()]
     settings = ", ".join(f"{value} {key}" for key, value in bench.settings.items())

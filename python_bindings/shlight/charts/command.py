@@ -31,7 +31,7 @@ def _work(arguments: list[str]) -> None:
         width = max(len(figure.name) for figure in FIGURES)
         print("\n".join(f"{figure.name:{width}}  {figure.title}" for figure in FIGURES))
         return
-    # What can be known to fail before anything is started.
+    # Errors that can be found before anything is measured.
     check_folder(options.out)
     if importlib.util.find_spec("matplotlib") is None:
         raise CommandError("the Python module matplotlib is missing: pip install 'shlight[charts]'", 1)

@@ -33,14 +33,14 @@ class Fused(Series):
         views: float | NDArray[Any] = COS_VIEW
         bsdf = shlight.Bsdf.lambert(1.0)
         if self.glossy:
-            # As the hits of a picture: each has a view of its own, and a warp.
+            # Views differ, like those of a picture's hits, and so do their warps.
             views, bsdf = np.linspace(0.05, 1, len(lights)), shlight.Bsdf.ggx(ROUGHNESS, 1.0)
         call: Any = shlight.shade_spheres if lights.kind == "sphere" else shlight.shade_polygons
         shaded: NDArray[Any] = call(*given, bsdf, views, order=order, threads=1)
         return shaded[:, :1]
 
     def errors(self, values: NDArray[Any], true: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Of Lambert's lobe, which is a harmonic of band 1; its fit of order 1 is the mean over the hemisphere."""
+        """Errors under Lambert's lobe, a harmonic of band 1; its fit of order 1 is the mean over the hemisphere."""
         mean, slope = math.sqrt(4 * math.pi) / (2 * math.pi), math.sqrt(4 * math.pi / 3) / math.pi
         columns = true.shape[1]
         radiance = mean * true[:, 0] if columns == 1 else slope * true[:, 2]
@@ -50,7 +50,7 @@ class Fused(Series):
 
 
 def fused_series(precision: str) -> list[Series]:
-    """With Lambert's lobe; of whatever kind of light. The calls are in float32 alone."""
+    """The library's shading with Lambert's lobe, for all kinds of lights; it exists in float32 only."""
     if precision != "float32":
         return []
     return [Fused("exact, with Eq. 5", LIBRARY, MAX_ORDER, BLUE, "*", ":")]

@@ -76,7 +76,7 @@ def squares(elevation: Array, half_angle: Array | float, azimuth: Array | float 
     toward = np.stack([np.cos(around), np.sin(around)], axis=-1)
     level = np.tan(half)[..., None] * np.stack([-np.sin(around), np.cos(around)], axis=-1)
     middles = out[..., None] * toward[..., None, :]
-    # With x and y in fixed point the two level edges stay parallel, and the corners in one plane, in float32 too.
+    # Fixed-point x and y keep the level edges parallel and the corners coplanar, also in float32.
     step = _grid(np.abs(middles).max(axis=(-1, -2)) + np.abs(level).max(axis=-1))[..., None]
     across = step * np.round(level / step)
     lower, upper = (step * np.round(middles[..., i, :] / step) for i in (0, 1))

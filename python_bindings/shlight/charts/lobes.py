@@ -18,7 +18,7 @@ import numpy as np
 import shlight
 from shlight._arrays import MAX_ORDER, Floats
 
-# What keeps an expansion from growing where nothing asks for its values; those of the library's own fits.
+# Ridge terms of the library's fits, which bound an expansion outside of the fitted region.
 HEMISPHERE_RIDGE = 1e-7
 WARPED_RIDGE = 1e-6
 CHUNK = 2048

@@ -86,7 +86,7 @@ def truth(lights: Lights, order: int, step: Callable[[float], None] | None = Non
 def relative_errors(
     values: NDArray[Any], true: NDArray[np.float64], least: NDArray[np.float64] | float = 0.0
 ) -> NDArray[np.float64]:
-    """Of each light the largest |coefficient − truth| ÷ its L_00; infinite where a coefficient is not finite.
+    """The largest |coefficient − truth| ÷ L_00 of each light; infinite where a coefficient is not finite.
 
     least: L_00 counts as no less. true: of the same or of a larger order.
     """
@@ -101,11 +101,11 @@ def batch_size(series: Series, lights: Lights, order: int, dtype: DTypeLike, bud
     count = 1
     while True:
         batch = lights.repeated(count).in_type(dtype)
-        # Of two, for the first may have to wake something up.
+        # The smaller of two times, because the first call may initialise something.
         spent = min(_seconds(lambda b=batch: series.coefficients(b, order, dtype)) for _ in range(2))  # type: ignore[misc]
         if spent >= budget / 4 or count == most:
             return int(np.clip(count * budget / spent, 1, most))
-        # What a call costs in itself hides what so few lights take.
+        # A call's overhead dominates the time of so few lights.
         count = min(4 * count, most)
 
 
@@ -136,7 +136,7 @@ def best_seconds(
     times: list[list[float]] = [[] for _ in works]
     for turn in range(rounds):
         for work, own in zip(works, times, strict=True):
-            # What takes long is measured well in three.
+            # Three rounds suffice for slow methods.
             if work is not None and (turn < 3 or min(own) * work[1] < 4 * budget):
                 own.append(_seconds(work[0]) / work[1])
     # The clock of the processor rarely misses a part: the fastest but one.
@@ -144,7 +144,7 @@ def best_seconds(
 
 
 def _seconds(work: Callable[[], object]) -> float:
-    """Of the processor: one core's time, without that in which others had the core."""
+    """CPU time of the work in this process, in which waiting for a core does not count."""
     start = time.process_time()
     work()
     return time.process_time() - start

@@ -81,7 +81,7 @@ class Reference:
         return (self.halves[0] + self.halves[1]) / 2
 
     def scale(self) -> Floats:
-        """What relMSE divides squared differences by."""
+        """The divisor of squared differences in relMSE."""
         r = self.image[..., :3].astype(np.float64)
         return r**2 + 0.01 * r.mean() ** 2
 
@@ -237,7 +237,7 @@ def _take_turns(calls: list[Call], reference: Reference, effort: Effort, step: C
 
 
 def _bias(harmonics: Callable[..., Image], order: int, reference: Reference) -> float:
-    """Of the same rays, only the shading differs between this order and whatever meets a small tolerance."""
+    """relMSE between this order and a small tolerance, with the same rays, so that only the shading differs."""
     rays = (1, 4)
     difference = (harmonics(rays, order) - harmonics(rays, "auto", tolerance=BIAS_TOLERANCE))[..., :3]
     return float(np.mean(difference.astype(np.float64) ** 2 / reference.scale()))

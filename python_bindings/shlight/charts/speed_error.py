@@ -74,7 +74,7 @@ def _points(
     seconds = best_seconds(able, lights, order, precision, rounds=rounds, budget=batch, least=least)
     points = []
     for series, second in zip(able, seconds, strict=True):
-        # Of slow methods the first of the lights: as many as there is time for.
+        # A slow method gets only as many of the lights as it can do in time.
         count = batch_size(series, lights, order, precision, budget, len(lights))
         values = series.coefficients(lights.take(slice(0, count)), order, precision)
         errors = series.errors(values, true[:count, : order * order])
@@ -155,7 +155,7 @@ def _errors(measured: Measured, shown: Sequence[int]) -> Table:
 
 
 def _explanation(measured: Measured) -> str:
-    """What the library takes and errs, and how the others stand to it."""
+    """Time and error of the library, and of the others relative to it."""
     errors: dict[str, float] = {}
     faster = cases = 0
     for (_, precision), points in measured.items():

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 BLUE, ORANGE, GREEN, SKY, PINK, AMBER = "#0072B2", "#D55E00", "#009E73", "#56B4E9", "#CC79A7", "#E69F00"
 DARK, GREY, VIOLET, BROWN, OLIVE = "#333333", "#888888", "#5B3A8E", "#7F4F24", "#808000"
 
-# Of methods that are known by name, whether they give coefficients or shading.
+# Colours and markers of methods with known names, for coefficients and for shading.
 _KNOWN = {
     "exact": (BLUE, "o"),
     "auto": (BLUE, "o"),
@@ -31,10 +31,10 @@ _KNOWN = {
     "outline": (VIOLET, "P"),
     "point": (DARK, "*"),
 }
-# Of all others, in the order in which they come.
+# Colours and markers of other methods, in the order of their appearance.
 _FURTHER = [(BROWN, "h"), (OLIVE, "p"), (DARK, "*"), ("#A6761D", "X"), ("#1B6E5A", "d"), ("#B0003A", "H")]
 
-# Of maps, where there is no number, and where it is beyond the scale.
+# Colours of a map's cells without a number, and of numbers beyond its scale.
 HIDDEN, NOT_FINITE, WORSE = "#DDDDDD", "#E5007D", "#FF8C1A"
 
 _LOOK: dict[Any, Any] = {

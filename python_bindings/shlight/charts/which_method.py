@@ -65,7 +65,7 @@ FURTHER = (SKY, VIOLET, BROWN, OLIVE)
 
 
 def families() -> list[Family]:
-    """Of all registered shading methods; those that are not known here by what they take."""
+    """A family for each registered shading method; the options of unknown ones follow from their description."""
     registered = methods.shading_methods()
     found = [family for family in KNOWN if family.method in registered]
     unknown = [m for m in registered.values() if m.name != TRUTH and m.name not in {f.method for f in KNOWN}]
@@ -100,7 +100,7 @@ class Way:
 
 @dataclass(frozen=True)
 class Choice:
-    """What a cell takes for one tolerance. way None: nothing meets it."""
+    """The cheapest way in a cell for one tolerance. way: None if no way meets it."""
 
     way: Way | None
     microseconds: float

@@ -31,7 +31,7 @@ class Rendered:
 
 
 class Source(Protocol):
-    """What renders pictures; it is pickled and sent to workers, and keeps what it has opened in their process."""
+    """A renderer of pictures, which is pickled for workers and keeps opened files in their process."""
 
     @property
     def key(self) -> str:

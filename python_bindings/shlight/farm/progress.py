@@ -35,7 +35,7 @@ class FarmProgress:
         print(text, file=self._stream, flush=True)
 
     def say_once(self, text: str) -> None:
-        """As `say`, if that was not said before."""
+        """Calls `say` unless the same text was said before."""
         if text not in self._said:
             self._said.add(text)
             self.say(f"shlight: {text}")

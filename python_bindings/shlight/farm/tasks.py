@@ -29,14 +29,14 @@ class Task:
 
 @dataclass(frozen=True)
 class Result:
-    """What a task gives back: the file of a picture, or a tile; and what the user is to know."""
+    """The result of a task: the file of a picture, or a tile, and messages to the user."""
 
     made: bytes | Rendered
     messages: Sequence[str]
 
 
 def perform_on_worker(source: Source, task: Task, threads: int) -> Result:
-    """As `perform`, always in the same thread of a worker's process: Blender stays in the one where it began."""
+    """Runs `perform` in one fixed thread of a worker's process: Blender must stay in the thread it started in."""
     from distributed import get_worker
 
     global received_files

@@ -23,7 +23,7 @@ class Tls:
                 pass
 
     def security(self) -> Any:
-        """What Dask wants; scheduler, workers and client of a cluster on this machine share the certificate."""
+        """Dask's security object; scheduler, workers and client of a cluster on this machine share the certificate."""
         from distributed.security import Security
 
         roles = ("scheduler", "worker", "client")

@@ -151,7 +151,7 @@ def _color(a: Vector, b: Vector, t: Value) -> Color:
 
 
 Blend = Callable[[Vector, Vector, Value], Color]
-# By Blender's names: how b is laid over a, by a share t.
+# Blend modes by Blender's names: b is laid over a with weight t.
 BLENDS: dict[str, Blend] = {
     "MIX": _lerp,
     "DARKEN": lambda a, b, t: _lerp(a, _map(minimum, a, b), t),

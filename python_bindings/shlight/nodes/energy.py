@@ -52,7 +52,7 @@ def _visible_normals(view: Array, alpha: float) -> Array:
 
 
 def _reflected(roughness: float, cosine: float) -> tuple[Array, Array, Array]:
-    """Of each visible normal: its cosine to the view, whether the light goes up, and G2 / G1."""
+    """For each visible normal: its cosine to the view, whether the light goes up, and G2 / G1."""
     alpha = roughness * roughness
     view = np.array([np.sqrt(1.0 - cosine * cosine), 0.0, cosine])
     normals = _visible_normals(view, alpha)
@@ -80,7 +80,7 @@ def _dielectric(cosine: Array, ior: Array) -> Array:
 
 
 def albedo_table() -> Array:
-    """What a lobe without Fresnel's factor reflects, over cosine (rows) and roughness."""
+    """Albedo of a lobe without Fresnel's factor, over cosine (rows) and roughness."""
     return np.array([[_reflected(r, c)[2].mean() for r in _steps(32)] for c in _steps(32)])
 
 
@@ -125,7 +125,7 @@ def tables() -> dict[str, Table]:
 
 
 def albedo(roughness: Number, cosine: Number) -> Value:
-    """What a GGX lobe without Fresnel's factor reflects to a view."""
+    """Albedo of a GGX lobe without Fresnel's factor at a view."""
     return operation("table2", roughness, cosine, data=tables()["albedo"])
 
 

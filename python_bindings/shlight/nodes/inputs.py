@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from shlight.nodes.values import Color, Step, Value, Vector
 
-# As numbered in the core.
+# Numbers of ShaderSource in the core.
 SOURCES = {
     "position": 0,
     "normal": 1,
@@ -32,7 +32,7 @@ def _vector(source: str, index: int | str = 0) -> Vector:
 
 
 def position() -> Vector:
-    """Where the hit is."""
+    """The position of the hit."""
     return _vector("position")
 
 

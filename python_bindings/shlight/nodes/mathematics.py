@@ -84,7 +84,7 @@ def _floored_modulo(a: Value, b: Value) -> Value:
     return select(operation("equal", b, 0.0), 0.0, a - floor(a / b) * b)
 
 
-# By Blender's names; b and c are the second and third input.
+# Operations of the Math node by Blender's names; b and c are the second and third input.
 MATH: dict[str, Callable[[Value, Value, Value], Value]] = {
     "ADD": lambda a, b, c: a + b,
     "SUBTRACT": lambda a, b, c: a - b,

@@ -77,7 +77,7 @@ def head_on(ior: Number) -> Value:
 
 
 def _bounces(roughness: Value, cosine: Value, mean_fresnel: Color) -> Color:
-    """By how much light that is reflected by several microfacets brightens a lobe (Kulla & Conty 2017)."""
+    """The factor by which multiple scattering between microfacets brightens a lobe (Kulla & Conty 2017)."""
     own, mean = energy.albedo(roughness, cosine), energy.mean_albedo(roughness)
     again = mean_fresnel * mean / (1.0 - mean_fresnel * (1.0 - mean))
     return color(1.0 + again * ((1.0 - own) / own))
@@ -277,7 +277,7 @@ def principled(
 
 
 def _coat_color(tint: Color, coat: Value, index: Value, at: Vector) -> Color:
-    """What the coat lets through of each colour: its tint, along the refracted way through it."""
+    """The coat's transmittance: its tint, along the refracted path through it."""
     if tint.constant == (1.0, 1.0, 1.0):
         return color(1.0)
     cosine = dot(towards_viewer(), at)

@@ -52,7 +52,7 @@ class ProgramBuilder:
         return first
 
     def program(self) -> _core.ShaderProgram:
-        """What was listed; waits for pictures that are still being read."""
+        """The program of all listed steps; waits for pictures that are still being read."""
         return _core.shader_program(self._steps, self._tables, [lookup.core for lookup in self._images], self._results)
 
     def input_number(self, source: str, index: int | str) -> tuple[int, int]:

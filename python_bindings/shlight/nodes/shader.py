@@ -59,7 +59,7 @@ class _Listed(NamedTuple):
 
 @dataclass(frozen=True)
 class Shader:
-    """What a surface does to light; made by the functions of `shlight.nodes`, taken by `Scene.add_mesh`."""
+    """The scattering and emission of a surface; made by functions of `shlight.nodes`, used in `Scene.add_mesh`."""
 
     lobes: tuple[Lobe, ...] = ()
     emission: Color = field(default_factory=lambda: color(BLACK))  # radiance towards the viewer
@@ -94,7 +94,7 @@ class Shader:
         return replace(self, aovs={**self.aovs, **own})
 
     def compiled(self) -> _core.SurfaceShader:
-        """What the core runs."""
+        """The core's object of this shader."""
         return self._compiled
 
     @property
@@ -223,7 +223,7 @@ def lambert(albedo: Varying, normal: Vector | None = None) -> Shader:
 
 
 def ggx(roughness: Number, f0: Varying, *, ior: float | None = None, normal: Vector | None = None) -> Shader:
-    """As `Bsdf.ggx`: a microfacet reflection whose alpha is roughness²."""
+    """A microfacet reflection whose alpha is roughness², like `Bsdf.ggx`."""
     f0_color = color(f0, "f0")
     r = number(roughness, "roughness")
     edge = "ggx_schlick" if ior is None else "ggx_dielectric"

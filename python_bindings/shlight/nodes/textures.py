@@ -61,7 +61,7 @@ class ImageLookup:
 
     @cached_property
     def core(self) -> _core.ImageTexture:
-        """What the core looks up."""
+        """The core's object of this texture."""
         tiles = [(u, v, own.result() if isinstance(own, Future) else own) for u, v, own in self.tiles]
         return _core.image_texture(tiles, self.interpolation, self.extension, self.unassociate, self.tiled)
 

@@ -34,7 +34,7 @@ class Step:
 
 @lru_cache(maxsize=1)
 def operations() -> dict[str, tuple[int, int, int]]:
-    """By name: number, arguments and results of the core's operations."""
+    """Number, argument count and result count of the core's operations, by name."""
     return {name: (number, count, results) for number, (name, count, results) in enumerate(_core.shader_operations())}
 
 
@@ -144,7 +144,7 @@ class Vector:
         return None if x is None or y is None or z is None else (x, y, z)
 
     def as_number(self) -> Value:
-        """What it is where a number is asked for: the mean."""
+        """The conversion to a number: the mean."""
         return (self.x + self.y + self.z) / 3.0
 
     def __repr__(self) -> str:
@@ -161,7 +161,7 @@ class Color(Vector):
         self.alpha = number(alpha)
 
     def as_number(self) -> Value:
-        """What it is where a number is asked for: the luminance."""
+        """The conversion to a number: the luminance."""
         r, g, b = LUMINANCE
         return self.x * r + self.y * g + self.z * b
 
@@ -250,7 +250,7 @@ def operation(name: str, *arguments: Number, data: Any = None) -> Value:
     return steps(name, *arguments, data=data)[0]
 
 
-# What an image or a bump map takes: how far a value moves to the neighbouring camera rays.
+# Operations that images and bump maps use: the differences of a value to the neighbouring camera rays.
 DIFFERENCES = ("right", "below")
 
 
