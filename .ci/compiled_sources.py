@@ -33,7 +33,7 @@ def changed_since(commit: str) -> set[Path] | None:
 
 
 def included() -> dict[str, set[Path]]:
-    """What each object was compiled from, as Ninja remembers it."""
+    """The files from which each object was compiled, according to Ninja."""
     files: dict[str, set[Path]] = {}
     current: set[Path] = set()
     for line in printed("ninja", "-C", str(BUILD), "-t", "deps"):

@@ -15,7 +15,7 @@ from pathlib import Path
 
 ADDON = Path(__file__).resolve().parent / "shlight_blender"
 LICENSE = ADDON.parent / "LICENSE"
-# What only the command line uses: comparisons with Cycles of whole files and folders.
+# Parts that only the command line uses: comparisons with Cycles of whole files and folders.
 LEFT_OUT = {"preview", "survey", "arguments.py", "supervision.py"}
 # The same sources give the same zip.
 DATE = (1980, 1, 1, 0, 0, 0)

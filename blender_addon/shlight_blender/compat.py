@@ -59,7 +59,7 @@ LAMPS = (
 
 @dataclass(frozen=True)
 class CameraConvention:
-    """Where a camera's settings are, and how Cycles reads them."""
+    """The place of a camera's settings, and how Cycles reads them."""
 
     panorama_is_cycles: bool  # the settings of panoramas are Cycles' own, or Blender's
     lens_is_at_near_plane: bool  # an orthographic camera's lens lies in the near clip plane, or where the camera is
@@ -69,7 +69,7 @@ CAMERAS = CameraConvention(panorama_is_cycles=not IS_BLENDER_4, lens_is_at_near_
 
 
 def panorama_settings(lens: Any) -> Any:
-    """What has the panorama of a camera's data; AttributeError without the add-on of Cycles where that is Cycles'."""
+    """The owner of a camera's panorama settings. AttributeError if that is Cycles and its add-on is off."""
     return lens.cycles if CAMERAS.panorama_is_cycles else lens
 
 
@@ -112,7 +112,7 @@ PRINCIPLED = (
 
 @dataclass(frozen=True)
 class MaterialConvention:
-    """What Cycles draws on faces without material."""
+    """Cycles' surface of faces without material."""
 
     default_is_principled: bool  # a Principled BSDF as a new node is, or a Diffuse BSDF of albedo 0.8
     empty_slot_is_default: bool  # an object's own empty slot is without material, or has that of the object's data
@@ -122,7 +122,7 @@ MATERIALS = MaterialConvention(default_is_principled=VERSION >= (5, 0, 0), empty
 
 
 def slot_materials(evaluated: Any) -> tuple[Any, ...]:
-    """What Cycles draws in the material slots of an evaluated object; None: the default surface."""
+    """The materials that Cycles draws for the slots of an evaluated object; None: the default surface."""
     materials = [slot.material for slot in evaluated.material_slots]
     if MATERIALS.empty_slot_is_default:
         # The evaluated slots show the materials of the object's data there.
@@ -139,7 +139,7 @@ def _pass_name(long: str, short: str) -> str:
     return long if _LONG_PASS_NAMES else short
 
 
-# Of each switch of a view layer: the name of its pass, its channels, their kind, and what `shlight.render` calls it.
+# For each switch of a view layer: the name of its pass, its channels, their kind, and its name in `shlight.render`.
 PASSES: dict[str, tuple[str, str, str, str]] = {
     "use_pass_z": ("Depth", "Z", "VALUE", "depth"),
     "use_pass_mist": ("Mist", "Z", "VALUE", "mist"),
@@ -175,7 +175,7 @@ def lets_light_through(material: Any) -> bool:
 
 
 def working_space() -> str:
-    """What the file's colours are relative to: since Blender 5.0 it may be another space than Rec. 709."""
+    """The file's working colour space; since Blender 5.0 it may be another one than Rec. 709."""
     colors = getattr(bpy.data, "colorspace", None)
     return REC709 if colors is None else str(colors.working_space)
 
@@ -194,7 +194,7 @@ def lamp_is_normalized(lamp: Any) -> bool:
 
 
 def shadow_switch(lamp: Any) -> tuple[Any, str] | None:
-    """What has the switch for a lamp's shadows, and the switch's name.
+    """The owner of the switch for a lamp's shadows, and the switch's name.
 
     It is Cycles' own in 3.4, None without its add-on, and Blender's in 4.2 and later; EEVEE alone reads that in 3.4.
     """
@@ -217,7 +217,7 @@ def point_is_disk(lamp: Any) -> bool:
 
 @dataclass(frozen=True)
 class Triangles:
-    """Of a mesh: vertices (n, 3); of each triangle its corners (m, 3), their vertices (m, 3), polygon and material."""
+    """A mesh's vertices (n, 3), and corners (m, 3), corner vertices (m, 3), polygon and material of its triangles."""
 
     vertices: NDArray[np.float32]
     corners: NDArray[np.int32]

@@ -21,7 +21,7 @@ from .running import ENGINE
 from .status import status_of
 
 MOST_WARNINGS = 20
-# Of pictures in the making, in seconds.
+# Times of updates with unfinished pictures [s].
 FIRST_UPDATE = 0.05
 UPDATE_INTERVAL = 0.25
 LARGEST_UPDATE_SHARE = 0.1  # of the time
@@ -182,7 +182,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         return exported
 
     def _eye(self, depsgraph: Any, view: str) -> Any:
-        """What the view is seen with: a camera, or one of its two eyes."""
+        """The camera of a view, or one of its two eyes."""
         from .export import Eye
 
         if not view:

@@ -25,7 +25,7 @@ EXCLUDED = {
     "NODE_DATA_PT_light",
     "OBJECT_PT_shading",  # light linking
 }
-# What shlight does not draw, in names of panels.
+# Parts of panels' names for features that shlight does not draw.
 NOT_DRAWN = ("_PT_freestyle", "_PT_gpencil", "_PT_grease_pencil")
 # Panels of EEVEE and Cycles that edit what every engine reads.
 INCLUDED = {
@@ -81,7 +81,7 @@ class SHLIGHT_RENDER_PT_sampling_viewport(EnginePanel, bpy.types.Panel):
 
 
 class SHLIGHT_RENDER_PT_light(EnginePanel, bpy.types.Panel):
-    """Where light goes, and how precisely it is integrated."""
+    """Paths of light, and the precision of its integration."""
 
     bl_label = "Light"
     bl_options = {"DEFAULT_CLOSED"}
@@ -95,7 +95,7 @@ class SHLIGHT_RENDER_PT_light(EnginePanel, bpy.types.Panel):
 
 
 class SHLIGHT_RENDER_PT_light_advanced(EnginePanel, bpy.types.Panel):
-    """What hardly anybody changes."""
+    """Settings that are rarely changed."""
 
     bl_label = "Advanced"
     bl_parent_id = "SHLIGHT_RENDER_PT_light"
@@ -165,7 +165,7 @@ class SHLIGHT_RENDER_PT_performance(EnginePanel, bpy.types.Panel):
 
 
 class SHLIGHT_WORLD_PT_baking(EnginePanel, bpy.types.Panel):
-    """What a world is baked to."""
+    """Settings of baked worlds."""
 
     bl_label = "Baking"
     bl_context = "world"
@@ -206,7 +206,7 @@ class SHLIGHT_OBJECT_PT_ray_visibility(EnginePanel, bpy.types.Panel):
 
 
 class LampPanel(EnginePanel):
-    """What panels of lamps have in common."""
+    """Base of panels of lamps."""
 
     bl_context = "data"
 

@@ -98,7 +98,7 @@ def _lamps(view_layer: Any) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class PassWishes:
-    """What the export of a scene must know of the passes that are asked for."""
+    """Requirements of the requested passes on the export of a scene."""
 
     lamps: bool = False  # light is told apart by lamps
     groups: bool = False  # and by light groups
@@ -112,7 +112,7 @@ class PassWishes:
 
 
 def pass_wishes(scene: Any, view_layer: Any) -> PassWishes:
-    """What the passes of a view layer ask of the export."""
+    """The requirements of a view layer's passes on the export."""
     return PassWishes(
         bool(scene.shlight.use_pass_lights),
         len(view_layer.lightgroups) > 0,

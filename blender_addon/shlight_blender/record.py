@@ -25,7 +25,7 @@ class RenderRecord:
 
     @property
     def messages(self) -> list[dict[str, object]]:
-        """What the report says, as plain data."""
+        """The report as plain data."""
         return self.report.to_data()
 
     def is_of(self, scene: Any) -> bool:

@@ -43,7 +43,7 @@ class Message:
 
 
 def thing(place: str) -> str:
-    """What a place is part of: "Material 'Wood'" of "Material 'Wood', node 'Noise Texture'"."""
+    """The owner of a place: "Material 'Wood'" for "Material 'Wood', node 'Noise Texture'"."""
     name, part, _ = place.partition("', ")
     return f"{name}'" if part else place
 
@@ -73,7 +73,7 @@ class ExportReport:
         self.weigh(other._shares)
 
     def things(self) -> set[str]:
-        """What its places are part of."""
+        """The owners of all places."""
         return {thing(place) for message in self._messages.values() for place in message.places}
 
     def weigh(self, shares: Mapping[str, float]) -> None:

@@ -76,7 +76,7 @@ def leads_somewhere(place: str) -> bool:
 
 
 class SHLIGHT_RENDER_PT_report(EnginePanel, bpy.types.Panel):
-    """What changes the picture, the most first."""
+    """Unsupported features, those with the largest effect first."""
 
     bl_label = "Report"
 

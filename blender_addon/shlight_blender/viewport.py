@@ -19,7 +19,7 @@ from .viewport_view import ViewportView
 
 
 class RenderedViewport:
-    """What one viewport shows; Blender makes a render engine for each."""
+    """The picture in one viewport; Blender makes a render engine for each."""
 
     def __init__(self, engine: Any) -> None:
         from .export import ExportedScene, everything

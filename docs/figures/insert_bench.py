@@ -21,7 +21,7 @@ BLOCK = re.compile(r"(<!-- bench (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
 def content(bench: Bench, name: str) -> str:
-    """What belongs into a block; empty where the run has nothing for it."""
+    """The text of a block; empty if the run has nothing for it."""
     if name == "machine":
         machine, settings = bench.machine, bench.settings
         return (

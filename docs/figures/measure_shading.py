@@ -27,7 +27,7 @@ POINTS = 200
 
 
 def seconds(work: Callable[[], object]) -> float:
-    """Of the fastest of some runs: other processes only add to it."""
+    """The time of the fastest of some runs, since other processes only add to it."""
     times = []
     for _ in range(25):
         start = time.perf_counter()
@@ -55,7 +55,7 @@ class Case:
         return cls(roughness, cos_o, axes, half, np.array(truth))
 
     def reference_error(self) -> float:
-        """What fewer points change in some of the lights."""
+        """The largest change of some lights' radiance with fewer points."""
         bsdf, warp = shlight.Bsdf.ggx(self.roughness, 1.0), Warp(self.roughness**2, self.cos_o)
         lights = list(zip(self.axes, self.half, self.truth, strict=True))[::10]
         worst = max(abs(brute_force(bsdf, warp, self.cos_o, a, h, 140) - t) for a, h, t in lights)

@@ -39,7 +39,7 @@ def recorded(scene: str, frames: list[int], scale: float) -> tuple[list[float], 
 
 
 def seconds_of(machines: int, times: list[float], writing: float) -> float:
-    """From the start of the command to the last file."""
+    """The time from the start of the command to the last file."""
     chance = random.Random(1)
     free = [START] * machines
     ended = []

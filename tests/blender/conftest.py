@@ -53,7 +53,7 @@ class Studio(PlainStudio):
         return image, reference
 
     def messages(self, **options: int) -> list[str]:
-        """What the export of the scene reports; `options` are Report.lines'."""
+        """The report's lines after an export of the scene; `options` are those of Report.lines."""
         from shlight_blender.export import export_scene
 
         return export_scene(bpy.context.evaluated_depsgraph_get()).report.lines(**options)

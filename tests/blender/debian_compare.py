@@ -71,7 +71,7 @@ def start(**options):
 
 
 def steps():
-    """What happens one after the other, with redraws between."""
+    """The test's steps, with redraws between."""
     bpy.context.preferences.view.render_display_type = "AREA"
     with here(area_of("VIEW_3D")):
         build(window().scene)
@@ -139,7 +139,7 @@ def drag():
 
 
 def look_at_difference():
-    """What the screen shows in a corner, and where the marker is drawn."""
+    """Checks a corner of the screen, and the position of the drawn marker."""
     with here(area_of("IMAGE_EDITOR")):
         bpy.ops.shlight.show_comparison(image=results.DIFFERENCE)
     yield

@@ -194,7 +194,7 @@ def compare_with_a_viewport_made_anew():
 
 
 def compare_with_final_render():
-    """Of a camera that sees what the viewport does."""
+    """Compares the viewport with a final render from the same view."""
     space, scene = area().spaces[0], bpy.context.scene
     with bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area(), region=region()):
         bpy.ops.view3d.localview(frame_selected=False)

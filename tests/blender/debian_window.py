@@ -45,7 +45,7 @@ def area_of(kind):
 
 
 def steps():
-    """What happens one after the other, with redraws between."""
+    """The test's steps, with redraws between."""
     scene = bpy.context.window_manager.windows[0].scene
     scene.render.engine = "SHLIGHT"
     properties = area_of("PROPERTIES").spaces[0]
@@ -106,7 +106,7 @@ def set_sky(scene):
 
 
 def final_render(scene, path):
-    """As F12 does it: the window goes on meanwhile."""
+    """Renders like F12, while the window goes on."""
     scene.render.resolution_x, scene.render.resolution_y = 64, 48
     ended.clear()
     bpy.ops.render.render("INVOKE_DEFAULT")

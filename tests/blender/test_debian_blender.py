@@ -135,7 +135,7 @@ def test_a_dark_frame_is_black(pictures: dict[str, Any]) -> None:
     assert not image[..., :3].any()
     assert 0.0 < image[..., 3].mean() < 1.0
     assert abs(image[..., 3] - reference[..., 3]).mean() <= 5e-3
-    # What changes the picture most first.
+    # Messages are ordered by their effect on the picture.
     parts = ("no light that shlight can render", "Glass BSDF", "the diffuse part is drawn as Diffuse BSDF")
     assert all(part in line for part, line in zip(parts, pictures["dark"]["messages"], strict=True))
 
@@ -156,7 +156,7 @@ def run_in_window(
     return done.returncode, spoken(done)
 
 
-# What Blender says where it lets no script write, and debian_walk.py why.
+# Blender's error where scripts must not write; debian_walk.py explains it.
 READ_ONLY = re.compile(r"(?:Error: )?Traceback.*\n(?:  .*\n)*RuntimeError: .* can't run in readonly state.*")
 
 
@@ -262,7 +262,7 @@ def check_screen(folder: Path, region: list[int]) -> None:
 
 
 def test_comparing_in_the_window(tmp_path: Path) -> None:
-    """Beside the window, with its results shown, dragged and kept over undo; whatever ends it leaves nothing."""
+    """Compares next to the window, with results shown, dragged and kept over undo; an end leaves nothing behind."""
     code, output = run_in_window("--enable-event-simulate", script="debian_compare.py", folder=tmp_path)
     assert code == 0, output
     assert "Traceback" not in output, output

@@ -133,7 +133,7 @@ def mapped(made: Any, vector_type: str, uv_map: str) -> None:
 
 
 def looked_up(studio: Any, made: Any) -> tuple[Array, Array]:
-    """What Cycles shows of an emissive rectangle, seen face to face, and the texture's means over its pixels (n, 3)."""
+    """Cycles' picture of an emissive rectangle, seen face to face, and the texture's means over its pixels (n, 3)."""
     made.location = made.rotation_euler = (0, 0, 0)
     studio.camera(location=(0, 0, 5), target=(0, 0, 0), type="ORTHO", ortho_scale=2.0)
     render, cycles = studio.scene.render, studio.scene.cycles

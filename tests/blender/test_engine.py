@@ -265,7 +265,7 @@ bpy.context.scene.render.engine = "SHLIGHT"
 
 
 def test_a_second_copy_is_refused(studio: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As of two repositories of extensions: the first stays as it is, whatever is done with the second."""
+    """Two copies may come from two repositories of extensions: the second one must not affect the first."""
     shutil.copytree(Path(shlight_blender.__file__).parent, tmp_path / "second_copy")
     monkeypatch.syspath_prepend(str(tmp_path))
     second = importlib.import_module("second_copy")

@@ -273,7 +273,7 @@ def test_cornell_box(shared_scene: Any) -> None:
 
 
 def test_lamps_of_all_types(shared_scene: Any) -> None:
-    """With the grey world that the file has, and without."""
+    """Compares the lamps with the file's grey world, and without."""
     studio = shared_scene("lights.blend")
     assert "Light" not in "\n".join(messages())
     studio.scene.cycles.samples = 2048  # small lamps: noise of Cycles

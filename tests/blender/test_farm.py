@@ -116,7 +116,7 @@ scene.camera = bpy.context.object
 bpy.ops.wm.save_as_mainfile(filepath=str(folder / "scene.blend"), relative_remap=False)
 """
 
-# What it would write, and run, lies in the second folder.
+# A hostile script would write to the second folder and run code from there.
 HOSTILE = """
 import sys
 import bpy

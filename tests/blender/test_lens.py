@@ -97,7 +97,7 @@ def test_window_coordinates_of_a_panorama_are_named(studio: Any) -> None:
     shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_DIFFUSE")
     material.node_tree.links.new(coordinates.outputs["Window"], shader.inputs["Color"])
     assert any("'Window' coordinates are not supported here" in line for line in studio.messages())
-    # Those of the camera are as Cycles has them.
+    # Coordinates of the camera agree with Cycles.
     data.panorama_type = "EQUIRECTANGULAR"
     material.node_tree.links.new(coordinates.outputs["Camera"], shader.inputs["Color"])
     studio.compare(mean=5e-3, error=2e-3)

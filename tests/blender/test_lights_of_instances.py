@@ -154,7 +154,7 @@ def test_emissive_meshes_of_geometry_nodes(studio: Any) -> None:
 @pytest.mark.parametrize("carrier", ["instancer", "lamp"])
 @pytest.mark.parametrize("flag", ["visible_diffuse", "visible_glossy", "visible_shadow", "visible_camera"])
 def test_ray_visibility(studio: Any, flag: str, carrier: str) -> None:
-    """What shows a lamp hides it too, from Blender 4.5 on."""
+    """An object that shows a lamp can also hide it from Blender 4.5 on."""
     stage(studio)
     inside = lamp(studio, "AREA")
     inside.visible_camera = flag == "visible_camera"

@@ -16,7 +16,7 @@ import bpy
 import numpy as np
 
 SIDE = 6  # faces along a patch
-# Of Cycles' pictures: its filter throws a sample in a thousand to another place, so the nearer picture counts.
+# Seeds of Cycles' pictures: its filter moves one sample in a thousand, so the nearer picture counts.
 SEEDS = (1, 2)
 COLUMNS = 24  # patches along the picture
 # Added to every value, so that few are negative and emit nothing.
@@ -56,7 +56,7 @@ def cases() -> list[Case]:
 
 
 def choices(node: str, name: str) -> list[str]:
-    """What a node's property can be."""
+    """The values of a node's property."""
     kind = getattr(bpy.types, node, None)
     return [] if kind is None else [item.identifier for item in kind.bl_rna.properties[name].enum_items]
 
@@ -263,7 +263,7 @@ def material(case: Case) -> Any:
 
 
 def frame(number: int) -> Any:
-    """Where a patch's object stands, turned and stretched so that its own coordinates are not the world's."""
+    """The transform of a patch's object, rotated and stretched so that object coordinates differ from the world's."""
     from mathutils import Euler, Matrix, Vector
 
     turned = Euler((0.3 + 0.01 * number, -0.4, 0.2 * (number % 5))).to_matrix().to_4x4()

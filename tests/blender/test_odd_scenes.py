@@ -40,7 +40,7 @@ def test_a_scene_without_objects_shows_the_world(studio: Any) -> None:
 
 @pytest.mark.parametrize("missing", ["library", "texture"])
 def test_what_is_missing_of_a_library(studio: Any, missing: str) -> None:
-    """As Cycles draws it: objects of a library that is gone are not there, a texture that is gone is magenta."""
+    """Missing libraries behave as in Cycles: their objects are absent, and their textures magenta."""
     studio.simple_scene()
     folder = studio.folder
     write_png(str(folder / "green.png"), np.full((8, 8, 3), (20, 200, 20), np.uint8))

@@ -43,7 +43,7 @@ class Layout:
 
 
 def drawn_by(panel: Any, **context: Any) -> Layout:
-    """What `panel` draws in a context of shlight; nothing where it is not shown."""
+    """The layout that `panel` draws in a context of shlight; empty if it is not shown."""
     layout, shown_in = Layout(), SimpleNamespace(engine="SHLIGHT", **context)
     if panel.poll(shown_in):
         panel.draw(SimpleNamespace(layout=layout), shown_in)

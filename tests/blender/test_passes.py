@@ -74,7 +74,7 @@ def rendered(studio: Any, engine: str) -> tuple[dict[str, NDArray[np.float32]], 
 
 
 def shares(levels: NDArray[np.float32]) -> dict[float, NDArray[np.float64]]:
-    """Of each identity of a Cryptomatte pass, its share of each pixel."""
+    """The share of each pixel for each identity of a Cryptomatte pass."""
     pairs = levels.reshape(*levels.shape[:2], -1, 2)
     return {
         float(identity): np.where(pairs[..., 0] == identity, pairs[..., 1], 0).sum(axis=-1)
@@ -105,7 +105,7 @@ def test_passes_are_those_of_cycles(studio: Any) -> None:
             assert set(mine) == set(theirs)
             worst[name] = max([np.abs(mine[i] - theirs[i]).max() for i in mine], default=0.0) ** 2
         else:
-            # Where a ray sees nothing, Cycles 5.2 has a share of the largest float as its denoising depth.
+            # Cycles 5.2 gives rays without a hit a share of the largest float as denoising depth.
             known = expected[..., 0] < 1e30
             worst[name] = relative_error(image[known], expected[known])
     print({name: f"{error:.1e}" for name, error in worst.items()})

@@ -15,7 +15,7 @@ from shlight_blender.report import ExportReport
 
 
 def shares(studio: Any) -> dict[str, float]:
-    """Of all things of the scene that the report may speak of."""
+    """The shares of the picture of all things that the report may name."""
     found: list[dict[str, float]] = []
     original = export.shares_of_picture
 

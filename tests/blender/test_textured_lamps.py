@@ -18,7 +18,7 @@ SLOW = pytest.mark.slow
 
 
 def picture(high: int = 16, wide: int = 24) -> Array:
-    """Of two colours that grow to the right and to the top in different ways, so that it tells every flip and turn."""
+    """A texture whose colours grow differently to the right and to the top, so that every flip and rotation shows."""
     v, u = (np.mgrid[:high, :wide] + 0.5) / np.array([high, wide]).reshape(2, 1, 1)
     return np.stack([0.1 + u + 0.3 * v, 0.1 + 0.9 * v**2, 0.3 + 0.0 * u], axis=-1)
 
@@ -80,7 +80,7 @@ CASES: dict[str, tuple[dict[str, Any], tuple[Any, ...]]] = {
 
 
 def told_differences(studio: Any) -> list[str]:
-    """What the report says besides how far the parts are from the texture."""
+    """The report's lines, except for the deviation of the parts from the texture."""
     return [line for line in studio.messages() if "which differ from it by" not in line]
 
 

@@ -96,7 +96,7 @@ def gradient(width: int = 32, height: int = 16) -> Any:
 
 @pytest.mark.parametrize("kind", ["", "POINT", "TEXTURE", "VECTOR", "NORMAL"])
 def test_orientation_of_a_picture(studio: Any, kind: str) -> None:
-    """By itself, and turned by two Mapping nodes, the last of each kind."""
+    """The picture alone, and rotated by two Mapping nodes, the last one of each kind."""
     studio.ball_in_view_of_the_world()
     texture = set_picture(studio, gradient(), *([(0.3, 0, 1.0), (0.4, -0.7, 2.0)] if kind else []))
     if kind:

@@ -6,7 +6,7 @@
 
 namespace shlight::testing {
 
-/// What a call rejects its arguments with; empty if it does not.
+/// The message of the exception by which a call rejects its arguments; empty if it does not.
 template <class Call>
 std::string error_message(const Call& call) {
     try {

@@ -25,8 +25,8 @@ struct BothErrors {
     ErrorRecord float64, float32;
 };
 
-/// Of `count` lights at each of the orders, found on two threads and published. measure(i): what gives the two errors
-/// of light i at an order.
+/// Errors of `count` lights at each order, found on two threads and published. measure(i): returns both errors of light
+/// i at an order.
 template <class Measure>
 std::vector<BothErrors> errors_by_order(const char* name, std::size_t count, const std::vector<int>& orders,
                                         const Measure& measure) {

@@ -17,7 +17,7 @@ class Mean {
     }
     double mean() const { return mean_; }
     double error() const { return std::sqrt(squares_ / (count_ * (count_ - 1.0))); }
-    /// Of a truth that is itself known to `slack`.
+    /// Deviation from a truth that is known to within `slack`, in standard errors.
     double deviation(double truth, double slack = 1e-12) const {
         return std::max(0.0, std::abs(mean_ - truth) - slack) / std::max(error(), 1e-300);
     }

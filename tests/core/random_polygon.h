@@ -46,7 +46,7 @@ inline Vec3d seen_direction(RandomInput& random) {
     return random.at_tilt(random.uniform(0, 1.7));
 }
 
-/// Where a plane figure is, and half its size.
+/// Position, plane and half size of a plane figure.
 struct Place {
     Vec3d center;
     Plane plane;

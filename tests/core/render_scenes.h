@@ -103,7 +103,7 @@ inline Camera camera_above(double half_size, double height = 10) {
             Window{-half_size, half_size, -half_size, half_size}, Projection::orthographic};
 }
 
-/// Where the centre of a pixel of camera_above lies.
+/// The floor point at the centre of a pixel of camera_above().
 inline Vec3d floor_point(int column, int row, int size, double half_size, double height = 0) {
     return {(2 * (column + 0.5) / size - 1) * half_size, (1 - 2 * (row + 0.5) / size) * half_size, height};
 }

@@ -12,7 +12,7 @@ namespace shlight::testing {
 
 /// f·cos of a direction towards the light, both in the world.
 using Reflection = std::function<double(const Vec3d& towards_light)>;
-/// What a light brings to a point of the floor.
+/// The true light at a point of the floor.
 using Truth = std::function<double(const Vec3d& point, const Reflection& reflection)>;
 
 constexpr double kDiffuse = 2;

@@ -138,7 +138,7 @@ TEST(Bsdf, SumsAndScalesAreLinear) {
     expect_near(sum.albedo(0.6), (Vec3d(a.albedo(0.6)) + Vec3d(b.albedo(0.6))) * Vec3d(2, 0.5, 0), 1e-6);
 }
 
-/// What the top reflects does not reach the base, which may be layered itself.
+/// Light reflected by the top does not reach the base, which may itself be layered.
 TEST(Bsdf, LayersShareTheLight) {
     RandomInput random(73);
     const Bsdf top = Bsdf::ggx(0.4F, {0.04F, 0.05F, 0.03F}, 1.5F);

@@ -122,7 +122,7 @@ TEST(CameraLens, APointFarOutOfFocusIsFound) {
     RenderSettings settings = analytic_settings();
     settings.sampling = {.first_samples = 1, .min_samples = 4, .max_samples = 1024, .noise_threshold = 0.02};
     const Image image = render_image(scene, camera, kSize, kSize, settings);
-    // Of the light in the disk of radius 0.6 at depth 8, that of the point, 0.08², is spread evenly.
+    // The point's light, its share 0.08² of the unit disk, is spread evenly over a disk of radius 0.6 at depth 8.
     const double bright = 1 + 249 * 0.08 * 0.08 / (kPi * 0.6 * 0.6);
     const double pixel = 2 * 0.12 * 8 / kSize;
     double inside = 0;
@@ -225,7 +225,7 @@ TEST(CameraLens, PanoramasFocusAlongTheRay) {
 }
 
 TEST(CameraLens, FourCoordinatesFillTheirCube) {
-    // Of 1024 points of pixels and lens, each of 4 × 4 × 4 × 4 boxes has its four.
+    // Each of 4 × 4 × 4 × 4 boxes contains four of 1024 points of pixels and lens.
     constexpr std::uint32_t kCount = 1024;
     const std::vector<glm::dvec2> pixel = nested_points(kCount);
     for (const std::uint32_t seed : {1U, 77U}) {

@@ -144,7 +144,7 @@ Circle circle_of(const CapInput& light) {
                                                 : circle_about_axis(light.axis, light.size);
 }
 
-/// What `shaded` and `warped_terms` ask for.
+/// The function that `shaded` and `warped_terms` call.
 auto shading_of(const CapInput& light) {
     CircleBatch circles;
     circles.resize(1);
@@ -183,7 +183,7 @@ constexpr auto kClasses = std::to_array<Class>({{"anywhere", at_horizon<anywhere
                                                 {"spheres", sphere, 100}});
 
 const std::size_t kMore = testing::all_tests() ? 8 : 1;
-// Of the sliver's own solid angle; more cases, and kernels without fused products, find a worse one.
+// Error relative to the sliver's solid angle; more cases, and kernels without fused products, find a worse one.
 const double kBound = testing::all_tests() ? 3e-4 : 2e-4;
 
 TEST(CapHorizon, WarpedLightsAgreeWithReference) {

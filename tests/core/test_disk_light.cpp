@@ -173,7 +173,7 @@ const std::vector<DiskLight> kLights = {
     make_disk_light({-1, 3, 1}, {0.1, 0.02, 0}, {0, 0, 0.02}, Rgb(1), false),         // small and thin
 };
 
-/// With a factor of the cosine between the light's normal and the way to the point.
+/// factor: of the radiance, by the cosine between the light's normal and the direction to the point.
 void expect_integral(const DiskLight& light, double spread, const std::function<double(double)>& factor,
                      double roughness, double tolerance) {
     const auto add = [&](Scene& scene) {

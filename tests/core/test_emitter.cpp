@@ -39,7 +39,7 @@ double largest_difference(const Row& a, const Row& b) {
     return largest;
 }
 
-/// Of all faces that are seen from `point`, from their outer side or from either.
+/// Sum over all faces seen from `point`, from their outer side only or from either side.
 Row sum_of_faces(const EmitterLevel& level, bool outer_only, const Vec3d& point, bool clip) {
     Row sum{};
     for (std::size_t i = 0; i < level.faces.size(); ++i) {
@@ -154,7 +154,7 @@ int winding(const std::vector<Vec3d>& line, const Vec3d& point) {
     return static_cast<int>(std::lround(angle / (2 * std::numbers::pi)));
 }
 
-/// Of what two outlines in the plane z = 1 wind about differently often.
+/// Area of the plane z = 1 in which the winding numbers of two outlines differ.
 double moved_area(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
     constexpr int kGrid = 160;
     constexpr double kHalf = 0.8;
@@ -276,7 +276,7 @@ TEST(MeshSampler, WeightsAddUpToTheSolidAngle) {
     }
 }
 
-/// From near the last hit the outline that was found there does, from elsewhere it is found again.
+/// Near the last hit the outline is kept, elsewhere it is found anew.
 TEST(MeshSampler, MovedItSeesWhatItWouldSeeFromThere) {
     const MeshLight light = light_of(icosphere(4), 64);
     RandomInput random(13);

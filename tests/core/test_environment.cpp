@@ -101,7 +101,7 @@ TEST(Environment, WallsHideIt) {
     EXPECT_NEAR(image.red(2, 2), 0.5F * kSky.x, 2e-3);
 }
 
-/// What a narrow lobe reflects is hidden by what is in its direction, and only by that.
+/// Only objects in the direction of a narrow lobe hide the environment that it reflects.
 TEST(Environment, GlossyLobesSeeOnlyTheirOwnObstacles) {
     const Camera camera(look_at({0, -10, 10}, {0, 0, 0}), 1e-3);
     const auto shaded = [&](double y) {

@@ -270,7 +270,7 @@ TEST(MapLookup, IsThePicturesRadianceAndItsSamplersDensity) {
 
 // --- reflection
 
-/// What a floor at the origin with normal (0.48, 0.6, 0.64) shows at this angle, and what it should by quadrature.
+/// Rendered and true radiance, by quadrature, of a floor at the origin with normal (0.48, 0.6, 0.64) at one view.
 class Floor {
   public:
     explicit Floor(double cos_theta_o) : normal_(0.48, 0.6, 0.64), x_(glm::normalize(glm::cross(normal_, {0, 0, 1}))) {

@@ -171,7 +171,7 @@ TEST(LightShading, PolygonsMatchBruteForce) {
 }
 
 TEST(LightShading, RoughnessHasNoSeams) {
-    // From a mirror to the roughest surface in steps too small for the light to change much between them.
+    // Roughness goes from a mirror to the roughest surface in steps over which the light should change little.
     const double cosine = 0.5;
     const Vec3d v = view_direction(cosine);
     const Vec3d center = glm::normalize(Vec3d(-v.x, 0.1, v.z));

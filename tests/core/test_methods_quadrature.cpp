@@ -34,8 +34,8 @@ using Kind = truth::CapInput::Kind;
 
 constexpr double kPi = std::numbers::pi;
 
-/// What a type can hold of sums of basis values. The preparation in double of a light loses digits to a gap of 1e-7
-/// between rim and horizon.
+/// Attainable relative error of sums of basis values. A light's preparation in double loses digits if the gap between
+/// rim and horizon is 1e-7.
 template <class T>
 constexpr double kHeld = std::is_same_v<T, float> ? 1e-5 : 1e-12;
 constexpr double kHeldNearTangency = 1e-8;

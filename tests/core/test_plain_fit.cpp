@@ -77,7 +77,7 @@ TEST(PlainFit, LambertIsExactFromOrderTwo) {
     EXPECT_NEAR(measured_residual(shape, fit, 0.3, 1), fit.residual(0.3, 1), 1e-3);
 }
 
-/// What the fit says of its norm and error is what anyone measures, between the tabulated view angles as well.
+/// The fit's norm and residual agree with measured ones, also between tabulated view angles.
 TEST(PlainFit, ResidualIsTheMeasuredError) {
     RandomInput random(60);
     for (const double alpha : {0.2, 0.3, 0.6, 1.0}) {

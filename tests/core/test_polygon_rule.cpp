@@ -33,8 +33,8 @@ double integral(const LobeShape& shape, const Vec3d& view, std::span<const Vec3d
     return area > 0 ? sum * (polygon.solid_angle() / area) : 0;
 }
 
-/// Of about this size, five vertices around a direction near the horizon or above it, at any distance, either way
-/// round.
+/// Five vertices around a direction near or above the horizon, of about this size, at any distance and with either
+/// winding.
 std::vector<Vec3d> random_pentagon(RandomInput& random, double size) {
     Vec3d axis = random.direction();
     axis.z = std::abs(axis.z) * random.uniform(0, 1);

@@ -62,8 +62,7 @@ std::string describe(const Input& input) {
     return result;
 }
 
-/// Of a warp that a lobe may have, or of one with its axis at the polygon or on an edge or at a vertex that lies in the
-/// mirror plane.
+/// A warp that a lobe may have, or one with its axis in the polygon, on an edge, or at a vertex in the mirror plane.
 WarpInput random_warp(RandomInput& random, const Vertices& vertices) {
     WarpInput warp{random.uniform(-1.5, 1.5), random.log_uniform(1e-3, 1)};
     if (random.chance(0.2)) {

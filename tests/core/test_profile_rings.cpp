@@ -153,7 +153,7 @@ TEST(ProfileRings, CoverConvexPolygonsUnderASpread) {
 
 TEST(ProfileRings, CoverDisksUnderASpread) {
     for (const double shape : {1.0, 0.4}) {
-        // Of disks much larger than their lit part, too, which are polygons of many corners.
+        // Some disks are much larger than their lit part, which then is a polygon with many corners.
         compare(3, 0.99, [&](testing::RandomInput& random, const ShadingFrame& frame) {
             const Vec3d place = random_place(random, frame);
             const Vec3d normal = near(random, glm::normalize(frame.origin - place), 1.2);

@@ -54,7 +54,7 @@ std::vector<Vec3d> random_polygon(RandomInput& random, double size) {
     return vertices;
 }
 
-/// Of what reference(input, order, clip, extra_nodes) gives with more nodes, for some inputs of each order.
+/// Checks that more nodes do not change reference(input, order, clip, extra_nodes), for some inputs at each order.
 template <class Draw, class Reference>
 void expect_convergence(int inputs, std::uint64_t seed, const Draw& draw, const Reference& reference) {
     RandomInput random(seed);

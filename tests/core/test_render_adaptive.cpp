@@ -58,7 +58,7 @@ double area_in_square(std::vector<glm::dvec2> polygon, double x0, double y0) {
     return std::abs(twice) / 2;
 }
 
-/// Where `glowing` lies in a picture of camera_above(half_size) with rows upside down: corners in pixels.
+/// Corners in pixels of `glowing` in a picture of camera_above(half_size) with rows upside down.
 std::vector<glm::dvec2> corners(double half_x, double half_y, double angle, const Vec3d& place, int size,
                                 double half_size) {
     const double scale = size / (2 * half_size);
@@ -187,7 +187,7 @@ TEST(RenderAdaptive, AShiftOfTheWindowShiftsThePicture) {
 }
 
 TEST(RenderAdaptive, ManyRaysOfAPixelGoInSlices) {
-    // More rays than a batch holds, and a wire that needs all: against its area.
+    // The wire needs more rays than a batch holds; its brightness must match its area.
     Scene scene;
     scene.add_mesh(glowing(50, 0.005, 0.3, {0.1, 0.06, 0}));
     RenderSettings settings = unshadowed_settings(true);

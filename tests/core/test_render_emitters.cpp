@@ -30,11 +30,11 @@ Mesh emissive(const testing::Solid& solid, const Vec3d& center, double scale) {
     return mesh;
 }
 
-/// Beside the square that camera_above shows.
+/// Positions outside the square that camera_above shows.
 const Vec3d kCenter(0.4, 3.5, 1.2);
 const Vec3d kOther(-3.5, -0.3, 0.8);
 
-/// Of a floor under what `add` puts into the scene, and a blocker.
+/// The image of a floor under a blocker and the lights that `add` adds.
 Image floor_under(const std::function<void(Scene&)>& add, const RenderSettings& settings, const Bsdf& floor,
                   const Mesh* blocker) {
     Scene scene;
@@ -63,7 +63,7 @@ void expect_close(const Image& a, const Image& b, double relative) {
     }
 }
 
-/// Of the sums, relative.
+/// Relative difference of the images' sums.
 double mean_difference(const Image& a, const Image& b) {
     double difference = 0;
     double sum = 0;
@@ -176,7 +176,7 @@ TEST(RenderEmitters, FacesOfDifferentRadianceAreOneLightAndAddUp) {
 }
 
 TEST(RenderEmitters, HalfAScreenInShadowKeepsItsColors) {
-    // Of two halves, red and green, a wall hides the red one from the middle of the floor: no red is left there.
+    // A wall hides the red half of the screen from the middle of the floor: no red is left there.
     Mesh mesh = Screen().mesh();
     for (std::size_t i = 0; i < mesh.emission.size(); ++i) {
         mesh.emission[i] = i % Screen::kSide < Screen::kSide / 2 ? Rgb(1, 0, 0) : Rgb(0, 1, 0);

@@ -18,7 +18,7 @@ constexpr int kSize = 8;
 constexpr int kLights = 1000;
 constexpr int kGroup = 200;
 
-/// Of all kinds that can be summed up, all around a small still life, some below its horizon.
+/// Adds lights of all kinds that can be summed up, around a small still life, some below its horizon.
 void add_lights(Scene& scene, int first, int last, const LightTraits& traits) {
     RandomInput random(7);
     for (int i = 0; i < last; ++i) {

@@ -250,7 +250,7 @@ TEST(RenderImage, ALightInTheFloorsPlaneDoesNotSpeckle) {
 }
 
 TEST(RenderImage, SharedShadingPointsStayWithinTheTolerance) {
-    // With a fixed order the tolerance decides only how many hits of a pixel share a point; 1e-12: none. Curved and
+    // The tolerance decides with a fixed order only how many hits of a pixel share a point; 1e-12: none. Curved and
     // flat, glossy and diffuse, lights near and far.
     const Bsdf material = Bsdf::ggx(0.5F, Rgb(0.9F)) + Bsdf::lambert(Rgb(0.3F));
     Scene scene;
@@ -281,7 +281,7 @@ TEST(RenderImage, SharedShadingPointsStayWithinTheTolerance) {
     EXPECT_GT(largest, 0) << "no hits were shared";
 }
 
-/// What a point of a floor reflects of a sphere of radiance 1.
+/// Radiance that a point of a floor reflects from a sphere of radiance 1.
 Vec3d reflected(const Bsdf& material, const Vec3d& point, const Vec3d& wo, const Vec3d& center, double radius) {
     const Vec3d way = center - point;
     Vec3d sum(0);

@@ -55,7 +55,7 @@ Image sum_of_groups(double radius, const Bsdf& floor, const Camera& camera, int 
     return sum;
 }
 
-/// Of lights with that radius.
+/// Parameter: radius of the lights.
 class RenderMany : public ::testing::TestWithParam<double> {};
 
 TEST_P(RenderMany, LightsTogetherAreTheSumOfTheirParts) {
@@ -104,7 +104,7 @@ TEST_P(RenderMany, APixelOfTwoSurfacesIsNoMixOfTheirShadows) {
         const double distance = glm::length(position);
         truth += position.z / (distance * distance * distance);
     }
-    // Of one pixel half is lit.
+    // Half of the pixel is lit.
     truth *= 0.5 * 0.8 / std::acos(-1.0);
     const Image image = testing::render_image(scene, testing::camera_above(1e-3), 1, 1, settings);
     EXPECT_LE(std::abs(image.red(0, 0) - truth), 0.01 * truth);

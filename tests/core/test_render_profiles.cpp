@@ -21,7 +21,7 @@ namespace {
 using namespace testing;  // NOLINT(google-build-using-namespace): the scenes' own
 using std::numbers::pi;
 
-/// Of the largest radiance: the settings' tolerance, and what lights of the same radiance everywhere may miss it by.
+/// Tolerance relative to the largest radiance: the settings' tolerance plus the error of even lights.
 constexpr double kTolerance = 3e-4;
 
 double smoothstep(double t) {

@@ -35,7 +35,7 @@ struct Reflection {
         scene.add_mesh(sail_mesh());
     }
 
-    /// Where the ray through a pixel's centre meets the floor, and the direction back.
+    /// The floor point on the ray through a pixel's centre, and the direction back.
     struct View {
         Vec3d point, towards_viewer;
     };
@@ -117,7 +117,8 @@ TEST(RenderShadowsGlossy, AMirrorShowsSilhouettesExactly) {
     }
 }
 
-/// Of the rectangle with radiance 1, beside the half plane: cells far smaller than any lobe here is wide.
+/// Radiance from the visible part of the unit-radiance rectangle next to the half plane, over cells much smaller than
+/// any lobe here is wide.
 double reflected(const Bsdf& bsdf, const Vec3d& point, const Vec3d& towards_viewer) {
     const double left = std::max(-0.7, -point.x);  // the line over the edge at height 1 goes on to height 2
     const std::vector<Vec3d> seen = {{left, 2.8, 2}, {left, 4.1, 2}, {0.5, 4.1, 2}, {0.5, 2.8, 2}};
@@ -215,8 +216,8 @@ TEST(RenderShadowsGlossy, AHiddenPeakStaysHiddenUnderAdaptiveRays) {
         excess += std::max(0.0, static_cast<double>(image.values[i]) - 1.1 * truth.values[i]);
         all += truth.values[i];
     }
-    // What edges that are sampled otherwise and noise add up to; light that shines through the ball is several times
-    // it.
+    // The bound covers noise and differently sampled edges; light leaking through the ball would be several times
+    // larger.
     EXPECT_LE(excess, 0.006 * all);
     RecordProperty("excess", std::to_string(excess / all));
 }

@@ -62,7 +62,7 @@ struct Light {
     }
 };
 
-/// By Cauchy and Schwarz the error is at most the fit's L2 error times √Ω.
+/// The Cauchy–Schwarz inequality bounds the error by the fit's L2 error times √Ω.
 TEST(Shading, GgxUnderClippedCapsErrsLessThanItsResidual) {
     RandomInput random(83);
     for (const double alpha : {0.3, 0.6, 1.0}) {

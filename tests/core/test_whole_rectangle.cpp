@@ -18,7 +18,7 @@ using testing::RandomInput;
 
 constexpr std::size_t kPoints = 4096;
 
-/// Of a rectangle at right angles to z whose middle is above the origin: by one arctangent.
+/// Solid angle of a rectangle perpendicular to z with its middle above the origin, by one arctangent.
 double solid_angle_above(double width, double depth, double height) {
     return 4 * std::atan(width * depth / (2 * height * std::sqrt(width * width + depth * depth + 4 * height * height)));
 }
@@ -83,7 +83,7 @@ TEST(WholeRectangle, PointsAreThoseOfTheSequenceAndWeighTheSolidAngle) {
     }
 }
 
-/// By directions to points of its plane, within its edges and beyond them, of any length or backwards.
+/// Directions lead to points of its plane, within its edges and beyond, at any length, and backwards.
 TEST(WholeRectangle, IsMetWhereItIs) {
     RandomInput random(4);
     for (const double scale : {1e-6, 1.0, 1e9}) {

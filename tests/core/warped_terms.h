@@ -65,7 +65,7 @@ std::vector<float> shaded(const truth::WarpInput& warp, const std::vector<float>
     return values;
 }
 
-/// What the image of a light has at m ≥ 0: what it reflects of lobes that are one harmonic each.
+/// Cosine terms (m ≥ 0) of a light's image, found by shading lobes that are one harmonic each.
 template <class Shade>
 std::vector<float> warped_terms(const truth::WarpInput& warp, int order, const Shade& shade) {
     const auto row = static_cast<std::size_t>(cosine_count(order));

@@ -208,7 +208,7 @@ def test_another_version_of_the_package_is_named(tmp_path: Path, monkeypatch: py
 
 
 def test_a_version_installed_over_another_replaces_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As Blender 3.4 installs it: the files of both are there, and the modules of the first go on."""
+    """Blender 3.4 installs over the old version: files of both exist, and the old version's modules stay loaded."""
     wheels = Wheels(tmp_path, monkeypatch)
     monkeypatch.setattr(sys, "path", sys.path[:])
     for version in ("1", "2"):

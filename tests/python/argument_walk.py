@@ -220,7 +220,7 @@ for name, way in methods.shading_methods().items():
     CALLS[f"shade_spheres/{name}"] = shlight.shade_spheres, {**SPHERE, **of_method}
     CALLS[f"shade_polygons/{name}"] = shlight.shade_polygons, {**POLYGON, **of_method}
 
-# What the range of one argument may depend on.
+# Arguments on which the range of another argument may depend.
 RELATED = {
     "aperture_ratio": ("aperture_size", "focus_distance"),
     "aperture_size": ("focus_distance",),

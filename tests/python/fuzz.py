@@ -64,7 +64,7 @@ def complaint(case: Case) -> str | None:
 
 
 def shown(value: Any) -> str:
-    """As code, where there is some."""
+    """A value as code, if it has a form as code."""
     if isinstance(value, np.ndarray) and value.dtype.kind in "biufc" and value.dtype != np.longdouble:
         return f"np.array({value.tolist()!r}, {value.dtype.str!r}).reshape({value.shape})"
     if isinstance(value, type) and issubclass(value, np.generic):
@@ -146,7 +146,7 @@ def shown_case(case: Case) -> str:
 
 
 def report(found: dict[Case, str]) -> str:
-    """Of problems that only numbers tell apart the one with the shortest code among a few."""
+    """The case with the shortest code among a few, for each group of problems that differ only in numbers."""
     alike: dict[str, list[Case]] = {}
     for case, problem in found.items():
         alike.setdefault(re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", problem), []).append(case)

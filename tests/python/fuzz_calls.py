@@ -52,7 +52,7 @@ class Step:
                 warnings.simplefilter("error")
                 result = self.function(**self.arguments)
         except (TypeError, ValueError) as error:
-            # What progress raises is raised, and mirrors have no coefficients, whatever the arguments.
+            # Exceptions of `progress` are passed on, and mirrors have no coefficients, for all arguments.
             named = re.match(rf"({'|'.join(names)}|a perfect mirror)\b|.*do not broadcast$", str(error))
             if not named and "progress" not in names:
                 return f"the error names no argument: {type(error).__name__}: {error}"
@@ -65,7 +65,7 @@ class Step:
 
 
 def coefficient_problem(c: Array, shape: tuple[int, ...], *, clip: bool, zero: bool) -> str | None:
-    """Of a region of solid angle Ω = √4π L_00 and unit radiance.
+    """Checks coefficients of a region of solid angle Ω = √4π L_00 and unit radiance.
 
     Σ_m Y_lm² = (2l + 1)/4π everywhere, so that the vector L_l = ∫ Y_l dω of a band is no longer than √((2l + 1)/4π) Ω,
     nor is any |L_lm|; and by Bessel's inequality Σ L_lm² ≤ ∫ 1² dω = Ω. Clipped, or seen from outside, Ω ≤ 2π.
@@ -90,7 +90,7 @@ def coefficient_problem(c: Array, shape: tuple[int, ...], *, clip: bool, zero: b
 
 
 def units_problem(step: Step, axes: tuple[int, ...], result: Any, slack: float) -> str | None:
-    """Of lights: the unit of length makes no difference, which is here a power of two near the size of each."""
+    """Checks that the unit of length, here a power of two near each light's size, makes no difference."""
     lengths = {name: a for name, a in step.arguments.items() if name in LENGTHS}
     sizes = np.max([np.abs(a).reshape(*axes, -1).max(-1) for a in lengths.values()], axis=0)
     scaled: dict[str, Any] = {}
@@ -176,7 +176,7 @@ def shaded_light(rng: Rng) -> Step:
 
 
 def any_arguments(rng: Rng) -> Step:
-    """Of any call of the walk up to three arguments replaced, by any object, number or array."""
+    """A call of the walk with up to three arguments replaced by any object, number or array."""
     call = one_of(rng, *argument_walk.CALLS)
     function, arguments = argument_walk.CALLS[call]
     changed: dict[str, Any] = {}

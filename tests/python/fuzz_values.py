@@ -19,7 +19,7 @@ Shape = tuple[tuple[Any, ...], bool | None, bool | None]
 
 SPECIAL = [0.0, -0.0, 1.0, -1.0, 0.5, 1e-12, -1e-12, 1e-7, 5e-324, 1e-45, 1e-40, 1.2e-38, 1e-30, 1e-19, 1e-15, 1e15]
 SPECIAL += [1e19, 1e20, 3e38, 1.3e154, 1.4e154, 1e308, math.pi, math.nextafter(1, 0), math.nextafter(1, 2)]
-# By the code for them. None reflects more than it receives.
+# Materials by their code. None reflects more than it receives.
 MATERIALS = {
     code: eval(code, {"Bsdf": Bsdf})
     for code in (
@@ -80,7 +80,7 @@ def plane(rng: Rng) -> Array:
 
 
 def outline(rng: Rng, count: int) -> Array:
-    """By angle around 0, in the plane; with more than three corners 0 is inside."""
+    """Plane corners ordered by angle around 0; with more than three corners 0 is inside."""
     angles = 2 * np.pi * (np.arange(count) + rng.uniform(0, 0.7, count)) / count
     return np.stack([np.cos(angles), np.sin(angles)], -1) * rng.uniform(0.4, 1, (count, 1))
 

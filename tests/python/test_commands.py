@@ -32,7 +32,7 @@ Use = Callable[..., Callable[[list[str]], int]]
 
 
 def names(folder: Path) -> list[str]:
-    """Of its files."""
+    """The names of a folder's files."""
     return sorted(path.name for path in folder.iterdir())
 
 

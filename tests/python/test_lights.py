@@ -160,7 +160,7 @@ def test_polygons_of_many_sides_come_near_disks(disk: Light, clip: bool) -> None
     center, u, v = disk.points
     sides = 100
     around = 2 * np.pi * np.arange(sides) / sides
-    # Of the same area: what is left to tell them apart is of fourth order at a distance, of second near by.
+    # The polygon has the disk's area; the difference is of fourth order at a distance, of second order close by.
     radius = math.sqrt(2 * math.pi / sides / math.sin(2 * math.pi / sides))
     vertices = center + radius * (np.outer(np.cos(around), u) + np.outer(np.sin(around), v))
     polygon = shlight.polygon_coefficients(vertices, 8, dtype=np.float64, clip=clip)

@@ -41,7 +41,7 @@ def test_noise_of_the_reference_is_found(reference: np.ndarray) -> None:
     error = metrics.standard_error(a, b)
     assert error.shape == reference.shape
     assert np.sqrt(np.mean(error**2)) == pytest.approx(sigma / np.sqrt(2), rel=0.05)
-    # What the truth scores against the noisy reference is what the halves foretell.
+    # The halves predict the score of the truth against the noisy reference.
     truth = metrics.rel_mse(reference, (a + b) / 2)
     assert metrics.reference_rel_mse(a, b) == pytest.approx(truth, rel=0.1)
     assert metrics.share_within(reference, (a + b) / 2, error) > 0.97

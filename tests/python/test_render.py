@@ -183,7 +183,7 @@ RENDER_ERRORS: list[tuple[str, dict[str, Any]]] = [
 
 
 def test_a_glossy_penumbra_is_that_of_plain_monte_carlo() -> None:
-    """Where four shadow rays of a hit tell little of a lobe whose peak is half hidden."""
+    """Four shadow rays of a hit say little about a lobe whose peak is half hidden."""
     scene = shlight.Scene()
     mesh = ball((0, 0, 0), 1.0)
     metal = shlight.Bsdf.ggx(0.3, (0.9, 0.6, 0.4))

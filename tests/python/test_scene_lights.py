@@ -15,7 +15,7 @@ import shlight
 
 
 def radiance_at_origin(add: Callable[[shlight.Scene], None]) -> Any:
-    """Of a white Lambert floor z = 0 at its middle."""
+    """The radiance of a white Lambert floor z = 0 at its middle."""
     scene = shlight.Scene()
     scene.add_mesh(FLOOR, FACES, bsdf=shlight.Bsdf.lambert(1))
     add(scene)

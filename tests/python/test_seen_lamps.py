@@ -20,7 +20,7 @@ STAR_AREA = 5 * 0.4 * math.sin(math.pi / 5)
 
 
 def picture(add: Callable[[shlight.Scene], None], floor: bool = False) -> Any:
-    """From the origin along -z, one radian wide."""
+    """A picture from the origin along -z, one radian wide."""
     scene = shlight.Scene()
     if floor:
         scene.add_mesh(FLOOR - [0, 0, 3], FACES)
@@ -37,7 +37,7 @@ def filled(add: Callable[[shlight.Scene], None], **options: Any) -> float:
 
 
 def test_sphere() -> None:
-    # Of centre (x, 0, -d) with x² + d² = D²: an ellipse, of the cone about its axis cut by the plane.
+    # A sphere with centre (x, 0, -d), x² + d² = D², appears as an ellipse: its cone cut by the picture's plane.
     x, d, radius = 0.5, 4.0, 0.7
     sine = radius / math.hypot(x, d)
     denominator = (d * d) / (x * x + d * d) - sine * sine

@@ -46,7 +46,7 @@ def largest_differences(image: Image, halves: tuple[Image, Image], most: int = M
     noise = _error_of_tent((first - second) ** 2 / 4, radius)
     edges = _tent(_steepness(reference), radius)
     explained = np.maximum(LEAST_ERRORS * noise, EDGE_PIXELS * edges) / scale
-    # Beside what is different the tent is, too: only its peaks count, and there the pixels themselves.
+    # The tent filter also spreads a difference to its surroundings: only its peaks count, if the pixels there differ.
     size = np.abs(smooth)
     here = metrics.box_mean(picture - reference, 1) / scale * np.sign(smooth)
     counts = (size > np.maximum(LEAST_DIFFERENCE, explained)) & (here > size / 2) & (size >= _largest(size, radius))

@@ -76,7 +76,7 @@ class Job:
 
     @property
     def progress(self) -> float:
-        """What share of the stage's expected time is over, less than 1; 0 where no time is expected."""
+        """The elapsed share of the stage's expected time, less than 1; 0 if no time is expected."""
         elapsed = time.monotonic() - self._since
         return min(elapsed / self._expected, 0.99) if self._expected > 0 else 0.0
 
@@ -92,7 +92,7 @@ class Job:
 
 
 def _check(context: Any) -> None:
-    """What can be known to fail before anything is started."""
+    """Raises errors that can be found before anything is started."""
     scene = context.scene
     if problem := native_problem():
         raise CompareError(problem)
@@ -124,5 +124,5 @@ def temporary_folder(prefix: str) -> Path:
 
 
 def one_line(error: Exception) -> str:
-    """What an error says, without line breaks."""
+    """The text of an error, without line breaks."""
     return " ".join(str(error).removeprefix("Error: ").split())

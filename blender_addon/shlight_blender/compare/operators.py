@@ -176,7 +176,7 @@ class SHLIGHT_OT_drag_split(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: Any) -> bool:
-        """Where the comparison is shown."""
+        """Whether this editor shows the comparison."""
         image = getattr(context.space_data, "image", None)
         return results.last is not None and image is not None and image.name == results.COMPARISON
 

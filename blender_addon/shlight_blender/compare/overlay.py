@@ -38,7 +38,7 @@ def remove() -> None:
 
 
 def split_in(region: Any) -> float:
-    """Where the line of the split is [pixels of the region]."""
+    """The position of the split's line [pixels of the region]."""
     return float(region.view2d.view_to_region(bpy.context.window_manager.shlight_compare.split, 0.0, clip=False)[0])
 
 

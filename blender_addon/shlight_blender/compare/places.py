@@ -83,7 +83,7 @@ class Finder:
             scale_y=scene.render.pixel_aspect_y,
         )
         location, rotation, _ = camera.matrix_world.decompose()
-        # What a panorama shows at a pixel is not looked up; the report may name the camera.
+        # Objects at a pixel of a panorama are not looked up; the report may name the camera.
         self._panorama = Seen(f"Camera '{camera.name}'") if camera.data.type == "PANO" else None
         self._from_picture = Matrix.LocRotScale(location, rotation, None) @ projection.inverted()
         self._lamps = [seen for seen in view_layer.objects if seen.type == "LIGHT" and not seen.hide_render]

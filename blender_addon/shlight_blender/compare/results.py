@@ -42,7 +42,7 @@ class Results:
 
     @property
     def names(self) -> list[str]:
-        """Of the images."""
+        """The names of the comparison's images."""
         return [COMPARISON, DIFFERENCE, *([] if self.reference is None else [REFERENCE])]
 
     def pictures(self, split: float) -> dict[str, Pixels]:
@@ -133,7 +133,7 @@ def forget() -> None:
 
 
 def _images() -> list[Any]:
-    """Those of the latest comparison."""
+    """The images of the latest comparison."""
     if last is None:
         return []
     named = (bpy.data.images.get(name) for name in last.names)

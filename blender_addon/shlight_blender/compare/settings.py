@@ -30,7 +30,7 @@ def _move_split(settings: Any, context: Any) -> None:
 
 
 class SHLIGHT_CompareSettings(bpy.types.PropertyGroup):
-    """What to compare, and where the split is."""
+    """Settings of the comparison, and the position of the split."""
 
     denoise: bpy.props.BoolProperty(**DENOISE)
     reference_seconds: bpy.props.FloatProperty(**REFERENCE_SECONDS)

@@ -9,7 +9,7 @@ from typing import Any
 
 @dataclass(frozen=True, kw_only=True)
 class RenderOptions:
-    """What to render and how; None: as the scene has it."""
+    """The scene to render and its settings; None keeps the scene's value."""
 
     scene: str  # a file
     lights: list[str] | None = None  # names of the lamps that shine

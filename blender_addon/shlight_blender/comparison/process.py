@@ -51,7 +51,7 @@ class WorkerProcess:
             os.close(write_end)
 
     def messages(self, seconds: float) -> list[dict[str, Any]]:
-        """What it has said and was not read; waits so long for anything. WorkerError once it has failed."""
+        """Messages of the worker that were not read; waits up to `seconds` for one. WorkerError if it failed."""
         if not select.select([self._read_end], [], [], seconds)[0]:
             return []
         received = os.read(self._read_end, 65536)

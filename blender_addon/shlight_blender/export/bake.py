@@ -72,7 +72,7 @@ def bake_world(world: Any, scene: Any, waiting: Waiting | None = None) -> Baked 
         kept.move_to_end(key)
         return kept[key]
     baked = _bake(world, scene, waiting)
-    # What was edited meanwhile may be in the picture and not in the key.
+    # Edits during the bake may be in the picture and not in the key.
     if baked is not None and key is not None and bake_key(world, scene) == key:
         _keep(key, baked)
     return baked
@@ -159,7 +159,7 @@ def _bake(world: Any, scene: Any, waiting: Waiting | None) -> Baked | None:
 
 
 def _write(folder: Path, world: Any, scene: Any) -> None:
-    """What the other Blender needs."""
+    """Writes the files that the other Blender needs."""
     try:
         bpy.data.libraries.write(str(folder / "world.blend"), {world.original}, path_remap="ABSOLUTE")
         (folder / "request.json").write_text(json.dumps(_request(world, scene, folder)), encoding="utf-8")
@@ -168,7 +168,7 @@ def _write(folder: Path, world: Any, scene: Any) -> None:
 
 
 def _picture(folder: Path, waiting: Waiting | None) -> Baked | None:
-    """What the other Blender makes of it; None if `waiting` stopped it."""
+    """The picture baked by the other Blender; None if `waiting` stopped it."""
     try:
         if not _run(folder, waiting):
             return None

@@ -21,8 +21,8 @@ from ..compat import working_space
 NODES_OF_ELSEWHERE = {"ATTRIBUTE", "SCRIPT"}
 # Kinds of images whose contents are known by `_image`: one file, or none.
 KNOWN_IMAGES = {"FILE", "GENERATED"}
-# What of the properties that all nodes, sockets and images have is followed. The others are how they are drawn and
-# saved; contents of images are read apart.
+# Properties common to all nodes, sockets and images that are followed. Others are about drawing and saving; the
+# contents of images are read separately.
 FOLLOWED = (
     (bpy.types.Node, {"name", "bl_idname", "mute", "inputs", "outputs"}),
     (bpy.types.NodeSocket, {"identifier", "bl_idname"}),
@@ -159,7 +159,7 @@ def _plain(value: Any) -> object:
 
 
 def _file_state(path: str) -> object:
-    """What changes when a file is written; None for one that is missing."""
+    """A value that changes when a file is written; None for a missing file."""
     try:
         state = Path(path).stat()
     except (FileNotFoundError, NotADirectoryError):

@@ -38,7 +38,7 @@ NARROWEST_SOUGHT = 4.0  # texels of that width; narrower discs are widened while
 SKIES_WITHOUT_SUN = {"PREETHAM", "HOSEK_WILKIE"}
 BRIGHTEST = 65504.0  # what is infinite becomes this
 
-# What a diffuse ray sees of a Light Path node; 0 for outputs that are not named.
+# Outputs of a Light Path node for a diffuse ray; other outputs are 0.
 DIFFUSE_RAY = {"Is Diffuse Ray": 1.0, "Is Reflection Ray": 1.0, "Ray Depth": 1.0, "Diffuse Depth": 1.0}
 
 
@@ -185,7 +185,7 @@ def _has_narrow_sun(node: Any) -> bool:
 
 
 def _panorama_directions(height: int, width: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Of the texels of a panorama: directions (height, width, 3) and solid angles (height, width)."""
+    """Directions (height, width, 3) and solid angles (height, width) of a panorama's texels."""
     longitude = math.pi * (1.0 - 2.0 * (np.arange(width) + 0.5) / width)
     latitude = math.pi * (0.5 - (np.arange(height) + 0.5) / height)[:, None]
     flat = np.cos(latitude)
@@ -197,7 +197,7 @@ def _panorama_directions(height: int, width: int) -> tuple[NDArray[np.float64], 
 def _close_up_directions(
     width: float, to_world: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Of the pixels of a square perspective picture `width` [rad] wide: directions and solid angles."""
+    """Directions and solid angles of the pixels of a square perspective picture `width` [rad] wide."""
     half = math.tan(0.5 * width)
     across = half * (2.0 * (np.arange(SUN_SIZE) + 0.5) / SUN_SIZE - 1.0)
     x, y = np.meshgrid(across, -across)

@@ -11,7 +11,7 @@ import bpy
 
 @dataclass
 class Changes:
-    """What of an exported scene is to be made again; cameras are none of it, they are given with every picture."""
+    """The parts of an exported scene that must be made again; cameras are given with every picture instead."""
 
     world: bool = False
     lamps: bool = False
@@ -29,18 +29,18 @@ class Changes:
             setattr(self, each.name, getattr(self, each.name) | getattr(other, each.name))
 
     def parts(self) -> str:
-        """What has changed, as users call it."""
+        """The changed parts, in users' words."""
         named = {"World": self.world, "Lamps": self.lamps, "Objects": self.objects, "Materials": self.materials}
         return ", ".join(name for name, changed in named.items() if changed)
 
 
 def everything() -> Changes:
-    """As of a scene that has not been exported."""
+    """All parts, for a scene that has not been exported."""
     return Changes(True, True, True, True, True)
 
 
 def changes_of(depsgraph: Any) -> Changes:
-    """What Blender has found changed, when it tells a render engine that keeps the scene."""
+    """The changes that Blender reports to a render engine that keeps the scene."""
     changes = Changes()
     for update in depsgraph.updates:
         _add(changes, update)
@@ -65,7 +65,7 @@ def _add(changes: Changes, update: Any) -> None:
     elif isinstance(changed, bpy.types.Scene):
         return  # what its settings mean for the picture is compared
     elif isinstance(changed, (bpy.types.NodeTree, bpy.types.Image, bpy.types.Texture)):
-        # What owns a tree of its own is listed too; groups and images may be used by all.
+        # The owner of an embedded tree is listed too; groups and images may be used by all.
         if not getattr(changed, "is_embedded_data", False):
             changes.world = changes.lamps = changes.materials = True
     else:  # collections, meshes, particles …

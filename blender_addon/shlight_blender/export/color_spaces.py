@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 SRGB = "sRGB"
-# Those whose numbers stand for linear light, or are no colours.
+# Colour spaces whose numbers are linear light, or not colours.
 LINEAR_SPACES = {"Non-Color", "Raw", "Linear", "Linear Rec.709"}
 
 

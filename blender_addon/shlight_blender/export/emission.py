@@ -16,7 +16,7 @@ from shlight.nodes.program import ProgramBuilder
 from shlight.nodes.values import Step, in_order
 
 Array = NDArray[np.float64]
-# What an input of a program is: its source, the index or name, and the component.
+# An input of a program: its source, the index or name, and the component.
 Input = tuple[str, int | str, int]
 # Texture coordinates that no picture has count as one of this size.
 NO_PICTURE = (1.0, 1.0)
@@ -34,7 +34,7 @@ class VaryingEmission:
 
     @cached_property
     def _places(self) -> list[tuple[tuple[Value, Value], tuple[float, float]]]:
-        """Where pictures are looked up, and their sizes."""
+        """The coordinates at which pictures are looked up, and the pictures' sizes."""
         images = [step for step in self._steps if step.name == "image"]
         return [((step.arguments[0], step.arguments[1]), step.data.core.size) for step in images]
 
@@ -48,7 +48,7 @@ class VaryingEmission:
 
     @property
     def inputs(self) -> list[Input]:
-        """What must be known of a place."""
+        """The inputs that a place must supply."""
         return [step.data for step in self._steps if step.name == "input"]
 
     def _evaluate(self, inputs: Mapping[Input, Array], count: int) -> Array:
@@ -66,6 +66,6 @@ class VaryingEmission:
         return np.clip(np.nan_to_num(self._evaluate(inputs, count)[:3].T), 0.0, None)
 
     def texels(self, inputs: Mapping[Input, Array], count: int) -> list[Array]:
-        """Where pictures are looked up, in texels: for each of them (count, 2)."""
+        """The coordinates of look-ups in texels: (count, 2) for each picture."""
         results = self._evaluate(inputs, count)[3:]
         return [results[2 * i : 2 * i + 2].T * size for i, (_, size) in enumerate(self._places)]

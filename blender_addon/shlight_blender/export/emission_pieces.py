@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 Radiance = Callable[[Array], Array]  # of places (n, c), linear RGB (n, 3)
 
-# What the pieces and then their colours may leave out: root mean square, as a part of the radiance's own.
+# Error that the pieces, and then their colours, may have: root mean square ÷ that of the radiance.
 TOLERANCE = 0.05
 MOST_PIECES = 256
 MOST_COLORS = 12
@@ -67,7 +67,7 @@ def corners_at(level: int) -> Array:
 
 @dataclass(frozen=True)
 class _Pyramid:
-    """Of one triangle: by level, the means (4^level, 3) and mean squares (4^level,) of its parts."""
+    """Means (4^level, 3) and mean squares (4^level,) of a triangle's parts, for each level."""
 
     means: list[Array]
     squares: list[Array]

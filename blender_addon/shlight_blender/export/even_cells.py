@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Bounds = tuple[int, int, int, int]  # left, bottom, right and top, in samples
 
-# What the cells may leave out: root mean square, as a part of the radiance's own.
+# Error that the cells may have: root mean square ÷ that of the radiance.
 TOLERANCE = 0.075
 # Samples along a side of the square, at least and at most, and to a texel.
 LEAST_SAMPLES = 512

@@ -27,7 +27,7 @@ Expression = Value | Vector  # a Color is a Vector that counts with its luminanc
 
 @dataclass
 class Surroundings:
-    """What nodes may ask for beside the surface: the camera, the depsgraph, and numbers of objects."""
+    """Inputs of nodes other than the surface: the camera, the depsgraph, and numbers of objects."""
 
     camera_view: View | None = None
     depsgraph: Any = None
@@ -145,12 +145,12 @@ class ExpressionReader:
         return f"{self.place}, node '{node_name(node)}'"
 
     def expression(self, socket: Any, groups: tuple[Any, ...] = ()) -> Expression:
-        """What an input socket receives."""
+        """The value that an input socket receives."""
         source = origin(socket, groups)
         return own_value(source.socket) if source.node is None else self.output(source, socket)
 
     def output(self, source: Origin, socket: Any = None) -> Expression:
-        """What a node makes; socket: the input that asks for it."""
+        """The value of a node's output; socket: the input that reads it."""
 
         def in_circle() -> Expression:
             self.report.add(self.at(source.node), "its links run in a circle; 0 is used")

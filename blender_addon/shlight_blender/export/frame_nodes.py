@@ -117,7 +117,7 @@ def _vector_transform(inputs: NodeInputs) -> Vector:
     return found if node.convert_to == "WORLD" else from_world[node.convert_to](found)
 
 
-# By the axis: the direction around it at a place of the texture space, seen from its middle.
+# The direction around each axis at a place of the texture space, relative to its middle.
 AROUND: dict[str, Callable[[Vector], Vector]] = {
     "X": lambda p: Vector(0.0, -p.z, p.y),
     "Y": lambda p: Vector(-p.z, 0.0, p.x),

@@ -17,7 +17,7 @@ from shlight.nodes.textures import texture_pixels
 
 from .color_spaces import SRGB, is_known, linear_light, needs_conversion
 
-# What Cycles shows in the place of a picture that is not there.
+# The colour that Cycles shows for a missing picture.
 MISSING = (1.0, 0.0, 1.0)
 # Files that are read at a time; each takes memory for its pixels twice.
 MOST_READERS = 4
@@ -117,7 +117,7 @@ def _texture(pixels: NDArray[Any], space: str, as_normals: bool) -> _core.Textur
 
 
 class FileSettings(NamedTuple):
-    """What of an image's settings changes the pixels of its files."""
+    """The settings of an image that affect the pixels of its files."""
 
     space: str
     associate: bool

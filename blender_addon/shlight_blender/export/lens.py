@@ -14,7 +14,7 @@ from ..frame import Frame
 Matrix = NDArray[np.float64]
 
 MILLIMETRE = 1e-3
-# What Cycles replaces smaller values by.
+# Least values in Cycles, which replace smaller ones.
 LEAST_F_STOP = 1e-5
 LEAST_FOCUS_DISTANCE = 1e-5
 
@@ -78,7 +78,7 @@ def panorama_of(lens: Any, frame: Frame, render: Any) -> dict[str, Any] | None:
 
 
 def _sensor(lens: Any, frame: Frame, render: Any) -> tuple[float, float]:
-    """What of the sensor the whole picture takes [m], which has the picture's proportions."""
+    """The size of the sensor's part that the whole picture covers [m], with the picture's proportions."""
     width, height = frame.full_width * render.pixel_aspect_x, frame.full_height * render.pixel_aspect_y
     horizontal = lens.sensor_fit == "HORIZONTAL" or (lens.sensor_fit == "AUTO" and width > height)
     size = MILLIMETRE * (lens.sensor_height if lens.sensor_fit == "VERTICAL" else lens.sensor_width)

@@ -30,7 +30,7 @@ ROUND_SHAPES = {"DISK", "ELLIPSE"}
 
 
 class Traits(TypedDict):
-    """What `shlight.Scene.add_…_light` takes for every lamp."""
+    """Arguments that every `shlight.Scene.add_…_light` takes."""
 
     shadows: bool
     diffuse: bool
@@ -123,7 +123,7 @@ def _add_point(scene: shlight.Scene, lamp: Lamp, report: ExportReport) -> bool:
 
 
 def _intensity(lamp: Lamp) -> RGB:
-    """Of a point or spot lamp, along its axis, from afar.
+    """Intensity of a point or spot lamp, on its axis, from afar.
 
     Not normalized, its power is that of a disk of area 1 with its radiance; one of no size shines as that disk.
     """
@@ -134,7 +134,7 @@ def _intensity(lamp: Lamp) -> RGB:
 
 
 def spot_direction(to_world: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """What `shlight.Scene.add_spot_light` takes as a direction: (3,) or (3, 3); None for a lamp of scale 0."""
+    """The direction argument of `shlight.Scene.add_spot_light`: (3,) or (3, 3); None for a lamp of scale 0."""
     axes = to_world[:3, :3]
     lengths = np.linalg.norm(axes, axis=0)
     # Without volume its directions have no place in the lamp's frame.
@@ -195,7 +195,7 @@ def area_corners(
 
 
 def _half_axes(lamp: Any, to_world: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Of an area lamp along its x and y, (3,) each."""
+    """The half axes of an area lamp along its x and y, (3,) each."""
     height = lamp.size_y if lamp.shape in {"RECTANGLE", "ELLIPSE"} else lamp.size
     return 0.5 * float(lamp.size) * to_world[:3, 0], 0.5 * float(height) * to_world[:3, 1]
 

@@ -21,7 +21,7 @@ from .nodes import RGB, origin
 from .shaders import SHADERS
 from .surface import ShaderReader
 
-# What Cycles draws where an object has no material.
+# Albedo of Cycles' surface for objects without material.
 DEFAULT_ALBEDO = 0.8
 
 

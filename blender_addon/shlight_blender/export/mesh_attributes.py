@@ -20,7 +20,7 @@ UV = ""
 TANGENT = "tangent:"
 # Prefix of a colour attribute; without a name, the one for rendering.
 COLOR = "color:"
-# Where a vertex lies in the mesh's texture space.
+# Prefix of a vertex's position in the mesh's texture space.
 GENERATED = "generated:"
 
 # Numbers that the mesh's shape gives.
@@ -42,7 +42,7 @@ COMPONENTS = {
 
 
 def mesh_attributes(mesh: Any, triangles: Triangles, names: Iterable[str]) -> dict[str, Array]:
-    """Those of these names that the mesh has, per corner of its triangles (k, 3, c).
+    """The mesh's attributes with these names, per corner of its triangles (k, 3, c).
 
     UV is the UV map for rendering; the prefixes above name what is made of a mesh.
     """

@@ -25,14 +25,14 @@ from .textured_meshes import with_even_emission
 
 Matrix = NDArray[np.float64]
 
-# Of one material in one place, more emissive triangles than these are one light to the core.
+# Number of emissive triangles of one material in one place above which they are one light in the core.
 MOST_SINGLE_FACES = 16
-# From this number of lights on the user is told why the render takes long.
+# Number of lights from which the report explains why the render takes long.
 MANY_EMITTERS = 200
 
 
 class Label(NamedTuple):
-    """What passes know an object by."""
+    """The names and numbers of an object in passes."""
 
     name: str
     asset: str
@@ -130,7 +130,7 @@ class SceneMeshes:
     def _kept_mesh(
         self, key: tuple[Any, ...], instance: Any, to_world: Matrix, surfaces: list[Surface]
     ) -> KeptMesh | None:
-        """What the scene has of a mesh, if it needs not be converted again."""
+        """The kept mesh, if it need not be converted again."""
         kept = self._kept.get(key)
         if kept is None or self._changes.all_shapes:
             return None
@@ -149,7 +149,7 @@ class SceneMeshes:
         return kept
 
     def _attributes(self, surfaces: Sequence[Surface]) -> frozenset[str]:
-        """What a mesh has to have for its materials and the passes."""
+        """The attributes that a mesh needs for its materials and the passes."""
         return _attribute_names(surfaces) | ({UV} if self._surroundings.passes.uvs else set())
 
     def _convert(
@@ -204,7 +204,7 @@ class SceneMeshes:
         return {own.name: own.shader.operation_count for own in surfaces if own.shader.operation_count > 0}
 
     def names(self) -> dict[str, set[str]]:
-        """Of all that is drawn: of objects, materials and assets."""
+        """The names of all drawn objects, materials and assets."""
         labels = [label for use in self._kept.values() for label in use.labels]
         return {
             "object": {label.name for label in labels},
@@ -257,7 +257,7 @@ def _is_cut(surfaces: Sequence[Surface]) -> bool:
 
 
 def _materials(use: KeptMesh) -> dict[str, Any]:
-    """What of `shlight.Scene.add_mesh` is about materials."""
+    """The arguments of `shlight.Scene.add_mesh` about materials."""
     return {
         "bsdf": [own.shader for own in use.surfaces],
         "emission": np.array([own.emission for own in use.surfaces]) if use.emits() else None,

@@ -24,7 +24,7 @@ def rgb(values: RGB) -> tuple[float, float, float]:
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a socket's value comes from: `node` and its output, or no node and the last `socket`'s own value.
+    """The source of a socket's value: `node` and its output, or no node and the value of the last `socket`.
 
     `groups` are the group nodes entered on the way, outermost first: links of a Group Input lead back out of them.
     """

@@ -50,7 +50,7 @@ VISIBILITY = {
 
 
 class _State(NamedTuple):
-    """What Blender does not list among the changes of a scene."""
+    """State that Blender does not list among the changes of a scene."""
 
     world: Any = None
     material_override: Any = None
@@ -94,7 +94,7 @@ class ExportedScene:
 
     @property
     def report(self) -> ExportReport:
-        """What of the Blender scene is not supported."""
+        """The parts of the Blender scene that are not supported."""
         whole = ExportReport()
         for part in self._reports.values():
             whole.extend(part)
@@ -102,7 +102,7 @@ class ExportedScene:
 
     @property
     def operations(self) -> dict[str, int]:
-        """Of the program of each material whose values vary, for a hit."""
+        """The number of operations per hit of each material with a program."""
         return self._meshes.operations()
 
     @property
@@ -112,12 +112,12 @@ class ExportedScene:
 
     @property
     def names(self) -> dict[str, set[str]]:
-        """What Cryptomatte may know: of each of `passes.CRYPTOMATTES`."""
+        """The names in each of `passes.CRYPTOMATTES`."""
         return self._meshes.names()
 
     @property
     def texture_bytes(self) -> int:
-        """Of all textures that are kept."""
+        """The memory of all kept textures."""
         return TEXTURES.size_in_bytes
 
     def look_from(self, depsgraph: Any, *, frame: Frame, camera: Any = None) -> None:

@@ -61,7 +61,7 @@ def render_settings(scene: Any) -> RenderSettings:
 
 
 def viewport_settings(scene: Any) -> RenderSettings:
-    """As `render_settings`, with the settings of the viewport in place of those of final renders."""
+    """`render_settings` with the viewport's settings in place of those of final renders."""
     own = scene.shlight
     return replace(
         render_settings(scene),
@@ -74,7 +74,7 @@ def viewport_settings(scene: Any) -> RenderSettings:
 
 
 def preview_settings(scene: Any) -> RenderSettings:
-    """Those of a small picture in a panel, which is to be there at once."""
+    """Settings of a small picture in a panel, which must appear at once."""
     return replace(
         render_settings(scene),
         tolerance=0.01,

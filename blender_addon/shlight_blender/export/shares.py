@@ -49,7 +49,7 @@ def shares_of_picture(depsgraph: Any, view: View, frame: Frame, wanted: Containe
 
 
 def _covered(boxes: Array, view: View, frame: Frame) -> Array:
-    """Of the frame, what the rectangles around boxes cover, by their corners (n, 8, 3) in the world."""
+    """The shares of the frame covered by rectangles around boxes with corners (n, 8, 3) in the world."""
     if view.panoramic:
         return np.ones(len(boxes))
     to_camera = np.array(view.to_camera)

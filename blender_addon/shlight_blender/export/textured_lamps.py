@@ -80,7 +80,7 @@ def _cut_lamp(emission: VaryingEmission, is_round: bool) -> Cells:
 
 
 def _name_of(entry: Input) -> str:
-    """What a program reads and a lamp does not have, "" if it has it."""
+    """The name of an input that a lamp does not have, "" if it has it."""
     if entry in _inputs_at(UNIT_SQUARE):
         return ""
     source, index, _ = entry
@@ -90,9 +90,9 @@ def _name_of(entry: Input) -> str:
 
 
 def _inputs_at(places: Array) -> dict[Input, Array]:
-    """What a program reads at places (n, 2) of the lamp: its UV map, if it has one here, and Parametric."""
+    """A program's inputs at places (n, 2) of the lamp: its UV map, if it has one here, and Parametric."""
     x, y = places.T
-    # As if the lamp were a triangle whose corners 0 and 1 lie along its x and y.
+    # The lamp counts as a triangle whose corners 0 and 1 lie along its x and y.
     inputs: dict[Input, Array] = {("barycentric", 0, 0): y, ("barycentric", 0, 1): 1.0 - x - y}
     if LAMPS.area_has_uvs:
         inputs |= {("attribute", "", i): places[:, i] for i in range(2)}
@@ -100,7 +100,7 @@ def _inputs_at(places: Array) -> dict[Input, Array]:
 
 
 def disk_places(places: Array) -> Array:
-    """Where places (n, 2) of the unit square are in the disk that touches its sides; areas keep their ratios."""
+    """Maps places (n, 2) of the unit square to the disk that touches its sides; areas keep their ratios."""
     a, b = 2.0 * places.T - 1.0
     # In the quarters on the right and the left the radius is a, in the others b.
     sideways = np.abs(a) > np.abs(b)

@@ -29,7 +29,7 @@ from shlight.nodes.values import clamp, operation
 
 from .expressions import NodeInputs, ReadNode
 
-# As many entries as Cycles reads of ramps and curves.
+# Number of entries that Cycles reads from ramps and curves.
 TABLE_SIZE = 257
 
 

@@ -20,7 +20,7 @@ from .bake import Baked, BakeError, Sun
 from .nodes import ConstantReader, Origin, all_nodes, origin
 from .pictures import linear_pixels
 
-# Of a world and its scene; None while it goes on.
+# Bakes a world in its scene; None while the bake goes on.
 Bake = Callable[[Any, Any], "Baked | None"]
 
 # Kinds of rays that Cycles can hide the world from.

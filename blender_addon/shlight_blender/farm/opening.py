@@ -64,7 +64,7 @@ def _replayed_fluids() -> dict[str, Any]:
 
 
 def closed_to_others(scene: Any) -> list[str]:
-    """What the file asks to be done with pictures and is not done, in words."""
+    """Descriptions of the file's post-processing that is not done."""
     render, left_out = scene.render, []
     if render.use_compositing and compositing_nodes(scene) is not None:
         left_out.append("compositing is left out; do it with the files")

@@ -76,7 +76,7 @@ class _Kept:
         render.filepath = str(folder / "picture")
 
     def restore(self) -> None:
-        """As they were."""
+        """Restores the settings."""
         for name, value in self._values.items():
             setattr(self._render, name, value)
         for view, use, suffix in self._views:

@@ -41,7 +41,7 @@ def _work(arguments: list[str]) -> None:
 
 
 def _check(options: Options, out: Path) -> None:
-    """What can be known to fail before anything is started."""
+    """Raises errors that can be found before anything is started."""
     with options.scene_file.open("rb"):  # missing, a folder, or not readable: an OSError with its name
         pass
     check_folder(out)

@@ -161,7 +161,7 @@ class _Survey:
         shutil.rmtree(work)
 
     def _picture(self, file: str, part: str) -> Path:
-        """Where a picture of a file is."""
+        """The path of a picture of a file."""
         return self._out / PICTURES / f"{file}.{part.removeprefix('strip.')}"
 
     def _circumstances(self) -> dict[str, Any]:

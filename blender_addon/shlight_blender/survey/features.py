@@ -29,7 +29,7 @@ INPUTS = {
 
 
 def features_of(scene: Any) -> list[str]:
-    """Those of FEATURES that something rendered, or the world, uses."""
+    """The FEATURES that a rendered object or the world uses."""
     found: set[str] = set()
     materials: set[Any] = set()
     for instance in bpy.context.evaluated_depsgraph_get().object_instances:

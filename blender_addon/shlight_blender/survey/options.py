@@ -19,7 +19,7 @@ SUFFIXES = (".blend", ".gltf", ".glb")
 
 @dataclass(frozen=True, kw_only=True)
 class FileOptions(RenderOptions):
-    """What the worker of one file is asked."""
+    """Options of the worker of one file."""
 
     noise: float = NOISE
 
@@ -37,7 +37,7 @@ class Options:
     render: dict[str, Any]
 
     def of_file(self, path: Path) -> FileOptions:
-        """What the worker of this file is asked."""
+        """The options of this file's worker."""
         return FileOptions(scene=str(path), **self.render)
 
 

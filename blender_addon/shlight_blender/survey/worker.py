@@ -36,7 +36,7 @@ class SurveyWorker(Worker[FileOptions]):
     """One file."""
 
     def run(self) -> None:
-        """As that of every worker; whatever goes wrong in Python is said too."""
+        """Runs like every worker, and also reports errors in Python."""
         try:
             super().run()
         except Exception as error:
