@@ -145,8 +145,8 @@ void bind_methods(py::module_& m) {
         .def_readonly("largest_order", &Method::largest_order)
         .def_readonly("adaptive", &Method::adaptive)
         .def_readonly("random", &Method::random)
-        .def_property_readonly("knows_caps", [](const Method& method) { return method.single.cap != nullptr; })
-        .def_property_readonly("knows_polygons", [](const Method& method) { return method.single.polygon != nullptr; });
+        .def_property_readonly("knows_caps", [](const Method& method) { return method.f32.cap != nullptr; })
+        .def_property_readonly("knows_polygons", [](const Method& method) { return method.f32.polygon != nullptr; });
     py::class_<ShadingMethod> shading_method_type(m, "ShadingMethod", without_constructor());
     define_pickling(
         shading_method_type, [](const ShadingMethod& method) { return method.name; }, &find_shading_method);
