@@ -216,6 +216,7 @@ std::uint32_t Passes::points_before(int level) const {
 
 void Passes::render(std::span<const Pixel> pixels, int from, int to, bool calm) {
     const std::uint32_t shadow_rays = shadow_rays_at(to);
+    const std::uint32_t own_rays = calm ? std::min(shadow_rays, 1U) : shadow_rays;
     const std::uint32_t most = std::max<std::uint32_t>(
         refinement_.samples(0), std::min<std::uint32_t>(batch_samples_, kMostRaysPerPixel / std::max(shadow_rays, 1U)));
     std::vector<PixelSums> sums(pixels.size());
@@ -224,7 +225,7 @@ void Passes::render(std::span<const Pixel> pixels, int from, int to, bool calm) 
     for (std::uint32_t first = refinement_.kept_samples(from); first < refinement_.samples(to);) {
         const std::uint32_t count = std::min(most, refinement_.samples(to) - first);
         const std::uint32_t number = to == 0 ? first : first + picture_->previews;
-        batches_.local().add(pixels, {number, count, shadow_rays, first_point, calm}, sums, pass_sums);
+        batches_.local().add(pixels, {number, count, own_rays, first_point}, sums, pass_sums);
         first_point += count * shadow_rays;
         first += count;
     }

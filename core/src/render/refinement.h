@@ -22,7 +22,7 @@ namespace shlight {
 /// Pixels that go from one level to a higher one; one of level l has first_samples · 4^l rays, one of -1 none.
 struct RefinementGroup {
     int from, to;
-    bool calm;    // see SampleRange
+    bool calm;    // rays from here and near have met nothing so far: one of a hit will do
     double rays;  // of each
     std::vector<Pixel> pixels;
     std::vector<double> gains;  // of each: what more rays may take from its squared error

@@ -38,9 +38,8 @@ void EnvironmentRays::start(const Hits& hits, std::span<const std::size_t> lit) 
     hits_ = &hits;
     lit_ = lit;
     directions_.clear();
-    visible_.clear();
     rays_.clear();
-    runs_.assign(2 * lit.size(), {});
+    runs_.assign(lit.size(), {});
 }
 
 void EnvironmentRays::find_shapes(std::size_t hit) {
@@ -51,27 +50,27 @@ void EnvironmentRays::find_shapes(std::size_t hit) {
     }
 }
 
-void EnvironmentRays::draw(const LitRange& pixel, const RayPhase& phase, std::uint32_t seed) {
-    points_.start(phase, hits_->sample[lit_[pixel.begin]], hits_->sample[lit_[pixel.end - 1]], seed);
+void EnvironmentRays::draw(const LitRange& pixel, const SampleRange& samples, std::uint32_t seed) {
+    points_.start(samples, hits_->sample[lit_[pixel.begin]], hits_->sample[lit_[pixel.end - 1]], seed);
     for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
-        draw_hit(i, phase);
+        draw_hit(i, samples.shadow_rays);
     }
 }
 
-void EnvironmentRays::draw_hit(std::size_t lit_index, const RayPhase& phase) {
+void EnvironmentRays::draw_hit(std::size_t lit_index, std::uint32_t rays) {
     const std::size_t hit = lit_[lit_index];
     const RayStart start(hits_->frame[hit], hits_->shadow_origin[hit], Vec3d(0));
     find_shapes(hit);
-    Run& own = run(lit_index, phase.first);
+    Run& own = runs_[lit_index];
     own.begin = directions_.size();
     for (std::size_t set = 0; set < shapes_.size(); ++set) {
-        draw_set(start, hit, set, phase.rays_per_hit);
+        draw_set(start, hit, set, rays);
     }
     if (environment_->map() != nullptr && !shapes_.empty()) {
-        draw_map(start, hit, phase.rays_per_hit);
+        draw_map(start, hit, rays);
     }
     own.mirror = directions_.size();
-    if (materials_[hits_->material[hit]].mirror && phase.first) {
+    if (materials_[hits_->material[hit]].mirror) {
         push(start, mirrored(hits_->view(hit)));
     }
     own.end = directions_.size();
@@ -110,22 +109,20 @@ void EnvironmentRays::push(const RayStart& start, const Vec3d& direction) {
 
 void EnvironmentRays::trace() {
     visible_.resize(directions_.size());
-    tracer_->visibility(rays_, std::span(visible_).last(rays_.size()));
+    tracer_->visibility(rays_, visible_);
     rays_traced_ += rays_.size();
-    rays_.clear();
 }
 
-bool EnvironmentRays::all_free(const LitRange& pixel) const {
-    const std::size_t begin = run(pixel.begin, true).begin;
-    const auto own = std::span(visible_).subspan(begin, run(pixel.end - 1, true).end - begin);
-    return std::all_of(own.begin(), own.end(), [](const Rgb& visible) { return visible == Rgb(1); });
+bool EnvironmentRays::any_occluded(const LitRange& pixel) const {
+    const std::size_t begin = runs_[pixel.begin].begin;
+    const auto own = std::span(visible_).subspan(begin, runs_[pixel.end - 1].end - begin);
+    return std::any_of(own.begin(), own.end(), [](const Rgb& visible) { return visible != Rgb(1); });
 }
 
 void EnvironmentRays::gather(std::size_t lit_index) {
     weighed_.clear();
-    for (const Run& own : {run(lit_index, true), run(lit_index, false)}) {
-        weighed_.add(own.begin, own.mirror, [&](std::size_t ray) -> const Vec3f& { return directions_[ray]; });
-    }
+    const Run& own = runs_[lit_index];
+    weighed_.add(own.begin, own.mirror, [&](std::size_t ray) -> const Vec3f& { return directions_[ray]; });
 }
 
 void EnvironmentRays::weigh(std::span<const LitRange> pixels) {
@@ -165,7 +162,7 @@ void EnvironmentRays::weigh_hit(std::size_t lit_index) {
             asked_[first + i].lobe_density += weighed_.density(i);
         }
     }
-    for (std::size_t ray = run(lit_index, true).mirror; ray < run(lit_index, true).end; ++ray) {
+    for (std::size_t ray = runs_[lit_index].mirror; ray < runs_[lit_index].end; ++ray) {
         ask(ray, 1, true);
     }
 }
@@ -206,7 +203,7 @@ EnvironmentRays::Sums EnvironmentRays::sum(std::size_t lit_index, std::size_t lo
         }
     };
     if (is_mirror(shape)) {
-        for (std::size_t ray = run(lit_index, true).mirror; ray < run(lit_index, true).end; ++ray) {
+        for (std::size_t ray = runs_[lit_index].mirror; ray < runs_[lit_index].end; ++ray) {
             add(ray, 1);
         }
         return sums;

@@ -38,16 +38,16 @@ class EnvironmentRays {
 
     /// Forgets all rays. hits and lit, some of them, stay as they are until the next call.
     void start(const Hits& hits, std::span<const std::size_t> lit);
-    /// Draws the rays of a phase from a pixel's lit hits. phase.rays_per_hit: of each set; seed: see PixelPoints.
-    void draw(const LitRange& pixel, const RayPhase& phase, std::uint32_t seed);
-    /// All that were drawn since the last call.
+    /// Draws the rays of a pixel's lit hits. samples.shadow_rays: of each set; seed: see PixelPoints.
+    void draw(const LitRange& pixel, const SampleRange& samples, std::uint32_t seed);
+    /// Traces all rays that were drawn.
     void trace();
 
-    /// Whether the rays of the first phase of a pixel have met nothing.
-    bool all_free(const LitRange& pixel) const;
-    /// To be called before the sums of these pixels, of whose rays no more will be drawn.
+    /// Whether anything takes light away from any ray of a pixel.
+    bool any_occluded(const LitRange& pixel) const;
+    /// To be called before the sums of these pixels.
     void weigh(std::span<const LitRange> pixels);
-    /// Of all phases; split: or else all is in Sums::smooth.
+    /// split: or else all is in Sums::smooth.
     Sums sum(std::size_t lit_index, std::size_t lobe, bool split);
     std::uint64_t rays_traced() const { return rays_traced_; }
 
@@ -57,7 +57,7 @@ class EnvironmentRays {
         std::vector<std::size_t> lobes;  // whose directions they have
         bool mirror = false;
     };
-    /// The rays of a hit in one phase: that of a mirror is the last.
+    /// The rays of a hit: that of a mirror is the last.
     struct Run {
         std::size_t begin = 0, mirror = 0, end = 0;
     };
@@ -75,20 +75,16 @@ class EnvironmentRays {
 
     /// Of a hit's sets, in shapes_.
     void find_shapes(std::size_t hit);
-    void draw_hit(std::size_t lit_index, const RayPhase& phase);
+    void draw_hit(std::size_t lit_index, std::uint32_t rays);
     void draw_set(const RayStart& start, std::size_t hit, std::size_t set, std::uint32_t rays);
     /// As the picture's luminance is spread.
     void draw_map(const RayStart& start, std::size_t hit, std::uint32_t rays);
-    /// Of both phases, but for the mirror's; in weighed_.
+    /// A hit's rays but for the mirror's, in weighed_.
     void gather(std::size_t lit_index);
     /// May lie below the horizon, where it is no ray.
     void push(const RayStart& start, const Vec3d& direction);
     void weigh_hit(std::size_t lit_index);
     void weigh_map(const struct EnvironmentMap& map);
-    Run& run(std::size_t lit_index, bool first_phase) { return runs_[2 * lit_index + (first_phase ? 0 : 1)]; }
-    const Run& run(std::size_t lit_index, bool first_phase) const {
-        return runs_[2 * lit_index + (first_phase ? 0 : 1)];
-    }
 
     const ShadowTracer* tracer_;
     const Environment* environment_;
@@ -99,13 +95,13 @@ class EnvironmentRays {
 
     const Hits* hits_ = nullptr;  // of the call of start()
     std::span<const std::size_t> lit_;
-    std::vector<Run> runs_;  // lit hits × 2 phases
+    std::vector<Run> runs_;  // by lit hit
     PixelPoints points_;
     std::vector<LobeShape> shapes_;  // of a hit's sets
     std::vector<Vec3f> directions_;  // along the axes of the world
-    std::vector<Ray> rays_;          // the last of those drawn, which are not traced yet
-    std::vector<Rgb> visible_;       // of those traced
-    std::vector<Weight> weights_;    // of those weighed
+    std::vector<Ray> rays_;
+    std::vector<Rgb> visible_;     // once traced
+    std::vector<Weight> weights_;  // of those weighed
     std::vector<Asked> asked_;
     WeighedRays weighed_;
 };

@@ -29,28 +29,29 @@ class PixelPoints {
 
     explicit PixelPoints(std::size_t set_count) : sets_(set_count, {SobolSequence(0), {}, {}, false}) {}
 
-    /// Of the camera rays first … last. seed: of the pixel and light; the phases of a pixel differ in nothing else.
-    void start(const RayPhase& phase, std::uint32_t first, std::uint32_t last, std::uint32_t seed) {
-        phase_ = phase;
+    /// samples.shadow_rays: points of each camera ray; first, last: the camera rays that have hits; seed: of the pixel
+    /// and light.
+    void start(const SampleRange& samples, std::uint32_t first, std::uint32_t last, std::uint32_t seed) {
+        samples_ = samples;
         first_ = first;
-        count_ = std::size_t{last - first + 1} * phase.rays_per_hit;
+        count_ = std::size_t{last - first + 1} * samples.shadow_rays;
         for (std::uint32_t set = 0; set < sets_.size(); ++set) {
             sets_[set].sequence = SobolSequence(hash(seed, set));
             sets_[set].drawn = false;
         }
     }
 
-    /// phase.rays_per_hit of them, for one of these camera rays. They are drawn where they are asked for first.
+    /// The points of one of these camera rays. A set's are drawn where they are asked for first.
     Square of(std::size_t set, std::uint32_t sample) {
         Set& own = sets_[set];
         if (!own.drawn) {
             own.u.resize(count_ + kRaysAtOnce);
             own.v.resize(count_ + kRaysAtOnce);
-            draw_square_points(own.sequence, phase_.first_point + (first_ - phase_.first_sample) * phase_.rays_per_hit,
+            draw_square_points(own.sequence, samples_.first_point + (first_ - samples_.first) * samples_.shadow_rays,
                                count_, own.u.data(), own.v.data());
             own.drawn = true;
         }
-        const std::size_t before = std::size_t{sample - first_} * phase_.rays_per_hit;
+        const std::size_t before = std::size_t{sample - first_} * samples_.shadow_rays;
         return {&own.u[before], &own.v[before]};
     }
 
@@ -62,7 +63,7 @@ class PixelPoints {
     };
 
     std::vector<Set> sets_;
-    RayPhase phase_{};
+    SampleRange samples_{};
     std::uint32_t first_ = 0;
     std::size_t count_ = 0;
 };

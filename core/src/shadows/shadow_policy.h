@@ -2,8 +2,9 @@
 //
 // How many shadow rays a light gets, of whatever kind it is.
 //
-// Lights get rays in proportion to what they add to a pixel, and those that would get less than one share some. The
-// rays of each go in two phases, and where those of the first agree on a pixel, the second is spared.
+// Lights get rays in proportion to what they add to a pixel, and those that would get less than one share some. How
+// many rays go is settled before any is drawn, and all of them count: a decision by the rays themselves would bias the
+// picture.
 #pragma once
 
 #include <algorithm>
@@ -29,8 +30,7 @@ inline std::size_t hits_to_ask(float own, float all, std::size_t hits) {
 struct SampleRange {
     std::uint32_t first, count;
     std::uint32_t shadow_rays;  ///< per camera ray and light, at most
-    std::uint32_t first_point;  ///< on the light; as many are theirs as they may have shadow rays
-    bool calm = false;          ///< rays from here and near have met nothing so far: few will do, if they do not either
+    std::uint32_t first_point;  ///< on the light; count · shadow_rays of them are theirs
 };
 
 /// If a pixel's light came from n equal lights, each would get this many times the n-th part of the shadow rays.
@@ -39,7 +39,7 @@ inline constexpr float kRaysByShare = 4;
 /// Of each camera ray for some lights together, or for one, which has no use for more than all. The variance of what
 /// comes of n lights that share rays in proportion to what they add is that of one light with all the rays, or less.
 inline float rays_by_share(float own, float all, const SampleRange& samples) {
-    return kRaysByShare * static_cast<float>(samples.calm ? 1 : samples.shadow_rays) * own / all;
+    return kRaysByShare * static_cast<float>(samples.shadow_rays) * own / all;
 }
 
 /// Those of some lit hits that belong to a pixel: begin … end - 1.
@@ -50,31 +50,5 @@ struct LitRange {
 
 /// Hits whose rays are traced together: so few that all about them stays in the cache.
 inline constexpr std::size_t kHitsAtOnce = 128;
-
-/// Part of a light's shadow rays: which of the pixel's points they take.
-struct RayPhase {
-    bool first;                  ///< forgets the rays before it; the second adds to them
-    std::uint32_t first_point;   ///< of the first camera ray of the batch
-    std::uint32_t first_sample;  ///< the number of that camera ray
-    std::uint32_t rays_per_hit;  ///< and set of rays
-};
-
-/// Points on a light that the first phase's rays of a pixel get together, at least: with fewer they would miss too much
-/// of a penumbra's rim, or of what stands in the way.
-inline constexpr std::uint32_t kLeastFirstPoints = 16;
-
-/// A quarter of the rays, or more where that would be too few.
-inline RayPhase first_phase(const SampleRange& samples) {
-    const std::uint32_t least = (kLeastFirstPoints + samples.count - 1) / samples.count;
-    const std::uint32_t quarter = std::max((samples.shadow_rays + 3) / 4, least);
-    const std::uint32_t rays = std::min(samples.shadow_rays, samples.calm ? 1 : quarter);
-    return {true, samples.first_point, samples.first, rays};
-}
-
-/// The rays that the first phase left.
-inline RayPhase second_phase(const SampleRange& samples, const RayPhase& first) {
-    return {false, first.first_point + samples.count * first.rays_per_hit, first.first_sample,
-            samples.shadow_rays - first.rays_per_hit};
-}
 
 }  // namespace shlight

@@ -33,15 +33,14 @@ const ProfileView kEven;
 class ShadowRays::Drawing {
   public:
     Drawing(const Light& light, const ProfileView& light_profile, const Hits& hits, std::size_t hit,
-            const RayPhase& phase)
+            std::uint32_t rays_per_set)
         : hit_material(hits.material[hit]),
           widths(hits.widths(hit)),
           view(hits.view(hit)),
           frame(&hits.frame[hit]),
           profile(&light_profile),
           start(hits.frame[hit], hits.shadow_origin[hit], clearance(light, hits.frame[hit])),
-          rays(phase.rays_per_hit),
-          first_phase(phase.first),
+          rays(rays_per_set),
           sample(hits.sample[hit]) {}
 
     std::uint32_t hit_material;
@@ -50,8 +49,7 @@ class ShadowRays::Drawing {
     const ShadingFrame* frame;
     const ProfileView* profile;
     RayStart start;
-    std::uint32_t rays;  // of each set, but mirrors have one in the first phase
-    bool first_phase;
+    std::uint32_t rays;  // of each set, but mirrors have one
     std::uint32_t sample;
 };
 
@@ -84,12 +82,12 @@ void ShadowRays::start(const Light& light, const Hits& hits, const LitHits& lit)
     rays_.clear();
     colors_.clear();
     visible_.clear();
-    runs_.assign(lit.hit.size() * 2 * set_stride_, {});
+    runs_.assign(lit.hit.size() * set_stride_, {});
     shared_.assign(lit.hit.size() * set_stride_, 0);
 }
 
-void ShadowRays::draw(const LitRange& pixel, const RayPhase& phase, std::uint32_t seed) {
-    points_.start(phase, hits_->sample[lit_->hit[pixel.begin]], hits_->sample[lit_->hit[pixel.end - 1]], seed);
+void ShadowRays::draw(const LitRange& pixel, const SampleRange& samples, std::uint32_t seed) {
+    points_.start(samples, hits_->sample[lit_->hit[pixel.begin]], hits_->sample[lit_->hit[pixel.end - 1]], seed);
     for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
         const ProfileView* profile = &kEven;
         if (!lit_->whole[i]) {
@@ -100,12 +98,11 @@ void ShadowRays::draw(const LitRange& pixel, const RayPhase& phase, std::uint32_
                 light_sampler_.move(lit_->seen[i]);
             }
         }
-        draw_hit(Drawing(*light_, *profile, *hits_, lit_->hit[i], phase), i);
+        draw_hit(Drawing(*light_, *profile, *hits_, lit_->hit[i], samples.shadow_rays), i);
     }
 }
 
 void ShadowRays::trace() {
-    const std::size_t before = visible_.size();
     visible_.resize(drawn_.size());
     if (const auto* mesh = std::get_if<MeshLight>(light_)) {
         if (mesh->faces != nullptr) {
@@ -113,30 +110,27 @@ void ShadowRays::trace() {
         }
         follow(*mesh);
     } else {
-        tracer_->visibility(rays_.all(), std::span(visible_).subspan(before));
+        tracer_->visibility(rays_.all(), visible_);
     }
     rays_traced_ += rays_.size();
-    rays_.clear();
 }
 
 /// What a ray meets first is the light, or in its way; what lies behind that is hidden. A ray that passes by a mesh
 /// whose outline is known no better was not stopped. Rays are shortened to what they meet.
 void ShadowRays::follow(const MeshLight& light) {
-    const std::size_t before = drawn_.size() - rays_.size();
     met_.resize(rays_.size());
     tracer_->intersect_opaque(rays_.all(), met_);
     for (std::size_t i = 0; i < met_.size(); ++i) {
-        const bool seen = !drawn_[before + i].hidden_layer && (met_[i].missed() || light.holds(met_[i]));
-        visible_[before + i] = Rgb(seen ? 1 : 0);
+        const bool seen = !drawn_[i].hidden_layer && (met_[i].missed() || light.holds(met_[i]));
+        visible_[i] = Rgb(seen ? 1 : 0);
         rays_[i].t_max = met_[i].missed() ? rays_[i].t_max : met_[i].distance;
     }
-    tracer_->transmittance(rays_.all(), std::span(visible_).subspan(before));
+    tracer_->transmittance(rays_.all(), visible_);
 }
 
 void ShadowRays::find_colors(const FaceRadiance& faces) {
-    const std::size_t before = colors_.size();
     faces.along(rays_.all(), colors_);
-    for (std::size_t i = before; i < colors_.size(); ++i) {
+    for (std::size_t i = 0; i < colors_.size(); ++i) {
         // What lies behind the first layer is not known.
         colors_[i] = drawn_[i].hidden_layer ? faces.mean() : colors_[i];
     }
@@ -157,17 +151,17 @@ void ShadowRays::draw_hit(const Drawing& drawing, std::size_t lit_index) {
     for (std::uint32_t set = 0; set < material.lobes.size(); ++set) {
         mirrors_only = mirrors_only && (is_mirror(set_shape(drawing, set)) || !shines(lit_index, material, set));
     }
-    run(lit_index, drawing.first_phase, 0).begin = drawn_.size();
+    run(lit_index, 0).begin = drawn_.size();
     if (!mirrors_only) {
         draw_light(drawing, lit_index);
     }
-    run(lit_index, drawing.first_phase, 0).end = drawn_.size();
+    run(lit_index, 0).end = drawn_.size();
     for (std::uint32_t set = 0; set + 1 < set_stride_; ++set) {
-        run(lit_index, drawing.first_phase, 1 + set).begin = drawn_.size();
+        run(lit_index, 1 + set).begin = drawn_.size();
         if (set < material.lobes.size() && shines(lit_index, material, set)) {
             draw_lobes(drawing, lit_index, set, set_shape(drawing, set));
         }
-        run(lit_index, drawing.first_phase, 1 + set).end = drawn_.size();
+        run(lit_index, 1 + set).end = drawn_.size();
     }
 }
 
@@ -216,8 +210,7 @@ void ShadowRays::draw_lobes(const Drawing& drawing, std::size_t lit_index, std::
         return;
     }
     shared_[lit_index * set_stride_ + 1 + set] = 1;
-    const std::uint32_t mirror_rays = drawing.first_phase ? 1 : 0;
-    const std::uint32_t rays = mirror ? mirror_rays : drawing.rays;
+    const std::uint32_t rays = mirror ? 1 : drawing.rays;
     const PixelPoints::Square square = points_.of(1 + set, drawing.sample);
     PointBuffer buffer;
     for (std::uint32_t first = 0; first < rays; first += kRaysAtOnce) {
@@ -249,15 +242,10 @@ void ShadowRays::push(const Drawing& drawing, const Vec3d& direction, double dis
     }
 }
 
-ShadowRays::Verdict ShadowRays::verdict(const LitRange& pixel) const {
-    const std::size_t begin = run(pixel.begin, true, 0).begin;
-    const std::size_t end = run(pixel.end - 1, true, set_stride_ - 1).end;
-    const auto own = std::span(visible_).subspan(begin, end - begin);
-    if (std::all_of(own.begin(), own.end(), [](const Rgb& visible) { return visible == Rgb(1); })) {
-        return Verdict::free;
-    }
-    const bool hidden = std::all_of(own.begin(), own.end(), [](const Rgb& visible) { return visible == Rgb(0); });
-    return hidden ? Verdict::hidden : Verdict::mixed;
+bool ShadowRays::any_occluded(const LitRange& pixel) const {
+    const std::size_t begin = run(pixel.begin, 0).begin;
+    const auto own = std::span(visible_).subspan(begin, run(pixel.end - 1, set_stride_ - 1).end - begin);
+    return std::any_of(own.begin(), own.end(), [](const Rgb& visible) { return visible != Rgb(1); });
 }
 
 RaySums ShadowRays::sum(std::size_t lit_index, std::size_t lobe) {
@@ -269,13 +257,11 @@ RaySums ShadowRays::sum(std::size_t lit_index, std::size_t lobe) {
     const auto add = [&](const Run& run) {
         weighed_.add(run.begin, run.end, [&](std::size_t ray) -> const Vec3f& { return drawn_[ray].way; });
     };
-    for (const bool first_phase : {true, false}) {
-        if (!mirror) {
-            add(run(lit_index, first_phase, 0));
-        }
-        if (set != kLightOnly) {
-            add(run(lit_index, first_phase, 1 + set));
-        }
+    if (!mirror) {
+        add(run(lit_index, 0));
+    }
+    if (set != kLightOnly) {
+        add(run(lit_index, 1 + set));
     }
     const bool shared = set != kLightOnly && shared_[lit_index * set_stride_ + 1 + set] != 0;
     if (!mirror) {

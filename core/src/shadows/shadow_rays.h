@@ -64,16 +64,14 @@ class ShadowRays {
 
     /// Forgets all rays. hits and lit stay as they are until the next call.
     void start(const Light& light, const Hits& hits, const LitHits& lit);
-    /// Draws the rays of a phase from a pixel's hits among lit. seed: see PixelPoints.
-    void draw(const LitRange& pixel, const RayPhase& phase, std::uint32_t seed);
-    /// All that were drawn since the last call.
+    /// Draws the rays of a pixel's hits among lit. samples.shadow_rays: of each set; seed: see PixelPoints.
+    void draw(const LitRange& pixel, const SampleRange& samples, std::uint32_t seed);
+    /// Traces all rays that were drawn.
     void trace();
 
-    enum class Verdict { free, hidden, mixed };
-    /// What the rays of the first phase of a pixel say; free: nothing takes light away from any of them, or there is
-    /// none; hidden: nothing of it comes through.
-    Verdict verdict(const LitRange& pixel) const;
-    /// Of all phases; lit_index: of LitHits.
+    /// Whether anything takes light away from any ray of a pixel.
+    bool any_occluded(const LitRange& pixel) const;
+    /// lit_index: of LitHits.
     RaySums sum(std::size_t lit_index, std::size_t lobe);
     std::uint64_t rays_traced() const { return rays_traced_; }
 
@@ -83,7 +81,7 @@ class ShadowRays {
         std::vector<std::size_t> lobes;          // of each set of rays one
         std::vector<std::uint32_t> set_of_lobe;  // index of lobes, kLightOnly for diffuse lobes
     };
-    /// The rays of one set of a hit in one phase.
+    /// The rays of one set of a hit.
     struct Run {
         std::size_t begin = 0, end = 0;
     };
@@ -108,12 +106,8 @@ class ShadowRays {
     /// Whose directions a set has at a hit.
     LobeShape set_shape(const Drawing& drawing, std::size_t set) const;
     bool shines(std::size_t lit_index, const Material& material, std::uint32_t set) const;
-    Run& run(std::size_t lit_index, bool first_phase, std::size_t set) {
-        return runs_[(2 * lit_index + (first_phase ? 0 : 1)) * set_stride_ + set];
-    }
-    const Run& run(std::size_t lit_index, bool first_phase, std::size_t set) const {
-        return runs_[(2 * lit_index + (first_phase ? 0 : 1)) * set_stride_ + set];
-    }
+    Run& run(std::size_t lit_index, std::size_t set) { return runs_[lit_index * set_stride_ + set]; }
+    const Run& run(std::size_t lit_index, std::size_t set) const { return runs_[lit_index * set_stride_ + set]; }
 
     const ShadowTracer* tracer_;
     std::size_t lobe_stride_;
@@ -128,12 +122,12 @@ class ShadowRays {
     const LitHits* lit_ = nullptr;
     PixelPoints points_;
     Scratch<Drawn> drawn_;
-    Scratch<Ray> rays_;                 // the last of those drawn, which are not traced yet
+    Scratch<Ray> rays_;                 // as drawn_
     std::vector<RayHit> met_;           // by these
-    std::vector<Rgb> colors_;           // factors of the weights of those traced; empty: 1
-    std::vector<Rgb> visible_;          // of those traced
-    std::vector<Run> runs_;             // lit hits × 2 phases × set_stride
-    std::vector<std::uint8_t> shared_;  // lit hits × set_stride: whether the set's rays share the light's work
+    std::vector<Rgb> colors_;           // factors of the weights; empty: 1
+    std::vector<Rgb> visible_;          // once traced
+    std::vector<Run> runs_;             // lit hits × set_stride
+    std::vector<std::uint8_t> shared_;  // likewise: whether the set's rays share the light's work
     WeighedRays weighed_;
 };
 

@@ -59,25 +59,21 @@ LitRange ShadowedEnvironment::find_lit(const Hits& hits, std::size_t pixel) {
 }
 
 void ShadowedEnvironment::shade_lit(Hits& hits) {
-    const RayPhase first = first_phase(samples_);
     const bool shadows = samples_.shadow_rays > 0;
     rays_.start(hits, lit_);
     for (const LitPixel& pixel : shadows ? std::span(pixels_) : std::span<const LitPixel>()) {
-        rays_.draw(pixel.range, first, pixel.seed);
+        rays_.draw(pixel.range, samples_, pixel.seed);
     }
     rays_.trace();
     partly_.clear();
     for (const LitPixel& pixel : pixels_) {
-        if (!shadows || rays_.all_free(pixel.range)) {
+        if (shadows && rays_.any_occluded(pixel.range)) {
+            hits.obstructed[pixel.pixel] = 1;
+            partly_.push_back(pixel.range);
+        } else {
             shade_unblocked(pixel.range, hits);
-            continue;
         }
-        // Where all were blocked too: a window may be smaller than any light is.
-        hits.obstructed[pixel.pixel] = 1;
-        rays_.draw(pixel.range, second_phase(samples_, first), pixel.seed);
-        partly_.push_back(pixel.range);
     }
-    rays_.trace();
     rays_.weigh(partly_);
     for (const LitRange& pixel : partly_) {
         shade(pixel, hits);

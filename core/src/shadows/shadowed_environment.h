@@ -2,8 +2,6 @@
 //
 // Shadows under the environment: the unshadowed radiance of each lobe, known without noise, corrected by what rays see
 // of it, in each colour channel, and for a picture's bright spots apart from the rest. docs/renderer.md, 7, says how.
-//
-// A quarter of the rays goes first; where none of a pixel's meets anything, the rest is spared.
 #pragma once
 
 #include <cstdint>

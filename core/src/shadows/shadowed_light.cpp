@@ -91,37 +91,21 @@ LitRange ShadowedLight::find_lit(const Light& light, const Hits& hits, std::size
     return {begin, lit_.hit.size()};
 }
 
-bool ShadowedLight::is_glossy(std::uint32_t material) const {
-    const auto lobes = materials_[material].lobes();
-    return std::any_of(lobes.begin(), lobes.end(), [](const Lobe& lobe) { return shlight::is_glossy(lobe.shape); });
-}
-
 void ShadowedLight::shade_lit(const Light& light, Hits& hits) {
     rays_.start(light, hits, lit_);
     for (const LitPixel& pixel : pixels_) {
         if (!pixel.is_free) {
-            rays_.draw(pixel.range, first_phase(pixel.samples), pixel.seed);
+            rays_.draw(pixel.range, pixel.samples, pixel.seed);
         }
     }
     rays_.trace();
-    partly_.clear();
     for (const LitPixel& pixel : pixels_) {
-        const ShadowRays::Verdict verdict = pixel.is_free ? ShadowRays::Verdict::free : rays_.verdict(pixel.range);
-        if (verdict == ShadowRays::Verdict::free) {
+        if (pixel.is_free || !rays_.any_occluded(pixel.range)) {
             shade_unblocked(pixel.range, hits);
-            continue;
+        } else {
+            hits.obstructed[pixel.pixel] = 1;
+            shade(pixel.range, hits);
         }
-        hits.obstructed[pixel.pixel] = 1;
-        if (verdict == ShadowRays::Verdict::mixed || is_glossy(hits.material[lit_.hit[pixel.range.begin]])) {
-            // Few rays may miss the part of a light that is seen, and a glossy lobe may have its peak there.
-            const RayPhase first = first_phase(pixel.samples);
-            rays_.draw(pixel.range, second_phase(pixel.samples, first), pixel.seed);
-            partly_.push_back(pixel);
-        }
-    }
-    rays_.trace();
-    for (const LitPixel& pixel : partly_) {
-        shade(pixel.range, hits);
     }
     pixels_.clear();
     lit_.clear();

@@ -4,8 +4,7 @@
 // McGuire 2018, "Combining analytic direct illumination and stochastic shadows"). Of lights with extent; for others see
 // ShadowedDeltas.
 //
-// The ratio is exact where a light is wholly seen or wholly hidden; noise lives in penumbrae only. So a quarter of the
-// rays goes first, and where all those of a pixel agree, the rest is spared, but on glossy surfaces in shadow.
+// The ratio is exact where a light is wholly seen or wholly hidden; noise lives in penumbrae only.
 #pragma once
 
 #include <cstdint>
@@ -63,7 +62,6 @@ class ShadowedLight {
                    std::span<const std::uint32_t> pixel_seeds, Hits& hits);
     SampleRange samples_of(std::size_t index, std::size_t pixel) const;
 
-    bool is_glossy(std::uint32_t material) const;
     LitRange find_lit(const Light& light, const Hits& hits, std::size_t pixel);
     /// Adds the light to all that find_lit has found.
     void shade_lit(const Light& light, Hits& hits);
@@ -103,7 +101,7 @@ class ShadowedLight {
     LightBrightness brightness_;
     DimLights dim_;
     LitHits lit_;                              // of some pixels
-    std::vector<LitPixel> pixels_, partly_;    // all of these; and those whose rays do not agree
+    std::vector<LitPixel> pixels_;             // these
     std::vector<RaySums> hit_sums_;            // of one lobe, by lit hit of a pixel
     std::vector<MaterialSums> material_sums_;  // likewise
     std::vector<Rgb> deviation_;               // of the light by lit hit of a pixel, from its few rays
