@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/checks.h"
-#include "caps/cap_checks.h"
-#include "polygons/polygon_checks.h"
+#include "regions/cap_checks.h"
+#include "regions/polygon_checks.h"
 #include "shlight/sampling.h"
 
 namespace shlight::methods {
@@ -48,7 +48,7 @@ void each_cap(const Method& method, std::size_t count, int order, bool clip, Opt
     }
 }
 
-void radiances_of(const LobeIntegrator& lobe, std::span<const Circle> caps, std::span<const std::uint32_t> seeds,
+void radiances_of(const LobeIntegrator& lobe, std::span<const SphericalCap> caps, std::span<const std::uint32_t> seeds,
                   std::span<Reflected> results) {
     lobe.radiances(caps, seeds, results);
 }
@@ -196,7 +196,7 @@ void shade_spheres(const ShadingMethod& method, std::span<const Vec3d> centers, 
     check_size("radiance", radiance.size(), centers.size());
     shade_each(method, bsdf, cos_theta_o, options, first, radiance, effort, [&](std::size_t i) {
         check_sphere(centers[i], radii[i], std::numeric_limits<float>::epsilon());
-        return circle_of_sphere(centers[i], radii[i]);
+        return cap_of_sphere(centers[i], radii[i]);
     });
 }
 

@@ -27,7 +27,7 @@ T squared_chord(const CapAngles<T>& cap, T sin_tilt) {
 }  // namespace
 
 template <class T>
-CapOutline<T>::CapOutline(const CapAngles<T>& cap, bool clip) {
+CapBoundary<T>::CapBoundary(const CapAngles<T>& cap, bool clip) {
     const T sin_tilt = std::hypot(cap.axis.x, cap.axis.y);
     const T chord2 = clip ? squared_chord(cap, sin_tilt) : T(0);
     crossing = chord2 > 0;
@@ -48,7 +48,7 @@ CapOutline<T>::CapOutline(const CapAngles<T>& cap, bool clip) {
 /// Area by Gauss–Bonnet: Ω/2 = ψ_0 (1 - cosσ) + (β - ψ_0), with ψ_0 half the edge and β the turn at the crossing. This
 /// is Eq. 21 without differences of large angles. A cap beyond a hemisphere uses its complement.
 template <class T>
-void CapOutline<T>::set_crossing(const CapAngles<T>& cap, T sin_tilt, T chord) {
+void CapBoundary<T>::set_crossing(const CapAngles<T>& cap, T sin_tilt, T chord) {
     const T cosine = cap.cos_half;
     const T cos_tilt = cap.axis.z;
     const T half_edge = std::atan2(chord, -cosine * cos_tilt);
@@ -69,7 +69,7 @@ void CapOutline<T>::set_crossing(const CapAngles<T>& cap, T sin_tilt, T chord) {
     right = {along * x - across * y, along * y + across * x, 0};
 }
 
-template struct CapOutline<float>;
-template struct CapOutline<double>;
+template struct CapBoundary<float>;
+template struct CapBoundary<double>;
 
 }  // namespace shlight::methods

@@ -4,13 +4,13 @@
 #include <numeric>
 #include <vector>
 
-#include "caps/cap_shading.h"
-#include "caps/circle_batch.h"
-#include "polygons/polygon_shading_kernel.h"
+#include "regions/cap_arrays.h"
+#include "regions/cap_shading.h"
+#include "regions/polygon_shading_kernel.h"
 
 namespace shlight::methods {
 
-Reflected HarmonicLobe::radiance(const Circle& cap, std::uint32_t seed) const {
+Reflected HarmonicLobe::radiance(const SphericalCap& cap, std::uint32_t seed) const {
     Reflected result{};
     radiances({&cap, 1}, {&seed, 1}, {&result, 1});
     return result;
@@ -24,9 +24,9 @@ Reflected HarmonicLobe::radiance(const SeenPolygon& polygon, std::uint32_t /*see
     return {value, 0};
 }
 
-void HarmonicLobe::radiances(std::span<const Circle> caps, std::span<const std::uint32_t> /*seeds*/,
+void HarmonicLobe::radiances(std::span<const SphericalCap> caps, std::span<const std::uint32_t> /*seeds*/,
                              std::span<Reflected> results) const {
-    CircleBatch circles;
+    CapBatch circles;
     circles.resize(caps.size());
     for (std::size_t i = 0; i < caps.size(); ++i) {
         circles.set(i, caps[i]);

@@ -10,9 +10,9 @@ namespace shlight::methods {
 
 class HarmonicLobe : public LobeIntegrator {
   public:
-    Reflected radiance(const Circle& cap, std::uint32_t seed) const override;
+    Reflected radiance(const SphericalCap& cap, std::uint32_t seed) const override;
     Reflected radiance(const SeenPolygon& polygon, std::uint32_t seed) const override;
-    void radiances(std::span<const Circle> caps, std::span<const std::uint32_t> seeds,
+    void radiances(std::span<const SphericalCap> caps, std::span<const std::uint32_t> seeds,
                    std::span<Reflected> results) const override;
 
   protected:

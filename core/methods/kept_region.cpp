@@ -14,7 +14,7 @@ using std::numbers::pi;
 /// Edges are cut into pieces of at most this angle.
 constexpr double kLongestEdge = 1;
 
-double one_minus_cos(const Circle& cap) {
+double one_minus_cos(const SphericalCap& cap) {
     return cap.cosine > 0 ? cap.sine * cap.sine / (1 + cap.cosine) : 1 - cap.cosine;
 }
 
@@ -43,7 +43,7 @@ void cut(double from, double to, double longest, const Add& add) {
     }
 }
 
-void add_rim(const Circle& cap, const Vec3d& base, double half_turn, std::vector<Edge>& edges) {
+void add_rim(const SphericalCap& cap, const Vec3d& base, double half_turn, std::vector<Edge>& edges) {
     const RimFrame frame(cap.axis);
     const Vec3d offset = (cap.axis - base) - one_minus_cos(cap) * cap.axis;
     cut(-half_turn, half_turn, pi / 2, [&](double from, double to) {
@@ -70,7 +70,7 @@ Vec3d mean_direction(const SphericalPolygon& polygon) {
 Patch::Patch(const Vec3d& hub, double magnification, const Vec3d& base, const Edge& edge)
     : hub_(hub), magnification_(magnification), whole_(false), offset_((base - hub) + edge.offset), edge_(edge) {}
 
-Patch::Patch(const Circle& cap) : hub_(cap.axis), whole_(true), half_angle_(std::atan2(cap.sine, cap.cosine)) {
+Patch::Patch(const SphericalCap& cap) : hub_(cap.axis), whole_(true), half_angle_(std::atan2(cap.sine, cap.cosine)) {
     const RimFrame frame(cap.axis);
     edge_ = {false, Vec3d(0), frame.up, frame.level, 0, 2 * pi};
 }
@@ -118,7 +118,7 @@ WeightedDirection Patch::at(const Spoke& spoke, double u) const {
             sine * stretch * spoke.reach * spoke.turn};
 }
 
-KeptRegion KeptRegion::of_cap(const Circle& cap, bool clip) {
+KeptRegion KeptRegion::of_cap(const SphericalCap& cap, bool clip) {
     KeptRegion region;
     if (!clip) {
         region.add_cap(cap, 1);
@@ -132,12 +132,12 @@ KeptRegion KeptRegion::of_cap(const Circle& cap, bool clip) {
     return region;
 }
 
-void KeptRegion::add_cap(const Circle& cap, double sign) {
+void KeptRegion::add_cap(const SphericalCap& cap, double sign) {
     base_ = cap.axis;
     caps_.push_back({cap, sign});
 }
 
-void KeptRegion::add_cut_cap(const Circle& cap, double sign) {
+void KeptRegion::add_cut_cap(const SphericalCap& cap, double sign) {
     const double height = cap.axis.z;
     if (height >= cap.sine) {
         add_cap(cap, sign);

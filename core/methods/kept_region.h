@@ -9,9 +9,9 @@
 
 #include <vector>
 
-#include "polygons/spherical_polygon.h"
+#include "regions/spherical_polygon.h"
+#include "shlight/cap.h"
 #include "shlight/types.h"
-#include "shlight/warp.h"
 
 namespace shlight::methods {
 
@@ -41,7 +41,7 @@ class Patch {
   public:
     Patch(const Vec3d& hub, double magnification, const Vec3d& base, const Edge& edge);
     /// A whole cap about its axis: v goes around once.
-    explicit Patch(const Circle& cap);
+    explicit Patch(const SphericalCap& cap);
 
     bool goes_around() const { return whole_; }
     Spoke spoke(double v) const;
@@ -61,7 +61,7 @@ class Patch {
 class KeptRegion {
   public:
     /// A cap of any half angle; clip: keep z ≥ 0.
-    static KeptRegion of_cap(const Circle& cap, bool clip);
+    static KeptRegion of_cap(const SphericalCap& cap, bool clip);
     /// A polygon, clipped by the caller or not.
     static KeptRegion of_polygon(const SphericalPolygon& polygon);
 
@@ -77,11 +77,11 @@ class KeptRegion {
 
   private:
     struct WholeCap {
-        Circle circle;
+        SphericalCap circle;
         double sign;
     };
-    void add_cap(const Circle& cap, double sign);
-    void add_cut_cap(const Circle& cap, double sign);
+    void add_cap(const SphericalCap& cap, double sign);
+    void add_cut_cap(const SphericalCap& cap, double sign);
 
     Vec3d base_{0, 0, 1};
     std::vector<Edge> edges_;

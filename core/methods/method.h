@@ -11,10 +11,10 @@
 #include <span>
 #include <string_view>
 
-#include "polygons/spherical_polygon.h"
+#include "regions/spherical_polygon.h"
+#include "shlight/cap.h"
 #include "shlight/lobe_shape.h"
 #include "shlight/types.h"
-#include "shlight/warp.h"
 
 namespace shlight::methods {
 
@@ -106,9 +106,9 @@ class LobeIntegrator {
     LobeIntegrator& operator=(const LobeIntegrator&) = delete;
     virtual ~LobeIntegrator() = default;
     /// Radiance from the part above the horizon of a cap in the shading frame. seed: of the light, for random methods.
-    virtual Reflected radiance(const Circle& cap, std::uint32_t seed) const = 0;
+    virtual Reflected radiance(const SphericalCap& cap, std::uint32_t seed) const = 0;
     /// Many caps, with one seed each.
-    virtual void radiances(std::span<const Circle> caps, std::span<const std::uint32_t> seeds,
+    virtual void radiances(std::span<const SphericalCap> caps, std::span<const std::uint32_t> seeds,
                            std::span<Reflected> results) const {
         for (std::size_t i = 0; i < caps.size(); ++i) {
             results[i] = radiance(caps[i], seeds[i]);

@@ -45,7 +45,7 @@ template <class T>
 void cap(const CapLight& light, int order, bool clip, const Options& options, T* coefficients) {
     check_options(options);
     std::fill_n(coefficients, coefficient_count(order), T(0));
-    const Circle circle = circle_of(light);
+    const SphericalCap circle = circle_of(light);
     if (options.sampling == Sampling::solid_angle) {
         average(ConeSampler(circle), order, clip, options, coefficients);
     } else if (light.kind == CapLight::Kind::sphere) {

@@ -17,13 +17,13 @@ using std::numbers::pi;
 /// unit corners varies by about the solid angle.
 constexpr double kSmallestSpherical = 0.01;
 
-double one_minus_cos(const Circle& cap) {
+double one_minus_cos(const SphericalCap& cap) {
     return cap.cosine > 0 ? cap.sine * cap.sine / (1 + cap.cosine) : 1 - cap.cosine;
 }
 
 }  // namespace
 
-ConeSampler::ConeSampler(const Circle& cap)
+ConeSampler::ConeSampler(const SphericalCap& cap)
     : cap_(cap),
       across_(perpendicular(cap.axis)),
       up_(glm::cross(cap.axis, across_)),
@@ -59,7 +59,7 @@ RandomDirection SphereSurfaceSampler::sample(const glm::dvec2& point) const {
     return {place / distance, distance * distance * distance / (4 * pi * circle_.sine * circle_.sine * facing)};
 }
 
-DiskSampler::DiskSampler(const Circle& cap)
+DiskSampler::DiskSampler(const SphericalCap& cap)
     : cap_(cap), across_(perpendicular(cap.axis)), up_(glm::cross(cap.axis, across_)) {}
 
 RandomDirection DiskSampler::sample(const glm::dvec2& point) const {

@@ -14,10 +14,10 @@
 
 #include <glm/vec2.hpp>
 
-#include "polygons/spherical_polygon.h"
+#include "regions/spherical_polygon.h"
+#include "shlight/cap.h"
 #include "shlight/disk.h"
 #include "shlight/types.h"
-#include "shlight/warp.h"
 
 namespace shlight::methods {
 
@@ -29,13 +29,13 @@ struct RandomDirection {
 /// Uniform in the cone of a cap, of any half angle.
 class ConeSampler {
   public:
-    explicit ConeSampler(const Circle& cap);
+    explicit ConeSampler(const SphericalCap& cap);
     RandomDirection sample(const glm::dvec2& point) const;
     /// 0 outside.
     double density(const Vec3d& direction) const;
 
   private:
-    Circle cap_;
+    SphericalCap cap_;
     Vec3d across_, up_;
     double height_;   // 1 - cosine of the half angle
     double density_;  // inside
@@ -45,21 +45,21 @@ class ConeSampler {
 class SphereSurfaceSampler {
   public:
     /// circle: the sphere's contour.
-    explicit SphereSurfaceSampler(const Circle& circle) : circle_(circle) {}
+    explicit SphereSurfaceSampler(const SphericalCap& circle) : circle_(circle) {}
     RandomDirection sample(const glm::dvec2& point) const;
 
   private:
-    Circle circle_;
+    SphericalCap circle_;
 };
 
 /// Uniform over the disk, perpendicular to its axis, that covers a cap of half angle < π/2.
 class DiskSampler {
   public:
-    explicit DiskSampler(const Circle& cap);
+    explicit DiskSampler(const SphericalCap& cap);
     RandomDirection sample(const glm::dvec2& point) const;
 
   private:
-    Circle cap_;
+    SphericalCap cap_;
     Vec3d across_, up_;
 };
 

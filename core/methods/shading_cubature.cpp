@@ -23,7 +23,7 @@ constexpr std::array kLibraryRules = {1, 4, 7, 24};
 
 /// Rings about a cap's axis, by Gauss's rule in area, with even steps around. Calls visit(direction, weight).
 template <class Visit>
-void visit_rings(const Circle& cap, int points, const Visit& visit) {
+void visit_rings(const SphericalCap& cap, int points, const Visit& visit) {
     const int count = std::clamp(static_cast<int>(std::lround(std::sqrt(points / 2.0))), 1, kMaxGaussPoints);
     const int spokes = points / count;
     const Vec3d x = perpendicular(cap.axis);
@@ -46,7 +46,7 @@ class CubatureLobe : public LobeIntegrator {
     CubatureLobe(const LobeShape& shape, double cos_theta_o, int points)
         : shape_(shape), view_(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o), points_(points) {}
 
-    Reflected radiance(const Circle& cap, std::uint32_t /*seed*/) const override {
+    Reflected radiance(const SphericalCap& cap, std::uint32_t /*seed*/) const override {
         if (cap.axis.z <= -cap.sine) {
             return {0, 1};
         }
@@ -76,7 +76,7 @@ class CubatureLobe : public LobeIntegrator {
     }
 
   private:
-    Reflected by_library_rule(const Circle& cap, int rule) const {
+    Reflected by_library_rule(const SphericalCap& cap, int rule) const {
         constexpr std::uint32_t kOnly = 0;
         const auto width = static_cast<float>(lobe_width(shape_));
         float value = 0;

@@ -21,7 +21,7 @@ class MonteCarloLobe : public LobeIntegrator {
           samples_(options.samples),
           sampling_(options.sampling) {}
 
-    Reflected radiance(const Circle& cap, std::uint32_t seed) const override {
+    Reflected radiance(const SphericalCap& cap, std::uint32_t seed) const override {
         if (sampling_ == Sampling::area) {
             return over_surface(SphereSurfaceSampler(cap), seed);
         }

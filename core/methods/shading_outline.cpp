@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "method.h"
-#include "shading/light_outline.h"
+#include "shading/light_boundary.h"
 #include "shlight/cap.h"
 
 namespace shlight::methods {
@@ -20,21 +20,21 @@ class OutlineLobe : public LobeIntegrator {
   public:
     OutlineLobe(const LobeShape& shape, double cos_theta_o, double tolerance)
         : shape_(shape), cos_theta_o_(cos_theta_o), tolerance_(tolerance) {}
-    Reflected radiance(const Circle& cap, std::uint32_t /*seed*/) const override {
+    Reflected radiance(const SphericalCap& cap, std::uint32_t /*seed*/) const override {
         if (cap.sine < kSmallestCap) {
             const Vec3d above(cap.axis.x, cap.axis.y, std::max(cap.axis.z, 0.0));
             const Vec3d view(std::sqrt((1 - cos_theta_o_) * (1 + cos_theta_o_)), 0, cos_theta_o_);
             return {lobe_value(shape_, above, view) * clipped_solid_angle(cap), 1};
         }
-        return reflected(CapOutline(cap).arcs());
+        return reflected(CapBoundary(cap).arcs());
     }
     Reflected radiance(const SeenPolygon& polygon, std::uint32_t /*seed*/) const override {
-        return reflected(polygon_outline(polygon.kept));
+        return reflected(polygon_boundary(polygon.kept));
     }
 
   private:
-    Reflected reflected(std::span<const OutlineArc> outline) const {
-        const OutlineIntegral integral = outline_integral(shape_, cos_theta_o_, outline, tolerance_);
+    Reflected reflected(std::span<const BoundaryArc> outline) const {
+        const BoundaryIntegral integral = boundary_integral(shape_, cos_theta_o_, outline, tolerance_);
         return {integral.value, integral.points};
     }
 

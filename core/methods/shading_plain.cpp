@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Harmonics without a warp: Eq. 5 of Zhou & Wei 2020 with the hemisphere fit of f·cos.
+// Harmonics without a boost: Eq. 5 of Zhou & Wei 2020 with the hemisphere fit of f·cos.
 #include "base/aligned_floats.h"
 #include "harmonic_lobe.h"
 #include "shlight/plain_fit.h"

@@ -36,13 +36,13 @@ class QuadratureLobe : public LobeIntegrator {
         : lobe_{shape, Vec3d(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o)},
           middle_(is_glossy(shape) ? mirrored(lobe_.view) : Vec3d(0, 0, 1)),
           magnification_(std::max(1.0, 1 / (2 * lobe_width(shape)))) {
-        const Circle hemisphere = {Vec3d(0, 0, 1), 0, 1};
+        const SphericalCap hemisphere = {Vec3d(0, 0, 1), 0, 1};
         tolerance_ = kSmallestAlbedo;
         const double albedo = over(KeptRegion::of_cap(hemisphere, true)).value;
         tolerance_ = tolerance * std::max(albedo, kSmallestAlbedo);
     }
 
-    Reflected radiance(const Circle& cap, std::uint32_t /*seed*/) const override {
+    Reflected radiance(const SphericalCap& cap, std::uint32_t /*seed*/) const override {
         return over(KeptRegion::of_cap(cap, true));
     }
     Reflected radiance(const SeenPolygon& polygon, std::uint32_t /*seed*/) const override {

@@ -102,7 +102,7 @@ void expand(const LobeTable<T>& moments, int order, LobeTable<T>& boundary) {
 template <class T>
 void cap(const CapLight& light, int order, bool clip, const Options& /*options*/, T* coefficients) {
     const CapAngles<T> angles(light);
-    const CapOutline<T> outline(angles, clip);
+    const CapBoundary<T> outline(angles, clip);
     if (!(outline.solid_angle > 0)) {
         std::fill_n(coefficients, coefficient_count(order), T(0));
         return;

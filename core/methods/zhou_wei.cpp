@@ -12,7 +12,7 @@ namespace shlight::methods {
 namespace {
 
 template <class T>
-void add_outline(const CapAngles<T>& cap, const CapOutline<T>& outline, int order, LobeTable<T>& boundary) {
+void add_outline(const CapAngles<T>& cap, const CapBoundary<T>& outline, int order, LobeTable<T>& boundary) {
     const CircleArc<T> edge{cap.axis, cap.cos_half, cap.sin_half, outline.edge};
     const CircleArc<T> horizon{Vec3<T>(0, 0, 1), T(0), T(1), outline.horizon};
     if (outline.crossing) {
@@ -33,7 +33,7 @@ void add_outline(const CapAngles<T>& cap, const CapOutline<T>& outline, int orde
 template <class T>
 void cap(const CapLight& light, int order, bool clip, const Options& /*options*/, T* coefficients) {
     const CapAngles<T> angles(light);
-    const CapOutline<T> outline(angles, clip);
+    const CapBoundary<T> outline(angles, clip);
     if (!(outline.solid_angle > 0)) {
         std::fill_n(coefficients, coefficient_count(order), T(0));
         return;

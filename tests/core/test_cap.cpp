@@ -147,8 +147,8 @@ std::vector<T> coefficients(const CapInput& input, int order, bool clip) {
     } else if (input.kind == Kind::angle) {
         cap_coefficients<T>(std::span(&axis, 1), std::span(&size, 1), order, clip, result);
     } else {
-        const Circle circle = circle_of_facing_disk(input.axis, input.size);
-        circle_coefficients<T>({&circle, 1}, order, clip, result);
+        const SphericalCap circle = cap_of_facing_disk(input.axis, input.size);
+        cap_coefficients<T>({&circle, 1}, order, clip, result);
     }
     return result;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Caps through warps, as they are shaded, compared with the 113-bit reference: all ways in which a light's circle and
+// Caps through boosts, as they are shaded, compared with the 113-bit reference: all ways in which a light's circle and
 // the horizon can lie, and all ways in which they can touch. Errors are the largest over all terms of a light, relative
 // to its L_00 or, for what is small, to that of a thousandth of the sphere.
 #include <gtest/gtest.h>
@@ -15,24 +15,24 @@
 #include <string>
 #include <vector>
 
-#include "caps/cap_shading.h"
+#include "boosted_terms.h"
 #include "error_record.h"
 #include "quad_truth.h"
 #include "quadrature.h"
 #include "random_input.h"
+#include "regions/cap_shading.h"
 #include "shlight/basis.h"
 #include "shlight/cap.h"
-#include "warped_terms.h"
 
 namespace shlight {
 namespace {
 
+using testing::boosted_terms;
 using testing::ErrorRecord;
 using testing::on_two_threads;
 using testing::RandomInput;
-using testing::warped_terms;
+using truth::BoostInput;
 using truth::CapInput;
-using truth::WarpInput;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kHalfPi = kPi / 2;
@@ -103,11 +103,11 @@ Angles overhead(RandomInput& random) {
 }
 
 struct Case {
-    WarpInput warp;
+    BoostInput boost;
     CapInput light;
 };
 
-WarpInput random_warp(RandomInput& random) {
+BoostInput random_boost(RandomInput& random) {
     return {random.uniform(-1.5, 1.5), random.chance(0.1) ? 1 : random.log_uniform(1e-3, 1)};
 }
 
@@ -117,36 +117,36 @@ CapInput about(const Vec3d& axis, double half) {
 
 template <Angles (*kDraw)(RandomInput&)>
 Case at_horizon(RandomInput& random) {
-    const WarpInput warp = random_warp(random);
+    const BoostInput boost = random_boost(random);
     const Angles a = kDraw(random);
-    return {warp, about(random.at_tilt(a.tilt), a.half)};
+    return {boost, about(random.at_tilt(a.tilt), a.half)};
 }
 
-/// Inside the warp's lobe, at its rim, or near it.
+/// Inside the boost's lobe, at its rim, or near it.
 Case in_lobe(RandomInput& random) {
-    const WarpInput warp = random_warp(random);
+    const BoostInput boost = random_boost(random);
     const double half = random.log_uniform(0.01, 1.4);
-    const Vec3d lobe(-std::sin(warp.tilt), 0, std::cos(warp.tilt));
-    const Vec3d offset = (half + warp.narrowness) * random.uniform(0, 1.5) * random.direction();
-    return {warp, about(glm::normalize(lobe + offset), half)};
+    const Vec3d lobe(-std::sin(boost.tilt), 0, std::cos(boost.tilt));
+    const Vec3d offset = (half + boost.narrowness) * random.uniform(0, 1.5) * random.direction();
+    return {boost, about(glm::normalize(lobe + offset), half)};
 }
 
 /// Spheres, at any distance or all but in contact.
 Case sphere(RandomInput& random) {
-    const WarpInput warp = random_warp(random);
+    const BoostInput boost = random_boost(random);
     const double share = random.chance(0.3) ? 1 - random.log_uniform(1e-15, 1e-4) : std::sin(random.uniform(0.01, 1.4));
     const Vec3d center = random.log_uniform(1e-3, 1e3) * random.direction();
-    return {warp, {center, CapInput::Kind::sphere, share * glm::length(center)}};
+    return {boost, {center, CapInput::Kind::sphere, share * glm::length(center)}};
 }
 
-Circle circle_of(const CapInput& light) {
-    return light.kind == CapInput::Kind::sphere ? circle_of_sphere(light.axis, light.size)
-                                                : circle_about_axis(light.axis, light.size);
+SphericalCap circle_of(const CapInput& light) {
+    return light.kind == CapInput::Kind::sphere ? cap_of_sphere(light.axis, light.size)
+                                                : cap_about_axis(light.axis, light.size);
 }
 
-/// The function that `shaded` and `warped_terms` call.
+/// The function that `shaded` and `boosted_terms` call.
 auto shading_of(const CapInput& light) {
-    CircleBatch circles;
+    CapBatch circles;
     circles.resize(1);
     if (light.kind == CapInput::Kind::sphere) {
         circles.set_spheres(std::span(&light.axis, 1), &light.size);
@@ -162,7 +162,7 @@ std::string describe(const Case& c) {
     std::array<char, 250> text{};
     std::snprintf(text.data(), text.size(), "axis %.17g %.17g %.17g, size %.17g, kind %d, tilt %.17g, narrowness %.17g",
                   c.light.axis.x, c.light.axis.y, c.light.axis.z, c.light.size, static_cast<int>(c.light.kind),
-                  c.warp.tilt, c.warp.narrowness);
+                  c.boost.tilt, c.boost.narrowness);
     return text.data();
 }
 
@@ -186,7 +186,7 @@ const std::size_t kMore = testing::all_tests() ? 8 : 1;
 // Error relative to the sliver's solid angle; more cases, and kernels without fused products, find a worse one.
 const double kBound = testing::all_tests() ? 3e-4 : 2e-4;
 
-TEST(CapHorizon, WarpedLightsAgreeWithReference) {
+TEST(CapHorizon, BoostedLightsAgreeWithReference) {
     std::uint64_t seed = 400;
     for (const Class& kind : kClasses) {
         RandomInput random(seed++);
@@ -195,8 +195,8 @@ TEST(CapHorizon, WarpedLightsAgreeWithReference) {
         ErrorRecord errors(cases.size());
         on_two_threads(cases.size(), [&](std::size_t i) {
             const Case& c = cases[i];
-            const truth::Coefficients reference = truth::warped_cap(c.light, c.warp, kOrder);
-            errors[i] = testing::largest_error(reference, kOrder, warped_terms(c.warp, kOrder, shading_of(c.light))) /
+            const truth::Coefficients reference = truth::boosted_cap(c.light, c.boost, kOrder);
+            errors[i] = testing::largest_error(reference, kOrder, boosted_terms(c.boost, kOrder, shading_of(c.light))) /
                         std::max(reference.high[0], kSmall);
         });
         errors.publish(kind.name);
@@ -205,14 +205,14 @@ TEST(CapHorizon, WarpedLightsAgreeWithReference) {
 }
 
 /// The reference: ∫ g(u(ω)) du/dω dω over the light as it is, by cubature, against Σ g_lm S_lm.
-TEST(CapHorizon, IntegralsThroughAWarpAreThoseOverTheTrueLight) {
+TEST(CapHorizon, IntegralsThroughABoostAreThoseOverTheTrueLight) {
     RandomInput random(430);
     const int order = 6;
     for (int i = 0; i < 60; ++i) {
         const double half = random.log_uniform(0.01, 1.4);
         const Vec3d axis = i % 3 == 0 ? random.at_tilt(kHalfPi + half * random.uniform(-1, 1)) : random.direction();
         const Case c{{random.uniform(-1.5, 1.5), random.log_uniform(0.3, 1)}, about(axis, half)};
-        const Warp warp(c.warp.tilt, c.warp.narrowness);
+        const Boost boost(c.boost.tilt, c.boost.narrowness);
         std::vector<double> lobe(cosine_count(order));
         std::generate(lobe.begin(), lobe.end(), [&] { return random.uniform(-1, 1); });
         const auto dot = [&](const double* coefficients) {
@@ -226,12 +226,12 @@ TEST(CapHorizon, IntegralsThroughAWarpAreThoseOverTheTrueLight) {
         };
         const double expected =
             testing::integral(testing::clipped_cap_samples(axis, half, 120), [&](const Vec3d& direction) {
-                const Vec3d u = warp.warped(direction);
+                const Vec3d u = boost.boosted(direction);
                 std::array<double, 36> basis;
                 sh_basis<double>(u, order, basis.data());
-                return dot(basis.data()) / warp.density(u);
+                return dot(basis.data()) / boost.density(u);
             });
-        EXPECT_NEAR(dot(truth::warped_cap(c.light, c.warp, order).high.data()), expected, 1e-8) << describe(c);
+        EXPECT_NEAR(dot(truth::boosted_cap(c.light, c.boost, order).high.data()), expected, 1e-8) << describe(c);
     }
 }
 
@@ -244,36 +244,36 @@ TEST(CapHorizonLimits, ShadingIsTheSumOverTheTerms) {
         const auto shading = shading_of(c.light);
         std::vector<float> lobe(cosine_count(order));
         std::generate(lobe.begin(), lobe.end(), [&] { return static_cast<float>(random.uniform(-1, 1)); });
-        const std::vector<float> light = warped_terms(c.warp, order, shading);
+        const std::vector<float> light = boosted_terms(c.boost, order, shading);
         const double expected = std::inner_product(light.begin(), light.end(), lobe.begin(), 0.0);
         const double size = std::inner_product(light.begin(), light.end(), lobe.begin(), 0.0, std::plus<>(),
                                                [](float a, float b) { return std::abs(a * b); });
-        EXPECT_NEAR(testing::shaded(c.warp, lobe, order, shading)[0], expected,
+        EXPECT_NEAR(testing::shaded(c.boost, lobe, order, shading)[0], expected,
                     100 * std::numeric_limits<float>::epsilon() * size)
             << describe(c);
     }
 }
 
-/// No warp is the plane z = 0, whether the kernel knows it or not.
-TEST(CapHorizonLimits, NoWarpIsThePlane) {
+/// No boost is the plane z = 0, whether the kernel knows it or not.
+TEST(CapHorizonLimits, NoBoostIsThePlane) {
     RandomInput random(450);
     const int order = 12;
     for (int i = 0; i < 100; ++i) {
         const CapInput light = about(random.direction(), random.uniform(0.01, 3.1));
-        const Circle circle = circle_of(light);
+        const SphericalCap circle = circle_of(light);
         std::vector<float> expected(coefficient_count(order));
-        circle_coefficients<float>({&circle, 1}, order, true, expected);
+        cap_coefficients<float>({&circle, 1}, order, true, expected);
         const auto shading = shading_of(light);
-        const auto unwarped = [&](const auto& lights, LobeArrays lobe, const auto& views, auto& values) {
-            lobe.warped = false;
+        const auto unboosted = [&](const auto& lights, LobeArrays lobe, const auto& views, auto& values) {
+            lobe.boosted = false;
             shading(lights, lobe, views, values);
         };
-        const std::vector<float> plane = warped_terms({0, 1}, order, unwarped);
-        const std::vector<float> warped = warped_terms({0, 1}, order, shading);
+        const std::vector<float> plane = boosted_terms({0, 1}, order, unboosted);
+        const std::vector<float> boosted = boosted_terms({0, 1}, order, shading);
         for (int l = 0; l < order; ++l) {
             for (int m = 0; m <= l; ++m) {
                 EXPECT_NEAR(plane[cosine_index(l, m)], expected[coefficient_index(l, m)], 1e-6);
-                EXPECT_NEAR(warped[cosine_index(l, m)], expected[coefficient_index(l, m)], 1e-5);
+                EXPECT_NEAR(boosted[cosine_index(l, m)], expected[coefficient_index(l, m)], 1e-5);
             }
         }
     }
@@ -294,10 +294,10 @@ TEST(CapHorizonLimits, EverythingIsFinite) {
         const double distance = random.log_uniform(1e-150, 1e150);
         const double radius = random.chance(0.1) ? distance : distance * random.log_uniform(1e-200, 0.999);
         Case c{{random.uniform(-1.57, 1.57), random.log_uniform(1e-6, 1)}, about(axis, std::max(angle(), 1e-30))};
-        EXPECT_TRUE(std::isfinite(testing::shaded(c.warp, lobe, order, shading_of(c.light))[0])) << describe(c);
+        EXPECT_TRUE(std::isfinite(testing::shaded(c.boost, lobe, order, shading_of(c.light))[0])) << describe(c);
         c.light = {distance * axis, CapInput::Kind::sphere, radius};
         if (radius > 0) {
-            EXPECT_TRUE(std::isfinite(testing::shaded(c.warp, lobe, order, shading_of(c.light))[0])) << describe(c);
+            EXPECT_TRUE(std::isfinite(testing::shaded(c.boost, lobe, order, shading_of(c.light))[0])) << describe(c);
         }
     }
 }

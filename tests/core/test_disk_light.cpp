@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "disks/disk_polygon.h"
 #include "error_message.h"
 #include "lobes/material_lobes.h"
 #include "math/gauss_legendre.h"
 #include "math/triangle_cubature.h"
 #include "random_disk.h"
+#include "regions/disk_polygon.h"
 #include "render_scenes.h"
 #include "shlight/polygon.h"
 #include "slanted_floor.h"

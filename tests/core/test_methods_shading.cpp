@@ -79,7 +79,7 @@ TEST(NumericalMethods, ShadingQuadratureOfCapsMatchesBruteForce) {
                                  : testing::lobe_over_cap(lobe.shape, lobe.cosine, axis, half, 48);
         const auto method = find_shading_method("quadrature").make(lobe.shape, lobe.cosine, {});
         (lobe.cosine < 0.2 ? grazing : record)[i] =
-            std::abs(method->radiance(circle_about_axis(axis, half), 0).value - truth) / albedo(lobe);
+            std::abs(method->radiance(cap_about_axis(axis, half), 0).value - truth) / albedo(lobe);
     });
     record.publish("shading quadrature of caps");
     EXPECT_LE(record.largest(), 1e-8) << record.worst();
@@ -107,9 +107,9 @@ TEST(NumericalMethods, ShadingQuadratureKnowsClosedForms) {
     for (const double half : {1e-4, 0.3, 1.2}) {
         const Vec3d axis(std::sin(0.3), 0, std::cos(0.3));
         const double expected = std::pow(std::sin(half), 2) * axis.z;  // where nothing is below the horizon
-        EXPECT_NEAR(lambert->radiance(circle_about_axis(axis, half), 0).value, expected, 1e-12 * expected) << half;
+        EXPECT_NEAR(lambert->radiance(cap_about_axis(axis, half), 0).value, expected, 1e-12 * expected) << half;
     }
-    const auto hidden = lambert->radiance(circle_about_axis({0, 0, -1}, 0.5), 0);
+    const auto hidden = lambert->radiance(cap_about_axis({0, 0, -1}, 0.5), 0);
     EXPECT_EQ(hidden.value, 0);
 }
 
@@ -132,8 +132,8 @@ TEST(NumericalMethods, ShadingMonteCarloIsUnbiased) {
                     << name << " " << shape.index() << " " << static_cast<int>(sampling);
                 EXPECT_GT(expected, 1e-4);
             };
-            for (const Circle& cap :
-                 {circle_about_axis({-0.8, 0.1, 0.6}, 0.5), circle_about_axis({-0.8, 0.1, 0.1}, 0.7)}) {
+            for (const SphericalCap& cap :
+                 {cap_about_axis({-0.8, 0.1, 0.6}, 0.5), cap_about_axis({-0.8, 0.1, 0.1}, 0.7)}) {
                 check("cap", truth->radiance(cap, 0).value, [&](auto seed) { return method->radiance(cap, seed); });
             }
             for (const Vertices& vertices : {quad, concave}) {
@@ -150,7 +150,7 @@ double noise(const LobeShape& shape, double half_angle, Sampling sampling) {
     const auto method = find_shading_method("monte_carlo").make(shape, 0.6, {.samples = 64, .sampling = sampling});
     Mean mean;
     for (std::uint32_t seed = 0; seed < 500; ++seed) {
-        mean.add(method->radiance(circle_about_axis({-0.8, 0, 0.6}, half_angle), seed).value);
+        mean.add(method->radiance(cap_about_axis({-0.8, 0, 0.6}, half_angle), seed).value);
     }
     return mean.error() / mean.mean();
 }
@@ -168,8 +168,8 @@ TEST(NumericalMethods, CubatureConvergesAndTakesNoMorePointsThanAllowed) {
         const LobeShape shape = i % 5 == 0 ? LobeShape(LambertShape{}) : LobeShape(GgxShape{roughness * roughness});
         const double cosine = random.uniform(0.4, 1);
         const double half = random.uniform(0.05, 0.5);
-        const Circle cap = circle_about_axis(across_horizon(random, half), half);
-        const Circle above = circle_about_axis({random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 1}, half);
+        const SphericalCap cap = cap_about_axis(across_horizon(random, half), half);
+        const SphericalCap above = cap_about_axis({random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 1}, half);
         const Vertices vertices = testing::facing(random, 4, 0.6, half);
         const methods::SeenPolygon polygon(vertices);
         const auto truth = find_shading_method("quadrature").make(shape, cosine, {});

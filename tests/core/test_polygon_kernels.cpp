@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include "polygons/polygon_checks.h"
-#include "polygons/polygon_shading_kernel.h"
 #include "random_polygon.h"
+#include "regions/polygon_checks.h"
+#include "regions/polygon_shading_kernel.h"
 #include "shlight/polygon.h"
 #include "shlight/shading.h"
 

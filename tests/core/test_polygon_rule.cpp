@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "math/triangle_cubature.h"
-#include "polygons/spherical_polygon.h"
 #include "random_input.h"
+#include "regions/spherical_polygon.h"
 #include "shading/polygon_rule_kernel.h"
 #include "shlight/lobe_shape.h"
 

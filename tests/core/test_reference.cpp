@@ -104,20 +104,20 @@ TEST(Reference, CapsAgreeWithQuadratureOverColatitude) {
     EXPECT_LE(methods, 1e-20);
 }
 
-TEST(Reference, WarpedCapsHaveConverged) {
+TEST(Reference, BoostedCapsHaveConverged) {
     RandomInput random(6);
     double largest = 0;
     for (int i = 0; i < 40; ++i) {
         const CapInput input = random_clipped_cap(random);
         const double tilt = random.uniform(-1.5, 1.5);
         const double narrowness = i == 0 ? 1 : random.log_uniform(1e-3, 1);
-        const Coefficients reference = truth::warped_cap(input, {tilt, narrowness}, 12);
-        largest = worst(largest, difference(reference, truth::warped_cap(input, {tilt, narrowness}, 12, 8)));
+        const Coefficients reference = truth::boosted_cap(input, {tilt, narrowness}, 12);
+        largest = worst(largest, difference(reference, truth::boosted_cap(input, {tilt, narrowness}, 12, 8)));
         if (i == 0) {
             largest = worst(largest, difference(reference, truth::cap(input, 12, true)));
         }
     }
-    EXPECT_LE(largest, 1e-16);  // a warp leaves areas down to 1e-17, and they are differences of larger ones
+    EXPECT_LE(largest, 1e-16);  // a boost leaves areas down to 1e-17, and they are differences of larger ones
 }
 
 TEST(Reference, PolygonsHaveConverged) {

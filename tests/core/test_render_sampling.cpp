@@ -109,8 +109,8 @@ TEST(RenderSampling, CapsCoverWhatIsAboveTheHorizon) {
         const double radius = distance * (disk ? std::tan(half_angle) : std::sin(half_angle));
         const CapView cap = {disk ? CapView::Kind::facing_disk : CapView::Kind::sphere, center, radius};
         std::vector<double> coefficients(4);
-        const Circle circle = circle_of(cap);
-        circle_coefficients<double>({&circle, 1}, 2, true, coefficients);
+        const SphericalCap circle = circle_of(cap);
+        cap_coefficients<double>({&circle, 1}, 2, true, coefficients);
         SCOPED_TRACE(::testing::Message() << "half angle " << half_angle << ", tilt " << tilt);
         expect_near(solid_angle_and_projection(CapSampler(cap)), exact(coefficients));
     }

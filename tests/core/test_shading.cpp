@@ -53,8 +53,8 @@ struct Light {
         axis = random.at_tilt(random.uniform(0, std::numbers::pi / 2 + 0.7 * half));
         samples = testing::clipped_cap_samples(axis, half, 48);
         coefficients.resize(coefficient_count(16));
-        const Circle circle = circle_about_axis(axis, half);
-        circle_coefficients<float>({&circle, 1}, 16, true, coefficients);
+        const SphericalCap circle = cap_about_axis(axis, half);
+        cap_coefficients<float>({&circle, 1}, 16, true, coefficients);
     }
 
     double solid_angle() const {

@@ -7,9 +7,9 @@
 #include <memory>
 #include <vector>
 
+#include "shlight/boosted_fit.h"
 #include "shlight/lobe_shape.h"
 #include "shlight/types.h"
-#include "shlight/warped_fit.h"
 
 namespace shlight {
 
@@ -28,7 +28,7 @@ class ViewWeight {
 /// One lobe of a material: f·cos = color · weight(θ_o) · shape.
 struct Lobe {
     LobeShape shape;
-    std::shared_ptr<const WarpedFit> fit;  ///< null for a mirror
+    std::shared_ptr<const BoostedFit> fit;  ///< null for a mirror
     Rgb color;
     std::shared_ptr<const ViewWeight> weight;  ///< null: 1
     /// Not 0: the width varies from hit to hit, equally for all lobes of a material with the same number. The shape's

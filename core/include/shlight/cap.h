@@ -9,9 +9,23 @@
 #include <span>
 
 #include "shlight/types.h"
-#include "shlight/warp.h"
 
 namespace shlight {
+
+/// The directions ω with ω·axis ≥ cosine.
+struct SphericalCap {
+    Vec3d axis;     ///< unit
+    double cosine;  ///< of the half angle, which may be anything in 0 … π
+    double sine;    ///< ≥ 0; given beside the cosine because small caps need it
+};
+
+/// The cap that a sphere covers, seen from the origin; precondition 0 < radius ≤ |center|, all finite.
+/// |c|² - r² by exact products: near contact it is a small difference of the inputs.
+SphericalCap cap_of_sphere(const Vec3d& center, double radius);
+/// The cap that a disk covers which always faces the origin: half angle atan(radius / |center|); center ≠ 0.
+SphericalCap cap_of_facing_disk(const Vec3d& center, double radius);
+/// The cap of a half angle [rad] about an axis of any length > 0; 0 < half_angle, more than π counts as π.
+SphericalCap cap_about_axis(const Vec3d& axis, double half_angle);
 
 /// Sphere lights from centre and radius in the shading frame.
 /// coefficients: centers.size() × order², row by row. clip: keep only the part above the plane z = 0.
@@ -26,11 +40,11 @@ template <class T>
 void cap_coefficients(std::span<const Vec3<T>> axes, std::span<const T> half_angles, int order, bool clip,
                       std::span<T> coefficients, Output output = Output::cached);
 
-/// The caps inside circles, which are not checked.
+/// Caps that are not checked.
 template <class T>
-void circle_coefficients(std::span<const Circle> circles, int order, bool clip, std::span<T> coefficients);
+void cap_coefficients(std::span<const SphericalCap> caps, int order, bool clip, std::span<T> coefficients);
 
-/// Solid angle of the part above z = 0 of the cap inside a circle (Eq. 21 of Zhou & Wei 2020).
-double clipped_solid_angle(const Circle& circle);
+/// Solid angle of the part of a cap above z = 0 (Eq. 21 of Zhou & Wei 2020).
+double clipped_solid_angle(const SphericalCap& cap);
 
 }  // namespace shlight

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Materials lit by area lights, without shadows: Eq. 5 of Zhou & Wei 2020 in each lobe's warped frame, or a cheaper
+// Materials lit by area lights, without shadows: Eq. 5 of Zhou & Wei 2020 in each lobe's boosted frame, or a cheaper
 // integral where one meets the tolerance, chosen for each light.
 #pragma once
 

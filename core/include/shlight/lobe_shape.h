@@ -97,7 +97,7 @@ using LobeShape = std::variant<LambertShape, DiffuseShape, GgxShape>;
 double lobe_width(const LobeShape& shape);
 /// The shape with another width; unchanged if it has only one.
 LobeShape with_width(const LobeShape& shape, double width);
-/// Whether the shape has a peak: it is then shaded in a warped frame, and lights may exclude it ("visible to glossy
+/// Whether the shape has a peak: it is then shaded in a boosted frame, and lights may exclude it ("visible to glossy
 /// rays").
 bool is_glossy(const LobeShape& shape);
 /// Whether the width is 0: all light comes from one direction, and f·cos is 0 elsewhere.

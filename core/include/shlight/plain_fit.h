@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A lobe in spherical harmonics without a warp, for users who want coefficients (Eq. 3 of Zhou & Wei 2020): the
+// A lobe in spherical harmonics without a boost, for users who want coefficients (Eq. 3 of Zhou & Wei 2020): the
 // least-squares fit of f·cos over the *upper hemisphere*.
 //
 // Light coefficients are clipped at the horizon exactly, so the expansion may have any values below it, and the ringing

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "quad_boost.h"
 #include "quad_math.h"
 #include "quad_slices.h"
-#include "quad_warp.h"
 
 namespace shlight::truth {
 
@@ -69,19 +69,19 @@ Vec3q area_vector(const std::vector<Vec3q>& vertices) {
     return sum;
 }
 
-/// A great-circle edge, parametrised so that nodes crowd where the warp enlarges: tan(s/2) = tan(t/2) / crowding, s the
-/// angle from the point nearest to the warp's axis.
+/// A great-circle edge, parametrised so that nodes crowd where the boost enlarges: tan(s/2) = tan(t/2) / crowding, s
+/// the angle from the point nearest to the boost's axis.
 struct CrowdedEdge {
     Vec3q start, along;
     quad crowding, first, last;
 
-    CrowdedEdge(const PointwiseWarp& warp, const Vec3q& a, const Vec3q& pole, quad length_of_edge) {
-        start = warp.axis() - dot(warp.axis(), pole) * pole;
+    CrowdedEdge(const PointwiseBoost& boost, const Vec3q& a, const Vec3q& pole, quad length_of_edge) {
+        start = boost.axis() - dot(boost.axis(), pole) * pole;
         start = normalized(length(start) > 1e-20 ? start : a);
         along = cross(pole, start);
-        const quad cosine = dot(start, warp.axis());
+        const quad cosine = dot(start, boost.axis());
         const quad squared = (1 - cosine) / (1 + cosine);  // of the stereographic plane's radius at `start`
-        const quad stretch = warp.stretch() * warp.stretch();
+        const quad stretch = boost.stretch() * boost.stretch();
         crowding = sqrtf128((squared + stretch) / (1 + stretch * squared));
         const quad from = atan2f128(dot(a, along), dot(a, start));
         first = parameter(from);
@@ -116,9 +116,9 @@ void gauss_integral(quad first, quad last, double wiggles, int extra_nodes, Func
 }
 
 /// The image of the edge from a to b. `facing` is a unit vector that every point of the edge faces: slices about it
-/// give the area before the warp.
-void add_edge(const OrderTables& tables, const PointwiseWarp& warp, const Vec3q& a, const Vec3q& b, const Vec3q& facing,
-              int extra_nodes, std::vector<quad>& sums) {
+/// give the area before the boost.
+void add_edge(const OrderTables& tables, const PointwiseBoost& boost, const Vec3q& a, const Vec3q& b,
+              const Vec3q& facing, int extra_nodes, std::vector<quad>& sums) {
     const Vec3q normal = cross(a, b - a);
     if (!(length(normal) > 0)) {
         return;
@@ -131,15 +131,15 @@ void add_edge(const OrderTables& tables, const PointwiseWarp& warp, const Vec3q&
         const Vec3q p = cosf128(s) * start + sinf128(s) * along;
         sums[0] += weight * tables.diagonal[0] * dot(facing, pole) / (1 + dot(facing, p));
     });
-    const CrowdedEdge edge(warp, a, pole, angle);
+    const CrowdedEdge edge(boost, a, pole, angle);
     const double wiggles = (tables.order + 1) * static_cast<double>(edge.last - edge.first);
     std::vector<quad> legendre;
     gauss_integral(edge.first, edge.last, wiggles, extra_nodes, [&](quad t, quad weight) {
         const CrowdedEdge::Node node = edge.at(t);
-        const PointwiseWarp::Image image = warp.image(node.point, node.step);
+        const PointwiseBoost::Image image = boost.image(node.point, node.step);
         const Vec3q& u = image.point;
         weight *= node.speed;
-        sums[0] += weight * tables.diagonal[0] * image.area * dot(warp.axis(), pole);
+        sums[0] += weight * tables.diagonal[0] * image.area * dot(boost.axis(), pole);
         add_arc_point(tables, u, weight * image.step.z, weight * (u.x * image.step.y - u.y * image.step.x), legendre,
                       sums);
     });
@@ -165,7 +165,7 @@ void product_cubature(const std::vector<Vec3q>& vertices, int nodes, Add add) {
     }
 }
 
-Coefficients by_edges(std::span<const Vec3d> vertices, const PointwiseWarp& warp, int order, bool clip,
+Coefficients by_edges(std::span<const Vec3d> vertices, const PointwiseBoost& boost, int order, bool clip,
                       int extra_nodes) {
     const OrderTables& tables = order_tables(std::max(order, 2));
     const std::vector<Vec3q> kept = kept_part(vertices, clip);
@@ -174,19 +174,20 @@ Coefficients by_edges(std::span<const Vec3d> vertices, const PointwiseWarp& warp
     if (kept.size() >= 3 && length(facing) > 0) {
         facing = normalized(dot(facing, kept[0]) < 0 ? -1 * facing : facing);
         for (std::size_t i = 0; i < kept.size(); ++i) {
-            add_edge(tables, warp, kept[i], kept[(i + 1) % kept.size()], facing, extra_nodes, sums);
+            add_edge(tables, boost, kept[i], kept[(i + 1) % kept.size()], facing, extra_nodes, sums);
         }
     }
     return finished(std::move(sums), order);
 }
 
-Coefficients by_cubature(std::span<const Vec3d> vertices, const PointwiseWarp& warp, int order, bool clip, int nodes) {
+Coefficients by_cubature(std::span<const Vec3d> vertices, const PointwiseBoost& boost, int order, bool clip,
+                         int nodes) {
     const OrderTables& tables = order_tables(order);
     const std::vector<Vec3q> kept = kept_part(vertices, clip);
     std::vector<quad> sums(coefficient_count(order));
     std::vector<quad> legendre;
     product_cubature(kept, nodes, [&](const Vec3q& direction, quad weight) {
-        const PointwiseWarp::Image image = warp.image(direction);
+        const PointwiseBoost::Image image = boost.image(direction);
         const Vec3q& p = image.point;
         reduced_legendre(tables, p.z, legendre);
         quad cos_part = weight * image.scale * image.scale;
@@ -208,19 +209,20 @@ Coefficients by_cubature(std::span<const Vec3d> vertices, const PointwiseWarp& w
 }  // namespace
 
 Coefficients polygon(std::span<const Vec3d> vertices, int order, bool clip, int extra_nodes) {
-    return by_edges(vertices, PointwiseWarp(), order, clip, extra_nodes);
+    return by_edges(vertices, PointwiseBoost(), order, clip, extra_nodes);
 }
 
 Coefficients polygon_by_cubature(std::span<const Vec3d> vertices, int order, bool clip, int nodes) {
-    return by_cubature(vertices, PointwiseWarp(), order, clip, nodes);
+    return by_cubature(vertices, PointwiseBoost(), order, clip, nodes);
 }
 
-Coefficients warped_polygon(std::span<const Vec3d> vertices, const WarpInput& warp, int order, int extra_nodes) {
-    return by_edges(vertices, PointwiseWarp(warp), order, true, extra_nodes);
+Coefficients boosted_polygon(std::span<const Vec3d> vertices, const BoostInput& boost, int order, int extra_nodes) {
+    return by_edges(vertices, PointwiseBoost(boost), order, true, extra_nodes);
 }
 
-Coefficients warped_polygon_by_cubature(std::span<const Vec3d> vertices, const WarpInput& warp, int order, int nodes) {
-    return by_cubature(vertices, PointwiseWarp(warp), order, true, nodes);
+Coefficients boosted_polygon_by_cubature(std::span<const Vec3d> vertices, const BoostInput& boost, int order,
+                                         int nodes) {
+    return by_cubature(vertices, PointwiseBoost(boost), order, true, nodes);
 }
 
 }  // namespace shlight::truth

@@ -39,15 +39,15 @@ Coefficients cap_by_slices(const CapInput& input, int order, bool clip);
 Coefficients cap_above(const CapInput& input, double height, double sine, int order, int extra_nodes = 0);
 Coefficients cap_above_by_slices(const CapInput& input, double height, double sine, int order);
 
-/// The two numbers that define a shlight::Warp: it enlarges the neighbourhood of (-sin tilt, 0, cos tilt) by
+/// The two numbers that define a shlight::Boost: it enlarges the neighbourhood of (-sin tilt, 0, cos tilt) by
 /// (2 - narrowness) / narrowness.
-struct WarpInput {
+struct BoostInput {
     double tilt, narrowness;
 };
 
 /// The image of a cap, clipped at z = 0, in the frame about the image of the upper hemisphere. The circles' images are
 /// drawn through three mapped points each.
-Coefficients warped_cap(const CapInput& input, const WarpInput& warp, int order, int extra_nodes = 0);
+Coefficients boosted_cap(const CapInput& input, const BoostInput& boost, int order, int extra_nodes = 0);
 
 /// order² coefficients of the region bounded by the great arcs through the vertices, taken with positive area.
 Coefficients polygon(std::span<const Vec3d> vertices, int order, bool clip, int extra_nodes = 0);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "disks/spherical_ellipse.h"
 #include "math/light_sample.h"
+#include "regions/spherical_ellipse.h"
 
 namespace shlight {
 

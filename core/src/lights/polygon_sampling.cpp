@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "base/unit_direction.h"
-#include "polygons/spherical_polygon.h"
+#include "regions/spherical_polygon.h"
 
 namespace shlight {
 namespace {

@@ -171,7 +171,7 @@ bool ProfileRings::add_cap(const CapView& cap) {
     if (cap.kind != CapView::Kind::sphere && cap.kind != CapView::Kind::facing_disk) {
         return false;
     }
-    const Circle circle = circle_of(cap);
+    const SphericalCap circle = circle_of(cap);
     if (!(circle.sine >= kLeastSine)) {
         return false;
     }

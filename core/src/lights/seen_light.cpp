@@ -341,12 +341,12 @@ double changing_distance(const Light& light, const Vec3d& position) {
     return distance * profile_scale(profile, -bounds_from(light, position).towards);
 }
 
-Circle circle_of(const CapView& cap) {
+SphericalCap circle_of(const CapView& cap) {
     switch (cap.kind) {
         case CapView::Kind::sphere:
-            return circle_of_sphere(cap.center, cap.radius);
+            return cap_of_sphere(cap.center, cap.radius);
         case CapView::Kind::facing_disk:
-            return circle_of_facing_disk(cap.center, cap.radius);
+            return cap_of_facing_disk(cap.center, cap.radius);
         case CapView::Kind::infinite:
             return {cap.center, std::sqrt(std::max(0.0, (1 - cap.radius) * (1 + cap.radius))), cap.radius};
         case CapView::Kind::inside:

@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
+#include "shlight/cap.h"
 #include "shlight/disk.h"
 #include "shlight/light.h"
 #include "shlight/types.h"
-#include "shlight/warp.h"
 #include "tracing/hits.h"
 
 namespace shlight {
@@ -115,6 +115,6 @@ double least_distance(const Light& light, const Vec3d& position);
 double changing_distance(const Light& light, const Vec3d& position);
 
 /// The cap of directions to the light.
-Circle circle_of(const CapView& cap);
+SphericalCap circle_of(const CapView& cap);
 
 }  // namespace shlight

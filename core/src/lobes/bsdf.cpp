@@ -59,7 +59,7 @@ float ViewWeight::operator()(float cos_theta_o) const {
 Bsdf Bsdf::lobe(const LobeShape& shape, const Rgb& color, std::shared_ptr<const ViewWeight> weight) {
     check_color("color", color);
     Bsdf b;
-    b.lobes_.push_back({shape, is_mirror(shape) ? nullptr : warped_fit(shape), color, std::move(weight)});
+    b.lobes_.push_back({shape, is_mirror(shape) ? nullptr : boosted_fit(shape), color, std::move(weight)});
     return b;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// One least-squares fit of a lobe by harmonics over the warped hemisphere. The norm is uniform in solid angle, so
+// One least-squares fit of a lobe by harmonics over the boosted hemisphere. The norm is uniform in solid angle, so
 // cosine terms of different degree m decouple: after a Fourier sum over the azimuth each m is a small fit in the height
 // u_z alone.
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include "lobes/normal_equations.h"
 #include "math/gauss_legendre.h"
 #include "math/legendre.h"
-#include "shlight/warped_fit.h"
+#include "shlight/boosted_fit.h"
 
 namespace shlight {
 namespace {
@@ -51,14 +51,14 @@ struct AzimuthTable {
     std::vector<double> transform_;
 };
 
-/// The lobe's density g = f·cos dω/du over a grid in the warped frame, as Fourier coefficients over the azimuth.
-struct WarpedDensity {
+/// The lobe's density g = f·cos dω/du over a grid in the boosted frame, as Fourier coefficients over the azimuth.
+struct BoostedDensity {
     std::vector<double> heights, weights;  ///< Gauss points over u_z = z_0 … 1
     std::vector<double> fourier;           ///< heights × order: g ≈ Σ_m fourier cos mφ
     double square = 0;                     ///< ∫ g² du, of all degrees
 };
 
-/// Azimuths per half turn, and heights. A lobe stays stretched by 1 : cosθ_o after its warp.
+/// Azimuths per half turn, and heights. A lobe stays stretched by 1 : cosθ_o after its boost.
 int azimuth_points(double cos_theta_o, int order) {
     return std::max({24, order + 8, static_cast<int>(std::min(128.0, 12 / cos_theta_o))});
 }
@@ -66,22 +66,22 @@ int height_points(double cos_theta_o, int order) {
     return std::min(kMaxGaussPoints, std::max(cos_theta_o < 0.3 ? 64 : 40, order + 24));
 }
 
-WarpedDensity warped_density(const LobeShape& shape, double cos_theta_o, int order) {
-    const Warp warp = lobe_warp(shape, cos_theta_o);
+BoostedDensity boosted_density(const LobeShape& shape, double cos_theta_o, int order) {
+    const Boost boost = lobe_boost(shape, cos_theta_o);
     const Vec3d wo(std::sqrt((1 - cos_theta_o) * (1 + cos_theta_o)), 0, cos_theta_o);
     const int points = azimuth_points(cos_theta_o, order);
     const GaussRule& rule = gauss_rule(height_points(cos_theta_o, order));
-    WarpedDensity d;
+    BoostedDensity d;
     const AzimuthTable azimuths(points, order);
     std::vector<double> values(static_cast<std::size_t>(points));
-    const double z0 = warp.horizon_height();
+    const double z0 = boost.horizon_height();
     for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
         const double z = z0 + (1 - z0) * rule.nodes[i];
         const double s = std::sqrt(std::max(0.0, (1 - z) * (1 + z)));
         const double weight = (1 - z0) * rule.weights[i];
         for (int j = 0; j < points; ++j) {
             const Vec3d u(s * azimuths.cosines[j], s * azimuths.sines[j], z);
-            values[j] = lobe_value(shape, warp.direction(u), wo) * warp.density(u);
+            values[j] = lobe_value(shape, boost.direction(u), wo) * boost.density(u);
             d.square += 2 * std::numbers::pi / points * weight * values[j] * values[j];
         }
         d.heights.push_back(z);
@@ -92,7 +92,7 @@ WarpedDensity warped_density(const LobeShape& shape, double cos_theta_o, int ord
 }
 
 /// ∫ of the density times each cosine term.
-std::vector<double> moments(const WarpedDensity& d, const HeightBasis& basis) {
+std::vector<double> moments(const BoostedDensity& d, const HeightBasis& basis) {
     const auto order = static_cast<std::size_t>(basis.order());
     std::vector<double> sums;
     for (int l = 0; l < basis.order(); ++l) {
@@ -108,8 +108,8 @@ std::vector<double> moments(const WarpedDensity& d, const HeightBasis& basis) {
     return sums;
 }
 
-/// ∫ (density - expansion) du over the warped hemisphere.
-double missing_light(const WarpedDensity& d, const HeightBasis& basis, std::span<const double> terms, int order) {
+/// ∫ (density - expansion) du over the boosted hemisphere.
+double missing_light(const BoostedDensity& d, const HeightBasis& basis, std::span<const double> terms, int order) {
     double sum = 0;
     for (std::size_t i = 0; i < d.heights.size(); ++i) {
         double rest = d.fourier[i * static_cast<std::size_t>(basis.order())];
@@ -132,9 +132,9 @@ double shading_error(double squared_error, double missing_light, int order, doub
 }  // namespace
 
 void fit_row(const LobeShape& shape, int view, FitTable& table) {
-    const double cosine = warped_view_cosine(view);
+    const double cosine = boosted_view_cosine(view);
     const int highest = *std::max_element(table.orders().begin(), table.orders().end());
-    const WarpedDensity d = warped_density(shape, cosine, highest);
+    const BoostedDensity d = boosted_density(shape, cosine, highest);
     // lobe_albedo() integrates adaptively; the grid here is too coarse for lobes whose order is out of reach.
     const double albedo = lobe_albedo(shape, cosine);
     const auto row = table.row(view);

@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "lobes/view_kernel.h"
-#include "shlight/warped_fit.h"
+#include "shlight/boosted_fit.h"
 
 namespace shlight {
 namespace {
@@ -19,8 +19,8 @@ const double kFarthestView = std::acosh(1 / kLeastFittedCosine);
 
 }  // namespace
 
-double warped_view_cosine(int view) {
-    return 1 / std::cosh(kFarthestView * view / (kWarpedViews - 1));
+double boosted_view_cosine(int view) {
+    return 1 / std::cosh(kFarthestView * view / (kBoostedViews - 1));
 }
 
 FitTable::FitTable(std::span<const int> orders) : orders_(orders.begin(), orders.end()), row_size_(kHeadWidth) {
@@ -28,7 +28,7 @@ FitTable::FitTable(std::span<const int> orders) : orders_(orders.begin(), orders
         first_.push_back(row_size_);
         row_size_ += width(i);
     }
-    values_.grow((kWarpedViews + 1) * row_size_);
+    values_.grow((kBoostedViews + 1) * row_size_);
 }
 
 std::size_t FitTable::which(int order) const {
@@ -56,7 +56,7 @@ FitTable fit_table(const LobeShape& shape, std::span<const int> orders) {
     FitTable table(orders);
     // Isolated, because a thread that waits here must not start unrelated work that asks for this same fit.
     tbb::this_task_arena::isolate(
-        [&] { tbb::parallel_for(0, kWarpedViews, [&](int view) { fit_row(shape, view, table); }); });
+        [&] { tbb::parallel_for(0, kBoostedViews, [&](int view) { fit_row(shape, view, table); }); });
     const auto beyond = table.row(-1);
     std::copy_n(table.row(1).begin(), beyond.size(), beyond.begin());
     for (std::size_t i = 0; i < orders.size(); ++i) {

@@ -17,11 +17,11 @@
 namespace shlight {
 
 /// Orders that a hit may choose from. Beyond the last one cubature over the lobe is cheaper and more accurate.
-inline constexpr std::array<int, 6> kWarpedOrders = {3, 4, 6, 8, 12, 16};
+inline constexpr std::array<int, 6> kBoostedOrders = {3, 4, 6, 8, 12, 16};
 
 /// View angles are equally spaced in artanh(sinθ_o): fine towards grazing views, where lobes change with cosθ_o.
-inline constexpr int kWarpedViews = 49;
-double warped_view_cosine(int view);
+inline constexpr int kBoostedViews = 49;
+double boosted_view_cosine(int view);
 
 /// A row for each view, for view_kernel.h: a head with the albedo and the shading error of each order, then the cosine
 /// terms of each order. The head and the terms of each order begin on a cache line. All numbers are interpolated,
@@ -50,8 +50,8 @@ class FitTable {
         return values().subspan(static_cast<std::size_t>(view + 1) * row_size_, row_size_);
     }
     /// All rows, from -1 on.
-    std::span<const float> values() const { return {values_.data(), (kWarpedViews + 1) * row_size_}; }
-    std::span<float> values() { return {values_.data(), (kWarpedViews + 1) * row_size_}; }
+    std::span<const float> values() const { return {values_.data(), (kBoostedViews + 1) * row_size_}; }
+    std::span<float> values() { return {values_.data(), (kBoostedViews + 1) * row_size_}; }
 
     /// Interpolates out.size() numbers from `column` on at one view.
     void look_up(double cos_theta_o, std::size_t column, std::span<float> out) const;
@@ -72,7 +72,7 @@ FitTable fit_table(const LobeShape& shape, std::span<const int> orders);
 /// needed, between which cubic interpolation finds all others. Any number of threads may read it.
 class FitGrid {
   public:
-    /// Only Fresnel factor and ior of the shape are used. order: the only one, or 0 for kWarpedOrders.
+    /// Only Fresnel factor and ior of the shape are used. order: the only one, or 0 for kBoostedOrders.
     FitGrid(const GgxShape& shape, int order);
 
     static constexpr std::size_t kNeighbours = 4;

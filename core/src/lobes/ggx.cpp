@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lobes/contour_integral.h"
+#include "lobes/boundary_integral.h"
 #include "shlight/lobe_shape.h"
 
 namespace shlight {
@@ -82,8 +82,8 @@ double GgxShape::albedo(double cos_theta_o) const {
     if (alpha == 0) {
         return fresnel_factor(*this, cos_theta_o);
     }
-    const OutlineArc horizon{{{0, 0, 1}, 0, 1}, {1, 0, 0}, {1, 0, 0}, true};
-    return outline_integral(*this, cos_theta_o, {&horizon, 1}, kAlbedoTolerance).value;
+    const BoundaryArc horizon{{{0, 0, 1}, 0, 1}, {1, 0, 0}, {1, 0, 0}, true};
+    return boundary_integral(*this, cos_theta_o, {&horizon, 1}, kAlbedoTolerance).value;
 }
 
 Vec3d GgxShape::sample(const Vec3d& wo, const glm::dvec2& point) const {

@@ -10,13 +10,13 @@
 #include "base/recent_values.h"
 #include "lobes/fit_table.h"
 #include "math/cubic_stencil.h"
-#include "shlight/warped_fit.h"
+#include "shlight/boosted_fit.h"
 
 namespace shlight {
 namespace {
 
-/// Roughnesses are equally spaced in log(α + kAlphaOffset): below the offset a lobe's warped image no longer depends on
-/// α.
+/// Roughnesses are equally spaced in log(α + kAlphaOffset): below the offset a lobe's boosted image no longer depends
+/// on α.
 constexpr int kRoughnesses = 32;
 constexpr double kAlphaOffset = 0.02;
 constexpr double kLeastTabulatedAlpha = 2e-4;
@@ -27,7 +27,7 @@ const double kLogStep = (std::log(1 + kAlphaOffset) - kFirstLog) / (kRoughnesses
 
 FitGrid::FitGrid(const GgxShape& shape, int order)
     : shape_(shape),
-      orders_(order == 0 ? std::vector<int>(kWarpedOrders.begin(), kWarpedOrders.end()) : std::vector<int>{order}),
+      orders_(order == 0 ? std::vector<int>(kBoostedOrders.begin(), kBoostedOrders.end()) : std::vector<int>{order}),
       entries_(kRoughnesses) {}
 
 const FitTable& FitGrid::table(int roughness) const {

@@ -30,7 +30,8 @@ MaterialLobes::MaterialLobes(std::span<const Lobe> lobes, int order, double tole
         const auto* ggx = std::get_if<GgxShape>(&lobe.shape);
         grids_.push_back(lobe.varying_width != 0 && ggx != nullptr ? fit_grid(*ggx, order) : nullptr);
         if (!auto_order_) {
-            fits_.push_back(is_mirror(lobe.shape) || lobe.varying_width != 0 ? nullptr : warped_fit(lobe.shape, order));
+            fits_.push_back(is_mirror(lobe.shape) || lobe.varying_width != 0 ? nullptr
+                                                                             : boosted_fit(lobe.shape, order));
         }
     }
 }

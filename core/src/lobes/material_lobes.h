@@ -45,7 +45,7 @@ class MaterialLobes {
     /// The material's lobes, without black ones.
     std::span<const Lobe> lobes() const { return lobes_; }
     /// The fit that shades a lobe; null for a mirror, and for a lobe whose width varies.
-    const WarpedFit* fit(std::size_t lobe) const { return auto_order_ ? lobes_[lobe].fit.get() : fits_[lobe].get(); }
+    const BoostedFit* fit(std::size_t lobe) const { return auto_order_ ? lobes_[lobe].fit.get() : fits_[lobe].get(); }
     /// The fits that shade a lobe whose width varies; null for others.
     const FitGrid* grid(std::size_t lobe) const { return grids_[lobe].get(); }
     /// Whether any lobe's width varies.
@@ -66,7 +66,7 @@ class MaterialLobes {
 
   private:
     std::vector<Lobe> lobes_;
-    std::vector<std::shared_ptr<const WarpedFit>> fits_;  // of the only order; otherwise empty
+    std::vector<std::shared_ptr<const BoostedFit>> fits_;  // of the only order; otherwise empty
     std::vector<std::shared_ptr<const FitGrid>> grids_;
     bool auto_order_;
     double tolerance_;

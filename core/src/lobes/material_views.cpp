@@ -65,7 +65,7 @@ void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPos
     chooses_ = material.auto_order() && layout_ != nullptr;
     judged_ = judged;
     relative_tolerance_ = 0;
-    has_warps_ = false;
+    has_boosts_ = false;
     stride_ = 0;
     if (judged_) {
         find_albedos();
@@ -175,17 +175,17 @@ double LobeViews::error_of_largest_order(std::size_t view) const {
     return double{head[FitTable::kShadingErrors + layout_->orders().size() - 1]} * albedo_[view];
 }
 
-WarpArrays LobeViews::warp_arrays() {
+BoostArrays LobeViews::boost_arrays() {
     const std::size_t room = padded_views(positions_->size());
     const ViewOutput views = positions_->arrays();
-    if (!has_warps_) {
-        warps_.resize(std::max(warps_.size(), 7 * room));
+    if (!has_boosts_) {
+        boosts_.resize(std::max(boosts_.size(), 7 * room));
     }
-    double* w = warps_.data();
-    if (!has_warps_) {
-        warp_views(widths_.data(), views, positions_->size(),
-                   {w, w + room, w + 2 * room, w + 3 * room, w + 4 * room, w + 5 * room, w + 6 * room});
-        has_warps_ = true;
+    double* w = boosts_.data();
+    if (!has_boosts_) {
+        boost_views(widths_.data(), views, positions_->size(),
+                    {w, w + room, w + 2 * room, w + 3 * room, w + 4 * room, w + 5 * room, w + 6 * room});
+        has_boosts_ = true;
     }
     return {views.fitted_sine, views.fitted_cosine, w,           w + room, w + 2 * room, w + 3 * room,
             w + 4 * room,      w + 5 * room,        w + 6 * room};
@@ -214,8 +214,8 @@ void LobeViews::interpolate_terms(std::size_t which, std::span<const std::uint32
 LobeArrays LobeViews::arrays(int order, std::span<const std::uint32_t> used) {
     if (layout_ != nullptr) {
         interpolate_terms(layout_->which(order), used);
-        const bool warped = is_glossy(shape());
-        return {warped, warped ? warp_arrays() : WarpArrays{}, terms_.data(), positions_->size() == 1 ? 0 : stride_,
+        const bool boosted = is_glossy(shape());
+        return {boosted, boosted ? boost_arrays() : BoostArrays{}, terms_.data(), positions_->size() == 1 ? 0 : stride_,
                 order};
     }
     if (stride_ == 0) {
@@ -233,7 +233,7 @@ void MaterialViews::assign(const MaterialLobes& material, std::span<const double
     tolerance_ = material.tolerance();
     bool tabulated = false;
     for (std::size_t i = 0; i < lobe_count_; ++i) {
-        const WarpedFit* fit = material.fit(i);
+        const BoostedFit* fit = material.fit(i);
         tabulated = tabulated || fit == nullptr || fit->table() != nullptr;
     }
     positions_.assign(cos_theta_o, tabulated);

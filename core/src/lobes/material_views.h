@@ -99,11 +99,11 @@ class LobeViews {
                      std::size_t stride) const;
     void find_albedos();
     void choose_orders(double tolerance, std::span<const float> tolerance_scales);
-    WarpArrays warp_arrays();
+    BoostArrays boost_arrays();
     void interpolate_terms(std::size_t which, std::span<const std::uint32_t> used);
 
     const Lobe* lobe_ = nullptr;
-    const WarpedFit* fit_ = nullptr;    // null for a mirror, and where the width varies
+    const BoostedFit* fit_ = nullptr;   // null for a mirror, and where the width varies
     const FitTable* layout_ = nullptr;  // table of the fit or of the grid; null for mirrors and Lambert
     ViewPositions* positions_ = nullptr;
     bool chooses_ = false, judged_ = false, any_black_ = false;
@@ -119,9 +119,9 @@ class LobeViews {
     std::vector<float> neighbour_weights_;
     mutable std::vector<const float*> columns_;  // their numbers from a column on
 
-    bool has_warps_ = false;
-    std::vector<double> warps_;  // the arrays of WarpOutput
-    std::size_t stride_ = 0;     // numbers per view in terms_
+    bool has_boosts_ = false;
+    std::vector<double> boosts_;  // the arrays of BoostOutput
+    std::size_t stride_ = 0;      // numbers per view in terms_
     AlignedFloats terms_;
     std::vector<std::uint8_t> has_terms_;  // for each view 1 + index of the order; 0: none
     std::vector<std::uint32_t> missing_;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lobes/contour_integral.h"
+#include "lobes/boundary_integral.h"
 #include "lobes/rough_diffuse.h"
 #include "shlight/lobe_shape.h"
 
@@ -61,8 +61,8 @@ double DiffuseShape::value(const Vec3d& wi, const Vec3d& wo) const {
 }
 
 double DiffuseShape::albedo(double cos_theta_o) const {
-    const OutlineArc horizon{{{0, 0, 1}, 0, 1}, {1, 0, 0}, {1, 0, 0}, true};
-    return outline_integral(*this, cos_theta_o, {&horizon, 1}, kDiffuseAlbedoTolerance).value;
+    const BoundaryArc horizon{{{0, 0, 1}, 0, 1}, {1, 0, 0}, {1, 0, 0}, true};
+    return boundary_integral(*this, cos_theta_o, {&horizon, 1}, kDiffuseAlbedoTolerance).value;
 }
 
 Vec3d DiffuseShape::sample(const Vec3d& wo, const glm::dvec2& point) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The grid of view angles in tables of unwarped harmonics, and interpolation on it.
+// The grid of view angles in tables of unboosted harmonics, and interpolation on it.
 #pragma once
 
 #include <cstddef>

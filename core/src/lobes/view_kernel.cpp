@@ -12,9 +12,9 @@
 
 #include <hwy/contrib/math/math-inl.h>
 
-#include "caps/cap_lanes-inl.h"
 #include "lobes/fit_table.h"
-#include "shlight/warped_fit.h"
+#include "regions/cap_lanes-inl.h"
+#include "shlight/boosted_fit.h"
 #include "simd/gather-inl.h"
 #include "simd/lanes-inl.h"
 
@@ -43,7 +43,7 @@ struct ViewLanes {
 HWY_INLINE ViewLanes view_in_lanes(const DoublePair& cos_theta_o) {
     const Floats d;
     const hn::RebindToSigned<Floats> di;
-    const auto step = static_cast<float>((kWarpedViews - 1) / std::acosh(1 / kLeastFittedCosine));
+    const auto step = static_cast<float>((kBoostedViews - 1) / std::acosh(1 / kLeastFittedCosine));
     ViewLanes view;
     view.cosine =
         each([](V<Doubles> c)
@@ -55,7 +55,7 @@ HWY_INLINE ViewLanes view_in_lanes(const DoublePair& cos_theta_o) {
     const auto stretch = hn::Sub(hn::Log(d, hn::Add(rounded(view.sine), all(d, 1))), view.log_cosine);
     const auto position = hn::Max(hn::Zero(d), hn::Mul(stretch, hn::Set(d, step)));
     // Row 0 is the view beyond the normal; the stencil begins one row before the view.
-    view.row = hn::Min(hn::ConvertTo(di, position), hn::Set(di, kWarpedViews - 3));
+    view.row = hn::Min(hn::ConvertTo(di, position), hn::Set(di, kBoostedViews - 3));
     const auto t = hn::Sub(position, hn::Sub(hn::ConvertTo(d, view.row), all(d, 1)));
     const auto t1 = hn::Sub(t, all(d, 1));
     const auto t2 = hn::Sub(t, all(d, 2));
@@ -82,16 +82,16 @@ HWY_INLINE V<Floats> power_minus_two_thirds(V<Floats> x) {
     return r;
 }
 
-/// The narrowness w / (1 + w^1.5)^(2/3) of the width w = 5 α cos^0.4 θ_o, as in lobe_warp(). Rounding it to float does
-/// no harm, because all that is warped shares the rounded value.
+/// The narrowness w / (1 + w^1.5)^(2/3) of the width w = 5 α cos^0.4 θ_o, as in lobe_boost(). Rounding it to float does
+/// no harm, because all that is boosted shares the rounded value.
 HWY_INLINE V<Floats> narrowness_in_lanes(V<Floats> alpha, V<Floats> log_cosine) {
     const Floats d;
     const auto width = hn::Mul(hn::Mul(all(d, 5), alpha), hn::Exp(d, hn::Mul(all(d, 0.4), log_cosine)));
     return hn::Mul(width, power_minus_two_thirds(hn::MulAdd(width, hn::Sqrt(width), all(d, 1))));
 }
 
-/// Warp's constructor in lanes, with one division for all quotients.
-HWY_INLINE WarpLanes<Doubles> warp_in_lanes(V<Doubles> sine, V<Doubles> cosine, V<Doubles> narrowness) {
+/// Boost's constructor in lanes, with one division for all quotients.
+HWY_INLINE BoostLanes<Doubles> boost_in_lanes(V<Doubles> sine, V<Doubles> cosine, V<Doubles> narrowness) {
     const Doubles d;
     const auto one = all(d, 1);
     const auto r = hn::Sub(one, narrowness);
@@ -120,13 +120,13 @@ HWY_INLINE WarpLanes<Doubles> warp_in_lanes(V<Doubles> sine, V<Doubles> cosine, 
 }
 
 /// sine, cosine: sinθ_o and cosθ_o of the fitted view.
-HWY_INLINE WarpPair warps_in_lanes(V<Floats> alpha, V<Floats> log_cosine, const DoublePair& sine,
-                                   const DoublePair& cosine) {
+HWY_INLINE BoostPair boosts_in_lanes(V<Floats> alpha, V<Floats> log_cosine, const DoublePair& sine,
+                                     const DoublePair& cosine) {
     const Doubles d;
     const HalfFloats half;
     const auto narrowness = narrowness_in_lanes(alpha, log_cosine);
-    return {warp_in_lanes(sine.low, cosine.low, hn::PromoteTo(d, hn::LowerHalf(half, narrowness))),
-            warp_in_lanes(sine.high, cosine.high, hn::PromoteTo(d, hn::UpperHalf(half, narrowness)))};
+    return {boost_in_lanes(sine.low, cosine.low, hn::PromoteTo(d, hn::LowerHalf(half, narrowness))),
+            boost_in_lanes(sine.high, cosine.high, hn::PromoteTo(d, hn::UpperHalf(half, narrowness)))};
 }
 
 constexpr std::size_t kLanes = kLaneCount<Floats>;
@@ -153,24 +153,25 @@ void find_views_in_lanes(const double* cos_theta_o, std::size_t count, const Vie
     }
 }
 
-HWY_INLINE void store_warp(const WarpLanes<Doubles>& warp, std::size_t i, const WarpOutput& out) {
+HWY_INLINE void store_boost(const BoostLanes<Doubles>& boost, std::size_t i, const BoostOutput& out) {
     const Doubles d;
-    hn::StoreU(warp.speed, d, out.speed + i);
-    hn::StoreU(warp.one_minus_speed, d, out.one_minus_speed + i);
-    hn::StoreU(warp.gamma, d, out.gamma + i);
-    hn::StoreU(warp.horizon_x, d, out.horizon_x + i);
-    hn::StoreU(warp.horizon_z, d, out.horizon_z + i);
-    hn::StoreU(warp.horizon_height, d, out.horizon_height + i);
-    hn::StoreU(warp.horizon_sine, d, out.horizon_sine + i);
+    hn::StoreU(boost.speed, d, out.speed + i);
+    hn::StoreU(boost.one_minus_speed, d, out.one_minus_speed + i);
+    hn::StoreU(boost.gamma, d, out.gamma + i);
+    hn::StoreU(boost.horizon_x, d, out.horizon_x + i);
+    hn::StoreU(boost.horizon_z, d, out.horizon_z + i);
+    hn::StoreU(boost.horizon_height, d, out.horizon_height + i);
+    hn::StoreU(boost.horizon_sine, d, out.horizon_sine + i);
 }
 
-void warp_views_in_lanes(const float* alpha, const ViewOutput& views, std::size_t count, const WarpOutput& out) {
+void boost_views_in_lanes(const float* alpha, const ViewOutput& views, std::size_t count, const BoostOutput& out) {
     for (std::size_t i = 0; i < count; i += kLanes) {
         const Contiguous from(i);
-        const WarpPair warps = warps_in_lanes(hn::LoadU(Floats(), alpha + i), hn::LoadU(Floats(), views.log_cosine + i),
-                                              from.pair(views.fitted_sine), from.pair(views.fitted_cosine));
-        store_warp(warps.low, i, out);
-        store_warp(warps.high, i + kLaneCount<Doubles>, out);
+        const BoostPair boosts =
+            boosts_in_lanes(hn::LoadU(Floats(), alpha + i), hn::LoadU(Floats(), views.log_cosine + i),
+                            from.pair(views.fitted_sine), from.pair(views.fitted_cosine));
+        store_boost(boosts.low, i, out);
+        store_boost(boosts.high, i + kLaneCount<Doubles>, out);
     }
 }
 
@@ -224,7 +225,7 @@ HWY_AFTER_NAMESPACE();
 namespace shlight {
 
 HWY_EXPORT(find_views_in_lanes);
-HWY_EXPORT(warp_views_in_lanes);
+HWY_EXPORT(boost_views_in_lanes);
 HWY_EXPORT(interpolate_in_lanes);
 HWY_EXPORT(interpolate_tables_in_lanes);
 
@@ -232,8 +233,8 @@ void find_views(const double* cos_theta_o, std::size_t count, const ViewOutput& 
     HWY_DYNAMIC_DISPATCH(find_views_in_lanes)(cos_theta_o, count, out);
 }
 
-void warp_views(const float* alpha, const ViewOutput& views, std::size_t count, const WarpOutput& out) {
-    HWY_DYNAMIC_DISPATCH(warp_views_in_lanes)(alpha, views, count, out);
+void boost_views(const float* alpha, const ViewOutput& views, std::size_t count, const BoostOutput& out) {
+    HWY_DYNAMIC_DISPATCH(boost_views_in_lanes)(alpha, views, count, out);
 }
 
 void interpolate_views(const float* table, std::size_t row_size, std::size_t width, const std::uint32_t* rows,

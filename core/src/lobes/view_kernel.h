@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Many views of a lobe at once: their positions among the fitted views, their warps, and interpolated table rows.
+// Many views of a lobe at once: their positions among the fitted views, their boosts, and interpolated table rows.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace shlight {
 
-/// Arrays of views and of warps have room for a multiple of this; entries beyond the last view are overwritten.
+/// Arrays of views and of boosts have room for a multiple of this; entries beyond the last view are overwritten.
 inline constexpr std::size_t kViewLanes = 16;
 constexpr std::size_t padded_views(std::size_t count) {
     return (count + kViewLanes - 1) / kViewLanes * kViewLanes;
@@ -29,16 +29,16 @@ struct ViewOutput {
 /// cos_theta_o: `count` cosines; the array must hold finite numbers up to padded_views(count).
 void find_views(const double* cos_theta_o, std::size_t count, const ViewOutput& out);
 
-/// Output arrays for the members of WarpArrays, except the tilt.
-struct WarpOutput {
+/// Output arrays for the members of BoostArrays, except the tilt.
+struct BoostOutput {
     double *speed, *one_minus_speed, *gamma;
     double *horizon_x, *horizon_z;
     double *horizon_height, *horizon_sine;
 };
 
-/// The warps of GGX lobes, as lobe_warp() with its narrowness rounded to float. alpha: width at each view, padded like
-/// the views.
-void warp_views(const float* alpha, const ViewOutput& views, std::size_t count, const WarpOutput& out);
+/// The boosts of GGX lobes, as lobe_boost() with its narrowness rounded to float. alpha: width at each view, padded
+/// like the views.
+void boost_views(const float* alpha, const ViewOutput& views, std::size_t count, const BoostOutput& out);
 
 /// Interpolated rows: for each i of `views` the weighted sum of four table rows, of which the first `width` numbers are
 /// written to out + i · stride. width and stride: multiples of 16. out: aligned to 64 bytes.

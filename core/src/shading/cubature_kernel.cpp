@@ -74,7 +74,7 @@ struct SeenCircle {
 };
 
 template <class Circles, class Views>
-HWY_INLINE SeenCircle seen(const CircleArrays& circles, const ViewArrays& views, const float* widths,
+HWY_INLINE SeenCircle seen(const CapArrays& circles, const ViewArrays& views, const float* widths,
                            const Circles& circle, const Views& view) {
     SeenCircle s;
     s.x = circle.load(circles.x);
@@ -118,7 +118,7 @@ HWY_INLINE V<hn::RebindToUnsigned<Floats>> smallest_rule(const std::array<RuleEr
 }
 
 template <class Lights, class Views>
-HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(const float* widths, const CircleArrays& circles,
+HWY_INLINE V<hn::RebindToUnsigned<Floats>> rule_of(const float* widths, const CapArrays& circles,
                                                    const ViewArrays& views, const Lights& light, const Views& view,
                                                    V<Floats> tolerance) {
     const Floats d;
@@ -176,7 +176,7 @@ void choose_any_rules(const float* widths, const Arrays& lights, const ViewArray
     }
 }
 
-void choose_cap_rules_in_lanes(const float* widths, const CircleArrays& circles, const ViewArrays& views,
+void choose_cap_rules_in_lanes(const float* widths, const CapArrays& circles, const ViewArrays& views,
                                const float* tolerances, std::span<const std::uint32_t> view_of,
                                std::span<std::uint8_t> rules) {
     choose_any_rules(widths, circles, views, tolerances, view_of, rules);
@@ -269,7 +269,7 @@ class CapRule {
 };
 
 template <class Views, class Lobe>
-void integrate(const Lobe& lobe, const float* widths, const CircleArrays& circles,
+void integrate(const Lobe& lobe, const float* widths, const CapArrays& circles,
                std::span<const std::uint32_t> circle_of, const ViewArrays& views,
                std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     const Floats d;
@@ -283,7 +283,7 @@ void integrate(const Lobe& lobe, const float* widths, const CircleArrays& circle
     }
 }
 
-void integrate_caps_in_lanes(const LobeShape& shape, const float* widths, const CircleArrays& circles,
+void integrate_caps_in_lanes(const LobeShape& shape, const float* widths, const CapArrays& circles,
                              std::span<const std::uint32_t> circle_of, const ViewArrays& views,
                              std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     with_lobe_lanes(shape, [&](const auto& lobe) {
@@ -306,8 +306,8 @@ HWY_EXPORT(choose_cap_rules_in_lanes);
 HWY_EXPORT(choose_polygon_rules_in_lanes);
 HWY_EXPORT(integrate_caps_in_lanes);
 
-void choose_cap_rules(const float* widths, const CircleArrays& circles, const ViewArrays& views,
-                      const float* tolerances, std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
+void choose_cap_rules(const float* widths, const CapArrays& circles, const ViewArrays& views, const float* tolerances,
+                      std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules) {
     HWY_DYNAMIC_DISPATCH(choose_cap_rules_in_lanes)(widths, circles, views, tolerances, view_of, rules);
 }
 
@@ -317,7 +317,7 @@ void choose_polygon_rules(const float* widths, const PolygonArrays& polygons, co
     HWY_DYNAMIC_DISPATCH(choose_polygon_rules_in_lanes)(widths, polygons, views, tolerances, view_of, rules);
 }
 
-void integrate_caps(const LobeShape& shape, const float* widths, const CircleArrays& circles,
+void integrate_caps(const LobeShape& shape, const float* widths, const CapArrays& circles,
                     std::span<const std::uint32_t> circle_of, const ViewArrays& views,
                     std::span<const std::uint32_t> view_of, int rule, std::span<float> values) {
     HWY_DYNAMIC_DISPATCH(integrate_caps_in_lanes)(shape, widths, circles, circle_of, views, view_of, rule, values);

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "caps/cap_shading.h"
-#include "polygons/polygon_views.h"
+#include "regions/cap_shading.h"
+#include "regions/polygon_views.h"
 #include "shlight/lobe_shape.h"
 
 namespace shlight {
@@ -21,15 +21,15 @@ inline constexpr std::uint8_t kHidden = 255;
 /// relative to the light's own value. Light i is seen by view view_of[i].
 /// Rules of caps: 1, 4, 7, 24 points; of polygons: 3, 7, 16, 25 points a triangle. widths: of the lobe at each view,
 /// positive.
-void choose_cap_rules(const float* widths, const CircleArrays& circles, const ViewArrays& views,
-                      const float* tolerances, std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules);
+void choose_cap_rules(const float* widths, const CapArrays& circles, const ViewArrays& views, const float* tolerances,
+                      std::span<const std::uint32_t> view_of, std::span<std::uint8_t> rules);
 void choose_polygon_rules(const float* widths, const PolygonArrays& polygons, const ViewArrays& views,
                           const float* tolerances, std::span<const std::uint32_t> view_of,
                           std::span<std::uint8_t> rules);
 
 /// values[i] = ∫ f·cos over circle circle_of[i], above the horizon, seen by view view_of[i], by one rule. widths: of
 /// the shape at each view, in the place of its own.
-void integrate_caps(const LobeShape& shape, const float* widths, const CircleArrays& circles,
+void integrate_caps(const LobeShape& shape, const float* widths, const CapArrays& circles,
                     std::span<const std::uint32_t> circle_of, const ViewArrays& views,
                     std::span<const std::uint32_t> view_of, int rule, std::span<float> values);
 

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "base/checks.h"
-#include "caps/cap_checks.h"
-#include "disks/disk_checks.h"
 #include "lobes/material_views.h"
-#include "polygons/polygon_checks.h"
+#include "regions/cap_checks.h"
+#include "regions/disk_checks.h"
+#include "regions/polygon_checks.h"
 #include "shading/lobe_batch.h"
 #include "shading/seen_lights.h"
 

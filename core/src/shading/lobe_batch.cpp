@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "lobes/contour_integral.h"
-#include "polygons/polygon_shading_kernel.h"
-#include "polygons/spherical_polygon.h"
+#include "lobes/boundary_integral.h"
+#include "regions/polygon_shading_kernel.h"
+#include "regions/spherical_polygon.h"
 #include "shading/cubature_kernel.h"
 #include "shading/polygon_rule_kernel.h"
 
@@ -20,12 +20,12 @@ constexpr int kCheapPolygonRule = 2;
 /// Of polygons with more vertices a rule, which has its points in each of the triangles between them, costs more.
 constexpr int kMostCheapVertices = 8;
 
-Vec3d axis_of(const CircleArrays& circles, std::size_t i) {
+Vec3d axis_of(const CapArrays& circles, std::size_t i) {
     return {circles.x[i], circles.y[i], circles.z[i]};
 }
 
 /// The largest rule that is cheaper than harmonics of the orders that glossy lobes take.
-int cheap_rule(const CircleArrays&) {
+int cheap_rule(const CapArrays&) {
     return kCheapCapRule;
 }
 int cheap_rule(const PolygonBatch& polygons) {
@@ -39,7 +39,7 @@ void without_ringing(std::span<float> values) {
 
 }  // namespace
 
-void LobeBatch::shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of,
+void LobeBatch::shade(LobeViews& lobe, const CapArrays& circles, std::span<const std::uint32_t> view_of,
                       bool with_statistics) {
     shade_any(lobe, circles, view_of, with_statistics);
 }
@@ -148,7 +148,7 @@ bool LobeBatch::within_tolerance(const LobeViews& lobe, std::size_t light, std::
     return true;
 }
 
-bool LobeBatch::lies_below(const CircleArrays& circles, std::size_t light) {
+bool LobeBatch::lies_below(const CapArrays& circles, std::size_t light) {
     return circles.z[light] <= -circles.sine[light];
 }
 
@@ -160,7 +160,7 @@ bool LobeBatch::lies_below(const PolygonBatch& polygons, std::size_t light) {
     return polygons.lies_below(light);
 }
 
-bool LobeBatch::shows_mirrored(const CircleArrays& circles, std::size_t light, const Vec3d& direction) {
+bool LobeBatch::shows_mirrored(const CapArrays& circles, std::size_t light, const Vec3d& direction) {
     return glm::dot(direction, axis_of(circles, light)) >= circles.cosine[light];
 }
 
@@ -177,8 +177,7 @@ bool LobeBatch::shows_mirrored(const PolygonBatch& polygons, std::size_t light, 
     return winding > 1 && std::any_of(v.begin(), v.end(), [&](const Vec3d& d) { return glm::dot(d, direction) > 0; });
 }
 
-void LobeBatch::choose_rules(const LobeViews& lobe, const CircleArrays& circles,
-                             std::span<const std::uint32_t> view_of) {
+void LobeBatch::choose_rules(const LobeViews& lobe, const CapArrays& circles, std::span<const std::uint32_t> view_of) {
     choose_cap_rules(lobe.widths(), circles, lobe.positions().directions(), lobe.tolerances(), view_of, rules_);
 }
 
@@ -251,7 +250,7 @@ void LobeBatch::mirror(const LobeViews& lobe, Lights& lights) {
     }
 }
 
-void LobeBatch::by_harmonics(LobeViews& lobe, const CircleArrays& circles, int order) {
+void LobeBatch::by_harmonics(LobeViews& lobe, const CapArrays& circles, int order) {
     shade_caps(circles, items_, lobe.arrays(order, item_views_), item_views_, item_values_);
 }
 
@@ -279,7 +278,7 @@ void LobeBatch::by_largest_order(LobeViews& lobe, const Lights& lights) {
     }
 }
 
-void LobeBatch::by_rule(const LobeViews& lobe, const CircleArrays& circles, int rule) {
+void LobeBatch::by_rule(const LobeViews& lobe, const CapArrays& circles, int rule) {
     integrate_caps(lobe.shape(), lobe.widths(), circles, items_, lobe.positions().directions(), item_views_, rule,
                    item_values_);
     const int points = cap_rule_points(rule);
@@ -297,10 +296,10 @@ void LobeBatch::by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int
     }
 }
 
-void LobeBatch::by_outline(const LobeViews& lobe, const CircleArrays& circles) {
+void LobeBatch::by_outline(const LobeViews& lobe, const CapArrays& circles) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
         if (const std::uint32_t i = items_[k]; keys_[i] == kOutline) {
-            integrate_outline(lobe, k, CapOutline({axis_of(circles, i), circles.cosine[i], circles.sine[i]}).arcs());
+            integrate_outline(lobe, k, CapBoundary({axis_of(circles, i), circles.cosine[i], circles.sine[i]}).arcs());
         }
     }
 }
@@ -308,16 +307,16 @@ void LobeBatch::by_outline(const LobeViews& lobe, const CircleArrays& circles) {
 void LobeBatch::by_outline(const LobeViews& lobe, const PolygonBatch& polygons) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
         if (const std::uint32_t i = items_[k]; keys_[i] == kOutline) {
-            integrate_outline(lobe, k, polygon_outline(SphericalPolygon(polygons.polygon(i), true)));
+            integrate_outline(lobe, k, polygon_boundary(SphericalPolygon(polygons.polygon(i), true)));
         }
     }
 }
 
-void LobeBatch::integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const OutlineArc> arcs) {
+void LobeBatch::integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const BoundaryArc> arcs) {
     const std::uint32_t view = item_views_[item];
     const double tolerance = lobe.absolute_tolerance(view);
-    const OutlineIntegral integral =
-        outline_integral(lobe.shape(view), lobe.positions().cosine()[view], arcs, tolerance, lobe.albedo(view));
+    const BoundaryIntegral integral =
+        boundary_integral(lobe.shape(view), lobe.positions().cosine()[view], arcs, tolerance, lobe.albedo(view));
     item_values_[item] = static_cast<float>(integral.value);
     efforts_[items_[item]] = integral.points;
     missed_[items_[item]] = integral.error <= tolerance ? 0 : 1;

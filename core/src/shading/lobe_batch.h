@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Many lights under one lobe: each integrated in the cheapest way that meets the tolerance. As a mirror image, by a few
-// values of f·cos where it is small beside the lobe, by spherical harmonics in the lobe's warp, or along its outline.
+// values of f·cos where it is small beside the lobe, by spherical harmonics in the lobe's boost, or along its outline.
 // Lights that take the same way are sorted together, so that each way is one call.
 #pragma once
 
@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
-#include "caps/cap_shading.h"
 #include "lobes/material_views.h"
-#include "polygons/polygon_batch.h"
-#include "shading/light_outline.h"
+#include "regions/cap_shading.h"
+#include "regions/polygon_batch.h"
+#include "shading/light_boundary.h"
 #include "shlight/types.h"
 
 namespace shlight {
@@ -24,10 +24,9 @@ enum class LobeMethod { nothing, mirror, harmonics, cubature };
 /// Keeps its memory from call to call; one per thread.
 class LobeBatch {
   public:
-    /// Circle i, clipped by the horizon, is seen by view view_of[i]. with_statistics: whether anything but values()
-    /// will be asked for.
-    void shade(LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of,
-               bool with_statistics);
+    /// SphericalCap i, clipped by the horizon, is seen by view view_of[i]. with_statistics: whether anything but
+    /// values() will be asked for.
+    void shade(LobeViews& lobe, const CapArrays& circles, std::span<const std::uint32_t> view_of, bool with_statistics);
     void shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of, bool with_statistics);
     /// The same as with their circles, with fewer steps. Precondition: shades_alike(lobe).
     void shade(LobeViews& lobe, const SphereArrays& spheres, std::span<const std::uint32_t> view_of,
@@ -61,13 +60,13 @@ class LobeBatch {
     template <class Lights>
     void shade_sorted(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of);
 
-    static bool lies_below(const CircleArrays& circles, std::size_t light);
+    static bool lies_below(const CapArrays& circles, std::size_t light);
     static bool lies_below(const SphereArrays& spheres, std::size_t light);
     static bool lies_below(const PolygonBatch& polygons, std::size_t light);
-    static bool shows_mirrored(const CircleArrays& circles, std::size_t light, const Vec3d& direction);
+    static bool shows_mirrored(const CapArrays& circles, std::size_t light, const Vec3d& direction);
     static bool shows_mirrored(const PolygonBatch& polygons, std::size_t light, const Vec3d& direction);
     /// The rule of cubature of each light, as choose_cap_rules.
-    void choose_rules(const LobeViews& lobe, const CircleArrays& circles, std::span<const std::uint32_t> view_of);
+    void choose_rules(const LobeViews& lobe, const CapArrays& circles, std::span<const std::uint32_t> view_of);
     void choose_rules(const LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of);
 
     template <class Lights>
@@ -78,18 +77,18 @@ class LobeBatch {
 
     template <class Lights>
     void mirror(const LobeViews& lobe, Lights& lights);
-    void by_harmonics(LobeViews& lobe, const CircleArrays& circles, int order);
+    void by_harmonics(LobeViews& lobe, const CapArrays& circles, int order);
     void by_harmonics(LobeViews& lobe, const SphereArrays& spheres, int order);
     void by_harmonics(LobeViews& lobe, const PolygonBatch& polygons, int order);
-    void by_rule(const LobeViews& lobe, const CircleArrays& circles, int rule);
+    void by_rule(const LobeViews& lobe, const CapArrays& circles, int rule);
     void by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule);
     /// Outlines cost most: lights that are bright enough are left to harmonics of the largest order.
     template <class Lights>
     void by_largest_order(LobeViews& lobe, const Lights& lights);
-    void by_outline(const LobeViews& lobe, const CircleArrays& circles);
+    void by_outline(const LobeViews& lobe, const CapArrays& circles);
     void by_outline(const LobeViews& lobe, const PolygonBatch& polygons);
     /// Of an item.
-    void integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const OutlineArc> arcs);
+    void integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const BoundaryArc> arcs);
 
     std::vector<float> values_;
     std::vector<std::int32_t> efforts_;

@@ -13,7 +13,7 @@
 
 #include "lobes/lobe_lanes-inl.h"
 #include "math/triangle_cubature.h"
-#include "polygons/spherical_polygon.h"
+#include "regions/spherical_polygon.h"
 #include "simd/gather-inl.h"
 #include "simd/lanes-inl.h"
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "caps/cap_shading.h"
+#include "regions/cap_shading.h"
 #include "shlight/lobe_shape.h"
 #include "shlight/types.h"
 

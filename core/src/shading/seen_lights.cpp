@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <numeric>
 
-#include "disks/disk_polygon.h"
 #include "emitters/emitter_levels.h"
 #include "emitters/flat_outline.h"
 #include "lobes/material_lobes.h"
+#include "regions/disk_polygon.h"
 
 namespace shlight {
 namespace {

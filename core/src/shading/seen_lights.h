@@ -8,12 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "caps/circle_batch.h"
-#include "disks/spherical_ellipse.h"
 #include "emitters/mesh_view.h"
 #include "lights/seen_light.h"
 #include "lobes/material_views.h"
-#include "polygons/polygon_batch.h"
+#include "regions/cap_arrays.h"
+#include "regions/polygon_batch.h"
+#include "regions/spherical_ellipse.h"
 #include "shading/lobe_batch.h"
 #include "shlight/light.h"
 
@@ -100,7 +100,7 @@ class SeenLights {
     std::vector<std::uint32_t> cap_numbers_;
     std::vector<Vec3d> centers_;
     std::vector<double> radii_;
-    CircleBatch circles_;
+    CapBatch circles_;
     std::span<const Vec3f> float_centers_;  // of spheres whose circles are not found
     const float* float_radii_ = nullptr;
 

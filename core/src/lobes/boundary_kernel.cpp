@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "lobes/boundary_kernel.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lobes/boundary_kernel.cpp"
+#include <hwy/foreach_target.h>
+// Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <hwy/contrib/math/math-inl.h>
+
+#include "lobes/lobe_lanes-inl.h"
+#include "simd/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace shlight::HWY_NAMESPACE {
+namespace {
+
+template <class D, class Lobe>
+class BellLanes {
+  public:
+    BellLanes(const BoundaryBell& bell, const Lobe& lobe)
+        : width_(lobe_width(bell.shape)),
+          cos_o_(bell.cos_o),
+          sin_o_(std::sqrt((1 - cos_o_) * (1 + cos_o_))),
+          lobe_(lobe),
+          view_(lobe.view(D(), all(D(), cos_o_), all(D(), width_))),
+          rule_(*bell.rule) {}
+
+    /// The angle about the bell's middle times ∫ f·cos over a radius from there to the boundary.
+    HWY_INLINE V<D> density(const BoundaryPath& path, V<D> parameter) const {
+        const D d;
+        const auto f = all(d, path.flatness);
+        const auto s = hn::Sin(d, parameter);
+        const auto c = hn::Cos(d, parameter);
+        const auto fc = hn::Mul(f, c);
+        const auto r = hn::Sqrt(hn::MulAdd(fc, fc, hn::Mul(s, s)));
+        const auto slope = hn::Div(hn::Mul(all(d, 1 - path.flatness * path.flatness), hn::Mul(s, c)), r);
+        const auto fs = hn::Mul(f, s);
+        const auto half = [&](int i) HWY_ATTR {
+            return hn::MulAdd(r, all(d, path.middle[i]),
+                              hn::MulAdd(fc, all(d, path.cosine[i]), hn::Mul(s, all(d, path.sine[i]))));
+        };
+        const auto step = [&](int i) HWY_ATTR {
+            return hn::MulAdd(slope, all(d, path.middle[i]),
+                              hn::NegMulAdd(fs, all(d, path.cosine[i]), hn::Mul(c, all(d, path.sine[i]))));
+        };
+        const auto x = half(0);
+        const auto y = half(1);
+        const auto z = half(2);
+        const auto square = hn::MulAdd(x, x, hn::Mul(y, y));
+        const auto across = hn::Sqrt(square);
+        const auto inverse = hn::Div(all(d, 1), across);
+        const auto turn = hn::Mul(hn::MulSub(x, step(1), hn::Mul(y, step(0))), hn::Mul(inverse, inverse));
+        const auto value = hn::Mul(turn, radial_integral(hn::Mul(x, inverse), hn::Div(across, z)));
+        const auto valid = hn::And(hn::Gt(square, hn::Zero(d)), hn::Gt(z, hn::Zero(d)));
+        return hn::IfThenElseZero(valid, value);
+    }
+
+  private:
+    /// ∫ over tan θ' = 0 … radius at one azimuth about the bell. In t = tan ½θ' the bell is rational and the range
+    /// short.
+    HWY_INLINE V<D> radial_integral(V<D> cos_azimuth, V<D> radius) const {
+        const D d;
+        const auto one = all(d, 1);
+        const auto end = hn::Div(radius, hn::Add(one, hn::Sqrt(hn::MulAdd(radius, radius, one))));
+        // Crowded towards the boundary, because a lobe that is cut by the horizon ends steeply there; the shortest rule
+        // is better off without.
+        const double crowding = rule_.nodes.size() > 4 ? 1 : 0;
+        auto sum = hn::Zero(d);
+        for (std::size_t i = 0; i < rule_.nodes.size(); ++i) {
+            const double x = rule_.nodes[i];
+            const auto t = hn::Mul(end, all(d, x * (1 + crowding * (1 - x))));
+            const auto weight = all(d, rule_.weights[i] * (1 + crowding * (1 - 2 * x)));
+            const auto scale = hn::Div(one, hn::MulAdd(t, t, one));
+            const auto sine = hn::Mul(hn::Add(t, t), scale);
+            const auto cosine = hn::Mul(hn::Mul(hn::Sub(one, t), hn::Add(one, t)), scale);
+            sum = hn::MulAdd(hn::Mul(hn::Mul(weight, scale), sine), factors(cos_azimuth, sine, cosine), sum);
+        }
+        return hn::Mul(hn::Mul(all(d, 2 / std::numbers::pi), end), sum);
+    }
+
+    /// f·cos dω over the bell's own density cosθ' dω' / π and its cosine: 4 f·cos / D times ω_o·h with the length of h
+    /// divided out.
+    HWY_INLINE V<D> factors(V<D> cos_azimuth, V<D> sine, V<D> cosine) const {
+        const D d;
+        const auto cos_o = all(d, cos_o_);
+        const auto x = hn::Mul(all(d, width_), sine);
+        const auto square = hn::MulAdd(x, x, hn::Mul(cosine, cosine));
+        // (ω_o·h) √square
+        const auto towards = hn::MulAdd(cos_o, cosine, hn::Mul(hn::Mul(all(d, sin_o_), x), cos_azimuth));
+        const auto cos_i = hn::Sub(hn::Div(hn::Mul(hn::Add(towards, towards), cosine), square), cos_o);
+        const auto cos_half = hn::Div(towards, hn::Sqrt(square));
+        const auto value = hn::Mul(lobe_.over_ndf(d, cos_i, cos_half, view_), towards);
+        return hn::IfThenElseZero(hn::Gt(cos_i, hn::Zero(d)), value);
+    }
+
+    double width_, cos_o_, sin_o_;
+    Lobe lobe_;
+    typename Lobe::template View<D> view_;
+    const GaussRule& rule_;
+};
+
+template <class T, class Lobe>
+void densities(const BoundaryBell& bell, const Lobe& lobe, const BoundaryPath& path, std::span<const double> parameters,
+               std::span<double> values) {
+    using D = hn::CappedTag<T, kBoundaryPoints>;
+    const D d;
+    const BellLanes<D, Lobe> lanes(bell, lobe);
+    alignas(64) std::array<T, kBoundaryPoints> buffer{};
+    std::transform(parameters.begin(), parameters.end(), buffer.begin(), [](double x) { return static_cast<T>(x); });
+    std::fill(buffer.begin() + parameters.size(), buffer.end(), buffer[0]);
+    for (std::size_t i = 0; i < parameters.size(); i += kLaneCount<D>) {
+        hn::Store(lanes.density(path, hn::Load(d, buffer.data() + i)), d, buffer.data() + i);
+    }
+    std::transform(buffer.begin(), buffer.begin() + values.size(), values.begin(),
+                   [](T x) { return static_cast<double>(x); });
+}
+
+void boundary_densities_in_lanes(const BoundaryBell& bell, const BoundaryPath& path, bool single,
+                                 std::span<const double> parameters, std::span<double> values) {
+    with_lobe_lanes(bell.shape, [&](const auto& lobe) {
+        if (single) {
+            densities<float>(bell, lobe, path, parameters, values);
+        } else {
+            densities<double>(bell, lobe, path, parameters, values);
+        }
+    });
+}
+
+}  // namespace
+}  // namespace shlight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace shlight {
+
+HWY_EXPORT(boundary_densities_in_lanes);
+
+void boundary_densities(const BoundaryBell& bell, const BoundaryPath& path, bool single,
+                        std::span<const double> parameters, std::span<double> values) {
+    HWY_DYNAMIC_DISPATCH(boundary_densities_in_lanes)(bell, path, single, parameters, values);
+}
+
+}  // namespace shlight
+#endif

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+#include "regions/polygon_shading_kernel.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "regions/polygon_shading_kernel.cpp"
+#include <hwy/foreach_target.h>
+// Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "regions/polygon_cubature.h"
+#include "regions/polygon_lists-inl.h"
+#include "regions/potential-inl.h"
+#include "shlight/shading.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace shlight::HWY_NAMESPACE {
+namespace {
+
+/// What Gauss points may err by, in units of what coefficients may: one number sums up what many of them err by. The
+/// bound for harmonics of any size is far from reached, that for a lobe's is closer.
+constexpr double kLooseness = 8;
+constexpr double kLoosenessOfLobe = 2;
+
+/// Work of one call of shade_polygons.
+template <bool kBoosted>
+class PolygonShading : public PolygonLists<PolygonShading<kBoosted>, float, kBoosted> {
+    using Base = PolygonLists<PolygonShading<kBoosted>, float, kBoosted>;
+    friend Base;
+
+  public:
+    PolygonShading(const PolygonArray& polygons, const std::uint32_t* polygon_of, const LobeArrays& lobe,
+                   const std::uint32_t* view_of, float* values)
+        : Base(polygons, lobe.order, takes_lobe_bound(lobe) ? kLoosenessOfLobe : kLooseness,
+               takes_lobe_bound(lobe) ? lobe_error_growth(lobe.terms, lobe.order) : kGaussErrorGrowth),
+          polygon_of_(polygon_of),
+          lobe_(lobe),
+          view_of_(view_of),
+          values_(values) {}
+
+    void shade(std::size_t first, std::size_t count) {
+        first_ = first;
+        sums_.assign(count, 0.0);
+        this->take(count, true);
+        if (lobe_.stride != 0) {
+            integrate_apart(this->float_arcs_);
+            integrate_apart(this->double_arcs_);
+        } else {
+            if (!kBoosted && this->order_ <= kMaxChebyshevOrder) {
+                const ChebyshevSeries<float> series(this->order_, lobe_.terms);
+                integrate<true>(this->float_arcs_, series);
+            } else {
+                integrate_shared(this->float_arcs_);
+            }
+            integrate_shared(this->double_arcs_);
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            values_[first + i] = static_cast<float>(sums_[i]);
+        }
+        shade_narrowest();
+    }
+
+  private:
+    /// Waves along images under a boost are counted in another way, and there it depends on the neighbours whether
+    /// lights share a lobe.
+    static bool takes_lobe_bound(const LobeArrays& lobe) { return !kBoosted && lobe.stride == 0 && lobe.order > 2; }
+
+    std::size_t polygon(std::size_t i) const { return polygon_of_[first_ + i]; }
+    const double* vertex(std::size_t i) const {
+        return this->polygons_.vertices + 3 * this->polygons_.vertex_count * polygon(i);
+    }
+    std::uint32_t view(std::size_t i) const { return view_of_[first_ + i]; }
+    const BoostArrays& boosts() const { return lobe_.boosts; }
+    const float* terms(std::size_t i) const { return lobe_.terms + view(i) * lobe_.stride; }
+
+    /// The part of the solid angle and of the vector irradiance.
+    template <class R>
+    HWY_INLINE void low_bands(V<Lanes<R>> solid_angle, const Vectors3<R>& moment, const std::uint32_t* list,
+                              std::size_t count) {
+        const Lanes<R> d;
+        std::array<V<Lanes<R>>, 3> f;
+        const std::size_t terms_count = this->order_ > 1 ? 3 : 1;
+        for (std::size_t j = 0; j < 3; ++j) {
+            f[j] = j < terms_count ? low_term<R>(j, list, count) : hn::Zero(d);
+        }
+        const auto first = hn::MulAdd(moment.z, f[1], hn::Mul(moment.x, f[2]));
+        LaneValues<R> values;
+        put<R>(values, hn::MulAdd(all(d, kBand0), hn::Mul(solid_angle, f[0]), hn::Mul(all(d, kBand1), first)));
+        for (std::size_t lane = 0; lane < count; ++lane) {
+            sums_[list[lane]] = static_cast<double>(values[lane]);
+        }
+    }
+
+    /// Term j of the lobes of a vector's polygons.
+    template <class R>
+    HWY_INLINE V<Lanes<R>> low_term(std::size_t j, const std::uint32_t* list, std::size_t count) const {
+        if (lobe_.stride == 0) {
+            return hn::Set(Lanes<R>(), static_cast<R>(lobe_.terms[j]));
+        }
+        LaneValues<R> values;
+        for (std::size_t lane = 0; lane < values.size(); ++lane) {
+            values[lane] = static_cast<R>(terms(list[std::min(lane, count - 1)])[j]);
+        }
+        return get<R>(values);
+    }
+
+    /// One lobe for all.
+    template <class R>
+    void integrate_shared(const ArcLists<R>& lists) {
+        PotentialSeries<R, true> series(this->order_);
+        RowPointers<const float> rows;
+        rows.fill(lobe_.terms);
+        series.set(rows);
+        integrate<true>(lists, series);
+    }
+
+    /// To each its own.
+    template <class R>
+    void integrate_apart(const ArcLists<R>& lists) {
+        PotentialSeries<R, false> series(this->order_);
+        integrate<false>(lists, series);
+    }
+
+    template <bool kShared, class R, class Series>
+    void integrate(const ArcLists<R>& lists, Series& series) {
+        if (this->order_ <= 2) {
+            return;
+        }
+        for (int points = 1; points <= kMaxGaussPoints; ++points) {
+            const auto& arcs = lists.arcs(static_cast<std::size_t>(points));
+            const GaussRule& rule = gauss_rule(points);
+            for (std::size_t first = 0; first < arcs.size(); first += kLaneCount<Lanes<R>>) {
+                look<kShared, R>(series, arcs, first);
+                const ArcLanes<R, !kBoosted> lanes(arcs.from(first));
+                add(arcs, first, arc_integral<R, !kBoosted>(series, lanes, rule));
+            }
+        }
+        integrate_horizon<kShared>(lists.horizon(), series);
+    }
+
+    /// The lobes of the regions that a vector's lanes belong to.
+    template <bool kShared, class R, class Series, class Rows>
+    void look(Series& series, const Rows& regions, std::size_t first) const {
+        if constexpr (!kShared) {
+            RowPointers<const float> rows;
+            for (std::size_t lane = 0; lane < kLaneCount<Lanes<R>>; ++lane) {
+                rows[lane] = terms(regions.region(std::min(first + lane, regions.size() - 1)));
+            }
+            series.set(rows);
+        }
+    }
+
+    template <class Rows, class Vector>
+    HWY_INLINE void add(const Rows& regions, std::size_t first, Vector v) {
+        using R = hn::TFromV<Vector>;
+        LaneValues<R> values;
+        put<R>(values, v);
+        const std::size_t count = std::min(values.size(), regions.size() - first);
+        for (std::size_t lane = 0; lane < count; ++lane) {
+            sums_[regions.region(first + lane)] += static_cast<double>(values[lane]);
+        }
+    }
+
+    template <bool kShared, class R, class Series>
+    void integrate_horizon(const RowList<std::array<R, 8>>& arcs, Series& series) {
+        constexpr std::size_t kWidth = kLaneCount<Lanes<R>>;
+        std::vector<R> slopes(series.order() * kWidth);
+        for (std::size_t first = 0; first < arcs.size(); first += kWidth) {
+            if (!kShared || first == 0) {
+                LaneValues<R> height;
+                LaneValues<R> sine;
+                for (std::size_t lane = 0; lane < kWidth; ++lane) {
+                    const std::size_t v = view(arcs.region(std::min(first + lane, arcs.size() - 1)));
+                    height[lane] = kBoosted ? static_cast<R>(lobe_.boosts.horizon_height[v]) : R(0);
+                    sine[lane] = kBoosted ? static_cast<R>(lobe_.boosts.horizon_sine[v]) : R(1);
+                }
+                look<kShared, R>(series, arcs, first);
+                horizon_slopes<R>(series, get<R>(height), get<R>(sine), slopes.data());
+            }
+            add(arcs, first, horizon_integral<R>(slopes.data(), series.order(), arcs.from(first)));
+        }
+    }
+
+    void shade_narrowest() {
+        std::vector<Vec3d> polygon(this->polygons_.vertex_count);
+        std::array<float, static_cast<std::size_t>(coefficient_count(kMaxOrder))> coefficients;
+        for (const std::uint32_t i : this->narrowest_) {
+            std::copy_n(vertex(i), 3 * polygon.size(), &polygon.data()->x);
+            polygon_by_cubature(polygon, this->order_, true, coefficients.data());
+            values_[first_ + i] = shade_cosine(coefficients.data(), terms(i), this->order_);
+        }
+    }
+
+    static constexpr double kBand0 = 0.28209479177387814;  ///< 1 / √4π
+    static constexpr double kBand1 = 0.48860251190291992;  ///< √(3 / 4π)
+
+    const std::uint32_t* polygon_of_;
+    const LobeArrays& lobe_;
+    const std::uint32_t* view_of_;
+    float* values_;
+
+    std::size_t first_ = 0;  ///< of the present chunk
+    std::vector<double> sums_;
+};
+
+/// Polygons that are taken apart before their arcs are integrated: many of them fill vectors of arcs with the same
+/// number of points.
+constexpr std::size_t kChunk = 2048;
+
+template <bool kBoosted>
+void shade_all(const PolygonArray& polygons, const std::uint32_t* polygon_of, const LobeArrays& lobe,
+               const std::uint32_t* view_of, float* values, std::size_t count) {
+    PolygonShading<kBoosted> shading(polygons, polygon_of, lobe, view_of, values);
+    for (std::size_t first = 0; first < count; first += kChunk) {
+        shading.shade(first, std::min(kChunk, count - first));
+    }
+}
+
+void shade_polygons_in_lanes(const PolygonArray& polygons, const std::uint32_t* polygon_of, const LobeArrays& lobe,
+                             const std::uint32_t* view_of, float* values, std::size_t count) {
+    (lobe.boosted ? shade_all<true> : shade_all<false>)(polygons, polygon_of, lobe, view_of, values, count);
+}
+
+}  // namespace
+}  // namespace shlight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace shlight {
+
+HWY_EXPORT(shade_polygons_in_lanes);
+
+void shade_polygons(std::span<const Vec3d> vertices, int vertex_count, std::span<const std::uint32_t> polygon_of,
+                    const LobeArrays& lobe, std::span<const std::uint32_t> view_of, std::span<float> values) {
+    HWY_DYNAMIC_DISPATCH(shade_polygons_in_lanes)
+    ({&vertices.data()->x, static_cast<std::size_t>(vertex_count)}, polygon_of.data(), lobe, view_of.data(),
+     values.data(), values.size());
+}
+
+}  // namespace shlight
+#endif
