@@ -12,9 +12,12 @@ template <class T>
 void cap(const CapLight& light, int order, bool clip, const Options& /*options*/, T* coefficients) {
     const Vec3<T> axis(light.axis);
     const auto size = static_cast<T>(light.size);
-    const auto coefficients_of = light.kind == CapLight::Kind::sphere ? sphere_coefficients<T> : cap_coefficients<T>;
-    coefficients_of({&axis, 1}, {&size, 1}, order, clip, {coefficients, static_cast<std::size_t>(order * order)},
-                    Output::cached);
+    const std::span<T> row(coefficients, static_cast<std::size_t>(order * order));
+    if (light.kind == CapLight::Kind::sphere) {
+        sphere_coefficients<T>({&axis, 1}, {&size, 1}, order, clip, row);
+    } else {
+        cap_coefficients<T>({&axis, 1}, {&size, 1}, order, clip, row);
+    }
 }
 
 template <class T>

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lobe_truth.h"
+#include "lobes/fit_table.h"
 #include "random_input.h"
 #include "shlight/basis.h"
 
@@ -53,12 +54,19 @@ double measured_error(const BoostedFit& fit, double cosine, int order) {
     return std::sqrt(boosted) / albedo;
 }
 
+/// The root mean square, over caps in all directions, of the error of a cap's radiance ÷ albedo, as the table has it.
+double shading_error(const BoostedFit& fit, double cosine, int order) {
+    float error = 0;
+    fit.table()->look_up(cosine, FitTable::kShadingErrors + fit.table()->which(order), {&error, 1});
+    return error;
+}
+
 TEST(BoostedFit, FewBandsDescribeAnyRoughness) {
     for (const double alpha : {0.0025, 0.05, 0.3, 1.0}) {
         const BoostedFit fit(GgxShape{alpha});
-        EXPECT_LE(fit.shading_error(0.9, 8), 5e-4) << alpha;
-        EXPECT_LE(fit.shading_error(0.5, 12), 5e-4) << alpha;
-        EXPECT_LE(fit.shading_error(0.3, 16), 5e-4) << alpha;
+        EXPECT_LE(shading_error(fit, 0.9, 8), 5e-4) << alpha;
+        EXPECT_LE(shading_error(fit, 0.5, 12), 5e-4) << alpha;
+        EXPECT_LE(shading_error(fit, 0.3, 16), 5e-4) << alpha;
     }
 }
 
@@ -71,7 +79,7 @@ TEST(BoostedFit, ErrorsAreTheMeasuredOnes) {
             for (const int order : {4, 8, 16}) {
                 const double bound = std::sqrt(2.0 / (order * order * order)) * measured_error(fit, cosine, order);
                 // Errors are interpolated between views and roughnesses, like coefficients; 1e-5 is what that costs.
-                EXPECT_LE(std::abs(fit.shading_error(cosine, order) - bound), 0.1 * bound + 2e-5);
+                EXPECT_LE(std::abs(shading_error(fit, cosine, order) - bound), 0.1 * bound + 2e-5);
             }
         }
     }

@@ -131,8 +131,8 @@ TEST(LightShading, SpheresMatchBruteForce) {
         std::vector<Rgb> radiance(truth.size());
         std::vector<std::int32_t> effort(truth.size());
         for (std::size_t t = 0; t < kTolerances.size(); ++t) {
-            shade_spheres(centers, radii, bsdf, std::vector<double>(truth.size(), cosine), {0, kTolerances[t]},
-                          radiance, effort);
+            LightShader(bsdf, {0, kTolerances[t]})
+                .spheres<double>(centers, radii, std::vector<double>(truth.size(), cosine), radiance, effort);
             outcomes[t].add(radiance, truth, effort, bsdf, cosine);
         }
     }
@@ -160,8 +160,8 @@ TEST(LightShading, PolygonsMatchBruteForce) {
         std::vector<Rgb> radiance(truth.size());
         std::vector<std::int32_t> effort(truth.size());
         for (std::size_t t = 0; t < kTolerances.size(); ++t) {
-            shade_polygons(vertices, 4, bsdf, std::vector<double>(truth.size(), cosine), {0, kTolerances[t]}, radiance,
-                           effort);
+            LightShader(bsdf, {0, kTolerances[t]})
+                .polygons<double>(vertices, 4, std::vector<double>(truth.size(), cosine), radiance, effort);
             outcomes[t].add(radiance, truth, effort, bsdf, cosine);
         }
     }
@@ -180,8 +180,8 @@ TEST(LightShading, RoughnessHasNoSeams) {
     double step_before = 0;
     for (int i = 0; i <= 2000; ++i) {
         Rgb radiance;
-        shade_spheres({&center, 1}, {&radius, 1}, Bsdf::ggx(static_cast<float>(i) / 2000, Rgb(1)), {&cosine, 1}, {},
-                      {&radiance, 1});
+        LightShader(Bsdf::ggx(static_cast<float>(i) / 2000, Rgb(1)), {})
+            .spheres<double>({&center, 1}, {&radius, 1}, {&cosine, 1}, {&radiance, 1});
         const double step = static_cast<double>(radiance.x) - before;
         if (i > 1) {
             // Two methods may each be wrong by the tolerance where one hands over to the other.
@@ -230,7 +230,7 @@ TEST(LightShading, SpheresAsTheyComeAreThoseThatAreSorted) {
             LightShader shader(bsdf, {order, 1e-3});
             shader.spheres(std::span<const Vec3f>(lights.centers), std::span<const float>(lights.radii),
                            std::span<const double>(lights.views), plain, effort);
-            shade_spheres(centers, radii, bsdf, lights.views, {order, 1e-3}, sorted, sorted_effort);
+            LightShader(bsdf, {order, 1e-3}).spheres<double>(centers, radii, lights.views, sorted, sorted_effort);
             EXPECT_EQ(effort, sorted_effort);
             float largest = 0;
             for (std::size_t i = 0; i < radii.size(); ++i) {

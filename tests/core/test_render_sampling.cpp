@@ -35,7 +35,7 @@ TEST(RenderSampling, SeedsGiveIndependentUnbiasedSets) {
     for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
         double share = 0;
         for (std::uint32_t i = 0; i < 16; ++i) {
-            const glm::dvec2 p = sobol(i, seed);
+            const glm::dvec2 p = SobolSequence(seed).point(i);
             share += p.y < 0.2 + 0.3 * p.x ? 1.0 / 16 : 0;
         }
         errors.push_back(share - 0.35);
@@ -78,7 +78,7 @@ template <class Sampler>
 glm::dvec2 solid_angle_and_projection(const Sampler& sampler) {
     glm::dvec2 sum(0);
     for (std::uint32_t i = 0; i < kPoints; ++i) {
-        const LightSample sample = sampler.sample(sobol(i, 7));
+        const LightSample sample = sampler.sample(SobolSequence(7).point(i));
         EXPECT_GE(sample.direction.z, -1e-9);
         EXPECT_LE(std::abs(glm::length(sample.direction) - 1), 1e-9);
         EXPECT_GE(sample.weight, 0);
@@ -175,7 +175,7 @@ TEST(RenderSampling, LobeDirectionsHaveTheirDensity) {
             const Vec3d view = view_at(cosine);
             double sum = 0;
             for (std::uint32_t i = 0; i < kPoints; ++i) {
-                const Vec3d direction = sample_lobe(lobe.shape, view, sobol(i, 3));
+                const Vec3d direction = sample_lobe(lobe.shape, view, SobolSequence(3).point(i));
                 ASSERT_LE(std::abs(glm::length(direction) - 1), 1e-12);
                 if (direction.z <= 0) continue;
                 const double density = lobe_density(lobe.shape, view, direction);
@@ -215,7 +215,7 @@ void expect_met(const Light& light) {
     int missed = 0;
     double met = 0;
     for (std::uint32_t i = 0; i < kPoints; ++i) {
-        const LightSample sample = sampler.sample(sobol(i, 8));
+        const LightSample sample = sampler.sample(SobolSequence(8).point(i));
         weight += sample.weight / kPoints;
         const Vec3d place = sample.distance * sample.direction;
         EXPECT_LE(distance_from(light, place), 1e-6);
@@ -229,7 +229,7 @@ void expect_met(const Light& light) {
             // A sphere is met at a grazing angle near its outline.
             EXPECT_LE(std::abs(*distance - sample.distance), 1e-6 * sample.distance);
         }
-        const glm::dvec2 p = sobol(i, 9);
+        const glm::dvec2 p = SobolSequence(9).point(i);
         const double radius = std::sqrt(1 - p.x * p.x);
         const double azimuth = 2 * std::numbers::pi * p.y;
         met += sampler.meets({radius * std::cos(azimuth), radius * std::sin(azimuth), p.x}) ? 1.0 / kPoints : 0;

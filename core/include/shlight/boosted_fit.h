@@ -36,16 +36,12 @@ class BoostedFit {
     std::vector<int> orders() const;
     /// ∫ f·cos dω over the upper hemisphere.
     double albedo(double cos_theta_o) const;
-    /// Upper estimate of the root mean square error of radiance ÷ albedo over caps in all directions.
-    double shading_error(double cos_theta_o, int order) const;
     /// Writes the cosine_count(order) cosine terms for one view angle; order: one of orders().
     void coefficients(double cos_theta_o, int order, float* cosine_terms) const;
     /// The table for looking up many views; null for Lambert, which has a closed form.
     const class FitTable* table() const { return table_.get(); }
 
   private:
-    double number(double cos_theta_o, std::size_t column) const;
-
     LobeShape shape_;
     std::shared_ptr<const FitTable> table_;
     int order_;  // used for Lambert only

@@ -58,12 +58,4 @@ class LightShader {
     std::unique_ptr<class LightShaderWork> work_;
 };
 
-/// One batch.
-void shade_spheres(std::span<const Vec3d> centers, std::span<const double> radii, const Bsdf& bsdf,
-                   std::span<const double> cos_theta_o, const ShadeSettings& settings, std::span<Rgb> radiance,
-                   std::span<std::int32_t> effort = {});
-void shade_polygons(std::span<const Vec3d> vertices, int vertex_count, const Bsdf& bsdf,
-                    std::span<const double> cos_theta_o, const ShadeSettings& settings, std::span<Rgb> radiance,
-                    std::span<std::int32_t> effort = {});
-
 }  // namespace shlight

@@ -14,17 +14,14 @@ namespace shlight {
 /// A pseudo-random hash of two numbers.
 std::uint32_t hash(std::uint32_t a, std::uint32_t b);
 
-/// Point `index` of the two-dimensional Sobol sequence, Owen-scrambled by `seed` (Burley 2020, "Practical hash-based
-/// Owen scrambling"): each block of 2^k points, aligned at a multiple of 2^k, has one point in each elementary interval
-/// of area 2^-k. Coordinates lie strictly between 0 and 1.
-glm::dvec2 sobol(std::uint32_t index, std::uint32_t seed);
-
-/// The third and fourth coordinate of the Sobol sequence (Joe & Kuo 2008), Owen-scrambled likewise. Together with the
-/// coordinates of nested_points() or hammersley() they fill a four-dimensional cube evenly.
+/// The third and fourth coordinate of the Sobol sequence (Joe & Kuo 2008), Owen-scrambled by `seed`: they go on where
+/// nested_points() and hammersley() end, so that all four fill their cube evenly.
 glm::dvec2 sobol_beyond(std::uint32_t index, std::uint32_t seed);
 
-/// The points of sobol() in an order that depends on the seed; aligned blocks of 2^k indices stay together. Sequences
-/// of different seeds are uncorrelated even if both are used in the order of their indices.
+/// The two-dimensional Sobol sequence, Owen-scrambled by `seed` (Burley 2020, "Practical hash-based Owen scrambling")
+/// and in another order for each seed: each block of 2^k points, aligned at a multiple of 2^k, has one point in each
+/// elementary interval of area 2^-k. Coordinates lie strictly between 0 and 1. Sequences of different seeds are
+/// unrelated even where both are taken in the order of their indices.
 class SobolSequence {
   public:
     explicit SobolSequence(std::uint32_t seed);

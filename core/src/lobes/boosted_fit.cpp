@@ -54,18 +54,11 @@ std::vector<int> BoostedFit::orders() const {
 }
 
 double BoostedFit::albedo(double cos_theta_o) const {
-    return table_ ? number(cos_theta_o, FitTable::kAlbedo) : 1.0;
-}
-
-double BoostedFit::shading_error(double cos_theta_o, int order) const {
-    return table_ ? std::max(0.0, number(cos_theta_o, FitTable::kShadingErrors + table_->which(order)))
-                  : lambert_error(order);
-}
-
-double BoostedFit::number(double cos_theta_o, std::size_t column) const {
-    float value = 0;
-    table_->look_up(cos_theta_o, column, {&value, 1});
-    return value;
+    float albedo = 1;
+    if (table_) {
+        table_->look_up(cos_theta_o, FitTable::kAlbedo, {&albedo, 1});
+    }
+    return albedo;
 }
 
 void BoostedFit::coefficients(double cos_theta_o, int order, float* cosine_terms) const {

@@ -88,11 +88,6 @@ std::uint32_t hash(std::uint32_t a, std::uint32_t b) {
     return x;
 }
 
-glm::dvec2 sobol(std::uint32_t index, std::uint32_t seed) {
-    return {unit(reverse_bits(scramble_reversed(index, hash(seed, 0)))),
-            unit(reverse_bits(scramble_reversed(pascal(index), hash(seed, 1))))};
-}
-
 glm::dvec2 sobol_beyond(std::uint32_t index, std::uint32_t seed) {
     return {unit(reverse_bits(scramble_reversed(reversed_coordinate(kThird, index), hash(seed, 0)))),
             unit(reverse_bits(scramble_reversed(reversed_coordinate(kFourth, index), hash(seed, 1))))};

@@ -68,7 +68,7 @@ class ZonalLanes {
     using D = Lanes<T>;
 
   public:
-    ZonalLanes(V<D> cosine, V<D> sine) {
+    ZonalLanes(V<D> cosine, V<D> sine, const CapConstants<T>& constants) : bands_(constants.bands.data()) {
         const D d;
         sine_squared_ = hn::Mul(sine, sine);
         lack_ = hn::Div(sine_squared_, hn::Add(all(d, 1), hn::Abs(cosine)));
@@ -79,7 +79,7 @@ class ZonalLanes {
 
     HWY_INLINE V<D> next(std::size_t l) {
         const D d;
-        const CapBand<T>& band = CapConstants<T>::get().bands[l];
+        const CapBand<T>& band = bands_[l];
         const auto derivative = hn::MulAdd(all(d, static_cast<double>(2 * l - 1)), p_, derivative_before_);
         derivative_before_ = derivative_;  // P'_l = P'_{l-2} + (2l-1) P_{l-1}
         derivative_ = derivative;
@@ -89,6 +89,7 @@ class ZonalLanes {
     }
 
   private:
+    const CapBand<T>* bands_;
     V<D> sine_squared_, even_, lack_;
     V<D> p_, rise_;                        // P_l, P_l - P_{l-1} at |cosσ|
     V<D> derivative_, derivative_before_;  // P'_l, P'_{l-1}
@@ -102,12 +103,12 @@ template <class T>
 struct ArcLanes {
     DegreeRow<T> weight, moment;
 
-    HWY_INLINE ArcLanes(const ClippedCap<Lanes<T>>& cap, std::size_t order) {
+    HWY_INLINE ArcLanes(const ClippedCap<Lanes<T>>& cap, std::size_t order, const CapConstants<T>& constants) {
         const Lanes<T> d;
         const auto cosine = cap.cos_arc;
         const auto sine = cap.sin_arc;
         const auto square = hn::Mul(sine, sine);
-        const CapDegree<T>* degrees = CapConstants<T>::get().degrees.data();
+        const CapDegree<T>* degrees = constants.degrees.data();
         weight.put(0, hn::Add(cap.arc, cap.arc));
         moment.put(0, hn::Zero(d));
         auto re = cosine;
@@ -161,8 +162,8 @@ class UncrossedBands {
   public:
     HWY_INLINE UncrossedBands(const ClippedCap<D>& cap, std::size_t order)
         : cap_(cap),
-          light_(cap.cos_half, cap.sin_half),
-          horizon_(cap.height, cap.horizon_sine),
+          light_(cap.cos_half, cap.sin_half, constants_),
+          horizon_(cap.height, cap.horizon_sine, constants_),
           turn_(kAny ? cap.cos_tilt : hn::Div(cap.cos_tilt, cap.sin_tilt)),
           square_(hn::Mul(cap.sin_tilt, cap.sin_tilt)) {
         powers_in_lanes<T, kAny>(cap.sin_tilt, order, sine_powers_);
@@ -171,7 +172,7 @@ class UncrossedBands {
     template <class Visit>
     HWY_INLINE void solve(std::size_t l, Visit& visit) {
         const D d;
-        const CapBand<T>& band = CapConstants<T>::get().bands[l];
+        const CapBand<T>& band = constants_.bands[l];
         const auto scale = hn::Set(d, 2 * band.inverse_laplace);
         auto part = visit.open(l, hn::Mul(hn::Mul(scale, cap_.edge), light_.next(l)));
         Down s = diagonal(l);
@@ -195,10 +196,9 @@ class UncrossedBands {
     /// Where band l begins.
     HWY_INLINE Down diagonal(std::size_t l) const {
         const D d;
-        const CapConstants<T>& constants = CapConstants<T>::get();
-        const auto n = hn::Set(d, constants.bands[l].diagonal);
+        const auto n = hn::Set(d, constants_.bands[l].diagonal);
         return {kAny ? n : hn::Mul(n, sine_powers_[l]), hn::Zero(d), turn_,
-                &constants.steps[at(static_cast<int>(l), 0)]};
+                &constants_.steps[at(static_cast<int>(l), 0)]};
     }
 
     /// Gives degree m > 0 away and steps to m - 1.
@@ -212,6 +212,7 @@ class UncrossedBands {
         s.n = hn::MulSub(hn::Mul(hn::Set(d, s.steps[m].down_climb), s.turn), s.n, fall);
     }
 
+    const CapConstants<T>& constants_ = CapConstants<T>::get();
     const ClippedCap<D>& cap_;
     ZonalLanes<T> light_, horizon_;
     V<D> turn_, square_;
@@ -233,8 +234,8 @@ class CrossedBands {
   public:
     HWY_INLINE CrossedBands(const ClippedCap<D>& cap, std::size_t order)
         : cap_(cap),
-          light_(cap.cos_half, cap.sin_half),
-          arc_(cap, order),
+          light_(cap.cos_half, cap.sin_half, constants_),
+          arc_(cap, order, constants_),
           turn_(cap.cos_tilt),
           square_(hn::Mul(cap.sin_tilt, cap.sin_tilt)),
           horizon_turn_(cap.height),
@@ -248,9 +249,8 @@ class CrossedBands {
     template <class Visit>
     HWY_INLINE void solve(std::size_t l, Visit& visit) {
         const D d;
-        const CapConstants<T>& constants = CapConstants<T>::get();
-        const CapBand<T>& band = constants.bands[l];
-        const CapStep<T>* steps = &constants.steps[at(static_cast<int>(l), 0)];
+        const CapBand<T>& band = constants_.bands[l];
+        const CapStep<T>* steps = &constants_.steps[at(static_cast<int>(l), 0)];
         const auto along_horizon = go_down(l, band, steps);
         const auto n0 = null_[0];
         const auto n1 = null_[1];
@@ -362,6 +362,7 @@ class CrossedBands {
         return hn::MulAdd(n0, x0, hn::Add(s.dot, s.dot));
     }
 
+    const CapConstants<T>& constants_ = CapConstants<T>::get();
     const ClippedCap<D>& cap_;
     ZonalLanes<T> light_;
     ArcLanes<T> arc_;

@@ -78,7 +78,7 @@ class SectoralBands {
 
   public:
     HWY_INLINE SectoralBands(const ClippedCap<D>& cap, std::size_t order)
-        : arc_(cap, order), turn_(hn::Div(cap.cos_tilt, cap.sin_tilt)) {
+        : arc_(cap, order, constants_), turn_(hn::Div(cap.cos_tilt, cap.sin_tilt)) {
         const D d;
         const auto half = all(d, 0.5);
         sine_ = cap.sin_tilt;
@@ -152,14 +152,13 @@ class SectoralBands {
     /// Where band l begins, after band l - 1.
     HWY_INLINE Down sectoral(std::size_t l) {
         const D d;
-        const CapConstants<T>& constants = CapConstants<T>::get();
-        const CapBand<T>& band = constants.bands[l];
+        const CapBand<T>& band = constants_.bands[l];
         Down s{next_sectoral(l, band),
                hn::Zero(d),
                hn::Zero(d),
                hn::Zero(d),
                turn_,
-               &constants.steps[at(static_cast<int>(l), 0)]};
+               &constants_.steps[at(static_cast<int>(l), 0)]};
         if constexpr (!kPlane) {
             s.horizon = hn::Mul(hn::Set(d, band.diagonal), hn::Mul(power_, horizon_sine_));
         }
@@ -212,6 +211,7 @@ class SectoralBands {
         s.x = below;
     }
 
+    const CapConstants<T>& constants_ = CapConstants<T>::get();
     ArcLanes<T> arc_;
     V<D> turn_;                         // cotθ
     V<D> sine_, across_, own_;          // sinθ, cosσ sinθ, sin²σ sinθ

@@ -224,18 +224,6 @@ void LightShader::disks(std::span<const Vec3<T>> centers, std::span<const Vec3<T
     });
 }
 
-void shade_spheres(std::span<const Vec3d> centers, std::span<const double> radii, const Bsdf& bsdf,
-                   std::span<const double> cos_theta_o, const ShadeSettings& settings, std::span<Rgb> radiance,
-                   std::span<std::int32_t> effort) {
-    LightShader(bsdf, settings).spheres(centers, radii, cos_theta_o, radiance, effort);
-}
-
-void shade_polygons(std::span<const Vec3d> vertices, int vertex_count, const Bsdf& bsdf,
-                    std::span<const double> cos_theta_o, const ShadeSettings& settings, std::span<Rgb> radiance,
-                    std::span<std::int32_t> effort) {
-    LightShader(bsdf, settings).polygons(vertices, vertex_count, cos_theta_o, radiance, effort);
-}
-
 namespace {
 template <class T>
 using In = std::span<const T>;
