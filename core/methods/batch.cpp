@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "base/checks.h"
-#include "regions/cap_checks.h"
-#include "regions/polygon_checks.h"
+#include "regions/region_checks.h"
 #include "shlight/sampling.h"
 
 namespace shlight::methods {

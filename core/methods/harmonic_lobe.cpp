@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "regions/cap_arrays.h"
-#include "regions/cap_shading.h"
-#include "regions/polygon_shading_kernel.h"
+#include "regions/cap_kernels.h"
+#include "regions/polygon_kernels.h"
 
 namespace shlight::methods {
 

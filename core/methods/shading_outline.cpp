@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lobes/boundary_integral.h"
 #include "method.h"
-#include "shading/light_boundary.h"
+#include "regions/boundary.h"
 #include "shlight/cap.h"
 
 namespace shlight::methods {
@@ -33,7 +34,7 @@ class OutlineLobe : public LobeIntegrator {
     }
 
   private:
-    Reflected reflected(std::span<const BoundaryArc> outline) const {
+    Reflected reflected(std::span<const Arc<double>> outline) const {
         const BoundaryIntegral integral = boundary_integral(shape_, cos_theta_o_, outline, tolerance_);
         return {integral.value, integral.points};
     }

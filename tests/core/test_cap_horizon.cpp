@@ -20,8 +20,9 @@
 #include "quad_truth.h"
 #include "quadrature.h"
 #include "random_input.h"
-#include "regions/cap_shading.h"
+#include "regions/cap_kernels.h"
 #include "shlight/basis.h"
+#include "shlight/boost.h"
 #include "shlight/cap.h"
 
 namespace shlight {

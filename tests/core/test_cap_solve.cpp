@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "random_input.h"
+#include "regions/clipped_cap.h"
 #include "shlight/cap.h"
 
 namespace shlight {
@@ -26,7 +27,7 @@ double legendre(int l, int m, double tilt) {
 
 /// ∫ P_l(ω·L) dω over the kept region by Simpson's rule on rings about the axis; α = α_0 + (σ - α_0) u² takes the
 /// square root out of the first ring that the horizon cuts.
-double zonal_integral(int l, double tilt, double half) {
+double zonal_by_rings(int l, double tilt, double half) {
     const auto polynomial = [l](double alpha) { return std::legendre(static_cast<unsigned>(l), std::cos(alpha)); };
     const auto integral = [](double end, const auto& f) {
         const int steps = 4000;
@@ -101,7 +102,7 @@ std::vector<double> solved_band(int l, double tilt, double half) {
             terms[i + j] += rows[i][j] * y[i];
         }
     }
-    const double zonal = zonal_integral(l, tilt, half);
+    const double zonal = zonal_by_rings(l, tilt, half);
     for (int m = 0; m <= l; ++m) {
         terms[static_cast<std::size_t>(m)] += zonal * (m == 0 ? 1 : std::numbers::sqrt2) * legendre(l, m, tilt);
     }
@@ -118,15 +119,40 @@ TEST(CapSolve, AgreesWithFactorization) {
         const double tilt = kPi / 2 + (i % 2 == 0 ? depth : -depth);
         const Vec3d axis(std::sin(tilt), 0, std::cos(tilt));
         cap_coefficients<double>({&axis, 1}, {&half, 1}, order, true, coefficients);
+        const std::vector<double> transcribed = clipped_cap_coefficients(cap_about_axis(axis, half), order);
         for (int l = 1; l < order; ++l) {
             const std::vector<double> expected = solved_band(l, tilt, half);
             for (int m = 0; m <= l; ++m) {
                 const double computed = coefficients[coefficient_index(l, m)];
                 EXPECT_NEAR(computed, expected[static_cast<std::size_t>(m)], 1e-11 * coefficients[0])
                     << "half angle " << half << ", tilt " << tilt << ", l " << l << ", m " << m;
+                EXPECT_NEAR(transcribed[coefficient_index(l, m)], expected[static_cast<std::size_t>(m)],
+                            1e-11 * coefficients[0]);
                 EXPECT_LE(m == 0 ? 0 : std::abs(coefficients[coefficient_index(l, -m)]), 1e-300);
             }
         }
+    }
+}
+
+TEST(CapSolve, KernelsAreTheTranscription) {
+    // Hidden, whole and clipped caps, slivers among them. The transcription's ∫ sin²φ dφ cancels to ε φ_a, which is
+    // some ε / σ of the whole cap's L_00.
+    testing::RandomInput random(21);
+    const int order = 32;
+    std::vector<double> coefficients(coefficient_count(order));
+    for (int i = 0; i < 3000; ++i) {
+        const double half = random.log_uniform(0.01, 1.5);
+        const double reach = i % 3 == 0 ? kPi / 2 : half;
+        const SphericalCap cap = cap_about_axis(random.at_tilt(kPi / 2 + reach * random.uniform(-1, 1)), half);
+        cap_coefficients<double>({&cap, 1}, order, true, coefficients);
+        const std::vector<double> transcribed = clipped_cap_coefficients(cap, order);
+        double largest = 0;
+        for (std::size_t k = 0; k < transcribed.size(); ++k) {
+            const double error = std::abs(coefficients[k] - transcribed[k]);
+            largest = std::isnan(error) ? 1e300 : std::max(largest, error);
+        }
+        EXPECT_LE(largest, 1e-12 * std::sqrt(kPi) * (1 - cap.cosine))
+            << "half angle " << half << ", tilt " << std::acos(cap.axis.z);
     }
 }
 

@@ -2,6 +2,7 @@
 //
 // Values of lobes in lanes, and their integral along the outline of a light.
 #include "lobes/boundary_integral.h"
+#include "regions/boundary.h"
 
 #include <gtest/gtest.h>
 
@@ -53,10 +54,8 @@ TEST(LobeKernels, ValuesInLanesAreTheLobes) {
     EXPECT_LE(largest, 1);
 }
 
-BoundaryArc whole_circle(const Vec3d& axis, double half_angle) {
-    const Vec3d side = glm::normalize(glm::cross(axis, Vec3d(0.3, 0.5, 0.8)));
-    const Vec3d from = std::cos(half_angle) * axis + std::sin(half_angle) * side;
-    return {{axis, std::cos(half_angle), std::sin(half_angle)}, from, from, true};
+Arc<double> circle_about(const Vec3d& axis, double half_angle) {
+    return whole_circle(cap_about_axis(axis, half_angle));
 }
 
 Vec3d near_mirror(RandomInput& random, double cos_theta_o, double spread) {
@@ -77,7 +76,7 @@ TEST(ContourIntegral, WholeCapsMatchDenseCubature) {
             continue;
         }
         ++compared;
-        const BoundaryArc arc = whole_circle(axis, half);
+        const Arc<double> arc = circle_about(axis, half);
         const double truth = lobe_over_cap(shape, cosine, axis, half, 40);
         const BoundaryIntegral fine = boundary_integral(shape, cosine, {&arc, 1}, 1e-8);
         EXPECT_LE(std::abs(fine.value - truth), 1e-5) << "alpha " << alpha << " cos " << cosine << " half " << half;
@@ -99,10 +98,10 @@ TEST(ContourIntegral, AVeryNarrowLobeIsAMirror) {
         const Vec3d v = view_direction(cosine);
         const Vec3d mirror(-v.x, 0, v.z);
         const double half = std::min(0.3, std::asin(mirror.z) / 2);
-        const BoundaryArc around = whole_circle(mirror, half);
+        const Arc<double> around = circle_about(mirror, half);
         // Tails of the bell: (α / ½ half cosθ_o)² and less.
         EXPECT_NEAR(boundary_integral(GgxShape{1e-6}, cosine, {&around, 1}, 1e-6).value, 1, 1e-5);
-        const BoundaryArc beside = whole_circle(glm::normalize(mirror + Vec3d(0, 2.5 * half, 0)), half);
+        const Arc<double> beside = circle_about(glm::normalize(mirror + Vec3d(0, 2.5 * half, 0)), half);
         EXPECT_NEAR(boundary_integral(GgxShape{1e-6}, cosine, {&beside, 1}, 1e-6).value, 0, 1e-5);
     }
 }
@@ -111,7 +110,7 @@ TEST(ContourIntegral, ALobeWithoutAPeakIsAFactorOfTheEvenBell) {
     // A cap above the horizon gets sin²σ cosθ from Lambert's surface, whatever the view.
     for (const double tilt : {0.0, 0.5, 0.9}) {
         for (const double half : {0.05, 0.6}) {
-            const BoundaryArc around = whole_circle({std::sin(tilt), 0, std::cos(tilt)}, half);
+            const Arc<double> around = circle_about({std::sin(tilt), 0, std::cos(tilt)}, half);
             const double truth = std::pow(std::sin(half), 2) * std::cos(tilt);
             for (const double cosine : {0.1, 0.6, 1.0}) {
                 const double value = boundary_integral(LambertShape{}, cosine, {&around, 1}, 1e-7).value;

@@ -21,7 +21,7 @@
 #include "error_record.h"
 #include "quad_polygon.h"
 #include "random_polygon.h"
-#include "regions/polygon_shading_kernel.h"
+#include "regions/polygon_kernels.h"
 #include "shlight/boost.h"
 
 namespace shlight {

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "random_polygon.h"
-#include "regions/polygon_checks.h"
-#include "regions/polygon_shading_kernel.h"
+#include "regions/polygon_kernels.h"
+#include "regions/region_checks.h"
 #include "shlight/polygon.h"
 #include "shlight/shading.h"
 

@@ -19,14 +19,18 @@ inline double safe_length(const Vec3d& v) {
     return is_safe_square(square) ? std::sqrt(square) : std::hypot(v.x, v.y, v.z);
 }
 
+/// The power of two that brings a number, finite and not negative, to 1 … 2, or closer to it; 1 for 0.
+inline double power_of_two_scale(double largest) {
+    // Clamped because the reciprocals of the extreme doubles overflow or are subnormal.
+    return largest > 0 ? std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1022, 1022)) : 1.0;
+}
+
 /// The power of two that makes the square of the finite vector v safe; 1 if it is safe, or if v is 0.
 inline double safe_scale(const Vec3d& v) {
     if (is_safe_square(glm::dot(v, v))) {
         return 1;
     }
-    const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    // Clamped because the reciprocals of the extreme doubles overflow or are subnormal.
-    return largest > 0 ? std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1022, 1022)) : 1.0;
+    return power_of_two_scale(std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}));
 }
 
 }  // namespace shlight

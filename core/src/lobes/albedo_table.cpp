@@ -24,7 +24,7 @@ struct Interval {
     double rest;
 
     explicit Interval(double share) {
-        const double place = std::clamp(share, 0.0, 1.0) * (kSteps - 1);
+        const double place = std::max(0.0, std::min(1.0, share)) * (kSteps - 1);
         first = std::min(static_cast<std::size_t>(place), kSteps - 2);
         rest = place - static_cast<double>(first);
     }

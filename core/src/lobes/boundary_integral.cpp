@@ -33,8 +33,8 @@ constexpr std::array<double, 4> kGauss = {0.417959183673469387755102040816327, 0
 /// Pieces of the boundary that may be waiting or done; past that the estimate stands as it is.
 constexpr int kMostPieces = 96;
 
-/// From this tolerance on, over the albedo, floats will do.
-constexpr double kLeastSingle = 1e-6;
+/// Floats suffice for tolerances, over the albedo, from this one on.
+constexpr double kLeastTolerance32 = 1e-6;
 
 /// A lower view mirrors itself in the horizon so closely that half vectors there lose their digits; what it sees
 /// differs by less than 1e-6 ÷ the lobe's width.
@@ -59,27 +59,25 @@ int points_for(double tolerance) {
 /// not.
 class Path {
   public:
-    Path(const BoundaryArc& arc, const Vec3d& view, double alpha) {
-        const Vec3d center = arc.circle.axis * arc.circle.cosine;
-        const Vec3d u = arc.from - center;
-        const Vec3d v = glm::cross(arc.circle.axis, u);
-        even_out(center + view, u, v, alpha);
+    Path(const Arc<double>& arc, const Vec3d& view, double alpha) : closed_(arc.half >= std::numbers::pi) {
+        const Vec3d u = arc.sine * arc.middle;
+        even_out(arc.cosine * arc.axis + view, u, glm::cross(arc.axis, u), alpha);
         const Vec3d scale(1 / alpha, 1 / alpha, 1);
         path_ = {columns_[0] * scale, columns_[1] * scale, columns_[2] * scale, flatness_};
-        start_ = arc.closed ? 0 : parameter(1, 0);
-        length_ = 2 * std::numbers::pi;
-        if (!arc.closed) {
-            const double square = glm::dot(u, u);
-            const Vec3d end = arc.to - center;
-            const double along = parameter(glm::dot(end, u) / square, glm::dot(end, v) / square) - start_;
-            length_ = along < 0 ? along + 2 * std::numbers::pi : along;
+        if (!is_closed()) {
+            const double c = std::cos(arc.half);
+            const double s = std::sin(arc.half);
+            start_ = parameter(c, -s);
+            length_ = parameter(c, s) - start_;
+            length_ += length_ < 0 ? 2 * std::numbers::pi : 0;
         }
     }
 
+    bool is_closed() const { return closed_; }
     double start() const { return start_; }
     double length() const { return length_; }
 
-    /// As the kernel reads it.
+    /// The path as the kernel reads it.
     const BoundaryPath& columns() const { return path_; }
 
   private:
@@ -111,14 +109,14 @@ class Path {
         flatness_ = std::min(1.0, std::sqrt((form(0, 0) + form(2, 2)) / form(1, 1)));
     }
 
-    /// By half the rapidity atanh(speed).
+    /// A boost of columns 0 and `axis` by half the rapidity atanh(speed).
     void boost_by_half(int axis, double speed) {
         const double whole = 1 / std::sqrt((1 - speed) * (1 + speed));  // cosh of the rapidity
         const double c = std::sqrt((whole + 1) / 2);
         const double s = speed * whole / (2 * c);
         mix(0, axis, c, s, s, c);
     }
-    /// By half the angle of the point (x, y).
+    /// A turn of columns 1 and 2 by half the angle of the point (x, y).
     void turn_by_half(double x, double y) {
         const double length = std::hypot(x, y);
         const double c = std::sqrt((length + std::abs(x)) / 2);
@@ -153,7 +151,9 @@ class Path {
     std::array<Vec3d, 3> columns_;
     std::array<Triple, 3> frame_ = {Triple{1, 0, 0}, Triple{0, 1, 0}, Triple{0, 0, 1}};
     double flatness_ = 1;
-    double start_, length_;
+    bool closed_;
+    double start_ = 0;
+    double length_ = 2 * std::numbers::pi;
     BoundaryPath path_{};
 };
 
@@ -163,12 +163,12 @@ class Boundary {
     Boundary(const LobeShape& shape, double cos_theta_o, double tolerance, double albedo)
         : bell_{shape, cos_theta_o, &gauss_rule(points_for(tolerance / std::max(albedo, kLeastAlbedo)))},
           tolerance_(tolerance),
-          single_(tolerance >= kLeastSingle * albedo) {}
+          f32_(tolerance >= kLeastTolerance32 * albedo) {}
 
     /// share: part of the tolerance.
-    void add(const BoundaryArc& arc, const Vec3d& view, double alpha, double share) {
+    void add(const Arc<double>& arc, const Vec3d& view, double alpha, double share) {
         const Path& path = paths_.emplace_back(arc, view, alpha);
-        if (arc.closed && add_circle(path, share * tolerance_)) {
+        if (path.is_closed() && add_circle(path, share * tolerance_)) {
             return;
         }
         const int parts = std::max(1, static_cast<int>(std::ceil(path.length() / std::numbers::pi - 1e-9)));
@@ -203,7 +203,7 @@ class Boundary {
 
     void densities(const Path& path, std::span<const double> parameters, std::span<double> values) {
         sum_.points += static_cast<int>(bell_.rule->nodes.size() * parameters.size());
-        boundary_densities(bell_, path.columns(), single_, parameters, values);
+        boundary_densities(bell_, path.columns(), f32_, parameters, values);
     }
 
     /// The difference of two rules is the error of the coarser one; that of the finer one is about its power 3/2
@@ -276,7 +276,7 @@ class Boundary {
 
     BoundaryBell bell_;
     double tolerance_;
-    bool single_;  // whether floats will do
+    bool f32_;  // whether floats will do
     std::vector<Path> paths_;
     std::vector<Piece> pieces_;
     BoundaryIntegral sum_{0, 0, 0};
@@ -284,7 +284,7 @@ class Boundary {
 
 }  // namespace
 
-BoundaryIntegral boundary_integral(const LobeShape& shape, double cos_theta_o, std::span<const BoundaryArc> arcs,
+BoundaryIntegral boundary_integral(const LobeShape& shape, double cos_theta_o, std::span<const Arc<double>> arcs,
                                    double tolerance, double albedo) {
     if (!(cos_theta_o > 0)) {
         return {0, 0, 0};
@@ -292,7 +292,7 @@ BoundaryIntegral boundary_integral(const LobeShape& shape, double cos_theta_o, s
     const double cosine = std::max(cos_theta_o, kLeastViewCosine);
     const Vec3d view(std::sqrt((1 - cosine) * (1 + cosine)), 0, cosine);
     Boundary boundary(shape, cosine, tolerance, albedo);
-    for (const BoundaryArc& arc : arcs) {
+    for (const Arc<double>& arc : arcs) {
         boundary.add(arc, view, lobe_width(shape), 1.0 / static_cast<double>(arcs.size()));
     }
     boundary.refine();

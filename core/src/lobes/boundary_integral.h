@@ -10,18 +10,11 @@
 
 #include <span>
 
-#include "shlight/cap.h"
+#include "regions/arcs.h"
 #include "shlight/lobe_shape.h"
 #include "shlight/types.h"
 
 namespace shlight {
-
-/// Part of a region's boundary: counter-clockwise about the circle's axis, the region on the left.
-struct BoundaryArc {
-    SphericalCap circle;
-    Vec3d from, to;  ///< unit, on the circle
-    bool closed;     ///< the whole circle, from wherever
-};
 
 /// ∫ f·cos dω over a region of the upper hemisphere.
 struct BoundaryIntegral {
@@ -33,7 +26,7 @@ struct BoundaryIntegral {
 /// arcs: the whole boundary, in the shading frame. tolerance: of the value, absolute. albedo: of the lobe at this view,
 /// as far as it is known; what a radial rule or floats err by is a share of it.
 /// Precondition: no mirror, 0 ≤ cos_theta_o ≤ 1.
-BoundaryIntegral boundary_integral(const LobeShape& shape, double cos_theta_o, std::span<const BoundaryArc> arcs,
+BoundaryIntegral boundary_integral(const LobeShape& shape, double cos_theta_o, std::span<const Arc<double>> arcs,
                                    double tolerance, double albedo = 1);
 
 }  // namespace shlight

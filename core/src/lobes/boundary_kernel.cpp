@@ -121,10 +121,10 @@ void densities(const BoundaryBell& bell, const Lobe& lobe, const BoundaryPath& p
                    [](T x) { return static_cast<double>(x); });
 }
 
-void boundary_densities_in_lanes(const BoundaryBell& bell, const BoundaryPath& path, bool single,
+void boundary_densities_in_lanes(const BoundaryBell& bell, const BoundaryPath& path, bool f32,
                                  std::span<const double> parameters, std::span<double> values) {
     with_lobe_lanes(bell.shape, [&](const auto& lobe) {
-        if (single) {
+        if (f32) {
             densities<float>(bell, lobe, path, parameters, values);
         } else {
             densities<double>(bell, lobe, path, parameters, values);
@@ -141,9 +141,9 @@ namespace shlight {
 
 HWY_EXPORT(boundary_densities_in_lanes);
 
-void boundary_densities(const BoundaryBell& bell, const BoundaryPath& path, bool single,
+void boundary_densities(const BoundaryBell& bell, const BoundaryPath& path, bool f32,
                         std::span<const double> parameters, std::span<double> values) {
-    HWY_DYNAMIC_DISPATCH(boundary_densities_in_lanes)(bell, path, single, parameters, values);
+    HWY_DYNAMIC_DISPATCH(boundary_densities_in_lanes)(bell, path, f32, parameters, values);
 }
 
 }  // namespace shlight

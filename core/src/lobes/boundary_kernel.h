@@ -27,12 +27,12 @@ struct BoundaryPath {
     double flatness;
 };
 
-/// As many points as a call may have.
+/// The most points of one call.
 inline constexpr std::size_t kBoundaryPoints = 16;
 
-/// values[i] at parameter τ_i = parameters[i], at most kBoundaryPoints of them. single: in float, to some 1e-6 of the
+/// values[i] at parameter τ_i = parameters[i], at most kBoundaryPoints of them. f32: in float, to some 1e-6 of the
 /// lobe.
-void boundary_densities(const BoundaryBell& bell, const BoundaryPath& path, bool single,
+void boundary_densities(const BoundaryBell& bell, const BoundaryPath& path, bool f32,
                         std::span<const double> parameters, std::span<double> values);
 
 }  // namespace shlight

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "lobes/boundary_integral.h"
+#include "regions/boundary.h"
 #include "shlight/lobe_shape.h"
 
 namespace shlight {
@@ -82,7 +83,7 @@ double GgxShape::albedo(double cos_theta_o) const {
     if (alpha == 0) {
         return fresnel_factor(*this, cos_theta_o);
     }
-    const BoundaryArc horizon{{{0, 0, 1}, 0, 1}, {1, 0, 0}, {1, 0, 0}, true};
+    const Arc<double> horizon = whole_circle({{0, 0, 1}, 0, 1});
     return boundary_integral(*this, cos_theta_o, {&horizon, 1}, kAlbedoTolerance).value;
 }
 

@@ -7,6 +7,7 @@
 
 #include "lobes/boundary_integral.h"
 #include "lobes/rough_diffuse.h"
+#include "regions/boundary.h"
 #include "shlight/lobe_shape.h"
 
 namespace shlight {
@@ -61,7 +62,7 @@ double DiffuseShape::value(const Vec3d& wi, const Vec3d& wo) const {
 }
 
 double DiffuseShape::albedo(double cos_theta_o) const {
-    const BoundaryArc horizon{{{0, 0, 1}, 0, 1}, {1, 0, 0}, {1, 0, 0}, true};
+    const Arc<double> horizon = whole_circle({{0, 0, 1}, 0, 1});
     return boundary_integral(*this, cos_theta_o, {&horizon, 1}, kDiffuseAlbedoTolerance).value;
 }
 

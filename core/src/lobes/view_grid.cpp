@@ -17,7 +17,7 @@ double view_angle(int node) {
 }
 
 double view_position(double cos_theta_o) {
-    return std::acos(std::clamp(cos_theta_o, 0.0, 1.0)) * ((kViewNodes - 1) * 2 / std::numbers::pi);
+    return std::acos(std::max(0.0, std::min(1.0, cos_theta_o))) * ((kViewNodes - 1) * 2 / std::numbers::pi);
 }
 
 ViewInterval::ViewInterval(double cos_theta_o) {

@@ -13,7 +13,7 @@
 #include <hwy/contrib/math/math-inl.h>
 
 #include "lobes/fit_table.h"
-#include "regions/cap_lanes-inl.h"
+#include "regions/boost_lanes-inl.h"
 #include "shlight/boosted_fit.h"
 #include "simd/gather-inl.h"
 #include "simd/lanes-inl.h"
@@ -91,7 +91,7 @@ HWY_INLINE V<Floats> narrowness_in_lanes(V<Floats> alpha, V<Floats> log_cosine) 
 }
 
 /// Boost's constructor in lanes, with one division for all quotients.
-HWY_INLINE BoostLanes<Doubles> boost_in_lanes(V<Doubles> sine, V<Doubles> cosine, V<Doubles> narrowness) {
+HWY_INLINE BoostLanes boost_in_lanes(V<Doubles> sine, V<Doubles> cosine, V<Doubles> narrowness) {
     const Doubles d;
     const auto one = all(d, 1);
     const auto r = hn::Sub(one, narrowness);
@@ -153,7 +153,7 @@ void find_views_in_lanes(const double* cos_theta_o, std::size_t count, const Vie
     }
 }
 
-HWY_INLINE void store_boost(const BoostLanes<Doubles>& boost, std::size_t i, const BoostOutput& out) {
+HWY_INLINE void store_boost(const BoostLanes& boost, std::size_t i, const BoostOutput& out) {
     const Doubles d;
     hn::StoreU(boost.speed, d, out.speed + i);
     hn::StoreU(boost.one_minus_speed, d, out.one_minus_speed + i);

@@ -34,14 +34,14 @@ HeightStrip strip_of(double complement) {
     return strip;
 }
 
-/// Of the next smaller k' in a table: its strip is lower, and at the same height sc is larger, so the bound holds.
+/// The strip of the next smaller k' in a table: it is lower, and at the same height sc is larger, so the bound holds.
 const HeightStrip& strip_below(double complement) {
     constexpr int kRows = 256;
     static const std::vector<HeightStrip> strips = [] {
         std::vector<HeightStrip> made;
         for (int i = 0; i <= kRows; ++i) {
-            const double lack = 1 - static_cast<double>(i) / kRows;
-            made.push_back(strip_of(std::max(1 - lack * lack, 1e-9)));
+            const double distance = 1 - static_cast<double>(i) / kRows;
+            made.push_back(strip_of(std::max(1 - distance * distance, 1e-9)));
         }
         return made;
     }();
@@ -51,7 +51,7 @@ const HeightStrip& strip_below(double complement) {
 }  // namespace
 
 BoundaryPoints::BoundaryPoints(double sin_long, double complement) {
-    const HeightStrip& strip = strip_below(std::min(complement, 1.0));
+    const HeightStrip& strip = strip_below(std::min(1.0, complement));
     for (std::size_t i = 0; i < heights_.size(); ++i) {
         heights_[i] = {strip[i].s, std::asinh(sin_long * strip[i].tangent)};
     }
@@ -62,7 +62,7 @@ Division BoundaryPoints::closed(double quarter, double degree, double digits) co
     for (const Height& h : heights_) {
         least = std::min(least, (degree * h.growth + digits) * 4 * quarter / (2 * std::numbers::pi * h.s));
     }
-    const int points = static_cast<int>(least) + 2;
+    const int points = static_cast<int>(std::min<double>(kMostPieces * kMaxGaussPoints, least)) + 2;
     const int pieces = (points + kMaxGaussPoints - 1) / kMaxGaussPoints;
     return {pieces, (points + pieces - 1) / pieces};
 }
@@ -103,5 +103,17 @@ int points_across(double half, double degree, double digits) {
     }
     return std::clamp(static_cast<int>(least) + 1, 1, kMaxGaussPoints);
 }
+
+template <class T>
+double digits_for(const SphericalEllipse<Wider<T>>& ellipse, int order) {
+    // Double cannot resolve more than this.
+    constexpr double kLeastTolerance = 1e-19;
+    const double allowed = 0.25 * order * std::numeric_limits<T>::epsilon() *
+                           static_cast<double>(ellipse.least_solid_angle() / ellipse.boundary());
+    return -std::log(std::max(allowed, kLeastTolerance));
+}
+
+template double digits_for<float>(const SphericalEllipse<double>&, int);
+template double digits_for<double>(const SphericalEllipse<long double>&, int);
 
 }  // namespace shlight

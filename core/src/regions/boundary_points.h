@@ -10,13 +10,14 @@
 
 #include <array>
 
-#include "regions/arc_rows.h"
+#include "regions/arcs.h"
+#include "regions/spherical_ellipse.h"
 
 namespace shlight {
 
 class BoundaryPoints {
   public:
-    /// Of a boundary with this sine of the longer half angle and this k'.
+    /// sin_long: sine of the cone's longer half angle; complement: its k'.
     BoundaryPoints(double sin_long, double complement);
 
     /// So many points that harmonics of this degree err by e^-digits of their height.
@@ -36,5 +37,10 @@ class BoundaryPoints {
 
 /// Gauss points across a line on the sphere that reaches from -half to half [rad], half < π/2.
 int points_across(double half, double degree, double digits);
+
+/// Natural logarithm of the reciprocal of what a harmonic's integral over a disk may err by, as a part of its largest
+/// value along the boundary, for coefficients in T.
+template <class T>
+double digits_for(const SphericalEllipse<Wider<T>>& ellipse, int order);
 
 }  // namespace shlight

@@ -9,8 +9,8 @@
 #include "base/checks.h"
 #include "base/exact_sums.h"
 #include "base/safe_length.h"
-#include "regions/cap_checks.h"
-#include "regions/cap_rows.h"
+#include "regions/cap_kernels.h"
+#include "regions/region_checks.h"
 
 namespace shlight {
 namespace {

@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "regions/cap_spheres-inl.h"
+#include "regions/cap_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
@@ -22,7 +22,7 @@ constexpr std::size_t kLanes = kLaneCount<Doubles>;
 
 /// Writes whole vectors, to arrays that lie `stride` apart.
 template <class T>
-void circles_of(const Vec3<T>* centers, const T* radii, std::size_t count, double* members, std::size_t stride) {
+void caps_of(const Vec3<T>* centers, const T* radii, std::size_t count, double* members, std::size_t stride) {
     const Doubles d;
     const hn::Rebind<T, Doubles> own;
     const auto widened = [&](V<decltype(own)> v) HWY_ATTR {
@@ -84,13 +84,13 @@ std::size_t sound_float(const Vec3<float>* centers, const float* radii, std::siz
 std::size_t sound_double(const Vec3<double>* centers, const double* radii, std::size_t count) {
     return sound(centers, radii, count);
 }
-void circles_of_float(const Vec3<float>* centers, const float* radii, std::size_t count, double* members,
-                      std::size_t stride) {
-    circles_of(centers, radii, count, members, stride);
+void caps_of_float(const Vec3<float>* centers, const float* radii, std::size_t count, double* members,
+                   std::size_t stride) {
+    caps_of(centers, radii, count, members, stride);
 }
-void circles_of_double(const Vec3<double>* centers, const double* radii, std::size_t count, double* members,
-                       std::size_t stride) {
-    circles_of(centers, radii, count, members, stride);
+void caps_of_double(const Vec3<double>* centers, const double* radii, std::size_t count, double* members,
+                    std::size_t stride) {
+    caps_of(centers, radii, count, members, stride);
 }
 
 }  // namespace
@@ -102,8 +102,8 @@ namespace shlight {
 
 HWY_EXPORT(sound_float);
 HWY_EXPORT(sound_double);
-HWY_EXPORT(circles_of_float);
-HWY_EXPORT(circles_of_double);
+HWY_EXPORT(caps_of_float);
+HWY_EXPORT(caps_of_double);
 
 std::size_t sound_spheres(const Vec3<float>* centers, const float* radii, std::size_t count) {
     return HWY_DYNAMIC_DISPATCH(sound_float)(centers, radii, count);
@@ -114,11 +114,11 @@ std::size_t sound_spheres(const Vec3<double>* centers, const double* radii, std:
 
 void CapBatch::set_spheres(std::span<const Vec3<float>> centers, const float* radii) {
     resize(centers.size());
-    HWY_DYNAMIC_DISPATCH(circles_of_float)(centers.data(), radii, centers.size(), members_.data(), stride_);
+    HWY_DYNAMIC_DISPATCH(caps_of_float)(centers.data(), radii, centers.size(), members_.data(), stride_);
 }
 void CapBatch::set_spheres(std::span<const Vec3<double>> centers, const double* radii) {
     resize(centers.size());
-    HWY_DYNAMIC_DISPATCH(circles_of_double)(centers.data(), radii, centers.size(), members_.data(), stride_);
+    HWY_DYNAMIC_DISPATCH(caps_of_double)(centers.data(), radii, centers.size(), members_.data(), stride_);
 }
 
 }  // namespace shlight

@@ -29,14 +29,14 @@ struct SphereArrays {
 /// Circles as the kernels read them. Keeps its memory.
 class CapBatch {
   public:
-    /// Those that it holds are lost.
+    /// The caps that the batch holds are lost.
     void resize(std::size_t count) {
         stride_ = (count + kStep - 1) / kStep * kStep;
         members_.resize(kMembers * stride_);
     }
     void set(std::size_t i, const SphericalCap& circle) {
         const Vec3d& axis = circle.axis;
-        // From the smaller pair: near hemispheres may be seen straight above or below.
+        // The smaller pair is taken: near hemispheres may be seen straight above or below.
         const double crossing = circle.sine < std::abs(circle.cosine)
                                     ? (circle.sine - axis.z) * (circle.sine + axis.z)
                                     : axis.x * axis.x + axis.y * axis.y - circle.cosine * circle.cosine;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The integrals of the basis over caps, band by band, one light in each lane (docs/theory.md, 2 and 3).
+// The integrals of the basis over caps, band by band, one light in each lane (docs/theory.md, 2 and 3; clipped_cap.h is
+// the same in scalars).
 // Included once per instruction set.
 #if defined(SHLIGHT_KERNELS_CAP_BANDS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_CAP_BANDS_INL_H_
@@ -71,7 +72,7 @@ class ZonalLanes {
     ZonalLanes(V<D> cosine, V<D> sine, const CapConstants<T>& constants) : bands_(constants.bands.data()) {
         const D d;
         sine_squared_ = hn::Mul(sine, sine);
-        lack_ = hn::Div(sine_squared_, hn::Add(all(d, 1), hn::Abs(cosine)));
+        one_minus_cos_ = hn::Div(sine_squared_, hn::Add(all(d, 1), hn::Abs(cosine)));
         even_ = hn::IfThenElse(hn::Lt(cosine, hn::Zero(d)), hn::Neg(sine_squared_), sine_squared_);
         p_ = all(d, 1);
         rise_ = derivative_ = derivative_before_ = hn::Zero(d);
@@ -83,14 +84,15 @@ class ZonalLanes {
         const auto derivative = hn::MulAdd(all(d, static_cast<double>(2 * l - 1)), p_, derivative_before_);
         derivative_before_ = derivative_;  // P'_l = P'_{l-2} + (2l-1) P_{l-1}
         derivative_ = derivative;
-        rise_ = hn::MulSub(hn::Set(d, band.keep_rise), rise_, hn::Mul(hn::Mul(hn::Set(d, band.lessen), lack_), p_));
+        rise_ =
+            hn::MulSub(hn::Set(d, band.rise_a), rise_, hn::Mul(hn::Mul(hn::Set(d, band.rise_b), one_minus_cos_), p_));
         p_ = hn::Add(p_, rise_);
         return hn::Mul(l % 2 == 0 ? even_ : sine_squared_, derivative);
     }
 
   private:
     const CapBand<T>* bands_;
-    V<D> sine_squared_, even_, lack_;
+    V<D> sine_squared_, even_, one_minus_cos_;
     V<D> p_, rise_;                        // P_l, P_l - P_{l-1} at |cosσ|
     V<D> derivative_, derivative_before_;  // P'_l, P'_{l-1}
 };
@@ -100,10 +102,10 @@ class ZonalLanes {
 ///   D_m = sin ma cos a - m cos ma sin a.
 /// For short arcs the terms of D_m agree to a³, but D_{m+1} = cos a D_m + (m+1) sin²a sin ma sums terms of one sign.
 template <class T>
-struct ArcLanes {
+struct HorizonIntegrals {
     DegreeRow<T> weight, moment;
 
-    HWY_INLINE ArcLanes(const ClippedCap<Lanes<T>>& cap, std::size_t order, const CapConstants<T>& constants) {
+    HWY_INLINE HorizonIntegrals(const ClippedCap<Lanes<T>>& cap, std::size_t order, const CapConstants<T>& constants) {
         const Lanes<T> d;
         const auto cosine = cap.cos_arc;
         const auto sine = cap.sin_arc;
@@ -193,7 +195,7 @@ class UncrossedBands {
         const CapStep<T>* steps;
     };
 
-    /// Where band l begins.
+    /// The start of band l, at m = l.
     HWY_INLINE Down diagonal(std::size_t l) const {
         const D d;
         const auto n = hn::Set(d, constants_.bands[l].diagonal);
@@ -206,10 +208,10 @@ class UncrossedBands {
     HWY_INLINE void step_down(std::size_t m, Down& s, Visit& visit, typename Visit::Part& part) const {
         const D d;
         visit.put(part, m, kAny ? hn::Mul(s.n, sine_powers_[m]) : s.n);
-        auto fall = hn::Mul(hn::Set(d, s.steps[m].down_fall), s.n_above);
-        fall = kAny ? hn::Mul(fall, square_) : fall;
+        auto back = hn::Mul(hn::Set(d, s.steps[m].down_b), s.n_above);
+        back = kAny ? hn::Mul(back, square_) : back;
         s.n_above = s.n;
-        s.n = hn::MulSub(hn::Mul(hn::Set(d, s.steps[m].down_climb), s.turn), s.n, fall);
+        s.n = hn::MulSub(hn::Mul(hn::Set(d, s.steps[m].down_a), s.turn), s.n, back);
     }
 
     const CapConstants<T>& constants_ = CapConstants<T>::get();
@@ -252,8 +254,8 @@ class CrossedBands {
         const CapBand<T>& band = constants_.bands[l];
         const CapStep<T>* steps = &constants_.steps[at(static_cast<int>(l), 0)];
         const auto along_horizon = go_down(l, band, steps);
-        const auto n0 = null_[0];
-        const auto n1 = null_[1];
+        const auto n0 = homogeneous_[0];
+        const auto n1 = homogeneous_[1];
         const auto n1n1 = hn::Mul(hn::Mul(n1, n1), square_);
         auto green = hn::Div(hn::Set(d, band.casoratian), hn::MulAdd(n0, n0, n1n1));
         green = hn::Mul(green, hn::Mul(cap_.sin_tilt, cap_.horizon_sine));
@@ -267,7 +269,7 @@ class CrossedBands {
     }
 
     /// N_m of the present band.
-    HWY_INLINE V<D> null(std::size_t m) const { return full(null_[m], m); }
+    HWY_INLINE V<D> homogeneous(std::size_t m) const { return full(homogeneous_[m], m); }
 
   private:
     struct Down {
@@ -278,9 +280,9 @@ class CrossedBands {
 
     HWY_INLINE V<D> lowered(V<D> here, V<D> above, const CapStep<T>& step, V<D> turn, V<D> square) {
         const D d;
-        auto fall = hn::Mul(hn::Set(d, step.down_fall), above);
-        fall = hn::Mul(fall, square);
-        return hn::MulSub(hn::Mul(hn::Set(d, step.down_climb), turn), here, fall);
+        auto back = hn::Mul(hn::Set(d, step.down_b), above);
+        back = hn::Mul(back, square);
+        return hn::MulSub(hn::Mul(hn::Set(d, step.down_a), turn), here, back);
     }
 
     /// N_m with its power of sinθ.
@@ -289,7 +291,7 @@ class CrossedBands {
     /// Adds degree m > 0 to the sums and steps to m - 1.
     HWY_INLINE void down_site(std::size_t m, const CapStep<T>& step, Down& s) {
         const D d;
-        null_.put(m, s.n);
+        homogeneous_.put(m, s.n);
         above_.put(m, s.u);
         const auto right = hn::Neg(hn::Mul(hn::Mul(s.h, arc_.moment[m]), horizon_powers_[m]));
         auto slope = hn::Mul(hn::Mul(hn::Set(d, step.ladder), s.h_above), horizon_square_);
@@ -306,7 +308,7 @@ class CrossedBands {
         s.n = n;
     }
 
-    /// Fills null_ with N, above_ with u, right_ with R. Returns the horizon's part of l(l+1) ∫ P_l(ω·L).
+    /// Fills homogeneous_ with N, above_ with u, right_ with R. Returns the horizon's part of l(l+1) ∫ P_l(ω·L).
     HWY_INLINE V<D> go_down(std::size_t l, const CapBand<T>& band, const CapStep<T>* steps) {
         const D d;
         const auto zero = hn::Zero(d);
@@ -315,7 +317,7 @@ class CrossedBands {
         for (std::size_t m = l; m > 0; --m) {
             down_site(m, steps[m], s);
         }
-        null_.put(0, s.n);
+        homogeneous_.put(0, s.n);
         above_.put(0, s.u);
         const auto slope = hn::Mul(hn::Mul(hn::Set(d, steps[0].ladder), s.h_above), horizon_square_);
         const auto along = hn::MulAdd(s.n, hn::Mul(slope, arc_.weight[0]), s.along);
@@ -335,13 +337,13 @@ class CrossedBands {
         const D d;
         s.p = hn::MulAdd(s.q, right_[m], hn::Mul(s.p, cap_.sin_tilt));
         s.u = above_[m];
-        const auto n = null_[m];
+        const auto n = homogeneous_[m];
         const auto x = hn::MulAdd(n, s.p, hn::Mul(s.q, s.u));
         s.dot = hn::MulAdd(full(n, m), x, s.dot);
         visit.term(sums, m, full(n, m), x);
-        auto fall = hn::Mul(hn::Set(d, step.up_fall), s.q_below);
-        fall = hn::Mul(fall, square_);
-        const auto q = hn::MulSub(hn::Mul(hn::Set(d, step.up_climb), s.turn), s.q, fall);
+        auto back = hn::Mul(hn::Set(d, step.up_b), s.q_below);
+        back = hn::Mul(back, square_);
+        const auto q = hn::MulSub(hn::Mul(hn::Set(d, step.up_a), s.turn), s.q, back);
         s.q_below = s.q;
         s.q = q;
     }
@@ -350,9 +352,9 @@ class CrossedBands {
     template <class Visit>
     HWY_INLINE V<D> go_up(std::size_t l, const CapStep<T>* steps, Visit& visit, typename Visit::Band& sums) {
         const D d;
-        const auto n0 = null_[0];
+        const auto n0 = homogeneous_[0];
         const auto u0 = above_[0];
-        const auto q0 = hn::Neg(null_[1]);
+        const auto q0 = hn::Neg(homogeneous_[1]);
         const auto x0 = hn::Mul(q0, u0);
         visit.term(sums, 0, n0, x0);
         Up s{n0, q0, hn::Zero(d), u0, hn::Zero(d), turn_};
@@ -365,10 +367,10 @@ class CrossedBands {
     const CapConstants<T>& constants_ = CapConstants<T>::get();
     const ClippedCap<D>& cap_;
     ZonalLanes<T> light_;
-    ArcLanes<T> arc_;
+    HorizonIntegrals<T> arc_;
     V<D> turn_, square_, horizon_turn_, horizon_square_;
     DegreeRow<T> sine_powers_, horizon_powers_;
-    DegreeRow<T> null_, above_, right_;
+    DegreeRow<T> homogeneous_, above_, right_;
 };
 
 }  // namespace shlight::HWY_NAMESPACE

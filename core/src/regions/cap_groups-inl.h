@@ -19,7 +19,6 @@
 
 #include "regions/cap_arrays.h"
 #include "regions/cap_lanes-inl.h"
-#include "regions/cap_spheres-inl.h"
 #include "regions/cap_sums-inl.h"
 #include "simd/lanes-inl.h"
 
@@ -105,8 +104,8 @@ class LightList {
     std::size_t count_ = 0;
 };
 
-/// The circles in a vector's lanes: the lower half and the upper, which are the same if it is one of doubles.
-struct CirclePair {
+/// The caps in a vector's lanes: the lower half and the upper, which are the same if it is one of doubles.
+struct CapPair {
     SphericalCapLanes<Doubles> low, high;
 };
 
@@ -125,48 +124,48 @@ HWY_INLINE V<Doubles> loaded(const double* values, const std::uint32_t* indices,
     return in_a_row ? hn::LoadU(Doubles(), values + indices[0]) : gathered(Doubles(), values, indices);
 }
 
-HWY_INLINE SphericalCapLanes<Doubles> load_circle(const CapArrays& circles, const std::uint32_t* indices) {
+HWY_INLINE SphericalCapLanes<Doubles> load_cap(const CapArrays& caps, const std::uint32_t* indices) {
     const bool in_a_row = are_in_a_row(Doubles(), indices);
-    const auto x = loaded(circles.x, indices, in_a_row);
-    const auto y = loaded(circles.y, indices, in_a_row);
+    const auto x = loaded(caps.x, indices, in_a_row);
+    const auto y = loaded(caps.y, indices, in_a_row);
     return {x,
             y,
-            loaded(circles.z, indices, in_a_row),
-            loaded(circles.cosine, indices, in_a_row),
-            loaded(circles.sine, indices, in_a_row),
+            loaded(caps.z, indices, in_a_row),
+            loaded(caps.cosine, indices, in_a_row),
+            loaded(caps.sine, indices, in_a_row),
             hn::MulAdd(x, x, hn::Mul(y, y)),
-            loaded(circles.crossing_squared, indices, in_a_row)};
+            loaded(caps.crossing_squared, indices, in_a_row)};
 }
 
-/// A bit for each lane: which circles cross the plane z = 0, or lie below it.
+/// A bit for each lane: which caps cross the plane z = 0, or lie below it.
 struct Sides {
     std::uint32_t crossing, hidden;
 };
 
-/// Circles from memory, by number, or those of the lights' own numbers.
+/// Caps from memory, by number, or those of the lights' own numbers.
 template <class T>
-class StoredCircles {
+class StoredCaps {
   public:
     using Number = T;
-    using Loaded = CirclePair;
+    using Loaded = CapPair;
 
-    explicit StoredCircles(const CapArrays& circles, const std::uint32_t* numbers = nullptr)
-        : circles_(circles), numbers_(numbers) {}
+    explicit StoredCaps(const CapArrays& caps, const std::uint32_t* numbers = nullptr)
+        : caps_(caps), numbers_(numbers) {}
 
     HWY_INLINE Loaded load(Chosen<T> chosen) const {
         for (std::size_t lane = 0; numbers_ != nullptr && lane < chosen.size(); ++lane) {
             chosen[lane] = numbers_[chosen[lane]];
         }
-        return {load_circle(circles_, chosen.data()), load_circle(circles_, chosen.data() + kHigh)};
+        return {load_cap(caps_, chosen.data()), load_cap(caps_, chosen.data() + kHigh)};
     }
-    static HWY_INLINE Sides sides(const Loaded& circles) {
-        const Sides low = half(circles.low);
-        const Sides high = half(circles.high);
+    static HWY_INLINE Sides sides(const Loaded& caps) {
+        const Sides low = half(caps.low);
+        const Sides high = half(caps.high);
         return {low.crossing | high.crossing << kHigh, low.hidden | high.hidden << kHigh};
     }
-    static HWY_INLINE CirclePair pair(const Loaded& circles) { return circles; }
-    static HWY_INLINE SphericalCapLanes<Lanes<T>> narrow(const Loaded& circles) {
-        return narrowed_circle<T>(circles.low, circles.high);
+    static HWY_INLINE CapPair pair(const Loaded& caps) { return caps; }
+    static HWY_INLINE SphericalCapLanes<Lanes<T>> narrow(const Loaded& caps) {
+        return narrowed_cap<T>(caps.low, caps.high);
     }
 
   private:
@@ -180,19 +179,19 @@ class StoredCircles {
         return {bits_of(d, crossing), bits_of(d, hn::AndNot(crossing, hidden))};
     }
 
-    CapArrays circles_;
+    CapArrays caps_;
     const std::uint32_t* numbers_;
 };
 
-/// Circles of spheres, found where they are loaded.
-class SphereCircles {
+/// Caps of spheres, found where they are loaded.
+class SphereCaps {
   public:
     using Number = float;
     struct Loaded {
         V<Floats> x, y, z, r;
     };
 
-    explicit SphereCircles(const SphereArrays& spheres) : spheres_(spheres) {}
+    explicit SphereCaps(const SphereArrays& spheres) : spheres_(spheres) {}
 
     HWY_INLINE Loaded load(const Chosen<float>& chosen) const {
         const Floats d;
@@ -220,7 +219,7 @@ class SphereCircles {
         const Floats d;
         return {bits_of(d, hn::Lt(hn::Abs(s.z), s.r)), bits_of(d, hn::Le(s.z, hn::Neg(s.r)))};
     }
-    static HWY_INLINE CirclePair pair(const Loaded& s) {
+    static HWY_INLINE CapPair pair(const Loaded& s) {
         return {cap_of_sphere_in_lanes<float>(low(s.x), low(s.y), low(s.z), low(s.r)),
                 cap_of_sphere_in_lanes<float>(high(s.x), high(s.y), high(s.z), high(s.r))};
     }
@@ -253,7 +252,7 @@ class SphereCircles {
 };
 
 /// Batches of caps. Work: what is done with them.
-///   Circles: StoredCircles or SphereCircles, which circles() gives;
+///   Caps: StoredCaps or SphereCaps, which caps() gives;
 ///   kPlane: whether the horizon is the plane z = 0, kept_whole(): whether there is none at all;
 ///   order();
 ///   prepare<kCrossing>(loaded, chosen, cap): lights' caps, and what else `take` needs of them;
@@ -261,8 +260,8 @@ class SphereCircles {
 ///   hide(first, bits): lights below the horizon, a bit for each from `first` on.
 template <class Work>
 class CapGroups {
-    using Circles = typename Work::Circles;
-    using T = typename Circles::Number;
+    using Caps = typename Work::Caps;
+    using T = typename Caps::Number;
 
   public:
     explicit CapGroups(Work& work) : work_(work), choice_(work.order()) {}
@@ -282,8 +281,8 @@ class CapGroups {
     void run_part(std::size_t first, std::size_t last) {
         crossing_.clear();
         uncrossed_.clear();
-        others_[0].clear();
-        others_[1].clear();
+        fallback_[0].clear();
+        fallback_[1].clear();
         for (std::size_t i = first; i < last; i += kLanes) {
             sort(i, std::min(kLanes, last - i));
         }
@@ -298,16 +297,16 @@ class CapGroups {
         const hn::Rebind<std::uint32_t, Lanes<T>> du;
         const auto last = hn::Set(du, static_cast<std::uint32_t>(first + count - 1));
         hn::StoreU(hn::Min(row_from(d, first), last), du, chosen.data());
-        const auto loaded = work_.circles().load(chosen);
-        const Sides sides = work_.kept_whole() ? Sides{0, 0} : Circles::sides(loaded);
+        const auto loaded = work_.caps().load(chosen);
+        const Sides sides = work_.kept_whole() ? Sides{0, 0} : Caps::sides(loaded);
         const std::uint32_t all_lanes = (1U << count) - 1;
         const std::uint32_t crossing = sides.crossing & all_lanes;
         const std::uint32_t hidden = sides.hidden & all_lanes;
         const std::uint32_t others = all_lanes & ~(crossing | hidden);
         if (crossing == kFull) {
-            take_most<true>(loaded, chosen);
+            take_fast<true>(loaded, chosen);
         } else if (others == kFull) {
-            take_most<false>(loaded, chosen);
+            take_fast<false>(loaded, chosen);
         } else {
             crossing_.add_block(first, count, crossing);
             uncrossed_.add_block(first, count, others);
@@ -318,33 +317,33 @@ class CapGroups {
     template <bool kCrossing>
     HWY_INLINE void run_group(const LightList& lights) {
         lights.for_each_vector<T>([&](const Chosen<T>& chosen)
-                                      HWY_ATTR { take_most<kCrossing>(work_.circles().load(chosen), chosen); });
-        others_[kCrossing].template for_each_vector<T>([&](const Chosen<T>& chosen) HWY_ATTR {
+                                      HWY_ATTR { take_fast<kCrossing>(work_.caps().load(chosen), chosen); });
+        fallback_[kCrossing].template for_each_vector<T>([&](const Chosen<T>& chosen) HWY_ATTR {
             ClippedCap<Lanes<T>> cap;
-            work_.template prepare<kCrossing>(work_.circles().load(chosen), chosen, cap);
-            work_.template take<typename Bands<kCrossing>::Others>(cap, chosen);
+            work_.template prepare<kCrossing>(work_.caps().load(chosen), chosen, cap);
+            work_.template take<typename Bands<kCrossing>::Fallback>(cap, chosen);
         });
     }
 
     /// Lanes that need other recurrences are put on a list, to be taken again.
     template <bool kCrossing>
-    HWY_INLINE void take_most(const typename Circles::Loaded& loaded, const Chosen<T>& chosen) {
+    HWY_INLINE void take_fast(const typename Caps::Loaded& loaded, const Chosen<T>& chosen) {
         const Lanes<T> d;
         ClippedCap<Lanes<T>> cap;
         work_.template prepare<kCrossing>(loaded, chosen, cap);
-        const auto others = choice_.template others<kCrossing>(cap);
-        if (!hn::AllTrue(d, others)) {
-            work_.template take<typename Bands<kCrossing>::Most>(cap, chosen);
+        const auto fallback = choice_.template needs_fallback<kCrossing>(cap);
+        if (!hn::AllTrue(d, fallback)) {
+            work_.template take<typename Bands<kCrossing>::Fast>(cap, chosen);
         }
-        if (!hn::AllFalse(d, others)) {
-            others_[kCrossing].add_marked(d, others, chosen);
+        if (!hn::AllFalse(d, fallback)) {
+            fallback_[kCrossing].add_marked(d, fallback, chosen);
         }
     }
 
     Work& work_;
     BandChoice<T> choice_;
     LightList crossing_, uncrossed_;
-    std::array<LightList, 2> others_;  // of circles that do not cross the horizon, and that do
+    std::array<LightList, 2> fallback_;  // of caps that do not cross the horizon, and that do
 };
 
 }  // namespace shlight::HWY_NAMESPACE

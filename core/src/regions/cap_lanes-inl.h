@@ -16,6 +16,7 @@
 #include <limits>
 #include <numbers>
 
+#include "regions/boost_lanes-inl.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -36,27 +37,13 @@ struct ClippedCap {
     V<D> height, horizon_sine;  ///< z_0 and √(1 - z_0²), which a narrow boost needs beside it
 };
 
-/// As CapArrays, and a square that would lose digits if it were taken of rounded members.
+/// A cap in each lane, and squares that would lose digits if they were taken of rounded members.
 template <class D>
 struct SphericalCapLanes {
     V<D> x, y, z;
     V<D> cosine, sine;
     V<D> tilt_squared;      ///< sin²θ
     V<D> crossing_squared;  ///< sin²σ - L_z², positive where the circle crosses the plane z = 0
-};
-
-/// As Boost (boost.h).
-template <class D>
-struct BoostLanes {
-    V<D> sin_tilt, cos_tilt;
-    V<D> speed, one_minus_speed, gamma;
-    V<D> horizon_x, horizon_z;
-    V<D> horizon_height, horizon_sine;
-};
-
-/// Those of as many lobes as there are lanes for float.
-struct BoostPair {
-    BoostLanes<Doubles> low, high;
 };
 
 /// 1 - x for x = cos α, without cancellation.
@@ -109,30 +96,30 @@ HWY_INLINE ClippedCap<D> cap_across_plane(D d, const SphericalCapLanes<D>& circl
     const auto wide = hn::Lt(circle.cosine, zero);
     const auto cosine = hn::Abs(circle.cosine);
     const auto z = hn::IfThenElse(wide, hn::Neg(circle.z), circle.z);
-    const auto lack = hn::Div(hn::Mul(circle.sine, circle.sine), hn::Add(one, cosine));
-    const auto turn =
-        arctangent(d, hn::Mul(hn::Mul(chord, z), lack), hn::MulAdd(chord, chord, hn::Mul(hn::Mul(cosine, z), z)));
-    const auto half_area = hn::MulAdd(cap.edge, lack, turn);
+    const auto one_minus_cos = hn::Div(hn::Mul(circle.sine, circle.sine), hn::Add(one, cosine));
+    const auto turn = arctangent(d, hn::Mul(hn::Mul(chord, z), one_minus_cos),
+                                 hn::MulAdd(chord, chord, hn::Mul(hn::Mul(cosine, z), z)));
+    const auto half_area = hn::MulAdd(cap.edge, one_minus_cos, turn);
     const auto area = hn::Add(half_area, half_area);
     const auto kept = hn::IfThenElse(wide, hn::Sub(all(d, 2 * std::numbers::pi), area), area);
     cap.solid_angle = hn::Max(zero, kept);
     return cap;
 }
 
-/// The circles of a light and of the horizon, and the triangle of their poles and a point where they cross. Each pair
+/// The caps of a light and of the horizon, and the triangle of their poles and a point where they cross. Each pair
 /// (`chord`, cosine) is the product of two sides' sines times the (sine, cosine) of the angle between those sides.
 template <class D>
 struct ContactLanes {
     SphericalCapLanes<D> light;
     V<D> height, sine;   // the horizon, height ≤ 0
-    V<D> chord_squared;  // not positive where the circles do not cross
+    V<D> chord_squared;  // not positive where the caps do not cross
     V<D> corner;         // cosθ - cosσ z_0: at the crossing
     V<D> arc;            // cosσ - z_0 cosθ: at the horizon's pole
     V<D> edge;           // z_0 - cosσ cosθ: at the light's pole
 };
 
 /// `arc` and `edge` from `corner`, as the form whose terms are smaller gives them. The first keeps every digit of small
-/// lights and of the plane z_0 = 0; the second that of nearly equal or nearly opposite circles, where it is
+/// lights and of the plane z_0 = 0; the second that of nearly equal or nearly opposite caps, where it is
 /// arc ± edge = (cosσ ± z_0)(1 ∓ cosθ) that must be right.
 template <class D>
 HWY_INLINE void complete(D d, ContactLanes<D>& contact) {
@@ -173,22 +160,22 @@ HWY_INLINE V<D> kept_area(D d, const ContactLanes<D>& contact, V<D> chord, V<D> 
     const auto tilt = hn::IfThenElse(wide, contact.light.z, hn::Neg(contact.light.z));
     const auto corner = hn::IfThenElse(wide, contact.corner, hn::Neg(contact.corner));
     arc = hn::IfThenElse(wide, hn::Sub(pi, arc), arc);
-    const auto lack = hn::Div(hn::Mul(contact.light.sine, contact.light.sine), hn::Add(one, cosine));
+    const auto one_minus_cos = hn::Div(hn::Mul(contact.light.sine, contact.light.sine), hn::Add(one, cosine));
     const auto short_of_pole = hn::Div(hn::Mul(contact.sine, contact.sine), hn::Add(one, depth));
 
     const auto deep = hn::Gt(depth, all(d, 0.5));
-    const auto y = hn::Mul(chord, hn::IfThenElse(deep, one, hn::Mul(hn::Add(depth, tilt), lack)));
+    const auto y = hn::Mul(chord, hn::IfThenElse(deep, one, hn::Mul(hn::Add(depth, tilt), one_minus_cos)));
     const auto x = hn::IfThenElse(deep, hn::Add(hn::Add(one, tilt), hn::Add(cosine, depth)),
                                   hn::MulAdd(contact.edge, corner, contact.chord_squared));
     const auto angle = arctangent(d, y, x);
     const auto rest =
         hn::IfThenElse(deep, hn::MulSub(arc, short_of_pole, hn::Add(angle, angle)), hn::NegMulAdd(arc, depth, angle));
-    const auto half_lens = hn::MulAdd(hn::Sub(pi, edge), lack, rest);
-    const auto area = hn::MulSub(two_pi, lack, hn::Add(half_lens, half_lens));
+    const auto half_lens = hn::MulAdd(hn::Sub(pi, edge), one_minus_cos, rest);
+    const auto area = hn::MulSub(two_pi, one_minus_cos, hn::Add(half_lens, half_lens));
     return hn::IfThenElse(wide, hn::MulSub(two_pi, hn::Add(one, depth), area), area);
 }
 
-/// What is kept where circles do not cross: they are nested, or apart, or together they cover the sphere. `corner`
+/// What is kept where caps do not cross: they are nested, or apart, or together they cover the sphere. `corner`
 /// decides whether they are nested; which of the two others holds is a question of size, continuous where they touch.
 template <class D>
 HWY_INLINE void keep_uncrossed(D d, const ContactLanes<D>& contact, ClippedCap<D>& cap) {
@@ -258,40 +245,21 @@ HWY_INLINE ClippedCap<D> cap_at_plane(D d, const SphericalCapLanes<D>& circle, b
     return kCrossing ? cap_across_plane(d, circle) : cap_off_plane(d, circle, whole);
 }
 
-/// A light through a boost against the image of the plane z = 0. The boost is a Lorentz transform of the circles'
-/// 4-vectors (cosine; axis): their product is invariant, so where a light crosses the horizon is known from before the
-/// boost, with all digits.
-template <class D>
-HWY_INLINE ContactLanes<D> boosted_contact(D d, const SphericalCapLanes<D>& circle, const BoostLanes<D>& boost) {
+/// A light through a boost against the image of the plane z = 0. Boosts keep the product of 4-vectors, so where a
+/// light crosses the horizon is known from before the boost, with all digits.
+HWY_INLINE ContactLanes<Doubles> boosted_contact(const SphericalCapLanes<Doubles>& cap, const BoostLanes& boost) {
+    const Doubles d;
     const auto zero = hn::Zero(d);
-    const auto one = all(d, 1);
-    // The differences from 1 that a strong boost would cancel: |L| - L·axis and |L| - c, with |L| = 1.
-    const auto lack = one_minus(d, circle.cosine, circle.sine);
-    const auto off_x = hn::Add(circle.x, boost.sin_tilt);
-    const auto off_z = hn::Sub(circle.z, boost.cos_tilt);
-    const auto off = hn::MulAdd(off_x, off_x, hn::MulAdd(circle.y, circle.y, hn::Mul(off_z, off_z)));
-    const auto gap = hn::Mul(all(d, 0.5), off);
-    const auto across = hn::MulAdd(boost.cos_tilt, circle.x, hn::Mul(boost.sin_tilt, circle.z));
-    // γ (L_∥ - b c) and γ (c - b L_∥) with L_∥ = 1 - gap, c = 1 - lack.
-    const auto along = hn::Mul(boost.gamma, hn::MulAdd(boost.speed, lack, hn::Sub(boost.one_minus_speed, gap)));
-    const auto cosine = hn::Mul(boost.gamma, hn::MulAdd(boost.speed, gap, hn::Sub(boost.one_minus_speed, lack)));
-    const auto x = hn::MulSub(boost.horizon_z, across, hn::Mul(boost.horizon_x, along));
-    const auto z = hn::MulAdd(boost.horizon_x, across, hn::Mul(boost.horizon_z, along));
-    const auto square = hn::MulAdd(x, x, hn::MulAdd(circle.y, circle.y, hn::Mul(z, z)));
-    const auto scale = hn::Div(one, hn::Sqrt(square));
-    const auto ux = hn::Mul(x, scale);
-    const auto uy = hn::Mul(circle.y, scale);
-    const SphericalCapLanes<D> image{ux,
-                                     uy,
-                                     hn::Mul(z, scale),
-                                     hn::Mul(cosine, scale),
-                                     hn::Mul(circle.sine, scale),
-                                     hn::MulAdd(ux, ux, hn::Mul(uy, uy)),
-                                     zero};
-    const auto shrink = hn::Mul(scale, boost.horizon_sine);
-    ContactLanes<D> contact{image, boost.horizon_height, boost.horizon_sine, zero, zero, zero, zero};
-    contact.chord_squared = hn::Mul(circle.crossing_squared, hn::Mul(shrink, shrink));
-    contact.corner = hn::Mul(circle.z, shrink);
+    const auto [axis, cosine, ratio] = boost.image({cap.x, cap.y, cap.z}, one_minus(d, cap.cosine, cap.sine));
+    const auto shrink = hn::Mul(ratio, boost.horizon_sine);
+    ContactLanes<Doubles> contact{{axis.x, axis.y, axis.z, cosine, hn::Mul(cap.sine, ratio),
+                                   hn::MulAdd(axis.x, axis.x, hn::Mul(axis.y, axis.y)), zero},
+                                  boost.horizon_height,
+                                  boost.horizon_sine,
+                                  hn::Mul(cap.crossing_squared, hn::Mul(shrink, shrink)),
+                                  hn::Mul(cap.z, shrink),
+                                  zero,
+                                  zero};
     complete(d, contact);
     return contact;
 }
@@ -309,8 +277,8 @@ HWY_INLINE V<Lanes<T>> narrowed(V<Doubles> low, V<Doubles> high) {
 }
 
 template <class T>
-HWY_INLINE SphericalCapLanes<Lanes<T>> narrowed_circle(const SphericalCapLanes<Doubles>& low,
-                                                       const SphericalCapLanes<Doubles>& high) {
+HWY_INLINE SphericalCapLanes<Lanes<T>> narrowed_cap(const SphericalCapLanes<Doubles>& low,
+                                                    const SphericalCapLanes<Doubles>& high) {
     return {narrowed<T>(low.x, high.x),
             narrowed<T>(low.y, high.y),
             narrowed<T>(low.z, high.z),
@@ -324,10 +292,72 @@ HWY_INLINE SphericalCapLanes<Lanes<T>> narrowed_circle(const SphericalCapLanes<D
 template <class T>
 HWY_INLINE ContactLanes<Lanes<T>> narrowed_contact(const ContactLanes<Doubles>& low,
                                                    const ContactLanes<Doubles>& high) {
-    return {narrowed_circle<T>(low.light, high.light), narrowed<T>(low.height, high.height),
-            narrowed<T>(low.sine, high.sine),          narrowed<T>(low.chord_squared, high.chord_squared),
-            narrowed<T>(low.corner, high.corner),      narrowed<T>(low.arc, high.arc),
+    return {narrowed_cap<T>(low.light, high.light), narrowed<T>(low.height, high.height),
+            narrowed<T>(low.sine, high.sine),       narrowed<T>(low.chord_squared, high.chord_squared),
+            narrowed<T>(low.corner, high.corner),   narrowed<T>(low.arc, high.arc),
             narrowed<T>(low.edge, high.edge)};
+}
+
+/// |c|² - r² without the cancellation of |c| ≈ r, in doubled precision (Ogita, Rump & Oishi 2005, Dot2).
+HWY_INLINE V<Doubles> tangent_squared(V<Doubles> x, V<Doubles> y, V<Doubles> z, V<Doubles> r) {
+    const auto first = hn::Mul(r, r);
+    auto high = hn::Neg(first);
+    auto low = hn::Neg(product_error(r, r, first));
+    const auto add = [&](V<Doubles> v) HWY_ATTR {
+        const auto square = hn::Mul(v, v);
+        const auto sum = hn::Add(high, square);
+        const auto rest = hn::Sub(sum, high);
+        const auto lost = hn::Add(hn::Sub(high, hn::Sub(sum, rest)), hn::Sub(square, rest));
+        low = hn::Add(low, hn::Add(lost, product_error(v, v, square)));
+        high = sum;
+    };
+    add(x);
+    add(y);
+    add(z);
+    return hn::Add(high, low);
+}
+
+/// The part of a sphere's cap that needs doubles. T: the type that the sphere was given in. Products of floats are
+/// exact in doubles, and in range; numbers of doubles are scaled.
+template <class T>
+struct SphereRatios {
+    V<Doubles> inverse;  // of |c|
+    V<Doubles> z, cosine_squared, tilt_squared, crossing_squared;
+
+    HWY_INLINE SphereRatios(V<Doubles>& x, V<Doubles>& y, V<Doubles>& own_z, V<Doubles>& r) {
+        const Doubles d;
+        constexpr bool kExact = sizeof(T) == 4;
+        if constexpr (!kExact) {
+            const auto scale = power_of_two_scale(hn::Max(hn::Abs(x), hn::Max(hn::Abs(y), hn::Abs(own_z))));
+            x = hn::Mul(x, scale);
+            y = hn::Mul(y, scale);
+            own_z = hn::Mul(own_z, scale);
+            r = hn::Mul(r, scale);
+        }
+        const auto across = hn::MulAdd(x, x, hn::Mul(y, y));
+        const auto square = hn::MulAdd(own_z, own_z, across);
+        const auto inverse_square = hn::Div(all(d, 1), square);
+        const auto tangent = kExact ? hn::NegMulAdd(r, r, square) : tangent_squared(x, y, own_z, r);
+        inverse = hn::Sqrt(inverse_square);
+        z = hn::Mul(own_z, inverse);
+        cosine_squared = hn::Mul(tangent, inverse_square);
+        tilt_squared = hn::Mul(across, inverse_square);
+        crossing_squared = hn::Mul(hn::Mul(hn::Sub(r, own_z), hn::Add(r, own_z)), inverse_square);
+    }
+};
+
+/// cap_of_sphere (boost.h), with where it crosses the plane z = 0 from centre and radius.
+template <class T>
+HWY_INLINE SphericalCapLanes<Doubles> cap_of_sphere_in_lanes(V<Doubles> x, V<Doubles> y, V<Doubles> z, V<Doubles> r) {
+    const Doubles d;
+    const SphereRatios<T> ratios(x, y, z, r);
+    return {hn::Mul(x, ratios.inverse),
+            hn::Mul(y, ratios.inverse),
+            ratios.z,
+            root(d, ratios.cosine_squared),
+            hn::Min(all(d, 1), hn::Mul(r, ratios.inverse)),
+            ratios.tilt_squared,
+            ratios.crossing_squared};
 }
 
 }  // namespace shlight::HWY_NAMESPACE

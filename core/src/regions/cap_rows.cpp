@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "regions/cap_rows.h"
+#include "regions/cap_kernels.h"
 
 #include <hwy/cache_control.h>
 
@@ -33,15 +33,15 @@ class CapRows {
     using T = typename Source::Number;
 
   public:
-    using Circles = Source;
+    using Caps = Source;
     static constexpr bool kPlane = true;
 
-    CapRows(const Circles& circles, int order, bool clip, T* rows, Output output)
-        : circles_(circles), order_(static_cast<std::size_t>(order)), clip_(clip), rows_(rows), output_(output) {}
+    CapRows(const Caps& caps, int order, bool clip, T* rows, Output output)
+        : caps_(caps), order_(static_cast<std::size_t>(order)), clip_(clip), rows_(rows), output_(output) {}
 
     std::size_t order() const { return order_; }
     bool kept_whole() const { return !clip_; }
-    const Circles& circles() const { return circles_; }
+    const Caps& caps() const { return caps_; }
     void hide(std::size_t first, std::uint32_t bits) const {
         for (; bits != 0; bits >>= 1, ++first) {
             if ((bits & 1U) != 0) {
@@ -51,9 +51,9 @@ class CapRows {
     }
 
     template <bool kCrossing>
-    HWY_INLINE void prepare(const typename Circles::Loaded& loaded, const Chosen<T>& /*chosen*/,
+    HWY_INLINE void prepare(const typename Caps::Loaded& loaded, const Chosen<T>& /*chosen*/,
                             ClippedCap<Lanes<T>>& cap) const {
-        cap = cap_at_plane<kCrossing>(Lanes<T>(), Circles::narrow(loaded), !clip_);
+        cap = cap_at_plane<kCrossing>(Lanes<T>(), Caps::narrow(loaded), !clip_);
     }
 
     template <class Bands>
@@ -66,31 +66,30 @@ class CapRows {
   private:
     T* row(std::size_t i) const { return rows_ + i * order_ * order_; }
 
-    Circles circles_;
+    Caps caps_;
     std::size_t order_;
     bool clip_;
     T* rows_;
     Output output_;
 };
 
-template <class Circles, class T>
-void rows_of(const Circles& circles, std::size_t count, int order, bool clip, T* rows, Output output) {
-    CapRows<Circles> work(circles, order, clip, rows, output);
-    CapGroups<CapRows<Circles>>(work).run(count);
+template <class Caps, class T>
+void rows_of(const Caps& caps, std::size_t count, int order, bool clip, T* rows, Output output) {
+    CapRows<Caps> work(caps, order, clip, rows, output);
+    CapGroups<CapRows<Caps>>(work).run(count);
     if (output == Output::streamed) {
         hwy::FlushStream();
     }
 }
 
-void circle_rows_float(const CapArrays& circles, std::size_t count, int order, bool clip, float* rows, Output output) {
-    rows_of(StoredCircles<float>(circles), count, order, clip, rows, output);
+void cap_rows_float(const CapArrays& caps, std::size_t count, int order, bool clip, float* rows, Output output) {
+    rows_of(StoredCaps<float>(caps), count, order, clip, rows, output);
 }
-void circle_rows_double(const CapArrays& circles, std::size_t count, int order, bool clip, double* rows,
-                        Output output) {
-    rows_of(StoredCircles<double>(circles), count, order, clip, rows, output);
+void cap_rows_double(const CapArrays& caps, std::size_t count, int order, bool clip, double* rows, Output output) {
+    rows_of(StoredCaps<double>(caps), count, order, clip, rows, output);
 }
 void sphere_rows(const SphereArrays& spheres, std::size_t count, int order, bool clip, float* rows, Output output) {
-    rows_of(SphereCircles(spheres), count, order, clip, rows, output);
+    rows_of(SphereCaps(spheres), count, order, clip, rows, output);
 }
 
 }  // namespace
@@ -100,15 +99,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace shlight {
 
-HWY_EXPORT(circle_rows_float);
-HWY_EXPORT(circle_rows_double);
+HWY_EXPORT(cap_rows_float);
+HWY_EXPORT(cap_rows_double);
 HWY_EXPORT(sphere_rows);
 
-void cap_rows(const CapArrays& circles, std::size_t count, int order, bool clip, float* rows, Output output) {
-    HWY_DYNAMIC_DISPATCH(circle_rows_float)(circles, count, order, clip, rows, output);
+void cap_rows(const CapArrays& caps, std::size_t count, int order, bool clip, float* rows, Output output) {
+    HWY_DYNAMIC_DISPATCH(cap_rows_float)(caps, count, order, clip, rows, output);
 }
-void cap_rows(const CapArrays& circles, std::size_t count, int order, bool clip, double* rows, Output output) {
-    HWY_DYNAMIC_DISPATCH(circle_rows_double)(circles, count, order, clip, rows, output);
+void cap_rows(const CapArrays& caps, std::size_t count, int order, bool clip, double* rows, Output output) {
+    HWY_DYNAMIC_DISPATCH(cap_rows_double)(caps, count, order, clip, rows, output);
 }
 void cap_rows(const SphereArrays& spheres, std::size_t count, int order, bool clip, float* rows, Output output) {
     HWY_DYNAMIC_DISPATCH(sphere_rows)(spheres, count, order, clip, rows, output);

@@ -23,7 +23,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
-/// Where SectoralBands keeps its digits. Down from m = l to m = l sinθ an error grows as P̄_l^m(cosθ) does, by
+/// The lanes in which SectoralBands keeps its digits. Down from m = l to m = l sinθ an error grows as P̄_l^m(cosθ) does,
+/// by
 /// ((1 + |cosθ|) e^{-|cosθ|} / sinθ)^l (the leading term of its asymptotics). It starts as a rounding of X_l, which is
 /// of the size of t^l for the largest sine t of an angle to the pole in the region: s_0 above a high horizon, else up
 /// to 1.
@@ -33,16 +34,16 @@ class SectoralRange {
 
   public:
     explicit SectoralRange(std::size_t order)
-        : most_(static_cast<T>(std::exp(kMostGrowth / std::max(1.0, static_cast<double>(order) - 1)))),
+        : largest_ratio_(static_cast<T>(std::exp(kMostGrowth / std::max(1.0, static_cast<double>(order) - 1)))),
           least_sine_(static_cast<T>(least_unscaled_sine<T>(order))) {}
 
     HWY_INLINE M<D> beyond(const ClippedCap<D>& cap) const {
         const D d;
         const auto c = hn::Abs(cap.cos_tilt);
         // 1 - (1 + c) e^{-c} over c², to 0.005.
-        const auto lack = hn::NegMulAdd(hn::NegMulAdd(all(d, 0.1), c, all(d, 1.0 / 3)), c, all(d, 0.5));
-        const auto climb = hn::NegMulAdd(hn::Mul(c, c), lack, all(d, 1));
-        return hn::Or(hn::Gt(hn::Mul(climb, reach(cap, c)), hn::Mul(cap.sin_tilt, hn::Set(d, most_))),
+        const auto deficit = hn::NegMulAdd(hn::NegMulAdd(all(d, 0.1), c, all(d, 1.0 / 3)), c, all(d, 0.5));
+        const auto growth = hn::NegMulAdd(hn::Mul(c, c), deficit, all(d, 1));
+        return hn::Or(hn::Gt(hn::Mul(growth, reach(cap, c)), hn::Mul(cap.sin_tilt, hn::Set(d, largest_ratio_))),
                       hn::Lt(cap.horizon_sine, hn::Set(d, least_sine_)));
     }
 
@@ -58,7 +59,7 @@ class SectoralRange {
         return hn::IfThenElse(hn::Gt(cap.height, hn::Zero(d)), hn::Min(own, cap.horizon_sine), own);
     }
 
-    T most_, least_sine_;
+    T largest_ratio_, least_sine_;
 };
 
 /// Circles that cross. The integral of degree l is known by itself: (x+iy)^l is harmonic and has no slope along z, so
@@ -149,7 +150,7 @@ class SectoralBands {
         const CapStep<T>* steps;
     };
 
-    /// Where band l begins, after band l - 1.
+    /// The start of band l, after band l - 1.
     HWY_INLINE Down sectoral(std::size_t l) {
         const D d;
         const CapBand<T>& band = constants_.bands[l];
@@ -168,7 +169,7 @@ class SectoralBands {
     /// X_l of band l, after that of band l - 1.
     HWY_INLINE V<D> next_sectoral(std::size_t l, const CapBand<T>& band) {
         const D d;
-        const auto keep = hn::Set(d, band.keep_rise);
+        const auto keep = hn::Set(d, band.rise_a);
         auto weight = arc_.weight[l];
         if constexpr (!kPlane) {
             power_ = hn::Mul(power_, horizon_sine_);
@@ -187,23 +188,23 @@ class SectoralBands {
         const D d;
         const CapStep<T>& step = s.steps[m];
         visit.put(band, m, by, s.x);
-        const auto climb = hn::Set(d, step.down_climb);
-        const auto fall = hn::Set(d, step.down_fall);
-        const auto turn = hn::Mul(climb, s.turn);
+        const auto ahead = hn::Set(d, step.down_a);
+        const auto back = hn::Set(d, step.down_b);
+        const auto turn = hn::Mul(ahead, s.turn);
         V<D> below;
         if constexpr (kPlane && !kValue) {
-            below = hn::MulSub(turn, s.x, hn::Mul(fall, s.x_above));
+            below = hn::MulSub(turn, s.x, hn::Mul(back, s.x_above));
         } else {
-            // What the horizon gives comes first, and each degree then is two multiply-adds away from the one before
-            // the last, without a product between them: in long bands the next degree waits for nothing else.
+            // The horizon's share comes first, and each degree then is two multiply-adds away from the one before the
+            // last, without a product between them: in long bands the next degree waits for nothing else.
             auto given = hn::Mul(hn::Set(d, kPlane ? step.down_plane : step.down_share), arc_.moment[m]);
             if constexpr (!kPlane) {
                 given = hn::Mul(given, s.horizon);
             }
-            below = hn::MulAdd(turn, s.x, hn::NegMulAdd(fall, s.x_above, given));
+            below = hn::MulAdd(turn, s.x, hn::NegMulAdd(back, s.x_above, given));
         }
         if constexpr (!kPlane) {
-            const auto horizon = hn::MulSub(hn::Mul(climb, horizon_turn_), s.horizon, hn::Mul(fall, s.horizon_above));
+            const auto horizon = hn::MulSub(hn::Mul(ahead, horizon_turn_), s.horizon, hn::Mul(back, s.horizon_above));
             s.horizon_above = s.horizon;
             s.horizon = horizon;
         }
@@ -212,7 +213,7 @@ class SectoralBands {
     }
 
     const CapConstants<T>& constants_ = CapConstants<T>::get();
-    ArcLanes<T> arc_;
+    HorizonIntegrals<T> arc_;
     V<D> turn_;                         // cotθ
     V<D> sine_, across_, own_;          // sinθ, cosσ sinθ, sin²σ sinθ
     V<D> tilt_, edge_height_;           // cosθ / 2, (z_0 - cosσ cosθ) / 2

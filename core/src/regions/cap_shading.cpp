@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "regions/cap_shading.h"
+#include "regions/cap_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "regions/cap_shading.cpp"
@@ -39,19 +39,8 @@ HWY_INLINE Lights listed(const std::uint32_t* list, const Lights& chosen) {
 /// Numbers: Contiguous, Gather or Broadcast.
 template <class Numbers>
 HWY_INLINE BoostPair boosts_of(const BoostArrays& boosts, const Numbers& numbers) {
-    const DoublePair sin_tilt = numbers.pair(boosts.sin_tilt);
-    const DoublePair cos_tilt = numbers.pair(boosts.cos_tilt);
-    const DoublePair speed = numbers.pair(boosts.speed);
-    const DoublePair one_minus_speed = numbers.pair(boosts.one_minus_speed);
-    const DoublePair gamma = numbers.pair(boosts.gamma);
-    const DoublePair horizon_x = numbers.pair(boosts.horizon_x);
-    const DoublePair horizon_z = numbers.pair(boosts.horizon_z);
-    const DoublePair height = numbers.pair(boosts.horizon_height);
-    const DoublePair sine = numbers.pair(boosts.horizon_sine);
-    return {{sin_tilt.low, cos_tilt.low, speed.low, one_minus_speed.low, gamma.low, horizon_x.low, horizon_z.low,
-             height.low, sine.low},
-            {sin_tilt.high, cos_tilt.high, speed.high, one_minus_speed.high, gamma.high, horizon_x.high, horizon_z.high,
-             height.high, sine.high}};
+    return {load_boosts(boosts, [&](const double* values) HWY_ATTR { return numbers.pair(values).low; }),
+            load_boosts(boosts, [&](const double* values) HWY_ATTR { return numbers.pair(values).high; })};
 }
 
 /// Σ f_lm L_lm.
@@ -66,11 +55,11 @@ HWY_NOINLINE void shade_lanes(const ClippedCap<Floats>& cap, std::size_t order, 
 template <class Source, bool kWithoutBoost>
 class CapShading {
   public:
-    using Circles = Source;
+    using Caps = Source;
     static constexpr bool kPlane = kWithoutBoost;
 
-    CapShading(const Circles& circles, const LobeArrays& lobe, const std::uint32_t* view_of, float* values)
-        : circles_(circles), lobe_(lobe), view_of_(view_of), values_(values) {
+    CapShading(const Caps& caps, const LobeArrays& lobe, const std::uint32_t* view_of, float* values)
+        : caps_(caps), lobe_(lobe), view_of_(view_of), values_(values) {
         for (std::size_t k = 0; lobe.stride == 0 && k < term_count(); ++k) {
             hn::Store(hn::Set(Floats(), lobe.terms[k]), Floats(), terms_.data() + k * kLanes);
         }
@@ -78,18 +67,18 @@ class CapShading {
 
     std::size_t order() const { return static_cast<std::size_t>(lobe_.order); }
     static constexpr bool kept_whole() { return false; }
-    const Circles& circles() const { return circles_; }
+    const Caps& caps() const { return caps_; }
     static void hide(std::size_t /*first*/, std::uint32_t /*bits*/) {}  // all values were zero
 
     template <bool kCrossing>
-    HWY_NOINLINE void prepare(const typename Circles::Loaded& loaded, const Lights& chosen, ClippedCap<Floats>& cap) {
+    HWY_NOINLINE void prepare(const typename Caps::Loaded& loaded, const Lights& chosen, ClippedCap<Floats>& cap) {
         if constexpr (kPlane) {
-            cap = cap_at_plane<kCrossing>(Floats(), Circles::narrow(loaded));
+            cap = cap_at_plane<kCrossing>(Floats(), Caps::narrow(loaded));
         } else {
-            const CirclePair circles = Circles::pair(loaded);
+            const CapPair caps = Caps::pair(loaded);
             const BoostPair boosts = load_boosts(chosen);
-            const auto low = boosted_contact(Doubles(), circles.low, boosts.low);
-            const auto high = boosted_contact(Doubles(), circles.high, boosts.high);
+            const auto low = boosted_contact(caps.low, boosts.low);
+            const auto high = boosted_contact(caps.high, boosts.high);
             cap = cap_in_contact(Floats(), narrowed_contact<float>(low, high));
         }
         if (lobe_.stride != 0) {
@@ -137,33 +126,33 @@ class CapShading {
         }
     }
 
-    Circles circles_;
+    Caps caps_;
     LobeArrays lobe_;
     const std::uint32_t* view_of_;
     float* values_;
     alignas(64) TermLanes terms_;
 };
 
-template <class Circles>
-void shade_in_lanes(const Circles& circles, const LobeArrays& lobe, const std::uint32_t* view_of, std::size_t count,
+template <class Caps>
+void shade_in_lanes(const Caps& caps, const LobeArrays& lobe, const std::uint32_t* view_of, std::size_t count,
                     float* values) {
     std::fill_n(values, count, 0.0F);
     const auto run = [&](auto&& work) { CapGroups(work).run(count); };
     if (lobe.boosted) {
-        run(CapShading<Circles, false>(circles, lobe, view_of, values));
+        run(CapShading<Caps, false>(caps, lobe, view_of, values));
     } else {
-        run(CapShading<Circles, true>(circles, lobe, view_of, values));
+        run(CapShading<Caps, true>(caps, lobe, view_of, values));
     }
 }
 
-void shade_circles_in_lanes(const CapArrays& circles, const std::uint32_t* circle_of, const LobeArrays& lobe,
-                            const std::uint32_t* view_of, std::size_t count, float* values) {
-    shade_in_lanes(StoredCircles<float>(circles, circle_of), lobe, view_of, count, values);
+void shade_caps_in_lanes(const CapArrays& caps, const std::uint32_t* cap_of, const LobeArrays& lobe,
+                         const std::uint32_t* view_of, std::size_t count, float* values) {
+    shade_in_lanes(StoredCaps<float>(caps, cap_of), lobe, view_of, count, values);
 }
 
 void shade_spheres_in_lanes(const SphereArrays& spheres, const LobeArrays& lobe, const std::uint32_t* view_of,
                             std::size_t count, float* values) {
-    shade_in_lanes(SphereCircles(spheres), lobe, view_of, count, values);
+    shade_in_lanes(SphereCaps(spheres), lobe, view_of, count, values);
 }
 
 }  // namespace
@@ -173,13 +162,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace shlight {
 
-HWY_EXPORT(shade_circles_in_lanes);
+HWY_EXPORT(shade_caps_in_lanes);
 HWY_EXPORT(shade_spheres_in_lanes);
 
-void shade_caps(const CapArrays& circles, std::span<const std::uint32_t> circle_of, const LobeArrays& lobe,
+void shade_caps(const CapArrays& caps, std::span<const std::uint32_t> cap_of, const LobeArrays& lobe,
                 std::span<const std::uint32_t> view_of, std::span<float> values) {
-    HWY_DYNAMIC_DISPATCH(shade_circles_in_lanes)
-    (circles, circle_of.data(), lobe, view_of.data(), values.size(), values.data());
+    HWY_DYNAMIC_DISPATCH(shade_caps_in_lanes)
+    (caps, cap_of.data(), lobe, view_of.data(), values.size(), values.data());
 }
 
 void shade_caps(const SphereArrays& spheres, const LobeArrays& lobe, std::span<const std::uint32_t> view_of,

@@ -28,16 +28,16 @@ namespace shlight::HWY_NAMESPACE {
 /// The recurrences for most caps, and those for the others.
 template <class T, bool kCrossing, bool kPlane>
 struct BandsOf {
-    using Most = UncrossedBands<T, false>;
-    using Others = UncrossedBands<T, true>;
+    using Fast = UncrossedBands<T, false>;
+    using Fallback = UncrossedBands<T, true>;
 };
 template <class T, bool kPlane>
 struct BandsOf<T, true, kPlane> {
-    using Most = SectoralBands<T, kPlane>;
-    using Others = CrossedBands<T>;
+    using Fast = SectoralBands<T, kPlane>;
+    using Fallback = CrossedBands<T>;
 };
 
-/// Tells which lanes need BandsOf::Others.
+/// Tells which lanes need BandsOf::Fallback.
 template <class T>
 class BandChoice {
     using D = Lanes<T>;
@@ -46,7 +46,7 @@ class BandChoice {
     explicit BandChoice(std::size_t order) : sectoral_(order), least_sine_(least_unscaled_sine<T>(order)) {}
 
     template <bool kCrossing>
-    HWY_INLINE M<D> others(const ClippedCap<D>& cap) const {
+    HWY_INLINE M<D> needs_fallback(const ClippedCap<D>& cap) const {
         if constexpr (kCrossing) {
             return sectoral_.beyond(cap);
         } else {
@@ -99,7 +99,7 @@ class CoefficientVisitor {
         T* first = writer_.take(4 * l + 4);
         return {Band{first, l}, Band{first + (2 * l + 1) * kLanes, l + 1}};
     }
-    /// What degree m > 0 of any band is multiplied with.
+    /// The factor of degree m > 0 in any band.
     struct Turn {
         V<D> cosine, sine;
     };
@@ -121,19 +121,21 @@ class CoefficientVisitor {
         V<D> share;
     };
     HWY_INLINE Part open(std::size_t l, V<D> share) { return {open(l), share}; }
-    HWY_INLINE void put(const Part& part, std::size_t m, V<D> null) const {
-        put(part.band, m, turn(m), hn::Mul(part.share, null));
+    HWY_INLINE void put(const Part& part, std::size_t m, V<D> homogeneous) const {
+        put(part.band, m, turn(m), hn::Mul(part.share, homogeneous));
     }
-    HWY_INLINE void close(const Part& part, std::size_t /*l*/, V<D> null, V<D> extra) const {
-        put_zonal(part.band, hn::MulAdd(part.share, null, extra));
+    HWY_INLINE void close(const Part& part, std::size_t /*l*/, V<D> homogeneous, V<D> extra) const {
+        put_zonal(part.band, hn::MulAdd(part.share, homogeneous, extra));
     }
 
-    HWY_INLINE void term(Band& /*band*/, std::size_t m, V<D> /*null*/, V<D> particular) { values_.put(m, particular); }
+    HWY_INLINE void term(Band& /*band*/, std::size_t m, V<D> /*homogeneous*/, V<D> particular) {
+        values_.put(m, particular);
+    }
     template <class Bands>
     HWY_INLINE void close(const Band& band, std::size_t l, V<D> green, V<D> share, const Bands& bands) const {
-        put_zonal(band, hn::MulAdd(share, bands.null(0), hn::Mul(green, values_[0])));
+        put_zonal(band, hn::MulAdd(share, bands.homogeneous(0), hn::Mul(green, values_[0])));
         for (std::size_t m = 1; m <= l; ++m) {
-            put(band, m, turn(m), hn::MulAdd(share, bands.null(m), hn::Mul(green, values_[m])));
+            put(band, m, turn(m), hn::MulAdd(share, bands.homogeneous(m), hn::Mul(green, values_[m])));
         }
     }
 
@@ -159,23 +161,23 @@ class ShadingVisitor {
     /// The sums of one band. Of its own, to stay in registers.
     struct Band {
         const T* terms;
-        V<D> with_null, with_particular;
+        V<D> with_homogeneous, with_particular;
     };
     HWY_INLINE Band open(std::size_t l) const {
         const auto zero = hn::Zero(D());
         return {terms_ + at(static_cast<int>(l), 0) * kLaneCount<D>, zero, zero};
     }
     HWY_INLINE std::array<Band, 2> open_two(std::size_t l) const { return {open(l), open(l + 1)}; }
-    /// What degree m > 0 of any band is multiplied with.
+    /// The factor of degree m > 0 in any band.
     using Turn = V<D>;
     HWY_INLINE Turn turn(std::size_t m) const { return hn::Load(D(), azimuth_.cosine.data() + m * kLaneCount<D>); }
     HWY_INLINE void put_zonal(Band& band, V<D> value) const {
-        band.with_null = hn::MulAdd(hn::Load(D(), band.terms), value, band.with_null);
+        band.with_homogeneous = hn::MulAdd(hn::Load(D(), band.terms), value, band.with_homogeneous);
     }
     HWY_INLINE void put(Band& band, std::size_t m, const Turn& turn, V<D> value) const {
-        band.with_null = hn::MulAdd(turned(band, m, turn), value, band.with_null);
+        band.with_homogeneous = hn::MulAdd(turned(band, m, turn), value, band.with_homogeneous);
     }
-    HWY_INLINE void close(const Band& band, std::size_t /*l*/) { sum_ = hn::Add(sum_, band.with_null); }
+    HWY_INLINE void close(const Band& band, std::size_t /*l*/) { sum_ = hn::Add(sum_, band.with_homogeneous); }
 
     /// A band whose sum is to be multiplied with `share`.
     struct Part {
@@ -183,21 +185,22 @@ class ShadingVisitor {
         V<D> share;
     };
     HWY_INLINE Part open(std::size_t l, V<D> share) const { return {open(l), share}; }
-    HWY_INLINE void put(Part& part, std::size_t m, V<D> null) const { put(part.band, m, turn(m), null); }
-    HWY_INLINE void close(Part& part, std::size_t /*l*/, V<D> null, V<D> extra) {
-        put_zonal(part.band, null);
-        sum_ = hn::MulAdd(extra, hn::Load(D(), part.band.terms), hn::MulAdd(part.share, part.band.with_null, sum_));
+    HWY_INLINE void put(Part& part, std::size_t m, V<D> homogeneous) const { put(part.band, m, turn(m), homogeneous); }
+    HWY_INLINE void close(Part& part, std::size_t /*l*/, V<D> homogeneous, V<D> extra) {
+        put_zonal(part.band, homogeneous);
+        sum_ =
+            hn::MulAdd(extra, hn::Load(D(), part.band.terms), hn::MulAdd(part.share, part.band.with_homogeneous, sum_));
     }
 
-    HWY_INLINE void term(Band& band, std::size_t m, V<D> null, V<D> particular) const {
+    HWY_INLINE void term(Band& band, std::size_t m, V<D> homogeneous, V<D> particular) const {
         const auto t = turned(band, m, turn(m));
-        band.with_null = hn::MulAdd(t, null, band.with_null);
+        band.with_homogeneous = hn::MulAdd(t, homogeneous, band.with_homogeneous);
         band.with_particular = hn::MulAdd(t, particular, band.with_particular);
     }
 
     template <class Bands>
     HWY_INLINE void close(const Band& band, std::size_t /*l*/, V<D> green, V<D> share, const Bands& /*bands*/) {
-        sum_ = hn::MulAdd(green, band.with_particular, hn::MulAdd(share, band.with_null, sum_));
+        sum_ = hn::MulAdd(green, band.with_particular, hn::MulAdd(share, band.with_homogeneous, sum_));
     }
 
     HWY_INLINE V<D> sum() const { return sum_; }

@@ -19,8 +19,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "regions/arc_points-inl.h"
-#include "regions/arc_rows.h"
+#include "regions/arc_lanes-inl.h"
+#include "regions/arcs.h"
 #include "regions/polygon_edges-inl.h"
 #include "simd/lanes-inl.h"
 #include "simd/lobe_arrays.h"
@@ -29,53 +29,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
-/// What a region is known by beside its arcs.
+/// Measures of a region in each lane.
 template <class R>
 struct RegionLanes {
     V<Lanes<R>> solid_angle, perimeter;
     Vectors3<R> first_moment;  ///< ∫ u du
-};
-
-/// A vector's boosts.
-struct BoostLanes3 {
-    using D = Doubles;
-    V<D> sin_tilt, cos_tilt, speed, one_minus_speed, gamma, horizon_x, horizon_z, height, sine;
-
-    BoostLanes3(const BoostArrays& boosts, const std::uint32_t* view) {
-        const D d;
-        const hn::RebindToSigned<D> di;
-        alignas(64) std::array<std::int64_t, kLaneCount<D>> wide;
-        std::copy_n(view, kLaneCount<D>, wide.begin());
-        const auto index = hn::Load(di, wide.data());
-        const auto at = [&](const double* values) HWY_ATTR { return hn::GatherIndex(d, values, index); };
-        sin_tilt = at(boosts.sin_tilt);
-        cos_tilt = at(boosts.cos_tilt);
-        speed = at(boosts.speed);
-        one_minus_speed = at(boosts.one_minus_speed);
-        gamma = at(boosts.gamma);
-        horizon_x = at(boosts.horizon_x);
-        horizon_z = at(boosts.horizon_z);
-        height = at(boosts.horizon_height);
-        sine = at(boosts.horizon_sine);
-    }
-
-    struct Image {
-        Vectors3<double> axis;
-        V<D> cosine, inverse_length;
-    };
-    /// The image of the circle (cosine; axis), 1 - cosine = lack.
-    HWY_INLINE Image of_circle(const Vectors3<double>& axis, V<D> lack) const {
-        const D d;
-        const Vectors3<double> to_axis = {hn::Add(axis.x, sin_tilt), axis.y, hn::Sub(axis.z, cos_tilt)};
-        const auto gap = hn::Mul(all(d, 0.5), dot<double>(to_axis, to_axis));
-        const auto across = hn::MulAdd(cos_tilt, axis.x, hn::Mul(sin_tilt, axis.z));
-        const auto along = hn::Mul(gamma, hn::Add(one_minus_speed, hn::MulSub(speed, lack, gap)));
-        const auto cosine = hn::Mul(gamma, hn::Add(one_minus_speed, hn::MulSub(speed, gap, lack)));
-        const Vectors3<double> image = {hn::MulSub(horizon_z, across, hn::Mul(horizon_x, along)), axis.y,
-                                        hn::MulAdd(horizon_x, across, hn::Mul(horizon_z, along))};
-        const auto inverse = hn::Div(all(d, 1), hn::Sqrt(dot<double>(image, image)));
-        return {scaled<double>(image, inverse), hn::Mul(cosine, inverse), inverse};
-    }
 };
 
 /// The edges of a vector of polygons above the horizon. kClipped: some edges cross the horizon; kBoosted: the result is
@@ -86,7 +44,7 @@ class ClippedEdges {
     static_assert(!kBoosted || std::is_same_v<R, double>);
 
   public:
-    ClippedEdges(PolygonLanes<R>& lanes, const BoostLanes3* boost) : lanes_(lanes), boost_(boost) {}
+    ClippedEdges(PolygonLanes<R>& lanes, const BoostLanes* boost) : lanes_(lanes), boost_(boost) {}
 
     HWY_INLINE RegionLanes<R> region() {
         const D d;
@@ -119,7 +77,7 @@ class ClippedEdges {
     }
 
   private:
-    /// Of an edge: a direction, and 1 ÷ the length that it has in the polygon.
+    /// An end of an edge: its direction, and 1 ÷ its distance in the polygon.
     struct End {
         Vectors3<R> u;
         V<D> inverse;
@@ -146,7 +104,7 @@ class ClippedEdges {
         return {select(which, yes.u, no.u), hn::IfThenElse(which, yes.inverse, no.inverse)};
     }
 
-    /// Where a boundary leaves (way = -1) or enters (1) the upper half for the time that `number` tells.
+    /// The point at which a boundary leaves (way = -1) or enters (1) the upper half for the time that `number` tells.
     HWY_INLINE Vectors3<R> crossing(int way, V<D> number) const {
         const D d;
         Vectors3<R> found = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
@@ -161,10 +119,10 @@ class ClippedEdges {
         return direction(found).u;
     }
 
-    /// With M the middle, N the pole and h half the length, the triangle from a reference R to both ends has the solid
-    /// angle 2 arg (cos h + R·M + i sin h R·N): Van Oosterom & Strackee 1983, divided by 2 cos h, which vanishes where
-    /// the ends are opposite. R is the plane's normal: all of the polygon is less than a quarter turn away from it, so
-    /// no end is opposite to it, and of an edge of nearly half a turn M or N is near it.
+    /// Let M be the middle, N the pole and h half the length: the triangle from a reference R to both ends has the
+    /// solid angle 2 arg (cos h + R·M + i sin h R·N): Van Oosterom & Strackee 1983, divided by 2 cos h, which vanishes
+    /// where the ends are opposite. R is the plane's normal: all of the polygon is less than a quarter turn away from
+    /// it, so no end is opposite to it, and of an edge of nearly half a turn M or N is near it.
     HWY_INLINE void add_triangle(M<D> exists, const Vectors3<R>& middle, const Vectors3<R>& pole, V<D> sine,
                                  V<D> cosine) {
         const D d;
@@ -238,11 +196,11 @@ class ClippedEdges {
                               V<D> cosine, M<D> kept, RegionLanes<R>& region) {
         const D d;
         const auto one = all(d, 1);
-        const BoostLanes3::Image arc = boost_->of_circle(pole, one);
-        const auto lack = hn::Div(hn::Mul(sine, sine), hn::Add(one, cosine));
-        const BoostLanes3::Image diameter = boost_->of_circle(middle, lack);
-        const auto arc_sine = arc.inverse_length;
-        const auto rise = hn::Mul(sine, diameter.inverse_length);
+        const BoostLanes::Image arc = boost_->image(pole, one);
+        const auto one_minus_cos = hn::Div(hn::Mul(sine, sine), hn::Add(one, cosine));
+        const BoostLanes::Image diameter = boost_->image(middle, one_minus_cos);
+        const auto arc_sine = arc.sine_ratio;
+        const auto rise = hn::Mul(sine, diameter.sine_ratio);
         const auto run = hn::Mul(arc_sine, diameter.cosine);
         const auto half = hn::IfThenElseZero(kept, arctangent(d, rise, run));
         const Vectors3<R> across = diameter.axis - scaled<R>(arc.axis, hn::Mul(arc.cosine, diameter.cosine));
@@ -298,14 +256,15 @@ class ClippedEdges {
             const Vectors3<R> boosted_from = boosted(from);
             const Vectors3<R> boosted_to = boosted(to);
             put_horizon(out, boosted_from, boosted_to, angle);
-            region.solid_angle = hn::NegMulAdd(boost_->height, angle, region.solid_angle);
-            region.perimeter = hn::MulAdd(boost_->sine, angle, region.perimeter);
-            const auto slant = hn::IfThenElseZero(exists, hn::Mul(half, hn::Mul(boost_->height, boost_->sine)));
+            region.solid_angle = hn::NegMulAdd(boost_->horizon_height, angle, region.solid_angle);
+            region.perimeter = hn::MulAdd(boost_->horizon_sine, angle, region.perimeter);
+            const auto slant =
+                hn::IfThenElseZero(exists, hn::Mul(half, hn::Mul(boost_->horizon_height, boost_->horizon_sine)));
             const Vectors3<R> step = boosted_to - boosted_from;
             region.first_moment.x = hn::NegMulAdd(slant, step.y, region.first_moment.x);
             region.first_moment.y = hn::MulAdd(slant, step.x, region.first_moment.y);
-            region.first_moment.z =
-                hn::MulAdd(hn::Mul(half, hn::Mul(boost_->sine, boost_->sine)), angle, region.first_moment.z);
+            region.first_moment.z = hn::MulAdd(hn::Mul(half, hn::Mul(boost_->horizon_sine, boost_->horizon_sine)),
+                                               angle, region.first_moment.z);
         } else {
             const auto angle = hn::IfThenElseZero(exists, arctangent(d, sine, cosine));
             put_horizon(out, from, to, angle);
@@ -343,7 +302,8 @@ class ClippedEdges {
         const auto over = hn::Div(all(d, 1), hn::MulAdd(aberration(), u.x, all(d, 1)));
         return {hn::Mul(hn::Add(u.x, aberration()), over), hn::Mul(hn::Mul(contraction(), u.y), over), hn::Zero(d)};
     }
-    /// Of the image of the arc that begins at `from`. turn: half of its angle, which is less than half a turn.
+    /// Angle of the image of the arc that begins at `from`. turn: half of the arc's angle, which is less than half a
+    /// turn.
     HWY_INLINE V<D> boosted_angle(const Vectors3<R>& from, const SineCosine<R>& turn) const {
         const D d;
         const SineCosine<R> start = halved(from.y, from.x);
@@ -356,7 +316,7 @@ class ClippedEdges {
     }
 
     PolygonLanes<R>& lanes_;
-    const BoostLanes3* boost_;
+    const BoostLanes* boost_;
     Vectors3<R> reference_;
     V<D> re_, im_;
 };

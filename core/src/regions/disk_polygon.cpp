@@ -16,10 +16,10 @@ struct Size {
     int vertices;
 };
 constexpr std::array<Size, 5> kSizes = {Size{0.02, 8}, {0.1, 16}, {0.5, 24}, {0.8, 32}, {1, 40}};
-/// Where the horizon cuts, or would cut off corners.
+/// Fewest vertices of a disk that the horizon cuts, or whose polygon it would cut.
 constexpr int kLeastAtHorizon = 32;
 constexpr double kMostOutside = 1.1;  ///< the farthest corner, from the middle
-/// Of the boundary over which a lobe changes.
+/// Vertices for each length of the boundary over which a lobe changes.
 constexpr double kPerWidth = 2;
 constexpr int kOfMirror = 128;
 constexpr int kMost = 512;
@@ -104,7 +104,7 @@ void append_closed(const SphericalEllipse<double>& ellipse, int size, std::vecto
     }
 }
 
-/// From one end of the horizon's chord to the other; every other vertex is a point of the ellipse.
+/// Vertices from one end of the horizon's chord to the other; every other one is a point of the ellipse.
 void append_cut(const SphericalEllipse<double>& ellipse, int size, std::vector<Vec3d>& vertices) {
     const AcrossAxis plane(ellipse.cone());
     const HorizonCut<double>& cut = *ellipse.cut();

@@ -9,7 +9,6 @@
 
 #include "math/gauss_legendre.h"
 #include "regions/boundary_points.h"
-#include "regions/disk_boundary.h"
 #include "shlight/basis.h"
 
 namespace shlight {

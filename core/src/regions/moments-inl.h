@@ -16,8 +16,8 @@
 #include <array>
 #include <cstddef>
 
-#include "regions/arc_points-inl.h"
-#include "regions/moment_constants.h"
+#include "regions/arc_lanes-inl.h"
+#include "regions/boundary_constants.h"
 #include "shlight/types.h"
 #include "simd/lanes-inl.h"
 #include "simd/rows-inl.h"
@@ -32,6 +32,8 @@ class ArcMoments {
     using D = Lanes<R>;
 
   public:
+    using Rows = RowPointers<R>;
+
     explicit ArcMoments(int order)
         : order_(order), block_(hwy::AllocateAligned<R>(static_cast<std::size_t>(coefficient_count(order)) * kWidth)) {
         put(0, 0, hn::Zero(D()));  // no arc adds to band 0
@@ -70,10 +72,10 @@ class ArcMoments {
         }
     }
 
-    /// The same of arcs of the horizon z = 0, as HorizonRow.
-    HWY_INLINE void integrate_horizon(const HorizonRow<R>* rows) {
+    /// Works out the coefficients of bands 2 … of arcs of the horizon z = 0, in closed form.
+    HWY_INLINE void integrate_horizon(const HorizonArc<R>* arcs) {
         const D d;
-        const auto v = horizon_columns<R>(rows);
+        const auto v = load_numbers<R, 8>(arcs);
         auto from_re = all(d, 1);
         auto from_im = hn::Zero(d);
         auto to_re = from_re;
@@ -100,7 +102,7 @@ class ArcMoments {
     }
 
     /// Adds each lane's coefficients to its row, for `count` lanes one after the other: several may have the same.
-    HWY_INLINE void add_to(const std::array<R*, kLaneCount<D>>& rows, std::size_t count) const {
+    HWY_INLINE void add_to(const Rows& rows, std::size_t count) const {
         const auto numbers = static_cast<std::size_t>(coefficient_count(order_));
         alignas(64) std::array<R, kLine * kWidth> buffer;
         std::array<R*, kWidth> lines;
@@ -110,17 +112,12 @@ class ArcMoments {
         // A cache line of each row at a time: rows of a power of two in length share a few sets of the cache.
         std::size_t c = 0;
         for (; c + kLine <= numbers; c += kLine) {
-            std::array<std::array<V<D>, kSide>, kLine / kSide> squares;
-            for (std::size_t s = 0; s < squares.size(); ++s) {
+            for (std::size_t i = 0; i < kLine; i += kSide) {
+                std::array<V<D>, kSide> columns;
                 for (std::size_t j = 0; j < kSide; ++j) {
-                    squares[s][j] = hn::LoadU(D(), block_.get() + (c + s * kSide + j) * kWidth);
+                    columns[j] = hn::LoadU(D(), block_.get() + (c + i + j) * kWidth);
                 }
-                transpose_squares(D(), squares[s]);
-            }
-            for (std::size_t j = 0; j < kSide; ++j) {
-                for (std::size_t s = 0; s < squares.size(); ++s) {
-                    store_blocks(D(), squares[s][j], lines.data() + j, s * kSide);
-                }
+                store_columns(D(), columns, lines.data(), i);
             }
             for (std::size_t lane = 0; lane < count; ++lane) {
                 for (std::size_t i = 0; i < kLine; i += kWidth) {
@@ -266,35 +263,35 @@ class ArcMoments {
     std::size_t count_ = 0;
 };
 
-/// Adds what a list's arcs, of great circles, have of bands 2 … to their regions' rows of order² numbers.
-/// row_of(region): where it is.
-template <class R, class RowOf>
-void add_moments(const ArcLists<R>& lists, int order, const RowOf& row_of) {
-    constexpr std::size_t kWidth = kLaneCount<Lanes<R>>;
-    if (order <= 2) {
-        return;
-    }
-    ArcMoments<R, true> moments(order);
-    const auto add = [&](const auto& list, std::size_t first) HWY_ATTR {
-        std::array<R*, kWidth> rows{};
-        const std::size_t count = std::min(kWidth, list.size() - first);
+/// Adds the coefficients of a list's arcs to the rows of their regions, a vector of arcs after the other.
+/// integrate(arcs): lets `moments` work out those of a vector; row_of(region): order² numbers.
+template <class Moments, class List, class RowOf, class Integrate>
+HWY_INLINE void add_list(Moments& moments, const List& list, const RowOf& row_of, const Integrate& integrate) {
+    typename Moments::Rows rows{};
+    for (std::size_t first = 0; first < list.size(); first += rows.size()) {
+        integrate(list.from(first));
+        const std::size_t count = std::min(rows.size(), list.size() - first);
         for (std::size_t lane = 0; lane < count; ++lane) {
             rows[lane] = row_of(list.region(first + lane));
         }
         moments.add_to(rows, count);
-    };
+    }
+}
+
+/// Adds bands 2 … of arcs of great circles to their regions' rows.
+template <class R, class RowOf>
+void add_moments(const ArcLists<R>& lists, int order, const RowOf& row_of) {
+    if (order <= 2) {
+        return;
+    }
+    ArcMoments<R, true> moments(order);
     for (std::size_t points = 1; points <= kMaxGaussPoints; ++points) {
-        const auto& list = lists.arcs(points);
         const GaussRule& rule = gauss_rule(static_cast<int>(points));
-        for (std::size_t first = 0; first < list.size(); first += kWidth) {
-            moments.integrate(ArcLanes<R, true>(list.from(first)), rule);
-            add(list, first);
-        }
+        add_list(moments, lists.arcs.rows(points), row_of,
+                 [&](const Arc<R>* arcs) HWY_ATTR { moments.integrate(ArcLanes<R, true>(arcs), rule); });
     }
-    for (std::size_t first = 0; first < lists.horizon().size(); first += kWidth) {
-        moments.integrate_horizon(lists.horizon().from(first));
-        add(lists.horizon(), first);
-    }
+    add_list(moments, lists.horizon, row_of,
+             [&](const HorizonArc<R>* arcs) HWY_ATTR { moments.integrate_horizon(arcs); });
 }
 
 }  // namespace shlight::HWY_NAMESPACE

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/checks.h"
-#include "regions/polygon_checks.h"
-#include "regions/polygon_rows.h"
+#include "regions/polygon_kernels.h"
+#include "regions/region_checks.h"
 
 namespace shlight {
 namespace {

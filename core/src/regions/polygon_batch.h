@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "regions/polygon_checks.h"
-#include "regions/polygon_views.h"
+#include "regions/polygon_kernels.h"
+#include "regions/region_checks.h"
 #include "shlight/types.h"
 
 namespace shlight {
@@ -31,7 +31,7 @@ class PolygonBatch {
             std::copy_n(&vertices->x, 3 * count, &vertices_[first].x);
         }
     }
-    /// As prepare_polygons.
+    /// Calls prepare_polygons for all.
     template <class T>
     void prepare() {
         prepare_polygons<T>(vertices_, vertex_count());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "regions/polygon_cubature.h"
+#include "regions/polygon_kernels.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "base/exact_sums.h"
+#include "base/safe_length.h"
 #include "math/triangle_cubature.h"
-#include "regions/arc_rows.h"
+#include "regions/arcs.h"
 #include "shlight/basis.h"
 
 namespace shlight {
@@ -69,7 +70,7 @@ class TriangleSum {
     }
 
   private:
-    /// Where the edge from a to b meets the horizon.
+    /// The point in which the edge from a to b meets the horizon.
     static Vec3d cut(const Vec3d& a, const Vec3d& b) {
         const double over = 1 / (a.z - b.z);
         return {over * difference_of_products(a.z, b.x, b.z, a.x), over * difference_of_products(a.z, b.y, b.z, a.y),
@@ -106,16 +107,17 @@ class TriangleSum {
     double* coefficients_;
 };
 
-/// By a power of two, which changes no digit: triple products of tiny and huge coordinates stay in the range of double.
+/// The vertices times a power of two, which changes no digit: triple products of tiny and huge coordinates stay in the
+/// range of double.
 std::vector<Vec3d> scaled_to_one(std::span<const Vec3d> vertices) {
     double largest = 0;
     for (const Vec3d& v : vertices) {
         largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
     }
-    const int exponent = largest > 0 ? -std::ilogb(largest) : 0;
-    std::vector<Vec3d> scaled;
-    for (const Vec3d& v : vertices) {
-        scaled.emplace_back(std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent));
+    const double scale = power_of_two_scale(largest);
+    std::vector<Vec3d> scaled(vertices.begin(), vertices.end());
+    for (Vec3d& v : scaled) {
+        v *= scale;
     }
     return scaled;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The edges of polygons in lanes, with their crosses and where the horizon cuts them, prepared in double. Included once
-// per instruction set.
+// Polygons in lanes: their vertices, scaled into the range of float, the side of their plane that is seen, and their
+// edges with crosses and the points where the horizon cuts them, all in double. Included once per instruction set.
 #if defined(SHLIGHT_KERNELS_POLYGON_EDGES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_POLYGON_EDGES_INL_H_
 #undef SHLIGHT_KERNELS_POLYGON_EDGES_INL_H_
@@ -9,22 +9,123 @@
 #define SHLIGHT_KERNELS_POLYGON_EDGES_INL_H_
 #endif
 
+#include <hwy/aligned_allocator.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 #include <vector>
 
-#include "regions/arc_points-inl.h"
-#include "regions/polygon_array.h"
-#include "regions/polygon_vertices-inl.h"
+#include "regions/arc_lanes-inl.h"
+#include "regions/polygon_kernels.h"
+#include "regions/spherical_polygon.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
-/// What a vector of polygons has at one edge, from vertex e to the next.
+/// One number for each lane.
+template <class R>
+struct alignas(64) LaneValues : std::array<R, kLaneCount<Lanes<R>>> {};
+
+template <class R>
+HWY_INLINE V<Lanes<R>> get(const LaneValues<R>& values) {
+    return hn::Load(Lanes<R>(), values.data());
+}
+
+template <class R>
+HWY_INLINE void put(LaneValues<R>& values, V<Lanes<R>> v) {
+    hn::Store(v, Lanes<R>(), values.data());
+}
+
+/// The vertices of a vector of polygons.
+class VertexLanes {
+    using D = Doubles;
+
+  public:
+    static constexpr std::size_t kWidth = kLaneCount<D>;
+
+    explicit VertexLanes(const PolygonArray& polygons)
+        : polygons_(polygons), vertices_(hwy::AllocateAligned<double>(3 * polygons.vertex_count * kWidth)) {}
+
+    std::size_t count() const { return polygons_.vertex_count; }
+
+    /// index: which polygon each lane takes. Scales those far from the range of float.
+    HWY_INLINE void load(const std::uint32_t* index) {
+        const D d;
+        const std::size_t numbers = 3 * polygons_.vertex_count;
+        RowPointers<const double> rows;
+        for (std::size_t lane = 0; lane < kWidth; ++lane) {
+            rows[lane] = polygons_.vertices + numbers * index[lane];
+        }
+        auto largest = hn::Zero(d);
+        for (std::size_t i = 0; i < numbers; i += kSquare<D>) {
+            const std::size_t column = std::min(i, numbers - kSquare<D>);
+            const auto columns = load_columns(d, rows.data(), column);
+            for (std::size_t j = 0; j < kSquare<D>; ++j) {
+                largest = hn::Max(largest, hn::Abs(columns[j]));
+                hn::StoreU(columns[j], d, vertices_.get() + (column + j) * kWidth);
+            }
+        }
+        const auto usual = hn::And(hn::Gt(largest, all(d, 1e-6)), hn::Lt(largest, all(d, 1e6)));
+        if (!hn::AllTrue(d, usual)) {
+            rescale(largest);
+        }
+    }
+
+    HWY_INLINE Vectors3<double> vertex(std::size_t i) const {
+        const double* at = vertices_.get() + 3 * i * kWidth;
+        return {hn::LoadU(D(), at), hn::LoadU(D(), at + kWidth), hn::LoadU(D(), at + 2 * kWidth)};
+    }
+
+    struct Facing {
+        V<D> side;                ///< of the polygon's plane that the origin is on; 0 if edge-on or without area
+        Vectors3<double> normal;  ///< unit, to the polygon from the origin
+    };
+    HWY_INLINE Facing facing() const {
+        const D d;
+        const Vectors3<double> v0 = vertex(0);
+        Vectors3<double> normal = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+        Vectors3<double> sum = v0 + vertex(1);
+        auto farthest = hn::Max(dot<double>(v0, v0), dot<double>(vertex(1), vertex(1)));
+        Vectors3<double> before = vertex(1) - v0;
+        for (std::size_t i = 2; i < polygons_.vertex_count; ++i) {
+            const Vectors3<double> v = vertex(i);
+            const Vectors3<double> after = v - v0;
+            normal = normal + cross<double>(before, after);
+            before = after;
+            sum = sum + v;
+            farthest = hn::Max(farthest, dot<double>(v, v));
+        }
+        const auto distance =
+            hn::Mul(dot<double>(normal, sum), all(d, 1 / static_cast<double>(polygons_.vertex_count)));
+        const auto least =
+            hn::Mul(all(d, kEdgeOn<double> * kEdgeOn<double>), hn::Mul(farthest, dot<double>(normal, normal)));
+        const auto seen = hn::Gt(hn::Mul(distance, distance), least);
+        const auto side = hn::IfThenElseZero(seen, hn::CopySign(all(d, 1), distance));
+        const auto length = hn::Sqrt(hn::Max(dot<double>(normal, normal), all(d, std::numeric_limits<double>::min())));
+        return {side, scaled<double>(normal, hn::Div(side, length))};
+    }
+
+  private:
+    /// Powers of two change no digit, and squares of tiny and huge coordinates stay in the range of float.
+    HWY_NOINLINE void rescale(V<D> largest) {
+        const auto scale = power_of_two_scale(largest);
+        for (std::size_t i = 0; i < 3 * polygons_.vertex_count; ++i) {
+            double* v = vertices_.get() + i * kWidth;
+            hn::StoreU(hn::Mul(hn::LoadU(D(), v), scale), D(), v);
+        }
+    }
+
+    PolygonArray polygons_;
+    hwy::AlignedFreeUniquePtr<double[]> vertices_;  // NOLINT(modernize-avoid-c-arrays): as Highway names it
+};
+
+/// One edge of each polygon of a vector, from vertex e to the next.
 template <class R>
 struct EdgeLanes {
     using Values = LaneValues<R>;
@@ -34,11 +135,11 @@ struct EdgeLanes {
     Values cut_x, cut_y;               ///< where the edge meets the horizon
     Values share;                      ///< of the edge that is kept
     Values crossing;                   ///< 1: enters, -1: leaves the upper half, from vertex to next
-    // The arc that is kept, as ArcRow; half is 0 if nothing is.
+    // The arc that is kept, as Arc; half is 0 if nothing is.
     Values axis_x, axis_y, axis_z, middle_x, middle_y, middle_z, cosine, sine, half;
 };
 
-/// One arc of each boundary that lies in the horizon, as HorizonRow; where a polygon has none, `angle` is 0.
+/// One arc of each boundary that lies in the horizon, as HorizonArc; where a polygon has none, `angle` is 0.
 template <class R>
 struct HorizonLanes {
     LaneValues<R> from_cosine, from_sine, to_cosine, to_sine, angle;
@@ -62,25 +163,6 @@ HWY_INLINE void put_rounded(LaneValues<R>& values, std::size_t offset, V<Doubles
         const hn::Rebind<float, Doubles> d;
         hn::StoreU(hn::DemoteTo(d, v), d, values.data() + offset);
     }
-}
-
-/// What is missing of a product that was rounded.
-HWY_INLINE V<Doubles> product_error(V<Doubles> a, V<Doubles> b, V<Doubles> product) {
-#if HWY_NATIVE_FMA
-    return hn::MulSub(a, b, product);
-#else
-    const Doubles d;  // Dekker 1971: the products of halves of the digits are exact
-    const auto upper = [&](V<Doubles> x) HWY_ATTR {
-        const auto shifted = hn::Mul(x, all(d, 134217729));
-        return hn::Sub(shifted, hn::Sub(shifted, x));
-    };
-    const auto a1 = upper(a);
-    const auto b1 = upper(b);
-    const auto a2 = hn::Sub(a, a1);
-    const auto b2 = hn::Sub(b, b1);
-    const auto rest = hn::Add(hn::Sub(hn::Mul(a1, b1), product), hn::Add(hn::Mul(a1, b2), hn::Mul(a2, b1)));
-    return hn::Add(rest, hn::Mul(a2, b2));
-#endif
 }
 
 /// a b - c d, right to two roundings however much of it cancels (Kahan).

@@ -23,9 +23,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 
-/// What edges cancel to is about solid angle ÷ boundary of what each has. A region with more than this goes through
-/// float and loses little that float could hold: less at low orders, where fewer terms bring their rounding.
-/// None at orders up to 2, all that a diffuse surface needs: closed forms in double are right to the last digit of a
+/// Least ratio of solid angle to boundary at which arcs go through float. Edges cancel to about that ratio of each, so
+/// wider regions lose little that float could hold, and less at low orders, where fewer terms bring their rounding.
+/// Orders up to 2, all that a diffuse surface needs, never do: closed forms in double are right to the last digit of a
 /// float.
 HWY_INLINE double least_width_for_float(int order) {
     return order <= 2 ? std::numeric_limits<float>::max() : std::clamp(0.003 * order, 0.024, 0.05);
@@ -51,14 +51,13 @@ HWY_INLINE V<Lanes<R>> degree_on(std::size_t order, V<Lanes<R>> sine) {
     }
 }
 
-/// Gauss points for waves of κ radians; more than kMaxGaussPoints if one rule does not do. growth: as
-/// kGaussErrorGrowth.
+/// Gauss points for waves of κ radians; more than kMaxGaussPoints if one rule does not do.
 template <class R>
-HWY_INLINE V<Lanes<R>> points_for(V<Lanes<R>> kappa, V<Lanes<R>> tolerance, const GaussErrorGrowth& growth) {
+HWY_INLINE V<Lanes<R>> points_for(V<Lanes<R>> kappa, V<Lanes<R>> tolerance) {
     const Lanes<R> d;
     const auto one = all(d, 1);
     const auto square = hn::Mul(kappa, kappa);
-    auto error = hn::Mul(square, all(d, 2 * growth[0]));
+    auto error = hn::Mul(square, all(d, 2 * kGaussErrorGrowth[0]));
     auto points = one;
     for (std::size_t k = 1; k + 1 < kMaxGaussPoints; ++k) {
         const auto more = hn::Gt(error, tolerance);
@@ -66,7 +65,7 @@ HWY_INLINE V<Lanes<R>> points_for(V<Lanes<R>> kappa, V<Lanes<R>> tolerance, cons
             return points;
         }
         points = hn::Add(points, hn::IfThenElseZero(more, one));
-        error = hn::IfThenElse(more, hn::Mul(error, hn::Mul(square, all(d, growth[k]))), error);
+        error = hn::IfThenElse(more, hn::Mul(error, hn::Mul(square, all(d, kGaussErrorGrowth[k]))), error);
     }
     return hn::IfThenElse(hn::Le(error, tolerance), points, all(d, kMaxGaussPoints + 1));
 }
@@ -92,10 +91,7 @@ HWY_INLINE void write_rows(const std::array<const LaneValues<R>*, kColumns>& col
             for (std::size_t j = 0; j < kSide; ++j) {
                 square[j] = get<R>(*columns[c + j]);
             }
-            transpose_squares(d, square);
-            for (std::size_t j = 0; j < kSide; ++j) {
-                store_blocks(d, square[j], rows.data() + j, c);
-            }
+            store_columns(d, square, rows.data(), c);
         }
     } else {
         for (std::size_t lane = 0; lane < rows.size(); ++lane) {
@@ -106,21 +102,18 @@ HWY_INLINE void write_rows(const std::array<const LaneValues<R>*, kColumns>& col
     }
 }
 
-/// Takes a chunk of polygons apart, sorted by the horizon and by the precision that they need for results in T. Kind,
-/// a class of its own, tells by number in the chunk: polygon(i), vertex(i), view(i), and takes low_bands(solid angles,
-/// ∫ u du, numbers, count) of vectors, the last word for each number being the right one, 0 for what is not seen.
-template <class Kind, class T, bool kBoosted>
+/// Takes a chunk of polygons apart, sorted by the horizon and by the precision that they need for results in T. Derived
+/// tells by number in the chunk: polygon(i), vertex(i), view(i), and takes low_bands(solid angles, ∫ u du, numbers,
+/// count) of vectors, the last word for each number being the right one, 0 for what is not seen.
+template <class Derived, class T, bool kBoosted>
 class PolygonLists {
   protected:
     /// looseness: of the Gauss points' tolerance, 1 for that of coefficients.
-    /// growth: of the error, where less is known than that harmonics are below the order.
-    PolygonLists(const PolygonArray& polygons, int order, double looseness,
-                 const GaussErrorGrowth& growth = kGaussErrorGrowth)
+    PolygonLists(const PolygonArray& polygons, int order, double looseness)
         : polygons_(polygons),
           order_(order),
           least_width_(kInDouble ? std::numeric_limits<float>::max() : least_width_for_float(order)),
-          looseness_(looseness),
-          growth_(growth) {}
+          looseness_(looseness) {}
 
     void take(std::size_t count, bool clip) {
         for (auto* list : {&narrow_whole_, &narrow_cut_, &narrowest_}) {
@@ -149,9 +142,9 @@ class PolygonLists {
   private:
     static constexpr bool kInDouble = std::is_same_v<T, double>;
 
-    Kind& self() { return static_cast<Kind&>(*this); }
+    Derived& self() { return static_cast<Derived&>(*this); }
 
-    /// Those below have no light. Without branches, which would be foretold badly.
+    /// Polygons below the horizon have no light. There are no branches, which would be foretold badly.
     void sort_by_horizon(std::size_t count, bool clip) {
         whole_.resize(count);
         cut_.resize(count);
@@ -173,7 +166,7 @@ class PolygonLists {
         cut_.resize(cut);
     }
 
-    /// What decides about a vector of polygons.
+    /// The measures that decide about a vector of polygons.
     template <class R>
     struct Measured {
         LaneValues<R> width;  ///< solid angle ÷ length of the edges; 0 if edge-on or without area
@@ -192,7 +185,7 @@ class PolygonLists {
         for (std::size_t start = 0; start < list.size(); start += kWidth) {
             const std::size_t count = std::min(kWidth, list.size() - start);
             std::array<std::uint32_t, kWidth> polygon;
-            std::array<std::uint32_t, kWidth> views;
+            std::array<std::int64_t, kWidth> views;
             for (std::size_t lane = 0; lane < kWidth; ++lane) {
                 const std::uint32_t i = list[start + std::min(lane, count - 1)];
                 polygon[lane] = static_cast<std::uint32_t>(self().polygon(i));
@@ -200,7 +193,10 @@ class PolygonLists {
             }
             preparation.prepare(polygon.data(), lanes);
             if constexpr (kBoosted) {
-                const BoostLanes3 boost(self().boosts(), views.data());
+                const Doubles d;
+                const BoostLanes boost = load_boosts(self().boosts(), [&](const double* values) HWY_ATTR {
+                    return hn::GatherIndex(d, values, hn::LoadU(hn::RebindToSigned<Doubles>(), views.data()));
+                });
                 measure(lanes, ClippedEdges<R, kClipped, true>(lanes, &boost).region(), list.data() + start, count,
                         measured);
             } else {
@@ -225,7 +221,7 @@ class PolygonLists {
                                      {hn::IfThenElseZero(seen, moment.x), hn::IfThenElseZero(seen, moment.y),
                                       hn::IfThenElseZero(seen, moment.z)},
                                      list, count);
-        // Of a harmonic's integral over an arc. What it adds to a coefficient is divided by about the degree.
+        // This is the tolerance of a harmonic's integral over an arc, which a coefficient divides by about the degree.
         const auto wide = hn::Gt(width, all(d, least_width_));
         const double unit = order_ * static_cast<double>(std::numeric_limits<T>::epsilon());
         const auto tolerance =
@@ -237,7 +233,7 @@ class PolygonLists {
             const auto length = hn::Mul(sine, half);
             const auto relative = hn::Max(hn::Div(tolerance, length), all(d, kFinest));
             const auto degree = degree_on<kBoosted, R>(static_cast<std::size_t>(order_), sine);
-            const auto points = points_for<R>(hn::Mul(degree, half), relative, growth_);
+            const auto points = points_for<R>(hn::Mul(degree, half), relative);
             put<R>(out.points[e], hn::IfThenElseZero(hn::Gt(half, zero), points));
         }
     }
@@ -285,7 +281,7 @@ class PolygonLists {
             region[lane] = static_cast<R>(list[std::min(lane, count - 1)]);
         }
         alignas(64) std::array<std::int32_t, kWidth> which;
-        ArcRow<To> nowhere;
+        HorizonArc<To> nowhere;
         std::array<To*, kWidth> rows;
         for (std::size_t e = 0; e < lanes.edges.size(); ++e) {
             LaneValues<R> points;
@@ -296,7 +292,7 @@ class PolygonLists {
             // What is no arc goes to the list of those without points, which nobody reads.
             hn::Store(to_integers(di, get<R>(points)), di, which.data());
             for (std::size_t lane = 0; lane < kWidth; ++lane) {
-                rows[lane] = lists.add_arc(static_cast<std::size_t>(which[lane])).data();
+                rows[lane] = numbers(lists.arcs.add(static_cast<std::size_t>(which[lane])));
             }
             write_rows<R, To>(columns(lanes.edges[e], region), rows);
         }
@@ -304,7 +300,7 @@ class PolygonLists {
             const auto exists = hn::IfThenElseZero(hn::Ne(get<R>(arc.angle), hn::Zero(d)), get<R>(chosen));
             hn::Store(to_integers(di, exists), di, which.data());
             for (std::size_t lane = 0; lane < kWidth; ++lane) {
-                rows[lane] = which[lane] != 0 ? lists.add_horizon().data() : nowhere.data();
+                rows[lane] = numbers(which[lane] != 0 ? lists.add_horizon() : nowhere);
             }
             const std::array<const LaneValues<R>*, 8> from = {&arc.from_cosine, &arc.from_sine, &arc.to_cosine,
                                                               &arc.to_sine,     &arc.angle,     &arc.angle,
@@ -313,7 +309,7 @@ class PolygonLists {
         }
     }
 
-    /// Of an edge's arc, as ArcRow, without what great circles do not need.
+    /// The numbers of an edge's arc; great circles do without cosine and sine.
     template <class R>
     static auto columns(const EdgeLanes<R>& edge, const LaneValues<R>& region) {
         const std::array<const LaneValues<R>*, 8> great = {&edge.axis_x,   &edge.axis_y,   &edge.axis_z,   &edge.half,
@@ -344,33 +340,30 @@ class PolygonLists {
     template <class R, class To>
     void add_pieces(const EdgeLanes<R>& edge, std::size_t lane, const LaneValues<R>& region, double tolerance,
                     ArcLists<To>& lists) const {
-        ArcRow<To> piece{};
+        Arc<To> piece{};
         const auto from = columns(edge, region);
         for (std::size_t c = 0; c < from.size(); ++c) {
-            piece[c] = static_cast<To>((*from[c])[lane]);
+            numbers(piece)[c] = static_cast<To>((*from[c])[lane]);
         }
-        const auto half = static_cast<double>(piece[3]);
-        const double sine = kBoosted ? static_cast<double>(piece[9]) : 1;
+        const auto half = static_cast<double>(piece.half);
+        const double sine = kBoosted ? static_cast<double>(piece.sine) : 1;
         const double highest = order_ - 1;
         const double degree = kBoosted ? std::min(highest, highest * sine + 7) : highest - 1;
         const Division division = divided(degree * half, std::max(tolerance / (sine * half), kFinest));
-        const Vec3d axis(piece[0], piece[1], piece[2]);
-        const Vec3d middle(piece[4], piece[5], piece[6]);
-        const Vec3d across = glm::cross(axis, middle);
-        piece[3] = static_cast<To>(half / division.pieces);
+        const Vec3d middle(piece.middle);
+        const Vec3d across = glm::cross(Vec3d(piece.axis), middle);
+        piece.half = static_cast<To>(half / division.pieces);
         for (int k = 0; k < division.pieces; ++k) {
             const double turn = half * ((2 * k + 1.0) / division.pieces - 1);
-            const Vec3<To> turned(std::cos(turn) * middle + std::sin(turn) * across);
-            std::copy_n(&turned.x, 3, piece.begin() + 4);
-            lists.add_arc(static_cast<std::size_t>(division.points)) = piece;
+            piece.middle = Vec3<To>(std::cos(turn) * middle + std::sin(turn) * across);
+            lists.arcs.add(static_cast<std::size_t>(division.points)) = piece;
         }
     }
 
-    /// More than double can resolve is not asked for.
+    /// Double cannot resolve more than this.
     static constexpr double kFinest = 1e-20;
 
     double least_width_, looseness_;
-    GaussErrorGrowth growth_;
     std::vector<std::uint32_t> whole_, cut_, narrow_whole_, narrow_cut_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "regions/polygon_rows.h"
+#include "regions/polygon_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "regions/polygon_rows.cpp"
@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "regions/moments-inl.h"
-#include "regions/polygon_cubature.h"
 #include "regions/polygon_lists-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -59,7 +58,7 @@ class PolygonRows : public PolygonLists<PolygonRows<T>, T, false> {
                               std::size_t count) {
         const Lanes<R> d;
         std::array<LaneValues<R>, 4> values;
-        // Of thin polygons rounding may leave less than nothing.
+        // Rounding may leave less than nothing of thin polygons.
         put<R>(values[0], hn::Mul(all(d, kBand0), hn::Max(solid_angle, hn::Zero(d))));
         put<R>(values[1], hn::Mul(all(d, kBand1), moment.y));
         put<R>(values[2], hn::Mul(all(d, kBand1), moment.z));
@@ -82,9 +81,9 @@ class PolygonRows : public PolygonLists<PolygonRows<T>, T, false> {
             }
         };
         for (std::size_t points = 1; points <= kMaxGaussPoints; ++points) {
-            give_slots(this->double_arcs_.arcs(points));
+            give_slots(this->double_arcs_.arcs.rows(points));
         }
-        give_slots(this->double_arcs_.horizon());  // a sliver may have no other arc
+        give_slots(this->double_arcs_.horizon);  // a sliver may have no other arc
         if (room_ < slots * numbers_) {
             room_ = slots * numbers_;
             sums_ = hwy::AllocateAligned<double>(room_);
@@ -133,20 +132,6 @@ void double_rows(const PolygonArray& polygons, std::size_t count, int order, boo
     rows_in_lanes(polygons, count, order, clip, rows, narrowest);
 }
 
-template <class R>
-void add_arcs(const ArcLists<R>& arcs, int order, R* coefficients) {
-    const auto numbers = static_cast<std::size_t>(coefficient_count(order));
-    add_moments(arcs, order, [&](std::size_t region) { return coefficients + region * numbers; });
-}
-
-void add_float_arcs(const ArcLists<float>& arcs, int order, float* coefficients) {
-    add_arcs(arcs, order, coefficients);
-}
-
-void add_double_arcs(const ArcLists<double>& arcs, int order, double* coefficients) {
-    add_arcs(arcs, order, coefficients);
-}
-
 }  // namespace
 }  // namespace shlight::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -156,8 +141,6 @@ namespace shlight {
 
 HWY_EXPORT(float_rows);
 HWY_EXPORT(double_rows);
-HWY_EXPORT(add_float_arcs);
-HWY_EXPORT(add_double_arcs);
 
 template <class T>
 void polygon_rows(std::span<const Vec3d> vertices, int vertex_count, int order, bool clip, T* rows) {
@@ -180,14 +163,6 @@ void polygon_rows(std::span<const Vec3d> vertices, int vertex_count, int order, 
 
 template void polygon_rows(std::span<const Vec3d>, int, int, bool, float*);
 template void polygon_rows(std::span<const Vec3d>, int, int, bool, double*);
-
-void add_arc_coefficients(const ArcLists<float>& arcs, int order, float* coefficients) {
-    HWY_DYNAMIC_DISPATCH(add_float_arcs)(arcs, order, coefficients);
-}
-
-void add_arc_coefficients(const ArcLists<double>& arcs, int order, double* coefficients) {
-    HWY_DYNAMIC_DISPATCH(add_double_arcs)(arcs, order, coefficients);
-}
 
 }  // namespace shlight
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "regions/polygon_shading_kernel.h"
+#include "regions/polygon_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "regions/polygon_shading_kernel.cpp"
@@ -15,7 +15,6 @@
 #include <numbers>
 #include <vector>
 
-#include "regions/polygon_cubature.h"
 #include "regions/polygon_lists-inl.h"
 #include "regions/potential-inl.h"
 #include "shlight/shading.h"
@@ -24,10 +23,8 @@ HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 namespace {
 
-/// What Gauss points may err by, in units of what coefficients may: one number sums up what many of them err by. The
-/// bound for harmonics of any size is far from reached, that for a lobe's is closer.
+/// Tolerance of Gauss points in units of that for coefficients: one number sums up the errors of many of them.
 constexpr double kLooseness = 8;
-constexpr double kLoosenessOfLobe = 2;
 
 /// Work of one call of shade_polygons.
 template <bool kBoosted>
@@ -38,8 +35,7 @@ class PolygonShading : public PolygonLists<PolygonShading<kBoosted>, float, kBoo
   public:
     PolygonShading(const PolygonArray& polygons, const std::uint32_t* polygon_of, const LobeArrays& lobe,
                    const std::uint32_t* view_of, float* values)
-        : Base(polygons, lobe.order, takes_lobe_bound(lobe) ? kLoosenessOfLobe : kLooseness,
-               takes_lobe_bound(lobe) ? lobe_error_growth(lobe.terms, lobe.order) : kGaussErrorGrowth),
+        : Base(polygons, lobe.order, kLooseness),
           polygon_of_(polygon_of),
           lobe_(lobe),
           view_of_(view_of),
@@ -49,18 +45,8 @@ class PolygonShading : public PolygonLists<PolygonShading<kBoosted>, float, kBoo
         first_ = first;
         sums_.assign(count, 0.0);
         this->take(count, true);
-        if (lobe_.stride != 0) {
-            integrate_apart(this->float_arcs_);
-            integrate_apart(this->double_arcs_);
-        } else {
-            if (!kBoosted && this->order_ <= kMaxChebyshevOrder) {
-                const ChebyshevSeries<float> series(this->order_, lobe_.terms);
-                integrate<true>(this->float_arcs_, series);
-            } else {
-                integrate_shared(this->float_arcs_);
-            }
-            integrate_shared(this->double_arcs_);
-        }
+        integrate(this->float_arcs_);
+        integrate(this->double_arcs_);
         for (std::size_t i = 0; i < count; ++i) {
             values_[first + i] = static_cast<float>(sums_[i]);
         }
@@ -68,10 +54,6 @@ class PolygonShading : public PolygonLists<PolygonShading<kBoosted>, float, kBoo
     }
 
   private:
-    /// Waves along images under a boost are counted in another way, and there it depends on the neighbours whether
-    /// lights share a lobe.
-    static bool takes_lobe_bound(const LobeArrays& lobe) { return !kBoosted && lobe.stride == 0 && lobe.order > 2; }
-
     std::size_t polygon(std::size_t i) const { return polygon_of_[first_ + i]; }
     const double* vertex(std::size_t i) const {
         return this->polygons_.vertices + 3 * this->polygons_.vertex_count * polygon(i);
@@ -111,50 +93,38 @@ class PolygonShading : public PolygonLists<PolygonShading<kBoosted>, float, kBoo
         return get<R>(values);
     }
 
-    /// One lobe for all.
     template <class R>
-    void integrate_shared(const ArcLists<R>& lists) {
-        PotentialSeries<R, true> series(this->order_);
-        RowPointers<const float> rows;
-        rows.fill(lobe_.terms);
-        series.set(rows);
-        integrate<true>(lists, series);
-    }
-
-    /// To each its own.
-    template <class R>
-    void integrate_apart(const ArcLists<R>& lists) {
-        PotentialSeries<R, false> series(this->order_);
-        integrate<false>(lists, series);
-    }
-
-    template <bool kShared, class R, class Series>
-    void integrate(const ArcLists<R>& lists, Series& series) {
+    void integrate(const ArcLists<R>& lists) {
         if (this->order_ <= 2) {
             return;
         }
+        PotentialSeries<R> series(this->order_);
+        bool is_set = false;
         for (int points = 1; points <= kMaxGaussPoints; ++points) {
-            const auto& arcs = lists.arcs(static_cast<std::size_t>(points));
+            const auto& arcs = lists.arcs.rows(static_cast<std::size_t>(points));
             const GaussRule& rule = gauss_rule(points);
             for (std::size_t first = 0; first < arcs.size(); first += kLaneCount<Lanes<R>>) {
-                look<kShared, R>(series, arcs, first);
+                look(series, arcs, first, is_set);
                 const ArcLanes<R, !kBoosted> lanes(arcs.from(first));
                 add(arcs, first, arc_integral<R, !kBoosted>(series, lanes, rule));
             }
         }
-        integrate_horizon<kShared>(lists.horizon(), series);
+        integrate_horizon(lists.horizon, series, is_set);
     }
 
-    /// The lobes of the regions that a vector's lanes belong to.
-    template <bool kShared, class R, class Series, class Rows>
-    void look(Series& series, const Rows& regions, std::size_t first) const {
-        if constexpr (!kShared) {
-            RowPointers<const float> rows;
-            for (std::size_t lane = 0; lane < kLaneCount<Lanes<R>>; ++lane) {
-                rows[lane] = terms(regions.region(std::min(first + lane, regions.size() - 1)));
-            }
-            series.set(rows);
+    /// Sets the lobes of the regions that a vector's arcs belong to. is_set: whether they were set before, which
+    /// suffices where all polygons share a lobe.
+    template <class R, class Rows>
+    void look(PotentialSeries<R>& series, const Rows& arcs, std::size_t first, bool& is_set) const {
+        if (is_set && lobe_.stride == 0) {
+            return;
         }
+        is_set = true;
+        RowPointers<const float> rows;
+        for (std::size_t lane = 0; lane < kLaneCount<Lanes<R>>; ++lane) {
+            rows[lane] = terms(arcs.region(std::min(first + lane, arcs.size() - 1)));
+        }
+        series.set(rows);
     }
 
     template <class Rows, class Vector>
@@ -168,12 +138,12 @@ class PolygonShading : public PolygonLists<PolygonShading<kBoosted>, float, kBoo
         }
     }
 
-    template <bool kShared, class R, class Series>
-    void integrate_horizon(const RowList<std::array<R, 8>>& arcs, Series& series) {
+    template <class R>
+    void integrate_horizon(const RowList<HorizonArc<R>>& arcs, PotentialSeries<R>& series, bool& is_set) {
         constexpr std::size_t kWidth = kLaneCount<Lanes<R>>;
         std::vector<R> slopes(series.order() * kWidth);
         for (std::size_t first = 0; first < arcs.size(); first += kWidth) {
-            if (!kShared || first == 0) {
+            if (first == 0 || lobe_.stride != 0) {
                 LaneValues<R> height;
                 LaneValues<R> sine;
                 for (std::size_t lane = 0; lane < kWidth; ++lane) {
@@ -181,7 +151,7 @@ class PolygonShading : public PolygonLists<PolygonShading<kBoosted>, float, kBoo
                     height[lane] = kBoosted ? static_cast<R>(lobe_.boosts.horizon_height[v]) : R(0);
                     sine[lane] = kBoosted ? static_cast<R>(lobe_.boosts.horizon_sine[v]) : R(1);
                 }
-                look<kShared, R>(series, arcs, first);
+                look(series, arcs, first, is_set);
                 horizon_slopes<R>(series, get<R>(height), get<R>(sine), slopes.data());
             }
             add(arcs, first, horizon_integral<R>(slopes.data(), series.order(), arcs.from(first)));

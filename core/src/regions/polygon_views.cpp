@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "regions/polygon_views.h"
+#include "regions/polygon_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "regions/polygon_views.cpp"
@@ -14,7 +14,7 @@
 #include <limits>
 #include <vector>
 
-#include "regions/polygon_vertices-inl.h"
+#include "regions/polygon_edges-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {

@@ -16,8 +16,8 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "regions/arc_points-inl.h"
-#include "regions/potential_constants.h"
+#include "regions/arc_lanes-inl.h"
+#include "regions/boundary_constants.h"
 #include "shlight/types.h"
 #include "simd/lanes-inl.h"
 #include "simd/lobe_arrays.h"
@@ -31,15 +31,15 @@ struct SeriesPair {
     V<Lanes<R>> down, same;
 };
 
-/// The two series of each degree for a vector of lobes. kShared: one lobe in all lanes, and one number a coefficient.
-template <class R, bool kShared>
+/// The two series of each degree for a vector of lobes.
+template <class R>
 class PotentialSeries {
     using D = Lanes<R>;
 
   public:
-    explicit PotentialSeries(int order) : order_(static_cast<std::size_t>(order)) {
-        const PotentialConstants& constants = PotentialConstants::of(order);
-        rise_.assign(constants.rise.begin(), constants.rise.end());
+    explicit PotentialSeries(int order)
+        : order_(static_cast<std::size_t>(order)), constants_(PotentialConstants::of(order)) {
+        rise_.assign(constants_.rise.begin(), constants_.rise.end());
         down_.resize(rise_.size() * kWidth);
         same_.resize(rise_.size() * kWidth);
     }
@@ -48,28 +48,19 @@ class PotentialSeries {
 
     /// rows: each lane's terms, readable up to the next multiple of four.
     void set(const RowPointers<const float>& rows) {
-        const PotentialConstants& constants = PotentialConstants::of(static_cast<int>(order_));
-        if constexpr (kShared) {
-            for (std::size_t i = 0; i < rise_.size(); ++i) {
-                const float* f = rows[0] + constants.term[i];
-                down_[i] = static_cast<R>(constants.down[i]) * static_cast<R>(f[-1]);
-                same_[i] = static_cast<R>(constants.same[i]) * static_cast<R>(f[0]);
-            }
-        } else {
-            const D d;
-            load_terms(rows);
-            for (std::size_t i = 0; i < rise_.size(); ++i) {
-                const R* f = terms_.data() + constants.term[i] * kWidth;
-                hn::StoreU(hn::Mul(hn::LoadU(d, f - kWidth), all(d, constants.down[i])), d, down_.data() + i * kWidth);
-                hn::StoreU(hn::Mul(hn::LoadU(d, f), all(d, constants.same[i])), d, same_.data() + i * kWidth);
-            }
+        const D d;
+        load_terms(rows);
+        for (std::size_t i = 0; i < rise_.size(); ++i) {
+            const R* f = terms_.data() + constants_.term[i] * kWidth;
+            hn::StoreU(hn::Mul(hn::LoadU(d, f - kWidth), all(d, constants_.down[i])), d, down_.data() + i * kWidth);
+            hn::StoreU(hn::Mul(hn::LoadU(d, f), all(d, constants_.same[i])), d, same_.data() + i * kWidth);
         }
     }
 
     HWY_INLINE SeriesPair<R> coefficients(std::size_t i) const {
-        return {coefficient(down_, i), coefficient(same_, i)};
+        return {hn::LoadU(D(), down_.data() + i * kWidth), hn::LoadU(D(), same_.data() + i * kWidth)};
     }
-    /// By which Clenshaw's recurrence multiplies b_{l+1} at heights.
+    /// The factors of b_{l+1} in Clenshaw's recurrence at heights.
     template <std::size_t kPoints>
     HWY_INLINE std::array<V<D>, kPoints> slopes(std::size_t i, const std::array<V<D>, kPoints>& z) const {
         const auto rise = hn::Set(D(), rise_[i]);
@@ -81,15 +72,7 @@ class PotentialSeries {
     }
 
   private:
-    static constexpr std::size_t kWidth = kShared ? 1 : kLaneCount<D>;
-
-    HWY_INLINE V<D> coefficient(const std::vector<R>& values, std::size_t i) const {
-        if constexpr (kShared) {
-            return hn::Set(D(), values[i]);
-        } else {
-            return hn::LoadU(D(), values.data() + i * kWidth);
-        }
-    }
+    static constexpr std::size_t kWidth = kLaneCount<D>;
 
     void load_terms(const RowPointers<const float>& rows) {
         const auto count = static_cast<std::size_t>(cosine_count(static_cast<int>(order_)));
@@ -115,61 +98,15 @@ class PotentialSeries {
     }
 
     std::size_t order_;
+    const PotentialConstants& constants_;
     std::vector<R> rise_, down_, same_, terms_;
 };
 
-/// One lobe in all lanes, and series in Chebyshev polynomials U_k, whose recurrence U_{k+1} = 2 z U_k - U_{k-1} is the
-/// same for all degrees and needs no product of its own. For orders up to kMaxChebyshevOrder.
-template <class R>
-class ChebyshevSeries {
-    using D = Lanes<R>;
-
-  public:
-    ChebyshevSeries(int order, const float* terms) : order_(static_cast<std::size_t>(order)) {
-        const PotentialConstants& constants = PotentialConstants::of(order);
-        down_.resize(constants.rise.size());
-        same_.resize(constants.rise.size());
-        const double* row = constants.chebyshev.data();
-        std::size_t first = 0;
-        for (std::size_t count = 1; count < order_; first += count++) {
-            for (std::size_t k = first; k < first + count; ++k) {
-                double down = 0;
-                double same = 0;
-                for (std::size_t i = first; i < first + count; ++i, ++row) {
-                    const float* f = terms + constants.term[i];
-                    down += *row * constants.down[i] * static_cast<double>(f[-1]);
-                    same += *row * constants.same[i] * static_cast<double>(f[0]);
-                }
-                down_[k] = static_cast<R>(down);
-                same_[k] = static_cast<R>(same);
-            }
-        }
-    }
-
-    std::size_t order() const { return order_; }
-
-    /// As PotentialSeries has them.
-    HWY_INLINE SeriesPair<R> coefficients(std::size_t i) const {
-        return {hn::Set(D(), down_[i]), hn::Set(D(), same_[i])};
-    }
-    template <std::size_t kPoints>
-    HWY_INLINE std::array<V<D>, kPoints> slopes(std::size_t /*i*/, const std::array<V<D>, kPoints>& z) const {
-        std::array<V<D>, kPoints> slopes;
-        for (std::size_t k = 0; k < kPoints; ++k) {
-            slopes[k] = hn::Add(z[k], z[k]);
-        }
-        return slopes;
-    }
-
-  private:
-    std::size_t order_;
-    std::vector<R> down_, same_;
-};
-
 /// before: b_{l+2}, becomes b_l.
-template <class R, class Series, std::size_t kPoints>
-HWY_INLINE void clenshaw_step(const Series& series, std::size_t i, const std::array<V<Lanes<R>>, kPoints>& z,
-                              const std::array<SeriesPair<R>, kPoints>& b, std::array<SeriesPair<R>, kPoints>& before) {
+template <class R, std::size_t kPoints>
+HWY_INLINE void clenshaw_step(const PotentialSeries<R>& series, std::size_t i,
+                              const std::array<V<Lanes<R>>, kPoints>& z, const std::array<SeriesPair<R>, kPoints>& b,
+                              std::array<SeriesPair<R>, kPoints>& before) {
     const auto c = series.coefficients(i);
     const auto slopes = series.slopes(i, z);
     for (std::size_t k = 0; k < kPoints; ++k) {
@@ -180,8 +117,9 @@ HWY_INLINE void clenshaw_step(const Series& series, std::size_t i, const std::ar
 
 /// D_m and S_m at kPoints heights, by Clenshaw's recurrence b_l = c_l + slope b_{l+1} - b_{l+2}.
 /// first: where degree m begins; count: its terms.
-template <class R, class Series, std::size_t kPoints>
-HWY_INLINE std::array<SeriesPair<R>, kPoints> clenshaw_sums(const Series& series, std::size_t first, std::size_t count,
+template <class R, std::size_t kPoints>
+HWY_INLINE std::array<SeriesPair<R>, kPoints> clenshaw_sums(const PotentialSeries<R>& series, std::size_t first,
+                                                            std::size_t count,
                                                             const std::array<V<Lanes<R>>, kPoints>& z) {
     const Lanes<R> d;
     std::array<SeriesPair<R>, kPoints> b;
@@ -207,8 +145,8 @@ HWY_INLINE std::array<SeriesPair<R>, kPoints> clenshaw_sums(const Series& series
 ///
 /// With ζ = x+iy both Re ζ^k and Re (ν_x + iν_y) ζ^k follow g_{k+1} = 2x g_k - |ζ|² g_{k-1}, so the sums over m are
 /// Clenshaw's, too: four multiply-adds for each m, where Horner's rule for complex numbers takes seven.
-template <class R, std::size_t kPoints, class Series>
-HWY_INLINE std::array<V<Lanes<R>>, kPoints> normal_derivatives(const Series& series,
+template <class R, std::size_t kPoints>
+HWY_INLINE std::array<V<Lanes<R>>, kPoints> normal_derivatives(const PotentialSeries<R>& series,
                                                                const std::array<ArcPoints<R>, kPoints>& points) {
     using D = Lanes<R>;
     struct Clenshaw {
@@ -248,8 +186,9 @@ HWY_INLINE std::array<V<Lanes<R>>, kPoints> normal_derivatives(const Series& ser
 }
 
 /// ∫ ν·∇F ds along arcs in lanes, with so many Gauss points on each.
-template <class R, bool kGreat, class Series>
-HWY_INLINE V<Lanes<R>> arc_integral(const Series& series, const ArcLanes<R, kGreat>& arcs, const GaussRule& rule) {
+template <class R, bool kGreat>
+HWY_INLINE V<Lanes<R>> arc_integral(const PotentialSeries<R>& series, const ArcLanes<R, kGreat>& arcs,
+                                    const GaussRule& rule) {
     const Lanes<R> d;
     const std::size_t points = rule.nodes.size();
     const auto fraction = [&](std::size_t i) { return 1 - 2 * rule.nodes[i]; };
@@ -273,8 +212,8 @@ HWY_INLINE V<Lanes<R>> arc_integral(const Series& series, const ArcLanes<R, kGre
 
 /// Along the horizon z = z_0, s = √(1-z_0²): ν·∇F ds = Σ_m slopes[m] cos mφ dφ,
 ///   slopes[m] = s^{m+2} D_{m+1}(z_0) - z_0 s^m S_m(z_0).
-template <class R, class Series>
-HWY_INLINE void horizon_slopes(const Series& series, V<Lanes<R>> height, V<Lanes<R>> sine, R* slopes) {
+template <class R>
+HWY_INLINE void horizon_slopes(const PotentialSeries<R>& series, V<Lanes<R>> height, V<Lanes<R>> sine, R* slopes) {
     const Lanes<R> d;
     constexpr std::size_t kWidth = kLaneCount<Lanes<R>>;
     const std::size_t order = series.order();
@@ -297,10 +236,10 @@ HWY_INLINE void horizon_slopes(const Series& series, V<Lanes<R>> height, V<Lanes
 
 /// Σ_m slopes[m] ∫ cos mφ dφ over arcs of the horizon.
 template <class R>
-HWY_INLINE V<Lanes<R>> horizon_integral(const R* slopes, std::size_t order, const HorizonRow<R>* rows) {
+HWY_INLINE V<Lanes<R>> horizon_integral(const R* slopes, std::size_t order, const HorizonArc<R>* arcs) {
     const Lanes<R> d;
     constexpr std::size_t kWidth = kLaneCount<Lanes<R>>;
-    const auto v = horizon_columns<R>(rows);
+    const auto v = load_numbers<R, 8>(arcs);
     auto from_re = v[0];
     auto from_im = v[1];
     auto to_re = v[2];

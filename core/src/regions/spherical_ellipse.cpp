@@ -11,9 +11,9 @@
 namespace shlight {
 namespace {
 
-/// The directions to an ellipse are c + u cos τ + v sin τ, and (1, cos τ, sin τ) is null for the metric (+, -, -). Any
-/// turn or boost of the three columns is another parametrisation of the same boundary. Jacobi's rotations, hyperbolic
-/// ones for pairs with the first column, make the columns orthogonal: the principal axes of the cone.
+/// The directions to an ellipse are c + u cos τ + v sin τ, and (1, cos τ, sin τ) has length zero in the metric (+, -,
+/// -). Any turn or boost of the three columns is another parametrisation of the same boundary. Jacobi's rotations,
+/// hyperbolic ones for pairs with the first column, make the columns orthogonal: the principal axes of the cone.
 template <class Real>
 class ColumnRotations {
   public:
@@ -69,10 +69,10 @@ class ColumnRotations {
         const Real s = std::sqrt(glm::dot(sum, sum) * glm::dot(difference, difference)) / squares;  // √(1 - tanh² 2η)
         const Real cosh = std::sqrt((1 + s) / (2 * s));
         const Real t = std::min(Real(1), 2 * std::abs(product) / (squares * (1 + s)));
-        const Real lack = 2 * s / ((1 + s) * (1 + t));  // 1 - |tanh η|
+        const Real one_minus_tanh = 2 * s / ((1 + s) * (1 + t));  // 1 - |tanh η|
         const Real sign = product < 0 ? Real(1) : Real(-1);
-        const Vec3<Real> boosted = cosh * (sum - sign * lack * b);
-        b = cosh * (sign * sum - sign * lack * a);
+        const Vec3<Real> boosted = cosh * (sum - sign * one_minus_tanh * b);
+        b = cosh * (sign * sum - sign * one_minus_tanh * a);
         a = boosted;
     }
 
@@ -98,10 +98,9 @@ Real reach(const Ellipse<Real>& e) {
 
 template <class Real>
 OriginPlace place_of_origin(const Ellipse<Real>& ellipse) {
-    constexpr Real kEdgeOn = 64 * std::numeric_limits<Real>::epsilon();
     const Ellipse<Real> e = scaled(ellipse);
     const Vec3<Real> normal = glm::cross(e.half_axis_u, e.half_axis_v);
-    if (std::abs(glm::dot(e.center, normal)) > kEdgeOn * reach(e) * glm::length(normal)) {
+    if (std::abs(glm::dot(e.center, normal)) > kEdgeOn<Real> * reach(e) * glm::length(normal)) {
         return OriginPlace::beside_plane;
     }
     // center + a u + b v = 0 in the plane.

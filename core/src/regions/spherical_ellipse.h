@@ -23,8 +23,8 @@ struct Cone {
     Real complement;  ///< k'
 };
 
-/// Where the horizon cuts a boundary: it is kept for `from` ≤ u ≤ `to`, and closed by the arc of the horizon from
-/// `last`, the direction at `to`, to `first`, counter-clockwise about z by less than half a turn.
+/// A cut of a boundary by the horizon: the boundary is kept for `from` ≤ u ≤ `to`, and closed by the arc of the horizon
+/// from `last`, the direction at `to`, to `first`, counter-clockwise about z by less than half a turn.
 template <class Real>
 struct HorizonCut {
     Real from, to;

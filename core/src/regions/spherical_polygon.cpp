@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace shlight {
 namespace {
@@ -96,8 +95,7 @@ SphericalPolygon::SphericalPolygon(std::span<const Vec3d> vertices, bool clip) {
     }
     farthest = std::sqrt(farthest);
     distance /= static_cast<double>(vertices.size());
-    constexpr double kEdgeOn = 64 * std::numeric_limits<double>::epsilon();
-    if (!(std::abs(distance) > kEdgeOn * farthest * glm::length(normal))) {
+    if (!(std::abs(distance) > kEdgeOn<double> * farthest * glm::length(normal))) {
         return;
     }
     const std::size_t count = v.size();

@@ -3,12 +3,17 @@
 // A planar polygon as seen from the origin: clipped, turned into directions, measured.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "shlight/types.h"
 
 namespace shlight {
+
+/// A plane is seen edge-on if its distance from the origin is at most this part of that of its farthest point.
+template <class Real>
+inline constexpr Real kEdgeOn = 64 * std::numeric_limits<Real>::epsilon();
 
 class SphericalPolygon {
   public:

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "regions/cap_shading.h"
-#include "regions/polygon_views.h"
+#include "regions/cap_kernels.h"
+#include "regions/polygon_kernels.h"
 #include "shlight/lobe_shape.h"
 
 namespace shlight {

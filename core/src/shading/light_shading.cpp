@@ -10,9 +10,7 @@
 
 #include "base/checks.h"
 #include "lobes/material_views.h"
-#include "regions/cap_checks.h"
-#include "regions/disk_checks.h"
-#include "regions/polygon_checks.h"
+#include "regions/region_checks.h"
 #include "shading/lobe_batch.h"
 #include "shading/seen_lights.h"
 

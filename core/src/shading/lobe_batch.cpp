@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "lobes/boundary_integral.h"
-#include "regions/polygon_shading_kernel.h"
+#include "regions/polygon_kernels.h"
 #include "regions/spherical_polygon.h"
 #include "shading/cubature_kernel.h"
 #include "shading/polygon_rule_kernel.h"
@@ -312,7 +312,7 @@ void LobeBatch::by_outline(const LobeViews& lobe, const PolygonBatch& polygons) 
     }
 }
 
-void LobeBatch::integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const BoundaryArc> arcs) {
+void LobeBatch::integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const Arc<double>> arcs) {
     const std::uint32_t view = item_views_[item];
     const double tolerance = lobe.absolute_tolerance(view);
     const BoundaryIntegral integral =

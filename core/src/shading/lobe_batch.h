@@ -10,10 +10,11 @@
 #include <span>
 #include <vector>
 
+#include "lobes/boundary_integral.h"
 #include "lobes/material_views.h"
-#include "regions/cap_shading.h"
+#include "regions/boundary.h"
+#include "regions/cap_kernels.h"
 #include "regions/polygon_batch.h"
-#include "shading/light_boundary.h"
 #include "shlight/types.h"
 
 namespace shlight {
@@ -88,7 +89,7 @@ class LobeBatch {
     void by_outline(const LobeViews& lobe, const CapArrays& circles);
     void by_outline(const LobeViews& lobe, const PolygonBatch& polygons);
     /// Of an item.
-    void integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const BoundaryArc> arcs);
+    void integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const Arc<double>> arcs);
 
     std::vector<float> values_;
     std::vector<std::int32_t> efforts_;

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "regions/cap_shading.h"
+#include "regions/cap_kernels.h"
 #include "shlight/lobe_shape.h"
 #include "shlight/types.h"
 

@@ -11,6 +11,8 @@
 #include <hwy/highway.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <numbers>
 #include <type_traits>
 
@@ -89,6 +91,35 @@ HWY_INLINE V<D> arctangent(D d, V<D> y, V<D> x) {
     angle = hn::IfThenElse(hn::Gt(ay, ax), hn::Sub(all(d, kPi / 2), angle), angle);
     angle = hn::IfThenElse(hn::Lt(x, hn::Zero(d)), hn::Sub(all(d, kPi), angle), angle);
     return hn::CopySign(angle, y);
+}
+
+/// a b - product, where product is a b rounded: exact.
+HWY_INLINE V<Doubles> product_error(V<Doubles> a, V<Doubles> b, V<Doubles> product) {
+#if HWY_NATIVE_FMA
+    return hn::MulSub(a, b, product);
+#else
+    const Doubles d;  // Dekker 1971: the products of halves of the digits are exact
+    const auto upper = [&](V<Doubles> x) HWY_ATTR {
+        const auto shifted = hn::Mul(x, all(d, 134217729));
+        return hn::Sub(shifted, hn::Sub(shifted, x));
+    };
+    const auto a1 = upper(a);
+    const auto b1 = upper(b);
+    const auto a2 = hn::Sub(a, a1);
+    const auto b2 = hn::Sub(b, b1);
+    const auto rest = hn::Add(hn::Sub(hn::Mul(a1, b1), product), hn::Add(hn::Mul(a1, b2), hn::Mul(a2, b1)));
+    return hn::Add(rest, hn::Mul(a2, b2));
+#endif
+}
+
+/// The power of two by which numbers, finite and not negative, are 1 … 2, or closer to it than before.
+HWY_INLINE V<Doubles> power_of_two_scale(V<Doubles> largest) {
+    const Doubles d;
+    const hn::RebindToUnsigned<Doubles> du;
+    // The inverse of the largest normal numbers would be denormal.
+    const auto capped = hn::Min(largest, hn::Set(d, std::numeric_limits<double>::max() / 8));
+    const auto exponent = hn::And(hn::BitCast(du, capped), hn::Set(du, std::uint64_t{2047} << 52));
+    return hn::BitCast(d, hn::Sub(hn::Set(du, std::uint64_t{2046} << 52), exponent));
 }
 
 }  // namespace shlight::HWY_NAMESPACE

@@ -79,6 +79,27 @@ HWY_INLINE std::array<V<D>, kSquare<D>> load_columns(D d, const T* const* rows, 
     return v;
 }
 
+/// Stores a vector's 128-bit blocks at column `column` of every kSquare-th row.
+template <class D, class T>
+HWY_INLINE void store_blocks(D d, V<D> v, T* const* rows, std::size_t column) {
+    if constexpr (hn::MaxLanes(d) > kSquare<D>) {
+        const hn::Half<D> half;
+        store_blocks(half, hn::LowerHalf(half, v), rows, column);
+        store_blocks(half, hn::UpperHalf(half, v), rows + hn::MaxLanes(half), column);
+    } else {
+        hn::StoreU(v, d, *rows + column);
+    }
+}
+
+/// Writes columns `column` … `column + kSquare - 1` to all lanes' rows.
+template <class D, class T>
+HWY_INLINE void store_columns(D d, std::array<V<D>, kSquare<D>> columns, T* const* rows, std::size_t column) {
+    transpose_squares(d, columns);
+    for (std::size_t j = 0; j < kSquare<D>; ++j) {
+        store_blocks(d, columns[j], rows + j, column);
+    }
+}
+
 /// Collects the columns of a matrix as lanes and writes them to rows in whole cache lines.
 template <class T>
 class RowWriter {

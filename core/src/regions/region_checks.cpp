@@ -1,31 +1,36 @@
 // SPDX-License-Identifier: MIT
-#include "regions/polygon_checks.h"
+#include "regions/region_checks.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "base/checks.h"
+#include "base/exact_sums.h"
 #include "base/ray_rounding.h"
+#include "base/safe_length.h"
+#include "regions/cap_arrays.h"
+#include "regions/spherical_ellipse.h"
 
 namespace shlight {
 namespace {
 
-/// What vertices may be off the mean plane, ÷ the polygon's extent.
+/// Width ÷ length of an ellipse whose coefficients are right to 1e-10 in float64.
+constexpr double kNarrowestEllipse = 1e-9;
+
+/// Granted distance of vertices from the mean plane, ÷ the polygon's extent.
 constexpr double kGranted = 1e-4;
 
 /// Epsilons of T: what the rounding of vertices and a step or two before it leave open.
 constexpr double kInPlane = 8;
 
-/// Of the square of its extent: the area of a line, to rounding.
+/// Area ÷ square of the extent at which a polygon is a line, to rounding.
 constexpr double kNoArea = 16 * std::numeric_limits<double>::epsilon();
 
-/// The square of a distance from which on its third power stays within doubles.
+/// Square of the least distance whose third power stays within doubles.
 constexpr double kLeastSquare = 1e-60;
-
-/// Of the farthest vertex: distances of a plane from the shading point that the kernels hold for zero.
-constexpr double kEdgeOn = 64 * std::numeric_limits<double>::epsilon();
 
 /// Squares: of the area, the extent, and the largest deviation from the mean plane × the area. normal: of the mean
 /// plane, of any length.
@@ -34,7 +39,7 @@ struct Flatness {
     double area, extent, deviation;
 
     bool within(double granted) const { return deviation <= granted * granted * extent * area; }
-    /// Of finite vertices, whose squares neither overflow nor vanish: a NaN or an infinity reaches the area.
+    /// The vertices are finite and their squares neither overflow nor vanish: a NaN or an infinity reaches the area.
     bool is_usual() const {
         const double product = area * extent;
         return product > std::numeric_limits<double>::min() && product < std::numeric_limits<double>::max();
@@ -42,7 +47,7 @@ struct Flatness {
     bool is_line(double granted) const { return area <= granted * granted * extent * extent; }
 };
 
-/// Of what steps from the first vertex tell.
+/// The flatness of a polygon from the steps from its first vertex to the others.
 template <class Step>
 Flatness flatness_of(std::size_t count, const Step& step) {
     Vec3d area(0);
@@ -69,8 +74,8 @@ inline Flatness flatness_of_quad(const Vec3d* v) {
     return {area, glm::dot(area, area), glm::dot(diagonal, diagonal), deviation * deviation};
 }
 
-/// Of three vertices: whether more than their rounding to numbers of this epsilon decides on which side of their plane
-/// the origin is. An edge that all but touches the origin decides it, however far the third vertex.
+/// Whether more than the rounding of three vertices to numbers of this epsilon decides on which side of their plane the
+/// origin is. An edge that all but touches the origin decides it, however far the third vertex.
 bool is_decided(const Vec3d& a, const Vec3d& b, const Vec3d& c, double epsilon) {
     const auto products = [](const Vec3d& p, const Vec3d& q) {
         return Vec3d(p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x);
@@ -79,7 +84,7 @@ bool is_decided(const Vec3d& a, const Vec3d& b, const Vec3d& c, double epsilon) 
     return std::abs(glm::dot(glm::cross(a, b), c)) > kInPlane * epsilon * rounded;
 }
 
-/// Of a plane with this normal.
+/// Whether a polygon in a plane with this normal is seen edge-on.
 bool is_edge_on(const Vec3d& normal, std::span<const Vec3d> v, double epsilon) {
     double farthest = 0;
     bool decided = false;
@@ -87,7 +92,7 @@ bool is_edge_on(const Vec3d& normal, std::span<const Vec3d> v, double epsilon) {
         farthest = std::max(farthest, glm::length(v[i]));
         decided = decided || is_decided(v[i], v[(i + 1) % v.size()], v[(i + 2) % v.size()], epsilon);
     }
-    return !decided || std::abs(glm::dot(normal, v[0])) <= kEdgeOn * farthest * glm::length(normal);
+    return !decided || std::abs(glm::dot(normal, v[0])) <= kEdgeOn<double> * farthest * glm::length(normal);
 }
 
 /// True for all that is_edge_on, for those of unusual units, and for some others.
@@ -99,7 +104,7 @@ bool may_be_edge_on(const Vec3d& normal, std::span<const Vec3d> v, double epsilo
     if (!(farthest > kLeastSquare && farthest < 1 / kLeastSquare)) {
         return true;
     }
-    const double granted = 2 * std::max(kInPlane * epsilon, kEdgeOn);
+    const double granted = 2 * std::max(kInPlane * epsilon, kEdgeOn<double>);
     const double distance = glm::dot(normal, v[0]);
     return distance * distance <= granted * granted * farthest * glm::dot(normal, normal);
 }
@@ -135,12 +140,6 @@ bool is_surely_sound(std::span<const Vec3d> v, double epsilon) {
            !may_be_edge_on(flatness.normal, v, epsilon);
 }
 
-/// A vertex in a unit that is a power of two, so that its largest coordinate is 1 … 2.
-Vec3d in_unit(const Vec3d& v, double largest) {
-    const int exponent = -std::ilogb(largest);
-    return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
-}
-
 /// The unit of the largest coordinate; false if all are 0.
 bool take_own_unit(std::span<Vec3d> vertices) {
     double largest = 0;
@@ -151,8 +150,9 @@ bool take_own_unit(std::span<Vec3d> vertices) {
     if (largest == 0) {
         return false;
     }
+    const double scale = power_of_two_scale(largest);
     for (Vec3d& v : vertices) {
-        v = in_unit(v, largest);
+        v *= scale;
     }
     return true;
 }
@@ -192,12 +192,52 @@ void prepare_polygon(std::span<Vec3d> vertices, double epsilon) {
     if (vertices.size() == 3) {
         // Only directions count, and floats could not hold the products of a far vertex and of near ones.
         for (Vec3d& v : vertices) {
-            v = largest_component(v) > 0 ? in_unit(v, largest_component(v)) : v;
+            v *= power_of_two_scale(largest_component(v));
         }
     }
 }
 
 }  // namespace
+
+void check_sphere(const Vec3d& center, double radius, double epsilon) {
+    check_finite("centers", center);
+    if (!(std::isfinite(radius) && radius > 0)) {
+        reject("radii must be positive and finite");
+    }
+    const double farthest = std::max({std::abs(center.x), std::abs(center.y), std::abs(center.z)});
+    const double scale = safe_scale({farthest, radius, 0});
+    const Vec3d c = center * scale;
+    const double r = radius * scale;
+    // Contact within the rounding of the inputs is contact.
+    if (difference_of_squares({c.x, c.y, c.z}, r) < -4 * epsilon * r * r) {
+        reject("radii: the shading point lies inside a sphere (|center| < radius)");
+    }
+}
+
+template <class T>
+void check_spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, double epsilon) {
+    for (std::size_t i = sound_spheres(centers.data(), radii.data(), centers.size()); i < centers.size(); ++i) {
+        const Vec3d center(centers[i]);
+        check_sphere(center, static_cast<double>(radii[i]), epsilon);
+        // The kernels of floats divide by this distance.
+        if (sizeof(T) == 4 && safe_length(center) < std::numeric_limits<float>::min()) {
+            reject("centers: in float32 a sphere's centre must be 1.2e-38 or more from the shading point");
+        }
+    }
+}
+
+void check_cap(const Vec3d& axis, double half_angle) {
+    check_finite("axes", axis);
+    if (axis == Vec3d(0)) {
+        reject("axes contains a zero vector");
+    }
+    if (!(half_angle > 0 && half_angle <= std::numbers::pi * (1 + 1e-7))) {
+        reject("half_angles must lie in (0, π]");
+    }
+}
+
+template void check_spheres(std::span<const Vec3<float>>, std::span<const float>, double);
+template void check_spheres(std::span<const Vec3<double>>, std::span<const double>, double);
 
 void check_vertex_count(int vertex_count) {
     if (vertex_count < 3) {
@@ -218,5 +258,34 @@ void prepare_polygons(std::span<Vec3d> vertices, int vertex_count) {
 
 template void prepare_polygons<float>(std::span<Vec3d>, int);
 template void prepare_polygons<double>(std::span<Vec3d>, int);
+
+template <class T>
+void check_disk(const Ellipse<Wider<T>>& disk) {
+    using Real = Wider<T>;
+    check_finite("centers", disk.center);
+    check_finite("half_axes_u", disk.half_axis_u);
+    check_finite("half_axes_v", disk.half_axis_v);
+    const Vec3<Real>& u = disk.half_axis_u;
+    const Vec3<Real>& v = disk.half_axis_v;
+    if (u == Vec3<Real>(0)) {
+        reject("half_axes_u contains a zero vector");
+    }
+    const Vec3<Real> a = u / glm::length(u);
+    const Vec3<Real> b = v / glm::length(v);
+    constexpr Real kEpsilon = std::numeric_limits<T>::epsilon();
+    if (!(glm::length(glm::cross(a, b)) > 4 * kEpsilon)) {
+        reject("half_axes_v: a disk's half axes are dependent");
+    }
+    const Real longest = std::max(glm::length(u), glm::length(v));
+    if (!(glm::length(glm::cross(u / longest, v / longest)) > kNarrowestEllipse)) {
+        reject("half_axes_v: an ellipse may be 1e9 times as long as it is wide, at most");
+    }
+    if (place_of_origin(disk) == OriginPlace::in_plane_inside) {
+        reject("centers: the shading point lies inside a disk");
+    }
+}
+
+template void check_disk<float>(const Ellipse<double>&);
+template void check_disk<double>(const Ellipse<long double>&);
 
 }  // namespace shlight

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "regions/arc_rows.h"
+#include "regions/arcs.h"
 
 namespace shlight {
 namespace {

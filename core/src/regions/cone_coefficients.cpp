@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "regions/ellipse_rows.h"
+#include "regions/arcs.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "regions/ellipse_rows.cpp"
+#define HWY_TARGET_INCLUDE "regions/cone_coefficients.cpp"
 #include <hwy/foreach_target.h>
 // Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
 #include <hwy/highway.h>
@@ -12,17 +12,18 @@
 #include <numbers>
 #include <utility>
 
-#include "regions/cone_points-inl.h"
+#include "regions/arc_lanes-inl.h"
 #include "regions/moments-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace shlight::HWY_NAMESPACE {
 namespace {
 
-/// Where on -1 … 1 point number i lies, and its share of the length.
+/// The place of point number i on -1 … 1, and its share of the length.
 struct Node {
     double place, share;
 };
+
 Node node(Spacing spacing, std::size_t points, std::size_t i) {
     if (spacing == Spacing::equal) {
         const auto count = static_cast<double>(points);
@@ -53,31 +54,26 @@ void integrate(const ConeLanes<R>& pieces, Spacing spacing, std::size_t points, 
 }
 
 template <class R>
-void add_cones(const ConeLists<R>& lists, int order, R* coefficients) {
-    constexpr std::size_t kWidth = kLaneCount<Lanes<R>>;
-    const auto numbers = static_cast<std::size_t>(coefficient_count(order));
+void add_cones(const ArcLists<R, ConeArc<R>>& lists, int order, R* coefficients) {
+    const auto row_of = [&](std::size_t region) {
+        return coefficients + region * static_cast<std::size_t>(coefficient_count(order));
+    };
     ArcMoments<R, false> moments(order);
     for (const Spacing spacing : {Spacing::gauss, Spacing::equal}) {
         for (std::size_t points = 1; points <= kMaxGaussPoints; ++points) {
-            const auto& list = lists.rows(spacing, points);
-            for (std::size_t first = 0; first < list.size(); first += kWidth) {
-                integrate(ConeLanes<R>(list.from(first)), spacing, points, moments);
-                std::array<R*, kWidth> rows{};
-                const std::size_t count = std::min(kWidth, list.size() - first);
-                for (std::size_t lane = 0; lane < count; ++lane) {
-                    rows[lane] = coefficients + list.region(first + lane) * numbers;
-                }
-                moments.add_to(rows, count);
-            }
+            add_list(moments, lists.arcs.rows(points, spacing), row_of,
+                     [&](const ConeArc<R>* arcs) HWY_ATTR { integrate(ConeLanes<R>(arcs), spacing, points, moments); });
         }
     }
+    add_list(moments, lists.horizon, row_of,
+             [&](const HorizonArc<R>* arcs) HWY_ATTR { moments.integrate_horizon(arcs); });
 }
 
-void add_float_cones(const ConeLists<float>& lists, int order, float* coefficients) {
+void add_float_cones(const ArcLists<float, ConeArc<float>>& lists, int order, float* coefficients) {
     add_cones(lists, order, coefficients);
 }
 
-void add_double_cones(const ConeLists<double>& lists, int order, double* coefficients) {
+void add_double_cones(const ArcLists<double, ConeArc<double>>& lists, int order, double* coefficients) {
     add_cones(lists, order, coefficients);
 }
 
@@ -91,11 +87,11 @@ namespace shlight {
 HWY_EXPORT(add_float_cones);
 HWY_EXPORT(add_double_cones);
 
-void add_cone_coefficients(const ConeLists<float>& lists, int order, float* coefficients) {
+void add_cone_coefficients(const ArcLists<float, ConeArc<float>>& lists, int order, float* coefficients) {
     HWY_DYNAMIC_DISPATCH(add_float_cones)(lists, order, coefficients);
 }
 
-void add_cone_coefficients(const ConeLists<double>& lists, int order, double* coefficients) {
+void add_cone_coefficients(const ArcLists<double, ConeArc<double>>& lists, int order, double* coefficients) {
     HWY_DYNAMIC_DISPATCH(add_double_cones)(lists, order, coefficients);
 }
 
