@@ -53,7 +53,7 @@ double angle_to_axis(const Vec3d& direction) {
     return std::atan2(std::hypot(direction.x, direction.y), direction.z);
 }
 
-/// World direction from a hit against which the lamp's axis points, and the angles to it at which the profile has
+/// World direction opposite to the lamp's axis, about which the rings lie, and the angles to it at which the profile has
 /// kinks. No direction if lines of equal factor are not circles.
 struct Axis {
     std::optional<Vec3d> direction;
