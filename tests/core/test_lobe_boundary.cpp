@@ -99,7 +99,7 @@ TEST(ContourIntegral, AVeryNarrowLobeIsAMirror) {
         const Vec3d mirror(-v.x, 0, v.z);
         const double half = std::min(0.3, std::asin(mirror.z) / 2);
         const Arc<double> around = circle_about(mirror, half);
-        // Tails of the bell: (α / ½ half cosθ_o)² and less.
+        // Tails of the lobe: (α / ½ half cosθ_o)² and less.
         EXPECT_NEAR(boundary_integral(GgxShape{1e-6}, cosine, {&around, 1}, 1e-6).value, 1, 1e-5);
         const Arc<double> beside = circle_about(glm::normalize(mirror + Vec3d(0, 2.5 * half, 0)), half);
         EXPECT_NEAR(boundary_integral(GgxShape{1e-6}, cosine, {&beside, 1}, 1e-6).value, 0, 1e-5);

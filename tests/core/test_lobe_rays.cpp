@@ -80,7 +80,7 @@ TEST(LobeRays, AreWorthWhatTheLobeReflects) {
         std::vector<float> values(kRays + kLobeRayLanes);
         std::vector<float> densities(values);
         weigh_lobe_rays(shape, frame, view, ways.arrays(), kRays, values.data(), densities.data());
-        // A direction in floats is off by some 1e-7, the part α of which turns a half vector through the bell.
+        // A direction in floats is off by some 1e-7, the part α of which turns a half vector through the lobe.
         const double tolerance = 1e-5 + 4e-6 / lobe_width(shape);
         for (std::size_t i = 0; i < kRays; ++i) {
             const double value = lobe_value(shape, directions[i], view);

@@ -97,7 +97,7 @@ def test_narrow_lobes_tend_to_mirrors() -> None:
     mirrored = view_direction(0.6) * [-1, 1, 1]
     for roughness in (0.003, 0.0031, 0.01, 0.03):
         computed = shlight.shade_spheres(mirrored, 0.3, Bsdf.ggx(roughness, 0.4), 0.6)
-        # Tails of the bell: (α / ½ radius cosθ_o)².
+        # Tails of the lobe: (α / ½ radius cosθ_o)².
         np.testing.assert_allclose(computed, np.full(3, mirror_fresnel(0.4, 0.6)), rtol=1.5e-3)
 
 

@@ -47,16 +47,16 @@ constexpr double kEvenEnough = 0.05;
 /// radius then errs by a share of this one.
 constexpr double kLeastAlbedo = 0.02;
 
-/// Points along a radius: the factors beside the bell vary slowly. tolerance: over the albedo.
+/// Number of points along a radius; the factors of the slope distribution vary slowly. tolerance: ÷ albedo.
 int points_for(double tolerance) {
     return tolerance > 4e-3 ? 4 : tolerance > 2e-4 ? 6 : tolerance > 1e-5 ? 12 : 24;
 }
 
-/// The half vectors along a circle, up to their length: middle + cosine cos τ + sine sin τ. Any parameter that is a
-/// Möbius map of the angle has this form; one of them makes the three columns orthogonal on the sphere where the bell
-/// is round, whatever the circle and the bell. The curve is an ellipse's cone there. Where that is long and narrow, as
-/// that of a circle much larger than the bell, τ dashes past the bell at ±π/2; (cos τ, sin τ) ~ (f cos t, sin t) does
-/// not.
+/// Half vectors along a circle, up to their length: middle + cosine cos τ + sine sin τ. Any parameter that is a Möbius
+/// map of the angle has this form; one of them makes the three columns orthogonal in (h_x/α, h_y/α, h_z), in which the
+/// slope distribution is round. The curve there is an ellipse's cone. If it is long and narrow, as for a circle much
+/// larger than the lobe, τ passes the lobe in a very short interval at ±π/2; t with (cos τ, sin τ) ~ (f cos t, sin t)
+/// does not.
 class Path {
   public:
     Path(const Arc<double>& arc, const Vec3d& view, double alpha) : closed_(arc.half >= std::numbers::pi) {
@@ -83,9 +83,9 @@ class Path {
   private:
     using Triple = std::array<double, 3>;
 
-    /// The vectors (1, cos τ, sin τ) are null for the metric (+, -, -), and so are their images under its boosts and
-    /// turns. Those that make the squared length on the bell's sphere, a quadratic form of them, diagonal are found as
-    /// Jacobi's rotations are. A few sweeps will do: the parameter need not be the best.
+    /// The vectors (1, cos τ, sin τ) are null vectors of the metric (+, -, -), and so are their images under its boosts
+    /// and turns. Like Jacobi's rotations, those are found that make the squared length in (h_x/α, h_y/α, h_z), a
+    /// quadratic form of them, diagonal. A few sweeps suffice, as the parameter need not be the best.
     void even_out(const Vec3d& middle, const Vec3d& u, const Vec3d& v, double alpha) {
         columns_ = {middle, u, v};
         const auto form = [&](int i, int j) {
@@ -161,7 +161,7 @@ class Path {
 class Boundary {
   public:
     Boundary(const LobeShape& shape, double cos_theta_o, double tolerance, double albedo)
-        : bell_{shape, cos_theta_o, &gauss_rule(points_for(tolerance / std::max(albedo, kLeastAlbedo)))},
+        : slope_ndf_{shape, cos_theta_o, &gauss_rule(points_for(tolerance / std::max(albedo, kLeastAlbedo)))},
           tolerance_(tolerance),
           f32_(tolerance >= kLeastTolerance32 * albedo) {}
 
@@ -202,8 +202,8 @@ class Boundary {
     };
 
     void densities(const Path& path, std::span<const double> parameters, std::span<double> values) {
-        sum_.points += static_cast<int>(bell_.rule->nodes.size() * parameters.size());
-        boundary_densities(bell_, path.columns(), f32_, parameters, values);
+        sum_.points += static_cast<int>(slope_ndf_.rule->nodes.size() * parameters.size());
+        boundary_densities(slope_ndf_, path.columns(), f32_, parameters, values);
     }
 
     /// The difference of two rules is the error of the coarser one; that of the finer one is about its power 3/2
@@ -274,7 +274,7 @@ class Boundary {
         pieces_.push_back(piece);
     }
 
-    BoundaryBell bell_;
+    SlopeNdf slope_ndf_;
     double tolerance_;
     bool f32_;  // whether floats will do
     std::vector<Path> paths_;

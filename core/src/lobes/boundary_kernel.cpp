@@ -21,17 +21,17 @@ namespace shlight::HWY_NAMESPACE {
 namespace {
 
 template <class D, class Lobe>
-class BellLanes {
+class SlopeNdfLanes {
   public:
-    BellLanes(const BoundaryBell& bell, const Lobe& lobe)
-        : width_(lobe_width(bell.shape)),
-          cos_o_(bell.cos_o),
+    SlopeNdfLanes(const SlopeNdf& slope_ndf, const Lobe& lobe)
+        : width_(lobe_width(slope_ndf.shape)),
+          cos_o_(slope_ndf.cos_o),
           sin_o_(std::sqrt((1 - cos_o_) * (1 + cos_o_))),
           lobe_(lobe),
           view_(lobe.view(D(), all(D(), cos_o_), all(D(), width_))),
-          rule_(*bell.rule) {}
+          rule_(*slope_ndf.rule) {}
 
-    /// The angle about the bell's middle times ∫ f·cos over a radius from there to the boundary.
+    /// Derivative of the azimuth in the plane of slopes times ∫ f·cos over the radius up to the boundary.
     HWY_INLINE V<D> density(const BoundaryPath& path, V<D> parameter) const {
         const D d;
         const auto f = all(d, path.flatness);
@@ -62,14 +62,14 @@ class BellLanes {
     }
 
   private:
-    /// ∫ over tan θ' = 0 … radius at one azimuth about the bell. In t = tan ½θ' the bell is rational and the range
+    /// ∫ over tan θ' = 0 … radius at one azimuth. In t = tan ½θ' the slope distribution is rational and the range
     /// short.
     HWY_INLINE V<D> radial_integral(V<D> cos_azimuth, V<D> radius) const {
         const D d;
         const auto one = all(d, 1);
         const auto end = hn::Div(radius, hn::Add(one, hn::Sqrt(hn::MulAdd(radius, radius, one))));
-        // Crowded towards the boundary, because a lobe that is cut by the horizon ends steeply there; the shortest rule
-        // is better off without.
+        // Nodes are denser towards the boundary, because a lobe that the horizon cuts ends steeply there; the shortest
+        // rule does better without.
         const double crowding = rule_.nodes.size() > 4 ? 1 : 0;
         auto sum = hn::Zero(d);
         for (std::size_t i = 0; i < rule_.nodes.size(); ++i) {
@@ -84,7 +84,7 @@ class BellLanes {
         return hn::Mul(hn::Mul(all(d, 2 / std::numbers::pi), end), sum);
     }
 
-    /// f·cos dω over the bell's own density cosθ' dω' / π and its cosine: 4 f·cos / D times ω_o·h with the length of h
+    /// f·cos dω ÷ (cosθ' dω' / π), the slope distribution's solid angle: 4 f·cos / D times ω_o·h with the length of h
     /// divided out.
     HWY_INLINE V<D> factors(V<D> cos_azimuth, V<D> sine, V<D> cosine) const {
         const D d;
@@ -106,11 +106,11 @@ class BellLanes {
 };
 
 template <class T, class Lobe>
-void densities(const BoundaryBell& bell, const Lobe& lobe, const BoundaryPath& path, std::span<const double> parameters,
-               std::span<double> values) {
+void densities(const SlopeNdf& slope_ndf, const Lobe& lobe, const BoundaryPath& path,
+               std::span<const double> parameters, std::span<double> values) {
     using D = hn::CappedTag<T, kBoundaryPoints>;
     const D d;
-    const BellLanes<D, Lobe> lanes(bell, lobe);
+    const SlopeNdfLanes<D, Lobe> lanes(slope_ndf, lobe);
     alignas(64) std::array<T, kBoundaryPoints> buffer{};
     std::transform(parameters.begin(), parameters.end(), buffer.begin(), [](double x) { return static_cast<T>(x); });
     std::fill(buffer.begin() + parameters.size(), buffer.end(), buffer[0]);
@@ -121,13 +121,13 @@ void densities(const BoundaryBell& bell, const Lobe& lobe, const BoundaryPath& p
                    [](T x) { return static_cast<double>(x); });
 }
 
-void boundary_densities_in_lanes(const BoundaryBell& bell, const BoundaryPath& path, bool f32,
+void boundary_densities_in_lanes(const SlopeNdf& slope_ndf, const BoundaryPath& path, bool f32,
                                  std::span<const double> parameters, std::span<double> values) {
-    with_lobe_lanes(bell.shape, [&](const auto& lobe) {
+    with_lobe_lanes(slope_ndf.shape, [&](const auto& lobe) {
         if (f32) {
-            densities<float>(bell, lobe, path, parameters, values);
+            densities<float>(slope_ndf, lobe, path, parameters, values);
         } else {
-            densities<double>(bell, lobe, path, parameters, values);
+            densities<double>(slope_ndf, lobe, path, parameters, values);
         }
     });
 }
@@ -141,9 +141,9 @@ namespace shlight {
 
 HWY_EXPORT(boundary_densities_in_lanes);
 
-void boundary_densities(const BoundaryBell& bell, const BoundaryPath& path, bool f32,
+void boundary_densities(const SlopeNdf& slope_ndf, const BoundaryPath& path, bool f32,
                         std::span<const double> parameters, std::span<double> values) {
-    HWY_DYNAMIC_DISPATCH(boundary_densities_in_lanes)(bell, path, f32, parameters, values);
+    HWY_DYNAMIC_DISPATCH(boundary_densities_in_lanes)(slope_ndf, path, f32, parameters, values);
 }
 
 }  // namespace shlight

@@ -13,8 +13,8 @@
 
 namespace shlight {
 
-/// The lobe in the plane of half vectors, seen from there.
-struct BoundaryBell {
+/// A lobe in the plane of the half vector's slopes.
+struct SlopeNdf {
     LobeShape shape;
     double cos_o;           ///< cosθ_o
     const GaussRule* rule;  ///< along a radius
@@ -32,7 +32,7 @@ inline constexpr std::size_t kBoundaryPoints = 16;
 
 /// values[i] at parameter τ_i = parameters[i], at most kBoundaryPoints of them. f32: in float, to some 1e-6 of the
 /// lobe.
-void boundary_densities(const BoundaryBell& bell, const BoundaryPath& path, bool f32,
+void boundary_densities(const SlopeNdf& slope_ndf, const BoundaryPath& path, bool f32,
                         std::span<const double> parameters, std::span<double> values);
 
 }  // namespace shlight

@@ -90,9 +90,9 @@ HWY_INLINE SeenCircle seen(const CapArrays& circles, const ViewArrays& views, co
     return s;
 }
 
-/// One over the square of the least distance on which f·cos changes near a light's middle, given the sum of that and
-/// the view. On the sphere where the bell is round, (h_x/α, h_y/α, h_z) normalised, a step of the direction is at most
-/// 1/α long before normalising.
+/// 1 ÷ the squared least distance over which f·cos changes near a light's middle, given the sum of its direction and
+/// the view. On the sphere of (h_x/α, h_y/α, h_z), where the lobe is round, a step of the direction is at most 1/α long
+/// before normalising.
 HWY_INLINE V<Floats> squared_change(V<Floats> width, const HalfSum& half) {
     const Floats d;
     const auto across = hn::MulAdd(half.x, half.x, hn::Mul(half.y, half.y));
