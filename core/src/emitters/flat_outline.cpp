@@ -15,14 +15,14 @@ namespace {
 using Point = glm::dvec2;
 using Vertex = FlatOutline::Vertex;
 
-/// Cosine to the axis of the half space that an outline keeps at least.
+/// Least cosine to the axis of an outline's vertices.
 constexpr double kLeastCosine = 0.02;
-/// Areas that a step of thinning may move, as parts of what all may: the least harmful steps first, as one costs about
-/// the cube of its length.
+/// Areas that a step of thinning may move ÷ the total allowed: the least harmful steps come first, since the area of a
+/// step grows as about the cube of its length.
 constexpr std::array<double, 3> kLimits = {1.0 / 64, 1.0 / 16, 1.0 / 16};
-/// Of the area of all lines: what those that go may enclose together.
+/// Largest area that removed lines may enclose together ÷ area of all lines.
 constexpr double kNextToNothing = 1e-3;
-/// Vertices that are left of a line at least.
+/// Least number of vertices of a line.
 constexpr std::size_t kLeastVertices = 8;
 
 double cross(const Point& a, const Point& b) {
@@ -43,7 +43,7 @@ struct Step {
     double moved;
 };
 
-/// e lies beside the middle of b and c. Nowhere in particular if a and d are one.
+/// e is next to the middle of b and c; undefined if a and d are equal.
 Step step(const Point& a, const Point& b, const Point& c, const Point& d) {
     const Point chord = d - a;
     // Twice the area; that of a, e, d is e's height over the chord times its length.
@@ -56,8 +56,8 @@ Step step(const Point& a, const Point& b, const Point& c, const Point& d) {
     return {e, between(a, b) + between(b, c) + between(c, d)};
 }
 
-/// Steps around a line, each from where the one before ended, as long as they move less than the limit and something is
-/// left to move. Returns how many vertices there are then.
+/// Performs steps around a line, each from the end of the one before, while they move less than the limit and area is
+/// left. Returns the number of vertices.
 std::size_t walk_around(std::span<Vertex> line, double limit, double& left) {
     std::size_t spare = line.size() - std::min(line.size(), kLeastVertices);
     std::size_t kept = 1;
@@ -122,7 +122,7 @@ double FlatOutline::area() const {
     return sum;
 }
 
-/// Of each line, however it runs.
+/// Sum of the absolute areas of all lines.
 double FlatOutline::enclosed() const {
     double sum = 0;
     for (std::size_t i = 0; i < line_count(); ++i) {
@@ -152,7 +152,7 @@ void FlatOutline::thin_out(double most, double one_sided) {
     vertices_.resize(kept);
 }
 
-/// Returns the area of those that go.
+/// Returns the area of removed lines.
 double FlatOutline::drop_small_lines(double most) {
     double gone = 0;
     std::size_t first = 0;
@@ -185,7 +185,7 @@ void FlatOutline::join() {
         const std::span<const Vertex> one = line(i);
         joined_.insert(joined_.end(), one.begin(), one.end());
         joined_.push_back(one.front());
-        // The last one's way back is what closes the line.
+        // The way back from the last line closes the joined line.
         if (i > 0 && i + 1 < line_count()) {
             joined_.push_back(joined_.front());
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Closed lines about what a point sees, drawn in a plane before it.
+// Outlines of emissive meshes as closed lines in a plane in front of a point.
 #pragma once
 
 #include <cstddef>
@@ -13,39 +13,38 @@
 
 namespace shlight {
 
-/// Closed lines in the plane at distance 1 along an axis. Keeps its memory from one to the next.
+/// Closed lines in the plane at distance 1 along an axis. Memory is reused.
 class FlatOutline {
   public:
-    /// A vertex as the plane shows it, and how far along the axis what it shows is.
+    /// The position of a vertex in the plane, and its distance along the axis before projection.
     struct Vertex {
         glm::dvec2 at;
         double depth;
     };
 
-    /// Draws positions relative to the point, `ends` of each line being past its last one, where the plane shows them;
-    /// the axis is in their middle. False, and the outline is of no use, if they do not all lie in one half of space,
-    /// well away from its border.
+    /// Projects positions relative to the point; `ends` holds the index past the last vertex of each line. The axis is
+    /// in the middle of the positions. Returns false, with an unusable outline, unless all positions are in one half of
+    /// space, well away from its border.
     bool draw(std::span<const Vec3d> positions, std::span<const std::size_t> ends);
 
     const Vec3d& axis() const { return axis_; }
-    /// Where the plane shows a direction before it.
+    /// The point of the plane in a direction that is in front of it.
     glm::dvec2 shown(const Vec3d& direction) const {
         return glm::dvec2(glm::dot(direction, along_), glm::dot(direction, across_)) / glm::dot(direction, axis_);
     }
-    /// What the plane shows there.
+    /// The direction to a point of the plane.
     Vec3d direction(const glm::dvec2& at) const { return axis_ + at.x * along_ + at.y * across_; }
     std::size_t line_count() const { return ends_.size(); }
     std::span<const Vertex> line(std::size_t i) const;
-    /// Of all lines; positive if they run counter-clockwise about what they enclose, as seen from the point.
+    /// Signed area of all lines; positive if they run counter-clockwise, as seen from the point.
     double area() const;
 
-    /// Takes away vertices, two at a time with one in their place so that the area stays the same, and lines that
-    /// enclose next to nothing. What lies on another side of a line than before has an area, hence a solid angle, below
-    /// `most`, counted as often as it changes sides, and no part of it is far from one of the opposite sign. Lines that
-    /// go have no opposite, so that their areas count 1 / one_sided times.
+    /// Removes vertices, replacing two by one so that the area is kept, and lines that enclose almost nothing. Regions
+    /// that change sides have an area, hence a solid angle, below `most`, counted with multiplicity, and each is close
+    /// to one of the opposite sign. Removed lines have no opposite, so their areas count 1 / one_sided times.
     void thin_out(double most, double one_sided);
 
-    /// Makes one line of all: from each of the others there is an edge to the first one and back.
+    /// Joins all lines to one, by an edge from each to the first one and back.
     void join();
 
   private:

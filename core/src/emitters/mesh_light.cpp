@@ -30,8 +30,8 @@ bool has_area(std::span<const Vec3d> vertices, const Triangle& t) {
     return glm::length(scaled_normal(vertices, t)) > 1e-8 * longest * longest;
 }
 
-/// The quadrilateral that the two make, if it is planar and convex. They share the edge of `first` that starts at
-/// corner `edge`; `apex` is the corner of the other triangle that lies off this edge.
+/// The quadrilateral of two triangles, if it is planar and convex. They share the edge of `first` that starts at corner
+/// `edge`; `apex` is the corner of the other triangle off this edge.
 std::optional<FaceOutline> quadrilateral(std::span<const Vec3d> vertices, const Triangle& first, int edge,
                                          std::uint32_t apex) {
     const Vec3d& from = vertices[first[edge]];
@@ -53,7 +53,7 @@ std::optional<FaceOutline> quadrilateral(std::span<const Vec3d> vertices, const 
     return outline;
 }
 
-/// Pairs triangles up, each at most once.
+/// Joins triangles to pairs, each at most once.
 class FaceMerger {
   public:
     FaceMerger(std::span<const Vec3d> vertices, std::span<const Triangle> triangles)
@@ -85,7 +85,7 @@ class FaceMerger {
         for (int edge = 0; edge < 3; ++edge) {
             const std::uint32_t from = triangle[edge];
             const std::uint32_t to = triangle[(edge + 1) % 3];
-            // A neighbour of the same winding runs along the shared edge the other way.
+            // A neighbour with the same winding passes the shared edge in the other direction.
             const auto [begin, end] = triangle_at_.equal_range({to, from});
             for (auto it = begin; it != end; ++it) {
                 if (used_[it->second] || it->second >= partner) continue;

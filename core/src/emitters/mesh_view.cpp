@@ -9,10 +9,10 @@
 namespace shlight {
 namespace {
 
-/// Of a hit on the mesh, relative to its extent.
+/// Error of a hit on the mesh ÷ the mesh's extent.
 constexpr double kRounding = 1e-5;
 
-/// Whether an edge of a projection passes to the right of the origin, and which way: 1 up, -1 down. An end at its
+/// Whether a projected edge passes to the right of the origin, and its direction: 1 up, -1 down. An end at the origin's
 /// height counts as above, so that lines of edges are met once.
 int passes_right(const Vec3d& a, const Vec3d& b) {
     if ((a.y >= 0) == (b.y >= 0)) {
@@ -22,7 +22,7 @@ int passes_right(const Vec3d& a, const Vec3d& b) {
     return b.y >= 0 ? (left > 0 ? 1 : 0) : (left < 0 ? -1 : 0);
 }
 
-/// Whether a closed surface winds about the point: how often it is met on the way up from there.
+/// Whether a closed surface winds around the point, by its crossings with the ray upwards from there.
 bool encloses(const EmitterLevel& level, const Vec3d& point) {
     int winding = 0;
     for (std::size_t i = 0; i < level.faces.size(); ++i) {
@@ -52,7 +52,7 @@ MeshView::Kind MeshView::look(const EmitterLevels& emitter, const ShadingFrame& 
     bool outlined = silhouette_.find(level, emitter.closed, point);
     const auto is_inside = [&] { return emitter.convex ? !silhouette_.any_front() : encloses(level, point); };
     if (emitter.closed && distance < emitter.radius + error_ && is_inside()) {
-        // A coarse level may lie before the surface that was hit, and rounding on either side of it.
+        // A coarse level may be in front of the surface that was hit, and rounding on either side of it.
         point += (2 * error_ + kRounding * emitter.radius) * frame.z;
         outlined = silhouette_.find(level, true, point);
         if (is_inside()) {
@@ -66,15 +66,15 @@ MeshView::Kind MeshView::look(const EmitterLevels& emitter, const ShadingFrame& 
     for (const Vec3d& direction : silhouette_.directions()) {
         local_.push_back(frame.to_local(direction));
     }
-    // A convex surface is below the horizon of a hit on it, but may rise above it where a level is not that surface.
+    // A convex surface is below the horizon of a hit on it, but a coarse level may rise above it.
     const double above = emitter.convex && distance < emitter.radius + error_ ? 2 * error_ : 0;
     const bool rises = std::any_of(local_.begin(), local_.end(), [&](const Vec3d& v) { return v.z > above; });
-    // Within an outline from outside a convex surface is less than half of space, so never all above the horizon.
+    // Seen from outside, a convex surface covers less than half of space, and so is never all above the horizon.
     if (emitter.convex && !rises) {
         return Kind::hidden;
     }
-    // An outline that runs the other way round stands for all directions but those inside: within a bowl the surface is
-    // everywhere but in its mouth.
+    // A reversed outline stands for all directions but those inside: in a bowl the surface is everywhere but in its
+    // opening.
     if (outline_.draw(local_, silhouette_.ends()) && outline_.area() > 0) {
         if (!rises) {
             return Kind::hidden;
@@ -86,7 +86,7 @@ MeshView::Kind MeshView::look(const EmitterLevels& emitter, const ShadingFrame& 
     return look_at_faces(level, point, frame, emitter.closed);
 }
 
-/// front_only: those that show their outer side; of what is behind as much is hidden.
+/// front_only: only faces that show their outer side; the others are hidden behind these.
 MeshView::Kind MeshView::look_at_faces(const EmitterLevel& level, const Vec3d& point, const ShadingFrame& frame,
                                        bool front_only) {
     faces_.clear();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// An emissive mesh as a hit sees it, in its shading frame.
+// The directions in which a hit sees an emissive mesh, in the hit's shading frame.
 #pragma once
 
 #include <span>
@@ -14,25 +14,25 @@
 
 namespace shlight {
 
-/// Looks at one mesh after the other; keeps its memory.
+/// Views of one mesh after another; memory is reused.
 class MeshView {
   public:
     enum class Kind {
         hidden,
         outline,  ///< the region inside outline()
-        faces,    ///< that of each of faces(): the outline is wider than half of space, or the mesh is around it
+        faces,    ///< the region of each of faces(): the outline is wider than half of space, or around it
         inside    ///< all directions: the hit lies within a closed surface
     };
 
-    /// tolerance: of the radiance of a white surface.
+    /// tolerance: error as radiance of a white surface.
     Kind look(const EmitterLevels& emitter, const ShadingFrame& frame, double tolerance);
 
-    /// One line, counter-clockwise as seen from the hit; lines that are apart are joined by edges that are passed in
-    /// both directions.
+    /// One line, counter-clockwise as seen from the hit; separate lines are joined by edges that are passed in both
+    /// directions.
     const FlatOutline& outline() const { return outline_; }
-    /// Three corners each, either way round.
+    /// Faces, three corners each, with either winding.
     std::span<const Vec3d> faces() const { return faces_; }
-    /// Between the level that was looked at and the mesh [m].
+    /// Distance between the level in use and the mesh [m].
     double error() const { return error_; }
 
   private:

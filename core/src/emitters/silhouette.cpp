@@ -9,16 +9,17 @@
 namespace shlight {
 namespace {
 
-/// No step and no place.
+/// Mark of a missing step or place.
 constexpr std::uint32_t kNoStep = std::numeric_limits<std::uint32_t>::max();
-/// Relative to the distance, of a point from planes that it is surely on one side of.
+/// Height over a plane ÷ distance above which the side of the plane is certain.
 constexpr double kSideMargin = 1e-9;
 
-/// Where a point is in relation to all planes of a block.
+/// The side of all planes of a block on which a point lies.
 enum class Side { front, back, both };
 
-/// A normal at an angle of at most θ to the axis is at φ ± θ to the direction to the point, if φ is the axis' angle to
-/// it. Well away from the planes, so that rounding never makes two blocks differ over a face.
+/// The side of all planes of a block. A normal at an angle of at most θ to the axis has an angle in φ ± θ to the
+/// direction to the point, φ being that of the axis. Margins ensure that rounding never makes two blocks differ over a
+/// face.
 Side side_of(const EdgeBlock& block, const Vec3d& point) {
     const Vec3d way = point - block.center;
     const double square = glm::dot(way, way);
@@ -86,7 +87,7 @@ void Silhouette::add(std::uint32_t from, std::uint32_t to, int times) {
     }
 }
 
-/// As many steps enter a vertex as leave it, so that every walk ends where it began.
+/// Walks along steps. Equally many enter and leave each vertex, so that every walk ends where it began.
 void Silhouette::walk(std::uint32_t origin, const EmitterLevel& level, const Vec3d& point) {
     std::uint32_t vertex = origin;
     while (first_step_[vertex] != kNoStep) {
@@ -101,13 +102,13 @@ void Silhouette::walk(std::uint32_t origin, const EmitterLevel& level, const Vec
     }
 }
 
-/// The end of the path, which has come back to where that began.
+/// Emits the end of the path, which has returned to an earlier vertex.
 void Silhouette::cut_off(std::size_t first, const EmitterLevel& level, const Vec3d& point) {
     const auto line = std::span(path_).subspan(first);
     for (const std::uint32_t vertex : line) {
         place_[vertex] = kNoStep;
     }
-    // Two vertices are an edge there and back.
+    // Two vertices are an edge passed in both directions.
     if (line.size() > 2) {
         for (const std::uint32_t vertex : line) {
             directions_.push_back(level.vertices[vertex] - point);

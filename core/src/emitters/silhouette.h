@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The outline inside which a point sees an emissive mesh.
+// The outline of an emissive mesh as seen from a point.
 #pragma once
 
 #include <cstddef>
@@ -13,20 +13,20 @@
 
 namespace shlight {
 
-/// Finds outlines; keeps its memory from one to the next.
+/// Finds outlines; memory is reused.
 class Silhouette {
   public:
-    /// Where two neighbouring faces are seen from the same side, the edge between them is passed once in each direction
-    /// and drops out: what is left are the edges where the surface turns away, and its borders. Together they enclose
-    /// all faces whose outer side is seen (of closed surfaces; what lies behind is hidden by them, unless the surface
-    /// is concave) or all faces, from either side (of others). Where several layers are seen they count as often. False
-    /// if there is none: the point lies within a closed surface, or every face is seen edge-on.
+    /// Finds the silhouette. An edge between two faces seen from the same side is passed once in each direction and
+    /// cancels; the remaining edges are those where the surface turns away, and its borders. They enclose all faces
+    /// whose outer side is visible (closed surfaces, whose other faces are hidden unless the surface is concave), or
+    /// all faces from either side (others). Several visible layers count several times. Returns false if there is none:
+    /// the point is inside a closed surface, or every face is seen edge-on.
     bool find(const EmitterLevel& level, bool closed, const Vec3d& point);
 
-    /// Closed lines that pass no vertex twice, relative to the point, one after the other; counter-clockwise as seen
-    /// from there about what shows the point its outer side.
+    /// Closed lines that pass no vertex twice, relative to the point, one after the other; counter-clockwise, as seen
+    /// from the point, around faces that show it their outer side.
     std::span<const Vec3d> directions() const { return directions_; }
-    /// Of each line, past its last vertex.
+    /// Index past the last vertex of each line.
     std::span<const std::size_t> ends() const { return ends_; }
     /// Whether some face shows its outer side.
     bool any_front() const { return any_front_; }

@@ -17,8 +17,8 @@ class BrightSpots {
   public:
     explicit BrightSpots(std::span<const BrightSpot> spots);
 
-    /// What a lobe reflects of them. to_map: from the shading frame to that of the spots. Precondition: no mirror; the
-    /// lobe's width squared is a float.
+    /// Radiance that a lobe reflects of the spots. to_map: rotation from the shading frame to the spots' frame.
+    /// Precondition: no mirror; the lobe's squared width is in a float's range.
     Rgb reflected(const LobeShape& shape, double cos_theta_o, const glm::dmat3& to_map) const;
 
     struct Arrays {

@@ -23,7 +23,7 @@
 
 namespace shlight {
 
-/// What a lobe reflects, in parts that have shadows of their own: a sun is hidden or not, whatever the sky is.
+/// Radiance that a lobe reflects, in parts with separate shadows: a sun is hidden or not, independently of the sky.
 struct DirectLightParts {
     Rgb smooth{0}, spots{0};
 };

@@ -19,7 +19,7 @@ bool is_bumped(const ShadedLobe& lobe) {
 
 constexpr float kLeastWidth = kLeastRoughness * kLeastRoughness;
 
-/// Of one material.
+/// Reads the inputs of one material's program.
 class PlaceReader : public ShaderReader {
   public:
     PlaceReader(const CompiledScene& scene, const Material& material, std::span<const ShadedPlace> places)

@@ -27,7 +27,7 @@ struct NeighbourRays {
     Ray right, below;
 };
 
-/// What a camera ray brings besides what surfaces reflect: their emission, lamps, and the background.
+/// Light of a camera ray that surfaces do not reflect: their emission, lamps, and the background.
 struct RayLight {
     Rgb radiance{0};
     float opacity = 0;
@@ -69,8 +69,8 @@ class CameraSurfaces {
         std::size_t stride;   ///< and from result to result
     };
 
-    // Of the last call:
-    /// Of any one ray, the nearest first.
+    // Results of the last call:
+    /// All surfaces; those of one ray are ordered by distance.
     std::span<const Surface> surfaces() const { return surfaces_; }
     void find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const;
     /// The share of light that goes on straight through, not negative.
@@ -81,7 +81,7 @@ class CameraSurfaces {
     }
 
   private:
-    /// Where the light of the rays of a call goes.
+    /// Destination of the light of a call's rays.
     struct Sink {
         std::vector<RayLight>& light;  // of each ray
         KeptApart& apart;
@@ -102,12 +102,12 @@ class CameraSurfaces {
     /// Unit.
     Vec3d normal(const Surface& surface, const ShadedLobe& lobe) const;
     void add_shaded(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader, Hits& hits);
-    /// Those of the lobes from `first` on that share its normal.
+    /// Adds the lobes from `first` on that share its normal.
     template <class Shares>
     void add_lobes(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader, const Shares& shares,
                    std::size_t first, Hits& hits);
     Vec3d vector(const Surface& surface, std::uint32_t result) const;
-    /// Without what is not finite.
+    /// A colour in which components that are not finite are 0.
     Rgb color(const Surface& surface, std::uint32_t result) const;
     float width(const Surface& surface, std::uint32_t result) const;
 

@@ -56,7 +56,7 @@ struct RuleError {
 inline constexpr std::array<RuleError, 4> kCapErrors = {RuleError{0.7, 1}, {1.0, 2}, {1.0, 3}, {1.0, 4}};
 inline constexpr std::array<RuleError, 4> kPolygonErrors = {RuleError{1.5, 2}, {1.65, 3}, {1.6, 4}, {1.6, 5}};
 
-/// Of a polygon of one radian, as a relative size: the projection of the sphere onto a plane varies as a lobe does.
+/// Relative size of a polygon per radian: the projection of the sphere onto a plane varies like a lobe.
 inline constexpr double kFlatness = 1.2;
 
 }  // namespace shlight

@@ -12,8 +12,8 @@
 
 namespace shlight {
 
-/// What becomes of a light, if not the number of a rule: it is large, or a cap that the horizon cuts; or nothing of it
-/// is above the horizon.
+/// Results other than the number of a rule: the light is large, or a cap that the horizon cuts (kNoRule), or it is
+/// below the horizon (kHidden).
 inline constexpr std::uint8_t kNoRule = 0;
 inline constexpr std::uint8_t kHidden = 255;
 

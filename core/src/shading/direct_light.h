@@ -21,7 +21,7 @@
 
 namespace shlight {
 
-/// What one light brings to each lobe and shading point: at lobe · points + point.
+/// Unshadowed radiance of one light for each lobe and shading point, at index lobe · points + point.
 struct LightRadiance {
     std::span<const float> values;  ///< for unit strength
     Rgb strength;

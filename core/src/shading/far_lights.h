@@ -41,7 +41,7 @@ class FarLobe {
     explicit FarLobe(const LobeShape& shape);
 
     std::shared_ptr<const ShProjection> lobe;  ///< null: too narrow
-    /// By view, see view_grid.h: the root of Σ f_lm² of the bands that a sum does without.
+    /// Root of Σ f_lm² over the bands that sums omit, at the views of view_grid.h.
     std::vector<float> tails;
     /// Likewise: the root mean square, over all turns, of the second difference of f·cos / d² at the middle of a cube
     /// about the point, ÷ (its diagonal ÷ d)².

@@ -115,7 +115,7 @@ class LightShaderWork {
         views_.assign(material_, cosines_, material_.weights(cosines_, weights_), {}, false);
     }
 
-    /// What seen_ holds.
+    /// Shades the lights in seen_.
     void shade(std::span<Rgb> radiance, std::span<std::int32_t> effort) {
         std::fill(radiance.begin(), radiance.end(), Rgb(0));
         std::fill(effort.begin(), effort.end(), 0);

@@ -17,7 +17,7 @@ namespace {
 /// Rules up to these are cheaper than harmonics of the orders that glossy lobes take.
 constexpr int kCheapCapRule = 3;
 constexpr int kCheapPolygonRule = 2;
-/// Of polygons with more vertices a rule, which has its points in each of the triangles between them, costs more.
+/// Largest number of vertices for a rule to be cheap, as a rule has points in each triangle.
 constexpr int kMostCheapVertices = 8;
 
 Vec3d axis_of(const CapArrays& circles, std::size_t i) {
@@ -32,7 +32,7 @@ int cheap_rule(const PolygonBatch& polygons) {
     return polygons.vertex_count() <= kMostCheapVertices ? kCheapPolygonRule : kNoRule;
 }
 
-/// What rings below zero is no light.
+/// Clamps negative values, which come from ringing.
 void without_ringing(std::span<float> values) {
     std::transform(values.begin(), values.end(), values.begin(), [](float value) { return std::max(0.0F, value); });
 }
@@ -118,7 +118,7 @@ void LobeBatch::shade_sorted(LobeViews& lobe, Lights& lights, std::span<const st
         item_values_ = std::span(gathered_values_).first(count);
         integrate(lobe, lights, static_cast<Key>(key));
         for (std::size_t k = 0; k < count; ++k) {
-            // What rings below zero is no light.
+            // Negative values come from ringing.
             values_[items_[k]] = std::max(0.0F, item_values_[k]);
         }
     }

@@ -35,7 +35,7 @@ class LobeBatch {
     /// Whether all lights are integrated by harmonics of one order.
     static bool shades_alike(const LobeViews& lobe);
 
-    // Of the last call:
+    // Results of the last call:
     /// The reflected radiance of each light of unit radiance, without the lobe's scale, ≥ 0.
     std::span<const float> values() const { return values_; }
     /// The order, or number of values of f·cos, that each took; 0 where it is hidden or mirrored, or the lobe black.
@@ -45,8 +45,7 @@ class LobeBatch {
     bool within_tolerance(const LobeViews& lobe, std::size_t light, std::size_t view) const;
 
   private:
-    /// What becomes of a light: nothing, a rule of cubature (1 …), something else, or harmonics of order
-    /// key - kHarmonics.
+    /// The method for a light: none, a cubature rule (1 …), another method, or harmonics of order key - kHarmonics.
     using Key = std::uint8_t;
     static constexpr Key kNothing = 0, kOutline = 5, kMirror = 6, kHarmonics = 7;
     static constexpr std::size_t kKeys = kHarmonics + kMaxOrder + 1;
@@ -88,7 +87,7 @@ class LobeBatch {
     void by_largest_order(LobeViews& lobe, const Lights& lights);
     void by_outline(const LobeViews& lobe, const CapArrays& circles);
     void by_outline(const LobeViews& lobe, const PolygonBatch& polygons);
-    /// Of an item.
+    /// Integrates one item along its outline.
     void integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const Arc<double>> arcs);
 
     std::vector<float> values_;

@@ -68,8 +68,8 @@ HWY_INLINE V<Doubles> inverse_length(const Direction& a) {
 constexpr std::size_t kPolygons = kLaneCount<Floats>;
 using PolygonLanes = std::array<double, kPolygons>;
 
-/// As many polygons as there are lanes for float, above the horizon, and the points of a rule on one of their
-/// triangles. Points are placed in double, of which half as many have room in a vector.
+/// A group of polygons above the horizon, one for each lane of Floats, and a rule's points on one of their triangles.
+/// Points are computed in double, in two vectors.
 class PolygonGroup {
   public:
     /// Points as a lobe in lanes takes them: directions added to the view, their cosines, and shares of the solid
@@ -107,7 +107,7 @@ class PolygonGroup {
     std::size_t triangle_count() const { return corner_count_ - 2; }
     V<Floats> solid_angle() const { return hn::Abs(Contiguous(0).load(solid_angle_.data())); }
 
-    /// Of a triangle. view_x, view_z: ω_o. The triangle is projected as visit_triangle() does.
+    /// Places the points of a triangle, projected as in visit_triangle(). view_x, view_z: ω_o.
     HWY_INLINE void place(std::size_t triangle, std::span<const TrianglePoint> rule, const DoublePair& view_x,
                           const DoublePair& view_z, Points& points) const {
         place(triangle, rule, 0, view_x.low, view_z.low, points);
@@ -212,7 +212,7 @@ class PolygonGroup {
     std::array<std::vector<Vec3d>, kPolygons> kept_;
 };
 
-/// Of a group. Divided by the sum of the weights, which the rule has only nearly right.
+/// f·cos integrated over a group, divided by the sum of the rule's weights, which are approximate.
 template <class Lobe>
 HWY_INLINE V<Floats> integral(const Lobe& lobe, const PolygonGroup& group, std::span<const TrianglePoint> rule,
                               const DoublePair& view_x, const DoublePair& view_z, V<Floats> width) {

@@ -15,7 +15,7 @@ namespace {
 /// Polygons of any size are filled up to a multiple of this many vertices.
 constexpr std::size_t kSizeStep = kDiskPolygonStep;
 
-/// Of the polygons that stand for disks, at most.
+/// Largest tolerance of the polygons that replace disks.
 constexpr double kDiskTolerance = 1e-4;
 
 }  // namespace
@@ -51,7 +51,7 @@ void SeenLights::look(const Light& light, const ShadingFrame& frame, double erro
 
 void SeenLights::look_at(const MeshLight& light, const ShadingFrame& frame, double tolerance, std::uint32_t number) {
     const std::size_t first = vertices_.size();
-    // Of what the emitter gives: from afar that is little of what a surface around the hit would.
+    // The tolerance is relative to the emitter's light, which from afar is little of a surrounding surface's.
     const double share = shown_share(*light.shape, glm::length(light.shape->center - frame.origin));
     switch (mesh_view_.look(*light.shape, frame, tolerance * std::min(share, 1.0))) {
         case MeshView::Kind::hidden:
@@ -129,7 +129,7 @@ void SeenLights::set_polygons(std::span<const Vec3<T>> vertices, std::size_t ver
     given_ = Given::polygons;
 }
 
-/// Those of spheres in lanes.
+/// Finds the circles of spheres in lanes.
 void SeenLights::find_circles() {
     if (caps_.empty()) {
         return;

@@ -11,7 +11,7 @@ namespace {
 
 /// For materials without a narrow lobe: of cosθ and the horizon.
 constexpr double kWidestSpread = 1.3;
-/// Of the difference of two unit vectors in floats.
+/// Error of the difference of two unit vectors in float.
 constexpr double kNormalRounding = 1e-6;
 
 Vec3d towards_viewer(const Hits& hits, std::size_t hit) {
@@ -52,7 +52,7 @@ void ShadingPoints::clear() {
     }
 }
 
-/// Where hits of a pixel share no points, each looks at all of them: several at a time.
+/// The next point near a hit, compared several at a time, because a hit that shares no point is compared with all.
 std::size_t ShadingPoints::next_near(const Vec3f& normal, std::size_t point) const {
     constexpr std::size_t kAtOnce = 8;
     const auto is_near = [&](std::size_t i) {

@@ -73,7 +73,7 @@ class ShadingPoints {
 
     std::size_t lobe_stride_ = 1;
     std::vector<Members> members_;
-    /// Of each point: the normal of its first hit, and the square of how far from that another may be, in floats.
+    /// For each point the normal of its first hit, and the largest squared distance of another hit's normal, in float.
     std::vector<float> first_x_, first_y_, first_z_, nearness_;
     std::vector<std::size_t> hits_by_point_;  // numbers of hits, in the order of their points
 };

@@ -14,8 +14,8 @@
 
 namespace shlight {
 
-/// Where on the light a shadow ray ends, relative to the point sampled: a polygon may lie in a mesh's face, its own or
-/// one that it is mounted on, and must not be blocked by it. A float ray strays in proportion to its length too.
+/// Offset of a shadow ray's end from the sampled point of the light: a polygon may lie in a mesh's face, its own or
+/// that on which it is mounted, which must not block the ray. The error of a ray in float grows with its length.
 Vec3d clearance(const Light& light, const ShadingFrame& frame);
 
 /// Shadow rays of one hit, in float but for the way from the rounded origin.

@@ -14,7 +14,7 @@ namespace shlight {
 class WeighedRays {
   public:
     void clear() { count_ = 0; }
-    /// Those numbered begin … end - 1 among the rays of all hits; way(number): along the axes of the world.
+    /// Adds rays begin … end - 1 of all hits. way(number): vector in world axes.
     template <class Way>
     void add(std::size_t begin, std::size_t end, const Way& way) {
         grow(count_ + end - begin + kLobeRayLanes);
@@ -26,7 +26,7 @@ class WeighedRays {
             z_[count_] = own.z;
         }
     }
-    /// By a lobe at the hit, see weigh_lobe_rays(). with_densities: or else these are not known.
+    /// Weighs the rays by a lobe at the hit, see weigh_lobe_rays(). with_densities: whether to compute densities.
     void weigh(const LobeShape& shape, const ShadingFrame& frame, const Vec3d& view, bool with_densities) {
         weigh_lobe_rays(shape, frame, view, {x_.data(), y_.data(), z_.data()}, size(), values_.data(),
                         with_densities ? densities_.data() : nullptr);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What the camera rays of a group of pixels have met: one array per property.
+// The hits of camera rays of a group of pixels, with one array per property.
 #pragma once
 
 #include <cmath>
@@ -15,10 +15,10 @@
 
 namespace shlight {
 
-/// Hits in the order of pixels, and of samples within each. A camera ray has several where it goes on through a
-/// transparent surface, or where lobes of a surface have normals of their own.
+/// Hits in the order of pixels, and of samples within each. A camera ray has several hits if it passes transparent
+/// surfaces, or if lobes of a surface have different normals.
 struct Hits {
-    /// stride: lobes of any material, at most. parts: outlive this.
+    /// stride: largest number of lobes of a material. parts: must outlive this.
     explicit Hits(std::size_t stride, const LightParts& parts = kWholeLight) : lobe_stride(stride), apart(parts) {}
 
     std::size_t lobe_stride;
@@ -36,7 +36,7 @@ struct Hits {
     KeptApart apart;                      ///< by pixel: parts of that, and of what camera rays bring besides
     std::vector<std::uint32_t> of_pixel;  ///< number of the pixel
     std::vector<Rgb> noise;               ///< the part of its variance that comes from shadow rays
-    /// By pixel: the variance of the sum of its hits' radiance by what they have in common of few shadow rays.
+    /// For each pixel the variance of its sum of radiance from shadow rays that its hits share.
     std::vector<Rgb> shared_noise;
     std::vector<std::uint8_t> obstructed;        ///< by pixel: whether any shadow ray has met something
     std::vector<std::size_t> pixel_begin = {0};  ///< pixel p has the hits pixel_begin[p] … pixel_begin[p + 1] - 1
@@ -54,7 +54,7 @@ struct Hits {
     }
     std::size_t pixel_count() const { return pixel_begin.size() - 1; }
     void clear();
-    /// Adds what a lobe of a hit reflects of a light of a group.
+    /// Adds the light of a group that a lobe of a hit reflects.
     void reflect(std::size_t hit, std::size_t lobe, std::uint32_t group, const Rgb& light) {
         radiance[hit] += light;
         if (!apart.empty()) {
@@ -70,7 +70,7 @@ struct Hits {
         shared_noise.emplace_back(0);
         obstructed.push_back(0);
     }
-    /// What the shadow rays that a pixel's hits share tell beside the light that they let through.
+    /// Adds the variance of a pixel's shared shadow rays, and whether any was blocked.
     void add_shared(std::size_t pixel, const Rgb& variance, bool any_obstructed) {
         shared_noise[pixel] += variance;
         obstructed[pixel] |= any_obstructed ? 1 : 0;

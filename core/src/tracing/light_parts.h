@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Parts of the light that are kept apart beside the picture.
+// Parts of the light that are stored in addition to the picture.
 #pragma once
 
 #include <cstddef>
@@ -12,12 +12,12 @@
 
 namespace shlight {
 
-/// Each light that a camera ray brings counts towards a kind and towards a group.
+/// Light of a camera ray belongs to one kind and one group.
 enum class LightKind : std::uint8_t { diffuse, glossy, emission, environment };
 inline constexpr std::size_t kLightKinds = 4;
 
 struct LightParts {
-    /// 0: light is not kept apart; otherwise one for each kind, then one for each group.
+    /// Number of parts: one for each kind, then one for each group; 0: parts are not stored.
     std::size_t count = 0;
     std::size_t lobe_stride = 1;
     std::vector<LightKind> of_lobe;  ///< of lobe i of material m at m · lobe_stride + i
@@ -29,10 +29,10 @@ struct LightParts {
     LightKind kind(std::size_t material, std::size_t lobe) const { return of_lobe[material * lobe_stride + lobe]; }
 };
 
-/// Light that is not kept apart.
+/// No parts.
 inline const LightParts kWholeLight;
 
-/// What is kept apart of pixels.
+/// The parts of the light of pixels.
 class KeptApart {
   public:
     /// parts: outlive this.
@@ -48,7 +48,7 @@ class KeptApart {
         own[LightParts::of_kind(kind)] += light;
         own[LightParts::of_group(group)] += light;
     }
-    /// By kind and group.
+    /// The parts of a pixel, by kind and group.
     std::span<Rgb> of(std::size_t pixel) { return std::span(light_).subspan(pixel * parts_->count, parts_->count); }
     std::span<const Rgb> of(std::size_t pixel) const {
         return std::span(light_).subspan(pixel * parts_->count, parts_->count);
@@ -59,8 +59,7 @@ class KeptApart {
     std::vector<Rgb> light_;
 };
 
-/// Adds to parts what they lack of a sum, in proportion to their magnitudes; where all are 0, to the one numbered
-/// `otherwise`.
+/// Scales parts to a sum by adding the difference in proportion to their magnitudes; if all are 0, to part `otherwise`.
 void complete(std::span<Rgb> parts, const Rgb& sum, std::size_t otherwise);
 
 }  // namespace shlight
