@@ -145,7 +145,7 @@ int samples_from(const char* name, const py::object& value) {
     return static_cast<int>(integer_from(name, value, 1, kMostPixelSamples));
 }
 
-/// What the arguments of the same names ask for; None: not given.
+/// Sampling settings from arguments with the same names; None keeps the default.
 PixelSampling sampling_from(const py::object& noise_threshold, const py::object& min_samples,
                             const py::object& max_samples, const py::object& pixel_samples,
                             const py::object& time_limit) {
@@ -183,7 +183,7 @@ PixelFilter filter_from(const py::object& pixel_filter, const py::object& filter
     return {static_cast<PixelFilter::Kind>(known - kFilters.begin()), real_from("filter_width", filter_width)};
 }
 
-/// Of a callback that is callable or None; keeps a reference to it.
+/// A PictureUpdate that calls a Python callback, or none for None; keeps a reference to the callback.
 PictureUpdate update_from(const py::object& callback, int width, int height, double build_seconds) {
     if (callback.is_none()) {
         return {};

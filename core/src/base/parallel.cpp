@@ -108,7 +108,7 @@ void run_unwatched(std::size_t count, int threads, const std::function<void(std:
 
 void run_in_arena(int threads, const std::function<void()>& work) {
     check_threads(threads);
-    // More than the machine has would only make oneTBB warn.
+    // Limited to the machine's cores, because oneTBB warns about more threads.
     const int cores = tbb::info::default_concurrency();
     arena_of(threads == 0 ? cores : std::min(threads, cores)).execute(work);
 }

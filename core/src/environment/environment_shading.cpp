@@ -46,8 +46,7 @@ constexpr double kDirectionError = 5e-3;
 
 /// A lobe this many times as wide as a texel sees a spot as one direction.
 constexpr double kTexelsPerWidth = 2;
-/// From here on the spectrum of a picture is taken to go on as it is: what is brightest has the same power per degree
-/// in all bands.
+/// First band from which the power per degree of a picture is extrapolated as constant, as for bright points.
 constexpr int kFirstOfLastBands = 48;
 
 /// The root mean square error, over all turns of the picture, that orders 1 … 64 leave, ÷ the lobe's albedo and the
@@ -72,7 +71,7 @@ double albedo_of(const MaterialLobes& material, std::size_t lobe, float width, d
     return own.varying_width != 0 ? lobe_albedo(material.shape(lobe, width), cos_theta_o) : own.albedo(cos_theta_o);
 }
 
-/// Of the logarithm of a width that varies; between steps what is reflected is linear.
+/// Step of the logarithm of a varying width; between steps reflected light is interpolated linearly.
 constexpr float kWidthStep = 0.125F;
 constexpr std::size_t kWidthSteps = 96;  // down to the least width
 
@@ -271,7 +270,7 @@ class EnvironmentShading::Harmonics {
         Rgb* value;
     };
 
-    /// Of one lobe and order. An expansion about an axis is the sum of P_l(ω·axis) = 4π/(2l+1) Σ_m Y_lm(axis) Y_lm(ω).
+    /// Adds zonal lobes of one shape and order, as sums of P_l(ω·axis) = 4π/(2l+1) Σ_m Y_lm(axis) Y_lm(ω).
     void add_zonal(std::span<const Wanted> some) {
         const int order = some[0].order;
         std::array<float, kCosineMax> terms;
@@ -298,7 +297,7 @@ class EnvironmentShading::Harmonics {
         }
     }
 
-    /// Those of similar orders at once: bands that only others have add nothing to a lobe.
+    /// Adds other lobes, sorted by order: a lobe shares the bands of the largest order in its group, with terms 0.
     void add_turned() {
         std::stable_sort(turned_.begin(), turned_.end(),
                          [](const Wanted& a, const Wanted& b) { return a.order < b.order; });

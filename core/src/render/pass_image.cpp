@@ -15,7 +15,7 @@ constexpr std::size_t kPixelsAtOnce = 4096;
 /// Depth where nothing is [m].
 constexpr float kNowhere = 1e10F;
 
-/// Of pairs, in which identities of no share are 0.
+/// Adds to the pair of an identity; unused pairs are 0.
 template <class Number>
 void add_pair(std::span<Number> pairs, Number identity, Number share) {
     for (std::size_t i = 0; i + 1 < pairs.size(); i += 2) {
@@ -55,7 +55,7 @@ void sort_matte(std::span<float> pairs) {
     }
 }
 
-/// As Cycles divides: a channel without colour gets the mean of those with one.
+/// Divides light by colour like Cycles: a channel without colour gets the mean of the others.
 void divide(std::span<float> light, std::span<const float> color) {
     float sum = 0;
     int count = 0;

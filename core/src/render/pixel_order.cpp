@@ -31,7 +31,7 @@ struct Block {
     std::vector<Pixel> pixels;
 };
 
-/// Those of a group, whose pixels are in rows.
+/// Adds the blocks of a group, whose pixels are sorted by rows.
 void add_blocks(const RefinementGroup& group, std::size_t number, std::vector<Block>& blocks) {
     std::map<std::pair<int, int>, std::size_t> places;
     std::pair<int, int> last = {-1, -1};

@@ -22,13 +22,13 @@ struct Tile {
     int left, top, right, bottom;  // pixels; right and bottom excluded
 };
 
-/// Of a picture, each with about as many pixels of the grid as a batch takes.
+/// Tiles of a picture, each with about as many pixels of the grid as a batch takes.
 std::vector<Tile> tiles_of(int width, int height, const Grid& grid, std::uint32_t pixel_samples,
                            std::uint32_t batch_samples);
-/// Those of a grid.
+/// The pixels of a tile that are on a grid.
 std::vector<Pixel> pixels_of(const Tile& tile, const Grid& grid);
-/// What is rendered next of some groups, in blocks, so that pixels which are rendered together see what lies together:
-/// those that gain most for their rays, and these first. Without gains.
+/// Selects the pixels to render next, in blocks, so that pixels rendered together see the same objects: those with the
+/// largest gain per ray, in this order. The result has no gains.
 std::vector<RefinementGroup> most_urgent(std::span<const RefinementGroup> groups);
 /// Makes every pixel beside a grid of the four pixels of the grid about it, the nearer the more. image: RGBA.
 void fill_between(int step, int width, int height, std::span<float> image);

@@ -18,7 +18,8 @@ constexpr double kNeighbourShare = 0.1;
 /// So many rays say nothing of it yet.
 constexpr double kMissingRays = 16;
 
-/// Of a step of one somewhere in the pixel, what is not linear in the place; for steps between pixels, and of alpha.
+/// Variance of a unit step within the pixel after subtraction of the linear part; for steps between pixels, and of
+/// alpha.
 constexpr double kEdgeVariance = 1.0 / 16;
 
 double mean(const Vec3d& v) {
@@ -71,7 +72,7 @@ void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std
         image[4 * i + static_cast<std::size_t>(channel)] = static_cast<float>(radiance[channel]);
     }
     image[4 * i + 3] = static_cast<float>(alpha);
-    // Of all rays: the means of the variances, and of the means' squared distances from the common one.
+    // Variance of all rays: the mean of the variances, plus that of the means' squared distances from the common mean.
     const double old_share = before / all;
     const Vec3d variance = old_share * Vec3d(state.variance) +
                            (1 - old_share) * (sums.variance() + sums.shadow_variance()) +
@@ -179,7 +180,7 @@ Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float
     if (state.level < 0) {
         const double between = error_between(column, row, image);
         supposed = std::max(between, kEdgeVariance * kNeighbourShare);
-        // As on a textured surface: one ray, which has no noise where no shadow is near, tells most of what is missing.
+        // One ray, which has no noise without a shadow nearby, suffices on a textured surface.
         if (between >= supposed && is_calm(column, row)) {
             return {enough, 0, squared_error(variance, level), supposed};
         }

@@ -31,7 +31,7 @@ constexpr double kWidestFilter = 100;
 constexpr double kShareOfMean = 0.5;
 constexpr int kPilotStep = 8;
 constexpr int kMostPilotPixels = 16;
-/// Of these, so many at a time.
+/// Pilot pixels per batch.
 constexpr std::size_t kPilotBatch = 32;
 
 /// The same for every level but that of the preview, or the most even ones where there is one level.

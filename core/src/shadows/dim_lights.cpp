@@ -22,7 +22,7 @@ struct FoundMember {
     double length;       ///< of it
 };
 
-/// Where on a line of members a share of its length lies.
+/// The member at a share of the total length of a line of members.
 template <class Members>
 FoundMember find(const Members& members, double share) {
     const double place = share * members.back().up_to;

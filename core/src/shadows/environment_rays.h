@@ -28,7 +28,7 @@ namespace shlight {
 /// Keeps its memory from pixel to pixel; one per thread.
 class EnvironmentRays {
   public:
-    /// Of the environment without a picture's bright spots, and of these.
+    /// Sums for the environment without its bright spots, and for the spots.
     struct Sums {
         RaySums smooth, spots;
     };
@@ -73,15 +73,15 @@ class EnvironmentRays {
         bool mirror;
     };
 
-    /// Of a hit's sets, in shapes_.
+    /// Finds the shapes of a hit's sets, in shapes_.
     void find_shapes(std::size_t hit);
     void draw_hit(std::size_t lit_index, std::uint32_t rays);
     void draw_set(const RayStart& start, std::size_t hit, std::size_t set, std::uint32_t rays);
-    /// As the picture's luminance is spread.
+    /// Draws rays in proportion to the picture's luminance.
     void draw_map(const RayStart& start, std::size_t hit, std::uint32_t rays);
     /// A hit's rays but for the mirror's, in weighed_.
     void gather(std::size_t lit_index);
-    /// May lie below the horizon, where it is no ray.
+    /// Adds a ray, unless the direction is below the horizon.
     void push(const RayStart& start, const Vec3d& direction);
     void weigh_hit(std::size_t lit_index);
     void weigh_map(const struct EnvironmentMap& map);

@@ -25,7 +25,7 @@ struct RaySums {
         }
     }
     RaySums& operator+=(const RaySums& other);
-    /// As if each weight were multiplied.
+    /// Multiplies each weight.
     RaySums& operator*=(const Vec3d& factor);
 };
 

@@ -29,7 +29,7 @@ const ProfileView kEven;
 
 }  // namespace
 
-/// What the rays of one hit have in common.
+/// Data that all rays of one hit share.
 class ShadowRays::Drawing {
   public:
     Drawing(const Light& light, const ProfileView& light_profile, const Hits& hits, std::size_t hit,
@@ -115,8 +115,8 @@ void ShadowRays::trace() {
     rays_traced_ += rays_.size();
 }
 
-/// What a ray meets first is the light, or in its way; what lies behind that is hidden. A ray that passes by a mesh
-/// whose outline is known no better was not stopped. Rays are shortened to what they meet.
+/// Traces rays to a mesh light. The first surface that a ray meets is the light or blocks it. A ray that misses a mesh
+/// with an approximate outline is not blocked. Rays are shortened to their first hit.
 void ShadowRays::follow(const MeshLight& light) {
     met_.resize(rays_.size());
     tracer_->intersect_opaque(rays_.all(), met_);
@@ -131,7 +131,7 @@ void ShadowRays::follow(const MeshLight& light) {
 void ShadowRays::find_colors(const FaceRadiance& faces) {
     faces.along(rays_.all(), colors_);
     for (std::size_t i = 0; i < colors_.size(); ++i) {
-        // What lies behind the first layer is not known.
+        // Radiance behind the first layer is not known.
         colors_[i] = drawn_[i].hidden_layer ? faces.mean() : colors_[i];
     }
 }

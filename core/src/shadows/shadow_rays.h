@@ -103,7 +103,7 @@ class ShadowRays {
     void push(const Drawing& drawing, const LightPointArrays& points, std::size_t count);
     /// layers: of the light, one behind the other, each of which the unshadowed radiance counts.
     void push(const Drawing& drawing, const Vec3d& direction, double distance, double weight, int layers);
-    /// Whose directions a set has at a hit.
+    /// The shape from which a set's directions are drawn at a hit.
     LobeShape set_shape(const Drawing& drawing, std::size_t set) const;
     bool shines(std::size_t lit_index, const Material& material, std::uint32_t set) const;
     Run& run(std::size_t lit_index, std::size_t set) { return runs_[lit_index * set_stride_ + set]; }

@@ -35,7 +35,7 @@ class ShadowedDeltas {
     std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
-    /// Of a pixel: its points are those numbered first … last - 1.
+    /// The points first_point … last_point - 1 of a pixel.
     struct PixelRange {
         std::size_t hit_count;
         std::size_t first_point, last_point;
@@ -69,10 +69,11 @@ class ShadowedDeltas {
                   std::size_t rays, const Hits& hits);
     void question(const DeltaRange& range, std::size_t light, std::size_t hit, const Hits& hits);
     void trace();
-    /// Of each source that all hits of the pixel see alike, the share that is seen; the others are added.
+    /// Finds the visible share of each source that all hits of the pixel receive equally; adds the others.
     void find_shares(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, Hits& hits);
     void add_shares(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, Hits& hits);
-    /// To Hits::apart what hits of one point, whose weights have this sum, get of the sources by a lobe of a kind.
+    /// Adds to Hits::apart the light of the sources that a lobe of a kind reflects at hits of one point with this sum
+    /// of weights.
     void add_parts(const float* values, const DeltaRange& range, const Rgb& weight, LightKind kind,
                    std::span<Rgb> apart) const;
     std::uint64_t count_values(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range) const;
@@ -91,7 +92,7 @@ class ShadowedDeltas {
     bool shadows_ = false;
     std::uint64_t rays_traced_ = 0;
 
-    // Of a pixel and a range of sources:
+    // Buffers for one pixel and a range of sources:
     DeltaViews views_;
     std::vector<float> values_;            // points × lobe_stride × sources
     std::vector<float> point_brightness_;  // points × sources, of the hits of a point together

@@ -27,14 +27,15 @@ void clip(double slope, double room, double& low, double& high) {
     }
 }
 
-/// Of n · v over a box.
+/// Minimum of n · v over a box.
 double least_along(const Vec3d& n, const Box& box) {
     return glm::dot(n, box.low + box.high) / 2 - glm::dot(glm::abs(n), box.high - box.low) / 2;
 }
 
 }  // namespace
 
-/// All ways from some points to a light. Those that have gone the share t lie in the box of `start` + t · `growth`.
+/// All lines from some points to a light. Their points at the fraction t of the length are in the box `start` + t ·
+/// `growth`.
 struct OccluderBoxes::Shaft {
     Shaft(std::span<const Vec3f> from, const LightBounds& light) : points(from), target(light) {
         for (const Vec3f& point : points) {

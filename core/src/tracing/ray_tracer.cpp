@@ -76,7 +76,7 @@ Geometry instance_geometry(RTCDevice device, RTCScene instanced, const glm::dmat
     return geometry;
 }
 
-/// Robust: watertight along shared edges, so that no light leaks through a closed mesh.
+/// Robust mode is watertight along shared edges, so that no light leaks through a closed mesh.
 EmbreeScene new_scene(RTCDevice device) {
     EmbreeScene scene(rtcNewScene(device));
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
@@ -96,7 +96,7 @@ void build(RTCDevice device, RTCScene scene, const Stopped& stopped) {
     throw_on_error(device);
 }
 
-/// Not as coherent rays: those of a hit to a light or the sky part too soon for Embree to gain from that.
+/// Rays are not flagged as coherent: those of a hit to a light or the sky diverge too much for Embree to gain.
 template <class Packet, std::size_t kWidth>
 void trace_packets(RTCScene scene, std::span<const Ray> rays, std::span<std::uint8_t> blocked) {
     for (std::size_t first = 0; first < rays.size(); first += kWidth) {
