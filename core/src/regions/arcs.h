@@ -30,8 +30,8 @@ struct Arc {
 /// An arc of the horizon, run through counter-clockwise about z.
 template <class R>
 struct HorizonArc {
-    R from_cosine, from_sine;  ///< of the azimuth where it begins
-    R to_cosine, to_sine;      ///< of the azimuth where it ends
+    R from_cosine, from_sine;  ///< azimuth of its beginning
+    R to_cosine, to_sine;      ///< azimuth of its end
     R angle;                   ///< between them, which may be more than half a turn
     std::array<R, 2> unused;
     R region;
@@ -47,8 +47,8 @@ struct ConeArc {
     Vec3<R> axis;
     R middle, half_turn;     ///< the middle and half of the piece in π u / 2K
     R half;                  ///< half of the piece in u
-    R sin_long, cos_long;    ///< of the long half angle
-    R sin_short, cos_short;  ///< of the short one
+    R sin_long, cos_long;    ///< the long half angle
+    R sin_short, cos_short;  ///< the short half angle
     std::array<R, 2> unused;
 };
 

@@ -21,10 +21,10 @@ namespace shlight {
 /// With its first term shifted by one degree all that is needed of degree m ≥ 1 is P̂_l^m (x+iy)^{m-1}.
 template <class T>
 struct MomentStep {
-    T beta;     ///< from l-1 and l to l+1
-    T down;     ///< of ν_z … in coefficient m-1, with √2, Stokes' 1/(l(l+1)) and P̂/P̃; 0 for band 1
-    T same;     ///< of (ν_x + iν_y) … in coefficient m
-    T horizon;  ///< of ν_z … where z = 0: down P̃_l^m(0)
+    T beta;     ///< β_l
+    T down;     ///< factor of ν_z … in coefficient m-1, with √2, Stokes' 1/(l(l+1)) and P̂/P̃; 0 for band 1
+    T same;     ///< factor of (ν_x + iν_y) … in coefficient m
+    T horizon;  ///< factor of ν_z … at z = 0: down P̃_l^m(0)
 };
 
 /// For m = 1, 2, … and l = m … kMaxOrder-1.
@@ -52,7 +52,7 @@ extern template class MomentSteps<double>;
 /// The polynomials q_l of z are P̂_l^m but for factors that make their recurrence q_{l+1} = rise z q_l - q_{l-1}.
 /// In the order of summation (Clenshaw): m = order-1 … 1, for each l = order-1 … m.
 struct PotentialConstants {
-    std::vector<double> rise;  ///< of q_{l+1}
+    std::vector<double> rise;  ///< factors of z q_l in q_{l+1}
     std::vector<double> down, same;
     std::vector<std::uint16_t> term;  ///< cosine_index(l, m); that of (l, m-1) is one less
 

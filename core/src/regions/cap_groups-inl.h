@@ -343,7 +343,7 @@ class CapGroups {
     Work& work_;
     BandChoice<T> choice_;
     LightList crossing_, uncrossed_;
-    std::array<LightList, 2> fallback_;  // of caps that do not cross the horizon, and that do
+    std::array<LightList, 2> fallback_;  // caps that do not cross the horizon, and caps that do
 };
 
 }  // namespace shlight::HWY_NAMESPACE

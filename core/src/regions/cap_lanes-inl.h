@@ -33,7 +33,7 @@ struct ClippedCap {
     V<D> cos_arc, sin_arc;
     V<D> edge;         ///< ψ_0: the cap's edge is above the horizon within ψ_0 of its highest point; 0 … π
     V<D> edge_height;  ///< z_0 - cosσ cosθ = sinσ sinθ cos(edge)
-    V<D> solid_angle;  ///< of the kept region
+    V<D> solid_angle;  ///< the kept region's
     V<D> height, horizon_sine;  ///< z_0 and √(1 - z_0²), which a narrow boost needs beside it
 };
 
@@ -321,7 +321,7 @@ HWY_INLINE V<Doubles> tangent_squared(V<Doubles> x, V<Doubles> y, V<Doubles> z, 
 /// exact in doubles, and in range; numbers of doubles are scaled.
 template <class T>
 struct SphereRatios {
-    V<Doubles> inverse;  // of |c|
+    V<Doubles> inverse;  // 1 / |c|
     V<Doubles> z, cosine_squared, tilt_squared, crossing_squared;
 
     HWY_INLINE SphereRatios(V<Doubles>& x, V<Doubles>& y, V<Doubles>& own_z, V<Doubles>& r) {

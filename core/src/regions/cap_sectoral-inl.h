@@ -48,7 +48,7 @@ class SectoralRange {
     }
 
   private:
-    static constexpr double kMostGrowth = 3;  // of its logarithm
+    static constexpr double kMostGrowth = 3;  // logarithm of the growth
 
     /// Off the equator the cap reaches sin(θ ± σ), above a high horizon no region s_0.
     static HWY_INLINE V<D> reach(const ClippedCap<D>& cap, V<D> cosine) {

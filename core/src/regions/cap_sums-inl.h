@@ -90,7 +90,7 @@ class CoefficientVisitor {
     }
 
     struct Band {
-        T* first;  // where degree -l goes
+        T* first;  // place of degree -l
         std::size_t l;
     };
     HWY_INLINE Band open(std::size_t l) { return {writer_.take(2 * l + 1), l}; }

@@ -83,7 +83,7 @@ double scale_over(const Turn& before, const Turn& middle, const Turn& after) {
 void append_closed(const SphericalEllipse<double>& ellipse, int size, std::vector<Vec3d>& vertices) {
     const AcrossAxis plane(ellipse.cone());
     const auto quarter = static_cast<std::size_t>(size / 4);
-    std::array<Turn, kMost / 4 + 2> turns;  // with the neighbours
+    std::array<Turn, kMost / 4 + 2> turns;  // the quarter's and a neighbour on both sides
     for (std::size_t i = 1; i <= quarter; ++i) {
         turns[i] = turn_at(ellipse, ellipse.functions().quarter_period() * (static_cast<double>(i) - 0.5) /
                                         static_cast<double>(quarter));

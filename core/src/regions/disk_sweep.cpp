@@ -69,7 +69,7 @@ class BasisSum {
 /// A meridian about a pole between two heights. Heights and longitudes have the density of the sphere (Archimedes).
 template <class Real>
 struct Line {
-    Vec3<Real> equator;  ///< where it meets the equator
+    Vec3<Real> equator;  ///< its point on the equator
     Real low, high;      ///< sines of latitudes
 };
 
@@ -132,8 +132,8 @@ class Strip {
     }
 
     struct At {
-        Line<Real> line;  ///< from the boundary to the boundary
-        Real speed;       ///< of the longitude
+        Line<Real> line;  ///< ends at the boundary
+        Real speed;       ///< longitude per u
         Real horizon;     ///< the height at which the line meets the horizon; what is above is kept
     };
     At at(Real u) const {
@@ -218,7 +218,7 @@ void sweep_sliver(const SphericalEllipse<Wider<T>>& ellipse, int order, BasisSum
             const Real turn =
                 cone.sin_long * cone.sin_short * f.dn * cone.axis.z -
                 cone.sin_long * cone.cos_short * f.cn * cone.short_axis.z -
-                cone.complement * cone.cos_long * cone.sin_short * f.sn * cone.long_axis.z;  // of ω × dω/du
+                cone.complement * cone.cos_long * cone.sin_short * f.sn * cone.long_axis.z;  // z of ω × dω/du
             const Real radius = std::hypot(at.x, at.y);
             const Line<Real> line = {{at.x / radius, at.y / radius, 0}, 0, at.z};
             // The interior is on the left, so over the top the boundary turns clockwise.

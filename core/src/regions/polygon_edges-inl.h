@@ -83,7 +83,7 @@ class VertexLanes {
     }
 
     struct Facing {
-        V<D> side;                ///< of the polygon's plane that the origin is on; 0 if edge-on or without area
+        V<D> side;                ///< side of the polygon's plane with the origin, ±1; 0 if edge-on or without area
         Vectors3<double> normal;  ///< unit, to the polygon from the origin
     };
     HWY_INLINE Facing facing() const {
@@ -132,8 +132,8 @@ struct EdgeLanes {
 
     Values x, y, z;                    ///< the vertex
     Values cross_x, cross_y, cross_z;  ///< vertex × next, towards the interior
-    Values cut_x, cut_y;               ///< where the edge meets the horizon
-    Values share;                      ///< of the edge that is kept
+    Values cut_x, cut_y;               ///< the point in which the edge meets the horizon
+    Values share;                      ///< kept part of the edge, 0 … 1
     Values crossing;                   ///< 1: enters, -1: leaves the upper half, from vertex to next
     // The arc that is kept, as Arc; half is 0 if nothing is.
     Values axis_x, axis_y, axis_z, middle_x, middle_y, middle_z, cosine, sine, half;
@@ -151,7 +151,7 @@ struct PolygonLanes {
     std::vector<EdgeLanes<R>> edges;
     std::vector<HorizonLanes<R>> horizon;
     LaneValues<R> side;                          ///< 1 or -1 by the winding, 0 if edge-on or without area
-    LaneValues<R> normal_x, normal_y, normal_z;  ///< of the plane, away from the origin
+    LaneValues<R> normal_x, normal_y, normal_z;  ///< the plane's normal, away from the origin
 };
 
 /// Rounds lanes of doubles to lanes [offset, …) of R.

@@ -105,7 +105,7 @@ class PolygonRows : public PolygonLists<PolygonRows<T>, T, false> {
 
     std::size_t numbers_;
     T* rows_;
-    std::size_t first_ = 0;  ///< of the present chunk
+    std::size_t first_ = 0;  ///< first polygon of the present chunk
     std::vector<std::size_t> slot_;
     hwy::AlignedFreeUniquePtr<double[]> sums_;  // NOLINT(modernize-avoid-c-arrays): as Highway names it
     std::size_t room_ = 0;                      ///< in sums_

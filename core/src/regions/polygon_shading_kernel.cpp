@@ -176,7 +176,7 @@ class PolygonShading : public PolygonLists<PolygonShading<kBoosted>, float, kBoo
     const std::uint32_t* view_of_;
     float* values_;
 
-    std::size_t first_ = 0;  ///< of the present chunk
+    std::size_t first_ = 0;  ///< first light of the present chunk
     std::vector<double> sums_;
 };
 

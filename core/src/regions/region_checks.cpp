@@ -112,8 +112,8 @@ bool may_be_edge_on(const Vec3d& normal, std::span<const Vec3d> v, double epsilo
 /// How a polygon in whose plane the origin lies goes around it.
 struct Turns {
     bool touch = false;             ///< the origin is on the boundary
-    double sum = 0;                 ///< of the angles of the edges [rad]
-    double least = 0, largest = 0;  ///< of that sum on the way
+    double sum = 0;                 ///< sum of the angles of the edges [rad]
+    double least = 0, largest = 0;  ///< extreme partial sums
 };
 
 Turns turns_around_origin(const Vec3d& normal, std::span<const Vec3d> v, double epsilon) {

@@ -178,7 +178,7 @@ void SphericalEllipse<Real>::cut_by_horizon(const Ellipse<Real>& given, const El
     };
     cut.first = level(from);
     cut.last = level(to);
-    const Real cross = 2 * (to.y * half.x - to.x * half.y);  // of `to` with from - to
+    const Real cross = 2 * (to.y * half.x - to.x * half.y);  // z of to × (from - to)
     cut.angle = std::atan2(std::max(Real(0), cross), to.x * from.x + to.y * from.y);
     cut.from = functions_->argument(highest - reach);
     cut.to = functions_->argument(highest + reach);

@@ -18,7 +18,7 @@ namespace shlight {
 template <class Real>
 struct Cone {
     Vec3<Real> axis, long_axis, short_axis;  ///< orthonormal, short × long = axis
-    Real sin_long, cos_long;                 ///< of the larger half angle
+    Real sin_long, cos_long;                 ///< the larger half angle
     Real sin_short, cos_short;
     Real complement;  ///< k'
 };
