@@ -21,7 +21,7 @@ namespace {
 constexpr const char* kSceneDoc = R"(Meshes, lights and a camera in one world frame, in metres.
 
 Scene() is empty. Add meshes and lights, set a camera, then call shlight.render().
-What render() builds for ray tracing is kept as long as meshes and their places stay as they are.
+What render() builds of a mesh is kept as long as the mesh stays as it is.
 A copy, deep or not, and the Scene that it was made of do not change each other.)";
 
 constexpr const char* kAddMeshDoc = R"(Add a triangle mesh. Surfaces are two-sided.
@@ -102,15 +102,14 @@ MeshHandle add_mesh(const py::object& self, const py::object& vertices, const py
                            {transforms, object_values, object_names, asset_names, object_indices}},
                           handle.names, scene);
     handle.number = scene.scene.add_mesh(std::move(mesh));
-    scene.meshes_changed();
+    scene.changed();
     return handle;
 }
 
 void set_bsdf(const MeshHandle& self, const py::object& bsdf, const py::object& emission, const py::object& group,
               const py::object& material_names, const py::object& material_pass_indices) {
     SceneObject& scene = self.scene();
-    const MeshUse& before = scene.scene.mesh(self.number);
-    MeshUse use = before;
+    MeshUse use = scene.scene.mesh(self.number);
     set_materials(use, self.names, {bsdf, emission, group, material_names, material_pass_indices}, scene);
     scene.scene.use_mesh(self.number, std::move(use));
     scene.changed();
@@ -119,17 +118,15 @@ void set_bsdf(const MeshHandle& self, const py::object& bsdf, const py::object& 
 void set_transforms(const MeshHandle& self, const py::object& transforms, const py::object& object_values,
                     const py::object& object_names, const py::object& asset_names, const py::object& object_indices) {
     SceneObject& scene = self.scene();
-    const MeshUse& before = scene.scene.mesh(self.number);
-    MeshUse use = before;
+    MeshUse use = scene.scene.mesh(self.number);
     set_places(use, {transforms, object_values, object_names, asset_names, object_indices});
-    const bool moves = use.transforms != before.transforms;
     scene.scene.use_mesh(self.number, std::move(use));
-    moves ? scene.meshes_changed() : scene.changed();
+    scene.changed();
 }
 
 void remove_mesh(const MeshHandle& self) {
     self.scene().scene.remove_mesh(self.number);
-    self.scene().meshes_changed();
+    self.scene().changed();
 }
 
 void remove_lights(SceneObject& self) {

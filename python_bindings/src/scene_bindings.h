@@ -22,19 +22,14 @@ struct SceneObject {
     Scene scene;
     std::optional<Camera> camera;
     std::shared_ptr<const CompiledScene> compiled;
-    std::shared_ptr<const CompiledScene> before;  // compiled with the same meshes in the same places, or null
+    std::shared_ptr<const CompiledScene> before;  ///< what was compiled last, of which the next one shares what it can
     std::uint64_t revision = 0;
     std::vector<std::string> groups;                 ///< LightTraits::group of the first is 1
     std::vector<std::pair<std::string, bool>> aovs;  ///< by RenderPass::number; whether it is a colour
 
-    /// Anything but a mesh or its place.
     void changed() {
         before = compiled ? std::exchange(compiled, nullptr) : before;
         ++revision;
-    }
-    void meshes_changed() {
-        changed();
-        before.reset();
     }
 };
 

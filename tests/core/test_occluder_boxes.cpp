@@ -25,8 +25,8 @@ class OccluderBoxesTest : public ::testing::Test {
     /// Patches of small triangles, some of them placed by transforms that shear.
     void add_surfaces() {
         for (std::uint32_t number = 0; number < 6; ++number) {
-            std::vector<Vec3f>& vertices = vertices_.emplace_back();
-            std::vector<Triangle>& triangles = triangles_.emplace_back();
+            std::vector<Vec3f> vertices;
+            std::vector<Triangle> triangles;
             const Vec3d middle = vector(3);
             for (std::uint32_t i = 0; i < 40; ++i) {
                 vertices.emplace_back(middle + vector(0.5));
@@ -34,20 +34,19 @@ class OccluderBoxesTest : public ::testing::Test {
                     triangles.emplace_back(i - 2, i - 1, i);
                 }
             }
-            const bool plain = number % 2 == 0;
             const Vec3d x = Vec3d(1, 0, 0) + vector(0.5);
-            instances_.push_back({number, plain, frame_matrix(x, {0.2, 1, 0}, {0, -0.3, 0.7}, vector(1))});
-        }
-        for (std::size_t i = 0; i < vertices_.size(); ++i) {
-            geometries_.push_back({vertices_[i], triangles_[i], {}});
+            const glm::dmat4 to_world =
+                number % 2 == 0 ? glm::dmat4(1) : frame_matrix(x, {0.2, 1, 0}, {0, -0.3, 0.7}, vector(1));
+            instances_.push_back({std::make_shared<const TriangleTree>(vertices, triangles), to_world});
+            for (const OccluderCluster& cluster : occluder_clusters(vertices, triangles)) {
+                clusters_.push_back(placed_cluster(cluster, to_world));
+            }
         }
     }
 
     RandomInput random_{7};
-    std::vector<std::vector<Vec3f>> vertices_;
-    std::vector<std::vector<Triangle>> triangles_;
-    std::vector<SceneGeometry> geometries_;
     std::vector<TracedInstance> instances_;
+    std::vector<OccluderCluster> clusters_;
 };
 
 struct Opaque : SurfaceTransparency {
@@ -59,7 +58,7 @@ TEST_F(OccluderBoxesTest, NoRayMeetsAnythingWhereNothingMayBlock) {
     constexpr int kShafts = 10000;
     add_surfaces();
     const Opaque opaque;
-    const SceneRays rays(geometries_, instances_, opaque);
+    const SceneRays rays(instances_, {}, clusters_, opaque);
     int free = 0;
     for (int i = 0; i < kShafts; ++i) {
         const Vec3d corner = vector(5);

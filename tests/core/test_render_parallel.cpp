@@ -152,15 +152,11 @@ TEST(RenderParallel, BuildingTheTracerCanBeStopped) {
         vertices.insert(vertices.end(), {{x, y, 0}, {x + 1, y, 0}, {x, y + 1, 0}});
         triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
     }
-    const std::vector<TracedGeometry> geometries = {{vertices, triangles}};
-    for (const bool identity : {true, false}) {
-        const std::vector<TracedInstance> instances = {{0, identity, glm::dmat4(1)}};
-        std::atomic<int> asked = 0;
-        const RayTracer whole(geometries, instances, [&] { return ++asked < 0; });
-        EXPECT_GT(asked, 2);  // not only before the build
-        asked = 0;
-        EXPECT_THROW(RayTracer(geometries, instances, [&] { return ++asked > 1; }), RenderCancelled);
-    }
+    std::atomic<int> asked = 0;
+    const TriangleTree whole(vertices, triangles, {}, [&] { return ++asked < 0; });
+    EXPECT_GT(asked, 2);  // not only before the build
+    asked = 0;
+    EXPECT_THROW(TriangleTree(vertices, triangles, {}, [&] { return ++asked > 1; }), RenderCancelled);
 }
 
 TEST(RenderParallel, ExceptionsReachTheCaller) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/ray_rounding.h"
 #include "render_scenes.h"
 
 namespace shlight {
@@ -215,6 +216,33 @@ TEST(RenderShadows, LightsThatCannotReachCostNoRays) {
     const Image image = render_image(scene, camera_above(1), 8, 8, with_rays(4, 16));
     EXPECT_EQ(image.report.shadow_rays, 0U);
     EXPECT_EQ(image.red(4, 4), 0);
+}
+
+TEST(RenderShadows, ALargeMeshFarFromItsOriginKeepsItsPrecision) {
+    // Rays that met it in its own frame would be rounded as 1e4 is.
+    constexpr std::uint32_t kSteps = 150;
+    Mesh mesh;
+    for (std::uint32_t i = 0; i <= kSteps; ++i) {
+        for (std::uint32_t j = 0; j <= kSteps; ++j) {
+            mesh.vertices.emplace_back(1e4F + static_cast<float>(i) / 64, static_cast<float>(j) / 64, 0);
+            const std::uint32_t corner = i * (kSteps + 1) + j;
+            if (i < kSteps && j < kSteps) {
+                mesh.triangles.emplace_back(corner, corner + 1, corner + kSteps + 1);
+                mesh.triangles.emplace_back(corner + 1, corner + kSteps + 2, corner + kSteps + 1);
+            }
+        }
+    }
+    mesh.transforms[0][3].x = -1e4;
+    Scene scene;
+    scene.add_mesh(mesh);
+    const auto compiled = scene.compile();
+    const Ray down = {{1, 1, 1}, 0, {0, 0, -1}};
+    RayHit hit;
+    compiled->rays().intersect({&down, 1}, {&hit, 1});
+    ASSERT_FALSE(hit.missed());
+    const SurfacePoint point = compiled->surface(hit, down.direction);
+    EXPECT_LE(glm::distance(point.position, {1, 1, 0}), 1e-6);
+    EXPECT_LE(point.error, 2 * kRayRounding);
 }
 
 TEST(RenderShadows, AnEmissiveCubeHidesItsFarSides) {

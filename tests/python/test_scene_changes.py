@@ -62,6 +62,48 @@ def test_a_changed_mesh_looks_as_if_made_so(change: Change, arguments: dict[str,
     assert not np.array_equal(changed, before)
 
 
+def plane(steps: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """A square of 2 steps² triangles."""
+    x = np.linspace(-0.5, 0.5, steps + 1)
+    vertices = np.stack([*np.meshgrid(x, x), np.full((steps + 1, steps + 1), 0.5)], axis=-1).reshape(-1, 3)
+    first = (np.arange(steps)[:, None] * (steps + 1) + np.arange(steps)).ravel()
+    corners = np.stack([first, first + 1, first + steps + 2, first + steps + 1], axis=-1)
+    return vertices, np.concatenate([corners[:, :3], corners[:, [0, 2, 3]]])
+
+
+TURNED = np.array([[0.8, -0.6, 0, 0.2], [0.6, 0.8, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+SHEARED = np.array([[1, 8, 0, 0], [0, 1, 0, 0.3], [0, 0, 1, 0], [0, 0, 0, 1.0]])
+
+
+@pytest.mark.parametrize("place", [ASIDE, TURNED, SHEARED], ids=["aside", "turned", "sheared"])
+def test_a_large_mesh_that_moves_looks_as_if_made_there(place: NDArray[np.float64]) -> None:
+    def scene_at(transform: NDArray[np.float64]) -> tuple[shlight.Scene, shlight.SceneMesh]:
+        scene, _ = scene_of()
+        mesh = scene.add_mesh(*plane(150), transforms=[transform])
+        add_lamp(scene, 0.5)
+        return scene, mesh
+
+    scene, mesh = scene_at(UP)
+    before = picture(scene)
+    mesh.set_transforms([place])
+    changed = picture(scene)
+    np.testing.assert_array_equal(changed, picture(scene_at(place)[0]))
+    assert not np.array_equal(changed, before)
+
+
+def test_emissive_meshes_stay_lit_where_others_are_removed() -> None:
+    scene, wall = scene_of()
+    vertices, triangles = plane(4)
+    scene.add_mesh(vertices + [0, 0, 1], triangles, emission=[4, 2, 1])
+    picture(scene)
+    wall.remove()
+    other = shlight.Scene()
+    other.add_mesh(vertices + [0, 0, 1], triangles, emission=[4, 2, 1])
+    other.add_mesh(FLOOR, FACES)
+    from_above(other, 2.0)
+    np.testing.assert_array_equal(picture(scene), picture(other))
+
+
 def test_lamps_are_replaced() -> None:
     scene, _ = scene_of(emission=[0, 0.1, 0])
     scene.set_environment([0.1, 0.1, 0.2])

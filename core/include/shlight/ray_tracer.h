@@ -38,27 +38,36 @@ struct RayHit {
     bool missed() const { return instance == kNone; }
 };
 
-/// Triangles in their own frame.
-struct TracedGeometry {
-    std::span<const Vec3f> vertices;
-    std::span<const Triangle> triangles;
+/// Triangles in one frame and Embree's tree over them. Immutable; any number of tracers may share it.
+class TriangleTree {
+  public:
+    /// Copies what it needs. Builds with the threads of the tbb::task_arena that it is called in.
+    /// numbers: RayHit::triangle of each triangle, or none: its index.
+    /// Throws std::runtime_error when Embree fails, std::bad_alloc when memory runs out, RenderCancelled once it is to
+    /// end.
+    TriangleTree(std::span<const Vec3f> vertices, std::span<const Triangle> triangles,
+                 std::vector<std::uint32_t> numbers = {}, const Stopped& stopped = {});
+    ~TriangleTree();
+    TriangleTree(const TriangleTree&) = delete;
+    TriangleTree& operator=(const TriangleTree&) = delete;
+
+  private:
+    friend class RayTracer;
+    class Impl;
+    std::unique_ptr<const Impl> impl_;
 };
 
-/// A geometry placed in the world.
+/// Triangles placed in the world.
 struct TracedInstance {
-    std::uint32_t geometry;
-    bool identity;        ///< to_world is the identity: no instance is made
-    glm::dmat4 to_world;  ///< affine
+    std::shared_ptr<const TriangleTree> tree;  ///< null: nothing
+    glm::dmat4 to_world;                       ///< affine
 };
 
 /// Immutable; any number of threads may trace at a time.
 class RayTracer {
   public:
-    /// Copies what it needs. Builds with the threads of the tbb::task_arena that it is called in.
-    /// Throws std::runtime_error when Embree fails, std::bad_alloc when memory runs out, RenderCancelled once it is to
-    /// end.
-    RayTracer(std::span<const TracedGeometry> geometries, std::span<const TracedInstance> instances,
-              const Stopped& stopped = {});
+    /// Builds a tree over the instances. Throws what TriangleTree throws.
+    explicit RayTracer(std::vector<TracedInstance> instances, const Stopped& stopped = {});
     ~RayTracer();
     RayTracer(const RayTracer&) = delete;
     RayTracer& operator=(const RayTracer&) = delete;

@@ -124,7 +124,7 @@ class Scene {
     /// Builds with at most `threads` threads, 0: all cores; calls `progress` meanwhile, with 0, as run_watched does.
     /// Throws std::invalid_argument for threads < 0 and for surfaces in a scene of less than 1e-6 m, std::bad_alloc or
     /// std::runtime_error when Embree fails; RenderCancelled when progress returns false, and what it throws.
-    /// before: what it has built for its rays is shared if it has the same shapes in the same places; null: nothing.
+    /// before: what it has built of each mesh is shared as far as that has not changed; null: nothing.
     std::shared_ptr<const CompiledScene> compile(int threads = 0, const Progress& progress = {},
                                                  const CompiledScene* before = nullptr) const;
 

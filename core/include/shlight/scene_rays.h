@@ -14,12 +14,7 @@
 
 namespace shlight {
 
-/// A mesh of the scene.
-struct SceneGeometry {
-    std::span<const Vec3f> vertices;
-    std::span<const Triangle> triangles;
-    std::vector<std::uint8_t> transparent;  ///< by triangle, or none: all are opaque
-};
+struct OccluderCluster;
 
 /// How much of the light a surface lets through.
 class SurfaceTransparency {
@@ -40,9 +35,11 @@ Ray behind(const Ray& ray, const RayHit& hit);
 /// Immutable; any number of threads may trace at a time.
 class SceneRays {
   public:
+    /// opaque, transparent: triangles of the same instances. clusters: bound all surfaces, in the world.
     /// Builds as RayTracer does, and throws what it throws. transparency must outlive this.
-    SceneRays(std::span<const SceneGeometry> geometries, std::span<const TracedInstance> instances,
-              const SurfaceTransparency& transparency, const Stopped& stopped = {});
+    SceneRays(std::vector<TracedInstance> opaque, std::vector<TracedInstance> transparent,
+              std::vector<OccluderCluster> clusters, const SurfaceTransparency& transparency,
+              const Stopped& stopped = {});
     /// Of the same surfaces: what is built is shared. transparency must outlive this.
     SceneRays(const SceneRays& same, const SurfaceTransparency& transparency);
     SceneRays(const SceneRays&) = delete;
@@ -64,8 +61,7 @@ class SceneRays {
     const class OccluderBoxes& boxes() const { return *boxes_; }
 
   private:
-    class Part;
-    std::shared_ptr<const Part> opaque_, transparent_;  // null: there are none
+    std::shared_ptr<const RayTracer> opaque_, transparent_;  // null: there are no such surfaces
     std::shared_ptr<const OccluderBoxes> boxes_;
     const SurfaceTransparency* transparency_;
 };

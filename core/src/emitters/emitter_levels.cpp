@@ -347,12 +347,13 @@ const EmitterLevel& level_for(const EmitterLevels& emitter, double distance, dou
 }
 
 EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
-                                  std::size_t least_faces) {
+                                  std::size_t least_faces, const Stopped& stopped) {
     EmitterLevels emitter{{}, false, false, Vec3d(0), 0, 0};
     IndexedMesh mesh = welded(vertices, triangles);
     if (mesh.faces.empty()) {
         return emitter;
     }
+    end_if(stopped);
     find_extent(mesh, emitter);
     emitter.closed = !has_border(edges_of(mesh));
     if (emitter.closed && volume(mesh) < 0) {
@@ -361,12 +362,15 @@ EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<con
         }
     }
     emitter.area = area(mesh);
+    end_if(stopped);
     emitter.convex = emitter.closed && is_convex(mesh);
+    end_if(stopped);
     double error = 0;
     if (mesh.faces.size() > kMostFaces) {
         simplify(mesh, kMostFaces, emitter.closed, error);
     }
     do {
+        end_if(stopped);
         IndexedMesh level = mesh;
         scale(level, emitter.center, std::sqrt(emitter.area / area(level)));
         emitter.levels.push_back(level_of(std::move(level), error));

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "shlight/parallel.h"
 #include "shlight/ray_tracer.h"
 #include "shlight/types.h"
 
@@ -83,8 +84,8 @@ const EmitterLevel& level_for(const EmitterLevels& emitter, double distance, dou
 /// Equal vertices are joined, and triangles without area left out. The finest level has at most some 5000 faces, each
 /// one after it about a quarter of those of the one before, down to `least_faces`; all are scaled to the area of the
 /// given mesh: a closed surface shows a quarter of its area on average (Cauchy), so that no level is brighter.
-/// No levels if no triangle has an area.
+/// No levels if no triangle has an area. Throws RenderCancelled once it is to end.
 EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
-                                  std::size_t least_faces);
+                                  std::size_t least_faces, const Stopped& stopped = {});
 
 }  // namespace shlight

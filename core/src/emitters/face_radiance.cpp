@@ -14,6 +14,8 @@ constexpr int kMostQuarterings = 4;
 constexpr double kLeastShare = 1.0 / 256;
 /// Of the lobe's width: over a smaller part f·cos is what it is at its middle, but for the horizon.
 constexpr double kBroad = 0.2;
+/// Faces of a node that are worth asking whether to stop.
+constexpr std::uint32_t kFacesBetweenStops = 1 << 12;
 
 double largest(const Rgb& color) {
     return std::max({std::abs(color.x), std::abs(color.y), std::abs(color.z)});
@@ -22,7 +24,7 @@ double largest(const Rgb& color) {
 }  // namespace
 
 FaceRadiance::FaceRadiance(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
-                           std::vector<Rgb> radiance, bool closed)
+                           std::vector<Rgb> radiance, bool closed, const Stopped& stopped)
     : closed_(closed), of_triangle_(std::move(radiance)) {
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const Triangle& t = triangles[i];
@@ -30,18 +32,20 @@ FaceRadiance::FaceRadiance(std::span<const Vec3d> vertices, std::span<const Tria
     }
     nodes_.reserve(2 * faces_.size());
     nodes_.emplace_back();
-    build(0, 0, static_cast<std::uint32_t>(faces_.size()));
+    build(0, 0, static_cast<std::uint32_t>(faces_.size()), stopped);
     for (Node& node : nodes_) {
         node.part.difference = largest(node.part.radiance - mean());
     }
     const std::vector<Vec3f> traced(vertices.begin(), vertices.end());
-    const TracedGeometry geometry = {traced, triangles};
-    const TracedInstance instance = {0, true, glm::dmat4(1)};
-    rays_ = std::make_unique<const RayTracer>(std::span(&geometry, 1), std::span(&instance, 1));
+    auto tree = std::make_shared<const TriangleTree>(traced, triangles, std::vector<std::uint32_t>(), stopped);
+    rays_ = std::make_unique<const RayTracer>(std::vector<TracedInstance>{{std::move(tree), glm::dmat4(1)}}, stopped);
 }
 
 /// Halves the faces along their longest extent.
-void FaceRadiance::build(std::uint32_t node, std::uint32_t first, std::uint32_t last) {
+void FaceRadiance::build(std::uint32_t node, std::uint32_t first, std::uint32_t last, const Stopped& stopped) {
+    if (last - first >= kFacesBetweenStops) {
+        end_if(stopped);
+    }
     Vec3d low(faces_[first].a);
     Vec3d high = low;
     Node made{};
@@ -76,8 +80,8 @@ void FaceRadiance::build(std::uint32_t node, std::uint32_t first, std::uint32_t 
                          });
         made.first_child = static_cast<std::uint32_t>(nodes_.size());
         nodes_.resize(nodes_.size() + 2);
-        build(made.first_child, first, middle);
-        build(made.first_child + 1, middle, last);
+        build(made.first_child, first, middle, stopped);
+        build(made.first_child + 1, middle, last, stopped);
     }
     nodes_[node] = made;
 }

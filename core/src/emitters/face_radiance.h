@@ -37,8 +37,9 @@ struct FacePart {
 class FaceRadiance {
   public:
     /// In the world frame; radiance: one for each triangle. closed: see EmitterLevels.
+    /// Throws what TriangleTree throws.
     FaceRadiance(std::span<const Vec3d> vertices, std::span<const Triangle> triangles, std::vector<Rgb> radiance,
-                 bool closed);
+                 bool closed, const Stopped& stopped = {});
 
     /// By area.
     const Rgb& mean() const { return nodes_.front().part.radiance; }
@@ -62,7 +63,7 @@ class FaceRadiance {
 
     /// What of the part's members tells how its faces differ.
     void find_variation(std::uint32_t first, std::uint32_t last, FacePart& part) const;
-    void build(std::uint32_t node, std::uint32_t first, std::uint32_t last);
+    void build(std::uint32_t node, std::uint32_t first, std::uint32_t last, const Stopped& stopped);
 
     std::vector<Face> faces_;
     std::vector<Node> nodes_;

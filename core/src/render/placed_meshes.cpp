@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/ray_rounding.h"
 #include "base/scene_range.h"
@@ -12,24 +13,17 @@
 namespace shlight {
 namespace {
 
-Placement place(std::uint32_t mesh, std::uint32_t number, const glm::dmat4& to_world, bool baked) {
+Placement place(std::uint32_t mesh, std::uint32_t number, std::uint32_t first_material, const glm::dmat4& to_world,
+                bool baked) {
     const glm::dmat3 linear(to_world);
     return {mesh,
             number,
+            first_material,
             baked,
             to_world,
             glm::inverse(to_world),
             baked ? 1.0 : inf_norm(linear) * inf_norm(glm::inverse(linear)),
             baked ? 0.0 : largest_component(Vec3d(to_world[3]))};
-}
-
-std::vector<Vec3f> moved(const std::vector<Vec3f>& vertices, const glm::dmat4& to_world) {
-    std::vector<Vec3f> result;
-    result.reserve(vertices.size());
-    for (const Vec3f& v : vertices) {
-        result.emplace_back(transform_point(to_world, Vec3d(v)));
-    }
-    return result;
 }
 
 /// Component of an attribute as RGBA; 1 where it is not given.
@@ -51,23 +45,20 @@ float matrix_number(const glm::dmat4& matrix, std::uint32_t component) {
 
 }  // namespace
 
-const TracedMesh& PlacedMeshes::add(const std::shared_ptr<const SceneMesh>& mesh, std::uint32_t first_material) {
+void PlacedMeshes::add(std::shared_ptr<const CompiledMesh> mesh, std::uint32_t first_material) {
     const auto index = static_cast<std::uint32_t>(meshes_.size());
-    const bool baked = mesh->transforms.size() == 1;
-    meshes_.push_back(
-        {mesh, baked ? moved(mesh->shape->vertices, mesh->transforms[0]) : std::vector<Vec3f>(), first_material});
     std::uint32_t number = 0;
-    for (const glm::dmat4& to_world : mesh->transforms) {
-        placements_.push_back(place(index, number++, to_world, baked));
+    for (const glm::dmat4& to_world : mesh->mesh->transforms) {
+        placements_.push_back(place(index, number++, first_material, to_world, mesh->is_baked()));
     }
-    return meshes_.back();
+    meshes_.push_back(std::move(mesh));
 }
 
 std::array<Vec3d, 3> PlacedMeshes::corners(const RayHit& hit) const {
     const Placement& placement = placements_[hit.instance];
-    const TracedMesh& traced = meshes_[placement.mesh];
-    const std::span<const Vec3f> vertices = traced.vertices();
-    const Triangle& triangle = traced.mesh->shape->triangles[hit.triangle];
+    const CompiledMesh& mesh = *meshes_[placement.mesh];
+    const std::span<const Vec3f> vertices = mesh.vertices();
+    const Triangle& triangle = mesh.mesh->shape->triangles[hit.triangle];
     std::array<Vec3d, 3> result = {Vec3d(vertices[triangle.x]), Vec3d(vertices[triangle.y]),
                                    Vec3d(vertices[triangle.z])};
     if (!placement.baked) {
@@ -80,7 +71,7 @@ std::array<Vec3d, 3> PlacedMeshes::corners(const RayHit& hit) const {
 
 bool PlacedMeshes::smooth_normal(const RayHit& hit, Vec3d& normal) const {
     const Placement& placement = placements_[hit.instance];
-    const MeshShape& mesh = *meshes_[placement.mesh].mesh->shape;
+    const MeshShape& mesh = *mesh_of(placement).shape;
     if (mesh.vertex_normals.empty() && mesh.corner_normals.empty()) {
         return false;
     }
@@ -99,7 +90,6 @@ bool PlacedMeshes::smooth_normal(const RayHit& hit, Vec3d& normal) const {
 
 SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) const {
     const Placement& placement = placements_[hit.instance];
-    const TracedMesh& traced = meshes_[placement.mesh];
     const std::array<double, 3> weights = weights_of(hit);
     const std::array<Vec3d, 3> corners = this->corners(hit);
     const Vec3d position = weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
@@ -124,7 +114,7 @@ SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) co
     }
     const double scale = placement.condition * (largest_component(position) + placement.origin) + extent;
     return {position, geometric, shading, kRayRounding * scale,
-            traced.first_material + traced.mesh->shape->material_index(hit.triangle)};
+            placement.first_material + mesh_of(placement).shape->material_index(hit.triangle)};
 }
 
 SurfacePlace PlacedMeshes::neighbour(const SurfacePlace& place, const Vec3d& normal, double length,
@@ -160,7 +150,7 @@ float PlacedMeshes::attribute(const MeshAttribute& attribute, std::uint32_t comp
         const auto at = [&](std::uint32_t i) { return this->attribute(attribute, i, hit); };
         return attribute.components == 1 ? at(0) : (at(0) + at(1) + at(2)) * (1 / 3.0F);
     }
-    const MeshShape& mesh = *meshes_[placements_[hit.instance].mesh].mesh->shape;
+    const MeshShape& mesh = *mesh_of(placements_[hit.instance]).shape;
     const std::size_t size = attribute.values.size();
     const std::uint32_t own = attribute.components == 1 && component < 3 ? 0 : component;
     const auto value = [&](std::size_t index) { return attribute.values[index * attribute.components + own]; };
@@ -186,7 +176,7 @@ float PlacedMeshes::attribute(const MeshAttribute& attribute, std::uint32_t comp
 }
 
 Vec3d PlacedMeshes::uv(const RayHit& hit) const {
-    const MeshShape& mesh = *meshes_[placements_[hit.instance].mesh].mesh->shape;
+    const MeshShape& mesh = *mesh_of(placements_[hit.instance]).shape;
     if (mesh.uv == MeshShader::kNoAttribute) {
         return Vec3d(0);
     }
@@ -197,7 +187,7 @@ Vec3d PlacedMeshes::uv(const RayHit& hit) const {
 const Label& PlacedMeshes::label(const RayHit& hit) const {
     static constexpr Label kNoLabel;
     const Placement& placement = placements_[hit.instance];
-    const std::vector<Label>& labels = meshes_[placement.mesh].mesh->object_labels;
+    const std::vector<Label>& labels = mesh_of(placement).object_labels;
     return labels.empty() ? kNoLabel : labels[placement.number];
 }
 
@@ -211,7 +201,7 @@ Vec3d PlacedMeshes::normal_at(const ShadedPlace& shaded, int place, bool smooth)
 }
 
 float PlacedMeshes::object_value(const Placement& placement, std::uint32_t index) const {
-    const std::vector<std::vector<float>>& values = meshes_[placement.mesh].mesh->object_values;
+    const std::vector<std::vector<float>>& values = mesh_of(placement).object_values;
     const bool known = placement.number < values.size() && index < values[placement.number].size();
     return known ? values[placement.number][index] : 0.0F;
 }
@@ -251,7 +241,7 @@ void PlacedMeshes::read(const ShaderInput& input, const std::vector<std::uint32_
                 return;
             }
             return fill([&](const auto&, const SurfacePlace& at) {
-                return attribute(meshes_[placement(at).mesh].mesh->shape->attributes[index], input.component, at.hit);
+                return attribute(mesh_of(placement(at)).shape->attributes[index], input.component, at.hit);
             });
         }
         case ShaderSource::object_to_world:

@@ -12,6 +12,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 
+#include "render/compiled_mesh.h"
 #include "shlight/mesh.h"
 #include "shlight/ray_tracer.h"
 #include "shlight/scene.h"
@@ -20,20 +21,10 @@
 
 namespace shlight {
 
-/// A mesh as it is traced. A mesh placed once has its vertices moved to the world; others are instanced.
-struct TracedMesh {
-    std::shared_ptr<const SceneMesh> mesh;
-    std::vector<Vec3f> world_vertices;  // empty: instanced
-    std::uint32_t first_material;
-
-    std::span<const Vec3f> vertices() const {
-        return world_vertices.empty() ? std::span<const Vec3f>(mesh->shape->vertices) : world_vertices;
-    }
-};
-
 struct Placement {
-    std::uint32_t mesh, number;  // number: of the mesh's instances
-    bool baked;                  // vertices are in the world frame
+    std::uint32_t mesh, number;    // number: of the mesh's instances
+    std::uint32_t first_material;  // number of the mesh's first material in the scene
+    bool baked;                    // the mesh's vertices are in the world frame
     glm::dmat4 to_world;
     glm::dmat4 to_object;
     double condition;  // how much a ray's rounding grows on its way through the instance's frame
@@ -43,9 +34,9 @@ struct Placement {
 class PlacedMeshes {
   public:
     /// first_material: number of the mesh's first material in the scene.
-    const TracedMesh& add(const std::shared_ptr<const SceneMesh>& mesh, std::uint32_t first_material);
+    void add(std::shared_ptr<const CompiledMesh> mesh, std::uint32_t first_material);
 
-    std::span<const TracedMesh> meshes() const { return meshes_; }
+    std::span<const std::shared_ptr<const CompiledMesh>> meshes() const { return meshes_; }
     std::span<const Placement> placements() const { return placements_; }
 
     /// As CompiledScene's.
@@ -67,7 +58,9 @@ class PlacedMeshes {
     bool is_back(const RayHit& hit, const Vec3d& towards_viewer) const;
     float attribute(const MeshAttribute& attribute, std::uint32_t component, const RayHit& hit) const;
 
-    std::vector<TracedMesh> meshes_;
+    const SceneMesh& mesh_of(const Placement& placement) const { return *meshes_[placement.mesh]->mesh; }
+
+    std::vector<std::shared_ptr<const CompiledMesh>> meshes_;
     std::vector<Placement> placements_;
 };
 

@@ -5,25 +5,19 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <unordered_map>
+#include <utility>
+#include <variant>
 
-#include <tbb/task_arena.h>
+#include <tbb/parallel_for.h>
 
 #include "base/scene_range.h"
-#include "base/transforms.h"
-#include "emitters/emitter_levels.h"
-#include "emitters/face_radiance.h"
 #include "render/camera_visible_lamps.h"
 #include "render/placed_meshes.h"
-#include "shlight/mesh_light.h"
 #include "shlight/parallel.h"
 
 namespace shlight {
 namespace {
-
-/// Emissive triangles of a mesh that are lights one by one, or in pairs; more of them are one light.
-constexpr std::size_t kMostSingleFaces = 16;
-/// Of the coarsest level of detail: below, outlines lose their shape.
-constexpr std::size_t kLeastLevelFaces = 64;
 
 /// The largest coordinate of a lamp that has a place, within its size.
 struct Reach {
@@ -37,23 +31,9 @@ struct Reach {
     }
 };
 
-/// None if no material lets light through.
-std::vector<std::uint8_t> transparent_triangles(const SceneMesh& mesh) {
-    const auto passes = [](const MeshShader& own) { return own.shader != nullptr && own.shader->transparency; };
-    if (std::none_of(mesh.shaders.begin(), mesh.shaders.end(), passes)) {
-        return {};
-    }
-    std::vector<std::uint8_t> transparent(mesh.shape->triangles.size());
-    for (std::size_t i = 0; i < transparent.size(); ++i) {
-        transparent[i] = passes(mesh.shaders[mesh.shape->material_index(i)]) ? 1 : 0;
-    }
-    return transparent;
-}
-
 /// The same triangles in the same places, opaque or not.
-bool meets_rays_alike(const TracedMesh& a, const TracedMesh& b) {
-    return a.mesh->shape == b.mesh->shape && a.mesh->transforms == b.mesh->transforms &&
-           transparent_triangles(*a.mesh) == transparent_triangles(*b.mesh);
+bool meets_rays_alike(const std::shared_ptr<const CompiledMesh>& a, const std::shared_ptr<const CompiledMesh>& b) {
+    return a->opaque == b->opaque && a->transparent == b->transparent && a->mesh->transforms == b->mesh->transforms;
 }
 
 /// Of one material.
@@ -93,16 +73,15 @@ class CompiledScene::Impl {
           has_background(environment_visible),
           environment_group(group) {}
 
-    void add(const std::shared_ptr<const SceneMesh>& mesh) {
-        const auto first_placement = static_cast<std::uint32_t>(placed.placements().size());
-        const TracedMesh& traced = placed.add(mesh, static_cast<std::uint32_t>(materials.size()));
-        for (std::size_t i = 0; i < mesh->material_count(); ++i) {
-            materials.push_back(mesh->material(i));
+    /// before: whose meshes and rays are shared as far as they are the same; null: nothing.
+    void build(std::span<const std::shared_ptr<const SceneMesh>> meshes, const Impl* before, const Stopped& stopped) {
+        std::vector<std::shared_ptr<const CompiledMesh>> compiled(meshes.size());
+        tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t i) {
+            compiled[i] = compile_mesh(meshes[i], before == nullptr ? nullptr : before->of_shape(*meshes[i]), stopped);
+        });
+        for (std::shared_ptr<const CompiledMesh>& mesh : compiled) {
+            add(std::move(mesh));
         }
-        add_emissive_faces(traced, first_placement);
-    }
-
-    void build(const Impl* before, const Stopped& stopped) {
         const auto first_delta =
             std::stable_partition(lights.begin(), lights.end(), [](const Light& light) { return !is_delta(light); });
         extended_light_count = static_cast<std::size_t>(first_delta - lights.begin());
@@ -126,25 +105,50 @@ class CompiledScene::Impl {
     std::vector<std::uint32_t> light_groups;
 
   private:
-    std::unique_ptr<const SceneRays> built_rays(const Stopped& stopped) const {
-        std::vector<SceneGeometry> geometries;
-        for (const TracedMesh& traced : placed.meshes()) {
-            geometries.push_back(
-                {traced.vertices(), traced.mesh->shape->triangles, transparent_triangles(*traced.mesh)});
-        }
-        std::vector<TracedInstance> instances;
-        for (const Placement& placement : placed.placements()) {
-            instances.push_back({placement.mesh, placement.baked, placement.to_world});
-        }
-        return std::make_unique<const SceneRays>(geometries, instances, transparency, stopped);
+    /// Null: there is none.
+    std::shared_ptr<const CompiledMesh> of_shape(const SceneMesh& mesh) const {
+        const auto found = by_shape_.find(mesh.shape.get());
+        return found == by_shape_.end() ? nullptr : placed.meshes()[found->second];
     }
+    void add(std::shared_ptr<const CompiledMesh> compiled);
+    std::unique_ptr<const SceneRays> built_rays(const Stopped& stopped) const;
     void find_light_groups();
-    void add_emissive_faces(const TracedMesh& traced, std::uint32_t first_placement);
-    void add_single_faces(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
-                          std::span<const Rgb> radiance, const LightTraits& traits);
-    void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
-                        const std::vector<Rgb>& radiance);
+
+    std::unordered_map<const MeshShape*, std::size_t> by_shape_;  // index in placed.meshes()
 };
+
+void CompiledScene::Impl::add(std::shared_ptr<const CompiledMesh> compiled) {
+    const SceneMesh& mesh = *compiled->mesh;
+    const auto first_instance = static_cast<std::uint32_t>(placed.placements().size());
+    for (const Light& light : compiled->lights) {
+        lights.push_back(light);
+        if (auto* mesh_light = std::get_if<MeshLight>(&lights.back())) {
+            mesh_light->instance += first_instance;
+        }
+    }
+    const auto first_material = static_cast<std::uint32_t>(materials.size());
+    for (std::size_t i = 0; i < mesh.material_count(); ++i) {
+        materials.push_back(mesh.material(i));
+    }
+    by_shape_[mesh.shape.get()] = placed.meshes().size();
+    placed.add(std::move(compiled), first_material);
+}
+
+std::unique_ptr<const SceneRays> CompiledScene::Impl::built_rays(const Stopped& stopped) const {
+    std::vector<TracedInstance> opaque, transparent;
+    std::vector<OccluderCluster> clusters;
+    for (const Placement& placement : placed.placements()) {
+        const CompiledMesh& mesh = *placed.meshes()[placement.mesh];
+        const glm::dmat4 to_world = placement.baked ? glm::dmat4(1) : placement.to_world;
+        opaque.push_back({mesh.opaque, to_world});
+        transparent.push_back({mesh.transparent, to_world});
+        for (const OccluderCluster& cluster : *mesh.clusters) {
+            clusters.push_back(placement.baked ? cluster : placed_cluster(cluster, to_world));
+        }
+    }
+    return std::make_unique<const SceneRays>(std::move(opaque), std::move(transparent), std::move(clusters),
+                                             transparency, stopped);
+}
 
 void CompiledScene::Impl::Transparency::find(std::span<const Ray> rays, std::span<const RayHit> hits,
                                              std::uint32_t depth, std::span<Rgb> passed) const {
@@ -201,67 +205,6 @@ void CompiledScene::Impl::find_light_groups() {
     }
     std::sort(light_groups.begin(), light_groups.end());
     light_groups.erase(std::unique(light_groups.begin(), light_groups.end()), light_groups.end());
-}
-
-void CompiledScene::Impl::add_emissive_faces(const TracedMesh& traced, std::uint32_t first_placement) {
-    const std::shared_ptr<const SceneMesh>& mesh = traced.mesh;
-    const MeshShape& shape = *mesh->shape;
-    std::vector<Triangle> emissive;
-    std::vector<Rgb> radiance;  // of each of them
-    for (std::size_t i = 0; i < shape.triangles.size(); ++i) {
-        const Rgb& emitted = mesh->emitted(shape.material_index(i));
-        if (emitted != Rgb(0)) {
-            emissive.push_back(shape.triangles[i]);
-            radiance.push_back(emitted);
-        }
-    }
-    LightTraits traits;
-    traits.group = mesh->group;
-    for (std::uint32_t k = 0; k < mesh->transforms.size() && !emissive.empty(); ++k) {
-        const bool baked = !traced.world_vertices.empty();
-        std::vector<Vec3d> vertices;
-        for (const Vec3f& v : traced.vertices()) {
-            vertices.push_back(baked ? Vec3d(v) : transform_point(mesh->transforms[k], Vec3d(v)));
-        }
-        if (emissive.size() > kMostSingleFaces) {
-            add_mesh_light({nullptr, radiance.front(), nullptr, first_placement + k, mesh, traits}, vertices, emissive,
-                           radiance);
-        } else {
-            add_single_faces(vertices, emissive, radiance, traits);
-        }
-    }
-}
-
-void CompiledScene::Impl::add_single_faces(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
-                                           std::span<const Rgb> radiance, const LightTraits& traits) {
-    std::vector<Rgb> left(radiance.begin(), radiance.end());
-    while (!left.empty()) {
-        const Rgb color = left.front();
-        std::vector<Triangle> alike;
-        for (std::size_t i = 0; i < triangles.size(); ++i) {
-            if (radiance[i] == color) {
-                alike.push_back(triangles[i]);
-            }
-        }
-        for (FaceOutline& outline : merge_faces(vertices, alike)) {
-            lights.emplace_back(make_polygon_light(std::move(outline), color, true, traits));
-        }
-        std::erase(left, color);
-    }
-}
-
-void CompiledScene::Impl::add_mesh_light(MeshLight light, std::span<const Vec3d> vertices,
-                                         std::span<const Triangle> triangles, const std::vector<Rgb>& radiance) {
-    EmitterLevels levels = make_emitter_levels(vertices, triangles, kLeastLevelFaces);
-    if (levels.levels.empty()) {
-        return;
-    }
-    if (std::any_of(radiance.begin(), radiance.end(), [&](const Rgb& color) { return color != radiance.front(); })) {
-        light.faces = std::make_shared<const FaceRadiance>(vertices, triangles, radiance, levels.closed);
-        light.radiance = light.faces->mean();
-    }
-    light.shape = std::make_shared<const EmitterLevels>(std::move(levels));
-    lights.emplace_back(std::move(light));
 }
 
 CompiledScene::CompiledScene(std::unique_ptr<const Impl> impl) : impl_(std::move(impl)) {}
@@ -403,14 +346,14 @@ std::shared_ptr<const CompiledScene> Scene::compile(int threads, const Progress&
                                                     const CompiledScene* before) const {
     check_size();
     auto impl = std::make_unique<CompiledScene::Impl>(lamps_, environment_, environment_visible_, environment_group_);
-    const auto build = [&](const Stopped& stopped) {
-        for (const auto& [number, mesh] : meshes_) {
-            end_if(stopped);
-            if (!mesh->shape->triangles.empty() && !mesh->transforms.empty()) {
-                impl->add(mesh);
-            }
+    std::vector<std::shared_ptr<const SceneMesh>> meshes;
+    for (const auto& [number, mesh] : meshes_) {
+        if (!mesh->shape->triangles.empty() && !mesh->transforms.empty()) {
+            meshes.push_back(mesh);
         }
-        impl->build(before == nullptr ? nullptr : before->impl_.get(), stopped);
+    }
+    const auto build = [&](const Stopped& stopped) {
+        impl->build(meshes, before == nullptr ? nullptr : before->impl_.get(), stopped);
     };
     run_watched(threads, build, progress);
     return std::shared_ptr<const CompiledScene>(new CompiledScene(std::move(impl)));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/ray_rounding.h"
 
@@ -11,7 +12,6 @@ namespace shlight {
 namespace {
 
 constexpr std::size_t kLeastTriangles = 16;  // of a cluster
-constexpr std::size_t kMostClusters = 1 << 14;
 constexpr std::size_t kDeepestTree = 64;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -30,6 +30,24 @@ void clip(double slope, double room, double& low, double& high) {
 /// Minimum of n · v over a box.
 double least_along(const Vec3d& n, const Box& box) {
     return glm::dot(n, box.low + box.high) / 2 - glm::dot(glm::abs(n), box.high - box.low) / 2;
+}
+
+OccluderCluster cluster_of(std::span<const Vec3f> vertices, std::span<const Triangle> triangles) {
+    OccluderCluster cluster = {Box(), Vec3d(0), kInfinity, -kInfinity};
+    const auto corner = [&](const Triangle& triangle, int i) { return Vec3d(vertices[triangle[i]]); };
+    for (const Triangle& triangle : triangles) {
+        const Vec3d first = corner(triangle, 0);
+        cluster.normal += glm::cross(corner(triangle, 1) - first, corner(triangle, 2) - first);
+    }
+    for (const Triangle& triangle : triangles) {
+        for (int i = 0; i < 3; ++i) {
+            cluster.box.include(corner(triangle, i));
+            const double along = glm::dot(cluster.normal, corner(triangle, i));
+            cluster.least = std::min(cluster.least, along);
+            cluster.most = std::max(cluster.most, along);
+        }
+    }
+    return cluster;
 }
 
 }  // namespace
@@ -54,56 +72,31 @@ struct OccluderBoxes::Shaft {
     Box growth;
 };
 
-OccluderBoxes::OccluderBoxes(std::span<const SceneGeometry> geometries, std::span<const TracedInstance> instances) {
-    std::size_t triangles = 0;
-    for (const TracedInstance& instance : instances) {
-        triangles += geometries[instance.geometry].triangles.size();
+std::vector<OccluderCluster> occluder_clusters(std::span<const Vec3f> vertices, std::span<const Triangle> triangles) {
+    const std::size_t size =
+        std::max(kLeastTriangles, static_cast<std::size_t>(std::sqrt(static_cast<double>(triangles.size()))));
+    std::vector<OccluderCluster> clusters;
+    for (std::size_t first = 0; first < triangles.size(); first += size) {
+        clusters.push_back(cluster_of(vertices, triangles.subspan(first, std::min(size, triangles.size() - first))));
     }
-    const std::size_t size = std::max(kLeastTriangles, triangles / kMostClusters);
-    std::vector<std::vector<Cluster>> own(geometries.size());
-    for (std::size_t i = 0; i < geometries.size(); ++i) {
-        const std::span<const Triangle> all = geometries[i].triangles;
-        for (std::size_t first = 0; first < all.size(); first += size) {
-            own[i].push_back(cluster_of(geometries[i], all.subspan(first, std::min(size, all.size() - first))));
-        }
-    }
-    for (const TracedInstance& instance : instances) {
-        for (const Cluster& cluster : own[instance.geometry]) {
-            clusters_.push_back(instance.identity ? cluster : placed(cluster, instance));
-        }
-    }
-    if (!clusters_.empty()) {
-        build(0, static_cast<std::uint32_t>(clusters_.size()));
-    }
+    return clusters;
 }
 
-OccluderBoxes::Cluster OccluderBoxes::cluster_of(const SceneGeometry& geometry, std::span<const Triangle> triangles) {
-    Cluster cluster = {Box(), Vec3d(0), kInfinity, -kInfinity};
-    const auto corner = [&](const Triangle& triangle, int i) { return Vec3d(geometry.vertices[triangle[i]]); };
-    for (const Triangle& triangle : triangles) {
-        const Vec3d first = corner(triangle, 0);
-        cluster.normal += glm::cross(corner(triangle, 1) - first, corner(triangle, 2) - first);
-    }
-    for (const Triangle& triangle : triangles) {
-        for (int i = 0; i < 3; ++i) {
-            cluster.box.include(corner(triangle, i));
-            const double along = glm::dot(cluster.normal, corner(triangle, i));
-            cluster.least = std::min(cluster.least, along);
-            cluster.most = std::max(cluster.most, along);
-        }
-    }
-    return cluster;
-}
-
-OccluderBoxes::Cluster OccluderBoxes::placed(const Cluster& cluster, const TracedInstance& instance) {
-    const glm::dmat3 turn(instance.to_world);
-    const Vec3d shift(instance.to_world[3]);
+OccluderCluster placed_cluster(const OccluderCluster& cluster, const glm::dmat4& to_world) {
+    const glm::dmat3 turn(to_world);
+    const Vec3d shift(to_world[3]);
     const Vec3d half = (cluster.box.high - cluster.box.low) / 2.0;
     const glm::dmat3 sizes(glm::abs(turn[0]), glm::abs(turn[1]), glm::abs(turn[2]));
     const Vec3d normal = cluster.normal * glm::inverse(turn);
     const double offset = glm::dot(normal, shift);
     return {Box::around(turn * (cluster.box.low + half) + shift, sizes * half), normal, cluster.least + offset,
             cluster.most + offset};
+}
+
+OccluderBoxes::OccluderBoxes(std::vector<OccluderCluster> clusters) : clusters_(std::move(clusters)) {
+    if (!clusters_.empty()) {
+        build(0, static_cast<std::uint32_t>(clusters_.size()));
+    }
 }
 
 void OccluderBoxes::build(std::uint32_t begin, std::uint32_t end) {
@@ -122,7 +115,7 @@ void OccluderBoxes::build(std::uint32_t begin, std::uint32_t end) {
     const int axis = size.x >= std::max(size.y, size.z) ? 0 : (size.y >= size.z ? 1 : 2);
     const std::uint32_t middle = begin + (end - begin) / 2;
     std::nth_element(clusters_.begin() + begin, clusters_.begin() + middle, clusters_.begin() + end,
-                     [axis](const Cluster& a, const Cluster& b) {
+                     [axis](const OccluderCluster& a, const OccluderCluster& b) {
                          return a.box.low[axis] + a.box.high[axis] < b.box.low[axis] + b.box.high[axis];
                      });
     build(begin, middle);
@@ -140,7 +133,7 @@ bool OccluderBoxes::meets(const Shaft& shaft, const Box& box) {
     return low <= high;
 }
 
-bool OccluderBoxes::lies_beside(const Shaft& shaft, const Cluster& cluster) {
+bool OccluderBoxes::lies_beside(const Shaft& shaft, const OccluderCluster& cluster) {
     const auto is_below = [&](const Vec3d& normal, double most) {
         return least_along(normal, shaft.target.box) > (shaft.target.is_far ? 0 : most) &&
                std::all_of(shaft.points.begin(), shaft.points.end(),

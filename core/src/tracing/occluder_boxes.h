@@ -31,21 +31,28 @@ struct LightBounds {
     bool is_far;  ///< infinitely: the box holds unit vectors towards it
 };
 
+/// Some triangles that follow each other in their mesh.
+struct OccluderCluster {
+    Box box;
+    Vec3d normal;        ///< mean of theirs, of any length
+    double least, most;  ///< of its dot product with any place on them
+};
+
+/// All triangles of a mesh, in clusters of about as many triangles as there are clusters.
+std::vector<OccluderCluster> occluder_clusters(std::span<const Vec3f> vertices, std::span<const Triangle> triangles);
+/// to_world: affine.
+OccluderCluster placed_cluster(const OccluderCluster& cluster, const glm::dmat4& to_world);
+
 /// Immutable; any number of threads may read it.
 class OccluderBoxes {
   public:
-    OccluderBoxes(std::span<const SceneGeometry> geometries, std::span<const TracedInstance> instances);
+    /// clusters: in the world.
+    explicit OccluderBoxes(std::vector<OccluderCluster> clusters);
 
     /// False: no surface lies between any of the points, at least one, and any place of the light.
     bool may_block(std::span<const Vec3f> points, const LightBounds& light) const;
 
   private:
-    /// Some triangles that follow each other in their mesh.
-    struct Cluster {
-        Box box;
-        Vec3d normal;        // about that of all; of any length
-        double least, most;  // of its dot product with any place on them
-    };
     /// Its first child is the next node.
     struct Node {
         Box box;
@@ -54,14 +61,12 @@ class OccluderBoxes {
     };
     struct Shaft;
 
-    static Cluster cluster_of(const SceneGeometry& geometry, std::span<const Triangle> triangles);
-    static Cluster placed(const Cluster& cluster, const TracedInstance& instance);
     void build(std::uint32_t begin, std::uint32_t end);
     static bool meets(const Shaft& shaft, const Box& box);
     /// Whether the plane of the cluster parts it from all ways to the light.
-    static bool lies_beside(const Shaft& shaft, const Cluster& cluster);
+    static bool lies_beside(const Shaft& shaft, const OccluderCluster& cluster);
 
-    std::vector<Cluster> clusters_;
+    std::vector<OccluderCluster> clusters_;
     std::vector<Node> nodes_;
 };
 

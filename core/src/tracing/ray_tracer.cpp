@@ -4,28 +4,46 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
+#include <mutex>
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <utility>
+
+#include <tbb/task_arena.h>
 
 #include "tracing/embree_compat.h"
 
 namespace shlight {
 namespace {
 
-struct DeviceDeleter {
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
 struct SceneDeleter {
     void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
 };
 struct GeometryDeleter {
     void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
 };
-using Device = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
+using Device = std::shared_ptr<RTCDeviceTy>;
 using EmbreeScene = std::unique_ptr<RTCSceneTy, SceneDeleter>;
 using Geometry = std::unique_ptr<RTCGeometryTy, GeometryDeleter>;
+
+/// One for the process, as long as anything is built with it: Embree refuses to join what different devices have built.
+Device shared_device() {
+    static std::mutex mutex;
+    static std::weak_ptr<RTCDeviceTy> recent;
+    const std::scoped_lock lock(mutex);
+    Device device = recent.lock();
+    if (!device) {
+        RTCDevice made = rtcNewDevice(nullptr);
+        if (made == nullptr) {
+            throw std::runtime_error("Embree cannot be started: error " +
+                                     std::to_string(static_cast<int>(rtcGetDeviceError(nullptr))));
+        }
+        device = Device(made, rtcReleaseDevice);
+        recent = device;
+    }
+    return device;
+}
 
 void throw_on_error(RTCDevice device) {
     switch (rtcGetDeviceError(device)) {
@@ -50,14 +68,12 @@ T* new_buffer(RTCDevice device, RTCGeometry geometry, RTCBufferType type, RTCFor
     return static_cast<T*>(buffer);
 }
 
-Geometry triangle_geometry(RTCDevice device, const TracedGeometry& source) {
+Geometry triangle_geometry(RTCDevice device, std::span<const Vec3f> vertices, std::span<const Triangle> triangles) {
     Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-    auto* vertices =
-        new_buffer<Vec3f>(device, geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, source.vertices.size());
-    std::copy(source.vertices.begin(), source.vertices.end(), vertices);
-    auto* triangles =
-        new_buffer<Triangle>(device, geometry.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, source.triangles.size());
-    std::copy(source.triangles.begin(), source.triangles.end(), triangles);
+    std::ranges::copy(vertices, new_buffer<Vec3f>(device, geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
+                                                  vertices.size()));
+    std::ranges::copy(triangles, new_buffer<Triangle>(device, geometry.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
+                                                      triangles.size()));
     rtcCommitGeometry(geometry.get());
     return geometry;
 }
@@ -84,15 +100,15 @@ EmbreeScene new_scene(RTCDevice device) {
 }
 
 void build(RTCDevice device, RTCScene scene, const Stopped& stopped) {
-    const auto goes_on = [](void* asked, double) { return !(*static_cast<const Stopped*>(asked))(); };
-    if (stopped) {
-        Stopped asked = stopped;
+    Stopped asked = stopped;
+    if (asked) {
+        const auto goes_on = [](void* question, double) { return !(*static_cast<const Stopped*>(question))(); };
         rtcSetSceneProgressMonitorFunction(scene, goes_on, &asked);
-        rtcJoinCommitScene(scene);
-        rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
-    } else {
-        rtcJoinCommitScene(scene);
     }
+    // Isolated: a thread that waits here must not begin another tree, nor work that expects denormal numbers, which
+    // Embree turns off meanwhile.
+    tbb::this_task_arena::isolate([&] { rtcJoinCommitScene(scene); });
+    rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
     throw_on_error(device);
 }
 
@@ -126,50 +142,51 @@ void trace_packets(RTCScene scene, std::span<const Ray> rays, std::span<std::uin
 
 }  // namespace
 
-class RayTracer::Impl {
+class TriangleTree::Impl {
   public:
-    Impl(std::span<const TracedGeometry> geometries, std::span<const TracedInstance> instances, const Stopped& stopped)
-        : device_(rtcNewDevice(nullptr)) {
-        if (!device_) {
-            throw std::runtime_error("Embree cannot be started: error " +
-                                     std::to_string(static_cast<int>(rtcGetDeviceError(nullptr))));
-        }
-        scene_ = new_scene(device_.get());
-        std::vector<EmbreeScene> shared(geometries.size());
-        for (std::size_t i = 0; i < instances.size(); ++i) {
-            end_if(stopped);
-            const TracedInstance& instance = instances[i];
-            const TracedGeometry& source = geometries[instance.geometry];
-            Geometry geometry;
-            if (instance.identity) {
-                geometry = triangle_geometry(device_.get(), source);
-            } else {
-                EmbreeScene& instanced = shared[instance.geometry];
-                if (!instanced) {
-                    instanced = new_scene(device_.get());
-                    rtcAttachGeometry(instanced.get(), triangle_geometry(device_.get(), source).get());
-                    build(device_.get(), instanced.get(), stopped);
-                }
-                geometry = instance_geometry(device_.get(), instanced.get(), instance.to_world);
-            }
-            rtcAttachGeometryByID(scene_.get(), geometry.get(), static_cast<unsigned>(i));
-        }
-        build(device_.get(), scene_.get(), stopped);
-        has_wide_packets_ = rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
+    Impl(std::span<const Vec3f> vertices, std::span<const Triangle> triangles, std::vector<std::uint32_t> wanted,
+         const Stopped& stopped)
+        : device(shared_device()), scene(new_scene(device.get())), numbers(std::move(wanted)) {
+        rtcAttachGeometry(scene.get(), triangle_geometry(device.get(), vertices, triangles).get());
+        build(device.get(), scene.get(), stopped);
     }
 
-    RTCScene scene() const { return scene_.get(); }
-    bool has_wide_packets() const { return has_wide_packets_; }
-
-  private:
-    Device device_;
-    EmbreeScene scene_;
-    bool has_wide_packets_ = false;  // of 16 rays
+    Device device;
+    EmbreeScene scene;
+    std::vector<std::uint32_t> numbers;
 };
 
-RayTracer::RayTracer(std::span<const TracedGeometry> geometries, std::span<const TracedInstance> instances,
-                     const Stopped& stopped)
-    : impl_(std::make_unique<const Impl>(geometries, instances, stopped)) {}
+TriangleTree::TriangleTree(std::span<const Vec3f> vertices, std::span<const Triangle> triangles,
+                           std::vector<std::uint32_t> numbers, const Stopped& stopped)
+    : impl_(std::make_unique<const Impl>(vertices, triangles, std::move(numbers), stopped)) {}
+
+TriangleTree::~TriangleTree() = default;
+
+class RayTracer::Impl {
+  public:
+    Impl(std::vector<TracedInstance> placed, const Stopped& stopped)
+        : device(shared_device()),
+          instances(std::move(placed)),
+          scene(new_scene(device.get())),
+          has_wide_packets(rtcGetDeviceProperty(device.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0) {
+        for (std::size_t i = 0; i < instances.size(); ++i) {
+            if (instances[i].tree != nullptr) {
+                const Geometry instance =
+                    instance_geometry(device.get(), instances[i].tree->impl_->scene.get(), instances[i].to_world);
+                rtcAttachGeometryByID(scene.get(), instance.get(), static_cast<unsigned>(i));
+            }
+        }
+        build(device.get(), scene.get(), stopped);
+    }
+
+    Device device;
+    std::vector<TracedInstance> instances;
+    EmbreeScene scene;
+    bool has_wide_packets;  // of 16 rays
+};
+
+RayTracer::RayTracer(std::vector<TracedInstance> instances, const Stopped& stopped)
+    : impl_(std::make_unique<const Impl>(std::move(instances), stopped)) {}
 
 RayTracer::~RayTracer() = default;
 
@@ -191,22 +208,22 @@ void RayTracer::intersect(std::span<const Ray> rays, std::span<RayHit> hits) con
                      0U};
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        embree::intersect1(impl_->scene(), &query);
-        RayHit hit;
+        embree::intersect1(impl_->scene.get(), &query);
+        hits[i] = RayHit();
         if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
-            const bool instanced = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
-            hit = {instanced ? query.hit.instID[0] : query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v,
-                   query.ray.tfar};
+            const std::uint32_t instance = query.hit.instID[0];
+            const std::vector<std::uint32_t>& numbers = impl_->instances[instance].tree->impl_->numbers;
+            hits[i] = {instance, numbers.empty() ? query.hit.primID : numbers[query.hit.primID], query.hit.u,
+                       query.hit.v, query.ray.tfar};
         }
-        hits[i] = hit;
     }
 }
 
 void RayTracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
-    if (impl_->has_wide_packets()) {
-        trace_packets<RTCRay16, 16>(impl_->scene(), rays, blocked);
+    if (impl_->has_wide_packets) {
+        trace_packets<RTCRay16, 16>(impl_->scene.get(), rays, blocked);
     } else {
-        trace_packets<RTCRay8, 8>(impl_->scene(), rays, blocked);
+        trace_packets<RTCRay8, 8>(impl_->scene.get(), rays, blocked);
     }
 }
 

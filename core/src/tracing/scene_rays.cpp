@@ -15,79 +15,20 @@ constexpr std::size_t kRaysAtOnce = 256;
 /// Of a distance along a ray: how much farther it goes on behind a surface, so that it does not meet it again.
 constexpr float kPassedOn = 1 + 0x1p-20F;
 
+std::shared_ptr<const RayTracer> tracer_of(std::vector<TracedInstance> instances, const Stopped& stopped) {
+    const bool is_empty =
+        std::ranges::none_of(instances, [](const TracedInstance& own) { return own.tree != nullptr; });
+    return is_empty ? nullptr : std::make_shared<const RayTracer>(std::move(instances), stopped);
+}
+
 }  // namespace
 
-/// The triangles of one kind.
-class SceneRays::Part {
-  public:
-    static std::unique_ptr<const Part> make(std::span<const SceneGeometry> geometries,
-                                            std::span<const TracedInstance> instances, bool transparent,
-                                            const Stopped& stopped) {
-        auto part = std::make_unique<Part>();
-        std::vector<std::vector<Triangle>> chosen(geometries.size());
-        std::vector<TracedGeometry> traced;
-        for (std::size_t i = 0; i < geometries.size(); ++i) {
-            const SceneGeometry& geometry = geometries[i];
-            traced.push_back({geometry.vertices, part->choose(geometry, transparent, chosen[i])});
-        }
-        std::vector<TracedInstance> placed;
-        for (std::uint32_t i = 0; i < instances.size(); ++i) {
-            if (!traced[instances[i].geometry].triangles.empty()) {
-                placed.push_back(instances[i]);
-                part->instances_.push_back(i);
-                part->geometry_of_.push_back(instances[i].geometry);
-            }
-        }
-        if (placed.empty()) {
-            return nullptr;
-        }
-        part->renumbered_ = placed.size() != instances.size() ||
-                            std::any_of(part->triangles_.begin(), part->triangles_.end(),
-                                        [](const std::vector<std::uint32_t>& numbers) { return !numbers.empty(); });
-        part->tracer_ = std::make_unique<const RayTracer>(traced, placed, stopped);
-        return part;
-    }
-
-    void intersect(std::span<const Ray> rays, std::span<RayHit> hits) const {
-        tracer_->intersect(rays, hits);
-        for (RayHit& hit : renumbered_ ? hits : hits.first(0)) {
-            if (!hit.missed()) {
-                const std::vector<std::uint32_t>& numbers = triangles_[geometry_of_[hit.instance]];
-                hit.instance = instances_[hit.instance];
-                hit.triangle = numbers.empty() ? hit.triangle : numbers[hit.triangle];
-            }
-        }
-    }
-    void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
-        tracer_->occluded(rays, blocked);
-    }
-
-  private:
-    std::span<const Triangle> choose(const SceneGeometry& geometry, bool transparent, std::vector<Triangle>& chosen) {
-        std::vector<std::uint32_t>& numbers = triangles_.emplace_back();
-        if (geometry.transparent.empty()) {
-            return transparent ? std::span<const Triangle>() : geometry.triangles;
-        }
-        for (std::uint32_t i = 0; i < geometry.triangles.size(); ++i) {
-            if ((geometry.transparent[i] != 0) == transparent) {
-                chosen.push_back(geometry.triangles[i]);
-                numbers.push_back(i);
-            }
-        }
-        return chosen;
-    }
-
-    std::unique_ptr<const RayTracer> tracer_;
-    std::vector<std::vector<std::uint32_t>> triangles_;  // of each geometry; empty: all of them
-    std::vector<std::uint32_t> instances_, geometry_of_;
-    bool renumbered_ = false;  // or else all instances and triangles are those of the scene
-};
-
-SceneRays::SceneRays(std::span<const SceneGeometry> geometries, std::span<const TracedInstance> instances,
-                     const SurfaceTransparency& transparency, const Stopped& stopped)
-    : opaque_(Part::make(geometries, instances, false, stopped)),
-      transparent_(Part::make(geometries, instances, true, stopped)),
-      boxes_(std::make_shared<const OccluderBoxes>(geometries, instances)),
+SceneRays::SceneRays(std::vector<TracedInstance> opaque, std::vector<TracedInstance> transparent,
+                     std::vector<OccluderCluster> clusters, const SurfaceTransparency& transparency,
+                     const Stopped& stopped)
+    : opaque_(tracer_of(std::move(opaque), stopped)),
+      transparent_(tracer_of(std::move(transparent), stopped)),
+      boxes_(std::make_shared<const OccluderBoxes>(std::move(clusters))),
       transparency_(&transparency) {}
 
 SceneRays::SceneRays(const SceneRays& same, const SurfaceTransparency& transparency)

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "render/compiled_mesh.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "base/ray_rounding.h"
+#include "base/scene_range.h"
+#include "base/transforms.h"
+#include "emitters/emitter_levels.h"
+#include "emitters/face_radiance.h"
+#include "shlight/mesh_light.h"
+
+namespace shlight {
+namespace {
+
+/// Emissive triangles of a mesh that are lights one by one, or in pairs; more of them are one light.
+constexpr std::size_t kMostSingleFaces = 16;
+/// Faces of the coarsest level of detail: with fewer, outlines lose their shape.
+constexpr std::size_t kLeastLevelFaces = 64;
+/// Triangles whose tree is built anew when their mesh moves: this many take some ten milliseconds of a core.
+constexpr std::size_t kMostMovedTriangles = 1 << 15;
+/// Growth of rays' rounding in a mesh's own frame, which costs shadow rays more distance from the surface: a rotation
+/// has up to 3.
+constexpr double kLargestCondition = 4;
+
+/// A mesh placed once has its vertices moved to the world, where rays are rounded least, unless it is so large that it
+/// had better keep its tree when it moves.
+bool is_baked(const SceneMesh& mesh) {
+    if (mesh.transforms.size() != 1 || mesh.shape->triangles.size() <= kMostMovedTriangles) {
+        return mesh.transforms.size() == 1;
+    }
+    const glm::dmat4& to_world = mesh.transforms.front();
+    const glm::dmat3 linear(to_world);
+    const double scale = inf_norm(linear);
+    const double inverse_scale = inf_norm(glm::inverse(linear));
+    const double origin = largest_component(Vec3d(to_world[3]));
+    return !(scale * inverse_scale <= kLargestCondition && scale <= kLargestScale && inverse_scale <= kLargestScale &&
+             origin <= 2 * reach(*mesh.shape, mesh));
+}
+
+std::vector<Vec3f> moved(const std::vector<Vec3f>& vertices, const glm::dmat4& to_world) {
+    std::vector<Vec3f> result;
+    result.reserve(vertices.size());
+    for (const Vec3f& v : vertices) {
+        result.emplace_back(transform_point(to_world, Vec3d(v)));
+    }
+    return result;
+}
+
+/// Whether each material lets light through.
+std::vector<bool> transparent_materials(const SceneMesh& mesh) {
+    std::vector<bool> transparent;
+    for (const MeshShader& own : mesh.shaders) {
+        transparent.push_back(own.shader != nullptr && own.shader->transparency);
+    }
+    // None, if no material does: the number of materials may change.
+    return std::ranges::find(transparent, true) == transparent.end() ? std::vector<bool>() : transparent;
+}
+
+/// The mesh's triangles, or those of them that let light through; null: there are none.
+std::shared_ptr<const TriangleTree> tree_of(const CompiledMesh& compiled, const std::vector<bool>& transparent,
+                                            bool wanted, const Stopped& stopped) {
+    const MeshShape& shape = *compiled.mesh->shape;
+    if (transparent.empty()) {
+        return wanted ? nullptr
+                      : std::make_shared<const TriangleTree>(compiled.vertices(), shape.triangles,
+                                                             std::vector<std::uint32_t>(), stopped);
+    }
+    std::vector<Triangle> triangles;
+    std::vector<std::uint32_t> numbers;
+    for (std::uint32_t i = 0; i < shape.triangles.size(); ++i) {
+        if (transparent[shape.material_index(i)] == wanted) {
+            triangles.push_back(shape.triangles[i]);
+            numbers.push_back(i);
+        }
+    }
+    return triangles.empty()
+               ? nullptr
+               : std::make_shared<const TriangleTree>(compiled.vertices(), triangles, std::move(numbers), stopped);
+}
+
+void add_single_faces(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
+                      std::span<const Rgb> radiance, const LightTraits& traits, std::vector<Light>& lights) {
+    std::vector<Rgb> left(radiance.begin(), radiance.end());
+    while (!left.empty()) {
+        const Rgb color = left.front();
+        std::vector<Triangle> alike;
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            if (radiance[i] == color) {
+                alike.push_back(triangles[i]);
+            }
+        }
+        for (FaceOutline& outline : merge_faces(vertices, alike)) {
+            lights.emplace_back(make_polygon_light(std::move(outline), color, true, traits));
+        }
+        std::erase(left, color);
+    }
+}
+
+void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
+                    const std::vector<Rgb>& radiance, const Stopped& stopped, std::vector<Light>& lights) {
+    EmitterLevels levels = make_emitter_levels(vertices, triangles, kLeastLevelFaces, stopped);
+    if (levels.levels.empty()) {
+        return;
+    }
+    if (std::ranges::any_of(radiance, [&](const Rgb& color) { return color != radiance.front(); })) {
+        light.faces = std::make_shared<const FaceRadiance>(vertices, triangles, radiance, levels.closed, stopped);
+        light.radiance = light.faces->mean();
+    }
+    light.shape = std::make_shared<const EmitterLevels>(std::move(levels));
+    lights.emplace_back(std::move(light));
+}
+
+std::vector<Light> emissive_faces(const CompiledMesh& compiled, const Stopped& stopped) {
+    const SceneMesh& mesh = *compiled.mesh;
+    std::vector<Triangle> emissive;
+    std::vector<Rgb> radiance;  // of each of them
+    for (std::size_t i = 0; i < mesh.shape->triangles.size(); ++i) {
+        const Rgb& emitted = mesh.emitted(mesh.shape->material_index(i));
+        if (emitted != Rgb(0)) {
+            emissive.push_back(mesh.shape->triangles[i]);
+            radiance.push_back(emitted);
+        }
+    }
+    LightTraits traits;
+    traits.group = mesh.group;
+    std::vector<Light> lights;
+    for (std::uint32_t k = 0; k < mesh.transforms.size() && !emissive.empty(); ++k) {
+        std::vector<Vec3d> vertices;
+        for (const Vec3f& v : compiled.vertices()) {
+            vertices.push_back(compiled.is_baked() ? Vec3d(v) : transform_point(mesh.transforms[k], Vec3d(v)));
+        }
+        if (emissive.size() > kMostSingleFaces) {
+            add_mesh_light({nullptr, radiance.front(), nullptr, k, compiled.mesh, traits}, vertices, emissive, radiance,
+                           stopped, lights);
+        } else {
+            add_single_faces(vertices, emissive, radiance, traits, lights);
+        }
+    }
+    return lights;
+}
+
+}  // namespace
+
+std::shared_ptr<const CompiledMesh> compile_mesh(const std::shared_ptr<const SceneMesh>& mesh,
+                                                 const std::shared_ptr<const CompiledMesh>& before,
+                                                 const Stopped& stopped) {
+    if (before != nullptr && before->mesh == mesh) {
+        return before;
+    }
+    end_if(stopped);
+    auto compiled = std::make_shared<CompiledMesh>();
+    compiled->mesh = mesh;
+    const MeshShape& shape = *mesh->shape;
+    const bool baked = is_baked(*mesh);
+    const bool is_in_place =
+        before != nullptr && before->is_baked() == baked && (!baked || before->mesh->transforms == mesh->transforms);
+    if (is_in_place) {
+        compiled->world_vertices = before->world_vertices;
+        compiled->clusters = before->clusters;
+    } else {
+        if (baked) {
+            compiled->world_vertices =
+                std::make_shared<const std::vector<Vec3f>>(moved(shape.vertices, mesh->transforms.front()));
+        }
+        compiled->clusters = std::make_shared<const std::vector<OccluderCluster>>(
+            occluder_clusters(compiled->vertices(), shape.triangles));
+    }
+    const std::vector<bool> transparent = transparent_materials(*mesh);
+    if (is_in_place && transparent_materials(*before->mesh) == transparent) {
+        compiled->opaque = before->opaque;
+        compiled->transparent = before->transparent;
+    } else {
+        compiled->opaque = tree_of(*compiled, transparent, false, stopped);
+        compiled->transparent = tree_of(*compiled, transparent, true, stopped);
+    }
+    compiled->lights = emissive_faces(*compiled, stopped);
+    return compiled;
+}
+
+}  // namespace shlight

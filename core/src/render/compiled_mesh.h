@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+//
+// What a compiled scene builds of one mesh: its vertices in the world, the trees for its rays, and its emissive faces
+// as lights. Scenes that are compiled later share what a change of the mesh leaves as it is.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "shlight/light.h"
+#include "shlight/mesh.h"
+#include "shlight/parallel.h"
+#include "shlight/ray_tracer.h"
+#include "tracing/occluder_boxes.h"
+
+namespace shlight {
+
+struct CompiledMesh {
+    std::shared_ptr<const SceneMesh> mesh;
+    std::shared_ptr<const std::vector<Vec3f>> world_vertices;      ///< null: rays meet the mesh in its own frame
+    std::shared_ptr<const TriangleTree> opaque, transparent;       ///< null: there are no such triangles
+    std::shared_ptr<const std::vector<OccluderCluster>> clusters;  ///< in the frame in which rays meet the mesh
+    std::vector<Light> lights;  ///< MeshLight::instance counts the instances of this mesh
+
+    bool is_baked() const { return world_vertices != nullptr; }
+    /// In the frame in which rays meet the mesh.
+    std::span<const Vec3f> vertices() const { return is_baked() ? *world_vertices : mesh->shape->vertices; }
+};
+
+/// before: the mesh of the same shape in the scene before, or null.
+/// Throws what TriangleTree throws.
+std::shared_ptr<const CompiledMesh> compile_mesh(const std::shared_ptr<const SceneMesh>& mesh,
+                                                 const std::shared_ptr<const CompiledMesh>& before,
+                                                 const Stopped& stopped);
+
+}  // namespace shlight
