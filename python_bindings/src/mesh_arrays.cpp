@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
@@ -300,10 +301,10 @@ Environment environment_from(const char* name, const py::handle& value, const gl
         throw std::invalid_argument(std::string(name) + " is too large");
     }
     const auto pixels = vectors(name, array);
-    const LatLong picture = {
+    LatLong picture = {
         {pixels.begin(), pixels.end()}, static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)), to_world};
     const py::gil_scoped_release release;
-    return Environment(picture);
+    return Environment(std::move(picture));
 }
 
 void set_materials(MeshUse& use, const AttributeNames& names, const MaterialArguments& arguments, SceneObject& scene) {

@@ -114,17 +114,16 @@ TEST(EnvironmentMap, CoefficientsAreIntegralsOfTheBilinearPicture) {
     constexpr int kSteps = 400;
     for (const auto& [width, height] : {std::pair{7, 3}, {8, 4}, {1, 2}, {3, 1}, {40, 20}}) {
         const LatLong picture = random_picture(width, height, 5);
-        const RadiancePyramid lookup(picture.pixels, width, height);
         std::vector<double> expected(kOrder * kOrder);
         sphere_integral(kSteps, [&](const Vec3d& direction) {
-            const double radiance = lookup.radiance(direction).y;
+            const double radiance = radiance_from(picture, direction).y;
             const auto basis = basis_at(direction, kOrder);
             for (std::size_t k = 0; k < expected.size(); ++k) {
                 expected[k] += basis[k] * radiance * 2 * kPi / kSteps / kSteps;
             }
             return 0.0;
         });
-        const RadianceCoefficients coefficients = radiance_coefficients(picture.pixels, width, height);
+        const RadianceCoefficients coefficients = radiance_coefficients(picture, BrightTexels(picture));
         for (std::size_t k = 0; k < expected.size(); ++k) {
             EXPECT_NEAR(coefficients.channels[1][k], expected[k], 1e-3) << width << " × " << height << ", " << k;
         }
@@ -221,7 +220,7 @@ TEST(ShProjection, IsTheLobesMoments) {
 TEST(RadianceSampler, DrawsAsItsDensitySays) {
     LatLong picture = random_picture(12, 6, 8);
     picture.pixels[30] = Rgb(100);
-    const RadianceSampler sampler(picture.pixels, 12, 6);
+    const RadianceSampler sampler(picture);
     EXPECT_NEAR(sphere_integral(600, [&](const Vec3d& d) { return sampler.density(d); }), 1, 1e-3);
     const auto g = [](const Vec3d& d) { return std::exp(d.x + 0.5 * d.y * d.z); };
     constexpr int kSteps = 400;
@@ -240,7 +239,10 @@ TEST(MapLookup, IsThePicturesRadianceAndItsSamplersDensity) {
     for (const auto& [width, height] : {std::pair(48, 24), {1, 3}, {2, 1}}) {
         LatLong source = random_picture(width, height, 5);
         source.pixels[1] = Rgb(2000, 900, 400);
-        const EnvironmentMap map(source);
+        const EnvironmentMap map(std::make_shared<const LatLong>(source));
+        LatLong below = source;
+        std::ranges::transform(source.pixels, below.pixels.begin(),
+                               [&](const Rgb& texel) { return map.bright.below(texel); });
         constexpr std::size_t kCount = 5 * kLookupLanes;
         std::array<std::vector<float>, 10> v;
         v.fill(std::vector<float>(kCount));
@@ -254,8 +256,8 @@ TEST(MapLookup, IsThePicturesRadianceAndItsSamplersDensity) {
         look_up(map, {v[0].data(), v[1].data(), v[2].data()}, kCount - 3,
                 {{v[3].data(), v[4].data(), v[5].data()}, {v[6].data(), v[7].data(), v[8].data()}, v[9].data()});
         for (std::size_t i = 0; i + 3 < kCount; ++i) {
-            const Rgb smooth = map.smooth.radiance(directions[i]);
-            const Rgb whole = map.picture.radiance(directions[i]);
+            const Rgb smooth = radiance_from(below, directions[i]);
+            const Rgb whole = radiance_from(source, directions[i]);
             for (std::size_t c = 0; c < 3; ++c) {
                 const auto channel = static_cast<int>(c);
                 EXPECT_NEAR(v[3 + c][i], smooth[channel], 2e-5 * (whole[channel] + 20)) << width << " " << i;
@@ -265,6 +267,78 @@ TEST(MapLookup, IsThePicturesRadianceAndItsSamplersDensity) {
             const double density = map.sampler.density(directions[i]);
             EXPECT_NEAR(v[9][i], density, 1e-4 * density) << width << " " << i;
         }
+    }
+}
+
+TEST(MapLookup, RemainderIsThePictureLessItsExpansionWhereItIsNotBlurred) {
+    LatLong source = random_picture(48, 24, 5);
+    source.pixels[300] = Rgb(2000, 900, 400);
+    const EnvironmentMap map(std::make_shared<const LatLong>(source));
+    LatLong below = source;
+    std::ranges::transform(source.pixels, below.pixels.begin(),
+                           [&](const Rgb& texel) { return map.bright.below(texel); });
+    std::mt19937 random(13);
+    std::normal_distribution<double> normal;
+    const std::vector<float> none(kLookupLanes, 1e-12F);
+    for (int round = 0; round < 50; ++round) {
+        std::array<std::vector<float>, 6> v;
+        v.fill(std::vector<float>(kLookupLanes));
+        // All within some texels of the bright one.
+        const Vec3d middle = round % 2 == 0 ? direction_of({12.5, 6.5}, 48, 24) : Vec3d(0);
+        std::vector<Vec3d> directions(kLookupLanes);
+        for (std::size_t i = 0; i < kLookupLanes; ++i) {
+            directions[i] = glm::normalize(middle + 0.1 * Vec3d(normal(random), normal(random), normal(random)));
+            for (int axis = 0; axis < 3; ++axis) {
+                v[static_cast<std::size_t>(axis)][i] = static_cast<float>(directions[i][axis]);
+            }
+        }
+        for (const bool with_spots : {true, false}) {
+            look_up_remainder(map, with_spots, {v[0].data(), v[1].data(), v[2].data()}, none.data(), kLookupLanes,
+                              {v[3].data(), v[4].data(), v[5].data()});
+            for (std::size_t i = 0; i < kLookupLanes; ++i) {
+                const Rgb whole = radiance_from(with_spots ? source : below, directions[i]);
+                const Rgb expected = whole - radiance_from(map.expansion, directions[i]);
+                for (std::size_t c = 0; c < 3; ++c) {
+                    EXPECT_NEAR(v[3 + c][i], expected[static_cast<int>(c)], 2e-5 * (whole.x + 40)) << with_spots;
+                }
+            }
+        }
+    }
+}
+
+TEST(MapLookup, ExpansionIsLinearBetweenItsTexels) {
+    // Linear interpolation over steps h errs by h²/8 of the second derivative along each axis, and a function of band l
+    // has at most l (l + 1) times its largest value, which its coefficients bound.
+    constexpr int kWidth = 512;
+    const double step = 2 * kPi / kWidth;
+    std::mt19937 random(14);
+    std::normal_distribution<float> normal;
+    RadianceCoefficients coefficients{};
+    double bound = 1e-4;
+    for (auto& channel : coefficients.channels) {
+        channel.assign(std::size_t{kMaxOrder} * kMaxOrder, 0.0F);
+    }
+    for (int l = 0; l < kMaxOrder; ++l) {
+        double power = 0;
+        for (int m = -l; m <= l; ++m) {
+            const float value = normal(random) / static_cast<float>((l + 1) * (l + 1));
+            coefficients.channels[1][static_cast<std::size_t>(coefficient_index(l, m))] = value;
+            power += double{value} * value;
+        }
+        bound += 2 * step * step / 8 * l * (l + 1) * std::sqrt((2 * l + 1) / (4 * kPi) * power);
+    }
+    const LatLong expansion = expanded(coefficients, kWidth, kWidth / 2, {});
+    for (int i = 0; i < 100; ++i) {
+        const Vec3d direction = glm::normalize(Vec3d(normal(random), normal(random), normal(random)));
+        if (std::abs(direction.z) > std::cos(step / 2)) {
+            continue;
+        }
+        const auto basis = basis_at(direction, kMaxOrder);
+        double expected = 0;
+        for (std::size_t k = 0; k < basis.size(); ++k) {
+            expected += coefficients.channels[1][k] * basis[k];
+        }
+        EXPECT_NEAR(radiance_from(expansion, direction).y, expected, bound);
     }
 }
 
@@ -287,12 +361,12 @@ class Floor {
         return render_image(scene, {look_at(5.0 * view_, {0, 0, 0}), 1e-4}, 1, 1, analytic_settings()).color(0, 0);
     }
     double expected(const LatLong& picture, const Bsdf& bsdf) const {
-        const RadiancePyramid lookup(picture.pixels, picture.width, picture.height);
         const glm::dmat3 frame(x_, y_, normal_);
         return sphere_integral(500, [&](const Vec3d& direction) {
-            return direction.z > 0 ? double{bsdf.evaluate(direction, view_ * frame).x *
-                                            lookup.radiance(glm::transpose(picture.to_world) * frame * direction).x}
-                                   : 0.0;
+            return direction.z > 0
+                       ? double{bsdf.evaluate(direction, view_ * frame).x *
+                                radiance_from(picture, glm::transpose(picture.to_world) * frame * direction).x}
+                       : 0.0;
         });
     }
 

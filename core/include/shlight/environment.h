@@ -9,6 +9,7 @@
 
 #include <glm/mat3x3.hpp>
 
+#include "shlight/parallel.h"
 #include "shlight/types.h"
 
 namespace shlight {
@@ -31,16 +32,20 @@ class Environment {
     explicit Environment(const Rgb& radiance);
     /// Throws std::invalid_argument naming `radiance` if there are no pixels, not as many as the size says, more than
     /// 2^28, or any that is negative, not finite or above 1e15, and naming `to_world` if that is not a rotation.
-    explicit Environment(const LatLong& picture);
+    explicit Environment(LatLong picture);
 
     bool is_black() const;
     /// From a direction: a unit vector of the world frame that points away from the scene.
     Rgb radiance(const Vec3d& direction) const;
-    /// The picture; null where one radiance comes from everywhere.
+    /// The same, with what lighting by a picture needs, which takes a while. before: an environment that may have it
+    /// already. Throws RenderCancelled once it is to end.
+    Environment prepared(const Environment& before, const Stopped& stopped) const;
+    /// What lighting by the picture needs; null before it is prepared, and where one radiance comes from everywhere.
     const struct EnvironmentMap* map() const { return map_.get(); }
 
   private:
     Rgb constant_{0};
+    std::shared_ptr<const LatLong> picture_;  // null: one radiance comes from everywhere
     std::shared_ptr<const EnvironmentMap> map_;
 };
 

@@ -51,6 +51,7 @@ class CompiledScene {
     std::span<const Light> lights() const;
     /// How many have extent.
     std::size_t extended_light_count() const;
+    /// Prepared.
     const Environment& environment() const;
     /// As LightTraits::group.
     std::uint32_t environment_group() const;

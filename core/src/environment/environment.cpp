@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "base/scene_range.h"
 #include "environment/environment_map.h"
@@ -41,7 +42,7 @@ glm::dmat3 checked_rotation(glm::dmat3 m) {
     return m;
 }
 
-LatLong checked(LatLong picture) {
+void check(LatLong& picture) {
     const std::int64_t texels = std::int64_t{picture.width} * picture.height;
     if (picture.width < 1 || picture.height < 1 || texels > kMostTexels) {
         reject("radiance must have 1 … 2^28 pixels");
@@ -51,7 +52,6 @@ LatLong checked(LatLong picture) {
         check_radiance(texel);
     }
     picture.to_world = checked_rotation(picture.to_world);
-    return picture;
 }
 
 bool is_constant(const LatLong& picture) {
@@ -65,21 +65,31 @@ Environment::Environment(const Rgb& radiance) : constant_(radiance) {
     check_radiance(radiance);
 }
 
-Environment::Environment(const LatLong& picture) {
-    const LatLong good = checked(picture);
-    if (is_constant(good)) {
-        constant_ = good.pixels.front();
+Environment::Environment(LatLong picture) {
+    check(picture);
+    if (is_constant(picture)) {
+        constant_ = picture.pixels.front();
     } else {
-        map_ = std::make_shared<const EnvironmentMap>(good);
+        picture_ = std::make_shared<const LatLong>(std::move(picture));
     }
 }
 
 bool Environment::is_black() const {
-    return !map_ && constant_ == Rgb(0);
+    return !picture_ && constant_ == Rgb(0);
 }
 
 Rgb Environment::radiance(const Vec3d& direction) const {
-    return map_ ? map_->picture.radiance(map_->to_map(direction)) : constant_;
+    return picture_ ? radiance_from(*picture_, direction * picture_->to_world) : constant_;
+}
+
+Environment Environment::prepared(const Environment& before, const Stopped& stopped) const {
+    Environment result = *this;
+    if (picture_) {
+        result.map_ = picture_ == before.picture_ && before.map_
+                          ? before.map_
+                          : std::make_shared<const EnvironmentMap>(picture_, stopped);
+    }
+    return result;
 }
 
 }  // namespace shlight

@@ -116,17 +116,23 @@ class MeridianSum {
 
 }  // namespace
 
-RadianceCoefficients radiance_coefficients(std::span<const Rgb> pixels, int width, int height) {
-    const HalfSteps steps(width);
+RadianceCoefficients radiance_coefficients(const LatLong& picture, const BrightTexels& bright, const Stopped& stopped) {
+    const int height = picture.height;
+    const HalfSteps steps(picture.width);
     std::vector<RowIntegrals> rows(static_cast<std::size_t>(height));
     tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t row) {
-        rows[row] = integrate_row(
-            pixels.subspan(row * static_cast<std::size_t>(width), static_cast<std::size_t>(width)), steps);
+        end_if(stopped);
+        std::vector<Rgb> texels(static_cast<std::size_t>(picture.width));
+        const Rgb* source = picture.pixels.data() + row * texels.size();
+        std::transform(source, source + texels.size(), texels.begin(),
+                       [&](const Rgb& own) { return bright.below(own); });
+        rows[row] = integrate_row(texels, steps);
     });
     const double step = pi / height;
     const GaussRule& rule = gauss_rule(std::min(kMaxGaussPoints, 4 + static_cast<int>(step * kMaxOrder)));
     MeridianSum sum;
     for (int interval = 0; interval <= height; ++interval) {
+        end_if(stopped);
         const double from = interval == 0 ? 0.0 : (interval - 0.5) * step;
         const double to = interval == height ? pi : (interval + 0.5) * step;
         const RowIntegrals& above = rows[static_cast<std::size_t>(std::max(interval - 1, 0))];
@@ -155,9 +161,9 @@ RadianceCoefficients radiance_coefficients(std::span<const Rgb> pixels, int widt
 
 namespace {
 
-/// One row of texels less the expansion there.
-void subtract_row(int row, int height, const RadianceCoefficients& coefficients, const HalfSteps& steps,
-                  std::span<Rgb> texels) {
+/// One row of texels of the expansion, added to what is there.
+void add_row(int row, int height, const RadianceCoefficients& coefficients, const HalfSteps& steps,
+             std::span<Rgb> texels) {
     const double tilt = (row + 0.5) / height * pi;
     const double sine = std::sin(tilt);
     std::array<double, kMaxOrder> factors;
@@ -187,7 +193,7 @@ void subtract_row(int row, int height, const RadianceCoefficients& coefficients,
         std::size_t step = m % (2 * width);
         const std::size_t stride = 2 * m % (2 * width);
         for (Rgb& texel : texels) {
-            texel -= steps.cosines[step] * cosine - steps.sines[step] * minus_sine;
+            texel += steps.cosines[step] * cosine - steps.sines[step] * minus_sine;
             step += stride;
             step -= step >= 2 * width ? 2 * width : 0;
         }
@@ -196,14 +202,14 @@ void subtract_row(int row, int height, const RadianceCoefficients& coefficients,
 
 }  // namespace
 
-std::vector<Rgb> remainder_of(std::span<const Rgb> pixels, int width, int height,
-                              const RadianceCoefficients& coefficients) {
+LatLong expanded(const RadianceCoefficients& coefficients, int width, int height, const Stopped& stopped) {
     const HalfSteps steps(width);
-    std::vector<Rgb> result(pixels.begin(), pixels.end());
+    const auto columns = static_cast<std::size_t>(width);
+    LatLong result = {std::vector<Rgb>(columns * static_cast<std::size_t>(height), Rgb(0)), width, height};
     tbb::parallel_for(0, height, [&](int row) {
-        const auto columns = static_cast<std::size_t>(width);
-        subtract_row(row, height, coefficients, steps,
-                     std::span(result).subspan(static_cast<std::size_t>(row) * columns, columns));
+        end_if(stopped);
+        add_row(row, height, coefficients, steps,
+                std::span(result.pixels).subspan(static_cast<std::size_t>(row) * columns, columns));
     });
     return result;
 }

@@ -115,7 +115,7 @@ EnvironmentShading::EnvironmentShading(const Environment& environment, std::span
       lobe_stride_(lobe_stride),
       order_(order),
       tolerance_(tolerance),
-      spots_(environment.map() != nullptr ? environment.map()->spots : std::vector<BrightSpot>()) {
+      spots_(environment.map() != nullptr ? environment.map()->bright.spots : std::vector<BrightSpot>()) {
     if (environment.map() == nullptr) {
         return;
     }
@@ -136,7 +136,7 @@ EnvironmentShading::PlanMix EnvironmentShading::plans(std::size_t material, std:
 }
 
 bool EnvironmentShading::sees_texels(const LobeShape& shape) const {
-    return order_ == 0 && is_glossy(shape) && lobe_width(shape) < kTexelsPerWidth * environment_->map()->texel;
+    return order_ == 0 && is_glossy(shape) && lobe_width(shape) < kTexelsPerWidth * environment_->map()->texel();
 }
 
 bool EnvironmentShading::splits(std::size_t material, std::size_t lobe, float width) const {
@@ -214,8 +214,8 @@ class EnvironmentShading::Point {
             value[i] = above ? value[i] / density[i] : 0.0F;
             density[i] = 1 / ((above ? density[i] : 1.0F) * kDirections);  // the solid angle
         }
-        look_up_blurred(with_spots ? map_->whole_remainder : map_->remainder, {x.data(), y.data(), z.data()},
-                        density.data(), kDirections, {red.data(), green.data(), blue.data()});
+        look_up_remainder(*map_, with_spots, {x.data(), y.data(), z.data()}, density.data(), kDirections,
+                          {red.data(), green.data(), blue.data()});
         Rgb sum(0);
         float weights = 0;
         for (std::size_t i = 0; i < kDirections; ++i) {
@@ -225,7 +225,7 @@ class EnvironmentShading::Point {
         return weights > 0 ? sum / weights : Rgb(0);
     }
 
-    Rgb mirrored() const { return map_->picture.radiance(to_map_ * shlight::mirrored(view_)); }
+    Rgb mirrored() const { return radiance_from(*map_->picture, to_map_ * shlight::mirrored(view_)); }
 
   private:
     const EnvironmentMap* map_;

@@ -48,6 +48,13 @@ HWY_INLINE V<Integers> clamped(V<Integers> row, V<Integers> last) {
     return hn::Min(hn::Max(row, hn::Zero(d)), last);
 }
 
+using Color = std::array<V<Floats>, 3>;
+
+HWY_INLINE Color mixed(const Color& a, const Color& b, V<Floats> share) {
+    return {hn::MulAdd(share, hn::Sub(b[0], a[0]), a[0]), hn::MulAdd(share, hn::Sub(b[1], a[1]), a[1]),
+            hn::MulAdd(share, hn::Sub(b[2], a[2]), a[2])};
+}
+
 /// Four texels about a place and their shares.
 class Neighbourhood {
   public:
@@ -76,15 +83,35 @@ class Neighbourhood {
         }
     }
 
-    HWY_INLINE V<Floats> channel(const float* channels) const {
-        const auto at = [&](std::size_t i) HWY_ATTR { return hn::GatherIndex(Floats(), channels, texels_[i]); };
-        const auto upper = mix(at(0), at(1), across_);
-        return mix(upper, mix(at(2), at(3), across_), down_);
+    HWY_INLINE Color mean(const Rgb* pixels) const {
+        return mean_of([&](std::size_t i) HWY_ATTR { return texel(pixels, i); });
+    }
+
+    /// The mean of what the texels have below a limit of luminance.
+    HWY_INLINE Color mean_below(const Rgb* pixels, double limit) const {
+        const Floats d;
+        // A texel as bright as the limit has nothing above it, however its luminance is rounded.
+        const auto most = all(d, limit * (1 + 0x1p-20));
+        return mean_of([&](std::size_t i) HWY_ATTR {
+            const Color own = texel(pixels, i);
+            const auto luminance =
+                hn::MulAdd(own[0], all(d, kLuminance.x),
+                           hn::MulAdd(own[1], all(d, kLuminance.y), hn::Mul(own[2], all(d, kLuminance.z))));
+            const auto share = hn::IfThenElse(hn::Gt(luminance, most), hn::Div(most, luminance), hn::Set(d, 1.0F));
+            return Color{hn::Mul(own[0], share), hn::Mul(own[1], share), hn::Mul(own[2], share)};
+        });
     }
 
   private:
-    static HWY_INLINE V<Floats> mix(V<Floats> a, V<Floats> b, V<Floats> share) {
-        return hn::MulAdd(share, hn::Sub(b, a), a);
+    HWY_INLINE Color texel(const Rgb* pixels, std::size_t i) const {
+        const float* channels = &pixels->x;
+        const Floats d;
+        return {hn::GatherIndex(d, channels, texels_[i]), hn::GatherIndex(d, channels + 1, texels_[i]),
+                hn::GatherIndex(d, channels + 2, texels_[i])};
+    }
+    template <class At>
+    HWY_INLINE Color mean_of(const At& at) const {
+        return mixed(mixed(at(0), at(1), across_), mixed(at(2), at(3), across_), down_);
     }
 
     std::array<V<Integers>, 4> texels_;
@@ -116,22 +143,27 @@ HWY_INLINE Place load_place(const MapDirections& directions, std::size_t i) {
                           hn::LoadU(d, directions.z + i));
 }
 
+HWY_INLINE Neighbourhood on_picture(const LatLong& picture, const Place& place) {
+    const Integers di;
+    return {place, hn::Set(di, picture.width), hn::Set(di, picture.height), hn::Zero(di)};
+}
+
 void look_up(const EnvironmentMap& map, const MapDirections& directions, std::size_t count, const MapValues& values) {
     const Floats d;
     const Integers di;
-    const auto width = hn::Set(di, map.picture.width());
-    const auto height = hn::Set(di, map.picture.height());
-    const float* whole = &map.picture.pixels()->x;
-    const float* smooth = &map.smooth.pixels()->x;
+    const LatLong& picture = *map.picture;
     for (std::size_t i = 0; i < count; i += kLaneCount<Floats>) {
         const Place place = load_place(directions, i);
-        const Neighbourhood about(place, width, height, hn::Zero(di));
+        const Neighbourhood about = on_picture(picture, place);
+        const Color smooth = about.mean_below(picture.pixels.data(), map.bright.limit);
+        const Color whole = about.mean(picture.pixels.data());
         for (std::size_t channel = 0; channel < 3; ++channel) {
-            const auto without = about.channel(smooth + channel);
-            hn::StoreU(without, d, values.smooth[channel] + i);
-            hn::StoreU(hn::Sub(about.channel(whole + channel), without), d, values.spots[channel] + i);
+            hn::StoreU(smooth[channel], d, values.smooth[channel] + i);
+            hn::StoreU(hn::Sub(whole[channel], smooth[channel]), d, values.spots[channel] + i);
         }
-        hn::StoreU(density_in_lanes(map.sampler, place, width, height), d, values.density + i);
+        const auto density =
+            density_in_lanes(map.sampler, place, hn::Set(di, picture.width), hn::Set(di, picture.height));
+        hn::StoreU(density, d, values.density + i);
     }
 }
 
@@ -144,26 +176,42 @@ HWY_INLINE Neighbourhood on_level(const RadiancePyramid& pyramid, V<Floats> leve
             hn::GatherIndex(di, first + 2, at)};
 }
 
-void look_up_blurred(const RadiancePyramid& pyramid, const MapDirections& directions, const float* solid_angles,
-                     std::size_t count, const std::array<float*, 3>& radiance) {
+/// Not blurred.
+HWY_INLINE Color remainder_at(const EnvironmentMap& map, bool with_spots, const Place& place) {
+    const Neighbourhood about = on_picture(*map.picture, place);
+    const Rgb* pixels = map.picture->pixels.data();
+    const Color whole = with_spots ? about.mean(pixels) : about.mean_below(pixels, map.bright.limit);
+    const Color expansion = on_picture(map.expansion, place).mean(map.expansion.pixels.data());
+    return {hn::Sub(whole[0], expansion[0]), hn::Sub(whole[1], expansion[1]), hn::Sub(whole[2], expansion[2])};
+}
+
+void look_up_remainder(const EnvironmentMap& map, bool with_spots, const MapDirections& directions,
+                       const float* solid_angles, std::size_t count, const std::array<float*, 3>& radiance) {
     const Floats d;
+    const RadiancePyramid& pyramid = with_spots ? map.whole_remainder : map.remainder;
+    const auto zero = hn::Zero(d);
     const auto last = all(d, static_cast<double>(pyramid.levels().size() - 1));
-    // At the equator of level 0.
-    const double texel = 2 * std::numbers::pi / pyramid.width() * std::numbers::pi / pyramid.height();
-    const auto offset = all(d, 0.5 * std::log2(texel));
-    const float* channels = &pyramid.pixels()->x;
+    // At the equator of the pyramid's finest level, where texels are twice as wide as the picture's.
+    const double texel = 2 * std::numbers::pi / map.picture->width * std::numbers::pi / map.picture->height;
+    const auto offset = all(d, 0.5 * std::log2(texel) + 1);
     for (std::size_t i = 0; i < count; i += kLaneCount<Floats>) {
         const auto wanted = hn::MulSub(all(d, 0.5), hn::Log2(d, hn::LoadU(d, solid_angles + i)), offset);
-        const auto level = hn::Min(hn::Max(wanted, hn::Zero(d)), last);
+        const auto level = hn::Min(hn::Max(wanted, all(d, -1)), last);
         const auto finer = hn::Floor(level);
-        const auto share = hn::Sub(level, finer);
         const Place place = load_place(directions, i);
-        const Neighbourhood fine = on_level(pyramid, finer, place);
-        const Neighbourhood coarse = on_level(pyramid, hn::Min(hn::Add(finer, all(d, 1)), last), place);
+        const auto coarser = hn::Min(hn::Add(finer, all(d, 1)), last);
+        Color fine = on_level(pyramid, hn::Max(finer, zero), place).mean(pyramid.pixels());
+        const Color coarse = on_level(pyramid, coarser, place).mean(pyramid.pixels());
+        const auto is_finest = hn::Lt(finer, zero);
+        if (!hn::AllFalse(d, is_finest)) {
+            const Color finest = remainder_at(map, with_spots, place);
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                fine[channel] = hn::IfThenElse(is_finest, finest[channel], fine[channel]);
+            }
+        }
+        const Color blurred = mixed(fine, coarse, hn::Sub(level, finer));
         for (std::size_t channel = 0; channel < 3; ++channel) {
-            const auto of_fine = fine.channel(channels + channel);
-            const auto blurred = hn::MulAdd(share, hn::Sub(coarse.channel(channels + channel), of_fine), of_fine);
-            hn::StoreU(blurred, d, radiance[channel] + i);
+            hn::StoreU(blurred[channel], d, radiance[channel] + i);
         }
     }
 }
@@ -176,15 +224,15 @@ HWY_AFTER_NAMESPACE();
 namespace shlight {
 
 HWY_EXPORT(look_up);
-HWY_EXPORT(look_up_blurred);
+HWY_EXPORT(look_up_remainder);
 
 void look_up(const EnvironmentMap& map, const MapDirections& directions, std::size_t count, const MapValues& values) {
     HWY_DYNAMIC_DISPATCH(look_up)(map, directions, count, values);
 }
 
-void look_up_blurred(const RadiancePyramid& pyramid, const MapDirections& directions, const float* solid_angles,
-                     std::size_t count, const std::array<float*, 3>& radiance) {
-    HWY_DYNAMIC_DISPATCH(look_up_blurred)(pyramid, directions, solid_angles, count, radiance);
+void look_up_remainder(const EnvironmentMap& map, bool with_spots, const MapDirections& directions,
+                       const float* solid_angles, std::size_t count, const std::array<float*, 3>& radiance) {
+    HWY_DYNAMIC_DISPATCH(look_up_remainder)(map, with_spots, directions, solid_angles, count, radiance);
 }
 
 }  // namespace shlight

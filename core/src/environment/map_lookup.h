@@ -26,8 +26,8 @@ struct MapValues {
 
 void look_up(const EnvironmentMap& map, const MapDirections& directions, std::size_t count, const MapValues& values);
 
-/// Each direction's radiance, blurred over about so large a solid angle.
-void look_up_blurred(const RadiancePyramid& pyramid, const MapDirections& directions, const float* solid_angles,
-                     std::size_t count, const std::array<float*, 3>& radiance);
+/// What the expansion leaves in each direction, with or without the spots, blurred over about so large a solid angle.
+void look_up_remainder(const EnvironmentMap& map, bool with_spots, const MapDirections& directions,
+                       const float* solid_angles, std::size_t count, const std::array<float*, 3>& radiance);
 
 }  // namespace shlight

@@ -75,6 +75,7 @@ class CompiledScene::Impl {
 
     /// before: whose meshes and rays are shared as far as they are the same; null: nothing.
     void build(std::span<const std::shared_ptr<const SceneMesh>> meshes, const Impl* before, const Stopped& stopped) {
+        environment = environment.prepared(before == nullptr ? Environment() : before->environment, stopped);
         std::vector<std::shared_ptr<const CompiledMesh>> compiled(meshes.size());
         tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t i) {
             compiled[i] = compile_mesh(meshes[i], before == nullptr ? nullptr : before->of_shape(*meshes[i]), stopped);
