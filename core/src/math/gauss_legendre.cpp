@@ -5,39 +5,43 @@
 #include <cstddef>
 #include <numbers>
 
+#include "base/double_double.h"
+
 namespace shlight {
 namespace {
 
 /// P_n and P_n' at x.
+template <class Real>
 struct LegendreValue {
-    long double value, derivative;
+    Real value, derivative;
 };
 
-LegendreValue legendre(int n, long double x) {
-    long double before = 1;
-    long double p = x;
+template <class Real>
+LegendreValue<Real> legendre(int n, const Real& x) {
+    Real before = 1;
+    Real p = x;
     for (int k = 2; k <= n; ++k) {
-        const long double next =
-            (static_cast<long double>(2 * k - 1) * x * p - static_cast<long double>(k - 1) * before) /
-            static_cast<long double>(k);
+        const Real next = (Real(2 * k - 1) * x * p - Real(k - 1) * before) / Real(k);
         before = p;
         p = next;
     }
-    return {p, static_cast<long double>(n) * (x * p - before) / (x * x - 1)};
+    return {p, Real(n) * (x * p - before) / (x * x - Real(1))};
 }
 
 GaussRule make_rule(int n) {
     const auto size = static_cast<std::size_t>(n);
     GaussRule rule{std::vector<double>(size), std::vector<double>(size)};
     for (std::size_t i = 0; i < size; ++i) {
-        // Newton's method from Tricomi's estimate converges to the last bit in four steps for every n here.
-        long double x = std::cos(std::numbers::pi_v<long double> * (static_cast<long double>(i) + 0.75L) /
-                                 (static_cast<long double>(n) + 0.5L));
-        for (int step = 0; step < 5; ++step) {
-            const LegendreValue p = legendre(n, x);
-            x -= p.value / p.derivative;
+        // Newton's method from Tricomi's estimate converges to the last bits in four steps for every n here. A step
+        // with twice as many digits leaves no error but that of rounding the node.
+        double start = std::cos(std::numbers::pi * (static_cast<double>(i) + 0.75) / (n + 0.5));
+        for (int step = 0; step < 4; ++step) {
+            const LegendreValue<double> p = legendre(n, start);
+            start -= p.value / p.derivative;
         }
-        const long double d = legendre(n, x).derivative;
+        const LegendreValue<DoubleDouble> p = legendre(n, DoubleDouble(start));
+        const DoubleDouble x = start - p.value / p.derivative;
+        const DoubleDouble d = legendre(n, x).derivative;
         rule.nodes[size - 1 - i] = static_cast<double>((1 + x) / 2);
         rule.weights[size - 1 - i] = static_cast<double>(1 / ((1 - x * x) * d * d));
     }

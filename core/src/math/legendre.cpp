@@ -2,14 +2,15 @@
 #include "math/legendre.h"
 
 #include <memory>
-#include <numbers>
+
+#include "base/double_double.h"
 
 namespace shlight {
 namespace {
 
-/// Constants are computed in extended precision, because products of 63 square roots would add their rounding to every
-/// light.
-using Real = long double;
+/// Constants are computed with twice the digits of a double, because products of 63 square roots would add their
+/// rounding to every light.
+using Real = DoubleDouble;
 
 struct Exact {
     std::array<Real, kMaxOrder> diagonal{};
@@ -17,21 +18,18 @@ struct Exact {
 };
 
 void fill_recurrence(Exact& c) {
-    c.diagonal[0] = std::sqrt(1 / (4 * std::numbers::pi_v<Real>));
+    c.diagonal[0] = sqrt(1 / (4 * kPiInDoubles));
     for (std::size_t m = 1; m < kMaxOrder; ++m) {
-        const auto d = static_cast<Real>(m);
-        c.diagonal[m] = c.diagonal[m - 1] * std::sqrt((2 * d + 1) / (2 * d));
+        const auto d = static_cast<double>(m);
+        c.diagonal[m] = c.diagonal[m - 1] * sqrt(Real(2 * d + 1) / (2 * d));
     }
     for (int l = 0; l < kMaxOrder; ++l) {
-        for (int m = 0; m <= l; ++m) {
-            c.ladder[at(l, m)] = std::sqrt(static_cast<Real>((l - m) * (l + m + 1)));
-            if (m == l) {
-                continue;
-            }
-            const Real a = std::sqrt((Real(4) * l * l - 1) / (l * l - m * m));
-            const Real k = l - 1;
+        for (int m = 0; m < l; ++m) {
+            c.ladder[at(l, m)] = sqrt(Real((l - m) * (l + m + 1)));
+            const Real a = sqrt(Real(4 * l * l - 1) / (l * l - m * m));
+            const double k = l - 1;
             c.step[at(l, m)] = a;
-            c.back[at(l, m)] = l - 1 > m ? a * std::sqrt((k * k - m * m) / (4 * k * k - 1)) : Real(0);
+            c.back[at(l, m)] = l - 1 > m ? a * sqrt(Real(k * k - m * m) / (4 * k * k - 1)) : Real(0);
         }
     }
 }
