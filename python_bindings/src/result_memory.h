@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Memory of large results, kept for the next one when an array dies.
-//
-// A fresh page is cleared by the kernel when it is first touched, which takes longer than most of our kernels take to
-// fill it: coefficients of order 32 cost three times as much in fresh memory. No more than an eighth of the machine's
-// memory waits. Blocks beyond the latest, a thirty-second of it, are marked as free to be taken back by the system
-// (MADV_FREE); not all, because each time the other cores must forget where the pages were, which costs two threads a
-// fifth of their time.
+// Memory of large results: that of the last one that died serves the next one. The system clears a fresh page when it
+// is first touched, which takes as long as our kernels take to fill it.
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "arrays.h"

@@ -4,12 +4,9 @@
 from __future__ import annotations
 
 import gc
-import os
 import threading
-from pathlib import Path
 
 import numpy as np
-import pytest
 
 import shlight
 
@@ -29,28 +26,6 @@ def test_memory_is_used_again():
     del first
     _, second = basis(2)
     assert second.ctypes.data == address
-
-
-def lazily_freed() -> int:
-    """Bytes of this process that the system may take back."""
-    lines = Path("/proc/self/smaps_rollup").read_text().splitlines()
-    return 1024 * sum(int(line.split()[1]) for line in lines if line.startswith("LazyFree:"))
-
-
-@pytest.mark.skipif(
-    not Path("/proc/self/smaps_rollup").exists(), reason="tells what pages are free to take on Linux only"
-)
-def test_the_latest_memory_is_kept_and_more_is_free_to_take():
-    _, values = basis(1)
-    before = lazily_freed()
-    del values
-    assert lazily_freed() <= before
-    kept = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 32
-    order = 64
-    count = kept // (4 * order**2) + 1024
-    directions = np.tile(np.array([[0.6, 0.0, 0.8]], np.float32), (count, 1))
-    shlight.sh_basis(directions, order)
-    assert kept <= lazily_freed()
 
 
 def test_living_results_stay_as_they_are():
