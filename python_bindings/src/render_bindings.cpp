@@ -44,7 +44,7 @@ pixel_filter, filter_width: "box" of one pixel, or "gaussian" or "blackman_harri
 time_limit: seconds, or None; a pass that would probably end later is left out. The first is always made.
 shadows: whether lights cast them.
 shadow_rays: per camera ray and light, at most, and again for each roughness of the material's glossy lobes; a quarter
-    of them where light and shadow are plain. 0: no shadows.
+    of them where light and shadow are plain; 0 ... 16384. 0: no shadows.
 transparent_bounces: surfaces that let light through which a shadow ray passes, at most, 0 ... 1024; a camera ray
     passes one more.
 passes: names of what else is wanted of the picture, by the units and values of Blender's render engine Cycles.

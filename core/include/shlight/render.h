@@ -80,7 +80,7 @@ struct RenderWatch {
 
 /// Throws std::invalid_argument naming the member or argument: order outside 0 … 64, tolerance ≤ 0 or not finite,
 /// first_samples, min_samples or max_samples outside 1 … 2^20 or not in this order, noise_threshold outside 0 … 1,
-/// time_limit not finite, filter_width outside 0.001 … 100, shadow_rays outside 0 … 2^20, more than 2^22 of both in the
+/// time_limit not finite, filter_width outside 0.001 … 100, shadow_rays outside 0 … 2^14, more than 2^22 of both in the
 /// first pass, transparent_bounces outside 0 … 1024, threads < 0, width or height < 1, or more than 2^28 pixels; and as
 /// PassLayout's constructor.
 void check_render(const RenderSettings& settings, int width, int height);

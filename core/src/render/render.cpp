@@ -22,6 +22,9 @@ namespace {
 
 constexpr std::int64_t kMostPixels = 1 << 28;
 
+/// Rays of a pixel: each takes up to 160 bytes in each of the 256 pixels that a thread shades at once.
+constexpr std::int64_t kMostShadowRays = 1 << 14;
+
 constexpr double kLeastFilter = 0.001;
 constexpr double kWidestFilter = 100;
 
@@ -103,7 +106,7 @@ void check_render(const RenderSettings& settings, int width, int height) {
         reject("filter_width must be 0.001 … 100");
     }
     check_range("shadow_rays", settings.shadow_rays, 0,
-                std::min<std::int64_t>(kMostPixelSamples, kMostRaysPerPixel / sampling.first_samples));
+                std::min<std::int64_t>(kMostShadowRays, kMostRaysPerPixel / sampling.first_samples));
     check_range("transparent_bounces", settings.transparent_bounces, 0, 1024);
     check_range("threads", settings.threads, 0, std::numeric_limits<int>::max());
     const PassLayout layout(settings.passes);
