@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <deque>
 #include <memory>
 #include <mutex>
-#include <utility>
+#include <vector>
 
 namespace shlight {
 
@@ -21,24 +20,36 @@ class RecentValues {
     /// make(): the value, as a std::shared_ptr.
     template <class Make>
     std::shared_ptr<const Value> get(const Key& key, const Make& make) {
-        const std::scoped_lock lock(mutex_);
-        const auto known =
-            std::find_if(recent_.begin(), recent_.end(), [&](const auto& entry) { return entry.first == key; });
-        std::shared_ptr<const Value> value = known != recent_.end() ? known->second : make();
-        if (known != recent_.end()) {
-            recent_.erase(known);
-        }
-        recent_.emplace_front(key, value);
-        if (recent_.size() > room_) {
-            recent_.pop_back();
-        }
-        return value;
+        const std::shared_ptr<Entry> entry = entry_of(key);
+        // Outside the mutex: who asks for other keys does not wait.
+        std::call_once(entry->once, [&] { entry->value = make(); });
+        return entry->value;
     }
 
   private:
+    struct Entry {
+        explicit Entry(const Key& wanted) : key(wanted) {}
+        Key key;
+        std::once_flag once;
+        std::shared_ptr<const Value> value;
+    };
+
+    std::shared_ptr<Entry> entry_of(const Key& key) {
+        const std::scoped_lock lock(mutex_);
+        auto known = std::find_if(recent_.begin(), recent_.end(), [&](const auto& entry) { return entry->key == key; });
+        if (known == recent_.end()) {
+            if (recent_.size() == room_) {
+                recent_.pop_back();
+            }
+            known = recent_.insert(recent_.end(), std::make_shared<Entry>(key));
+        }
+        std::rotate(recent_.begin(), known, known + 1);
+        return recent_.front();
+    }
+
     std::size_t room_;
     std::mutex mutex_;
-    std::deque<std::pair<Key, std::shared_ptr<const Value>>> recent_;  // the last one asked for in front
+    std::vector<std::shared_ptr<Entry>> recent_;  // the last one asked for in front
 };
 
 }  // namespace shlight

@@ -92,7 +92,7 @@ void LobeViews::find_widths(const LobeWidths& widths, const FitGrid* grid) {
 }
 
 void LobeViews::interpolate(std::size_t column, std::size_t width, std::span<const std::uint32_t> views, float* out,
-                            std::size_t stride) const {
+                            std::size_t stride) {
     if (neighbours_.empty()) {
         positions_->interpolate(*layout_, column, width, views, out, stride);
         return;

@@ -96,7 +96,7 @@ class LobeViews {
                  const LobeWidths& widths, bool judged);
     void find_widths(const LobeWidths& widths, const FitGrid* grid);
     void interpolate(std::size_t column, std::size_t width, std::span<const std::uint32_t> views, float* out,
-                     std::size_t stride) const;
+                     std::size_t stride);
     void find_albedos();
     void choose_orders(double tolerance, std::span<const float> tolerance_scales);
     BoostArrays boost_arrays();
@@ -117,7 +117,7 @@ class LobeViews {
     std::vector<float> widths_;                // padded
     std::vector<const FitTable*> neighbours_;  // tables of the grid for each view; empty: one width for all
     std::vector<float> neighbour_weights_;
-    mutable std::vector<const float*> columns_;  // their numbers from a column on
+    std::vector<const float*> columns_;  // their numbers from a column on
 
     bool has_boosts_ = false;
     std::vector<double> boosts_;  // the arrays of BoostOutput
