@@ -35,12 +35,12 @@ class Environment {
     explicit Environment(LatLong picture);
 
     bool is_black() const;
-    /// From a direction: a unit vector of the world frame that points away from the scene.
+    /// direction: a unit vector of the world frame that points away from the scene.
     Rgb radiance(const Vec3d& direction) const;
-    /// The same, with what lighting by a picture needs, which takes a while. before: an environment that may have it
-    /// already. Throws RenderCancelled once it is to end.
+    /// This environment with map(), which takes seconds for a large picture. before: an environment that may have the
+    /// map already. Throws RenderCancelled once it is to end.
     Environment prepared(const Environment& before, const Stopped& stopped) const;
-    /// What lighting by the picture needs; null before it is prepared, and where one radiance comes from everywhere.
+    /// The data for lighting by the picture; null before prepared() and for an environment of one radiance.
     const struct EnvironmentMap* map() const { return map_.get(); }
 
   private:

@@ -26,7 +26,7 @@ struct Ray {
     bool empty() const { return t_max < t_min; }
 };
 
-/// Where a ray meets a surface first. The point is (1 - u - v) · corner 0 + u · corner 1 + v · corner 2.
+/// A ray's first hit. The point is (1 - u - v) · corner 0 + u · corner 1 + v · corner 2.
 struct RayHit {
     static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 

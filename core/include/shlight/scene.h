@@ -46,34 +46,34 @@ class CompiledScene {
     ~CompiledScene();
 
     std::span<const Material> materials() const;
-    /// Those with extent first, then sources without: of either, lamps in the order in which they were added, then
-    /// emissive faces.
+    /// Lights with extent come first, then sources without. Both lists hold lamps in the order in which they were
+    /// added, then emissive faces.
     std::span<const Light> lights() const;
-    /// How many have extent.
+    /// Number of lights with extent.
     std::size_t extended_light_count() const;
-    /// Prepared.
+    /// The prepared environment.
     const Environment& environment() const;
-    /// As LightTraits::group.
+    /// The environment's LightTraits::group.
     std::uint32_t environment_group() const;
-    /// Of all that gives light or may be seen shining, in their order.
+    /// Groups of all lights and of all surfaces that may be seen shining, ascending.
     std::span<const std::uint32_t> light_groups() const;
-    /// What camera rays that meet no surface see; null: nothing, which is transparent.
+    /// The environment that the camera sees; null: the background is transparent.
     const Environment* background() const;
     /// Whether the camera sees any lamp.
     bool shows_lamps() const;
-    /// What lamps that the camera sees add to a camera ray, up to a surface at this distance along it, if there is one.
-    /// by_group: is added to what each LightTraits::group of them adds, unless it is empty.
+    /// Radiance that lamps seen by the camera add to a camera ray, up to a surface at this distance along it, if there
+    /// is one. by_group: each group's part is added to its entry; empty: no parts are wanted.
     Rgb lamps_along(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group = {}) const;
     const SceneRays& rays() const;
     /// Precondition: not hit.missed(); direction is the ray's.
     SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
-    /// Where another ray meets the plane of a surface, which may be outside of its triangle; the ray is taken to be
-    /// longer than the hit's by no more than that one's length. Precondition: as of surface().
+    /// The place where another ray meets the plane of a surface, which may lie outside its triangle. The ray is taken
+    /// to be at most twice as long as the hit's. Precondition: as of surface().
     SurfacePlace neighbour(const SurfacePlace& place, const Vec3d& normal, double length, const Ray& ray) const;
-    /// Of Pass::uv, in whose last component is 1; 0 where the mesh has none.
+    /// The value of Pass::uv, whose last component is 1; 0 on meshes without texture coordinates.
     Vec3d uv(const RayHit& hit) const;
     const Label& object_label(const RayHit& hit) const;
-    /// What a material's program reads. place: 0 at the hit, 1 and 2 at its neighbours.
+    /// Reads an input of a material's program. place: 0 at the hit, 1 and 2 at its neighbours.
     void read(const ShaderInput& input, const Material& material, int place, std::span<const ShadedPlace> places,
               std::span<float> out) const;
 
@@ -86,7 +86,7 @@ class CompiledScene {
 
 class Scene {
   public:
-    /// Of a mesh, as long as the scene or a copy of it holds it.
+    /// Number of a mesh, valid as long as the scene or a copy of it holds the mesh.
     using MeshNumber = std::uint64_t;
 
     /// Throws as check_shape and check_use do. Emissive faces become two-sided polygon lights,
@@ -97,7 +97,7 @@ class Scene {
     const SceneMesh& mesh(MeshNumber number) const;
     /// The same shape, used otherwise. Throws as mesh() and check_use do; the mesh is then as it was.
     void use_mesh(MeshNumber number, MeshUse use);
-    /// Throws as mesh() does.
+    /// Throws what mesh() throws.
     void remove_mesh(MeshNumber number);
     /// Lamps throw as make_sphere_light, make_polygon_light … do. The camera sees those that are
     /// LightTraits::seen_by_camera and have an extent; they block no light.

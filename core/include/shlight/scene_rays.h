@@ -23,7 +23,7 @@ class SurfaceTransparency {
     SurfaceTransparency(const SurfaceTransparency&) = delete;
     SurfaceTransparency& operator=(const SurfaceTransparency&) = delete;
     virtual ~SurfaceTransparency() = default;
-    /// Where shadow rays have met surfaces that are not opaque. depth: how many of them a ray has passed before;
+    /// Evaluates surfaces that shadow rays have met. depth: number of such surfaces that each ray has passed before;
     /// passed: not negative.
     virtual void find(std::span<const Ray> rays, std::span<const RayHit> hits, std::uint32_t depth,
                       std::span<Rgb> passed) const = 0;
@@ -40,7 +40,7 @@ class SceneRays {
     SceneRays(std::vector<TracedInstance> opaque, std::vector<TracedInstance> transparent,
               std::vector<OccluderCluster> clusters, const SurfaceTransparency& transparency,
               const Stopped& stopped = {});
-    /// Of the same surfaces: what is built is shared. transparency must outlive this.
+    /// Shares the trees of the same surfaces. transparency must outlive this.
     SceneRays(const SceneRays& same, const SurfaceTransparency& transparency);
     SceneRays(const SceneRays&) = delete;
     SceneRays& operator=(const SceneRays&) = delete;

@@ -24,7 +24,7 @@ constexpr std::size_t kReduction = 4;
 /// Faces of the finest level: with more, edges are so short that their outlines zigzag, and of a sphere this many show
 /// 0.05 % of the solid angle too much or too little.
 constexpr std::size_t kMostFaces = 5120;
-/// Of the extent: beyond, a coarse mesh is nothing like the fine one.
+/// Largest error as a share of the extent: with more, a coarse mesh is nothing like the fine one.
 constexpr float kLargestError = 0.05F;
 
 /// A mesh whose vertices are all different and all used.
@@ -142,7 +142,7 @@ const Vec3d& opposite(const IndexedMesh& mesh, std::uint32_t face, const Emitter
     return mesh.vertices[t.x ^ t.y ^ t.z ^ edge.from ^ edge.to];
 }
 
-/// Of a closed surface: no edge is bent inwards, and it is in one piece.
+/// Whether a closed surface is in one piece and has no edge that is bent inwards.
 bool is_convex(const IndexedMesh& mesh) {
     std::vector<std::uint32_t> piece(mesh.faces.size());
     std::iota(piece.begin(), piece.end(), 0U);
@@ -236,7 +236,7 @@ void sort_along_curve(const IndexedMesh& mesh, std::vector<EmitterEdge>& edges) 
                      [&](const EmitterEdge& a, const EmitterEdge& b) { return key(a) < key(b); });
 }
 
-/// Of the faces along some edges, each once; kNone for those that have none.
+/// Numbers of the faces along some edges, each once; kNone for a border.
 std::vector<std::uint32_t> faces_along(std::span<const EmitterEdge> edges) {
     std::vector<std::uint32_t> faces;
     for (const EmitterEdge& edge : edges) {

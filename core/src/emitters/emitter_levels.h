@@ -41,7 +41,7 @@ struct EdgeBlock {
     double low, high;     ///< of the planes' heights over the center; of a block with a border, infinite
 };
 
-/// As EmitterEdge, with the numbers of its faces' planes in its block; for none, one that is 0 everywhere.
+/// An EmitterEdge with the numbers of its faces' planes in its block; a border has a plane that is 0 everywhere.
 struct BlockEdge {
     std::uint32_t from, to;
     std::uint8_t left, right;

@@ -10,9 +10,9 @@ namespace {
 
 /// How often a face that is near is quartered, at most.
 constexpr int kMostQuarterings = 4;
-/// Of the light: parts that bring less are allowed the error of one that brings this.
+/// Share of the light: parts that bring less are allowed the error of a part that brings this.
 constexpr double kLeastShare = 1.0 / 256;
-/// Of the lobe's width: over a smaller part f·cos is what it is at its middle, but for the horizon.
+/// Share of the lobe's width: over a smaller part f·cos is its value at the middle, except at the horizon.
 constexpr double kBroad = 0.2;
 /// Faces of a node that are worth asking whether to stop.
 constexpr std::uint32_t kFacesBetweenStops = 1 << 12;
@@ -142,7 +142,7 @@ FaceMean::Weighed FaceMean::weigh(const FacePart& part) const {
     const double left_out = one_side ? 0.5 * x * part.slope + 0.25 * x * x * (part.deviation + part.difference)
                                      : 0.5 * std::max(x, part.unlike) * part.deviation +
                                            0.25 * std::max(x * x, part.unlike) * part.difference;
-    // Where some faces look away their mean stands for what is seen.
+    // The mean stands for parts of which some faces look away.
     const Vec3d light = one_side && shown > 0 ? glm::abs(way * part.power) / distance : shown * Vec3d(part.radiance);
     return {shown / square * value, value / square * light, solid_angle * most * left_out};
 }

@@ -41,9 +41,9 @@ class FaceRadiance {
     FaceRadiance(std::span<const Vec3d> vertices, std::span<const Triangle> triangles, std::vector<Rgb> radiance,
                  bool closed, const Stopped& stopped = {});
 
-    /// By area.
+    /// Mean radiance by area.
     const Rgb& mean() const { return nodes_.front().part.radiance; }
-    /// What each ray meets of the emitter if nothing else is in its way; mean() for rays that pass by.
+    /// Appends the radiance of the face that each ray meets, as if nothing else were in its way; mean() for a miss.
     void along(std::span<const Ray> rays, std::vector<Rgb>& radiance) const;
 
   private:
@@ -61,7 +61,7 @@ class FaceRadiance {
         Rgb radiance;
     };
 
-    /// What of the part's members tells how its faces differ.
+    /// Sets the part's members that tell how its faces differ.
     void find_variation(std::uint32_t first, std::uint32_t last, FacePart& part) const;
     void build(std::uint32_t node, std::uint32_t first, std::uint32_t last, const Stopped& stopped);
 

@@ -19,7 +19,7 @@ using std::numbers::pi;
 /// What is brighter than this times the mean counts as a spot: within the width of band 63, some 0.003 sr, it would
 /// hold a hundredth of the picture's light.
 constexpr double kSpotLimit = 30;
-/// As many as take no more time than the harmonics do.
+/// This many spots take no more time than the harmonics do.
 constexpr std::size_t kMostSpots = 512;
 /// Texels in a row of the expansion. Between their centres, 0.003 apart, linear interpolation loses 0.3 % of band 63 on
 /// average and less of the others.
@@ -87,7 +87,7 @@ RadiancePyramid::RadiancePyramid(int width, int height, const Row& finest, const
     for (const Level& coarse : levels_) {
         tbb::parallel_for(0, coarse.height, [&](int row) {
             end_if(stopped);
-            // Of an odd number of rows or columns the last counts twice.
+            // The last of an odd number of rows or columns counts twice.
             const std::array rows = {2 * row, std::min(2 * row + 1, fine.height - 1)};
             const auto columns = static_cast<std::size_t>(fine.width);
             std::array<std::vector<Rgb>, 2> texels;
@@ -181,7 +181,7 @@ double RadianceSampler::density(const Vec3d& direction) const {
 BrightTexels::BrightTexels(const LatLong& picture) {
     const auto width = static_cast<std::size_t>(picture.width);
     const auto solid_angle = [&](std::size_t i) { return texel_solid_angle(i / width, picture.width, picture.height); };
-    // The brightest, the least bright of them in front: one more than there may be spots.
+    // The luminances of the brightest texels, one more than there may be spots.
     std::priority_queue<double, std::vector<double>, std::greater<>> brightest;
     double mean = 0;
     for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
@@ -213,7 +213,7 @@ Rgb BrightTexels::below(const Rgb& texel) const {
 
 namespace {
 
-/// What the expansion leaves of a picture.
+/// The picture less the expansion.
 RadiancePyramid remainder_of(const LatLong& picture, const LatLong& expansion, const BrightTexels* without,
                              const Stopped& stopped) {
     const glm::dvec2 scale(double(expansion.width) / picture.width, double(expansion.height) / picture.height);

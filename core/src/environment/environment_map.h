@@ -36,7 +36,7 @@ inline constexpr Vec3d kLuminance(0.2126, 0.7152, 0.0722);
 glm::dvec2 texel_of(const Vec3d& direction, int width, int height);
 Vec3d direction_of(const glm::dvec2& texel, int width, int height);
 
-/// From a direction of the picture's frame.
+/// direction: of the picture's frame.
 Rgb radiance_from(const LatLong& picture, const Vec3d& direction);
 
 /// Pictures of half the size each, from one of half the size down to one texel.
@@ -94,14 +94,14 @@ struct BrightSpot {
     Rgb irradiance;  ///< on a plane that faces it
 };
 
-/// What exceeds a limit of luminance.
+/// The light of a picture beyond a limit of luminance.
 struct BrightTexels {
     double limit;
     std::vector<BrightSpot> spots;
 
     explicit BrightTexels(const LatLong& picture);
 
-    /// What a texel has below the limit.
+    /// A texel's radiance, scaled down to the limit if it exceeds that.
     Rgb below(const Rgb& texel) const;
 };
 
@@ -112,14 +112,14 @@ struct RadianceCoefficients {
     std::array<double, kMaxOrder> powers;
 };
 
-/// Of a picture without its spots. Throws RenderCancelled once it is to end.
+/// Coefficients of a picture without its spots. Throws RenderCancelled once it is to end.
 RadianceCoefficients radiance_coefficients(const LatLong& picture, const BrightTexels& bright,
                                            const Stopped& stopped = {});
 
-/// What coefficients add up to at the centres of the texels of a picture of this size.
+/// The sum of the harmonics at the centres of the texels of a picture of this size.
 LatLong expanded(const RadianceCoefficients& coefficients, int width, int height, const Stopped& stopped);
 
-/// What lighting by a picture needs.
+/// The data for lighting by a picture.
 struct EnvironmentMap {
     /// Throws RenderCancelled once it is to end.
     explicit EnvironmentMap(std::shared_ptr<const LatLong> source, const Stopped& stopped = {});
@@ -133,8 +133,8 @@ struct EnvironmentMap {
     RadianceSampler sampler;
     RadianceCoefficients coefficients;  ///< without the spots
     LatLong expansion;                  ///< of the coefficients
-    RadiancePyramid remainder;          ///< what the expansion leaves, without the spots
-    RadiancePyramid whole_remainder;    ///< and with them
+    RadiancePyramid remainder;          ///< the picture without the spots, less the expansion
+    RadiancePyramid whole_remainder;    ///< the picture with them, less the expansion
 };
 
 }  // namespace shlight

@@ -22,7 +22,7 @@ static_assert(kLookupLanes % kLaneCount<Floats> == 0);
 
 using Integers = hn::RebindToSigned<Floats>;
 
-/// As texel_of(), of a picture of size 1 × 1.
+/// Result of texel_of() for a picture of size 1 × 1.
 struct Place {
     V<Floats> x, y;
 };
@@ -118,7 +118,7 @@ class Neighbourhood {
     V<Floats> across_, down_;
 };
 
-/// As RadianceSampler::density().
+/// RadianceSampler::density() in lanes.
 HWY_INLINE V<Floats> density_in_lanes(const RadianceSampler& sampler, const Place& place, V<Integers> width,
                                       V<Integers> height) {
     const Floats d;
@@ -176,7 +176,7 @@ HWY_INLINE Neighbourhood on_level(const RadiancePyramid& pyramid, V<Floats> leve
             hn::GatherIndex(di, first + 2, at)};
 }
 
-/// Not blurred.
+/// The remainder without blur.
 HWY_INLINE Color remainder_at(const EnvironmentMap& map, bool with_spots, const Place& place) {
     const Neighbourhood about = on_picture(*map.picture, place);
     const Rgb* pixels = map.picture->pixels.data();

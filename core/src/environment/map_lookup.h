@@ -10,7 +10,7 @@
 
 namespace shlight {
 
-/// More values than asked for are read and written, less than one more than this.
+/// Arrays are read and written up to the next multiple of this many values.
 inline constexpr std::size_t kLookupLanes = 16;
 
 /// Unit vectors of the picture's own frame.
@@ -26,7 +26,8 @@ struct MapValues {
 
 void look_up(const EnvironmentMap& map, const MapDirections& directions, std::size_t count, const MapValues& values);
 
-/// What the expansion leaves in each direction, with or without the spots, blurred over about so large a solid angle.
+/// The picture less the expansion in each direction, with or without the spots, blurred over about so large a solid
+/// angle.
 void look_up_remainder(const EnvironmentMap& map, bool with_spots, const MapDirections& directions,
                        const float* solid_angles, std::size_t count, const std::array<float*, 3>& radiance);
 

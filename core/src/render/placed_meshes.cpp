@@ -93,7 +93,7 @@ SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) co
     const std::array<double, 3> weights = weights_of(hit);
     const std::array<Vec3d, 3> corners = this->corners(hit);
     const Vec3d position = weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
-    // From the corners in double, and not along the ray, the point lies in the triangle's plane to double precision.
+    // The corners in double give a point in the triangle's plane to double precision, which the ray would not.
     const Vec3d towards_viewer = -Vec3d(direction);
     Vec3d geometric =
         normalized_or(glm::cross(corners[1] - corners[0], corners[2] - corners[0]), glm::normalize(towards_viewer));
@@ -103,7 +103,7 @@ SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) co
     Vec3d shading = geometric;
     if (smooth_normal(hit, shading)) {
         shading = normalized_or(shading, geometric);
-        // By side and not by winding: mirrored instances and faces wound the wrong way come out right.
+        // The side decides, since mirrored instances and some faces are wound the other way.
         if (glm::dot(shading, geometric) < 0) {
             shading = -shading;
         }

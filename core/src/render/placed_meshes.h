@@ -39,7 +39,7 @@ class PlacedMeshes {
     std::span<const std::shared_ptr<const CompiledMesh>> meshes() const { return meshes_; }
     std::span<const Placement> placements() const { return placements_; }
 
-    /// As CompiledScene's.
+    /// These do what CompiledScene's functions of the same names do.
     SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
     Vec3d uv(const RayHit& hit) const;
     const Label& label(const RayHit& hit) const;
@@ -50,7 +50,7 @@ class PlacedMeshes {
   private:
     /// The mesh's own, of no particular length; false: it is flat there.
     bool smooth_normal(const RayHit& hit, Vec3d& normal) const;
-    /// Of the triangle, in the world.
+    /// Corners of the hit triangle in the world.
     std::array<Vec3d, 3> corners(const RayHit& hit) const;
     /// place: as of ShaderReader.
     Vec3d normal_at(const ShadedPlace& shaded, int place, bool smooth) const;

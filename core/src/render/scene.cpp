@@ -36,7 +36,7 @@ bool meets_rays_alike(const std::shared_ptr<const CompiledMesh>& a, const std::s
     return a->opaque == b->opaque && a->transparent == b->transparent && a->mesh->transforms == b->mesh->transforms;
 }
 
-/// Of one material.
+/// Reads the inputs of one material.
 class PlaceReader : public ShaderReader {
   public:
     PlaceReader(const PlacedMeshes& placed, const Material& material, std::span<const ShadedPlace> places)

@@ -25,7 +25,7 @@ struct Box {
     Vec3d low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
 };
 
-/// Where a light lies.
+/// Bounds of a light's places or directions.
 struct LightBounds {
     Box box;
     bool is_far;  ///< infinitely: the box holds unit vectors towards it

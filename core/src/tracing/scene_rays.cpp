@@ -12,7 +12,7 @@ namespace shlight {
 namespace {
 
 constexpr std::size_t kRaysAtOnce = 256;
-/// Of a distance along a ray: how much farther it goes on behind a surface, so that it does not meet it again.
+/// Factor of the distance at which a ray goes on behind a surface, so that it does not meet it again.
 constexpr float kPassedOn = 1 + 0x1p-20F;
 
 std::shared_ptr<const RayTracer> tracer_of(std::vector<TracedInstance> instances, const Stopped& stopped) {
