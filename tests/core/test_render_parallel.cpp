@@ -6,11 +6,16 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "emitters/emitter_levels.h"
+#include "emitters/face_radiance.h"
+#include "environment/environment_map.h"
 #include "render_scenes.h"
 #include "shlight/parallel.h"
 #include "shlight/ray_tracer.h"
@@ -157,6 +162,36 @@ TEST(RenderParallel, BuildingTheTracerCanBeStopped) {
     EXPECT_GT(asked, 2);  // not only before the build
     asked = 0;
     EXPECT_THROW(TriangleTree(vertices, triangles, {}, [&] { return ++asked > 1; }), RenderCancelled);
+}
+
+TEST(RenderParallel, BuildingEmittersAndEnvironmentsCanBeStopped) {
+    std::vector<Vec3d> vertices;
+    std::vector<Triangle> triangles;
+    std::vector<Rgb> radiance;
+    for (std::uint32_t i = 0; i < 20000; ++i) {
+        const auto x = static_cast<double>(i % 100);
+        const auto y = static_cast<double>(i / 100);
+        vertices.insert(vertices.end(), {{x, y, 0}, {x + 1, y, 0}, {x, y + 1, 0}});
+        triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+        radiance.emplace_back(static_cast<float>(i % 7));
+    }
+    const auto picture = std::make_shared<LatLong>(LatLong{{}, 64, 32});
+    for (int i = 0; i < 64 * 32; ++i) {
+        picture->pixels.emplace_back(static_cast<float>(i % 11));
+    }
+    const std::vector<std::function<void(const Stopped&)>> builds = {
+        [&](const Stopped& stopped) { make_emitter_levels(vertices, triangles, 64, stopped); },
+        [&](const Stopped& stopped) { FaceRadiance(vertices, triangles, radiance, false, stopped); },
+        [&](const Stopped& stopped) { EnvironmentMap(picture, stopped); }};
+    for (const auto& build : builds) {
+        std::atomic<int> asked = 0;
+        build([&] { return ++asked < 0; });
+        EXPECT_GE(asked, 4);
+        for (const int most : {0, asked / 2}) {
+            asked = 0;
+            EXPECT_THROW(build([&] { return ++asked > most; }), RenderCancelled);
+        }
+    }
 }
 
 TEST(RenderParallel, ExceptionsReachTheCaller) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -75,6 +76,7 @@ Rgb radiance_from(const LatLong& picture, const Vec3d& direction) {
 }
 
 RadiancePyramid::RadiancePyramid(int width, int height, const Row& finest, const Stopped& stopped) {
+    assert(width > 1 || height > 1);
     Level fine = {width, height, 0};
     std::size_t size = 0;
     while (fine.width > 1 || fine.height > 1) {
@@ -147,6 +149,7 @@ RadianceSampler::RadianceSampler(const LatLong& picture, const Stopped& stopped)
         all += sum * (latitudes_[i] - latitudes_[i + 1]);
         rows_.push_back(all);
     }
+    assert(all > 0);
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         rows_[i] /= all;
         const double solid_angle = (latitudes_[i] - latitudes_[i + 1]) * 2 * pi / width;  // of a cell

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -89,6 +90,7 @@ bool PlacedMeshes::smooth_normal(const RayHit& hit, Vec3d& normal) const {
 }
 
 SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) const {
+    assert(!hit.missed());
     const Placement& placement = placements_[hit.instance];
     const std::array<double, 3> weights = weights_of(hit);
     const std::array<Vec3d, 3> corners = this->corners(hit);
