@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What is rendered: meshes, materials and lights in one world frame, in metres.
+// Scenes: meshes, materials and lights in one world frame, in metres.
 //
 // A Scene collects; compile() makes of it an immutable CompiledScene that any number of threads may read.
 #pragma once

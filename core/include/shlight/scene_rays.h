@@ -29,7 +29,7 @@ class SurfaceTransparency {
                       std::span<Rgb> passed) const = 0;
 };
 
-/// What is left of a ray behind a surface that it has met.
+/// The rest of a ray behind a surface that it has met.
 Ray behind(const Ray& ray, const RayHit& hit);
 
 /// Immutable; any number of threads may trace at a time.

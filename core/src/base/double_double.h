@@ -12,7 +12,7 @@ struct DoubleDouble {
     constexpr DoubleDouble(double value = 0)
         : high(value) {}  // NOLINT(google-explicit-constructor): as an int is a double
     constexpr DoubleDouble(double leading, double rest) : high(leading), low(rest) {}
-    /// Of numbers with |a| ≥ |b|.
+    /// a + b for |a| ≥ |b|.
     static DoubleDouble sum_of_ordered(double a, double b) {
         const double sum = a + b;
         return {sum, b - (sum - a)};

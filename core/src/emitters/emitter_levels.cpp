@@ -16,18 +16,18 @@
 namespace shlight {
 namespace {
 
-/// Sine of an edge's bend that is none.
+/// Sine of the angle at an edge below which the edge counts as flat.
 constexpr double kFlat = 1e-7;
-/// A level has this share of the faces of the one before: errors grow as fast as faces become fewer, so that their sum
-/// is hardly more than the last one.
+/// Number of a level's faces ÷ that of the one before. Errors grow as fast as the number falls, so that their sum is
+/// little more than the last one.
 constexpr std::size_t kReduction = 4;
-/// Faces of the finest level: with more, edges are so short that their outlines zigzag, and of a sphere this many show
-/// 0.05 % of the solid angle too much or too little.
+/// Largest number of faces of the finest level: with more, edges are so short that outlines zigzag. A sphere with this
+/// many has an error of 0.05 % of its solid angle.
 constexpr std::size_t kMostFaces = 5120;
 /// Largest error as a share of the extent: with more, a coarse mesh is nothing like the fine one.
 constexpr float kLargestError = 0.05F;
 
-/// A mesh whose vertices are all different and all used.
+/// A mesh whose vertices are distinct and used.
 struct IndexedMesh {
     std::vector<Vec3d> vertices;
     std::vector<Triangle> faces;
@@ -46,8 +46,8 @@ double area(const IndexedMesh& mesh) {
     return sum;
 }
 
-/// Vertices in order of their coordinates, each once, without those that no face uses. What is closer than a millionth
-/// of the extent is the same: poles and seams that were computed twice.
+/// Vertices sorted by coordinates, each once, without unused ones. Vertices closer than a millionth of the extent are
+/// merged: poles and seams that were computed twice.
 IndexedMesh welded(std::span<const Vec3d> vertices, std::span<const Triangle> triangles) {
     std::vector<std::uint32_t> order;
     double extent = 0;
@@ -167,12 +167,12 @@ bool is_convex(const IndexedMesh& mesh) {
     return pieces == 1;
 }
 
-/// Takes away faces until about so many are left, and adds to the error; false, and the mesh is as it was, if that
-/// cannot be done without tearing it or making it something else.
+/// Removes faces until about `count` are left, and adds to the error; returns false with the mesh unchanged if that
+/// would tear or deform it.
 bool simplify(IndexedMesh& mesh, std::size_t faces, bool closed, double& error) {
     std::vector<float> positions;
     for (const Vec3d& v : mesh.vertices) {
-        // About the first vertex: far from the world's origin floats have few digits for the shape.
+        // Relative to the first vertex, because float has few digits for the shape far from the world's origin.
         const Vec3d local = v - mesh.vertices.front();
         for (int k = 0; k < 3; ++k) {
             positions.push_back(static_cast<float>(local[k]));
@@ -207,7 +207,7 @@ void scale(IndexedMesh& mesh, const Vec3d& center, double factor) {
     }
 }
 
-/// Every third bit, of 21.
+/// Spreads 21 bits to every third bit.
 std::uint64_t spread_bits(std::uint64_t x) {
     x = (x | x << 32U) & 0x1F00000000FFFFU;
     x = (x | x << 16U) & 0x1F0000FF0000FFU;
@@ -216,7 +216,7 @@ std::uint64_t spread_bits(std::uint64_t x) {
     return (x | x << 2U) & 0x1249249249249249U;
 }
 
-/// In the order in which a curve that fills space (Morton 1966) passes their middles, so that neighbours are close.
+/// Faces in the order of a space-filling curve (Morton 1966) through their middles, so that neighbours are close.
 void sort_along_curve(const IndexedMesh& mesh, std::vector<EmitterEdge>& edges) {
     Vec3d low = mesh.vertices.front();
     Vec3d high = low;
@@ -247,7 +247,7 @@ std::vector<std::uint32_t> faces_along(std::span<const EmitterEdge> edges) {
     return faces;
 }
 
-/// The bounds of faces' planes, without where to find them.
+/// The bounds of faces' planes, without the planes' positions.
 EdgeBlock bounds_of(const IndexedMesh& mesh, std::span<const EmitterEdge> edges, std::vector<std::uint32_t> faces) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     EdgeBlock block{0, 0, 0, 0, Vec3d(0), Vec3d(0), 1, 0, kInfinity, -kInfinity};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Emissive meshes at several levels of detail. Seen from outside, a surface of uniform radiance is known by its outline
-// alone, and a coarse mesh has the outline of a fine one within its error.
+// Emissive meshes at several levels of detail. A surface of even radiance, seen from outside, is determined by its
+// outline, and a coarse mesh has the outline of a fine one within its error.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace shlight {
 
-/// An edge with the faces along it: `left` runs through it from `from` to `to`, `right` the other way; kNone at a
-/// border. Where more than two faces meet, an edge stands for each pair.
+/// An edge with its faces: `left` passes it from `from` to `to`, `right` the other way; kNone at a border. Where more
+/// than two faces meet there is an edge for each pair.
 struct EmitterEdge {
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
@@ -24,14 +24,14 @@ struct EmitterEdge {
     std::uint32_t left, right;
 };
 
-/// A face's plane: a point lies before it where dot(normal, point) > height.
+/// A face's plane; a point is in front of it if dot(normal, point) > height.
 struct EmitterPlane {
     Vec3d normal;
     double height;
 };
 
-/// Neighbouring edges, and bounds of the planes of the faces along them: where a point lies before all of these, or
-/// behind all, none of the edges is part of its outline.
+/// A block of neighbouring edges, with bounds of their faces' planes: if a point is in front of all of these, or behind
+/// all, no edge of the block is part of its outline.
 struct EdgeBlock {
     std::size_t first, last;               ///< edges first … last - 1
     std::size_t first_plane, plane_count;  ///< in EmitterLevel::block_planes, each face once
@@ -70,15 +70,15 @@ struct EmitterLevels {
     double area;
 };
 
-/// How much of the strip between two outlines lies on one side more than on the other: of levels of one area, a seventh
-/// was the most for spheres.
+/// Net share of the strip between two outlines that is on one side: for levels of equal area, at most a seventh was
+/// found on spheres.
 inline constexpr double kOneSided = 0.15;
 
-/// Radiance of a white surface that faces the centre at this distance, ÷ the emitter's, about.
+/// Approximate radiance of a white surface that faces the centre from this distance ÷ the emitter's radiance.
 double shown_share(const EmitterLevels& emitter, double distance);
 
-/// The coarsest level whose outline, as radiance of a white surface at this distance from the centre, errs by no more
-/// than the tolerance, about; the finest if none does.
+/// The coarsest level whose outline has an error, as radiance of a white surface at this distance from the centre, of
+/// about the tolerance at most; the finest if none does.
 const EmitterLevel& level_for(const EmitterLevels& emitter, double distance, double tolerance);
 
 /// Equal vertices are joined, and triangles without area left out. The finest level has at most some 5000 faces, each

@@ -8,7 +8,7 @@
 namespace shlight {
 namespace {
 
-/// How often a face that is near is quartered, at most.
+/// Maximum number of times that a near face is quartered.
 constexpr int kMostQuarterings = 4;
 /// Share of the light: parts that bring less are allowed the error of a part that brings this.
 constexpr double kLeastShare = 1.0 / 256;
@@ -117,10 +117,9 @@ void FaceRadiance::along(std::span<const Ray> rays, std::vector<Rgb>& radiance) 
     }
 }
 
-/// A part's light is that of its power, which is exact as long as all its faces are seen from the same side. What that
-/// leaves out: the lobe and the distance change over the part by x, which prefers faces as far as radiance has a slope,
-/// and by x² for what differs without one, or as a whole from the emitter's mean. Where faces look away, some part is
-/// seen, and which one their sum does not tell.
+/// A part's light follows from its power, which is exact if all its faces are seen from the same side. Errors: lobe and
+/// distance change over the part by x, which matters for the part's slope of radiance, and by x² for other differences,
+/// or for the difference from the emitter's mean. If faces look away, a part of unknown radiance is visible.
 FaceMean::Weighed FaceMean::weigh(const FacePart& part) const {
     const Vec3d way = part.center - frame_->origin;
     const double distance = std::max(glm::length(way), 1e-3 * part.radius);
@@ -147,8 +146,8 @@ FaceMean::Weighed FaceMean::weigh(const FacePart& part) const {
     return {shown / square * value, value / square * light, solid_angle * most * left_out};
 }
 
-/// Whether a part may count as a whole: the squares of such errors add up to that of what is allowed, each part of the
-/// light having its share of it.
+/// Whether a part may count as a whole: the squares of the errors add up to that of the permitted one, of which each
+/// part of the light has its share.
 bool FaceMean::suffices(const Weighed& weighed) const {
     const double share = std::max(largest(Rgb(weighed.light)) / light_, kLeastShare);
     return weighed.error * weighed.error <= allowed_ * allowed_ * share;

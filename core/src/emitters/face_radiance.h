@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Emitters whose faces differ in radiance: what textured meshes become.
+// Emitters whose faces differ in radiance, such as textured meshes.
 //
-// A hit sees such a surface as it sees one of even radiance, times the mean of the faces' radiance as the lobe weighs
-// them. The faces are the leaves of a tree, and a hit goes down only where what a node's mean leaves out would show.
+// The light of such a surface is that of one of even radiance, times the mean of the faces' radiance weighted by the
+// lobe. The faces are leaves of a tree, and a hit descends only where a node's mean has a visible error.
 #pragma once
 
 #include <cstdint>
@@ -72,11 +72,11 @@ class FaceRadiance {
     std::unique_ptr<const RayTracer> rays_;
 };
 
-/// The mean radiance of what a hit sees of the faces. Keeps its memory; one per thread.
+/// The mean radiance of the faces that a hit sees. Memory is reused; one per thread.
 class FaceMean {
   public:
-    /// Weighed with f·cos of a lobe that is no mirror, for a viewer in the direction `view` of the frame. value: what
-    /// the lobe reflects of the emitter with unit radiance; tolerance: relative to the result.
+    /// The mean weighted with f·cos of a lobe, not a mirror, for a viewer in the direction `view` of the frame. value:
+    /// the radiance reflected if the emitter has unit radiance; tolerance: relative to the result.
     Rgb of(const FaceRadiance& faces, const LobeShape& shape, const Vec3d& view, const ShadingFrame& frame,
            double value, double tolerance);
 
@@ -90,7 +90,7 @@ class FaceMean {
     Weighed weigh(const FacePart& part) const;
     bool suffices(const Weighed& weighed) const;
     void add(const Weighed& weighed);
-    /// A face or a part of one, quartered so many times more, at most.
+    /// A face or a part of one, quartered at most this many more times.
     void add_face(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Rgb& radiance, int quarterings);
 
     const FaceRadiance* faces_ = nullptr;

@@ -52,7 +52,7 @@ class PlacedMeshes {
     bool smooth_normal(const RayHit& hit, Vec3d& normal) const;
     /// Corners of the hit triangle in the world.
     std::array<Vec3d, 3> corners(const RayHit& hit) const;
-    /// place: as of ShaderReader.
+    /// place: see ShaderReader.
     Vec3d normal_at(const ShadedPlace& shaded, int place, bool smooth) const;
     float object_value(const Placement& placement, std::uint32_t index) const;
     bool is_back(const RayHit& hit, const Vec3d& towards_viewer) const;

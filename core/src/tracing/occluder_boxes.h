@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Boxes about the surfaces of a scene: they prove that nothing lies between many points and a light, which spares all
-// of their shadow rays. A box tree of its own, since Embree does not tell of its own one.
+// Boxes around the surfaces of a scene. They prove that nothing is between many points and a light, which saves all
+// their shadow rays. The tree is separate from Embree's, which is not accessible.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ struct LightBounds {
     bool is_far;  ///< infinitely: the box holds unit vectors towards it
 };
 
-/// Some triangles that follow each other in their mesh.
+/// Consecutive triangles of a mesh.
 struct OccluderCluster {
     Box box;
     Vec3d normal;        ///< mean of theirs, of any length
@@ -49,7 +49,7 @@ class OccluderBoxes {
     /// clusters: in the world.
     explicit OccluderBoxes(std::vector<OccluderCluster> clusters);
 
-    /// False: no surface lies between any of the points, at least one, and any place of the light.
+    /// Returns false if no surface is between any of the points, at least one, and any point of the light.
     bool may_block(std::span<const Vec3f> points, const LightBounds& light) const;
 
   private:
@@ -63,7 +63,7 @@ class OccluderBoxes {
 
     void build(std::uint32_t begin, std::uint32_t end);
     static bool meets(const Shaft& shaft, const Box& box);
-    /// Whether the plane of the cluster parts it from all ways to the light.
+    /// Whether the cluster's plane separates it from all lines to the light.
     static bool lies_beside(const Shaft& shaft, const OccluderCluster& cluster);
 
     std::vector<OccluderCluster> clusters_;
