@@ -12,8 +12,9 @@ namespace shlight {
 
 /// Where the time goes: tracing camera rays; materials at their views; light without shadows; shadow rays; and adding
 /// up what the rays of a pixel brought.
-enum class RenderStage { camera_rays, views, light, shadows, pixels };
-inline constexpr std::array<const char*, 5> kRenderStages = {"camera rays", "views", "light", "shadows", "pixels"};
+enum class RenderStage { camera_rays, views, light, shadows, shadow_rays, pixels };
+inline constexpr std::array<const char*, 6> kRenderStages = {"camera rays", "views",       "light",
+                                                             "shadows",     "shadow rays", "pixels"};
 
 /// What the picture took.
 struct RenderReport {

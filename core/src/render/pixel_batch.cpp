@@ -3,49 +3,26 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
+#include "base/stage_clock.h"
 #include "shlight/sampling.h"
 
 namespace shlight {
 namespace {
 
-/// DirectLight values that are held at a time, as many as fit the cache, but those of some lights at least.
+/// Values of DirectLight that a batch should hold: as many as fit the cache.
 constexpr std::size_t kValues = std::size_t{1} << 21;
-constexpr std::size_t kLeastLights = 8;
 /// Camera rays of a batch: enough for long batches, few enough for the cache.
 constexpr std::size_t kMostBatchSamples = 4096;
-constexpr std::size_t kLeastSamples = 256;
+constexpr std::size_t kLeastSamples = 64;
 /// Camera rays that tell a gradient from an edge.
 constexpr std::uint32_t kLeastForPlane = 8;
 /// Of what a camera ray adds to a pixel; squares of brighter ones would leave floats.
 constexpr double kBrightestRay = 1e18;
-/// Of what casts shadows.
-constexpr std::uint32_t kLightSeed = 0;
-constexpr std::uint32_t kEnvironmentSeed = 0xFFFFFFFFU;
-constexpr std::uint32_t kDeltaSeed = 0xFFFFFFFEU;
-constexpr std::uint32_t kFarLightSeed = 0xFFFFFFFDU;
 /// Of points of the aperture.
 constexpr std::uint32_t kLensSeed = 0xFFFFFFFCU;
-
-/// Times stages that follow each other.
-class StageClock {
-  public:
-    explicit StageClock(RenderReport& report) : report_(&report), since_(std::chrono::steady_clock::now()) {}
-
-    /// What passed since the stage before was this one.
-    void end(RenderStage stage) {
-        const auto now = std::chrono::steady_clock::now();
-        report_->stage_seconds[static_cast<std::size_t>(stage)] += std::chrono::duration<double>(now - since_).count();
-        since_ = now;
-    }
-
-  private:
-    RenderReport* report_;
-    std::chrono::steady_clock::time_point since_;
-};
 
 /// The kind of each pass that is one.
 constexpr std::array<std::pair<Pass, LightKind>, kLightKinds> kKindPasses = {
@@ -68,9 +45,9 @@ LightParts parts_of(const Picture& picture) {
     }
     const std::span<const std::uint32_t> groups = picture.scene->light_groups();
     parts.count = LightParts::of_group(groups.empty() ? 0 : groups.back()) + 1;
-    parts.lobe_stride = picture.lobe_stride;
-    for (const MaterialLobes& material : picture.materials) {
-        for (std::size_t lobe = 0; lobe < picture.lobe_stride; ++lobe) {
+    parts.lobe_stride = picture.lighting.lobe_stride;
+    for (const MaterialLobes& material : picture.lighting.materials) {
+        for (std::size_t lobe = 0; lobe < parts.lobe_stride; ++lobe) {
             const bool glossy = lobe < material.lobes().size() && is_glossy(material.lobes()[lobe].shape);
             parts.of_lobe.push_back(glossy ? LightKind::glossy : LightKind::diffuse);
         }
@@ -98,6 +75,22 @@ std::vector<PartPlace> part_places(const Picture& picture) {
         }
     }
     return places;
+}
+
+std::vector<MaterialLobes> lobes_of_materials(const CompiledScene& scene, const RenderSettings& settings,
+                                              const Stopped& stopped) {
+    std::vector<MaterialLobes> lobes;
+    for (const Material& material : scene.materials()) {
+        end_if(stopped);
+        lobes.emplace_back(material.shader == nullptr ? material.bsdf.lobes() : lobes_of(*material.shader),
+                           settings.order, settings.tolerance);
+    }
+    end_if(stopped);
+    return lobes;
+}
+
+bool takes_differences(const Material& material) {
+    return material.shader != nullptr && material.shader->program.takes_differences();
 }
 
 }  // namespace
@@ -141,45 +134,28 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
       pixel_points(std::move(points)),
       previews(preview_points),
       filter_places(pixel_points.size()),
-      lights(s.lights().first(s.extended_light_count())),
-      extended(pointers_to(lights)),
-      deltas(pointers_to(s.lights().subspan(s.extended_light_count()))) {
+      takes_differences(std::any_of(s.materials().begin(), s.materials().end(), shlight::takes_differences)),
+      lighting(s.lights(), s.extended_light_count(), s.environment(), s.environment_group(),
+               lobes_of_materials(s, r, stopped), r.order, r.tolerance) {
     std::transform(pixel_points.begin(), pixel_points.end(), filter_places.begin(), [&](const glm::dvec2& point) {
         return glm::dvec2(r.filter.place(point.x), r.filter.place(point.y));
     });
-    for (const Material& material : s.materials()) {
-        end_if(stopped);
-        materials.emplace_back(material.shader == nullptr ? material.bsdf.lobes() : lobes_of(*material.shader), r.order,
-                               r.tolerance);
-        takes_differences =
-            takes_differences || (material.shader != nullptr && material.shader->program.takes_differences());
-        lobe_stride = std::max(lobe_stride, materials.back().lobes().size());
-    }
     parts = parts_of(*this);
-    end_if(stopped);
-    far = FarLights(s.lights(), materials, r.order);
-    if (!s.environment().is_black()) {
-        environment.emplace(s.environment(), materials, lobe_stride, r.order, r.tolerance);
-    }
 }
 
 std::uint32_t Picture::batch_samples() const {
-    const std::size_t values = std::max<std::size_t>(lights.size() * lobe_stride, 1);
+    const std::size_t values = std::max<std::size_t>(lighting.extended.size() * lighting.lobe_stride, 1);
     return static_cast<std::uint32_t>(std::clamp(kValues / values, kLeastSamples, kMostBatchSamples));
 }
 
 PixelBatch::PixelBatch(const Picture& picture)
     : picture_(&picture),
-      surfaces_(*picture.scene, picture.materials, static_cast<std::uint32_t>(picture.settings.transparent_bounces)),
+      surfaces_(*picture.scene, picture.lighting.materials,
+                static_cast<std::uint32_t>(picture.settings.transparent_bounces)),
       surface_passes_(*picture.scene, *picture.camera, picture.settings.passes, picture.layout),
-      hits_(picture.lobe_stride, picture.parts),
-      far_light_sum_(picture.far, picture.materials, picture.settings.tolerance),
-      tracer_(picture.scene->rays(), static_cast<std::uint32_t>(picture.settings.transparent_bounces)),
-      shadowed_far_lights_(tracer_, picture.materials, picture.scene->lights()),
-      shadowed_deltas_(tracer_, picture.materials, picture.lobe_stride),
-      unshadowed_(picture.lobe_stride),
-      shadowed_(tracer_, picture.materials, picture.lobe_stride, picture.parts),
-      shadowed_environment_(tracer_, picture.scene->environment(), picture.materials),
+      hits_(picture.lighting.lobe_stride, picture.parts),
+      lighting_(picture.lighting, picture.scene->rays(),
+                static_cast<std::uint32_t>(picture.settings.transparent_bounces), picture.parts),
       part_places_(part_places(picture)) {}
 
 void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums,
@@ -190,7 +166,7 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
         surface_passes_.add(surfaces_, rays_.size(), samples.count, pass_sums);
     }
     clock.end(RenderStage::camera_rays);
-    add_reflected(pixels, samples);
+    lighting_.add(pixel_seeds_, samples, hits_, report_);
     StageClock last(report_);
     add_up(samples, sums);
     if (!picture_->parts.empty()) {
@@ -212,32 +188,12 @@ void PixelBatch::write_middles(std::span<const Pixel> pixels, std::span<float> v
 double PixelBatch::reflected(std::span<const Pixel> pixels, std::uint32_t shadow_rays) {
     const SampleRange first = {0, 1, shadow_rays, 0};
     trace_camera_rays(pixels, first);
-    add_reflected(pixels, first);
+    lighting_.add(pixel_seeds_, first, hits_, report_);
     double sum = 0;
     for (const Rgb& radiance : hits_.radiance) {
         sum += glm::dot(glm::abs(radiance), Rgb(1.0F / 3));
     }
     return sum;
-}
-
-void PixelBatch::add_reflected(std::span<const Pixel> pixels, const SampleRange& samples) {
-    StageClock clock(report_);
-    points_.assign(hits_, picture_->materials, picture_->lights, picture_->deltas, picture_->settings.tolerance);
-    clock.end(RenderStage::views);
-    sort_lights();
-    add_deltas(pixels, samples);
-    add_lights(pixels, samples);
-    add_far_lights(pixels, samples);
-    if (picture_->environment) {
-        add_environment(pixels, samples);
-    }
-}
-
-RenderReport PixelBatch::report() const {
-    RenderReport report = report_;
-    report.shadow_rays = shadowed_far_lights_.rays_traced() + shadowed_deltas_.rays_traced() + shadowed_.rays_traced() +
-                         shadowed_environment_.rays_traced();
-    return report;
 }
 
 Ray PixelBatch::camera_ray(double column, double row, const LensPoint& lens) const {
@@ -248,14 +204,15 @@ Ray PixelBatch::camera_ray(double column, double row, const LensPoint& lens) con
 
 /// The pixel's point and this are one of four dimensions. A preview's is the one before the first, the sequence's last.
 PixelBatch::LensPoint PixelBatch::lens_point(std::uint32_t sample, std::uint32_t pixel_seed) const {
-    return picture_->camera->has_depth_of_field() ? LensPoint(sobol_beyond(sample - picture_->previews, pixel_seed))
-                                                  : std::nullopt;
+    return picture_->camera->has_depth_of_field()
+               ? LensPoint(sobol_beyond(sample - picture_->previews, hash(pixel_seed, kLensSeed)))
+               : std::nullopt;
 }
 
 void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples) {
     rays_.clear();
     neighbours_.clear();
-    seed_pixels(pixels, kLensSeed);
+    seed_pixels(pixels);
     // The rays of a pixel share its area.
     const std::uint32_t before = samples.first - std::min(samples.first, picture_->previews);
     const double step = 1 / std::sqrt(before + samples.count);
@@ -279,84 +236,10 @@ void PixelBatch::add_ray(const glm::dvec2& place, const LensPoint& lens, std::ui
     }
 }
 
-void PixelBatch::sort_lights() {
-    StageClock clock(report_);
-    far_light_sum_.choose(points_);
-    lights_.clear();
-    delta_list_.clear();
-    deltas_.reset();
-    if (!far_light_sum_.empty()) {
-        const std::span<const Light> all = picture_->scene->lights();
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            if (!far_light_sum_.holds(i)) {
-                (i < picture_->lights.size() ? lights_ : delta_list_).push_back(&all[i]);
-            }
-        }
-        deltas_.emplace(delta_list_);
-    }
-    brightness_.assign(hits_.pixel_count(), 0.0F);
-    for (std::size_t pixel = 0; pixel < hits_.pixel_count() && !far_light_sum_.empty(); ++pixel) {
-        brightness_[pixel] = far_light_sum_.brightness(pixel);
-    }
-    clock.end(RenderStage::light);
-}
-
-void PixelBatch::add_deltas(std::span<const Pixel> pixels, const SampleRange& samples) {
-    StageClock clock(report_);
-    const DeltaLights& deltas = deltas_ ? *deltas_ : picture_->deltas;
-    if (deltas.padded_size() > 0) {
-        seed_pixels(pixels, hash(kDeltaSeed, samples.first));
-        shadowed_deltas_.add(deltas, points_, samples.shadow_rays > 0, pixel_seeds_, hits_, brightness_, report_);
-    }
-    clock.end(RenderStage::shadows);
-}
-
-void PixelBatch::add_lights(std::span<const Pixel> pixels, const SampleRange& samples) {
-    const std::span<const Light* const> lights(far_light_sum_.empty() ? picture_->extended : lights_);
-    if (lights.empty() && far_light_sum_.empty()) {
-        return;
-    }
-    StageClock clock(report_);
-    shadowed_.start(points_, brightness_);
-    const std::size_t values = std::max<std::size_t>(points_.size() * picture_->lobe_stride, 1);
-    const std::size_t most = std::max(kValues / values, kLeastLights);
-    for (std::size_t first = 0; first < lights.size(); first += most) {
-        const auto block = lights.subspan(first, std::min(most, lights.size() - first));
-        unshadowed_.compute(points_, picture_->materials, block, picture_->light_error, report_);
-        clock.end(RenderStage::light);
-        seed_pixels(pixels, kLightSeed);
-        shadowed_.add(block, unshadowed_, static_cast<std::uint32_t>(first), samples, pixel_seeds_, hits_);
-        clock.end(RenderStage::shadows);
-    }
-}
-
-void PixelBatch::add_far_lights(std::span<const Pixel> pixels, const SampleRange& samples) {
-    if (far_light_sum_.empty()) {
-        return;
-    }
-    StageClock clock(report_);
-    seed_pixels(pixels, hash(kFarLightSeed, samples.first));
-    shadowed_far_lights_.add(far_light_sum_, points_, samples, pixel_seeds_, shadowed_.brightness(), hits_);
-    report_.summed_count += far_light_sum_.size() * hits_.size();
-    clock.end(RenderStage::shadows);
-}
-
-void PixelBatch::add_environment(std::span<const Pixel> pixels, const SampleRange& samples) {
-    StageClock clock(report_);
-    picture_->environment->shade(points_, environment_, report_);
-    clock.end(RenderStage::light);
-    seed_pixels(pixels, kEnvironmentSeed);
-    shadowed_environment_.add(*picture_->environment, picture_->scene->environment_group(), samples, environment_,
-                              points_.size(), points_.of_hit, pixel_seeds_, hits_);
-    clock.end(RenderStage::shadows);
-}
-
-void PixelBatch::seed_pixels(std::span<const Pixel> pixels, std::uint32_t light) {
+void PixelBatch::seed_pixels(std::span<const Pixel> pixels) {
     pixel_seeds_.clear();
     for (const Pixel& pixel : pixels) {
-        const std::uint32_t seed =
-            hash(static_cast<std::uint32_t>(pixel.column), static_cast<std::uint32_t>(pixel.row));
-        pixel_seeds_.push_back(hash(seed, light));
+        pixel_seeds_.push_back(hash(static_cast<std::uint32_t>(pixel.column), static_cast<std::uint32_t>(pixel.row)));
     }
 }
 

@@ -8,19 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "environment/environment_shading.h"
-#include "lights/delta_lights.h"
-#include "lobes/material_lobes.h"
 #include "render/camera_surfaces.h"
 #include "render/surface_passes.h"
-#include "shading/direct_light.h"
-#include "shading/far_light_sum.h"
-#include "shading/far_lights.h"
-#include "shading/shading_points.h"
-#include "shadows/shadowed_deltas.h"
-#include "shadows/shadowed_environment.h"
-#include "shadows/shadowed_far_lights.h"
-#include "shadows/shadowed_light.h"
+#include "shadows/direct_lighting.h"
 #include "shlight/camera.h"
 #include "shlight/render.h"
 #include "shlight/scene.h"
@@ -73,15 +63,8 @@ struct Picture {
     std::vector<glm::dvec2> pixel_points;   ///< of each camera ray of a pixel, evenly over the unit square
     std::uint32_t previews = 0;             ///< the first of them, which do not count beside the others
     std::vector<glm::dvec2> filter_places;  ///< likewise as the filter spreads them, from the pixel's middle
-    std::vector<MaterialLobes> materials;
-    std::size_t lobe_stride = 1;
-    bool takes_differences = false;      ///< whether any material looks at neighbouring camera rays
-    std::span<const Light> lights;       ///< with extent
-    std::vector<const Light*> extended;  ///< the same
-    DeltaLights deltas;
-    FarLights far;
-    std::optional<EnvironmentShading> environment;  ///< none: black
-    double light_error = 0;                         ///< see DirectLight::compute
+    bool takes_differences;                 ///< whether any material looks at neighbouring camera rays
+    LightingScene lighting;
 };
 
 /// Where a part of the light goes among the passes of a pixel.
@@ -101,7 +84,7 @@ class PixelBatch {
     void write_middles(std::span<const Pixel> pixels, std::span<float> values);
     /// Brightness of what surfaces reflect in these pixels, by their first camera ray, summed up.
     double reflected(std::span<const Pixel> pixels, std::uint32_t shadow_rays);
-    RenderReport report() const;
+    const RenderReport& report() const { return report_; }
 
   private:
     /// Of the unit square; none: the aperture's middle.
@@ -110,16 +93,7 @@ class PixelBatch {
     void trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples);
     /// place: in pixels; step: to its neighbours.
     void add_ray(const glm::dvec2& place, const LensPoint& lens, std::uint32_t sample, double step);
-    /// To the radiance of the hits.
-    void add_reflected(std::span<const Pixel> pixels, const SampleRange& samples);
-    /// Sums the dimmest lights up; the others are shaded one by one.
-    void sort_lights();
-    void add_deltas(std::span<const Pixel> pixels, const SampleRange& samples);
-    void add_lights(std::span<const Pixel> pixels, const SampleRange& samples);
-    void add_far_lights(std::span<const Pixel> pixels, const SampleRange& samples);
-    void add_environment(std::span<const Pixel> pixels, const SampleRange& samples);
-    /// One for each pixel and what casts shadows.
-    void seed_pixels(std::span<const Pixel> pixels, std::uint32_t light);
+    void seed_pixels(std::span<const Pixel> pixels);
     void add_up(const SampleRange& samples, std::span<PixelSums> sums) const;
     /// Parts of the light.
     void add_up_parts(std::span<double> pass_sums) const;
@@ -135,21 +109,9 @@ class PixelBatch {
     CameraSurfaces surfaces_;
     SurfacePasses surface_passes_;
     Hits hits_;
-    ShadingPoints points_;
-    FarLightSum far_light_sum_;
-    std::vector<const Light*> lights_;      // with extent, that are not summed up
-    std::vector<const Light*> delta_list_;  // likewise, without
-    std::optional<DeltaLights> deltas_;     // of these; none: all
-    ShadowTracer tracer_;
-    ShadowedFarLights shadowed_far_lights_;
-    ShadowedDeltas shadowed_deltas_;
-    DirectLight unshadowed_;
-    ShadowedLight shadowed_;
-    std::vector<DirectLightParts> environment_;
-    ShadowedEnvironment shadowed_environment_;
+    DirectLighting lighting_;
     std::vector<PartPlace> part_places_;
-    std::vector<std::uint32_t> pixel_seeds_;
-    std::vector<float> brightness_;  // of each pixel by sums and sources without extent, if nothing blocks
+    std::vector<std::uint32_t> pixel_seeds_;  // one per pixel
 };
 
 }  // namespace shlight

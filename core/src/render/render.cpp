@@ -65,7 +65,7 @@ double light_error(const Picture& picture, std::uint32_t shadow_rays, const Prog
     };
     parallel_for(sums.size(), picture.settings.threads, add_up, progress);
     const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) / static_cast<double>(grid.size());
-    const double count = static_cast<double>(std::max<std::size_t>(picture.lights.size(), 1));
+    const double count = static_cast<double>(std::max<std::size_t>(picture.lighting.extended.size(), 1));
     return picture.settings.tolerance * kShareOfMean * mean / std::sqrt(count);
 }
 
@@ -127,7 +127,7 @@ RenderReport render(const CompiledScene& scene, const Camera& camera, int width,
                         refinement.has_preview() ? 1 : 0, stopped);
     };
     run_watched(settings.threads, prepare, waiting);
-    picture->light_error =
+    picture->lighting.light_error =
         light_error(*picture, std::min(static_cast<std::uint32_t>(settings.shadow_rays), kLeastShadowRays), waiting);
     std::fill(image.begin(), image.end(), 0.0F);
     std::fill(passes.begin(), passes.end(), 0.0F);

@@ -251,15 +251,6 @@ void FarLightSum::reflect() {
     }
 }
 
-float FarLightSum::brightness(std::size_t pixel) const {
-    float sum = 0;
-    for (std::size_t point = points_->pixel_begin[pixel]; point < points_->pixel_begin[pixel + 1]; ++point) {
-        const Rgb magnitude = glm::abs(radiance_[point]);
-        sum += static_cast<float>(points_->hit_count(point)) * (magnitude.x + magnitude.y + magnitude.z);
-    }
-    return sum;
-}
-
 glm::dmat3 FarLightSum::frame_of(std::size_t point) const {
     const ShadingFrame& frame = points_->frame[point];
     return {frame.x, frame.y, frame.z};

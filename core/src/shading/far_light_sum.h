@@ -48,8 +48,6 @@ class FarLightSum {
     }
     /// What a point reflects of the sum if nothing blocks it.
     const Rgb& radiance(std::size_t point) const { return radiance_[point]; }
-    /// The sum of its colours' absolute values over all hits of a pixel.
-    float brightness(std::size_t pixel) const;
 
   private:
     struct Candidate {

@@ -15,6 +15,8 @@ namespace {
 
 /// Rays that are traced together, at least.
 constexpr std::size_t kQuestionsAtOnce = 512;
+/// What tells shared rays from those of one light.
+constexpr std::uint32_t kSharedSeed = 0;
 
 struct FoundMember {
     std::size_t number;  ///< of the member
@@ -50,11 +52,10 @@ void DimLights::start(std::span<const Light* const> lights, const DirectLight& u
 
 bool DimLights::is_dim(std::size_t light, std::size_t pixel) const {
     return may_share_[light] != 0 && samples_.shadow_rays > 0 &&
-           rays_by_share(brightness_->of_pixel(light, pixel), brightness_->all(pixel), samples_) < 1;
+           budget_->rays(budget_->of_group(light, pixel), pixel, samples_) < 1;
 }
 
-void DimLights::add(const ShadingPoints& points, std::uint32_t number, std::span<const std::uint32_t> pixel_seeds,
-                    Hits& hits) {
+void DimLights::add(const ShadingPoints& points, std::span<const std::uint32_t> seeds, Hits& hits) {
     points_ = &points;
     radiance_.assign(points.size(), Rgb(0));
     apart_.reset(hits.pixel_count());
@@ -66,8 +67,8 @@ void DimLights::add(const ShadingPoints& points, std::uint32_t number, std::span
             continue;
         }
         const auto hit_count = static_cast<double>(hits.pixel_begin[pixel + 1] - hits.pixel_begin[pixel]);
-        const double rays = rays_by_share(own, brightness_->all(pixel), samples_) * hit_count;
-        ask(pixel, static_cast<std::size_t>(std::ceil(rays)), hash(hash(pixel_seeds[pixel], samples_.first), number),
+        const double rays = budget_->rays(own, pixel, samples_) * hit_count;
+        ask(pixel, static_cast<std::size_t>(std::ceil(rays)), hash(hash(seeds[pixel], samples_.first), kSharedSeed),
             hits);
         if (rays_.count() >= kQuestionsAtOnce) {
             finish(hits);
@@ -80,7 +81,7 @@ float DimLights::gather(std::size_t pixel) {
     dim_.clear();
     float sum = 0;
     for (std::size_t i = 0; i < lights_.size(); ++i) {
-        const float own = brightness_->of_pixel(i, pixel);
+        const float own = budget_->of_group(i, pixel);
         if (own > 0 && is_dim(i, pixel)) {
             sum += own;
             dim_.push_back({i, sum});
@@ -118,7 +119,7 @@ void DimLights::gather_points(std::size_t pixel, const LightRadiance& unshadowed
     dim_points_.clear();
     float sum = 0;
     for (std::size_t point = points_->pixel_begin[pixel]; point < points_->pixel_begin[pixel + 1]; ++point) {
-        const float own = brightness_->of_point(unshadowed, point);
+        const float own = budget_->of_point(unshadowed, point);
         if (own > 0) {
             sum += own;
             dim_points_.push_back({point, sum});

@@ -13,8 +13,8 @@
 #include "lights/seen_light.h"
 #include "lobes/material_lobes.h"
 #include "shading/direct_light.h"
-#include "shading/light_brightness.h"
 #include "shading/shading_points.h"
+#include "shadows/shadow_budget.h"
 #include "shadows/shadow_policy.h"
 #include "shadows/shared_rays.h"
 #include "shlight/light.h"
@@ -27,17 +27,16 @@ namespace shlight {
 /// Keeps its memory from light to light; one per thread.
 class DimLights {
   public:
-    /// Refers to the brightness and the parts.
-    DimLights(const ShadowTracer& tracer, const LightBrightness& brightness, std::span<const MaterialLobes> materials,
+    /// Refers to the budget and the parts.
+    DimLights(ShadowTracer& tracer, const ShadowBudget& budget, std::span<const MaterialLobes> materials,
               std::size_t lobe_stride, const LightParts& parts)
-        : brightness_(&brightness), materials_(materials), lobe_stride_(lobe_stride), rays_(tracer), apart_(parts) {}
+        : budget_(&budget), materials_(materials), lobe_stride_(lobe_stride), rays_(tracer), apart_(parts) {}
 
-    /// To be called before the first of these lights, which the brightness expects: they are referred to by number.
+    /// To be called before the first of these lights, which the budget knows: they are referred to by number.
     void start(std::span<const Light* const> lights, const DirectLight& unshadowed, const SampleRange& samples);
     bool is_dim(std::size_t light, std::size_t pixel) const;
-    /// Adds the dim ones to the hits' radiance. points: of the hits; number, pixel_seeds: tell rays from others.
-    void add(const ShadingPoints& points, std::uint32_t number, std::span<const std::uint32_t> pixel_seeds, Hits& hits);
-    std::uint64_t rays_traced() const { return rays_.rays_traced(); }
+    /// Adds the dim ones to the hits' radiance. points: of the hits; seeds: one per group.
+    void add(const ShadingPoints& points, std::span<const std::uint32_t> seeds, Hits& hits);
 
   private:
     /// A light of a pixel, or a point of it under a light: on a line as long as all of them are bright.
@@ -60,7 +59,7 @@ class DimLights {
     /// To what points of the pixel get if nothing blocks.
     void add_unblocked(std::size_t pixel);
 
-    const LightBrightness* brightness_;
+    const ShadowBudget* budget_;
     std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
     SharedRays rays_;

@@ -14,7 +14,7 @@ static_assert(kLookedUpAtOnce % kLookupLanes == 0);
 
 }  // namespace
 
-EnvironmentRays::EnvironmentRays(const ShadowTracer& tracer, const Environment& environment,
+EnvironmentRays::EnvironmentRays(ShadowTracer& tracer, const Environment& environment,
                                  std::span<const MaterialLobes> materials)
     : tracer_(&tracer), environment_(&environment), lobes_(materials), points_(0) {
     for (const MaterialLobes& material : materials) {
@@ -39,6 +39,7 @@ void EnvironmentRays::start(const Hits& hits, std::span<const std::size_t> lit) 
     lit_ = lit;
     directions_.clear();
     rays_.clear();
+    asked_.clear();
     runs_.assign(lit.size(), {});
 }
 
@@ -110,7 +111,6 @@ void EnvironmentRays::push(const RayStart& start, const Vec3d& direction) {
 void EnvironmentRays::trace() {
     visible_.resize(directions_.size());
     tracer_->visibility(rays_, visible_);
-    rays_traced_ += rays_.size();
 }
 
 bool EnvironmentRays::any_occluded(const LitRange& pixel) const {
@@ -125,13 +125,13 @@ void EnvironmentRays::gather(std::size_t lit_index) {
     weighed_.add(own.begin, own.mirror, [&](std::size_t ray) -> const Vec3f& { return directions_[ray]; });
 }
 
-void EnvironmentRays::weigh(std::span<const LitRange> pixels) {
-    asked_.clear();
-    for (const LitRange& pixel : pixels) {
-        for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
-            weigh_hit(i);
-        }
+void EnvironmentRays::weigh(const LitRange& pixel) {
+    for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
+        weigh_hit(i);
     }
+}
+
+void EnvironmentRays::find_weights() {
     weights_.resize(directions_.size());
     if (environment_->map() != nullptr) {
         weigh_map(*environment_->map());

@@ -33,8 +33,7 @@ class EnvironmentRays {
         RaySums smooth, spots;
     };
 
-    EnvironmentRays(const ShadowTracer& tracer, const Environment& environment,
-                    std::span<const MaterialLobes> materials);
+    EnvironmentRays(ShadowTracer& tracer, const Environment& environment, std::span<const MaterialLobes> materials);
 
     /// Forgets all rays. hits and lit, some of them, stay as they are until the next call.
     void start(const Hits& hits, std::span<const std::size_t> lit);
@@ -45,11 +44,12 @@ class EnvironmentRays {
 
     /// Whether anything takes light away from any ray of a pixel.
     bool any_occluded(const LitRange& pixel) const;
-    /// To be called before the sums of these pixels.
-    void weigh(std::span<const LitRange> pixels);
+    /// To be called for each pixel whose sums are asked for, and then, for all of them together, …
+    void weigh(const LitRange& pixel);
+    /// … this.
+    void find_weights();
     /// split: or else all is in Sums::smooth.
     Sums sum(std::size_t lit_index, std::size_t lobe, bool split);
-    std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
     /// The sets of rays that a material takes.
@@ -86,12 +86,11 @@ class EnvironmentRays {
     void weigh_hit(std::size_t lit_index);
     void weigh_map(const struct EnvironmentMap& map);
 
-    const ShadowTracer* tracer_;
+    ShadowTracer* tracer_;
     const Environment* environment_;
     std::span<const MaterialLobes> lobes_;
     std::vector<Sets> materials_;
     std::size_t set_stride_ = 1;  // sets of rays of any hit
-    std::uint64_t rays_traced_ = 0;
 
     const Hits* hits_ = nullptr;  // of the call of start()
     std::span<const std::size_t> lit_;

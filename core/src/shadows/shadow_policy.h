@@ -36,12 +36,6 @@ struct SampleRange {
 /// If a pixel's light came from n equal lights, each would get this many times the n-th part of the shadow rays.
 inline constexpr float kRaysByShare = 4;
 
-/// Of each camera ray for some lights together, or for one, which has no use for more than all. The variance of what
-/// comes of n lights that share rays in proportion to what they add is that of one light with all the rays, or less.
-inline float rays_by_share(float own, float all, const SampleRange& samples) {
-    return kRaysByShare * static_cast<float>(samples.shadow_rays) * own / all;
-}
-
 /// Those of some lit hits that belong to a pixel: begin … end - 1.
 struct LitRange {
     std::size_t begin, end;

@@ -53,7 +53,7 @@ class ShadowRays::Drawing {
     std::uint32_t sample;
 };
 
-ShadowRays::ShadowRays(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride)
+ShadowRays::ShadowRays(ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride)
     : tracer_(&tracer), lobe_stride_(lobe_stride), lobes_(materials), points_(0) {
     for (const MaterialLobes& material : materials) {
         Material& sets = materials_.emplace_back();
@@ -112,7 +112,6 @@ void ShadowRays::trace() {
     } else {
         tracer_->visibility(rays_.all(), visible_);
     }
-    rays_traced_ += rays_.size();
 }
 
 /// Traces rays to a mesh light. The first surface that a ray meets is the light or blocks it. A ray that misses a mesh

@@ -60,7 +60,7 @@ struct LitHits {
 /// Keeps its memory from light to light; one per thread.
 class ShadowRays {
   public:
-    ShadowRays(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride);
+    ShadowRays(ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride);
 
     /// Forgets all rays. hits and lit stay as they are until the next call.
     void start(const Light& light, const Hits& hits, const LitHits& lit);
@@ -73,7 +73,6 @@ class ShadowRays {
     bool any_occluded(const LitRange& pixel) const;
     /// lit_index: of LitHits.
     RaySums sum(std::size_t lit_index, std::size_t lobe);
-    std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
     /// Lobes of a material whose directions are spread alike share their rays.
@@ -109,13 +108,12 @@ class ShadowRays {
     Run& run(std::size_t lit_index, std::size_t set) { return runs_[lit_index * set_stride_ + set]; }
     const Run& run(std::size_t lit_index, std::size_t set) const { return runs_[lit_index * set_stride_ + set]; }
 
-    const ShadowTracer* tracer_;
+    ShadowTracer* tracer_;
     std::size_t lobe_stride_;
     std::vector<Material> materials_;
     std::span<const MaterialLobes> lobes_;
     std::size_t set_stride_ = 1;  // sets of rays of any hit: the light's, then one per shape
     LightSampler light_sampler_;
-    std::uint64_t rays_traced_ = 0;
 
     const Light* light_ = nullptr;
     const Hits* hits_ = nullptr;

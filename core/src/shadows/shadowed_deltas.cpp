@@ -24,8 +24,7 @@ std::size_t range_size(std::size_t values_per_light, std::size_t lights) {
 
 }  // namespace
 
-ShadowedDeltas::ShadowedDeltas(const ShadowTracer& tracer, std::span<const MaterialLobes> materials,
-                               std::size_t lobe_stride)
+ShadowedDeltas::ShadowedDeltas(ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride)
     : tracer_(&tracer), materials_(materials), lobe_stride_(lobe_stride) {}
 
 void ShadowedDeltas::add(const DeltaLights& lights, const ShadingPoints& points, bool shadows,
@@ -146,7 +145,6 @@ void ShadowedDeltas::question(const DeltaRange& range, std::size_t light, std::s
 void ShadowedDeltas::trace() {
     visible_.resize(rays_.size());
     tracer_->visibility(rays_, visible_);
-    rays_traced_ += rays_.size();
 }
 
 void ShadowedDeltas::find_shares(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range,

@@ -24,7 +24,7 @@ namespace shlight {
 /// Keeps its memory from call to call; one per thread.
 class ShadowedDeltas {
   public:
-    ShadowedDeltas(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride);
+    ShadowedDeltas(ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride);
 
     /// Adds all sources to the hits' radiance, and what the hits take to the report. shadows: whether any are cast;
     /// pixel_seeds: one per pixel. brightness: of each pixel by other lights, to which that by the sources is added, if
@@ -32,7 +32,6 @@ class ShadowedDeltas {
     /// pixel.
     void add(const DeltaLights& lights, const ShadingPoints& points, bool shadows,
              std::span<const std::uint32_t> pixel_seeds, Hits& hits, std::span<float> brightness, RenderReport& report);
-    std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
     /// The points first_point … last_point - 1 of a pixel.
@@ -85,12 +84,11 @@ class ShadowedDeltas {
         return &values_[(point_in_pixel * lobe_stride_ + lobe) * range.count];
     }
 
-    const ShadowTracer* tracer_;
+    ShadowTracer* tracer_;
     std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
     const DeltaLights* lights_ = nullptr;  // of the call of add()
     bool shadows_ = false;
-    std::uint64_t rays_traced_ = 0;
 
     // Buffers for one pixel and a range of sources:
     DeltaViews views_;

@@ -14,37 +14,41 @@ Vec3d kept_share(const RaySums& sums, const Vec3d& otherwise) {
     return glm::mix(otherwise, share, Vec3d(glm::greaterThan(sums.all, Vec3d(0))));
 }
 
+/// What is seen of the light without obstacles, by the mean over a hit's rays, as many as these of each set.
+Rgb seen_part(const Rgb& unblocked, const RaySums& of_hit, const Vec3d& kept, double rays) {
+    return Rgb(of_hit.seen / rays + kept * (Vec3d(unblocked) - of_hit.all / rays));
+}
+
 }  // namespace
 
-ShadowedEnvironment::ShadowedEnvironment(const ShadowTracer& tracer, const Environment& environment,
+ShadowedEnvironment::ShadowedEnvironment(ShadowTracer& tracer, const Environment& environment,
                                          std::span<const MaterialLobes> materials)
     : materials_(materials), rays_(tracer, environment, materials) {}
 
-void ShadowedEnvironment::add(const EnvironmentShading& shading, std::uint32_t group, const SampleRange& samples,
-                              std::span<const DirectLightParts> unshadowed, std::size_t point_count,
-                              std::span<const std::uint32_t> point_of_hit, std::span<const std::uint32_t> pixel_seeds,
-                              Hits& hits) {
+void ShadowedEnvironment::add(const EnvironmentShading& shading, std::uint32_t group,
+                              std::span<const DirectLightParts> unshadowed, const ShadingPoints& points,
+                              const ShadowBudget& budget, std::size_t index, const SampleRange& samples,
+                              std::span<const std::uint32_t> seeds, Hits& hits) {
     shading_ = &shading;
     group_ = group;
-    samples_ = samples;
     unshadowed_ = unshadowed;
-    point_count_ = point_count;
-    point_of_hit_ = point_of_hit;
+    points_ = &points;
+    const bool shadows = samples.shadow_rays > 0;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
-        const LitRange range = find_lit(hits, pixel);
+        const LitRange range = budget.of_group(index, pixel) > 0 ? find_lit(hits, pixel) : LitRange{0, 0};
         if (range.size() > 0) {
-            pixels_.push_back({range, pixel, pixel_seeds[pixel]});
+            pixels_.push_back({range, pixel, budget.samples_of(index, pixel, samples), seeds[pixel]});
         }
         if (lit_.size() >= kHitsAtOnce) {
-            shade_lit(hits);
+            shade_lit(shadows, hits);
         }
     }
-    shade_lit(hits);
+    shade_lit(shadows, hits);
 }
 
 DirectLightParts ShadowedEnvironment::unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const {
     const Rgb& weight = hits.weight(hit, lobe);
-    const DirectLightParts& parts = unshadowed_[lobe * point_count_ + point_of_hit_[hit]];
+    const DirectLightParts& parts = unshadowed_[lobe * points_->size() + points_->of_hit[hit]];
     return {weight * parts.smooth, weight * parts.spots};
 }
 
@@ -58,24 +62,24 @@ LitRange ShadowedEnvironment::find_lit(const Hits& hits, std::size_t pixel) {
     return {begin, lit_.size()};
 }
 
-void ShadowedEnvironment::shade_lit(Hits& hits) {
-    const bool shadows = samples_.shadow_rays > 0;
+void ShadowedEnvironment::shade_lit(bool shadows, Hits& hits) {
     rays_.start(hits, lit_);
     for (const LitPixel& pixel : shadows ? std::span(pixels_) : std::span<const LitPixel>()) {
-        rays_.draw(pixel.range, samples_, pixel.seed);
+        rays_.draw(pixel.range, pixel.samples, pixel.seed);
     }
     rays_.trace();
     partly_.clear();
     for (const LitPixel& pixel : pixels_) {
         if (shadows && rays_.any_occluded(pixel.range)) {
             hits.obstructed[pixel.pixel] = 1;
-            partly_.push_back(pixel.range);
+            partly_.push_back(pixel);
+            rays_.weigh(pixel.range);
         } else {
             shade_unblocked(pixel.range, hits);
         }
     }
-    rays_.weigh(partly_);
-    for (const LitRange& pixel : partly_) {
+    rays_.find_weights();
+    for (const LitPixel& pixel : partly_) {
         shade(pixel, hits);
     }
     pixels_.clear();
@@ -91,22 +95,23 @@ void ShadowedEnvironment::shade_unblocked(const LitRange& pixel, Hits& hits) con
     }
 }
 
-void ShadowedEnvironment::shade(const LitRange& pixel, Hits& hits) {
+void ShadowedEnvironment::shade(const LitPixel& pixel, Hits& hits) {
+    const LitRange& range = pixel.range;
     std::size_t lobe_count = 0;
-    for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
+    for (std::size_t i = range.begin; i < range.end; ++i) {
         lobe_count = std::max(lobe_count, materials_[hits.material[lit_[i]]].lobes().size());
     }
-    deviation_.assign(pixel.size(), Rgb(0));
+    deviation_.assign(range.size(), Rgb(0));
     for (std::size_t lobe = 0; lobe < lobe_count; ++lobe) {
         shade_lobe(pixel, lobe, hits);
     }
-    for (std::size_t i = 0; i < pixel.size(); ++i) {
-        hits.noise[lit_[pixel.begin + i]] += deviation_[i] * deviation_[i];
+    for (std::size_t i = 0; i < range.size(); ++i) {
+        hits.noise[lit_[range.begin + i]] += deviation_[i] * deviation_[i];
     }
 }
 
-void ShadowedEnvironment::shade_lobe(const LitRange& pixel, std::size_t lobe, Hits& hits) {
-    const auto lit_hits = std::span(lit_).subspan(pixel.begin, pixel.size());
+void ShadowedEnvironment::shade_lobe(const LitPixel& pixel, std::size_t lobe, Hits& hits) {
+    const auto lit_hits = std::span(lit_).subspan(pixel.range.begin, pixel.range.size());
     const auto material_of = [&](std::size_t i) -> std::size_t { return hits.material[lit_hits[i]]; };
     const auto has_lobe = [&](std::size_t i) { return lobe < materials_[material_of(i)].lobes().size(); };
     hit_sums_.assign(lit_hits.size(), {});
@@ -115,7 +120,7 @@ void ShadowedEnvironment::shade_lobe(const LitRange& pixel, std::size_t lobe, Hi
         if (has_lobe(i)) {
             const std::size_t hit = lit_hits[i];
             const bool split = shading_->splits(material_of(i), lobe, hits.widths(hit)[lobe]);
-            hit_sums_[i] = rays_.sum(pixel.begin + i, lobe, split);
+            hit_sums_[i] = rays_.sum(pixel.range.begin + i, lobe, split);
             const Vec3d weight(hits.weight(hit, lobe));
             hit_sums_[i].smooth *= weight;
             hit_sums_[i].spots *= weight;
@@ -131,7 +136,8 @@ void ShadowedEnvironment::shade_lobe(const LitRange& pixel, std::size_t lobe, Hi
     }
     for (std::size_t i = 0; i < lit_hits.size(); ++i) {
         if (has_lobe(i)) {
-            deviation_[i] += shade_hit(lit_hits[i], lobe, hit_sums_[i], sums_of(material_of(i)), hits);
+            deviation_[i] +=
+                shade_hit(lit_hits[i], lobe, hit_sums_[i], sums_of(material_of(i)), pixel.samples.shadow_rays, hits);
         }
     }
 }
@@ -143,21 +149,16 @@ ShadowedEnvironment::MaterialSums& ShadowedEnvironment::sums_of(std::size_t mate
 }
 
 Rgb ShadowedEnvironment::shade_hit(std::size_t hit, std::size_t lobe, const EnvironmentRays::Sums& of_hit,
-                                   const MaterialSums& of_material, Hits& hits) const {
+                                   const MaterialSums& of_material, double rays, Hits& hits) const {
     const DirectLightParts whole = unblocked(hits, hit, lobe);
     if (is_mirror(materials_[hits.material[hit]].lobes()[lobe].shape)) {
         // One ray, that is all of its light.
         hits.reflect(hit, lobe, group_, whole.smooth * Rgb(quotient(of_hit.smooth.seen, of_hit.smooth.all)));
         return Rgb(0);
     }
-    hits.reflect(hit, lobe, group_, seen_part(whole.smooth, of_hit.smooth, of_material.kept_smooth));
-    hits.reflect(hit, lobe, group_, seen_part(whole.spots, of_hit.spots, of_material.kept_spots));
+    hits.reflect(hit, lobe, group_, seen_part(whole.smooth, of_hit.smooth, of_material.kept_smooth, rays));
+    hits.reflect(hit, lobe, group_, seen_part(whole.spots, of_hit.spots, of_material.kept_spots, rays));
     return deviation(whole.smooth, of_hit.smooth) + deviation(whole.spots, of_hit.spots);
-}
-
-Rgb ShadowedEnvironment::seen_part(const Rgb& unblocked, const RaySums& of_hit, const Vec3d& kept) const {
-    const double rays = samples_.shadow_rays;
-    return Rgb(of_hit.seen / rays + kept * (Vec3d(unblocked) - of_hit.all / rays));
 }
 
 }  // namespace shlight

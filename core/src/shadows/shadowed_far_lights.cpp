@@ -17,19 +17,20 @@ constexpr std::size_t kLeastQuestions = 8;
 
 }  // namespace
 
-ShadowedFarLights::ShadowedFarLights(const ShadowTracer& tracer, std::span<const MaterialLobes> materials,
+ShadowedFarLights::ShadowedFarLights(ShadowTracer& tracer, std::span<const MaterialLobes> materials,
                                      std::span<const Light> lights)
     : rays_(tracer), materials_(materials), lights_(lights) {}
 
 void ShadowedFarLights::add(const FarLightSum& far_light_sum, const ShadingPoints& points, const SampleRange& samples,
-                            std::span<const std::uint32_t> pixel_seeds, std::span<const float> brightness, Hits& hits) {
+                            const ShadowBudget& budget, std::size_t index, std::span<const std::uint32_t> pixel_seeds,
+                            Hits& hits) {
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
         const std::size_t hit_count = hits.pixel_begin[pixel + 1] - hits.pixel_begin[pixel];
-        const float own = far_light_sum.brightness(pixel);
+        const float own = budget.of_group(index, pixel);
         if (!(own > 0)) {
             continue;
         }
-        const float wanted = rays_by_share(own, brightness[pixel], samples) * static_cast<float>(hit_count);
+        const float wanted = budget.rays(own, pixel, samples) * static_cast<float>(hit_count);
         const std::size_t questions = std::max(static_cast<std::size_t>(std::ceil(wanted)), kLeastQuestions);
         rays_.start();
         if (samples.shadow_rays > 0) {

@@ -11,6 +11,7 @@
 #include "lobes/material_lobes.h"
 #include "shading/far_light_sum.h"
 #include "shading/shading_points.h"
+#include "shadows/shadow_budget.h"
 #include "shadows/shadow_policy.h"
 #include "shadows/shared_rays.h"
 #include "tracing/hits.h"
@@ -22,15 +23,12 @@ namespace shlight {
 class ShadowedFarLights {
   public:
     /// lights: of the picture.
-    ShadowedFarLights(const ShadowTracer& tracer, std::span<const MaterialLobes> materials,
-                      std::span<const Light> lights);
+    ShadowedFarLights(ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::span<const Light> lights);
 
-    /// Adds the sum to the hits' radiance. samples: what the hits are of; pixel_seeds: one per pixel;
-    /// brightness: of each pixel by these and all other lights, if nothing blocks. What few rays are off by is the same
-    /// at all hits of a pixel.
+    /// Adds the sum to the hits' radiance. index: of it in the budget; samples: what the hits are of; pixel_seeds: one
+    /// per pixel. What few rays are off by is the same at all hits of a pixel.
     void add(const FarLightSum& far_light_sum, const ShadingPoints& points, const SampleRange& samples,
-             std::span<const std::uint32_t> pixel_seeds, std::span<const float> brightness, Hits& hits);
-    std::uint64_t rays_traced() const { return rays_.rays_traced(); }
+             const ShadowBudget& budget, std::size_t index, std::span<const std::uint32_t> pixel_seeds, Hits& hits);
 
   private:
     void ask(const FarLightSum& far_light_sum, std::size_t questions, std::uint32_t seed, std::size_t pixel,

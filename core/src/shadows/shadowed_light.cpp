@@ -9,36 +9,37 @@
 #include "shlight/sampling.h"
 
 namespace shlight {
-ShadowedLight::ShadowedLight(const ShadowTracer& tracer, std::span<const MaterialLobes> materials,
+
+ShadowedLight::ShadowedLight(ShadowTracer& tracer, const ShadowBudget& budget, std::span<const MaterialLobes> materials,
                              std::size_t lobe_stride, const LightParts& parts)
     : tracer_(&tracer),
       materials_(materials),
       lobe_stride_(lobe_stride),
+      budget_(&budget),
       rays_(tracer, materials, lobe_stride),
-      brightness_(lobe_stride),
-      dim_(tracer, brightness_, materials, lobe_stride, parts) {}
+      dim_(tracer, budget, materials, lobe_stride, parts) {}
 
-void ShadowedLight::add(std::span<const Light* const> lights, const DirectLight& unshadowed, std::uint32_t first,
-                        const SampleRange& samples, std::span<const std::uint32_t> pixel_seeds, Hits& hits) {
+void ShadowedLight::add(std::span<const Light* const> lights, const DirectLight& unshadowed,
+                        const ShadingPoints& points, const SampleRange& samples, std::span<const std::uint32_t> seeds,
+                        Hits& hits) {
+    points_ = &points;
     samples_ = samples;
-    brightness_.expect(lights, unshadowed);
     dim_.start(lights, unshadowed, samples);
     for (std::size_t i = 0; i < lights.size(); ++i) {
         unshadowed_ = unshadowed.light(i);
         shadows_ = samples.shadow_rays > 0 && traits_of(*lights[i]).casts_shadows;
         group_ = traits_of(*lights[i]).group;
-        add_light(*lights[i], i, first + static_cast<std::uint32_t>(i), pixel_seeds, hits);
+        add_light(*lights[i], i, seeds, hits);
     }
-    dim_.add(*points_, first, pixel_seeds, hits);
+    dim_.add(points, seeds, hits);
 }
 
-void ShadowedLight::add_light(const Light& light, std::size_t index, std::uint32_t number,
-                              std::span<const std::uint32_t> pixel_seeds, Hits& hits) {
+void ShadowedLight::add_light(const Light& light, std::size_t index, std::span<const std::uint32_t> seeds, Hits& hits) {
     const std::optional<LightBounds> bounds = bounds_of(light);
     std::size_t asked = 0;  // the pixels before this one
     bool is_free = !shadows_;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
-        if (!(brightness_.of_pixel(index, pixel) > 0) || dim_.is_dim(index, pixel)) {
+        if (!(budget_->of_group(index, pixel) > 0) || dim_.is_dim(index, pixel)) {
             continue;
         }
         if (shadows_ && bounds && pixel >= asked) {
@@ -47,8 +48,8 @@ void ShadowedLight::add_light(const Light& light, std::size_t index, std::uint32
         }
         const LitRange range = find_lit(light, hits, pixel);
         if (range.size() > 0) {
-            const std::uint32_t seed = hash(pixel_seeds[pixel], number);
-            pixels_.push_back({range, pixel, samples_of(index, pixel), seed, is_free});
+            const std::uint32_t seed = hash(seeds[pixel], static_cast<std::uint32_t>(index));
+            pixels_.push_back({range, pixel, budget_->samples_of(index, pixel, samples_), seed, is_free});
         }
         if (lit_.hit.size() >= kHitsAtOnce) {
             shade_lit(light, hits);
@@ -65,14 +66,6 @@ std::size_t ShadowedLight::gather_starts(std::size_t pixel, const Hits& hits) {
         }
     }
     return pixel;
-}
-
-SampleRange ShadowedLight::samples_of(std::size_t index, std::size_t pixel) const {
-    const float share = rays_by_share(brightness_.of_pixel(index, pixel), brightness_.all(pixel), samples_);
-    SampleRange samples = samples_;
-    samples.shadow_rays = std::clamp(static_cast<std::uint32_t>(std::ceil(share)), std::min(samples_.shadow_rays, 1U),
-                                     samples_.shadow_rays);
-    return samples;
 }
 
 LitRange ShadowedLight::find_lit(const Light& light, const Hits& hits, std::size_t pixel) {

@@ -13,9 +13,9 @@
 
 #include "lobes/material_lobes.h"
 #include "shading/direct_light.h"
-#include "shading/light_brightness.h"
 #include "shading/shading_points.h"
 #include "shadows/dim_lights.h"
+#include "shadows/shadow_budget.h"
 #include "shadows/shadow_rays.h"
 #include "shlight/light.h"
 #include "tracing/hits.h"
@@ -26,27 +26,18 @@ namespace shlight {
 /// Keeps its memory from light to light; one per thread.
 class ShadowedLight {
   public:
-    ShadowedLight(const ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride,
-                  const LightParts& parts);
+    ShadowedLight(ShadowTracer& tracer, const ShadowBudget& budget, std::span<const MaterialLobes> materials,
+                  std::size_t lobe_stride, const LightParts& parts);
     ~ShadowedLight() = default;
     // The parts refer to each other.
     ShadowedLight(const ShadowedLight&) = delete;
     ShadowedLight& operator=(const ShadowedLight&) = delete;
 
-    /// To be called before the first light of other hits. points: theirs, which stay as they are until the last;
-    /// brightness: of each pixel by other lights, if nothing blocks.
-    void start(const ShadingPoints& points, std::span<const float> brightness) {
-        points_ = &points;
-        brightness_.start(points, brightness);
-    }
-    /// Adds lights to the hits' radiance and noise. unshadowed: of these; first: the number of the first of them, which
-    /// tells their rays from others'; samples: what the hits are of; pixel_seeds: one per pixel. A hit's radiance
-    /// counts as part of the sum over the hits of its pixel.
-    void add(std::span<const Light* const> lights, const DirectLight& unshadowed, std::uint32_t first,
-             const SampleRange& samples, std::span<const std::uint32_t> pixel_seeds, Hits& hits);
-    /// Of the pixels, by all lights that were added and those that were not, see start().
-    std::span<const float> brightness() const { return brightness_.all(); }
-    std::uint64_t rays_traced() const { return rays_.rays_traced() + dim_.rays_traced(); }
+    /// Adds lights, the first that the budget knows, to the hits' radiance and noise. unshadowed, points: of these;
+    /// samples: what the hits are of; seeds: one per group. A hit's radiance counts as part of the sum over the hits of
+    /// its group.
+    void add(std::span<const Light* const> lights, const DirectLight& unshadowed, const ShadingPoints& points,
+             const SampleRange& samples, std::span<const std::uint32_t> seeds, Hits& hits);
 
   private:
     /// A pixel's lit hits.
@@ -58,9 +49,7 @@ class ShadowedLight {
         bool is_free;  // without any ray
     };
 
-    void add_light(const Light& light, std::size_t index, std::uint32_t number,
-                   std::span<const std::uint32_t> pixel_seeds, Hits& hits);
-    SampleRange samples_of(std::size_t index, std::size_t pixel) const;
+    void add_light(const Light& light, std::size_t index, std::span<const std::uint32_t> seeds, Hits& hits);
 
     LitRange find_lit(const Light& light, const Hits& hits, std::size_t pixel);
     /// Adds the light to all that find_lit has found.
@@ -88,9 +77,10 @@ class ShadowedLight {
     };
     MaterialSums& sums_of(const Hits& hits, std::size_t hit, std::size_t lobe);
 
-    const ShadowTracer* tracer_;
+    ShadowTracer* tracer_;
     std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
+    const ShadowBudget* budget_;
     ShadowRays rays_;
 
     SampleRange samples_{};       // of the call of add()
@@ -98,7 +88,6 @@ class ShadowedLight {
     std::uint32_t group_ = 0;     // of that light
     LightRadiance unshadowed_{};  // of that light
     const ShadingPoints* points_ = nullptr;
-    LightBrightness brightness_;
     DimLights dim_;
     LitHits lit_;                              // of some pixels
     std::vector<LitPixel> pixels_;             // these

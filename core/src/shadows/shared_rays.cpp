@@ -18,7 +18,6 @@ void SharedRays::ask(const Rgb& value, std::uint32_t group, const Ray& ray) {
 void SharedRays::trace() {
     visible_.resize(rays_.size());
     tracer_->visibility(rays_, visible_);
-    rays_traced_ += rays_.size();
 }
 
 SharedRays::Share SharedRays::share(std::size_t begin, std::size_t end) const {

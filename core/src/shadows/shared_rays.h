@@ -31,7 +31,7 @@ class SharedRays {
         std::size_t pixel, begin, end;
     };
 
-    explicit SharedRays(const ShadowTracer& tracer) : tracer_(&tracer) {}
+    explicit SharedRays(ShadowTracer& tracer) : tracer_(&tracer) {}
 
     void start();
     /// value: what the question stands for if nothing blocks, ≥ 0; group: see LightTraits.
@@ -46,7 +46,6 @@ class SharedRays {
     /// Adds to the parts of a pixel what comes through of these that are `unblocked`: of each group as the questions
     /// for it tell, but together share.seen of all.
     void keep_apart(const Asked& asked, const Share& share, std::span<const Rgb> unblocked, KeptApart& apart);
-    std::uint64_t rays_traced() const { return rays_traced_; }
 
   private:
     static constexpr std::uint32_t kNoRay = std::numeric_limits<std::uint32_t>::max();
@@ -57,8 +56,7 @@ class SharedRays {
 
     Rgb visible(const Question& question) const { return question.ray == kNoRay ? Rgb(1) : visible_[question.ray]; }
 
-    const ShadowTracer* tracer_;
-    std::uint64_t rays_traced_ = 0;
+    ShadowTracer* tracer_;
     std::vector<Question> questions_;
     std::vector<Ray> rays_;
     std::vector<Rgb> visible_;
