@@ -92,9 +92,6 @@ struct Report {
     double cubature_share() const { return share(core.cubature_count); }
     double mirror_share() const { return share(core.mirror_count); }
     double over_tolerance() const { return share(core.over_tolerance); }
-    double summed_lights() const {
-        return core.hits == 0 ? 0.0 : static_cast<double>(core.summed_count) / static_cast<double>(core.hits);
-    }
     py::dict stage_seconds() const {
         py::dict seconds;
         for (std::size_t stage = 0; stage < kRenderStages.size(); ++stage) {
@@ -110,13 +107,13 @@ struct Report {
     }
 };
 
-using ReportState = std::tuple<std::array<std::uint64_t, kMaxOrder + 1>, std::array<std::uint64_t, 7>,
+using ReportState = std::tuple<std::array<std::uint64_t, kMaxOrder + 1>, std::array<std::uint64_t, 6>,
                                std::array<double, 2>, std::array<double, kRenderStages.size()>, double>;
 
 ReportState report_state(const Report& report) {
     const RenderReport& core = report.core;
     return {core.order_counts,
-            {core.cubature_count, core.mirror_count, core.over_tolerance, core.summed_count, core.hits,
+            {core.cubature_count, core.mirror_count, core.over_tolerance, core.hits,
              core.shadow_rays, core.passes},
             {core.noise, core.seconds},
             core.stage_seconds,
@@ -125,9 +122,9 @@ ReportState report_state(const Report& report) {
 
 Report report_from(const ReportState& state) {
     const auto& [order_counts, counts, floats, stage_seconds, build_seconds] = state;
-    const auto& [cubature, mirror, over_tolerance, summed, hits, shadow_rays, passes] = counts;
+    const auto& [cubature, mirror, over_tolerance, hits, shadow_rays, passes] = counts;
     const auto& [noise, seconds] = floats;
-    return {{order_counts, cubature, mirror, over_tolerance, summed, hits, shadow_rays,
+    return {{order_counts, cubature, mirror, over_tolerance, hits, shadow_rays,
              static_cast<std::uint32_t>(passes), noise, seconds, 0, stage_seconds},
             build_seconds};
 }
@@ -256,9 +253,6 @@ void bind_render(py::module_& m) {
         .def_property_readonly("mirror_share", &Report::mirror_share, "Share of what showed a light's own image.")
         .def_property_readonly("over_tolerance", &Report::over_tolerance,
                                "Share whose estimated error exceeds the tolerance.")
-        .def_property_readonly("summed_lights", &Report::summed_lights,
-                               "Lights that a hit had summed up from afar in place of being shaded one by one, on "
-                               "average; not part of the shares.")
         .def_property_readonly(
             "hits", [](const Report& r) { return r.core.hits; }, "Camera rays that met a surface.")
         .def_property_readonly(
@@ -276,7 +270,8 @@ void bind_render(py::module_& m) {
             "render_seconds", [](const Report& r) { return r.core.seconds; }, "Time for rendering.")
         .def_property_readonly("stage_seconds", &Report::stage_seconds,
                                "Time for each stage, summed over threads: camera rays; views, of the materials there; "
-                               "light, without shadows; shadows; pixels, adding up.")
+                               "light, without shadows; shadows, drawing and weighing; shadow rays, tracing; pixels, adding "
+                               "up.")
         .def("__repr__", &Report::repr);
     m.def(
         "cryptomatte_hash", [](const std::string& name) { return cryptomatte_hash(name); }, "name"_a);

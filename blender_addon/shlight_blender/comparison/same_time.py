@@ -42,7 +42,6 @@ class SameTimeWorker(Worker[Options]):
             "cubature_share": statistics.cubature_share,
             "mirror_share": statistics.mirror_share,
             "over_tolerance": statistics.over_tolerance,
-            "summed_lights": statistics.summed_lights,
             "hits": statistics.hits,
             "shadow_rays": statistics.shadow_rays,
             "operations": made.operations,

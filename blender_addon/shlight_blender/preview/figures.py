@@ -80,8 +80,6 @@ def _details(shlight: dict[str, Any]) -> list[str]:
             f"materials that vary: {len(shlight['operations'])}, at most {shlight['operations'][most]} operations a hit"
             f" ('{most}'); textures: {shlight['texture_bytes'] / 1e6:.0f} MB"
         )
-    if shlight["summed_lights"] > 0:
-        lines.append(f"dim lights summed up from afar, per hit: {shlight['summed_lights']:.0f}")
     if shlight["unsupported"]:
         lines.append("not supported by shlight:")
     for message in shlight["unsupported"]:

@@ -23,7 +23,6 @@ struct RenderReport {
     std::uint64_t cubature_count = 0;                         ///< … values of f·cos
     std::uint64_t mirror_count = 0;                           ///< … the light's own image
     std::uint64_t over_tolerance = 0;                         ///< of these, where the estimate exceeds the tolerance
-    std::uint64_t summed_count = 0;                           ///< camera hits × lights that were summed up instead
     std::uint64_t hits = 0;                                   ///< camera rays that met a surface
     std::uint64_t shadow_rays = 0;
     std::uint32_t passes = 0;  ///< over the picture or some of its pixels, that have ended

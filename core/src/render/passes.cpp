@@ -31,7 +31,6 @@ void add(RenderReport& sum, const RenderReport& part) {
                    sum.order_counts.begin(), std::plus<>());
     sum.cubature_count += part.cubature_count;
     sum.mirror_count += part.mirror_count;
-    sum.summed_count += part.summed_count;
     sum.hits += part.hits;
     sum.over_tolerance += part.over_tolerance;
     sum.shadow_rays += part.shadow_rays;

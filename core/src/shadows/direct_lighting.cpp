@@ -14,15 +14,14 @@ namespace {
 constexpr std::uint32_t kLightSeed = 0;
 constexpr std::uint32_t kEnvironmentSeed = 0xFFFFFFFFU;
 constexpr std::uint32_t kDeltaSeed = 0xFFFFFFFEU;
-constexpr std::uint32_t kFarLightSeed = 0xFFFFFFFDU;
 
 }  // namespace
 
 LightingScene::LightingScene(std::span<const Light> all, std::size_t extended_count, const Environment& sky,
                              std::uint32_t sky_group, std::vector<MaterialLobes> lobes, int order,
                              double error_tolerance)
-    : lights(all),
-      extended(all.first(extended_count)),
+    : extended(all.first(extended_count)),
+      extended_list(pointers_to(extended)),
       deltas(pointers_to(all.subspan(extended_count))),
       environment(&sky),
       environment_group(sky_group),
@@ -31,7 +30,6 @@ LightingScene::LightingScene(std::span<const Light> all, std::size_t extended_co
     for (const MaterialLobes& material : materials) {
         lobe_stride = std::max(lobe_stride, material.lobes().size());
     }
-    far = FarLights(lights, materials, order);
     if (!sky.is_black()) {
         environment_shading.emplace(sky, materials, lobe_stride, order, tolerance);
     }
@@ -41,10 +39,8 @@ DirectLighting::DirectLighting(const LightingScene& scene, const SceneRays& rays
                                const LightParts& parts)
     : scene_(&scene),
       tracer_(rays, transparent_bounces),
-      far_light_sum_(scene.far, scene.materials, scene.tolerance),
       unshadowed_(scene.lobe_stride),
       budget_(scene.lobe_stride),
-      shadowed_far_lights_(tracer_, scene.materials, scene.lights),
       shadowed_deltas_(tracer_, scene.materials, scene.lobe_stride),
       shadowed_(tracer_, budget_, scene.materials, scene.lobe_stride, parts),
       shadowed_environment_(tracer_, *scene.environment, scene.materials) {}
@@ -54,36 +50,16 @@ void DirectLighting::add(std::span<const std::uint32_t> seeds, const SampleRange
     StageClock clock(report);
     points_.assign(hits, scene_->materials, scene_->extended, scene_->deltas, scene_->tolerance);
     clock.end(RenderStage::views);
-    sort_lights();
-    find_unshadowed(hits, report);
+    find_unshadowed(report);
     clock.end(RenderStage::light);
     add_shadowed(seeds, samples, hits, report);
     clock.end(RenderStage::shadows);
     tracer_.move_to(report);
 }
 
-void DirectLighting::sort_lights() {
-    far_light_sum_.choose(points_);
-    lights_.clear();
-    delta_list_.clear();
-    deltas_.reset();
-    for (std::size_t i = 0; i < scene_->lights.size(); ++i) {
-        if (!far_light_sum_.holds(i)) {
-            (i < scene_->extended.size() ? lights_ : delta_list_).push_back(&scene_->lights[i]);
-        }
-    }
-    if (!far_light_sum_.empty()) {
-        deltas_.emplace(delta_list_);
-    }
-}
-
-void DirectLighting::find_unshadowed(const Hits& hits, RenderReport& report) {
-    unshadowed_.compute(points_, scene_->materials, lights_, scene_->light_error, report);
-    budget_.start(points_, lights_.size(), unshadowed_);
-    if (!far_light_sum_.empty()) {
-        report.summed_count += far_light_sum_.size() * hits.size();
-        sum_index_ = budget_.add([&](std::size_t point) { return brightness_of(far_light_sum_.radiance(point)); });
-    }
+void DirectLighting::find_unshadowed(RenderReport& report) {
+    unshadowed_.compute(points_, scene_->materials, scene_->extended_list, scene_->light_error, report);
+    budget_.start(points_, scene_->extended_list.size(), unshadowed_);
     if (scene_->environment_shading) {
         scene_->environment_shading->shade(points_, environment_, report);
         environment_index_ = budget_.add([&](std::size_t point) {
@@ -99,16 +75,11 @@ void DirectLighting::find_unshadowed(const Hits& hits, RenderReport& report) {
 
 void DirectLighting::add_shadowed(std::span<const std::uint32_t> seeds, const SampleRange& samples, Hits& hits,
                                   RenderReport& report) {
-    const DeltaLights& deltas = deltas_ ? *deltas_ : scene_->deltas;
-    if (deltas.padded_size() > 0) {
-        shadowed_deltas_.add(deltas, points_, samples.shadow_rays > 0, seeds_of(seeds, hash(kDeltaSeed, samples.first)),
-                             hits, budget_.all(), report);
+    if (scene_->deltas.padded_size() > 0) {
+        shadowed_deltas_.add(scene_->deltas, points_, samples.shadow_rays > 0,
+                             seeds_of(seeds, hash(kDeltaSeed, samples.first)), hits, budget_.all(), report);
     }
-    shadowed_.add(lights_, unshadowed_, points_, samples, seeds_of(seeds, kLightSeed), hits);
-    if (!far_light_sum_.empty()) {
-        shadowed_far_lights_.add(far_light_sum_, points_, samples, budget_, sum_index_,
-                                 seeds_of(seeds, hash(kFarLightSeed, samples.first)), hits);
-    }
+    shadowed_.add(scene_->extended_list, unshadowed_, points_, samples, seeds_of(seeds, kLightSeed), hits);
     if (scene_->environment_shading) {
         shadowed_environment_.add(*scene_->environment_shading, scene_->environment_group, environment_, points_,
                                   budget_, environment_index_, samples, seeds_of(seeds, kEnvironmentSeed), hits);

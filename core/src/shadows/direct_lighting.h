@@ -16,14 +16,11 @@
 #include "lights/delta_lights.h"
 #include "lobes/material_lobes.h"
 #include "shading/direct_light.h"
-#include "shading/far_light_sum.h"
-#include "shading/far_lights.h"
 #include "shading/shading_points.h"
 #include "shadows/shadow_budget.h"
 #include "shadows/shadow_policy.h"
 #include "shadows/shadowed_deltas.h"
 #include "shadows/shadowed_environment.h"
-#include "shadows/shadowed_far_lights.h"
 #include "shadows/shadowed_light.h"
 #include "shlight/environment.h"
 #include "shlight/light.h"
@@ -39,16 +36,15 @@ struct LightingScene {
     LightingScene(std::span<const Light> lights, std::size_t extended_count, const Environment& environment,
                   std::uint32_t environment_group, std::vector<MaterialLobes> lobes, int order, double tolerance);
 
-    std::span<const Light> lights;
     std::span<const Light> extended;
+    std::vector<const Light*> extended_list;  ///< the same
     DeltaLights deltas;
     const Environment* environment;
     std::uint32_t environment_group;
     std::vector<MaterialLobes> materials;
     std::size_t lobe_stride = 1;  ///< lobes of any material, at most
     double tolerance;
-    double light_error = 0;  ///< see DirectLight::compute
-    FarLights far;
+    double light_error = 0;                                 ///< see DirectLight::compute
     std::optional<EnvironmentShading> environment_shading;  ///< none: the environment is black
 };
 
@@ -68,10 +64,8 @@ class DirectLighting {
     void add(std::span<const std::uint32_t> seeds, const SampleRange& samples, Hits& hits, RenderReport& report);
 
   private:
-    /// Sums up the dimmest lights; the others are shaded one by one.
-    void sort_lights();
     /// Light of all kinds but sources without extent, whose shadows are found along with it.
-    void find_unshadowed(const Hits& hits, RenderReport& report);
+    void find_unshadowed(RenderReport& report);
     void add_shadowed(std::span<const std::uint32_t> seeds, const SampleRange& samples, Hits& hits,
                       RenderReport& report);
     /// One seed of each group for a kind of light.
@@ -80,15 +74,10 @@ class DirectLighting {
     const LightingScene* scene_;
     ShadowTracer tracer_;
     ShadingPoints points_;
-    FarLightSum far_light_sum_;
-    std::vector<const Light*> lights_;      // with extent, that are not summed up
-    std::vector<const Light*> delta_list_;  // likewise, without
-    std::optional<DeltaLights> deltas_;     // of these; none: all
     DirectLight unshadowed_;
     std::vector<DirectLightParts> environment_;
     ShadowBudget budget_;
-    std::size_t sum_index_ = 0, environment_index_ = 0;  // in the budget
-    ShadowedFarLights shadowed_far_lights_;
+    std::size_t environment_index_ = 0;  // in the budget
     ShadowedDeltas shadowed_deltas_;
     ShadowedLight shadowed_;
     ShadowedEnvironment shadowed_environment_;
