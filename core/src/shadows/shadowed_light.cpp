@@ -17,21 +17,21 @@ ShadowedLight::ShadowedLight(ShadowTracer& tracer, const ShadowBudget& budget, s
       lobe_stride_(lobe_stride),
       budget_(&budget),
       rays_(tracer, materials, lobe_stride),
-      dim_(tracer, budget, materials, lobe_stride, parts) {}
+      shared_(tracer, budget, materials, lobe_stride, parts) {}
 
 void ShadowedLight::add(std::span<const Light* const> lights, const DirectLight& unshadowed,
                         const ShadingPoints& points, const SampleRange& samples, std::span<const std::uint32_t> seeds,
                         Hits& hits) {
     points_ = &points;
     samples_ = samples;
-    dim_.start(lights, unshadowed, samples);
+    shared_.start(lights, unshadowed, samples);
     for (std::size_t i = 0; i < lights.size(); ++i) {
         unshadowed_ = unshadowed.light(i);
         shadows_ = samples.shadow_rays > 0 && traits_of(*lights[i]).casts_shadows;
         group_ = traits_of(*lights[i]).group;
         add_light(*lights[i], i, seeds, hits);
     }
-    dim_.add(points, seeds, hits);
+    shared_.add(points, seeds, hits);
 }
 
 void ShadowedLight::add_light(const Light& light, std::size_t index, std::span<const std::uint32_t> seeds, Hits& hits) {
@@ -39,7 +39,7 @@ void ShadowedLight::add_light(const Light& light, std::size_t index, std::span<c
     std::size_t asked = 0;  // the pixels before this one
     bool is_free = !shadows_;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
-        if (!(budget_->of_group(index, pixel) > 0) || dim_.is_dim(index, pixel)) {
+        if (!(budget_->of_group(index, pixel) > 0) || shared_.is_dim(index, pixel)) {
             continue;
         }
         if (shadows_ && bounds && pixel >= asked) {

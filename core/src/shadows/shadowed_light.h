@@ -14,9 +14,9 @@
 #include "lobes/material_lobes.h"
 #include "shading/direct_light.h"
 #include "shading/shading_points.h"
-#include "shadows/dim_lights.h"
 #include "shadows/shadow_budget.h"
 #include "shadows/shadow_rays.h"
+#include "shadows/shared_shadow_lights.h"
 #include "shlight/light.h"
 #include "tracing/hits.h"
 #include "tracing/shadow_tracer.h"
@@ -88,7 +88,7 @@ class ShadowedLight {
     std::uint32_t group_ = 0;     // of that light
     LightRadiance unshadowed_{};  // of that light
     const ShadingPoints* points_ = nullptr;
-    DimLights dim_;
+    SharedShadowLights shared_;
     LitHits lit_;                              // of some pixels
     std::vector<LitPixel> pixels_;             // these
     std::vector<RaySums> hit_sums_;            // of one lobe, by lit hit of a pixel

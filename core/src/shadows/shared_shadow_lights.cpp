@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "shadows/dim_lights.h"
+#include "shadows/shared_shadow_lights.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +9,13 @@
 
 #include "lights/whole_rectangle.h"
 #include "shadows/ray_start.h"
+#include "shadows/ray_sums.h"
 
 namespace shlight {
 namespace {
 
 /// Rays that are traced together, at least.
-constexpr std::size_t kQuestionsAtOnce = 512;
+constexpr std::size_t kRaysTogether = 512;
 /// What tells shared rays from those of one light.
 constexpr std::uint32_t kSharedSeed = 0;
 
@@ -37,7 +38,8 @@ FoundMember find(const Members& members, double share) {
 
 }  // namespace
 
-void DimLights::start(std::span<const Light* const> lights, const DirectLight& unshadowed, const SampleRange& samples) {
+void SharedShadowLights::start(std::span<const Light* const> lights, const DirectLight& unshadowed,
+                               const SampleRange& samples) {
     lights_ = lights;
     unshadowed_ = &unshadowed;
     samples_ = samples;
@@ -50,17 +52,15 @@ void DimLights::start(std::span<const Light* const> lights, const DirectLight& u
     }
 }
 
-bool DimLights::is_dim(std::size_t light, std::size_t pixel) const {
+bool SharedShadowLights::is_dim(std::size_t light, std::size_t pixel) const {
     return may_share_[light] != 0 && samples_.shadow_rays > 0 &&
            budget_->rays(budget_->of_group(light, pixel), pixel, samples_) < 1;
 }
 
-void DimLights::add(const ShadingPoints& points, std::span<const std::uint32_t> seeds, Hits& hits) {
+void SharedShadowLights::add(const ShadingPoints& points, std::span<const std::uint32_t> seeds, Hits& hits) {
     points_ = &points;
     radiance_.assign(points.size(), Rgb(0));
     apart_.reset(hits.pixel_count());
-    asked_.clear();
-    rays_.start();
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
         const float own = gather(pixel);
         if (dim_.empty()) {
@@ -68,16 +68,16 @@ void DimLights::add(const ShadingPoints& points, std::span<const std::uint32_t> 
         }
         const auto hit_count = static_cast<double>(hits.pixel_begin[pixel + 1] - hits.pixel_begin[pixel]);
         const double rays = budget_->rays(own, pixel, samples_) * hit_count;
-        ask(pixel, static_cast<std::size_t>(std::ceil(rays)), hash(hash(seeds[pixel], samples_.first), kSharedSeed),
-            hits);
-        if (rays_.count() >= kQuestionsAtOnce) {
+        request(pixel, static_cast<std::size_t>(std::ceil(rays)), hash(hash(seeds[pixel], samples_.first), kSharedSeed),
+                hits);
+        if (rays_.size() >= kRaysTogether) {
             finish(hits);
         }
     }
     finish(hits);
 }
 
-float DimLights::gather(std::size_t pixel) {
+float SharedShadowLights::gather(std::size_t pixel) {
     dim_.clear();
     float sum = 0;
     for (std::size_t i = 0; i < lights_.size(); ++i) {
@@ -90,17 +90,17 @@ float DimLights::gather(std::size_t pixel) {
     return sum;
 }
 
-void DimLights::ask(std::size_t pixel, std::size_t questions, std::uint32_t seed, const Hits& hits) {
-    const std::size_t before = rays_.count();
+void SharedShadowLights::request(std::size_t pixel, std::size_t count, std::uint32_t seed, const Hits& hits) {
+    const std::size_t before = rays_.size();
     const SobolSequence places(seed);
     std::size_t gathered = lights_.size();
-    for (std::size_t i = 0; i < questions; ++i) {
-        const glm::dvec2 point = lattice_point(i, questions, seed);
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::dvec2 point = lattice_point(i, count, seed);
         const FoundMember drawn = find(dim_, point.x);
         const std::size_t light = dim_[drawn.number].index;
         const LightRadiance unshadowed = unshadowed_->light(light);
         if (light != gathered) {
-            // The questions come light by light.
+            // The samples come light by light.
             gather_points(pixel, unshadowed);
             gathered = light;
         }
@@ -108,14 +108,14 @@ void DimLights::ask(std::size_t pixel, std::size_t questions, std::uint32_t seed
         const auto own_hits = points_->hits_of(dim_points_[at.number].index);
         const auto number = static_cast<std::size_t>(at.into * static_cast<double>(own_hits.size()));
         const std::size_t hit = own_hits[std::min(number, own_hits.size() - 1)];
-        ask_hit(*lights_[light], unshadowed, hit, places.point(static_cast<std::uint32_t>(i)),
-                at.length / static_cast<double>(own_hits.size()), hits);
+        request_from(hit, *lights_[light], unshadowed, places.point(static_cast<std::uint32_t>(i)),
+                     at.length / static_cast<double>(own_hits.size()), hits);
     }
-    asked_.push_back({pixel, before, rays_.count()});
+    pixels_.push_back({pixel, before, rays_.size()});
     add_unblocked(pixel);
 }
 
-void DimLights::gather_points(std::size_t pixel, const LightRadiance& unshadowed) {
+void SharedShadowLights::gather_points(std::size_t pixel, const LightRadiance& unshadowed) {
     dim_points_.clear();
     float sum = 0;
     for (std::size_t point = points_->pixel_begin[pixel]; point < points_->pixel_begin[pixel + 1]; ++point) {
@@ -127,8 +127,8 @@ void DimLights::gather_points(std::size_t pixel, const LightRadiance& unshadowed
     }
 }
 
-void DimLights::ask_hit(const Light& light, const LightRadiance& unshadowed, std::size_t hit, const glm::dvec2& place,
-                        double density, const Hits& hits) {
+void SharedShadowLights::request_from(std::size_t hit, const Light& light, const LightRadiance& unshadowed,
+                                      const glm::dvec2& place, double density, const Hits& hits) {
     const MaterialLobes& material = materials_[hits.material[hit]];
     const bool mirrors = std::any_of(material.lobes().begin(), material.lobes().end(),
                                      [](const Lobe& lobe) { return is_mirror(lobe.shape); });
@@ -140,9 +140,10 @@ void DimLights::ask_hit(const Light& light, const LightRadiance& unshadowed, std
         sampler_.reset(seen_);
     }
     const RayStart start(hits.frame[hit], hits.shadow_origin[hit], clearance(light, hits.frame[hit]));
-    const auto ask = [&](const Rgb& value, const Vec3d& direction, double distance) {
+    const auto push = [&](const Rgb& value, const Vec3d& direction, double distance) {
         if (value != Rgb(0)) {
-            rays_.ask(value, traits_of(light).group, start.towards(direction, distance));
+            shadow_samples_.push_back({value, traits_of(light).group});
+            rays_.push_back(start.towards(direction, distance));
         }
     };
     const LightSample sample = rectangle ? rectangle->sample(hits.frame[hit], place) : sampler_.sample(place);
@@ -159,15 +160,15 @@ void DimLights::ask_hit(const Light& light, const LightRadiance& unshadowed, std
         }
         if (is_mirror(shape)) {
             const std::optional<double> distance = sampler_.meets(mirrored(view));
-            ask(reflected * unshadowed.values[i], mirrored(view), distance.value_or(sample.distance));
+            push(reflected * unshadowed.values[i], mirrored(view), distance.value_or(sample.distance));
         } else {
             value += reflected * static_cast<float>(weight * lobe_value(shape, sample.direction, view));
         }
     }
-    ask(value, sample.direction, sample.distance);
+    push(value, sample.direction, sample.distance);
 }
 
-void DimLights::add_unblocked(std::size_t pixel) {
+void SharedShadowLights::add_unblocked(std::size_t pixel) {
     for (std::size_t point = points_->pixel_begin[pixel]; point < points_->pixel_begin[pixel + 1]; ++point) {
         for (const Member& member : dim_) {
             const LightRadiance unshadowed = unshadowed_->light(member.index);
@@ -186,23 +187,66 @@ void DimLights::add_unblocked(std::size_t pixel) {
     }
 }
 
-void DimLights::finish(Hits& hits) {
-    rays_.trace();
-    for (const SharedRays::Asked& asked : asked_) {
-        const SharedRays::Share share = rays_.share(asked.begin, asked.end);
+void SharedShadowLights::finish(Hits& hits) {
+    visible_.resize(rays_.size());
+    tracer_->visibility(rays_, visible_);
+    for (const PixelSamples& own : pixels_) {
+        const Share seen = share(own);
         Rgb sum(0);
-        for (std::size_t hit = hits.pixel_begin[asked.pixel]; hit < hits.pixel_begin[asked.pixel + 1]; ++hit) {
+        for (std::size_t hit = hits.pixel_begin[own.pixel]; hit < hits.pixel_begin[own.pixel + 1]; ++hit) {
             const Rgb& radiance = radiance_[points_->of_hit[hit]];
-            hits.radiance[hit] += share.seen * radiance;
+            hits.radiance[hit] += seen.seen * radiance;
             sum += radiance;
         }
         if (!apart_.empty()) {
-            rays_.keep_apart(asked, share, apart_.of(asked.pixel), hits.apart);
+            keep_apart(own, seen, apart_.of(own.pixel), hits.apart);
         }
-        hits.add_shared(asked.pixel, share.variance * sum * sum, share.obstructed);
+        hits.add_shared(own.pixel, seen.variance * sum * sum, seen.any_occluded);
     }
-    asked_.clear();
-    rays_.start();
+    pixels_.clear();
+    shadow_samples_.clear();
+    rays_.clear();
+}
+
+SharedShadowLights::Share SharedShadowLights::share(const PixelSamples& own) const {
+    Share share;
+    Vec3d all(0);
+    Vec3d seen(0);
+    for (std::size_t i = own.begin; i < own.end; ++i) {
+        all += shadow_samples_[i].value;
+        seen += shadow_samples_[i].value * visible_[i];
+        share.any_occluded = share.any_occluded || visible_[i] != Rgb(1);
+    }
+    share.seen = Rgb(quotient(seen, all));
+    for (std::size_t i = own.begin; i < own.end && share.any_occluded; ++i) {
+        const Vec3d off = quotient(Vec3d((visible_[i] - share.seen) * shadow_samples_[i].value), all);
+        share.variance += Rgb(off * off);
+    }
+    return share;
+}
+
+void SharedShadowLights::keep_apart(const PixelSamples& own, const Share& share, std::span<const Rgb> unblocked,
+                                    KeptApart& apart) {
+    const std::span<const Rgb> all = unblocked.subspan(kLightKinds);
+    group_seen_.assign(all.size(), Rgb(0));
+    group_sampled_.assign(all.size(), Rgb(0));
+    for (std::size_t i = own.begin; i < own.end; ++i) {
+        const ShadowSample& sample = shadow_samples_[i];
+        group_seen_[sample.light_group] += sample.value * visible_[i];
+        group_sampled_[sample.light_group] += sample.value;
+    }
+    Rgb sum(0);
+    for (std::size_t group = 0; group < all.size(); ++group) {
+        const Rgb known(glm::greaterThan(group_sampled_[group], Rgb(0)));
+        const Rgb seen(quotient(group_seen_[group], group_sampled_[group]));
+        group_seen_[group] = all[group] * glm::mix(share.seen, seen, known);
+        sum += share.seen * all[group];
+    }
+    complete(group_seen_, sum, 0);
+    const std::span<Rgb> parts = apart.of(own.pixel);
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        parts[part] += part < kLightKinds ? share.seen * unblocked[part] : group_seen_[part - kLightKinds];
+    }
 }
 
 }  // namespace shlight

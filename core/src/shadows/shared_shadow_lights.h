@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+//
+// Shadows of lights with extent that add too little to a group of hits for rays of their own. They share shadow
+// samples: each is one ray from one hit to one light, both drawn in proportion to what they add, and the visible share
+// of the samples is taken to be that of all these lights. A scene may have thousands of them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lights/light_sampling.h"
+#include "lights/seen_light.h"
+#include "lobes/material_lobes.h"
+#include "shading/direct_light.h"
+#include "shading/shading_points.h"
+#include "shadows/shadow_budget.h"
+#include "shadows/shadow_policy.h"
+#include "shlight/light.h"
+#include "shlight/ray_tracer.h"
+#include "shlight/sampling.h"
+#include "tracing/hits.h"
+#include "tracing/light_parts.h"
+#include "tracing/shadow_tracer.h"
+
+namespace shlight {
+
+/// Keeps its memory from light to light; one per thread.
+class SharedShadowLights {
+  public:
+    /// Refers to the budget and the parts.
+    SharedShadowLights(ShadowTracer& tracer, const ShadowBudget& budget, std::span<const MaterialLobes> materials,
+                       std::size_t lobe_stride, const LightParts& parts)
+        : tracer_(&tracer), budget_(&budget), materials_(materials), lobe_stride_(lobe_stride), apart_(parts) {}
+
+    /// To be called before the first of these lights, which the budget knows: they are referred to by number.
+    void start(std::span<const Light* const> lights, const DirectLight& unshadowed, const SampleRange& samples);
+    bool is_dim(std::size_t light, std::size_t pixel) const;
+    /// Adds the dim ones to the hits' radiance. points: of the hits; seeds: one per group.
+    void add(const ShadingPoints& points, std::span<const std::uint32_t> seeds, Hits& hits);
+
+  private:
+    /// A light of a pixel, or a point of it under a light: on a line as long as all of them are bright.
+    struct Member {
+        std::size_t index;
+        float up_to;
+    };
+
+    /// A ray from a hit to a light, and what it stands for if nothing blocks it, ≥ 0.
+    struct ShadowSample {
+        Rgb value;
+        std::uint32_t light_group;  // see LightTraits
+    };
+    /// The samples of a pixel: those numbered begin … end - 1.
+    struct PixelSamples {
+        std::size_t pixel, begin, end;
+    };
+    /// The visible share of a pixel's shared light in each colour channel, and the variance of that estimate.
+    struct Share {
+        Rgb seen{0}, variance{0};
+        bool any_occluded = false;
+    };
+
+    /// The dim lights of a pixel; returns their brightness.
+    float gather(std::size_t pixel);
+    /// Draws shadow samples for the gathered lights.
+    void request(std::size_t pixel, std::size_t count, std::uint32_t seed, const Hits& hits);
+    /// How bright points of a pixel are under a light.
+    void gather_points(std::size_t pixel, const LightRadiance& unshadowed);
+    /// density: how many samples a unit of brightness gets.
+    void request_from(std::size_t hit, const Light& light, const LightRadiance& unshadowed, const glm::dvec2& place,
+                      double density, const Hits& hits);
+    /// Adds the lights to the pixels that have samples.
+    void finish(Hits& hits);
+    Share share(const PixelSamples& own) const;
+    /// Adds to the parts of a pixel the visible part of these that are `unblocked`: of each group by the samples for
+    /// it, but together share.seen of all.
+    void keep_apart(const PixelSamples& own, const Share& share, std::span<const Rgb> unblocked, KeptApart& apart);
+    /// To what points of the pixel get if nothing blocks.
+    void add_unblocked(std::size_t pixel);
+
+    ShadowTracer* tracer_;
+    const ShadowBudget* budget_;
+    std::span<const MaterialLobes> materials_;
+    std::size_t lobe_stride_;
+    std::span<const Light* const> lights_;  // of the call of start()
+    const DirectLight* unshadowed_ = nullptr;
+    SampleRange samples_{};
+    std::vector<std::uint8_t> may_share_;    // by light
+    const ShadingPoints* points_ = nullptr;  // of the call of add()
+    std::vector<PixelSamples> pixels_;
+    std::vector<ShadowSample> shadow_samples_;
+    std::vector<Ray> rays_;                        // of each sample
+    std::vector<Rgb> visible_;                     // likewise
+    std::vector<Rgb> group_seen_, group_sampled_;  // of light groups
+    std::vector<Rgb> radiance_;                    // by shading point, of the dim lights if nothing blocks
+    KeptApart apart_;                              // of that, by pixel
+    std::vector<Member> dim_;                      // lights of a pixel
+    std::vector<Member> dim_points_;               // of a pixel, under one of them
+    SeenLight seen_;
+    LightSampler sampler_;
+};
+
+}  // namespace shlight
