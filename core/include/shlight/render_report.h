@@ -10,13 +10,13 @@
 
 namespace shlight {
 
-/// Where the time goes: tracing camera rays; materials at their views; light without shadows; shadow rays; and adding
-/// up what the rays of a pixel brought.
+/// Stages of rendering: tracing camera rays; materials at their views; unshadowed light; shadow rays; and summing the
+/// rays of pixels.
 enum class RenderStage { camera_rays, views, light, shadows, shadow_rays, pixels };
 inline constexpr std::array<const char*, 6> kRenderStages = {"camera rays", "views",       "light",
                                                              "shadows",     "shadow rays", "pixels"};
 
-/// What the picture took.
+/// Statistics of a rendered picture.
 struct RenderReport {
     // A lobe of a camera hit under a light that it sees is shaded once, by …
     std::array<std::uint64_t, kMaxOrder + 1> order_counts{};  ///< … harmonics of this order

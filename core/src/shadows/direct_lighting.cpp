@@ -10,7 +10,7 @@
 namespace shlight {
 namespace {
 
-/// What tells the shadow rays of a kind of light from others.
+/// Seeds that separate the shadow rays of different kinds of lights.
 constexpr std::uint32_t kLightSeed = 0;
 constexpr std::uint32_t kEnvironmentSeed = 0xFFFFFFFFU;
 constexpr std::uint32_t kDeltaSeed = 0xFFFFFFFEU;

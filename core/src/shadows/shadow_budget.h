@@ -42,17 +42,17 @@ class ShadowBudget {
     }
 
     float of_group(std::size_t light, std::size_t group) const { return own_[light * all_.size() + group]; }
-    /// Under a light of start(), over all hits of a point.
+    /// Brightness under a light of start(), over all hits of a point.
     float of_point(const LightRadiance& unshadowed, std::size_t point) const;
-    /// By all lights. Sources without extent, which are too many to be kept, are added by who finds them.
+    /// Brightness of each group from all lights. Callers add sources without extent, which are too many to be stored.
     std::span<float> all() { return all_; }
-    /// Shadow rays of each hit for a light alone, or for some that share them, of this brightness over the group. The
-    /// variance of n lights that share rays in proportion to what they add is that of one light with all the rays, or
-    /// less.
+    /// Shadow rays of each hit for a light with this brightness over the group, or for several lights that share them.
+    /// If n lights share rays in proportion to their brightness, the variance is at most that of one light with all the
+    /// rays.
     float rays(float own, std::size_t group, const SampleRange& samples) const {
         return kRaysByShare * static_cast<float>(samples.shadow_rays) * own / all_[group];
     }
-    /// The same of a light that has whole rays, one at least.
+    /// The same for a light with a whole number of rays, at least one.
     SampleRange samples_of(std::size_t light, std::size_t group, const SampleRange& samples) const;
 
   private:

@@ -36,7 +36,7 @@ struct SampleRange {
 /// If a pixel's light came from n equal lights, each would get this many times the n-th part of the shadow rays.
 inline constexpr float kRaysByShare = 4;
 
-/// Those of some lit hits that belong to a pixel: begin … end - 1.
+/// The lit hits begin … end - 1 of a pixel.
 struct LitRange {
     std::size_t begin, end;
     std::size_t size() const { return end - begin; }

@@ -68,8 +68,8 @@ class ShadowedLight {
     void shade_lobe(const LitRange& pixel, std::size_t lobe, Hits& hits);
     Rgb scaled_radiance(const Hits& hits, std::size_t hit, std::size_t lobe) const;
 
-    /// Of a pixel's hits that have a material, or of one where that is a mirror: what they reflect if nothing blocks,
-    /// and what their rays make of that.
+    /// Sums over a pixel's hits with one material, or over one hit of a mirror: unblocked radiance, and the sums of its
+    /// rays.
     struct MaterialSums {
         std::uint32_t material;
         std::size_t hit;

@@ -16,7 +16,7 @@ namespace {
 
 /// Rays that are traced together, at least.
 constexpr std::size_t kRaysTogether = 512;
-/// What tells shared rays from those of one light.
+/// Seed that separates shared rays from those of one light.
 constexpr std::uint32_t kSharedSeed = 0;
 
 struct FoundMember {

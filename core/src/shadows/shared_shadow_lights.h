@@ -74,8 +74,8 @@ class SharedShadowLights {
     /// Adds the lights to the pixels that have samples.
     void finish(Hits& hits);
     Share share(const PixelSamples& own) const;
-    /// Adds to the parts of a pixel the visible part of these that are `unblocked`: of each group by the samples for
-    /// it, but together share.seen of all.
+    /// Adds the visible share of `unblocked` to a pixel's parts: for each group according to its questions, scaled so
+    /// that all groups add up to share.seen.
     void keep_apart(const PixelSamples& own, const Share& share, std::span<const Rgb> unblocked, KeptApart& apart);
     /// To what points of the pixel get if nothing blocks.
     void add_unblocked(std::size_t pixel);
