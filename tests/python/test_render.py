@@ -47,7 +47,7 @@ def test_report_of_a_picture_that_is_not_square() -> None:
     assert report.hits == 32 * 16 * 2
     assert report.order_shares == {2: 1.0}
     assert report.over_tolerance == 0
-    assert report.shadow_rays == 0  # nothing lies between the light and the floor
+    assert report.shadow_rays == 16 * report.hits
     assert list(report.stage_seconds) == ["camera rays", "views", "light", "shadows", "shadow rays", "pixels"]
     assert all(seconds > 0 for seconds in report.stage_seconds.values())
     assert sum(report.stage_seconds.values()) <= 2 * report.render_seconds

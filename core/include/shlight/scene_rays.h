@@ -14,8 +14,6 @@
 
 namespace shlight {
 
-struct OccluderCluster;
-
 /// How much of the light a surface lets through.
 class SurfaceTransparency {
   public:
@@ -35,11 +33,10 @@ Ray behind(const Ray& ray, const RayHit& hit);
 /// Immutable; any number of threads may trace at a time.
 class SceneRays {
   public:
-    /// opaque, transparent: triangles of the same instances. clusters: bound all surfaces, in the world.
+    /// opaque, transparent: triangles of the same instances.
     /// Builds as RayTracer does, and throws what it throws. transparency must outlive this.
     SceneRays(std::vector<TracedInstance> opaque, std::vector<TracedInstance> transparent,
-              std::vector<OccluderCluster> clusters, const SurfaceTransparency& transparency,
-              const Stopped& stopped = {});
+              const SurfaceTransparency& transparency, const Stopped& stopped = {});
     /// Shares the trees of the same surfaces. transparency must outlive this.
     SceneRays(const SceneRays& same, const SurfaceTransparency& transparency);
     SceneRays(const SceneRays&) = delete;
@@ -57,12 +54,8 @@ class SceneRays {
     /// The same of surfaces that are not opaque alone.
     void transmittance(std::span<const Ray> rays, std::uint32_t transparent_bounces, std::span<Rgb> visible) const;
 
-    /// About all surfaces.
-    const class OccluderBoxes& boxes() const { return *boxes_; }
-
   private:
     std::shared_ptr<const RayTracer> opaque_, transparent_;  // null: there are no such surfaces
-    std::shared_ptr<const OccluderBoxes> boxes_;
     const SurfaceTransparency* transparency_;
 };
 

@@ -159,14 +159,9 @@ std::shared_ptr<const CompiledMesh> compile_mesh(const std::shared_ptr<const Sce
         before != nullptr && before->is_baked() == baked && (!baked || before->mesh->transforms == mesh->transforms);
     if (is_in_place) {
         compiled->world_vertices = before->world_vertices;
-        compiled->clusters = before->clusters;
-    } else {
-        if (baked) {
-            compiled->world_vertices =
-                std::make_shared<const std::vector<Vec3f>>(moved(shape.vertices, mesh->transforms.front()));
-        }
-        compiled->clusters = std::make_shared<const std::vector<OccluderCluster>>(
-            occluder_clusters(compiled->vertices(), shape.triangles));
+    } else if (baked) {
+        compiled->world_vertices =
+            std::make_shared<const std::vector<Vec3f>>(moved(shape.vertices, mesh->transforms.front()));
     }
     const std::vector<bool> transparent = transparent_materials(*mesh);
     if (is_in_place && transparent_materials(*before->mesh) == transparent) {

@@ -12,15 +12,13 @@
 #include "shlight/mesh.h"
 #include "shlight/parallel.h"
 #include "shlight/ray_tracer.h"
-#include "tracing/occluder_boxes.h"
 
 namespace shlight {
 
 struct CompiledMesh {
     std::shared_ptr<const SceneMesh> mesh;
-    std::shared_ptr<const std::vector<Vec3f>> world_vertices;      ///< null: rays meet the mesh in its own frame
-    std::shared_ptr<const TriangleTree> opaque, transparent;       ///< null: there are no such triangles
-    std::shared_ptr<const std::vector<OccluderCluster>> clusters;  ///< in the frame in which rays meet the mesh
+    std::shared_ptr<const std::vector<Vec3f>> world_vertices;  ///< null: rays meet the mesh in its own frame
+    std::shared_ptr<const TriangleTree> opaque, transparent;   ///< null: there are no such triangles
     std::vector<Light> lights;  ///< MeshLight::instance counts the instances of this mesh
 
     bool is_baked() const { return world_vertices != nullptr; }

@@ -137,18 +137,13 @@ void CompiledScene::Impl::add(std::shared_ptr<const CompiledMesh> compiled) {
 
 std::unique_ptr<const SceneRays> CompiledScene::Impl::built_rays(const Stopped& stopped) const {
     std::vector<TracedInstance> opaque, transparent;
-    std::vector<OccluderCluster> clusters;
     for (const Placement& placement : placed.placements()) {
         const CompiledMesh& mesh = *placed.meshes()[placement.mesh];
         const glm::dmat4 to_world = placement.baked ? glm::dmat4(1) : placement.to_world;
         opaque.push_back({mesh.opaque, to_world});
         transparent.push_back({mesh.transparent, to_world});
-        for (const OccluderCluster& cluster : *mesh.clusters) {
-            clusters.push_back(placement.baked ? cluster : placed_cluster(cluster, to_world));
-        }
     }
-    return std::make_unique<const SceneRays>(std::move(opaque), std::move(transparent), std::move(clusters),
-                                             transparency, stopped);
+    return std::make_unique<const SceneRays>(std::move(opaque), std::move(transparent), transparency, stopped);
 }
 
 void CompiledScene::Impl::Transparency::find(std::span<const Ray> rays, std::span<const RayHit> hits,

@@ -3,17 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
-#include "lights/light_bounds.h"
 #include "shlight/sampling.h"
 
 namespace shlight {
 
 ShadowedLight::ShadowedLight(ShadowTracer& tracer, const ShadowBudget& budget, std::span<const MaterialLobes> materials,
                              std::size_t lobe_stride, const LightParts& parts)
-    : tracer_(&tracer),
-      materials_(materials),
+    : materials_(materials),
       lobe_stride_(lobe_stride),
       budget_(&budget),
       rays_(tracer, materials, lobe_stride),
@@ -35,37 +32,20 @@ void ShadowedLight::add(std::span<const Light* const> lights, const DirectLight&
 }
 
 void ShadowedLight::add_light(const Light& light, std::size_t index, std::span<const std::uint32_t> seeds, Hits& hits) {
-    const std::optional<LightBounds> bounds = bounds_of(light);
-    std::size_t asked = 0;  // the pixels before this one
-    bool is_free = !shadows_;
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
         if (!(budget_->of_group(index, pixel) > 0) || shared_.is_dim(index, pixel)) {
             continue;
         }
-        if (shadows_ && bounds && pixel >= asked) {
-            asked = gather_starts(pixel, hits);
-            is_free = !tracer_->may_block(starts_, *bounds);
-        }
         const LitRange range = find_lit(light, hits, pixel);
         if (range.size() > 0) {
             const std::uint32_t seed = hash(seeds[pixel], static_cast<std::uint32_t>(index));
-            pixels_.push_back({range, pixel, budget_->samples_of(index, pixel, samples_), seed, is_free});
+            pixels_.push_back({range, pixel, budget_->samples_of(index, pixel, samples_), seed});
         }
         if (lit_.hit.size() >= kHitsAtOnce) {
             shade_lit(light, hits);
         }
     }
     shade_lit(light, hits);
-}
-
-std::size_t ShadowedLight::gather_starts(std::size_t pixel, const Hits& hits) {
-    starts_.clear();
-    for (; pixel < hits.pixel_count() && starts_.size() < kHitsAtOnce; ++pixel) {
-        for (std::size_t hit = hits.pixel_begin[pixel]; hit < hits.pixel_begin[pixel + 1]; ++hit) {
-            starts_.emplace_back(hits.shadow_origin[hit]);
-        }
-    }
-    return pixel;
 }
 
 LitRange ShadowedLight::find_lit(const Light& light, const Hits& hits, std::size_t pixel) {
@@ -86,14 +66,12 @@ LitRange ShadowedLight::find_lit(const Light& light, const Hits& hits, std::size
 
 void ShadowedLight::shade_lit(const Light& light, Hits& hits) {
     rays_.start(light, hits, lit_);
-    for (const LitPixel& pixel : pixels_) {
-        if (!pixel.is_free) {
-            rays_.draw(pixel.range, pixel.samples, pixel.seed);
-        }
+    for (const LitPixel& pixel : shadows_ ? std::span(pixels_) : std::span<const LitPixel>()) {
+        rays_.draw(pixel.range, pixel.samples, pixel.seed);
     }
     rays_.trace();
     for (const LitPixel& pixel : pixels_) {
-        if (pixel.is_free || !rays_.any_occluded(pixel.range)) {
+        if (!shadows_ || !rays_.any_occluded(pixel.range)) {
             shade_unblocked(pixel.range, hits);
         } else {
             hits.obstructed[pixel.pixel] = 1;

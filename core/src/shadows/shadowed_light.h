@@ -46,7 +46,6 @@ class ShadowedLight {
         std::size_t pixel;
         SampleRange samples;
         std::uint32_t seed;
-        bool is_free;  // without any ray
     };
 
     void add_light(const Light& light, std::size_t index, std::span<const std::uint32_t> seeds, Hits& hits);
@@ -61,8 +60,6 @@ class ShadowedLight {
     bool shines(std::size_t lit_index, std::size_t lobe) const {
         return lit_.shines[lit_index * lobe_stride_ + lobe] != 0;
     }
-    /// Pixels from this one on that may be asked together whether anything blocks a light; returns the next one.
-    std::size_t gather_starts(std::size_t pixel, const Hits& hits);
     void shade_unblocked(const LitRange& pixel, Hits& hits) const;
     void shade(const LitRange& pixel, Hits& hits);
     void shade_lobe(const LitRange& pixel, std::size_t lobe, Hits& hits);
@@ -77,7 +74,6 @@ class ShadowedLight {
     };
     MaterialSums& sums_of(const Hits& hits, std::size_t hit, std::size_t lobe);
 
-    ShadowTracer* tracer_;
     std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
     const ShadowBudget* budget_;
@@ -94,7 +90,6 @@ class ShadowedLight {
     std::vector<RaySums> hit_sums_;            // of one lobe, by lit hit of a pixel
     std::vector<MaterialSums> material_sums_;  // likewise
     std::vector<Rgb> deviation_;               // of the light by lit hit of a pixel, from its few rays
-    std::vector<Vec3f> starts_;                // of the shadow rays of some pixels
 };
 
 }  // namespace shlight

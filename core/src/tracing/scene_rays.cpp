@@ -6,8 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "tracing/occluder_boxes.h"
-
 namespace shlight {
 namespace {
 
@@ -24,15 +22,13 @@ std::shared_ptr<const RayTracer> tracer_of(std::vector<TracedInstance> instances
 }  // namespace
 
 SceneRays::SceneRays(std::vector<TracedInstance> opaque, std::vector<TracedInstance> transparent,
-                     std::vector<OccluderCluster> clusters, const SurfaceTransparency& transparency,
-                     const Stopped& stopped)
+                     const SurfaceTransparency& transparency, const Stopped& stopped)
     : opaque_(tracer_of(std::move(opaque), stopped)),
       transparent_(tracer_of(std::move(transparent), stopped)),
-      boxes_(std::make_shared<const OccluderBoxes>(std::move(clusters))),
       transparency_(&transparency) {}
 
 SceneRays::SceneRays(const SceneRays& same, const SurfaceTransparency& transparency)
-    : opaque_(same.opaque_), transparent_(same.transparent_), boxes_(same.boxes_), transparency_(&transparency) {}
+    : opaque_(same.opaque_), transparent_(same.transparent_), transparency_(&transparency) {}
 
 SceneRays::~SceneRays() = default;
 

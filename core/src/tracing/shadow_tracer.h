@@ -9,7 +9,6 @@
 
 #include "shlight/render_report.h"
 #include "shlight/scene_rays.h"
-#include "tracing/occluder_boxes.h"
 
 namespace shlight {
 
@@ -21,10 +20,6 @@ class ShadowTracer {
 
     /// Whether the share of light along a ray is 0 or 1 everywhere.
     bool is_opaque() const { return rays_->is_opaque(); }
-    /// See OccluderBoxes.
-    bool may_block(std::span<const Vec3f> points, const LightBounds& light) const {
-        return rays_->boxes().may_block(points, light);
-    }
     void visibility(std::span<const Ray> rays, std::span<Rgb> visible) {
         traced_ += rays.size();
         timed([&] { rays_->visibility(rays, transparent_bounces_, visible); });
