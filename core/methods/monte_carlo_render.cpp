@@ -14,7 +14,7 @@
 #include "lights/seen_light.h"
 #include "random_directions.h"
 #include "random_numbers.h"
-#include "shadows/ray_start.h"
+#include "shadows/shadow_ray_spawner.h"
 #include "shlight/render.h"
 #include "surface_reflection.h"
 #include "tracing/hits.h"
@@ -236,7 +236,7 @@ void Worker::shade(std::size_t hit) {
 /// Environment light, sampled by the material only, because light from everywhere has no better density.
 void Worker::shade_environment(std::size_t hit, const RandomDirection& reflected) {
     const ShadingFrame& frame = hits_.frame[hit];
-    const RayStart start(frame, hits_.shadow_origin[hit], Vec3d(0));
+    const ShadowRaySpawner start(frame, hits_.shadow_origin[hit], Vec3d(0));
     const Environment& environment = picture_->scene.environment();
     if (reflected.density > 0) {
         push(start.along(reflected.direction),
@@ -284,7 +284,7 @@ void Worker::push(const Light& light, std::size_t hit, const Vec3d& direction, d
         return;
     }
     const ShadingFrame& frame = hits_.frame[hit];
-    const RayStart start(frame, hits_.shadow_origin[hit], clearance(light, frame));
+    const ShadowRaySpawner start(frame, hits_.shadow_origin[hit], target_offset(light, frame));
     push(start.towards(direction, distance), radiance, hit);
 }
 

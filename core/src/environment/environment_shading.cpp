@@ -324,7 +324,7 @@ class EnvironmentShading::Harmonics {
     std::vector<float> basis_;
 };
 
-void EnvironmentShading::shade(const ShadingPoints& points, std::vector<DirectLightParts>& values,
+void EnvironmentShading::shade(const ShadingPoints& points, std::vector<UnshadowedParts>& values,
                                RenderReport& report) const {
     values.assign(lobe_stride_ * points.size(), {});
     if (environment_->map() == nullptr) {
@@ -334,7 +334,7 @@ void EnvironmentShading::shade(const ShadingPoints& points, std::vector<DirectLi
     }
 }
 
-void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<DirectLightParts> values,
+void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<UnshadowedParts> values,
                                         RenderReport& report) const {
     for (std::size_t point = 0; point < points.size(); ++point) {
         const auto lobes = materials_[points.material[point]].lobes();
@@ -350,7 +350,7 @@ void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<D
 }
 
 template <class Function>
-void EnvironmentShading::for_each_lobe(const ShadingPoints& points, std::span<DirectLightParts> values,
+void EnvironmentShading::for_each_lobe(const ShadingPoints& points, std::span<UnshadowedParts> values,
                                        const Function& function) const {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Point point(*environment_->map(), points.frame[i], points.cos_theta_o[i]);
@@ -360,11 +360,11 @@ void EnvironmentShading::for_each_lobe(const ShadingPoints& points, std::span<Di
     }
 }
 
-void EnvironmentShading::shade_map(const ShadingPoints& points, std::span<DirectLightParts> values,
+void EnvironmentShading::shade_map(const ShadingPoints& points, std::span<UnshadowedParts> values,
                                    RenderReport& report) const {
     const EnvironmentMap& map = *environment_->map();
     Harmonics harmonics(map.coefficients.channels);
-    for_each_lobe(points, values, [&](std::size_t i, std::size_t lobe, const Point& point, DirectLightParts& value) {
+    for_each_lobe(points, values, [&](std::size_t i, std::size_t lobe, const Point& point, UnshadowedParts& value) {
         const std::uint32_t material = points.material[i];
         const float width = points.widths(i)[lobe];
         if (is_mirror(materials_[material].shape(lobe, width))) return;
@@ -377,7 +377,7 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, std::span<Direct
         }
     });
     harmonics.finish();
-    for_each_lobe(points, values, [&](std::size_t i, std::size_t lobe, const Point& point, DirectLightParts& value) {
+    for_each_lobe(points, values, [&](std::size_t i, std::size_t lobe, const Point& point, UnshadowedParts& value) {
         const std::uint32_t material = points.material[i];
         const float width = points.widths(i)[lobe];
         const LobeShape shape = materials_[material].shape(lobe, width);

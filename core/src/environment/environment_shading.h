@@ -24,7 +24,7 @@
 namespace shlight {
 
 /// Radiance that a lobe reflects, in parts with separate shadows: a sun is hidden or not, independently of the sky.
-struct DirectLightParts {
+struct UnshadowedParts {
     Rgb smooth{0}, spots{0};
 };
 
@@ -39,7 +39,7 @@ class EnvironmentShading {
     ~EnvironmentShading();
 
     /// values: lobe_stride × points; adds to the report what the points' hits take.
-    void shade(const ShadingPoints& points, std::vector<DirectLightParts>& values, RenderReport& report) const;
+    void shade(const ShadingPoints& points, std::vector<UnshadowedParts>& values, RenderReport& report) const;
     /// Whether spots are a part of their own for a lobe of this width.
     bool splits(std::size_t material, std::size_t lobe, float width) const;
 
@@ -68,11 +68,11 @@ class EnvironmentShading {
     /// Whether spots, too, have an extent beside the lobe.
     bool sees_texels(const LobeShape& shape) const;
     PlanMix plans(std::size_t material, std::size_t lobe, float width) const;
-    void shade_constant(const ShadingPoints& points, std::span<DirectLightParts> values, RenderReport& report) const;
-    void shade_map(const ShadingPoints& points, std::span<DirectLightParts> values, RenderReport& report) const;
+    void shade_constant(const ShadingPoints& points, std::span<UnshadowedParts> values, RenderReport& report) const;
+    void shade_map(const ShadingPoints& points, std::span<UnshadowedParts> values, RenderReport& report) const;
     /// function(point, lobe, Point, value)
     template <class Function>
-    void for_each_lobe(const ShadingPoints& points, std::span<DirectLightParts> values, const Function& function) const;
+    void for_each_lobe(const ShadingPoints& points, std::span<UnshadowedParts> values, const Function& function) const;
     static Choice choose(const Plan& plan, double cos_theta_o);
     static Choice choose(const PlanMix& mix, double cos_theta_o);
 

@@ -84,7 +84,7 @@ class CameraSurfaces {
     /// Destination of the light of a call's rays.
     struct Sink {
         std::vector<RayLight>& light;  // of each ray
-        KeptApart& apart;
+        LightGroupBuffer& apart;
         std::size_t rays_per_pixel;
     };
     void meet(std::span<const CameraRay> rays, std::uint32_t depth, const Sink& sink);

@@ -12,7 +12,7 @@
 namespace shlight {
 namespace {
 
-/// Values of DirectLight that a batch should hold: as many as fit the cache.
+/// Values of UnshadowedRadiance that a batch should hold: as many as fit the cache.
 constexpr std::size_t kValues = std::size_t{1} << 21;
 /// Camera rays of a batch: enough for long batches, few enough for the cache.
 constexpr std::size_t kMostBatchSamples = 4096;

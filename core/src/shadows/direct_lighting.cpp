@@ -65,7 +65,7 @@ void DirectLighting::find_unshadowed(RenderReport& report) {
         environment_index_ = budget_.add([&](std::size_t point) {
             float sum = 0;
             for (std::size_t lobe = 0; lobe < scene_->lobe_stride; ++lobe) {
-                const DirectLightParts& own = environment_[lobe * points_.size() + point];
+                const UnshadowedParts& own = environment_[lobe * points_.size() + point];
                 sum += brightness_of(points_.weight(point, lobe) * (own.smooth + own.spots));
             }
             return sum;

@@ -15,8 +15,8 @@
 #include "environment/environment_shading.h"
 #include "lights/delta_lights.h"
 #include "lobes/material_lobes.h"
-#include "shading/direct_light.h"
 #include "shading/shading_points.h"
+#include "shading/unshadowed_radiance.h"
 #include "shadows/shadow_budget.h"
 #include "shadows/shadow_policy.h"
 #include "shadows/shadowed_deltas.h"
@@ -44,7 +44,7 @@ struct LightingScene {
     std::vector<MaterialLobes> materials;
     std::size_t lobe_stride = 1;  ///< lobes of any material, at most
     double tolerance;
-    double light_error = 0;                                 ///< see DirectLight::compute
+    double light_error = 0;                                 ///< see UnshadowedRadiance::compute
     std::optional<EnvironmentShading> environment_shading;  ///< none: the environment is black
 };
 
@@ -74,8 +74,8 @@ class DirectLighting {
     const LightingScene* scene_;
     ShadowTracer tracer_;
     ShadingPoints points_;
-    DirectLight unshadowed_;
-    std::vector<DirectLightParts> environment_;
+    UnshadowedRadiance unshadowed_;
+    std::vector<UnshadowedParts> environment_;
     ShadowBudget budget_;
     std::size_t environment_index_ = 0;  // in the budget
     ShadowedDeltas shadowed_deltas_;

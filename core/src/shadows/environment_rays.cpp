@@ -39,7 +39,7 @@ void EnvironmentRays::start(const Hits& hits, std::span<const std::size_t> lit) 
     lit_ = lit;
     directions_.clear();
     rays_.clear();
-    asked_.clear();
+    lookups_.clear();
     runs_.assign(lit.size(), {});
 }
 
@@ -60,7 +60,7 @@ void EnvironmentRays::draw(const LitRange& pixel, const SampleRange& samples, st
 
 void EnvironmentRays::draw_hit(std::size_t lit_index, std::uint32_t rays) {
     const std::size_t hit = lit_[lit_index];
-    const RayStart start(hits_->frame[hit], hits_->shadow_origin[hit], Vec3d(0));
+    const ShadowRaySpawner start(hits_->frame[hit], hits_->shadow_origin[hit], Vec3d(0));
     find_shapes(hit);
     Run& own = runs_[lit_index];
     own.begin = directions_.size();
@@ -77,7 +77,7 @@ void EnvironmentRays::draw_hit(std::size_t lit_index, std::uint32_t rays) {
     own.end = directions_.size();
 }
 
-void EnvironmentRays::draw_set(const RayStart& start, std::size_t hit, std::size_t set, std::uint32_t rays) {
+void EnvironmentRays::draw_set(const ShadowRaySpawner& start, std::size_t hit, std::size_t set, std::uint32_t rays) {
     const PixelPoints::Square square = points_.of(set, hits_->sample[hit]);
     alignas(64) std::array<float, kRaysAtOnce> x, y, z;  // all are written before they are read
     for (std::uint32_t first = 0; first < rays; first += kRaysAtOnce) {
@@ -90,7 +90,7 @@ void EnvironmentRays::draw_set(const RayStart& start, std::size_t hit, std::size
     }
 }
 
-void EnvironmentRays::draw_map(const RayStart& start, std::size_t hit, std::uint32_t rays) {
+void EnvironmentRays::draw_map(const ShadowRaySpawner& start, std::size_t hit, std::uint32_t rays) {
     const EnvironmentMap& map = *environment_->map();
     const ShadingFrame& frame = hits_->frame[hit];
     const glm::dmat3 to_map(map.to_map(frame.x), map.to_map(frame.y), map.to_map(frame.z));
@@ -100,7 +100,7 @@ void EnvironmentRays::draw_map(const RayStart& start, std::size_t hit, std::uint
     }
 }
 
-void EnvironmentRays::push(const RayStart& start, const Vec3d& direction) {
+void EnvironmentRays::push(const ShadowRaySpawner& start, const Vec3d& direction) {
     if (direction.z > 0) {
         const Ray ray = start.along(direction);
         directions_.push_back(ray.direction);
@@ -138,42 +138,42 @@ void EnvironmentRays::find_weights() {
         return;
     }
     const Rgb radiance = environment_->radiance(Vec3d(0, 0, 1));
-    for (const Asked& asked : asked_) {
-        weights_[asked.ray] = {radiance / asked.lobe_density, Rgb(0)};
+    for (const Lookup& lookup : lookups_) {
+        weights_[lookup.ray] = {radiance / lookup.lobe_density, Rgb(0)};
     }
 }
 
 void EnvironmentRays::weigh_hit(std::size_t lit_index) {
     const std::size_t hit = lit_[lit_index];
     const EnvironmentMap* map = environment_->map();
-    const auto ask = [&](std::size_t ray, float density, bool mirror) {
+    const auto add = [&](std::size_t ray, float density, bool mirror) {
         const Vec3d direction(directions_[ray]);
-        asked_.push_back({ray, Vec3f(map != nullptr ? map->to_map(direction) : direction), density, mirror});
+        lookups_.push_back({ray, Vec3f(map != nullptr ? map->to_map(direction) : direction), density, mirror});
     };
     gather(lit_index);
-    const std::size_t first = asked_.size();
+    const std::size_t first = lookups_.size();
     for (std::size_t i = 0; i < weighed_.size(); ++i) {
-        ask(weighed_.number(i), 0, false);
+        add(weighed_.number(i), 0, false);
     }
     find_shapes(hit);
     for (const LobeShape& shape : shapes_) {
         weighed_.weigh(shape, hits_->frame[hit], hits_->view(hit), true);
         for (std::size_t i = 0; i < weighed_.size(); ++i) {
-            asked_[first + i].lobe_density += weighed_.density(i);
+            lookups_[first + i].lobe_density += weighed_.density(i);
         }
     }
     for (std::size_t ray = runs_[lit_index].mirror; ray < runs_[lit_index].end; ++ray) {
-        ask(ray, 1, true);
+        add(ray, 1, true);
     }
 }
 
 void EnvironmentRays::weigh_map(const EnvironmentMap& map) {
     std::array<std::array<float, kLookedUpAtOnce>, 10> lanes{};
     auto& [x, y, z, red, green, blue, spot_red, spot_green, spot_blue, density] = lanes;
-    for (std::size_t first = 0; first < asked_.size(); first += kLookedUpAtOnce) {
-        const std::size_t count = std::min(asked_.size() - first, kLookedUpAtOnce);
+    for (std::size_t first = 0; first < lookups_.size(); first += kLookedUpAtOnce) {
+        const std::size_t count = std::min(lookups_.size() - first, kLookedUpAtOnce);
         for (std::size_t i = 0; i < count; ++i) {
-            const Vec3f& direction = asked_[first + i].direction;
+            const Vec3f& direction = lookups_[first + i].direction;
             x[i] = direction.x;
             y[i] = direction.y;
             z[i] = direction.z;
@@ -183,10 +183,10 @@ void EnvironmentRays::weigh_map(const EnvironmentMap& map) {
                  {spot_red.data(), spot_green.data(), spot_blue.data()},
                  density.data()});
         for (std::size_t i = 0; i < count; ++i) {
-            const Asked& asked = asked_[first + i];
-            const float weight = 1 / (asked.lobe_density + (asked.mirror ? 0 : density[i]));
-            weights_[asked.ray] = {weight * Rgb(red[i], green[i], blue[i]),
-                                   weight * Rgb(spot_red[i], spot_green[i], spot_blue[i])};
+            const Lookup& lookup = lookups_[first + i];
+            const float weight = 1 / (lookup.lobe_density + (lookup.mirror ? 0 : density[i]));
+            weights_[lookup.ray] = {weight * Rgb(red[i], green[i], blue[i]),
+                                    weight * Rgb(spot_red[i], spot_green[i], spot_blue[i])};
         }
     }
 }

@@ -15,9 +15,9 @@
 
 #include "lobes/material_lobes.h"
 #include "shadows/pixel_points.h"
-#include "shadows/ray_start.h"
 #include "shadows/ray_sums.h"
 #include "shadows/shadow_policy.h"
+#include "shadows/shadow_ray_spawner.h"
 #include "shadows/weighed_rays.h"
 #include "shlight/environment.h"
 #include "tracing/hits.h"
@@ -66,7 +66,7 @@ class EnvironmentRays {
         Rgb smooth, spots;
     };
     /// A ray that is weighed.
-    struct Asked {
+    struct Lookup {
         std::size_t ray;
         Vec3f direction;     // in the frame of the picture
         float lobe_density;  // of all sets but the picture's; 1 for a mirror
@@ -76,13 +76,13 @@ class EnvironmentRays {
     /// Finds the shapes of a hit's sets, in shapes_.
     void find_shapes(std::size_t hit);
     void draw_hit(std::size_t lit_index, std::uint32_t rays);
-    void draw_set(const RayStart& start, std::size_t hit, std::size_t set, std::uint32_t rays);
+    void draw_set(const ShadowRaySpawner& start, std::size_t hit, std::size_t set, std::uint32_t rays);
     /// Draws rays in proportion to the picture's luminance.
-    void draw_map(const RayStart& start, std::size_t hit, std::uint32_t rays);
+    void draw_map(const ShadowRaySpawner& start, std::size_t hit, std::uint32_t rays);
     /// A hit's rays but for the mirror's, in weighed_.
     void gather(std::size_t lit_index);
     /// Adds a ray, unless the direction is below the horizon.
-    void push(const RayStart& start, const Vec3d& direction);
+    void push(const ShadowRaySpawner& start, const Vec3d& direction);
     void weigh_hit(std::size_t lit_index);
     void weigh_map(const struct EnvironmentMap& map);
 
@@ -101,7 +101,7 @@ class EnvironmentRays {
     std::vector<Ray> rays_;
     std::vector<Rgb> visible_;     // once traced
     std::vector<Weight> weights_;  // of those weighed
-    std::vector<Asked> asked_;
+    std::vector<Lookup> lookups_;
     WeighedRays weighed_;
 };
 

@@ -6,7 +6,7 @@
 
 namespace shlight {
 
-void ShadowBudget::start(const ShadingPoints& points, std::size_t light_count, const DirectLight& unshadowed) {
+void ShadowBudget::start(const ShadingPoints& points, std::size_t light_count, const UnshadowedRadiance& unshadowed) {
     points_ = &points;
     const std::size_t groups = points.pixel_begin.size() - 1;
     all_.assign(groups, 0.0F);

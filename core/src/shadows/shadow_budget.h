@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "shading/direct_light.h"
 #include "shading/shading_points.h"
+#include "shading/unshadowed_radiance.h"
 #include "shadows/shadow_policy.h"
 #include "shlight/light.h"
 
@@ -26,7 +26,7 @@ class ShadowBudget {
     explicit ShadowBudget(std::size_t lobe_stride) : lobe_stride_(lobe_stride) {}
 
     /// Forgets all lights but these. points: stay as they are until the next call.
-    void start(const ShadingPoints& points, std::size_t light_count, const DirectLight& unshadowed);
+    void start(const ShadingPoints& points, std::size_t light_count, const UnshadowedRadiance& unshadowed);
     /// Counts another light in; returns its index. own(point): its brightness over one hit of a point.
     template <class Own>
     std::size_t add(const Own& own) {

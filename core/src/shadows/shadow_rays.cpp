@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "emitters/face_radiance.h"
-#include "shadows/ray_start.h"
+#include "shadows/shadow_ray_spawner.h"
 
 namespace shlight {
 namespace {
@@ -39,7 +39,7 @@ class ShadowRays::Drawing {
           view(hits.view(hit)),
           frame(&hits.frame[hit]),
           profile(&light_profile),
-          start(hits.frame[hit], hits.shadow_origin[hit], clearance(light, hits.frame[hit])),
+          start(hits.frame[hit], hits.shadow_origin[hit], target_offset(light, hits.frame[hit])),
           rays(rays_per_set),
           sample(hits.sample[hit]) {}
 
@@ -48,7 +48,7 @@ class ShadowRays::Drawing {
     Vec3d view;
     const ShadingFrame* frame;
     const ProfileView* profile;
-    RayStart start;
+    ShadowRaySpawner start;
     std::uint32_t rays;  // of each set, but mirrors have one
     std::uint32_t sample;
 };

@@ -59,7 +59,7 @@ float ShadowedDeltas::add_pixel(const ShadingPoints& points, const PixelRange& p
             find_values(points, pixel, range);
         }
         report.cubature_count += count_values(points, pixel, range);
-        ask(points, pixel, range, all, hits);
+        request(points, pixel, range, all, hits);
         trace();
         find_shares(points, pixel, range, hits);
         add_shares(points, pixel, range, hits);
@@ -91,53 +91,53 @@ void ShadowedDeltas::find_values(const ShadingPoints& points, const PixelRange& 
     }
 }
 
-void ShadowedDeltas::ask(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, float all,
-                         const Hits& hits) {
-    asked_.clear();
-    questions_.clear();
+void ShadowedDeltas::request(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, float all,
+                             const Hits& hits) {
+    sampled_.clear();
+    samples_.clear();
     rays_.clear();
     for (std::size_t light = 0; light < range.count; ++light) {
         if (!(brightness_[light] > 0)) continue;
-        const std::size_t rays = hits_to_ask(brightness_[light], all, pixel.hit_count);
+        const std::size_t rays = hits_to_sample(brightness_[light], all, pixel.hit_count);
         if (rays == pixel.hit_count) {
-            ask_each(points, pixel, range, light, hits);
+            request_all(points, pixel, range, light, hits);
         } else {
-            ask_some(points, pixel, range, light, rays, hits);
+            request_some(points, pixel, range, light, rays, hits);
         }
-        asked_.push_back({light, questions_.size(), rays == pixel.hit_count});
+        sampled_.push_back({light, samples_.size(), rays == pixel.hit_count});
     }
 }
 
-void ShadowedDeltas::ask_each(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range,
-                              std::size_t light, const Hits& hits) {
+void ShadowedDeltas::request_all(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range,
+                                 std::size_t light, const Hits& hits) {
     for (std::size_t p = 0; p < pixel.point_count(); ++p) {
         if (point_brightness_[p * range.count + light] > 0) {
             for (const std::size_t hit : points.hits_of(pixel.first_point + p)) {
-                question(range, light, hit, hits);
+                add_sample(range, light, hit, hits);
             }
         }
     }
 }
 
-void ShadowedDeltas::ask_some(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range,
-                              std::size_t light, std::size_t rays, const Hits& hits) {
+void ShadowedDeltas::request_some(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range,
+                                  std::size_t light, std::size_t rays, const Hits& hits) {
     EvenSteps steps(brightness_[light], rays, hash(pixel.seed, static_cast<std::uint32_t>(range.begin + light)));
     for (std::size_t p = 0; p < pixel.point_count(); ++p) {
         const std::span<const std::size_t> own_hits = points.hits_of(pixel.first_point + p);
         steps.within(point_brightness_[p * range.count + light], own_hits.size(),
-                     [&](std::size_t k) { question(range, light, own_hits[k], hits); });
+                     [&](std::size_t k) { add_sample(range, light, own_hits[k], hits); });
     }
 }
 
-void ShadowedDeltas::question(const DeltaRange& range, std::size_t light, std::size_t hit, const Hits& hits) {
+void ShadowedDeltas::add_sample(const DeltaRange& range, std::size_t light, std::size_t hit, const Hits& hits) {
     const std::size_t i = range.begin + light;
     // The hit itself may see less of the source than the point that it shares.
     if (!lights_->shines(i, hits.frame[hit], hits.error[hit])) {
-        questions_.push_back({hit, kBelow});
+        samples_.push_back({hit, kBelow});
     } else if (!shadows_ || !lights_->casts_shadows(i)) {
-        questions_.push_back({hit, kAbove});
+        samples_.push_back({hit, kAbove});
     } else {
-        questions_.push_back({hit, static_cast<std::uint32_t>(rays_.size())});
+        samples_.push_back({hit, static_cast<std::uint32_t>(rays_.size())});
         rays_.push_back(lights_->ray(i, hits.shadow_origin[hit]));
     }
 }
@@ -152,32 +152,32 @@ void ShadowedDeltas::find_shares(const ShadingPoints& points, const PixelRange& 
     for (std::vector<float>* array : {&seen_r_, &seen_g_, &seen_b_}) {
         array->assign(range.count, 0.0F);
     }
-    const auto visible = [&](const Question& q) {
+    const auto visible = [&](const ShadowSample& q) {
         return q.ray == kAbove ? Rgb(1) : q.ray == kBelow ? Rgb(0) : visible_[q.ray];
     };
     std::size_t begin = 0;
-    for (const Asked& asked : asked_) {
-        const std::span<const Question> questions(&questions_[begin], asked.end - begin);
-        begin = asked.end;
-        const Rgb strength = lights_->strength(range.begin + asked.light);
+    for (const SampledSource& sampled : sampled_) {
+        const std::span<const ShadowSample> samples(&samples_[begin], sampled.end - begin);
+        begin = sampled.end;
+        const Rgb strength = lights_->strength(range.begin + sampled.light);
         Rgb seen(0);
-        for (const Question& q : questions) {
+        for (const ShadowSample& q : samples) {
             seen += visible(q);
         }
-        const auto count = static_cast<float>(questions.size());
-        if (!asked.each_hit || seen == Rgb(count)) {
+        const auto count = static_cast<float>(samples.size());
+        if (!sampled.each_hit || seen == Rgb(count)) {
             const Rgb part = strength * (seen / count);
-            seen_r_[asked.light] = part.x;
-            seen_g_[asked.light] = part.y;
-            seen_b_[asked.light] = part.z;
+            seen_r_[sampled.light] = part.x;
+            seen_g_[sampled.light] = part.y;
+            seen_b_[sampled.light] = part.z;
             continue;
         }
-        for (const Question& q : questions) {
+        for (const ShadowSample& q : samples) {
             const auto lobes = materials_[hits.material[q.hit]].lobes();
             const Rgb share = visible(q);
             for (std::size_t lobe = 0; lobe < lobes.size() && share != Rgb(0); ++lobe) {
-                const float value = values(points.of_hit[q.hit] - pixel.first_point, lobe, range)[asked.light];
-                hits.reflect(q.hit, lobe, lights_->group(range.begin + asked.light),
+                const float value = values(points.of_hit[q.hit] - pixel.first_point, lobe, range)[sampled.light];
+                hits.reflect(q.hit, lobe, lights_->group(range.begin + sampled.light),
                              hits.weight(q.hit, lobe) * strength * share * value);
             }
         }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What hits reflect of sources without extent, with their shadows. A scene may have thousands of them: they are seen in
-// lanes, and one that adds little to a pixel is asked for by few rays.
+// lanes, and one that adds little to a pixel is sampled by few rays.
 //
 // A source is wholly seen from a hit or not at all. So one ray from each hit leaves no noise, and a pixel from which
 // all rays reach the source, or none, needs no more than a factor for it. The few rays of a dim source start from
@@ -42,13 +42,13 @@ class ShadowedDeltas {
 
         std::size_t point_count() const { return last_point - first_point; }
     };
-    /// A hit that asks for a source.
-    struct Question {
+    /// A hit from which a source is sampled.
+    struct ShadowSample {
         std::size_t hit;
         std::uint32_t ray;  // its number; kAbove or kBelow: none is needed
     };
-    /// A source, and the questions before which its own end.
-    struct Asked {
+    /// A source, and the samples before which its own end.
+    struct SampledSource {
         std::size_t light;
         std::size_t end;
         bool each_hit;
@@ -59,14 +59,14 @@ class ShadowedDeltas {
                     RenderReport& report);
     /// Values of a range of sources at each point of the pixel, and the sources' brightness.
     void find_values(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range);
-    void ask(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, float all,
-             const Hits& hits);
+    void request(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, float all,
+                 const Hits& hits);
     /// Every hit that the source lights, or some in proportion to how much.
-    void ask_each(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, std::size_t light,
-                  const Hits& hits);
-    void ask_some(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, std::size_t light,
-                  std::size_t rays, const Hits& hits);
-    void question(const DeltaRange& range, std::size_t light, std::size_t hit, const Hits& hits);
+    void request_all(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, std::size_t light,
+                     const Hits& hits);
+    void request_some(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, std::size_t light,
+                      std::size_t rays, const Hits& hits);
+    void add_sample(const DeltaRange& range, std::size_t light, std::size_t hit, const Hits& hits);
     void trace();
     /// Finds the visible share of each source that all hits of the pixel receive equally; adds the others.
     void find_shares(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, Hits& hits);
@@ -95,8 +95,8 @@ class ShadowedDeltas {
     std::vector<float> values_;            // points × lobe_stride × sources
     std::vector<float> point_brightness_;  // points × sources, of the hits of a point together
     std::vector<float> brightness_;        // by source
-    std::vector<Asked> asked_;
-    std::vector<Question> questions_;
+    std::vector<SampledSource> sampled_;
+    std::vector<ShadowSample> samples_;
     std::vector<Ray> rays_;
     std::vector<Rgb> visible_;
     std::vector<float> seen_r_, seen_g_, seen_b_;  // by source: its strength times the share that is seen

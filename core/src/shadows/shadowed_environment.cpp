@@ -26,7 +26,7 @@ ShadowedEnvironment::ShadowedEnvironment(ShadowTracer& tracer, const Environment
     : materials_(materials), rays_(tracer, environment, materials) {}
 
 void ShadowedEnvironment::add(const EnvironmentShading& shading, std::uint32_t group,
-                              std::span<const DirectLightParts> unshadowed, const ShadingPoints& points,
+                              std::span<const UnshadowedParts> unshadowed, const ShadingPoints& points,
                               const ShadowBudget& budget, std::size_t index, const SampleRange& samples,
                               std::span<const std::uint32_t> seeds, Hits& hits) {
     shading_ = &shading;
@@ -46,9 +46,9 @@ void ShadowedEnvironment::add(const EnvironmentShading& shading, std::uint32_t g
     shade_lit(shadows, hits);
 }
 
-DirectLightParts ShadowedEnvironment::unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const {
+UnshadowedParts ShadowedEnvironment::unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const {
     const Rgb& weight = hits.weight(hit, lobe);
-    const DirectLightParts& parts = unshadowed_[lobe * points_->size() + points_->of_hit[hit]];
+    const UnshadowedParts& parts = unshadowed_[lobe * points_->size() + points_->of_hit[hit]];
     return {weight * parts.smooth, weight * parts.spots};
 }
 
@@ -89,7 +89,7 @@ void ShadowedEnvironment::shade_lit(bool shadows, Hits& hits) {
 void ShadowedEnvironment::shade_unblocked(const LitRange& pixel, Hits& hits) const {
     for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
         for (std::size_t lobe = 0; lobe < materials_[hits.material[lit_[i]]].lobes().size(); ++lobe) {
-            const DirectLightParts whole = unblocked(hits, lit_[i], lobe);
+            const UnshadowedParts whole = unblocked(hits, lit_[i], lobe);
             hits.reflect(lit_[i], lobe, group_, whole.smooth + whole.spots);
         }
     }
@@ -150,7 +150,7 @@ ShadowedEnvironment::MaterialSums& ShadowedEnvironment::sums_of(std::size_t mate
 
 Rgb ShadowedEnvironment::shade_hit(std::size_t hit, std::size_t lobe, const EnvironmentRays::Sums& of_hit,
                                    const MaterialSums& of_material, double rays, Hits& hits) const {
-    const DirectLightParts whole = unblocked(hits, hit, lobe);
+    const UnshadowedParts whole = unblocked(hits, hit, lobe);
     if (is_mirror(materials_[hits.material[hit]].lobes()[lobe].shape)) {
         // One ray, that is all of its light.
         hits.reflect(hit, lobe, group_, whole.smooth * Rgb(quotient(of_hit.smooth.seen, of_hit.smooth.all)));

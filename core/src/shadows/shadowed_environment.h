@@ -27,7 +27,7 @@ class ShadowedEnvironment {
     /// Adds the environment to the hits' radiance and noise. shading, group: see EnvironmentShading and LightTraits;
     /// unshadowed: its light at points, of which groups share none; index: of it in the budget; samples: what the hits
     /// are of; seeds: one per group. A hit's radiance counts as part of the sum over the hits of its group.
-    void add(const EnvironmentShading& shading, std::uint32_t group, std::span<const DirectLightParts> unshadowed,
+    void add(const EnvironmentShading& shading, std::uint32_t group, std::span<const UnshadowedParts> unshadowed,
              const ShadingPoints& points, const ShadowBudget& budget, std::size_t index, const SampleRange& samples,
              std::span<const std::uint32_t> seeds, Hits& hits);
 
@@ -53,7 +53,7 @@ class ShadowedEnvironment {
     void shade_unblocked(const LitRange& pixel, Hits& hits) const;
     void shade(const LitPixel& pixel, Hits& hits);
     /// The values of one lobe at a hit.
-    DirectLightParts unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const;
+    UnshadowedParts unblocked(const Hits& hits, std::size_t hit, std::size_t lobe) const;
     void shade_lobe(const LitPixel& pixel, std::size_t lobe, Hits& hits);
     MaterialSums& sums_of(std::size_t material);
     /// Returns how far it may be off. rays: of each set.
@@ -65,7 +65,7 @@ class ShadowedEnvironment {
 
     const EnvironmentShading* shading_ = nullptr;  // of the call of add()
     std::uint32_t group_ = 0;
-    std::span<const DirectLightParts> unshadowed_;
+    std::span<const UnshadowedParts> unshadowed_;
     const ShadingPoints* points_ = nullptr;
     std::vector<std::size_t> lit_;                 // hits of some pixels
     std::vector<LitPixel> pixels_;                 // these

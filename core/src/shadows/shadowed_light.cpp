@@ -16,7 +16,7 @@ ShadowedLight::ShadowedLight(ShadowTracer& tracer, const ShadowBudget& budget, s
       rays_(tracer, materials, lobe_stride),
       shared_(tracer, budget, materials, lobe_stride, parts) {}
 
-void ShadowedLight::add(std::span<const Light* const> lights, const DirectLight& unshadowed,
+void ShadowedLight::add(std::span<const Light* const> lights, const UnshadowedRadiance& unshadowed,
                         const ShadingPoints& points, const SampleRange& samples, std::span<const std::uint32_t> seeds,
                         Hits& hits) {
     points_ = &points;

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "lobes/material_lobes.h"
-#include "shading/direct_light.h"
 #include "shading/shading_points.h"
+#include "shading/unshadowed_radiance.h"
 #include "shadows/shadow_budget.h"
 #include "shadows/shadow_rays.h"
 #include "shadows/shared_shadow_lights.h"
@@ -36,7 +36,7 @@ class ShadowedLight {
     /// Adds lights, the first that the budget knows, to the hits' radiance and noise. unshadowed, points: of these;
     /// samples: what the hits are of; seeds: one per group. A hit's radiance counts as part of the sum over the hits of
     /// its group.
-    void add(std::span<const Light* const> lights, const DirectLight& unshadowed, const ShadingPoints& points,
+    void add(std::span<const Light* const> lights, const UnshadowedRadiance& unshadowed, const ShadingPoints& points,
              const SampleRange& samples, std::span<const std::uint32_t> seeds, Hits& hits);
 
   private:

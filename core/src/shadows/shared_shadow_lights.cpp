@@ -8,8 +8,8 @@
 #include <variant>
 
 #include "lights/whole_rectangle.h"
-#include "shadows/ray_start.h"
 #include "shadows/ray_sums.h"
+#include "shadows/shadow_ray_spawner.h"
 
 namespace shlight {
 namespace {
@@ -38,7 +38,7 @@ FoundMember find(const Members& members, double share) {
 
 }  // namespace
 
-void SharedShadowLights::start(std::span<const Light* const> lights, const DirectLight& unshadowed,
+void SharedShadowLights::start(std::span<const Light* const> lights, const UnshadowedRadiance& unshadowed,
                                const SampleRange& samples) {
     lights_ = lights;
     unshadowed_ = &unshadowed;
@@ -139,7 +139,7 @@ void SharedShadowLights::request_from(std::size_t hit, const Light& light, const
         }
         sampler_.reset(seen_);
     }
-    const RayStart start(hits.frame[hit], hits.shadow_origin[hit], clearance(light, hits.frame[hit]));
+    const ShadowRaySpawner start(hits.frame[hit], hits.shadow_origin[hit], target_offset(light, hits.frame[hit]));
     const auto push = [&](const Rgb& value, const Vec3d& direction, double distance) {
         if (value != Rgb(0)) {
             shadow_samples_.push_back({value, traits_of(light).group});
@@ -226,7 +226,7 @@ SharedShadowLights::Share SharedShadowLights::share(const PixelSamples& own) con
 }
 
 void SharedShadowLights::keep_apart(const PixelSamples& own, const Share& share, std::span<const Rgb> unblocked,
-                                    KeptApart& apart) {
+                                    LightGroupBuffer& apart) {
     const std::span<const Rgb> all = unblocked.subspan(kLightKinds);
     group_seen_.assign(all.size(), Rgb(0));
     group_sampled_.assign(all.size(), Rgb(0));

@@ -13,8 +13,8 @@
 #include "lights/light_sampling.h"
 #include "lights/seen_light.h"
 #include "lobes/material_lobes.h"
-#include "shading/direct_light.h"
 #include "shading/shading_points.h"
+#include "shading/unshadowed_radiance.h"
 #include "shadows/shadow_budget.h"
 #include "shadows/shadow_policy.h"
 #include "shlight/light.h"
@@ -35,7 +35,7 @@ class SharedShadowLights {
         : tracer_(&tracer), budget_(&budget), materials_(materials), lobe_stride_(lobe_stride), apart_(parts) {}
 
     /// To be called before the first of these lights, which the budget knows: they are referred to by number.
-    void start(std::span<const Light* const> lights, const DirectLight& unshadowed, const SampleRange& samples);
+    void start(std::span<const Light* const> lights, const UnshadowedRadiance& unshadowed, const SampleRange& samples);
     bool is_dim(std::size_t light, std::size_t pixel) const;
     /// Adds the dim ones to the hits' radiance. points: of the hits; seeds: one per group.
     void add(const ShadingPoints& points, std::span<const std::uint32_t> seeds, Hits& hits);
@@ -74,9 +74,10 @@ class SharedShadowLights {
     /// Adds the lights to the pixels that have samples.
     void finish(Hits& hits);
     Share share(const PixelSamples& own) const;
-    /// Adds the visible share of `unblocked` to a pixel's parts: for each group according to its questions, scaled so
+    /// Adds the visible share of `unblocked` to a pixel's parts: for each group according to its samples, scaled so
     /// that all groups add up to share.seen.
-    void keep_apart(const PixelSamples& own, const Share& share, std::span<const Rgb> unblocked, KeptApart& apart);
+    void keep_apart(const PixelSamples& own, const Share& share, std::span<const Rgb> unblocked,
+                    LightGroupBuffer& apart);
     /// To what points of the pixel get if nothing blocks.
     void add_unblocked(std::size_t pixel);
 
@@ -85,7 +86,7 @@ class SharedShadowLights {
     std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
     std::span<const Light* const> lights_;  // of the call of start()
-    const DirectLight* unshadowed_ = nullptr;
+    const UnshadowedRadiance* unshadowed_ = nullptr;
     SampleRange samples_{};
     std::vector<std::uint8_t> may_share_;    // by light
     const ShadingPoints* points_ = nullptr;  // of the call of add()
@@ -95,7 +96,7 @@ class SharedShadowLights {
     std::vector<Rgb> visible_;                     // likewise
     std::vector<Rgb> group_seen_, group_sampled_;  // of light groups
     std::vector<Rgb> radiance_;                    // by shading point, of the dim lights if nothing blocks
-    KeptApart apart_;                              // of that, by pixel
+    LightGroupBuffer apart_;                       // of that, by pixel
     std::vector<Member> dim_;                      // lights of a pixel
     std::vector<Member> dim_points_;               // of a pixel, under one of them
     SeenLight seen_;

@@ -33,7 +33,7 @@ struct Hits {
     std::vector<float> lobe_width;        ///< likewise, of lobes whose width varies
     std::vector<std::uint32_t> sample;    ///< number of the camera ray within its pixel
     std::vector<Rgb> radiance;            ///< reflected to the camera, summed up
-    KeptApart apart;                      ///< by pixel: parts of that, and of what camera rays bring besides
+    LightGroupBuffer apart;               ///< by pixel: parts of that, and of what camera rays bring besides
     std::vector<std::uint32_t> of_pixel;  ///< number of the pixel
     std::vector<Rgb> noise;               ///< the part of its variance that comes from shadow rays
     /// For each pixel the variance of its sum of radiance from shadow rays that its hits share.

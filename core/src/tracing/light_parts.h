@@ -33,10 +33,10 @@ struct LightParts {
 inline const LightParts kWholeLight;
 
 /// The parts of the light of pixels.
-class KeptApart {
+class LightGroupBuffer {
   public:
     /// parts: outlive this.
-    explicit KeptApart(const LightParts& parts) : parts_(&parts) {}
+    explicit LightGroupBuffer(const LightParts& parts) : parts_(&parts) {}
 
     const LightParts& parts() const { return *parts_; }
     bool empty() const { return parts_->empty(); }

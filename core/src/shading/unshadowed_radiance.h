@@ -31,9 +31,9 @@ struct LightRadiance {
 };
 
 /// Radiance per light, lobe and shading point.
-class DirectLight {
+class UnshadowedRadiance {
   public:
-    explicit DirectLight(std::size_t lobe_stride) : lobe_stride_(lobe_stride) {}
+    explicit UnshadowedRadiance(std::size_t lobe_stride) : lobe_stride_(lobe_stride) {}
 
     /// Adds to the report what the points' hits take. allowed_error: of the radiance of a lobe under one light; 0: the
     /// materials' tolerance of that light's own radiance × albedo. Precondition: no light is_delta().

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "shadows/ray_start.h"
+#include "shadows/shadow_ray_spawner.h"
 
 #include <variant>
 
@@ -7,7 +7,7 @@
 
 namespace shlight {
 
-Vec3d clearance(const Light& light, const ShadingFrame& frame) {
+Vec3d target_offset(const Light& light, const ShadingFrame& frame) {
     const auto of_planar = [&](const auto& planar, const Vec3d& in_plane) {
         const double distance = planar.error + kRayRounding * glm::length(frame.origin - planar.center);
         const bool front = glm::dot(planar.normal, frame.origin - in_plane) > 0;

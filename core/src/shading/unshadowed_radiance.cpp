@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "shading/direct_light.h"
+#include "shading/unshadowed_radiance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,8 +38,8 @@ bool reflects(const LightTraits& traits, const LobeShape& shape) {
 
 }  // namespace
 
-void DirectLight::compute(const ShadingPoints& points, std::span<const MaterialLobes> materials,
-                          std::span<const Light* const> lights, double allowed_error, RenderReport& report) {
+void UnshadowedRadiance::compute(const ShadingPoints& points, std::span<const MaterialLobes> materials,
+                                 std::span<const Light* const> lights, double allowed_error, RenderReport& report) {
     allowed_error_ = allowed_error;
     point_count_ = points.size();
     values_.assign(lights.size() * lobe_stride_ * point_count_, 0.0F);
@@ -70,8 +70,9 @@ void DirectLight::compute(const ShadingPoints& points, std::span<const MaterialL
     }
 }
 
-void DirectLight::shade(const ShadingPoints& points, std::span<const std::uint32_t> some, const MaterialLobes& material,
-                        std::span<const Light* const> lights, RenderReport& report) {
+void UnshadowedRadiance::shade(const ShadingPoints& points, std::span<const std::uint32_t> some,
+                               const MaterialLobes& material, std::span<const Light* const> lights,
+                               RenderReport& report) {
     cosines_.resize(some.size());
     std::transform(some.begin(), some.end(), cosines_.begin(),
                    [&](std::uint32_t point) { return double{points.cos_theta_o[point]}; });
@@ -100,8 +101,8 @@ void DirectLight::shade(const ShadingPoints& points, std::span<const std::uint32
     }
 }
 
-void DirectLight::integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
-                            std::size_t light_index, RenderReport& report) {
+void UnshadowedRadiance::integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
+                                   std::size_t light_index, RenderReport& report) {
     seen_.clear();
     for (std::uint32_t i = 0; i < some.size(); ++i) {
         seen_.look(light, points.frame[some[i]], points.error[some[i]], tolerance_, i);
@@ -119,15 +120,15 @@ void DirectLight::integrate(const ShadingPoints& points, std::span<const std::ui
     }
 }
 
-LightRadiance DirectLight::light(std::size_t index) const {
+LightRadiance UnshadowedRadiance::light(std::size_t index) const {
     const std::size_t size = lobe_stride_ * point_count_;
     const std::size_t own = own_begin_[index];
     return {std::span(values_).subspan(index * size, size), strengths_[index],
             own == kNone ? std::span<const Rgb>() : std::span(own_strengths_).subspan(own, size)};
 }
 
-void DirectLight::find_strengths(const ShadingPoints& points, std::span<const std::uint32_t> some,
-                                 const FaceRadiance& faces, std::size_t light_index, std::size_t lobe) {
+void UnshadowedRadiance::find_strengths(const ShadingPoints& points, std::span<const std::uint32_t> some,
+                                        const FaceRadiance& faces, std::size_t light_index, std::size_t lobe) {
     const float* values = values_of(light_index, lobe);
     for (std::uint32_t view = 0; view < some.size(); ++view) {
         const std::uint32_t point = some[view];
@@ -151,9 +152,9 @@ void DirectLight::find_strengths(const ShadingPoints& points, std::span<const st
     }
 }
 
-void DirectLight::add(const ShadingPoints& points, std::span<const std::uint32_t> some,
-                      std::span<const std::uint32_t> numbers, const Light& light, std::size_t light_index,
-                      std::size_t lobe, RenderReport& report) {
+void UnshadowedRadiance::add(const ShadingPoints& points, std::span<const std::uint32_t> some,
+                             std::span<const std::uint32_t> numbers, const Light& light, std::size_t light_index,
+                             std::size_t lobe, RenderReport& report) {
     float* values = values_of(light_index, lobe);
     const bool even = std::holds_alternative<EvenProfile>(traits_of(light).profile);
     for (std::size_t k = 0; k < numbers.size(); ++k) {
@@ -171,8 +172,8 @@ void DirectLight::add(const ShadingPoints& points, std::span<const std::uint32_t
     }
 }
 
-void DirectLight::apply_profile(std::size_t lobe, std::size_t view, const ShadingPoints& points, std::uint32_t point,
-                                const Light& light, float& value) {
+void UnshadowedRadiance::apply_profile(std::size_t lobe, std::size_t view, const ShadingPoints& points,
+                                       std::uint32_t point, const Light& light, float& value) {
     const LobeViews& views = views_.lobe(lobe);
     profile_.reset(light, points.frame[point]);
     // A small light's radiance keeps within the tolerance whatever its profile, but a spot's rim should look right.

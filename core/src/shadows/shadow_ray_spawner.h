@@ -16,13 +16,13 @@ namespace shlight {
 
 /// Offset of a shadow ray's end from the sampled point of the light: a polygon may lie in a mesh's face, its own or
 /// that on which it is mounted, which must not block the ray. The error of a ray in float grows with its length.
-Vec3d clearance(const Light& light, const ShadingFrame& frame);
+Vec3d target_offset(const Light& light, const ShadingFrame& frame);
 
 /// Shadow rays of one hit, in float but for the way from the rounded origin.
-class RayStart {
+class ShadowRaySpawner {
   public:
-    /// origin: off the surface; target_offset: of the rays' ends, see clearance().
-    RayStart(const ShadingFrame& frame, const Vec3d& origin, const Vec3d& target_offset)
+    /// origin: off the surface; target_offset: of the rays' ends, see target_offset().
+    ShadowRaySpawner(const ShadingFrame& frame, const Vec3d& origin, const Vec3d& target_offset)
         : origin_(origin),
           x_(frame.x),
           y_(frame.y),
