@@ -2,6 +2,7 @@
 #include "monte_carlo_render.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -319,10 +320,20 @@ void render_monte_carlo(const CompiledScene& scene, const Camera& camera, int wi
     check_size("image", image.size(), 4 * picture.pixels());
     tbb::enumerable_thread_specific<Worker> workers([&picture] { return Worker(picture); });
     const std::size_t each = std::max<std::size_t>(1, kBatch / picture.samples());
-    parallel_for(
-        (picture.pixels() + each - 1) / each, settings.threads,
-        [&](std::size_t i) { workers.local().render(i * each, std::min(each, picture.pixels() - i * each), image); },
-        progress);
+    const std::size_t count = (picture.pixels() + each - 1) / each;
+    std::atomic<std::size_t> done = 0;
+    const auto work = [&](const Watch& caller) {
+        parallel_for(count, settings.threads, [&](std::size_t i) {
+            end_if(caller.stopped);
+            workers.local().render(i * each, std::min(each, picture.pixels() - i * each), image);
+            ++done;
+        });
+    };
+    const auto look = [&] { return progress(static_cast<double>(done) / static_cast<double>(count)); };
+    run_watched(settings.threads, work, progress ? std::function<bool()>(look) : nullptr);
+    if (progress && !progress(1)) {
+        throw RenderCancelled();
+    }
 }
 
 }  // namespace shlight::methods

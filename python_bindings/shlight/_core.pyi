@@ -416,6 +416,7 @@ class _RenderOptions(TypedDict, total=False):
     mist: tuple[float, float, float]
     cryptomatte_levels: int  # 6 unless given
     threads: int  # 0, all, unless given
+    seed: int  # 0 unless given
     progress: Callable[[float], object] | None
     on_update: Callable[[NDArray[np.float32], RenderReport], object] | None
 

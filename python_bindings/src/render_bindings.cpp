@@ -9,6 +9,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <string>
@@ -41,7 +42,8 @@ pixel_samples: camera rays of each pixel in the first pass, in place of one; the
     16 times as many unless it is given. Rounded up to a power of two, unless it is max_samples: then it is one pass.
 pixel_filter, filter_width: "box" of one pixel, or "gaussian" or "blackman_harris" of a width in pixels, 0.001 ... 100,
     as Blender's render engine Cycles has them.
-time_limit: seconds, or None; a pass that would probably end later is left out. The first is always made.
+time_limit: seconds, or None. The render ends then; pixels that have no ray yet are interpolated. A first grid of about
+    a thousand pixels is always made.
 shadows: whether lights cast them.
 shadow_rays: per camera ray and light, at most, and again for each roughness of the material's glossy lobes; a quarter
     of them where light and shadow are plain; 0 ... 16384. 0: no shadows.
@@ -57,10 +59,11 @@ groups: also the part of the picture that the lights of each group give, "combin
 aovs: also what materials have as `Shader.with_aovs`, "aov_NAME".
 alpha_threshold: 0 ... 1, a surface that lets more than 1 - this through is passed over by normals, places and indices.
 mist: start and depth [m] and the power of its falloff. cryptomatte_levels: 2 ... 16 identities of a pixel.
-threads: at most; 0: all cores. The image does not depend on it, and on a time limit only by the number of passes.
+threads: at most; 0: all cores. The image does not depend on it.
+seed: 0 ... 2^32 - 1; another one draws other rays, so that the noise of two images is independent.
 progress: is called with the finished share, 0 ... 1, about every 10 ms; returning False cancels.
-on_update: is called as on_update(image, report) after each pass and a few times a second during long ones, with the
-    picture as it stands; returning False ends the render, which returns the picture as it is. What progress and
+on_update: is called as on_update(image, report) once the image has pixels all over, after each pass, and a few times a
+    second during long ones, with the picture as it stands; returning False ends the render, which returns the picture as it is. What progress and
     on_update raise ends the render and is raised here.
 return_report: return (image, RenderReport).
 
@@ -136,6 +139,8 @@ int order_from(const py::object& order) {
     return static_cast<int>(integer_from("order", order, 1, kMaxOrder));
 }
 
+constexpr std::int64_t kMostSeed = std::numeric_limits<std::uint32_t>::max();
+
 constexpr std::array<std::string_view, 3> kFilters = {"box", "gaussian", "blackman_harris"};  // by PixelFilter::Kind
 
 int samples_from(const char* name, const py::object& value) {
@@ -199,8 +204,8 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
                         const py::object& shadows, const py::object& shadow_rays, const py::object& transparent_bounces,
                         const py::object& passes, const py::object& groups, const py::object& aovs,
                         const py::object& alpha_threshold, const py::object& mist, const py::object& cryptomatte_levels,
-                        const py::object& threads, const py::object& progress, const py::object& on_update,
-                        const py::object& return_report) {
+                        const py::object& threads, const py::object& seed, const py::object& progress,
+                        const py::object& on_update, const py::object& return_report) {
     auto& scene = object_from<SceneObject>("scene", scene_object, "Scene");
     const int most_shadow_rays = int_from("shadow_rays", shadow_rays);
     const PassArguments pass_arguments = {passes, groups, aovs, alpha_threshold, mist, cryptomatte_levels};
@@ -210,6 +215,7 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
                                filter_from(pixel_filter, filter_width),
                                flag_from("shadows", shadows) ? most_shadow_rays : 0,
                                int_from("threads", threads),
+                               static_cast<std::uint32_t>(integer_from("seed", seed, 0, kMostSeed)),
                                int_from("transparent_bounces", transparent_bounces),
                                pass_settings_from(pass_arguments)};
     const int columns = int_from("width", width);
@@ -283,8 +289,8 @@ void bind_render(py::module_& m) {
           "passes"_a = py::tuple(), "groups"_a = false, "aovs"_a = false,
           "alpha_threshold"_a = PassSettings().alpha_threshold,
           "mist"_a = py::make_tuple(MistRange().start, MistRange().depth, MistRange().falloff),
-          "cryptomatte_levels"_a = PassSettings().cryptomatte_levels, "threads"_a = 0, "progress"_a = py::none(),
-          "on_update"_a = py::none(), "return_report"_a = false);
+          "cryptomatte_levels"_a = PassSettings().cryptomatte_levels, "threads"_a = 0, "seed"_a = 0,
+          "progress"_a = py::none(), "on_update"_a = py::none(), "return_report"_a = false);
 }
 
 }  // namespace shlight::python

@@ -57,9 +57,10 @@ TEST(RenderParallel, ThreadsDoNotChangeABit) {
 
 TEST(RenderParallel, TilesDoNotChangeABit) {
     // The left quarter alone is cut into other tiles than as part of the whole. Powers of two keep the rays the same, a
-    // given order keeps the mean of a picture from counting.
+    // given order keeps the mean of a picture from counting, and a fixed number of rays the neighbours outside.
     RenderSettings settings = settings_for(0);
     settings.order = 8;
+    settings.sampling = PixelSampling::fixed(16);
     const Scene scene = busy_scene();
     const glm::dmat4 above = frame_matrix({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 10});
     const Image whole =
@@ -105,47 +106,44 @@ TEST(RenderParallel, CallersAtOnceAndCallsInCalls) {
     EXPECT_TRUE(std::all_of(runs.begin(), runs.end(), [](const auto& count) { return count == 1; }));
 }
 
-TEST(RenderParallel, ProgressComesFromTheCallerAndNeverFalls) {
-    std::vector<double> shares;
+TEST(RenderParallel, TheCallerLooksWhileWorkGoesOn) {
     const auto caller = std::this_thread::get_id();
-    parallel_for(
-        100, 0, [](std::size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(4)); },
-        [&](double share) {
-            EXPECT_EQ(std::this_thread::get_id(), caller);
-            shares.push_back(share);
-            return true;
-        });
-    EXPECT_GE(shares.size(), 3U);
-    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
-    EXPECT_GE(shares.front(), 0);
-    EXPECT_EQ(shares.back(), 1);
-}
-
-TEST(RenderParallel, CancelStopsTheWork) {
-    std::atomic<int> runs = 0;
-    const auto slow = [&](std::size_t) {
-        ++runs;
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    int looks = 0;
+    const auto look = [&] {
+        EXPECT_EQ(std::this_thread::get_id(), caller);
+        ++looks;
+        return true;
     };
-    EXPECT_THROW(parallel_for(10000, 0, slow, [](double) { return false; }), RenderCancelled);
-    EXPECT_LE(runs, 2000);  // the whole would take 25 s on two cores
+    const auto work = [&](const Watch& watch) {
+        EXPECT_NE(std::this_thread::get_id(), caller);
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        const int before = looks;
+        EXPECT_GE(before, 3);
+        watch.look();
+        EXPECT_EQ(looks, before + 1);  // at once, and the work has waited for it
+    };
+    run_watched(0, work, look);
+    run_watched(0, [&](const Watch& watch) { EXPECT_TRUE(!watch.stopped && !watch.look); }, {});
 }
 
 TEST(RenderParallel, WatchedWorkIsToldToEnd) {
-    const auto endless = [](const Stopped& stopped) {
+    const auto endless = [](const Watch& watch) {
         while (true) {
-            end_if(stopped);
+            end_if(watch.stopped);
             std::this_thread::yield();
         }
     };
-    EXPECT_THROW(run_watched(0, endless, [](double) { return false; }), RenderCancelled);
-    const auto throws = [](double) -> bool { throw std::out_of_range("from progress"); };
-    EXPECT_THROW(run_watched(0, endless, throws), std::out_of_range);
-    bool stopped_at_all = false;
-    const auto asks = [&](const Stopped& stopped) { stopped_at_all = stopped && stopped(); };
-    run_watched(0, asks, [](double) { return true; });
-    run_watched(0, asks, {});
-    EXPECT_FALSE(stopped_at_all);
+    EXPECT_THROW(run_watched(0, endless, [] { return false; }), RenderCancelled);
+    const auto asks = [](const Watch& watch) {
+        while (true) {
+            watch.look();
+            end_if(watch.stopped);
+        }
+    };
+    const auto throws = []() -> bool { throw std::out_of_range("from look"); };
+    EXPECT_THROW(run_watched(0, asks, throws), std::out_of_range);
+    const auto fails = [](const Watch&) { throw std::length_error("from work"); };
+    EXPECT_THROW(run_watched(0, fails, [] { return true; }), std::length_error);
 }
 
 TEST(RenderParallel, BuildingTheTracerCanBeStopped) {
@@ -195,9 +193,6 @@ TEST(RenderParallel, BuildingEmittersAndEnvironmentsCanBeStopped) {
 }
 
 TEST(RenderParallel, ExceptionsReachTheCaller) {
-    const auto slow = [](std::size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(5)); };
-    const auto throws = [](double) -> bool { throw std::runtime_error("from progress"); };
-    EXPECT_THROW(parallel_for(10000, 0, slow, throws), std::runtime_error);
     try {
         parallel_for(100, 0, [](std::size_t i) {
             if (i == 50) throw std::out_of_range("from the body");

@@ -9,7 +9,7 @@
 
 namespace shlight {
 
-/// Thrown where a progress callback asked to stop.
+/// Thrown where a callback asked to stop.
 class RenderCancelled : public std::runtime_error {
   public:
     RenderCancelled() : std::runtime_error("the render was cancelled") {}
@@ -28,16 +28,20 @@ void end_if(const Stopped& stopped);
 /// Throws std::invalid_argument for threads < 0, and what work throws.
 void run_in_arena(int threads, const std::function<void()>& work);
 
-/// The same for long work of unknown length. With `progress` the calling thread waits and calls it with 0, about every
-/// 10 ms and at the end; once it has returned false or thrown, `work` is told so by what it is given.
-/// Throws as parallel_for does.
-void run_watched(int threads, const std::function<void(const Stopped&)>& work, const Progress& progress);
+/// Long work's line to the thread that waits for it.
+struct Watch {
+    Stopped stopped;
+    std::function<void()> look;  ///< has the waiting thread look at once, and returns when it has; may be empty
+};
 
-/// Runs body(i) once for each i < count, in any order, on at most `threads` threads, 0: all cores.
-/// With `progress` the calling thread waits and calls it about every 10 ms and once at the end; work goes on meanwhile.
-/// Without, it takes part.
-/// Throws RenderCancelled after progress has returned false, and what body or progress throw; by then no body runs.
-void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body,
-                  const Progress& progress = {});
+/// Runs long work on a thread of its own, as run_in_arena does. Meanwhile the calling thread calls `look` every 10 ms
+/// and when the work asks for it, until the work ends. Without `look` the work runs on the calling thread. Throws what
+/// work and look throw, and RenderCancelled after look has returned false; the work has ended by then.
+void run_watched(int threads, const std::function<void(const Watch&)>& work, const std::function<bool()>& look);
+
+/// Runs body(i) once for each i < count, in any order, on at most `threads` threads, 0: all cores. The calling thread
+/// takes part.
+/// Throws std::invalid_argument for threads < 0, and what body throws; by then no body runs.
+void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body);
 
 }  // namespace shlight

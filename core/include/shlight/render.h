@@ -29,7 +29,7 @@ struct PixelSampling {
     /// A pixel has enough rays where the estimated error of its mean, relative to √(r² + 0.01 r̄²), r the pixel's value
     /// and r̄ the picture's mean, is not above this. 0: all pixels get max_samples.
     double noise_threshold = 0.01;
-    /// [s]: a pass is left out where it would probably end later; ≤ 0: none is.
+    /// [s]: the render ends then, as soon as the batches of pixels at hand are done; ≤ 0: there is no limit.
     double time_limit = 0;
 
     /// So many rays of each pixel at once, and no others.
@@ -63,7 +63,8 @@ struct RenderSettings {
     PixelFilter filter;
     /// Per camera ray and light, at most, and again for each roughness of the glossy lobes; 0: no shadows.
     int shadow_rays = 16;
-    int threads = 0;  ///< 0: all cores
+    int threads = 0;         ///< 0: all cores
+    std::uint32_t seed = 0;  ///< another one draws other camera and shadow rays
     /// Surfaces that a shadow ray passes through as far as they are transparent, at most; a camera ray passes one more.
     int transparent_bounces = 8;
     PassSettings passes;
@@ -75,7 +76,8 @@ using PictureUpdate = std::function<bool(std::span<const float>, const RenderRep
 /// Called from the thread that calls render, while others go on.
 struct RenderWatch {
     Progress progress = {};
-    PictureUpdate on_update = {};  ///< after each pass, and a few times a second during long ones
+    /// Once the picture has pixels all over, after each pass, and a few times a second during long ones.
+    PictureUpdate on_update = {};
 };
 
 /// Throws std::invalid_argument naming the member or argument: order outside 0 … 64, tolerance ≤ 0 or not finite,
@@ -87,11 +89,11 @@ void check_render(const RenderSettings& settings, int width, int height);
 
 /// image: height × width × RGBA, row 0 on top, linear, premultiplied, the mean of all camera rays of each pixel; alpha
 /// is the share of them that met a surface or, where the camera sees it, the environment, or went beside a panorama's
-/// image. The picture depends on
-/// nothing but scene, camera, size and settings; not on the number of threads, and on a time limit only by the number
-/// of passes. passes: pixels × PassLayout::stride() of settings.passes, rows as of the image; the image does not depend
-/// on them. Throws as check_render does, also for an image or passes of another size; RenderCancelled when
-/// watch.progress returns false; what the watch's functions throw.
+/// image. The picture depends on nothing but scene, camera, size and settings, as long as no time limit ends it; it
+/// does not depend on the number of threads. A pixel that the time limit leaves without a ray is interpolated. passes:
+/// pixels × PassLayout::stride() of settings.passes, rows as of the image; the image does not depend on them. Throws as
+/// check_render does, also for an image or passes of another size; RenderCancelled when watch.progress returns false;
+/// what the watch's functions throw.
 RenderReport render(const CompiledScene& scene, const Camera& camera, int width, int height,
                     const RenderSettings& settings, std::span<float> image, const RenderWatch& watch = {},
                     std::span<float> passes = {});

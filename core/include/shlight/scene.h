@@ -122,7 +122,7 @@ class Scene {
     /// visible: the camera sees it behind the scene; group: as LightTraits has.
     void set_environment(Environment environment, bool visible = true, std::uint32_t group = 0);
 
-    /// Builds with at most `threads` threads, 0: all cores; calls `progress` meanwhile, with 0, as run_watched does.
+    /// Builds with at most `threads` threads, 0: all cores; calls `progress` meanwhile, with 0, about every 10 ms.
     /// Throws std::invalid_argument for threads < 0 and for surfaces in a scene of less than 1e-6 m, std::bad_alloc or
     /// std::runtime_error when Embree fails; RenderCancelled when progress returns false, and what it throws.
     /// before: what it has built of each mesh is shared as far as that has not changed; null: nothing.

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -26,26 +27,36 @@ void check_threads(int threads) {
     }
 }
 
-/// The work of one parallel_for, on a thread of its own so that the caller is free to report.
-class Work {
+/// Watched work on its thread.
+class WatchedWork {
   public:
-    Work(std::size_t count, int threads, const std::function<void(std::size_t)>& body)
-        : count_(count), thread_([this, threads, &body] { run(threads, body); }) {}
-    Work(const Work&) = delete;
-    Work& operator=(const Work&) = delete;
-    ~Work() {
-        cancel();
+    WatchedWork(int threads, const std::function<void(const Watch&)>& work)
+        : thread_([this, threads, &work] { run(threads, work); }) {}
+    WatchedWork(const WatchedWork&) = delete;
+    WatchedWork& operator=(const WatchedWork&) = delete;
+    ~WatchedWork() {
+        {
+            const std::lock_guard lock(mutex_);
+            stopped_ = true;
+        }
+        changed_.notify_all();
         thread_.join();
     }
 
-    /// Whether the work has ended within the interval.
-    bool wait() {
+    /// Waits until there is something to look at; false: the work has ended.
+    bool goes_on() {
         std::unique_lock lock(mutex_);
-        return ended_.wait_for(lock, kInterval, [this] { return over_; });
+        changed_.wait_for(lock, kInterval, [this] { return is_over_ || asked_ > answered_; });
+        looked_at_ = asked_;
+        return !is_over_;
     }
-
-    void cancel() { cancelled_ = true; }
-    double share() const { return static_cast<double>(done_) / static_cast<double>(count_); }
+    void has_looked() {
+        {
+            const std::lock_guard lock(mutex_);
+            answered_ = looked_at_;
+        }
+        changed_.notify_all();
+    }
     void rethrow() const {
         if (error_) {
             std::rethrow_exception(error_);
@@ -53,55 +64,40 @@ class Work {
     }
 
   private:
-    void run(int threads, const std::function<void(std::size_t)>& body) {
+    void run(int threads, const std::function<void(const Watch&)>& work) {
+        const Watch watch = {[this] { return stopped_.load(); }, [this] { ask(); }};
         std::exception_ptr error;
         try {
-            run_in_arena(threads, [&] {
-                const auto step = [&](std::size_t i) {
-                    if (!cancelled_) {
-                        body(i);
-                        ++done_;
-                    }
-                };
-                tbb::parallel_for(std::size_t{0}, count_, step, tbb::simple_partitioner());
-            });
+            run_in_arena(threads, [&] { work(watch); });
         } catch (...) {
             error = std::current_exception();
         }
         const std::lock_guard lock(mutex_);
         error_ = error;
-        over_ = true;
-        ended_.notify_all();
+        is_over_ = true;
+        changed_.notify_all();
+    }
+    void ask() {
+        std::unique_lock lock(mutex_);
+        const std::uint64_t number = ++asked_;
+        changed_.notify_all();
+        changed_.wait(lock, [&] { return answered_ >= number || stopped_; });
     }
 
-    const std::size_t count_;
-    std::atomic<std::size_t> done_ = 0;
-    std::atomic<bool> cancelled_ = false;
+    std::atomic<bool> stopped_ = false;
     std::mutex mutex_;
-    std::condition_variable ended_;
-    bool over_ = false;
+    std::condition_variable changed_;
+    std::uint64_t asked_ = 0, looked_at_ = 0, answered_ = 0;
+    bool is_over_ = false;
     std::exception_ptr error_;
     std::thread thread_;  // last: it uses all the others
 };
 
-/// The calling thread's own for so many threads. It is kept: workers find the way to a fresh one as slowly as they
-/// wake.
+/// The calling thread's arena for so many threads. It is kept, since workers find their way to a fresh one as slowly as
+/// they wake.
 tbb::task_arena& arena_of(int threads) {
     thread_local std::map<int, tbb::task_arena> arenas;
     return arenas.try_emplace(threads, threads).first->second;
-}
-
-/// Without anything to report the caller takes part, and what one thread does needs no scheduler: small batches of
-/// lights take less time than a thread takes to start.
-void run_unwatched(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
-    if (count > 1 && threads != 1) {
-        run_in_arena(threads, [&] { tbb::parallel_for(std::size_t{0}, count, body, tbb::simple_partitioner()); });
-        return;
-    }
-    check_threads(threads);
-    for (std::size_t i = 0; i < count; ++i) {
-        body(i);
-    }
 }
 
 }  // namespace
@@ -119,42 +115,30 @@ void end_if(const Stopped& stopped) {
     }
 }
 
-void run_watched(int threads, const std::function<void(const Stopped&)>& work, const Progress& progress) {
-    if (!progress) {
+void run_watched(int threads, const std::function<void(const Watch&)>& work, const std::function<bool()>& look) {
+    if (!look) {
         run_in_arena(threads, [&] { work({}); });
         return;
     }
-    std::atomic<bool> stopped = false;
-    const auto ask = [&](double) {
-        try {
-            stopped = !progress(0);
-        } catch (...) {
-            stopped = true;
-            throw;
+    WatchedWork watched(threads, work);
+    while (watched.goes_on()) {
+        if (!look()) {
+            throw RenderCancelled();
         }
-        return !stopped;
-    };
-    parallel_for(
-        1, threads, [&](std::size_t) { work([&] { return stopped.load(); }); }, ask);
+        watched.has_looked();
+    }
+    watched.rethrow();
 }
 
-void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body,
-                  const Progress& progress) {
-    if (!progress) {
-        run_unwatched(count, threads, body);
+/// What one thread does needs no scheduler: small batches of lights take less time than a thread takes to start.
+void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
+    if (count > 1 && threads != 1) {
+        run_in_arena(threads, [&] { tbb::parallel_for(std::size_t{0}, count, body, tbb::simple_partitioner()); });
         return;
     }
-    if (count > 0) {
-        Work work(count, threads, body);
-        while (!work.wait()) {
-            if (!progress(work.share())) {
-                throw RenderCancelled();
-            }
-        }
-        work.rethrow();
-    }
-    if (!progress(1.0)) {
-        throw RenderCancelled();
+    check_threads(threads);
+    for (std::size_t i = 0; i < count; ++i) {
+        body(i);
     }
 }
 

@@ -101,6 +101,14 @@ void PassImage::merge(std::size_t index, double before, double all, std::span<co
     }
 }
 
+void PassImage::copy(std::size_t from, std::size_t to) const {
+    for (const PassLayout::Place& place : layout_->places()) {
+        if (!is_of_middle(place.pass.kind)) {
+            std::ranges::copy(pixel(from).subspan(place.first, place.size), pixel(to).subspan(place.first).begin());
+        }
+    }
+}
+
 void PassImage::finish(std::span<float> pixel) const {
     const auto divide_by = [&](const PassLayout::Place& place, Pass divisor) {
         const PassLayout::Place& color = *layout_->find(divisor);

@@ -33,6 +33,8 @@ class PassImage {
     /// Makes sums over more of a pixel's rays part of its means, which are those of `before` of `all` rays. Other
     /// pixels may be merged at the same time.
     void merge(std::size_t index, double before, double all, std::span<const double> sums) const;
+    /// Gives a pixel the values of another, but those of the ray through its middle.
+    void copy(std::size_t from, std::size_t to) const;
     /// Makes of the means of all pixels what passes promise. No more pixels may be merged.
     void finish(int threads) const;
 

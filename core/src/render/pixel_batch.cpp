@@ -104,17 +104,12 @@ Vec3d PixelSums::variance() const {
     return glm::max(squares / count - mean * mean - linear, Vec3d(0));
 }
 
-Vec3d PixelSums::shadow_variance() const {
-    // n camera rays with m shadow rays each are n·m rays spread evenly over the light, whose error falls as
-    // (n m)^-3/4: the noise of one camera ray, of a mean of m, is the m-th part of a shadow ray's variance. What rays
-    // have in common is as wrong in their mean.
-    return shadow_rays > 0 ? noise / (rays * std::sqrt(shadow_rays)) + shared_noise / std::sqrt(1.0 * rays) : Vec3d(0);
-}
-
-void PixelSums::add(const Rgb& ray_radiance, const Rgb& ray_noise, const glm::dvec2& from_center, float ray_opacity) {
+void PixelSums::add(const Rgb& ray_radiance, const Rgb& ray_noise, const glm::dvec2& from_center, float ray_opacity,
+                    bool is_early) {
     const Vec3d shown = glm::clamp(Vec3d(ray_radiance), -kBrightestRay, kBrightestRay);
     opacity += double{ray_opacity};
     radiance += shown;
+    early += is_early ? shown : Vec3d(0);
     const Vec3d shadow_noise = glm::min(Vec3d(ray_noise), kBrightestRay * kBrightestRay);
     squares += shown * shown - shadow_noise;
     noise += shadow_noise;
@@ -158,8 +153,8 @@ PixelBatch::PixelBatch(const Picture& picture)
                 static_cast<std::uint32_t>(picture.settings.transparent_bounces), picture.parts),
       part_places_(part_places(picture)) {}
 
-void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums,
-                     std::span<double> pass_sums) {
+void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, std::uint32_t second_half,
+                     std::span<PixelSums> sums, std::span<double> pass_sums) {
     StageClock clock(report_);
     trace_camera_rays(pixels, samples);
     if (surface_passes_.any_mean()) {
@@ -168,7 +163,7 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
     clock.end(RenderStage::camera_rays);
     lighting_.add(pixel_seeds_, samples, hits_, report_);
     StageClock last(report_);
-    add_up(samples, sums);
+    add_up(samples, second_half, sums);
     if (!picture_->parts.empty()) {
         add_up_parts(pass_sums);
     }
@@ -239,11 +234,14 @@ void PixelBatch::add_ray(const glm::dvec2& place, const LensPoint& lens, std::ui
 void PixelBatch::seed_pixels(std::span<const Pixel> pixels) {
     pixel_seeds_.clear();
     for (const Pixel& pixel : pixels) {
-        pixel_seeds_.push_back(hash(static_cast<std::uint32_t>(pixel.column), static_cast<std::uint32_t>(pixel.row)));
+        const std::uint32_t place =
+            hash(static_cast<std::uint32_t>(pixel.column), static_cast<std::uint32_t>(pixel.row));
+        const std::uint32_t seed = picture_->settings.seed;
+        pixel_seeds_.push_back(seed == 0 ? place : hash(place, seed));
     }
 }
 
-void PixelBatch::add_up(const SampleRange& samples, std::span<PixelSums> sums) const {
+void PixelBatch::add_up(const SampleRange& samples, std::uint32_t second_half, std::span<PixelSums> sums) const {
     const auto from_center = [&](std::uint32_t sample) { return picture_->pixel_points[sample] - 0.5; };
     std::size_t hit = 0;
     std::size_t ray = 0;
@@ -256,12 +254,12 @@ void PixelBatch::add_up(const SampleRange& samples, std::span<PixelSums> sums) c
                 radiance += hits_.radiance[hit];
                 noise += hits_.noise[hit];
             }
-            sums[pixel].add(radiance, noise, from_center(rays_[ray].sample), ray_light_[ray].opacity);
+            sums[pixel].add(radiance, noise, from_center(rays_[ray].sample), ray_light_[ray].opacity,
+                            rays_[ray].sample < second_half);
         }
         sums[pixel].rays += samples.count;
         sums[pixel].obstructed = sums[pixel].obstructed || hits_.obstructed[pixel] != 0;
         sums[pixel].shared_noise += glm::min(Vec3d(hits_.shared_noise[pixel]), kBrightestRay * kBrightestRay);
-        sums[pixel].shadow_rays = samples.shadow_rays;
     }
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "render/camera_surfaces.h"
@@ -31,17 +32,16 @@ struct PixelSums {
     Vec3d squares{0};              ///< of radiance, without the part that is noise of shadow rays
     Vec3d noise{0};                ///< that part
     Vec3d shared_noise{0};         ///< the variance of `radiance` by shadow rays that camera rays have in common
-    double shadow_rays = 0;        ///< for each camera ray and light, at most
+    Vec3d early{0};                ///< radiance of the camera rays in the first half of all that the pixel then has
     bool obstructed = false;       ///< whether any shadow ray has met something
     Vec3d along_x{0}, along_y{0};  ///< of radiance times the ray's distance from the pixel's centre
 
     /// Variance over the pixel of what is not linear in the place: rays in even number, spread evenly, average that
     /// out.
     Vec3d variance() const;
-    /// Of a camera ray, if its shadow rays were one.
-    Vec3d shadow_variance() const;
-    /// The part of one ray; from_center: its distance from the pixel's centre.
-    void add(const Rgb& ray_radiance, const Rgb& ray_noise, const glm::dvec2& from_center, float ray_opacity);
+    /// The part of one ray; from_center: its distance from the pixel's centre; is_early: it counts in `early`.
+    void add(const Rgb& ray_radiance, const Rgb& ray_noise, const glm::dvec2& from_center, float ray_opacity,
+             bool is_early);
 };
 
 /// Everything that the batches of one picture share and only read.
@@ -77,14 +77,16 @@ class PixelBatch {
   public:
     explicit PixelBatch(const Picture& picture);
 
-    /// Adds these rays of each pixel to its sums. pass_sums: pixels × layout.stride(), of what PassImage::merge takes.
-    void add(std::span<const Pixel> pixels, const SampleRange& samples, std::span<PixelSums> sums,
-             std::span<double> pass_sums);
+    /// Adds these rays of each pixel to its sums. second_half: the number of the first camera ray that PixelSums::early
+    /// leaves out; pass_sums: pixels × layout.stride(), as PassImage::merge takes them.
+    void add(std::span<const Pixel> pixels, const SampleRange& samples, std::uint32_t second_half,
+             std::span<PixelSums> sums, std::span<double> pass_sums);
     /// Passes of the ray through the middle of each pixel. values: pixels × layout.stride().
     void write_middles(std::span<const Pixel> pixels, std::span<float> values);
     /// Brightness of what surfaces reflect in these pixels, by their first camera ray, summed up.
     double reflected(std::span<const Pixel> pixels, std::uint32_t shadow_rays);
-    const RenderReport& report() const { return report_; }
+    /// What was counted since the last call.
+    RenderReport take_report() { return std::exchange(report_, {}); }
 
   private:
     /// Of the unit square; none: the aperture's middle.
@@ -94,7 +96,7 @@ class PixelBatch {
     /// place: in pixels; step: to its neighbours.
     void add_ray(const glm::dvec2& place, const LensPoint& lens, std::uint32_t sample, double step);
     void seed_pixels(std::span<const Pixel> pixels);
-    void add_up(const SampleRange& samples, std::span<PixelSums> sums) const;
+    void add_up(const SampleRange& samples, std::uint32_t second_half, std::span<PixelSums> sums) const;
     /// Parts of the light.
     void add_up_parts(std::span<double> pass_sums) const;
     /// Through a point of the window, in pixels, and one of the aperture.

@@ -119,14 +119,15 @@ std::vector<RefinementGroup> most_urgent(std::span<const RefinementGroup> groups
     return urgent;
 }
 
-void fill_between(int step, int width, int height, std::span<float> image) {
+void fill_between(int step, int width, int height, int threads, std::span<float> image) {
     const auto on_grid = [step](int i, int size) { return std::min(i, (size - 1) / step * step); };
     const auto pixel = [&](int column, int row) {
         return image.subspan(
             4 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)),
             4);
     };
-    for (int row = 0; row < height; ++row) {
+    parallel_for(static_cast<std::size_t>(height), threads, [&](std::size_t line) {
+        const auto row = static_cast<int>(line);
         const int top = row / step * step;
         const int bottom = on_grid(top + step, height);
         const auto down = static_cast<float>(row - top) / static_cast<float>(step);
@@ -141,7 +142,7 @@ void fill_between(int step, int width, int height, std::span<float> image) {
                 pixel(column, row)[i] = std::lerp(above, below, down);
             }
         }
-    }
+    });
 }
 
 }  // namespace shlight

@@ -31,6 +31,6 @@ std::vector<Pixel> pixels_of(const Tile& tile, const Grid& grid);
 /// largest gain per ray, in this order. The result has no gains.
 std::vector<RefinementGroup> most_urgent(std::span<const RefinementGroup> groups);
 /// Makes every pixel beside a grid of the four pixels of the grid about it, the nearer the more. image: RGBA.
-void fill_between(int step, int width, int height, std::span<float> image);
+void fill_between(int step, int width, int height, int threads, std::span<float> image);
 
 }  // namespace shlight

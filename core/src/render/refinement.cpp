@@ -21,9 +21,23 @@ constexpr double kMissingRays = 16;
 /// Variance of a unit step within the pixel after subtraction of the linear part; for steps between pixels, and of
 /// alpha.
 constexpr double kEdgeVariance = 1.0 / 16;
+/// Times the noise of shadow rays that are drawn independently, at most.
+constexpr double kMostNoise = 4;
+/// Pixels around one whose noise counts as its own: a pixel's few rays may agree by chance, and one that ended by its
+/// own rays alone would be too bright more often than too dark.
+constexpr int kNoiseReach = 2;
+/// Threshold ÷ estimated error of a pixel that has enough: few of the errors, which scatter, then exceed the threshold.
+constexpr double kMargin = 1.3;
+/// The squared error by shadow rays falls with this power of their number: 1 behind many thin things, 1.5 at one edge.
+constexpr double kNoiseDecay = 1.25;
 
 double mean(const Vec3d& v) {
     return (v.x + v.y + v.z) / 3;
+}
+
+double relative(const Vec3d& squares, const Vec3d& scale) {
+    return mean(Vec3d(scale.x > 0 ? squares.x / scale.x : 0, scale.y > 0 ? squares.y / scale.y : 0,
+                      scale.z > 0 ? squares.z / scale.z : 0));
 }
 
 Vec3d color(std::span<const float> image, std::size_t pixel) {
@@ -44,7 +58,7 @@ Refinement::Refinement(int width, int height, const PixelSampling& sampling, boo
     : width_(width),
       height_(height),
       first_samples_(static_cast<std::uint32_t>(sampling.first_samples)),
-      good_enough_(sampling.noise_threshold * sampling.noise_threshold),
+      good_enough_(sampling.noise_threshold * sampling.noise_threshold / (kMargin * kMargin)),
       depth_of_field_(depth_of_field),
       states_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
     const auto most = static_cast<std::uint32_t>(sampling.max_samples);
@@ -65,8 +79,9 @@ void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std
     State& state = states_[i];
     const double before = kept_samples(state.level);
     const double all = samples(level);
-    const Vec3d difference = before > 0 ? color(image, i) - sums.radiance / static_cast<double>(sums.rays) : Vec3d(0);
-    const Vec3d radiance = before > 0 ? (before * color(image, i) + sums.radiance) / all : sums.radiance / all;
+    const Vec3d old = before > 0 ? color(image, i) : Vec3d(0);
+    const Vec3d difference = before > 0 ? old - sums.radiance / static_cast<double>(sums.rays) : Vec3d(0);
+    const Vec3d radiance = (before * old + sums.radiance) / all;
     const double alpha = before > 0 ? (before * image[4 * i + 3] + sums.opacity) / all : sums.opacity / all;
     for (int channel = 0; channel < 3; ++channel) {
         image[4 * i + static_cast<std::size_t>(channel)] = static_cast<float>(radiance[channel]);
@@ -74,10 +89,26 @@ void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std
     image[4 * i + 3] = static_cast<float>(alpha);
     // Variance of all rays: the mean of the variances, plus that of the means' squared distances from the common mean.
     const double old_share = before / all;
-    const Vec3d variance = old_share * Vec3d(state.variance) +
-                           (1 - old_share) * (sums.variance() + sums.shadow_variance()) +
+    const Vec3d variance = old_share * Vec3d(state.variance) + (1 - old_share) * sums.variance() +
                            old_share * (1 - old_share) * difference * difference;
-    state = {Rgb(variance), 0, static_cast<std::int16_t>(level), round_, state.obstructed || sums.obstructed, false};
+    const Vec3d scale = radiance * radiance + least_square_;
+    const double shared = old_share * old_share * state.shared_noise + relative(sums.shared_noise / (all * all), scale);
+    double noise = 0;
+    if (all > 1 && kept_samples(level) > 0) {
+        const double half = std::floor(all / 2);
+        const Vec3d early = (before * old + sums.early) / half;
+        const Vec3d late = (all * radiance - half * early) / (all - half);
+        const Vec3d independent = sums.noise / (all * static_cast<double>(sums.rays));
+        noise = relative(glm::min((early - late) * (early - late) / 4.0, kMostNoise * independent), scale);
+    }
+    state = {Rgb(variance),
+             static_cast<float>(noise + shared),
+             static_cast<float>(shared),
+             0,
+             static_cast<std::int16_t>(level),
+             round_,
+             state.obstructed || sums.obstructed,
+             false};
 }
 
 void Refinement::set_mean(std::span<const float> image) {
@@ -89,12 +120,13 @@ void Refinement::set_mean(std::span<const float> image) {
     least_square_ = 0.01 * average * average;
 }
 
-std::vector<RefinementGroup> Refinement::next_round(std::span<const float> image, int threads,
-                                                    const Progress& progress) {
+std::vector<RefinementGroup> Refinement::next_round(std::span<const float> image, int threads, const Stopped& stopped) {
     set_mean(image);
     std::vector<Row> rows(static_cast<std::size_t>(height_));
-    parallel_for(
-        rows.size(), threads, [&](std::size_t row) { rows[row] = next_of(static_cast<int>(row), image); }, progress);
+    parallel_for(rows.size(), threads, [&](std::size_t row) {
+        end_if(stopped);
+        rows[row] = next_of(static_cast<int>(row), image);
+    });
     std::vector<RefinementGroup> groups;
     double errors = 0;
     rays_left_ = 0;
@@ -142,10 +174,30 @@ Refinement::Row Refinement::next_of(int row, std::span<const float> image) {
     return found;
 }
 
-double Refinement::squared_error(double variance, int level) const {
+double Refinement::variance_per_error(int level) const {
     const double count = samples(level);
     const double evenness = std::sqrt(count);
-    return variance / (count * (depth_of_field_ ? std::sqrt(evenness) : evenness));
+    return count * (depth_of_field_ ? std::sqrt(evenness) : evenness);
+}
+
+double Refinement::squared_error(double variance, int level) const {
+    return variance / variance_per_error(level);
+}
+
+double Refinement::shadow_error(int column, int row, int level) const {
+    const double count_here = samples(level);
+    double sum = 0;
+    int count = 0;
+    for (int y = std::max(row - kNoiseReach, 0); y <= std::min(row + kNoiseReach, height_ - 1); ++y) {
+        for (int x = std::max(column - kNoiseReach, 0); x <= std::min(column + kNoiseReach, width_ - 1); ++x) {
+            const State& state = states_[index(x, y)];
+            if (kept_samples(state.level) > 0) {
+                sum += state.noise * std::pow(samples(state.level) / count_here, kNoiseDecay);
+                ++count;
+            }
+        }
+    }
+    return count > 0 ? sum / count : 0.0;
 }
 
 int Refinement::sufficient_level(double variance) const {
@@ -169,6 +221,8 @@ Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float
     if (least_square_ > 0) {  // or else the picture is black
         variance = std::max(variance, mean(Vec3d(state.variance) / scale));
     }
+    const double noise = shadow_error(column, row, level);
+    variance += noise * variance_per_error(level);
     const int enough = std::max(sufficient_level(variance), level);
     // One ray knows nothing of its pixel, and what is known to need more need not be supposed to.
     if ((enough == level || level == 0) && good_enough_ > 0 && least_square_ > 0) {
@@ -190,8 +244,8 @@ Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float
 }
 
 bool Refinement::is_touched(int column, int row) const {
-    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, height_ - 1); ++y) {
-        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, width_ - 1); ++x) {
+    for (int y = std::max(row - kNoiseReach, 0); y <= std::min(row + kNoiseReach, height_ - 1); ++y) {
+        for (int x = std::max(column - kNoiseReach, 0); x <= std::min(column + kNoiseReach, width_ - 1); ++x) {
             if (states_[index(x, y)].merged == round_) {
                 return true;
             }

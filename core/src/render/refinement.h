@@ -36,9 +36,9 @@ class Refinement {
     /// Merges the rays that take a pixel to a level into its mean, alpha and variance. Other pixels may be merged at
     /// the same time.
     void merge(const Pixel& pixel, int level, const PixelSums& sums, std::span<float> image);
-    /// What needs more rays, the fewest first; empty: nothing. threads: as RenderSettings; throws RenderCancelled when
-    /// progress returns false.
-    std::vector<RefinementGroup> next_round(std::span<const float> image, int threads, const Progress& progress);
+    /// What needs more rays, the fewest first; empty: nothing. threads: as RenderSettings; throws RenderCancelled once
+    /// stopped.
+    std::vector<RefinementGroup> next_round(std::span<const float> image, int threads, const Stopped& stopped);
     /// Of the picture when next_round was called: see RenderReport::noise.
     double noise() const { return noise_; }
     /// Likewise: camera rays that are left until every pixel has enough, as far as that is known.
@@ -58,8 +58,10 @@ class Refinement {
 
   private:
     struct State {
-        Rgb variance{0};  // of one ray, its shadow rays included
-        float error = 0;  // squared; as it was when a round looked at it
+        Rgb variance{0};         // of one ray, without the noise of its shadow rays
+        float noise = 0;         // squared error of the mean by shadow rays, relative, as the pixel's own rays show it
+        float shared_noise = 0;  // the part of that which its camera rays have in common
+        float error = 0;         // squared; as it was when a round looked at it
         std::int16_t level = -1;
         std::uint16_t merged = 0;  // the number of the round
         bool obstructed = false;
@@ -86,6 +88,7 @@ class Refinement {
     bool is_touched(int column, int row) const;
     void set_mean(std::span<const float> image);
     Wanted wanted(int column, int row, std::span<const float> image) const;
+    double variance_per_error(int level) const;
     double squared_error(double variance, int level) const;
     int sufficient_level(double variance) const;
     /// Whether shadow rays from the pixel and those around it have met nothing; one that has no rays of its own, or
@@ -93,6 +96,8 @@ class Refinement {
     bool is_calm(int column, int row) const;
     /// Squared, of what is shown of a pixel that has no rays, if it is as one beside it.
     double error_between(int column, int row, std::span<const float> image) const;
+    /// Squared error that shadow rays leave at a level, by those of the pixel and of all around it.
+    double shadow_error(int column, int row, int level) const;
     double neighbours_variance(int column, int row, const Vec3d& scale, std::span<const float> image) const;
 
     int width_, height_;

@@ -2,8 +2,10 @@
 #include "shlight/render.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -12,8 +14,8 @@
 #include <vector>
 
 #include "base/checks.h"
-#include "render/passes.h"
 #include "render/pixel_batch.h"
+#include "render/progressive_renderer.h"
 #include "render/refinement.h"
 #include "shlight/sampling.h"
 
@@ -37,10 +39,19 @@ constexpr int kMostPilotPixels = 16;
 /// Pilot pixels per batch.
 constexpr std::size_t kPilotBatch = 32;
 
+/// Turns the bits of a coordinate that a seed names: sets that are spread evenly stay so.
+double scrambled(double coordinate, std::uint32_t seed) {
+    const auto bits = static_cast<std::uint32_t>(coordinate * 0x1p32);
+    return (bits ^ seed) * 0x1p-32;
+}
+
 /// The same for every level but that of the preview, or the most even ones where there is one level.
-std::vector<glm::dvec2> pixel_points(const Refinement& refinement) {
+std::vector<glm::dvec2> pixel_points(const Refinement& refinement, std::uint32_t seed) {
     const std::uint32_t most = refinement.samples(refinement.most_level());
     std::vector<glm::dvec2> points = refinement.most_level() > 0 ? nested_points(most) : hammersley(most);
+    for (glm::dvec2& point : seed != 0 ? std::span(points) : std::span<glm::dvec2>()) {
+        point = {scrambled(point.x, hash(seed, 0)), scrambled(point.y, hash(seed, 1))};
+    }
     if (refinement.has_preview()) {
         points.insert(points.begin(), glm::dvec2(0.5));
     }
@@ -49,7 +60,7 @@ std::vector<glm::dvec2> pixel_points(const Refinement& refinement) {
 
 /// How wrong a pixel may be by one light. The errors of many lights have no common sign, so that those of n add up to
 /// √n of them.
-double light_error(const Picture& picture, std::uint32_t shadow_rays, const Progress& progress) {
+double light_error(const Picture& picture, std::uint32_t shadow_rays, const Stopped& stopped) {
     std::vector<Pixel> grid;
     const int step = std::max({kPilotStep, picture.width / kMostPilotPixels, picture.height / kMostPilotPixels});
     for (int row = std::min(step, picture.height) / 2; row < picture.height; row += step) {
@@ -59,11 +70,12 @@ double light_error(const Picture& picture, std::uint32_t shadow_rays, const Prog
     }
     std::vector<double> sums((grid.size() + kPilotBatch - 1) / kPilotBatch);
     const auto add_up = [&](std::size_t i) {
+        end_if(stopped);
         const std::size_t first = i * kPilotBatch;
         const std::size_t size = std::min(kPilotBatch, grid.size() - first);
         sums[i] = PixelBatch(picture).reflected(std::span(grid).subspan(first, size), shadow_rays);
     };
-    parallel_for(sums.size(), picture.settings.threads, add_up, progress);
+    parallel_for(sums.size(), picture.settings.threads, add_up);
     const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) / static_cast<double>(grid.size());
     const double count = static_cast<double>(std::max<std::size_t>(picture.lighting.extended.size(), 1));
     return picture.settings.tolerance * kShareOfMean * mean / std::sqrt(count);
@@ -119,21 +131,29 @@ RenderReport render(const CompiledScene& scene, const Camera& camera, int width,
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     check_size("image", image.size(), 4 * pixels);
     check_size("passes", passes.size(), PassLayout(settings.passes).stride() * pixels);
-    Refinement refinement(width, height, settings.sampling, camera.has_depth_of_field());
-    const Progress waiting = watch.progress ? [&](double) { return watch.progress(0); } : Progress();
+    const auto start = ProgressiveRenderer::Clock::now();
     std::optional<Picture> picture;
-    const auto prepare = [&](const Stopped& stopped) {
-        picture.emplace(scene, camera, width, height, settings, pixel_points(refinement),
-                        refinement.has_preview() ? 1 : 0, stopped);
+    std::optional<ProgressiveRenderer> renderer;
+    std::atomic<bool> is_prepared = false;
+    const auto work = [&](const Watch& caller) {
+        Refinement refinement(width, height, settings.sampling, camera.has_depth_of_field());
+        picture.emplace(scene, camera, width, height, settings, pixel_points(refinement, settings.seed),
+                        refinement.has_preview() ? 1 : 0, caller.stopped);
+        const auto shadow_rays = std::min(static_cast<std::uint32_t>(settings.shadow_rays), kLeastShadowRays);
+        picture->lighting.light_error = light_error(*picture, shadow_rays, caller.stopped);
+        std::fill(image.begin(), image.end(), 0.0F);
+        std::fill(passes.begin(), passes.end(), 0.0F);
+        renderer.emplace(*picture, std::move(refinement), image, passes, watch, start);
+        is_prepared = true;
+        renderer->run(caller);
     };
-    run_watched(settings.threads, prepare, waiting);
-    picture->lighting.light_error =
-        light_error(*picture, std::min(static_cast<std::uint32_t>(settings.shadow_rays), kLeastShadowRays), waiting);
-    std::fill(image.begin(), image.end(), 0.0F);
-    std::fill(passes.begin(), passes.end(), 0.0F);
-    Passes run(*picture, std::move(refinement), image, passes, watch);
-    run.run();
-    return run.report();
+    const auto look = [&] { return is_prepared ? renderer->look() : !watch.progress || watch.progress(0); };
+    const bool is_watched = watch.progress || watch.on_update;
+    run_watched(settings.threads, work, is_watched ? std::function<bool()>(look) : std::function<bool()>());
+    if (watch.progress && !watch.progress(1.0)) {
+        throw RenderCancelled();
+    }
+    return renderer->report();
 }
 
 }  // namespace shlight

@@ -348,10 +348,10 @@ std::shared_ptr<const CompiledScene> Scene::compile(int threads, const Progress&
             meshes.push_back(mesh);
         }
     }
-    const auto build = [&](const Stopped& stopped) {
-        impl->build(meshes, before == nullptr ? nullptr : before->impl_.get(), stopped);
+    const auto build = [&](const Watch& caller) {
+        impl->build(meshes, before == nullptr ? nullptr : before->impl_.get(), caller.stopped);
     };
-    run_watched(threads, build, progress);
+    run_watched(threads, build, progress ? std::function<bool()>([&] { return progress(0); }) : nullptr);
     return std::shared_ptr<const CompiledScene>(new CompiledScene(std::move(impl)));
 }
 

@@ -23,8 +23,7 @@ Vec3d quotient(const Vec3d& a, const Vec3d& b) {
     return {b.x > 0 ? a.x / b.x : 0, b.y > 0 ? a.y / b.y : 0, b.z > 0 ? a.z / b.z : 0};
 }
 
-Rgb deviation(const Rgb& unblocked, const RaySums& sums) {
-    const Vec3d share = quotient(sums.seen, sums.all);
+Rgb deviation(const Rgb& unblocked, const Vec3d& share, const RaySums& sums) {
     const Vec3d one_over_rays = quotient(sums.squares, sums.all * sums.all);
     return unblocked * Rgb(glm::sqrt(glm::max(share * (1.0 - share), Vec3d(0)) * one_over_rays));
 }

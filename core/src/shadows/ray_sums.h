@@ -46,7 +46,8 @@ struct GreySums {
 /// a / b, 0 where b is not positive.
 Vec3d quotient(const Vec3d& a, const Vec3d& b);
 
-/// How far the share that a hit's rays see may be off, times `unblocked`: as of so many rays of equal weight.
-Rgb deviation(const Rgb& unblocked, const RaySums& sums);
+/// Standard deviation of the share of the light that a hit's rays see, times `unblocked`. share: what rays of the whole
+/// pixel see, since the few of one hit often agree by chance.
+Rgb deviation(const Rgb& unblocked, const Vec3d& share, const RaySums& sums);
 
 }  // namespace shlight

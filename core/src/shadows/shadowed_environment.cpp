@@ -158,7 +158,9 @@ Rgb ShadowedEnvironment::shade_hit(std::size_t hit, std::size_t lobe, const Envi
     }
     hits.reflect(hit, lobe, group_, seen_part(whole.smooth, of_hit.smooth, of_material.kept_smooth, rays));
     hits.reflect(hit, lobe, group_, seen_part(whole.spots, of_hit.spots, of_material.kept_spots, rays));
-    return deviation(whole.smooth, of_hit.smooth) + deviation(whole.spots, of_hit.spots);
+    const auto share = [](const RaySums& sums) { return quotient(sums.seen, sums.all); };
+    return deviation(whole.smooth, share(of_material.sums.smooth), of_hit.smooth) +
+           deviation(whole.spots, share(of_material.sums.spots), of_hit.spots);
 }
 
 }  // namespace shlight

@@ -115,7 +115,9 @@ void ShadowedLight::shade_lobe(const LitRange& pixel, std::size_t lobe, Hits& hi
         hit_sums_[i] = rays_.sum(pixel.begin + i, lobe);
         MaterialSums& sums = sums_of(hits, lit_hits[i], lobe);
         sums.unblocked += Vec3d(scaled_radiance(hits, lit_hits[i], lobe));
-        sums.rays += Vec3d(glm::abs(hits.weight(lit_hits[i], lobe))) * hit_sums_[i].all;
+        const Vec3d weight(glm::abs(hits.weight(lit_hits[i], lobe)));
+        sums.rays += weight * hit_sums_[i].all;
+        sums.seen += weight * hit_sums_[i].seen;
     }
     for (std::size_t i = 0; i < lit_hits.size(); ++i) {
         if (!shines(pixel.begin + i, lobe)) continue;
@@ -123,7 +125,7 @@ void ShadowedLight::shade_lobe(const LitRange& pixel, std::size_t lobe, Hits& hi
         const Vec3d seen = Vec3d(glm::abs(hits.weight(lit_hits[i], lobe))) * hit_sums_[i].seen;
         hits.reflect(lit_hits[i], lobe, group_, Rgb(all.unblocked * quotient(seen, all.rays)));
         // The lobes of a hit share its rays.
-        deviation_[i] += deviation(scaled_radiance(hits, lit_hits[i], lobe), hit_sums_[i]);
+        deviation_[i] += deviation(scaled_radiance(hits, lit_hits[i], lobe), quotient(all.seen, all.rays), hit_sums_[i]);
     }
 }
 
@@ -134,7 +136,7 @@ ShadowedLight::MaterialSums& ShadowedLight::sums_of(const Hits& hits, std::size_
     const auto known = std::find_if(material_sums_.begin(), material_sums_.end(), [&](const MaterialSums& sums) {
         return sums.material == material && (!is_apart || sums.hit == hit);
     });
-    return known != material_sums_.end() ? *known : material_sums_.emplace_back(MaterialSums{material, hit, {}, {}});
+    return known != material_sums_.end() ? *known : material_sums_.emplace_back(MaterialSums{material, hit, {}, {}, {}});
 }
 
 }  // namespace shlight

@@ -70,7 +70,7 @@ class ShadowedLight {
     struct MaterialSums {
         std::uint32_t material;
         std::size_t hit;
-        Vec3d unblocked{0}, rays{0};
+        Vec3d unblocked{0}, rays{0}, seen{0};
     };
     MaterialSums& sums_of(const Hits& hits, std::size_t hit, std::size_t lobe);
 

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: MIT
+#include "render/progressive_renderer.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace shlight {
+namespace {
+
+/// Each round takes some pixels to the next level, or follows something thin by one pixel more.
+constexpr int kMostRounds = 256;
+/// Pixels of the first grid, at least.
+constexpr double kFirstPixels = 1024;
+/// Rays through middles of pixels that are traced together.
+constexpr std::size_t kMiddlesAtOnce = 1024;
+constexpr double kLeastBetweenGrids = 0.05;  // seconds
+constexpr double kMostUnfinished = 0.999;    // share of the work
+/// Between updates: share of the time before; least and most seconds; times the seconds that showing the picture took.
+constexpr double kUpdateShare = 0.25;
+constexpr double kLeastUpdateInterval = 0.05;
+constexpr double kMostUpdateInterval = 0.25;
+constexpr double kShowTimes = 10;
+
+void add(RenderReport& sum, const RenderReport& part) {
+    std::transform(sum.order_counts.begin(), sum.order_counts.end(), part.order_counts.begin(),
+                   sum.order_counts.begin(), std::plus<>());
+    sum.cubature_count += part.cubature_count;
+    sum.mirror_count += part.mirror_count;
+    sum.hits += part.hits;
+    sum.over_tolerance += part.over_tolerance;
+    sum.shadow_rays += part.shadow_rays;
+    std::transform(sum.stage_seconds.begin(), sum.stage_seconds.end(), part.stage_seconds.begin(),
+                   sum.stage_seconds.begin(), std::plus<>());
+}
+
+}  // namespace
+
+ProgressiveRenderer::ProgressiveRenderer(const Picture& picture, Refinement refinement, std::span<float> image,
+                                         std::span<float> passes, const RenderWatch& watch, Clock::time_point start)
+    : picture_(&picture),
+      image_(image),
+      pass_image_(picture.layout, passes),
+      watch_(&watch),
+      batch_samples_(picture.batch_samples()),
+      start_(start),
+      refinement_(std::move(refinement)),
+      batches_([&picture] { return PixelBatch(picture); }) {}
+
+void ProgressiveRenderer::run(const Watch& caller) {
+    write_middles(caller.stopped);
+    bool goes_on = first_pass(caller);
+    for (int round = 0; goes_on && round < kMostRounds; ++round) {
+        goes_on = refine(caller);
+    }
+    if (seconds() >= time_limit()) {
+        judge(caller.stopped);  // rays that came after the last round's judgement count too
+    }
+    fill_unrendered();
+    pass_image_.finish(picture_->settings.threads);
+}
+
+double ProgressiveRenderer::time_limit() const {
+    const double limit = picture_->settings.sampling.time_limit;
+    return limit > 0 ? limit : std::numeric_limits<double>::infinity();
+}
+
+void ProgressiveRenderer::write_middles(const Stopped& stopped) {
+    const auto columns = static_cast<std::size_t>(picture_->width);
+    const std::size_t count = (columns + kMiddlesAtOnce - 1) / kMiddlesAtOnce;
+    const auto write = [&](std::size_t task) {
+        end_if(stopped);
+        const std::size_t first = task % count * kMiddlesAtOnce;
+        std::vector<Pixel> pixels;
+        for (std::size_t column = first; column < std::min(first + kMiddlesAtOnce, columns); ++column) {
+            pixels.push_back({static_cast<int>(column), static_cast<int>(task / count)});
+        }
+        batches_.local().write_middles(pixels, pass_image_.pixels(task / count * columns + first, pixels.size()));
+    };
+    const bool any = std::any_of(picture_->layout.places().begin(), picture_->layout.places().end(),
+                                 [](const PassLayout::Place& place) { return is_of_middle(place.pass.kind); });
+    parallel_for(any ? count * static_cast<std::size_t>(picture_->height) : 0, picture_->settings.threads, write);
+}
+
+/// Where a picture is wanted soon, the first grid has few pixels.
+int ProgressiveRenderer::widest_step() const {
+    const double pixels = 1.0 * picture_->width * picture_->height;
+    int step = refinement_.first_step();
+    while ((watch_->on_update || picture_->settings.sampling.time_limit > 0) &&
+           pixels / (4.0 * step * step) >= kFirstPixels) {
+        step *= 2;
+    }
+    return step;
+}
+
+bool ProgressiveRenderer::first_pass(const Watch& caller) {
+    const int last = refinement_.first_step();
+    const double begin = seconds();
+    double until = std::numeric_limits<double>::infinity();  // the first grid is always made
+    bool goes_on = true;
+    for (Grid grid = {widest_step(), 0}; goes_on && grid.step >= last; grid = {grid.step / 2, grid.step}) {
+        goes_on = run_job(job_of(grid), until, caller.stopped);
+        until = time_limit();
+        if (goes_on && grid.step > 1) {
+            const std::unique_lock lock(merging_);
+            fill_between(grid.step, picture_->width, picture_->height, picture_->settings.threads, image_);
+        }
+        grid_step_ = goes_on ? grid.step : grid_step_;
+        const bool was_complete = is_complete_.exchange(true);
+        if (goes_on && grid.step > last && (!was_complete || seconds() - shown_at_ >= kLeastBetweenGrids)) {
+            show_now(caller);
+        }
+    }
+    seconds_per_first_ray_ = (seconds() - begin) / std::max(rays_done(), 1.0);
+    const std::lock_guard lock(telling_);
+    told_.passes = 1;
+    return goes_on && !is_left_;
+}
+
+std::vector<RefinementGroup> ProgressiveRenderer::judge(const Stopped& stopped) {
+    auto groups = refinement_.next_round(image_, picture_->settings.threads, stopped);
+    const std::lock_guard lock(telling_);
+    told_.noise = refinement_.noise();
+    work_.left = refinement_.rays_left();
+    return groups;
+}
+
+bool ProgressiveRenderer::refine(const Watch& caller) {
+    const auto groups = most_urgent(judge(caller.stopped));
+    show_now(caller);
+    if (is_left_ || groups.empty()) {
+        return false;
+    }
+    // Time is kept for one ray of each pixel that has none, if there is enough for all of them.
+    const RefinementGroup unrendered = refinement_.unrendered();
+    const double reserve = static_cast<double>(unrendered.pixels.size()) * unrendered.rays * seconds_per_first_ray_;
+    const double limit = time_limit();
+    const double until = seconds() + reserve < limit ? limit - reserve : limit;
+    const bool is_whole = std::all_of(groups.begin(), groups.end(), [&](const RefinementGroup& group) {
+        return run_job(job_of(group), until, caller.stopped);
+    });
+    if (!is_whole && !is_left_) {
+        run_job(job_of(refinement_.unrendered()), limit, caller.stopped);
+    }
+    const std::lock_guard lock(telling_);
+    told_.passes += is_whole ? 1 : 0;
+    return !is_left_ && seconds() < limit;
+}
+
+ProgressiveRenderer::Job ProgressiveRenderer::job_of(const Grid& grid) {
+    const auto tiles = tiles_of(picture_->width, picture_->height, grid, refinement_.samples(0), batch_samples_);
+    const double share = 1.0 / (grid.step * grid.step) - (grid.wider > 0 ? 1.0 / (grid.wider * grid.wider) : 0.0);
+    const double rays = share * refinement_.samples(0) * picture_->width * picture_->height;
+    return {rays, tiles.size(),
+            [this, tiles, grid](std::size_t i) { render(pixels_of(tiles[i], grid), -1, 0, false); }};
+}
+
+ProgressiveRenderer::Job ProgressiveRenderer::job_of(const RefinementGroup& group) {
+    const auto rays = static_cast<std::size_t>(group.rays);
+    const std::size_t count = batch_samples_ / std::clamp<std::size_t>(rays, 1, batch_samples_);
+    const auto task = [this, count, pixels = group.pixels, from = group.from, to = group.to,
+                       calm = group.calm](std::size_t i) {
+        const std::size_t first = i * count;
+        render(std::span(pixels).subspan(first, std::min(count, pixels.size() - first)), from, to, calm);
+    };
+    return {static_cast<double>(rays * group.pixels.size()), (group.pixels.size() + count - 1) / count, task};
+}
+
+bool ProgressiveRenderer::run_job(const Job& job, double until, const Stopped& stopped) {
+    {
+        const std::lock_guard lock(telling_);
+        work_.left = std::max(work_.left - job.rays, 0.0);
+        work_.job = job.rays;
+        work_.tasks = std::max<std::size_t>(job.tasks, 1);
+        tasks_done_ = 0;
+    }
+    std::atomic<std::size_t> next = 0;  // tasks begin in their order, whatever the scheduler prefers
+    parallel_for(job.tasks, picture_->settings.threads, [&](std::size_t) {
+        end_if(stopped);
+        if (!is_left_ && seconds() <= until) {
+            job.task(next++);
+            ++tasks_done_;
+        }
+    });
+    const std::lock_guard lock(telling_);
+    work_.done += work_.job * static_cast<double>(tasks_done_) / static_cast<double>(work_.tasks);
+    work_.job = 0;
+    return next == job.tasks;
+}
+
+void ProgressiveRenderer::fill_unrendered() {
+    const RefinementGroup unrendered = refinement_.unrendered();
+    for (const Pixel& pixel : pass_image_.empty() ? std::span<const Pixel>() : std::span(unrendered.pixels)) {
+        const auto index = [&](int column, int row) {
+            return static_cast<std::size_t>(row) * static_cast<std::size_t>(picture_->width) +
+                   static_cast<std::size_t>(column);
+        };
+        const std::size_t to = index(pixel.column, pixel.row);
+        const std::size_t from = index(pixel.column / grid_step_ * grid_step_, pixel.row / grid_step_ * grid_step_);
+        pass_image_.copy(from, to);
+        std::copy_n(image_.begin() + static_cast<std::ptrdiff_t>(4 * from), 4,
+                    image_.begin() + static_cast<std::ptrdiff_t>(4 * to));
+    }
+}
+
+double ProgressiveRenderer::rays_done() const {
+    const std::lock_guard lock(telling_);
+    return work_.done + work_.job * static_cast<double>(tasks_done_) / static_cast<double>(work_.tasks);
+}
+
+/// All that is known of rays to come is how long those before them took.
+double ProgressiveRenderer::seconds_left() const {
+    const double done = rays_done();
+    const std::lock_guard lock(telling_);
+    const double rays = work_.done + work_.job + work_.left - done;
+    const double left = done > 0 ? seconds() * rays / done : 0.0;
+    return std::clamp(time_limit() - seconds(), 0.0, left);
+}
+
+void ProgressiveRenderer::show_now(const Watch& caller) {
+    if (watch_->on_update) {
+        wants_show_ = true;
+        caller.look();
+    }
+}
+
+bool ProgressiveRenderer::look() {
+    if (watch_->progress) {
+        const double now = seconds();
+        const double left = seconds_left();
+        share_ = std::max(share_, left > 0 ? std::min(now / (now + left), kMostUnfinished) : 0.0);
+        if (!watch_->progress(share_)) {
+            return false;
+        }
+    }
+    if (!watch_->on_update || !is_complete_ || is_left_) {
+        return true;
+    }
+    const double usual = std::clamp(kUpdateShare * shown_at_.load(), kLeastUpdateInterval, kMostUpdateInterval);
+    const bool is_due = seconds() - shown_at_ > std::max(usual, kShowTimes * show_seconds_);
+    if (wants_show_.exchange(false) || is_due) {
+        is_left_ = !show();
+    }
+    return true;
+}
+
+bool ProgressiveRenderer::show() {
+    {
+        const std::unique_lock lock(merging_);
+        snapshot_.assign(image_.begin(), image_.end());
+    }
+    shown_at_ = seconds();
+    const bool goes_on = watch_->on_update(snapshot_, report());
+    show_seconds_ = seconds() - shown_at_;
+    return goes_on;
+}
+
+std::uint32_t ProgressiveRenderer::shadow_rays_at(int level) const {
+    const auto most = static_cast<std::uint32_t>(picture_->settings.shadow_rays);
+    if (level == 0 && refinement_.has_preview()) {
+        return std::min(most, kLeastShadowRays);
+    }
+    // A pixel's many rays share the work of resolving its penumbrae.
+    return std::max(std::min(most, kLeastShadowRays), most >> (2 * level));
+}
+
+/// Points of the lights that rays at lower levels take: so the points of all levels are one sequence.
+std::uint32_t ProgressiveRenderer::points_before(int level) const {
+    std::uint32_t points = 0;
+    for (int l = 0; l < level; ++l) {
+        points += (refinement_.kept_samples(l) - refinement_.kept_samples(l - 1)) * shadow_rays_at(l);
+    }
+    return points;
+}
+
+void ProgressiveRenderer::render(std::span<const Pixel> pixels, int from, int to, bool calm) {
+    const std::uint32_t shadow_rays = shadow_rays_at(to);
+    const std::uint32_t rays_of_hit = calm ? std::min(shadow_rays, 1U) : shadow_rays;
+    const std::uint32_t most = std::max<std::uint32_t>(
+        refinement_.samples(0), std::min<std::uint32_t>(batch_samples_, kMostRaysPerPixel / std::max(shadow_rays, 1U)));
+    const std::uint32_t previews = to == 0 ? 0 : picture_->previews;
+    PixelBatch& batch = batches_.local();
+    std::vector<PixelSums> sums(pixels.size());
+    std::vector<double> pass_sums(pixels.size() * pass_image_.stride());
+    std::uint32_t first_point = points_before(to);
+    for (std::uint32_t first = refinement_.kept_samples(from); first < refinement_.samples(to);) {
+        const std::uint32_t count = std::min(most, refinement_.samples(to) - first);
+        batch.add(pixels, {first + previews, count, rays_of_hit, first_point}, refinement_.samples(to) / 2 + previews,
+                  sums, pass_sums);
+        first_point += count * shadow_rays;
+        first += count;
+    }
+    {
+        const std::lock_guard lock(telling_);
+        add(told_, batch.take_report());
+    }
+    const std::shared_lock lock(merging_);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        refinement_.merge(pixels[i], to, sums[i], image_);
+        if (!pass_image_.empty()) {
+            const std::size_t index =
+                static_cast<std::size_t>(pixels[i].row) * static_cast<std::size_t>(picture_->width) +
+                static_cast<std::size_t>(pixels[i].column);
+            pass_image_.merge(index, refinement_.kept_samples(from), refinement_.samples(to),
+                              std::span(pass_sums).subspan(i * pass_image_.stride(), pass_image_.stride()));
+        }
+    }
+}
+
+RenderReport ProgressiveRenderer::report() const {
+    const double left = seconds_left();
+    const std::lock_guard lock(telling_);
+    RenderReport report = told_;
+    report.seconds = seconds();
+    report.seconds_left = left;
+    return report;
+}
+
+}  // namespace shlight

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+//
+// A picture in passes: the first over all pixels or a grid of them, later ones over those that need more camera rays.
+// The picture is complete from the first grid on, whenever it stops: pixels without a ray are interpolated.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <shared_mutex>
+#include <span>
+#include <vector>
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include "render/pass_image.h"
+#include "render/pixel_batch.h"
+#include "render/pixel_order.h"
+#include "render/refinement.h"
+#include "shlight/parallel.h"
+#include "shlight/render.h"
+
+namespace shlight {
+
+/// Shadow rays of each camera ray that is added, where the settings allow as many. With fewer the ratio of a glossy
+/// lobe, whose peak may then be among none of them, is far too large where the peak is hidden.
+inline constexpr std::uint32_t kLeastShadowRays = 4;
+/// Camera rays × shadow rays of a light that a pixel has in a batch, at most.
+inline constexpr std::int64_t kMostRaysPerPixel = 1 << 22;
+
+/// One render. Its work and its caller's callbacks run on two threads.
+class ProgressiveRenderer {
+  public:
+    using Clock = std::chrono::steady_clock;
+
+    /// passes: see render(); start: when the time limit begins.
+    ProgressiveRenderer(const Picture& picture, Refinement refinement, std::span<float> image, std::span<float> passes,
+                        const RenderWatch& watch, Clock::time_point start);
+
+    /// Renders until every pixel has enough rays, the time is over, or on_update wants the picture as it is. Throws
+    /// RenderCancelled once the caller stops it.
+    void run(const Watch& caller);
+    /// The caller's part meanwhile: it calls progress and on_update. False: the render is cancelled.
+    bool look();
+    RenderReport report() const;
+
+  private:
+    /// Camera rays spread over tasks.
+    struct Job {
+        double rays;
+        std::size_t tasks;
+        std::function<void(std::size_t)> task;
+    };
+
+    void write_middles(const Stopped& stopped);
+    bool first_pass(const Watch& caller);
+    int widest_step() const;
+    /// What needs more rays; also tells the noise.
+    std::vector<RefinementGroup> judge(const Stopped& stopped);
+    /// Refines some pixels; false: there is nothing left to do, or no time.
+    bool refine(const Watch& caller);
+    Job job_of(const Grid& grid);
+    Job job_of(const RefinementGroup& group);
+    void render(std::span<const Pixel> pixels, int from, int to, bool calm);
+    std::uint32_t shadow_rays_at(int level) const;
+    std::uint32_t points_before(int level) const;
+    /// Begins no task after the second `until`; false if that left any out, or on_update did.
+    bool run_job(const Job& job, double until, const Stopped& stopped);
+    /// Has the caller show the picture now.
+    void show_now(const Watch& caller);
+    bool show();
+    void fill_unrendered();
+    double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+    double time_limit() const;
+
+    /// Camera rays as far as they are known.
+    struct Work {
+        double done = 0;  ///< by jobs that have ended
+        double job = 0;   ///< of the one that runs
+        double left = 0;  ///< after it
+        std::size_t tasks = 1;
+    };
+    double rays_done() const;
+    double seconds_left() const;
+
+    const Picture* picture_;
+    std::span<float> image_;
+    PassImage pass_image_;
+    const RenderWatch* watch_;
+    std::uint32_t batch_samples_;
+    Clock::time_point start_;
+    double seconds_per_first_ray_ = 0;
+    int grid_step_ = 1;  // of the finest grid whose pixels all have rays
+    Refinement refinement_;
+    tbb::enumerable_thread_specific<PixelBatch> batches_;
+
+    std::shared_mutex merging_;   // shared by those that write pixels
+    mutable std::mutex telling_;  // guards told_ and work_
+    RenderReport told_;
+    Work work_;
+    std::atomic<std::size_t> tasks_done_ = 0;
+    std::atomic<bool> is_complete_ = false;  // whether there is a picture to show
+    std::atomic<bool> wants_show_ = false;
+    std::atomic<bool> is_left_ = false;  // by on_update
+
+    // The caller's own:
+    double share_ = 0;  // of the work, as told
+    std::atomic<double> shown_at_ = 0;
+    double show_seconds_ = 0;
+    std::vector<float> snapshot_;
+};
+
+}  // namespace shlight
