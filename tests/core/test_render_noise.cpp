@@ -73,7 +73,7 @@ Errors errors(const Image& image, const Image& truth) {
     return {sum / n / mean, std::sqrt(squares / n)};
 }
 
-/// From below what stands on the floor or hangs over it.
+/// The floor seen from above, from below what hangs over it.
 Image picture(const Scene& scene, double threshold, int samples, std::uint32_t seed = 0) {
     RenderSettings settings;
     settings.sampling.noise_threshold = threshold;

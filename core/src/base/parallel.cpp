@@ -130,7 +130,7 @@ void run_watched(int threads, const std::function<void(const Watch&)>& work, con
     watched.rethrow();
 }
 
-/// What one thread does needs no scheduler: small batches of lights take less time than a thread takes to start.
+/// One thread needs no scheduler: small batches of lights take less time than a thread takes to start.
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
     if (count > 1 && threads != 1) {
         run_in_arena(threads, [&] { tbb::parallel_for(std::size_t{0}, count, body, tbb::simple_partitioner()); });

@@ -19,9 +19,9 @@ constexpr std::size_t kMostBatchSamples = 4096;
 constexpr std::size_t kLeastSamples = 64;
 /// Camera rays that tell a gradient from an edge.
 constexpr std::uint32_t kLeastForPlane = 8;
-/// Of what a camera ray adds to a pixel; squares of brighter ones would leave floats.
+/// Largest radiance of a camera ray; squares of brighter ones would overflow in float.
 constexpr double kBrightestRay = 1e18;
-/// Of points of the aperture.
+/// Seed of points of the aperture.
 constexpr std::uint32_t kLensSeed = 0xFFFFFFFCU;
 
 /// The kind of each pass that is one.
@@ -55,7 +55,7 @@ LightParts parts_of(const Picture& picture) {
     return parts;
 }
 
-/// Where the parts that are passes go.
+/// The places of parts that are passes.
 std::vector<PartPlace> part_places(const Picture& picture) {
     std::vector<PartPlace> places;
     for (const auto& [pass, kind] : kKindPasses) {

@@ -67,7 +67,7 @@ struct Picture {
     LightingScene lighting;
 };
 
-/// Where a part of the light goes among the passes of a pixel.
+/// The place of a part of the light among the passes of a pixel.
 struct PartPlace {
     std::size_t first, part;
 };
@@ -85,11 +85,11 @@ class PixelBatch {
     void write_middles(std::span<const Pixel> pixels, std::span<float> values);
     /// Brightness of what surfaces reflect in these pixels, by their first camera ray, summed up.
     double reflected(std::span<const Pixel> pixels, std::uint32_t shadow_rays);
-    /// What was counted since the last call.
+    /// The report of the work since the last call.
     RenderReport take_report() { return std::exchange(report_, {}); }
 
   private:
-    /// Of the unit square; none: the aperture's middle.
+    /// A point of the unit square; none: the aperture's middle.
     using LensPoint = std::optional<glm::dvec2>;
 
     void trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples);

@@ -82,7 +82,7 @@ void ProgressiveRenderer::write_middles(const Stopped& stopped) {
     parallel_for(any ? count * static_cast<std::size_t>(picture_->height) : 0, picture_->settings.threads, write);
 }
 
-/// Where a picture is wanted soon, the first grid has few pixels.
+/// Step of the first grid: it has few pixels if a picture must be shown soon.
 int ProgressiveRenderer::widest_step() const {
     const double pixels = 1.0 * picture_->width * picture_->height;
     int step = refinement_.first_step();

@@ -57,7 +57,7 @@ class ProgressiveRenderer {
     void write_middles(const Stopped& stopped);
     bool first_pass(const Watch& caller);
     int widest_step() const;
-    /// What needs more rays; also tells the noise.
+    /// Finds the pixels that need more rays, and the picture's noise.
     std::vector<RefinementGroup> judge(const Stopped& stopped);
     /// Refines some pixels; false: there is nothing left to do, or no time.
     bool refine(const Watch& caller);

@@ -36,10 +36,10 @@ class Refinement {
     /// Merges the rays that take a pixel to a level into its mean, alpha and variance. Other pixels may be merged at
     /// the same time.
     void merge(const Pixel& pixel, int level, const PixelSums& sums, std::span<float> image);
-    /// What needs more rays, the fewest first; empty: nothing. threads: as RenderSettings; throws RenderCancelled once
-    /// stopped.
+    /// Pixels that need more rays, those with the fewest first; empty if none does. threads: see RenderSettings. Throws
+    /// RenderCancelled once stopped.
     std::vector<RefinementGroup> next_round(std::span<const float> image, int threads, const Stopped& stopped);
-    /// Of the picture when next_round was called: see RenderReport::noise.
+    /// Noise of the picture when next_round() was called, see RenderReport::noise.
     double noise() const { return noise_; }
     /// Likewise: camera rays that are left until every pixel has enough, as far as that is known.
     double rays_left() const { return rays_left_; }
@@ -52,7 +52,7 @@ class Refinement {
     int first_step() const { return has_preview() && least_level_ > 0 ? 2 : 1; }
     /// Pixels without any ray, for the first level.
     RefinementGroup unrendered() const;
-    /// As samples, of those that later levels go on with.
+    /// samples() without rays that later levels replace.
     std::uint32_t kept_samples(int level) const { return level == 0 && has_preview() ? 0 : samples(level); }
     int most_level() const { return most_level_; }
 
@@ -77,7 +77,7 @@ class Refinement {
     std::size_t index(int column, int row) const {
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
     }
-    /// What a row adds to the next round.
+    /// A row's contribution to the next round.
     struct Row {
         std::vector<RefinementGroup> groups;
         double errors = 0, rays_left = 0;
