@@ -21,8 +21,8 @@ struct alignas(64) CacheLine {
 };
 
 struct Block {
-    std::unique_ptr<CacheLine[]> memory;
-    std::size_t size = 0;  // in bytes
+    std::unique_ptr<CacheLine[]> memory;  // NOLINT(modernize-avoid-c-arrays): a vector would write it beforehand
+    std::size_t size = 0;                 // in bytes
 };
 
 /// The memory of the last result that died.
@@ -41,8 +41,8 @@ class LastBlock {
                 return std::exchange(block_, Block());
             }
         }
-        return {std::make_unique_for_overwrite<CacheLine[]>((bytes + sizeof(CacheLine) - 1) / sizeof(CacheLine)),
-                bytes};
+        const std::size_t lines = (bytes + sizeof(CacheLine) - 1) / sizeof(CacheLine);
+        return {std::make_unique_for_overwrite<CacheLine[]>(lines), bytes};  // NOLINT(modernize-avoid-c-arrays)
     }
 
     void give_back(Block block) {

@@ -109,7 +109,7 @@ MeshHandle add_mesh(const py::object& self, const py::object& vertices, const py
 void set_bsdf(const MeshHandle& self, const py::object& bsdf, const py::object& emission, const py::object& group,
               const py::object& material_names, const py::object& material_pass_indices) {
     SceneObject& scene = self.scene();
-    MeshUse use = scene.scene.mesh(self.number);
+    auto use = MeshUse(static_cast<const MeshUse&>(scene.scene.mesh(self.number)));
     set_materials(use, self.names, {bsdf, emission, group, material_names, material_pass_indices}, scene);
     scene.scene.use_mesh(self.number, std::move(use));
     scene.changed();
@@ -118,7 +118,7 @@ void set_bsdf(const MeshHandle& self, const py::object& bsdf, const py::object& 
 void set_transforms(const MeshHandle& self, const py::object& transforms, const py::object& object_values,
                     const py::object& object_names, const py::object& asset_names, const py::object& object_indices) {
     SceneObject& scene = self.scene();
-    MeshUse use = scene.scene.mesh(self.number);
+    auto use = MeshUse(static_cast<const MeshUse&>(scene.scene.mesh(self.number)));
     set_places(use, {transforms, object_values, object_names, asset_names, object_indices});
     scene.scene.use_mesh(self.number, std::move(use));
     scene.changed();

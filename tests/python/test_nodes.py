@@ -38,7 +38,7 @@ def floor(bsdf: Any, light: str, indices: Any = None) -> Any:
     pose[1:3, 1:3] = [[np.cos(1.0), -np.sin(1.0)], [np.sin(1.0), np.cos(1.0)]]
     pose[:3, 3] = 0, -5, 3.2
     scene.set_camera(pose, 0.8)
-    return shlight.render(scene, 48, 32, pixel_samples=4, shadow_rays=0)
+    return shlight.render(scene, 48, 32, pixel_samples=4, max_samples=4, shadow_rays=0)
 
 
 @pytest.mark.parametrize("ior", [None, 1.5])

@@ -34,7 +34,7 @@ struct Watch {
     std::function<void()> look;  ///< has the waiting thread look at once, and returns when it has; may be empty
 };
 
-/// Runs long work on a thread of its own, as run_in_arena does. Meanwhile the calling thread calls `look` every 10 ms
+/// Runs long work on a thread of its own, as run_in_arena does. The calling thread calls `look` first, then every 10 ms
 /// and when the work asks for it, until the work ends. Without `look` the work runs on the calling thread. Throws what
 /// work and look throw, and RenderCancelled after look has returned false; the work has ended by then.
 void run_watched(int threads, const std::function<void(const Watch&)>& work, const std::function<bool()>& look);

@@ -120,11 +120,15 @@ void run_watched(int threads, const std::function<void(const Watch&)>& work, con
         run_in_arena(threads, [&] { work({}); });
         return;
     }
-    WatchedWork watched(threads, work);
-    while (watched.goes_on()) {
+    const auto check = [&] {
         if (!look()) {
             throw RenderCancelled();
         }
+    };
+    check();
+    WatchedWork watched(threads, work);
+    while (watched.goes_on()) {
+        check();
         watched.has_looked();
     }
     watched.rethrow();

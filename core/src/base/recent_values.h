@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 namespace shlight {
@@ -28,7 +29,7 @@ class RecentValues {
 
   private:
     struct Entry {
-        explicit Entry(const Key& wanted) : key(wanted) {}
+        explicit Entry(Key wanted) : key(std::move(wanted)) {}
         Key key;
         std::once_flag once;
         std::shared_ptr<const Value> value;

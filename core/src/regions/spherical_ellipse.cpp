@@ -69,8 +69,15 @@ class ColumnRotations {
         const Real s = std::sqrt(glm::dot(sum, sum) * glm::dot(difference, difference)) / squares;  // √(1 - tanh² 2η)
         const Real cosh = std::sqrt((1 + s) / (2 * s));
         const Real t = std::min(Real(1), 2 * std::abs(product) / (squares * (1 + s)));
-        const Real one_minus_tanh = 2 * s / ((1 + s) * (1 + t));  // 1 - |tanh η|
         const Real sign = product < 0 ? Real(1) : Real(-1);
+        if (t < Real(0.5)) {
+            // Sums would lose a column that is far shorter than the other.
+            const Vec3<Real> boosted = cosh * (a + sign * t * b);
+            b = cosh * (b + sign * t * a);
+            a = boosted;
+            return;
+        }
+        const Real one_minus_tanh = 2 * s / ((1 + s) * (1 + t));  // 1 - |tanh η|
         const Vec3<Real> boosted = cosh * (sum - sign * one_minus_tanh * b);
         b = cosh * (sign * sum - sign * one_minus_tanh * a);
         a = boosted;

@@ -32,9 +32,10 @@ namespace shlight {
 
 /// The lights and materials of a scene, prepared for DirectLighting. Any number of threads may read it.
 struct LightingScene {
-    /// lights: those with extent first; order, tolerance: of RenderSettings. All but lobes must outlive this.
-    LightingScene(std::span<const Light> lights, std::size_t extended_count, const Environment& environment,
-                  std::uint32_t environment_group, std::vector<MaterialLobes> lobes, int order, double tolerance);
+    /// all: the lights, those with extent first; order, error_tolerance: of RenderSettings. All but lobes must outlive
+    /// this.
+    LightingScene(std::span<const Light> all, std::size_t extended_count, const Environment& sky,
+                  std::uint32_t sky_group, std::vector<MaterialLobes> lobes, int order, double error_tolerance);
 
     std::span<const Light> extended;
     std::vector<const Light*> extended_list;  ///< the same
