@@ -116,8 +116,7 @@ using ReportState = std::tuple<std::array<std::uint64_t, kMaxOrder + 1>, std::ar
 ReportState report_state(const Report& report) {
     const RenderReport& core = report.core;
     return {core.order_counts,
-            {core.cubature_count, core.mirror_count, core.over_tolerance, core.hits,
-             core.shadow_rays, core.passes},
+            {core.cubature_count, core.mirror_count, core.over_tolerance, core.hits, core.shadow_rays, core.passes},
             {core.noise, core.seconds},
             core.stage_seconds,
             report.build_seconds};
@@ -127,8 +126,8 @@ Report report_from(const ReportState& state) {
     const auto& [order_counts, counts, floats, stage_seconds, build_seconds] = state;
     const auto& [cubature, mirror, over_tolerance, hits, shadow_rays, passes] = counts;
     const auto& [noise, seconds] = floats;
-    return {{order_counts, cubature, mirror, over_tolerance, hits, shadow_rays,
-             static_cast<std::uint32_t>(passes), noise, seconds, 0, stage_seconds},
+    return {{order_counts, cubature, mirror, over_tolerance, hits, shadow_rays, static_cast<std::uint32_t>(passes),
+             noise, seconds, 0, stage_seconds},
             build_seconds};
 }
 
@@ -274,10 +273,11 @@ void bind_render(py::module_& m) {
         .def_readonly("build_seconds", &Report::build_seconds, "Time for building what rays are traced in; 0 if kept.")
         .def_property_readonly(
             "render_seconds", [](const Report& r) { return r.core.seconds; }, "Time for rendering.")
-        .def_property_readonly("stage_seconds", &Report::stage_seconds,
-                               "Time for each stage, summed over threads: camera rays; views, of the materials there; "
-                               "light, without shadows; shadows, drawing and weighing; shadow rays, tracing; pixels, adding "
-                               "up.")
+        .def_property_readonly(
+            "stage_seconds", &Report::stage_seconds,
+            "Time for each stage, summed over threads: camera rays; views, of the materials there; "
+            "light, without shadows; shadows, drawing and weighing; shadow rays, tracing; pixels, adding "
+            "up.")
         .def("__repr__", &Report::repr);
     m.def(
         "cryptomatte_hash", [](const std::string& name) { return cryptomatte_hash(name); }, "name"_a);

@@ -53,8 +53,8 @@ double angle_to_axis(const Vec3d& direction) {
     return std::atan2(std::hypot(direction.x, direction.y), direction.z);
 }
 
-/// World direction opposite to the lamp's axis, about which the rings lie, and the angles to it at which the profile has
-/// kinks. No direction if lines of equal factor are not circles.
+/// World direction opposite to the lamp's axis, about which the rings lie, and the angles to it at which the profile
+/// has kinks. No direction if lines of equal factor are not circles.
 struct Axis {
     std::optional<Vec3d> direction;
     std::array<double, 2> kinks{};

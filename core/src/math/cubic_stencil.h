@@ -12,7 +12,8 @@ struct CubicStencil {
     int first;
     std::array<float, 4> weights;
 
-    /// least: smallest node index that may be used; count: one more than the largest. NaN counts as a position beyond it.
+    /// least: smallest node index that may be used; count: one more than the largest. NaN counts as a position beyond
+    /// it.
     CubicStencil(double position, int least, int count)
         : first(static_cast<int>(std::max<double>(least, std::min<double>(count - 4, std::floor(position) - 1)))) {
         const auto t = static_cast<float>(position - first);  // 1 … 2 between the middle nodes

@@ -125,7 +125,8 @@ void ShadowedLight::shade_lobe(const LitRange& pixel, std::size_t lobe, Hits& hi
         const Vec3d seen = Vec3d(glm::abs(hits.weight(lit_hits[i], lobe))) * hit_sums_[i].seen;
         hits.reflect(lit_hits[i], lobe, group_, Rgb(all.unblocked * quotient(seen, all.rays)));
         // The lobes of a hit share its rays.
-        deviation_[i] += deviation(scaled_radiance(hits, lit_hits[i], lobe), quotient(all.seen, all.rays), hit_sums_[i]);
+        deviation_[i] +=
+            deviation(scaled_radiance(hits, lit_hits[i], lobe), quotient(all.seen, all.rays), hit_sums_[i]);
     }
 }
 
@@ -136,7 +137,8 @@ ShadowedLight::MaterialSums& ShadowedLight::sums_of(const Hits& hits, std::size_
     const auto known = std::find_if(material_sums_.begin(), material_sums_.end(), [&](const MaterialSums& sums) {
         return sums.material == material && (!is_apart || sums.hit == hit);
     });
-    return known != material_sums_.end() ? *known : material_sums_.emplace_back(MaterialSums{material, hit, {}, {}, {}});
+    return known != material_sums_.end() ? *known
+                                         : material_sums_.emplace_back(MaterialSums{material, hit, {}, {}, {}});
 }
 
 }  // namespace shlight
