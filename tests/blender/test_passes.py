@@ -91,7 +91,7 @@ def relative_error(image: NDArray[np.float32], expected: NDArray[np.float32]) ->
 
 def test_passes_are_those_of_cycles(studio: Any) -> None:
     scene_with_groups(studio)
-    studio.scene.cycles.samples = 1024
+    studio.scene.cycles.samples = 4096
     (own, own_notes), (reference, notes) = rendered(studio, "SHLIGHT"), rendered(studio, "CYCLES")
     for name in compat.DENOISING_LEFT_OUT:
         reference.pop(f"ViewLayer.{name}")
@@ -126,7 +126,9 @@ def test_places_are_exact_where_cycles_looks_through_the_middles_too(studio: Any
     (own, _), (reference, _) = rendered(studio, "SHLIGHT"), rendered(studio, "CYCLES")
     for name in ("Depth", "Position", "Normal", "UV"):
         image, expected = own[f"ViewLayer.{name}"], reference[f"ViewLayer.{name}"]
-        at_edges = np.abs(image - expected).max(axis=-1) > 0.01  # where the rays differ by the width of the filter
+        at_edges = (
+            np.abs(image - expected).max(axis=-1) > 2e-3
+        )  # one of 256 rays, within the filter's width, meets something else
         assert at_edges.mean() <= 2e-3
         np.testing.assert_allclose(image[~at_edges], expected[~at_edges], rtol=1e-5, atol=2e-5)
 

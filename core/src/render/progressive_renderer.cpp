@@ -53,7 +53,7 @@ void ProgressiveRenderer::run(const Watch& caller) {
     for (int round = 0; goes_on && round < kMostRounds; ++round) {
         goes_on = refine(caller);
     }
-    if (seconds() >= time_limit()) {
+    if (seconds() >= time_limit() - judge_seconds_) {
         judge(caller.stopped);  // rays that came after the last round's judgement count too
     }
     fill_unrendered();
@@ -118,7 +118,9 @@ bool ProgressiveRenderer::first_pass(const Watch& caller) {
 }
 
 std::vector<RefinementGroup> ProgressiveRenderer::judge(const Stopped& stopped) {
+    const double begin = seconds();
     auto groups = refinement_.next_round(image_, picture_->settings.threads, stopped);
+    judge_seconds_ = seconds() - begin;
     const std::lock_guard lock(telling_);
     told_.noise = refinement_.noise();
     work_.left = refinement_.rays_left();
@@ -134,7 +136,7 @@ bool ProgressiveRenderer::refine(const Watch& caller) {
     // Time is kept for one ray of each pixel that has none, if there is enough for all of them.
     const RefinementGroup unrendered = refinement_.unrendered();
     const double reserve = static_cast<double>(unrendered.pixels.size()) * unrendered.rays * seconds_per_first_ray_;
-    const double limit = time_limit();
+    const double limit = time_limit() - judge_seconds_;
     const double until = seconds() + reserve < limit ? limit - reserve : limit;
     const bool is_whole = std::all_of(groups.begin(), groups.end(), [&](const RefinementGroup& group) {
         return run_job(job_of(group), until, caller.stopped);

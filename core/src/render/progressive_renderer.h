@@ -92,7 +92,8 @@ class ProgressiveRenderer {
     std::uint32_t batch_samples_;
     Clock::time_point start_;
     double seconds_per_first_ray_ = 0;
-    int grid_step_ = 1;  // of the finest grid whose pixels all have rays
+    double judge_seconds_ = 0;  // of the last round
+    int grid_step_ = 1;         // of the finest grid whose pixels all have rays
     Refinement refinement_;
     tbb::enumerable_thread_specific<PixelBatch> batches_;
 
