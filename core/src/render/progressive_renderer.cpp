@@ -134,9 +134,10 @@ bool ProgressiveRenderer::refine(const Watch& caller) {
         return false;
     }
     // Time is kept for one ray of each pixel that has none, if there is enough for all of them.
-    const RefinementGroup unrendered = refinement_.unrendered();
-    const double reserve = static_cast<double>(unrendered.pixels.size()) * unrendered.rays * seconds_per_first_ray_;
     const double limit = time_limit() - judge_seconds_;
+    const bool is_limited = picture_->settings.sampling.time_limit > 0;
+    const RefinementGroup unrendered = is_limited ? refinement_.unrendered() : RefinementGroup{};
+    const double reserve = static_cast<double>(unrendered.pixels.size()) * unrendered.rays * seconds_per_first_ray_;
     const double until = seconds() + reserve < limit ? limit - reserve : limit;
     const bool is_whole = std::all_of(groups.begin(), groups.end(), [&](const RefinementGroup& group) {
         return run_job(job_of(group), until, caller.stopped);
@@ -191,8 +192,11 @@ bool ProgressiveRenderer::run_job(const Job& job, double until, const Stopped& s
 }
 
 void ProgressiveRenderer::fill_unrendered() {
+    if (pass_image_.empty()) {
+        return;  // the image is interpolated already
+    }
     const RefinementGroup unrendered = refinement_.unrendered();
-    for (const Pixel& pixel : pass_image_.empty() ? std::span<const Pixel>() : std::span(unrendered.pixels)) {
+    for (const Pixel& pixel : unrendered.pixels) {
         const auto index = [&](int column, int row) {
             return static_cast<std::size_t>(row) * static_cast<std::size_t>(picture_->width) +
                    static_cast<std::size_t>(column);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <tuple>
 
+#include "shadows/ray_sums.h"
 #include "shlight/parallel.h"
 
 namespace shlight {
@@ -33,11 +34,6 @@ constexpr double kNoiseDecay = 1.25;
 
 double mean(const Vec3d& v) {
     return (v.x + v.y + v.z) / 3;
-}
-
-double relative(const Vec3d& squares, const Vec3d& scale) {
-    return mean(Vec3d(scale.x > 0 ? squares.x / scale.x : 0, scale.y > 0 ? squares.y / scale.y : 0,
-                      scale.z > 0 ? squares.z / scale.z : 0));
 }
 
 Vec3d color(std::span<const float> image, std::size_t pixel) {
@@ -92,14 +88,15 @@ void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std
     const Vec3d variance = old_share * Vec3d(state.variance) + (1 - old_share) * sums.variance() +
                            old_share * (1 - old_share) * difference * difference;
     const Vec3d scale = radiance * radiance + least_square_;
-    const double shared = old_share * old_share * state.shared_noise + relative(sums.shared_noise / (all * all), scale);
+    const double shared =
+        old_share * old_share * state.shared_noise + mean(quotient(sums.shared_noise / (all * all), scale));
     double noise = 0;
     if (all > 1 && kept_samples(level) > 0) {
         const double half = std::floor(all / 2);
         const Vec3d early = (before * old + sums.early) / half;
         const Vec3d late = (all * radiance - half * early) / (all - half);
         const Vec3d independent = sums.noise / (all * static_cast<double>(sums.rays));
-        noise = relative(glm::min((early - late) * (early - late) / 4.0, kMostNoise * independent), scale);
+        noise = mean(quotient(glm::min((early - late) * (early - late) / 4.0, kMostNoise * independent), scale));
     }
     state = {Rgb(variance),
              static_cast<float>(noise + shared),
