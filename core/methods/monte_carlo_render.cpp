@@ -196,7 +196,7 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
             const Vec3d direction = glm::normalize(Vec3d(rays_[i].direction));
             const double distance = glm::dot(surface.position - Vec3d(rays_[i].origin), direction);
             radiance_[pixel] += Vec3d(p.scene.materials()[surface.material].emission);
-            radiance_[pixel] += Vec3d(p.scene.lamps_along(rays_[i], distance));
+            radiance_[pixel] += Vec3d(p.scene.lamps_along(LampViewer::camera, rays_[i], distance));
             const ShadingFrame frame = shading_frame(surface.position, surface.shading_normal, -direction);
             hits_.add(surface, frame, view_cosine(frame, -direction), {}, {}, 0);
             pixel_of_hit_.push_back(pixel);
@@ -206,7 +206,7 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
             ++covered_[pixel];
             continue;
         }
-        radiance_[pixel] += Vec3d(p.scene.lamps_along(rays_[i], std::nullopt));
+        radiance_[pixel] += Vec3d(p.scene.lamps_along(LampViewer::camera, rays_[i], std::nullopt));
         if (const Environment* background = p.scene.background()) {
             radiance_[pixel] += Vec3d(background->radiance(glm::normalize(Vec3d(rays_[i].direction))));
             ++covered_[pixel];

@@ -22,6 +22,7 @@ struct LightTraits {
     bool lights_diffuse = true;   ///< false: diffuse lobes do not reflect it
     bool lights_glossy = true;    ///< false: glossy lobes do not reflect it
     bool seen_by_camera = false;  ///< camera rays that meet it gain its radiance; it hides nothing
+    bool is_surface = false;      ///< rays meet it as a surface of a mesh
     std::uint32_t group = 0;      ///< light group, whose light a render can output separately; 0: none
 };
 

@@ -39,6 +39,10 @@ struct ShadedPlace {
     std::uint32_t transparent_depth;
 };
 
+/// Who sees lamps: a camera those with LightTraits::seen_by_camera, a mirror those that light glossy lobes, of which
+/// those without shadows are seen through surfaces.
+enum class LampViewer : std::uint8_t { camera, mirror, unblocked_mirror };
+
 class CompiledScene {
   public:
     CompiledScene(const CompiledScene&) = delete;
@@ -59,11 +63,11 @@ class CompiledScene {
     std::span<const std::uint32_t> light_groups() const;
     /// The environment that the camera sees; null: the background is transparent.
     const Environment* background() const;
-    /// Whether the camera sees any lamp.
-    bool shows_lamps() const;
-    /// Radiance that lamps seen by the camera add to a camera ray, up to a surface at this distance along it, if there
-    /// is one. by_group: each group's part is added to its entry; empty: no parts are wanted.
-    Rgb lamps_along(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group = {}) const;
+    bool shows_lamps(LampViewer viewer) const;
+    /// Radiance that lamps add to a ray of a viewer, up to a surface at this distance along it, if there is one.
+    /// by_group: each group's part is added to its entry; empty: no parts are wanted.
+    Rgb lamps_along(LampViewer viewer, const Ray& ray, const std::optional<double>& surface,
+                    std::span<Rgb> by_group = {}) const;
     const SceneRays& rays() const;
     /// Precondition: not hit.missed(); direction is the ray's.
     SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;

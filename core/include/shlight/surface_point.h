@@ -15,6 +15,9 @@ struct SurfacePoint {
     /// Bound of the distance between this point and the surface that rays in float meet here [m].
     double error;
     std::uint32_t material;
+
+    /// Where rays begin that must not meet this surface, on the side of the ray's origin.
+    Vec3d off_surface() const { return position + error * geometric_normal; }
 };
 
 }  // namespace shlight

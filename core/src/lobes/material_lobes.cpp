@@ -51,7 +51,8 @@ LobeWeights MaterialLobes::weights(std::span<const double> cos_theta_o, std::vec
 double MaterialLobes::narrowest(double cos_theta_o, std::span<const float> widths) const {
     double least = 1;
     for (std::size_t i = 0; i < lobes_.size(); ++i) {
-        least = std::min(least, shlight::narrowest(shape(i, widths[i]), cos_theta_o));
+        const LobeShape own = shape(i, widths[i]);
+        least = is_mirror(own) ? least : std::min(least, shlight::narrowest(own, cos_theta_o));
     }
     return least;
 }

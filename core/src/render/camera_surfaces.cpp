@@ -44,45 +44,50 @@ void CameraSurfaces::trace(std::span<const CameraRay> rays, std::span<const Neig
     light.assign(rays.size(), {});
     hits.apart.reset(rays.size() / rays_per_pixel);
     const Sink sink = {light, hits.apart, rays_per_pixel};
-    throughput_.assign(rays.size(), Rgb(1));
-    active_.clear();
     segments_.clear();
+    parts_.clear();
     for (std::size_t i = 0; i < rays.size(); ++i) {
         if (rays[i].ray.empty()) {
             light[i].opacity = 1;  // outside a panorama's image, as Cycles has it
         } else {
-            active_.push_back(i);
-            segments_.push_back(rays[i].ray);
+            start({i, false, 0, Rgb(1), rays[i].ray}, rays[i].ray);
         }
     }
-    for (std::uint32_t depth = 0; !active_.empty(); ++depth) {
+    while (!segments_.empty()) {
         const std::size_t first = surfaces_.size();
-        meet(rays, depth, sink);
+        meet(sink);
         run_programs(neighbours, first);
-        pass_on(rays, first, sink);
+        pass_on(first, sink);
     }
     add_hits(rays, rays_per_pixel, hits);
 }
 
-/// The next surface of each ray, or what lies behind all of them.
-void CameraSurfaces::meet(std::span<const CameraRay> rays, std::uint32_t depth, const Sink& sink) {
-    met_.resize(segments_.size());
-    scene_->rays().intersect(segments_, met_);
-    for (std::size_t i = 0; i < active_.size(); ++i) {
-        const std::size_t index = active_[i];
-        const CameraRay& ray = rays[index];
+void CameraSurfaces::start(const Segment& segment, const Ray& part) {
+    segments_.push_back(segment);
+    parts_.push_back(part);
+}
+
+/// The next surface of each path, or what lies behind all of them.
+void CameraSurfaces::meet(const Sink& sink) {
+    met_.resize(parts_.size());
+    scene_->rays().intersect(parts_, met_);
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        const Segment& segment = segments_[i];
+        const LampViewer viewer = segment.is_mirrored ? LampViewer::mirror : LampViewer::camera;
         if (met_[i].missed()) {
-            add_lamps(index, segments_[i], std::nullopt, sink);
-            leave_scene(ray, index, sink);
+            add_lamps(viewer, segment, parts_[i], std::nullopt, sink);
+            leave_scene(segment, sink);
             continue;
         }
-        const SurfacePoint point = scene_->surface(met_[i], ray.ray.direction);
-        const Vec3d direction = glm::normalize(Vec3d(ray.ray.direction));
-        const double distance = glm::dot(point.position - Vec3d(ray.ray.origin), direction);
-        add_lamps(index, segments_[i], distance, sink);
-        surfaces_.push_back(
-            {index, depth, met_[i], point, -direction, distance, distance - ray.ray.t_min, throughput_[index], 0, 0});
+        const SurfacePoint point = scene_->surface(met_[i], segment.whole.direction);
+        const Vec3d direction = glm::normalize(Vec3d(segment.whole.direction));
+        const double distance = glm::dot(point.position - Vec3d(segment.whole.origin), direction);
+        add_lamps(viewer, segment, parts_[i], distance, sink);
+        surfaces_.push_back({segment.ray, segment.is_mirrored, segment.depth, segment.whole, met_[i], point, -direction,
+                             distance, distance - segment.whole.t_min, segment.throughput, 0, 0});
     }
+    segments_.clear();
+    parts_.clear();
 }
 
 ShadedPlace CameraSurfaces::place_of(const Surface& surface, const NeighbourRays* neighbours) const {
@@ -97,43 +102,49 @@ ShadedPlace CameraSurfaces::place_of(const Surface& surface, const NeighbourRays
     return place;
 }
 
-void CameraSurfaces::leave_scene(const CameraRay& ray, std::size_t index, const Sink& sink) {
-    const Environment* background = scene_->background();
-    const Rgb& left = throughput_[index];
-    const Vec3d direction = glm::normalize(Vec3d(ray.ray.direction));
+void CameraSurfaces::leave_scene(const Segment& segment, const Sink& sink) {
+    const Environment* background = segment.is_mirrored ? &scene_->environment() : scene_->background();
+    const Rgb& left = segment.throughput;
+    const Vec3d direction = glm::normalize(Vec3d(segment.whole.direction));
     if (background != nullptr) {
-        add_light(index, LightKind::environment, scene_->environment_group(), left * background->radiance(direction),
-                  sink);
+        add_light(segment.ray, segment.is_mirrored, LightKind::environment, scene_->environment_group(),
+                  left * background->radiance(direction), sink);
     } else if (!sink.apart.empty()) {
-        sink.apart.of(index / sink.rays_per_pixel)[LightParts::of_kind(LightKind::environment)] +=
+        sink.apart.of(segment.ray / sink.rays_per_pixel)[LightParts::of_kind(LightKind::environment)] +=
             left * scene_->environment().radiance(direction);
     }
-    sink.light[index].opacity = background != nullptr ? 1.0F : 1.0F - (left.x + left.y + left.z) / 3;
-}
-
-void CameraSurfaces::add_lamps(std::size_t index, const Ray& segment, const std::optional<double>& surface,
-                               const Sink& sink) {
-    const bool apart = !sink.apart.empty() && scene_->shows_lamps();
-    by_group_.assign(apart ? sink.apart.parts().count - kLightKinds : 0, Rgb(0));
-    sink.light[index].radiance += throughput_[index] * scene_->lamps_along(segment, surface, by_group_);
-    for (std::size_t group = 0; group < by_group_.size(); ++group) {
-        sink.apart.add(index / sink.rays_per_pixel, LightKind::emission, static_cast<std::uint32_t>(group),
-                       throughput_[index] * by_group_[group]);
+    if (!segment.is_mirrored) {
+        sink.light[segment.ray].opacity = background != nullptr ? 1.0F : 1.0F - (left.x + left.y + left.z) / 3;
     }
 }
 
-void CameraSurfaces::add_light(std::size_t index, LightKind kind, std::uint32_t group, const Rgb& radiance,
-                               const Sink& sink) {
-    sink.light[index].radiance += radiance;
+void CameraSurfaces::add_lamps(LampViewer viewer, const Segment& segment, const Ray& part,
+                               const std::optional<double>& surface, const Sink& sink) {
+    if (!scene_->shows_lamps(viewer)) {
+        return;
+    }
+    by_group_.assign(sink.apart.empty() ? 0 : sink.apart.parts().count - kLightKinds, Rgb(0));
+    const Rgb radiance = scene_->lamps_along(viewer, part, surface, by_group_);
+    sink.light[segment.ray].radiance += segment.throughput * radiance;
+    for (std::size_t group = 0; group < by_group_.size(); ++group) {
+        sink.apart.add(segment.ray / sink.rays_per_pixel, segment.is_mirrored ? LightKind::glossy : LightKind::emission,
+                       static_cast<std::uint32_t>(group), segment.throughput * by_group_[group]);
+    }
+}
+
+void CameraSurfaces::add_light(std::size_t ray, bool is_mirrored, LightKind kind, std::uint32_t group,
+                               const Rgb& radiance, const Sink& sink) {
+    sink.light[ray].radiance += radiance;
     if (!sink.apart.empty() && radiance != Rgb(0)) {  // groups without light have no part
-        sink.apart.add(index / sink.rays_per_pixel, kind, group, radiance);
+        sink.apart.add(ray / sink.rays_per_pixel, is_mirrored ? LightKind::glossy : kind, group, radiance);
     }
 }
 
 void CameraSurfaces::run_programs(std::span<const NeighbourRays> neighbours, std::size_t first) {
     order_.clear();
     for (std::size_t i = first; i < surfaces_.size(); ++i) {
-        if (scene_->materials()[surfaces_[i].point.material].shader != nullptr) {
+        const SurfaceShader* shader = scene_->materials()[surfaces_[i].point.material].shader.get();
+        if (shader != nullptr && (!surfaces_[i].is_mirrored || shader->transparency)) {
             order_.push_back(static_cast<std::uint32_t>(i));
         }
     }
@@ -153,8 +164,9 @@ void CameraSurfaces::run_program(std::span<const NeighbourRays> neighbours, std:
     const ShaderProgram& program = material.shader->program;
     places_.clear();
     for (const std::uint32_t i : surfaces) {
-        places_.push_back(
-            place_of(surfaces_[i], program.takes_differences() ? &neighbours[surfaces_[i].ray] : nullptr));
+        // Neighbours of mirrored rays are unknown.
+        const bool differs = program.takes_differences() && !surfaces_[i].is_mirrored;
+        places_.push_back(place_of(surfaces_[i], differs ? &neighbours[surfaces_[i].ray] : nullptr));
     }
     const std::size_t begin = results_.size();
     results_.resize(begin + program.result_count() * surfaces.size());
@@ -183,29 +195,61 @@ float CameraSurfaces::width(const Surface& surface, std::uint32_t result) const 
     return std::min(alpha > kLeastWidth ? alpha : kLeastWidth, 1.0F);
 }
 
-/// Emission of the surfaces met last, and what is left of the rays behind them.
-void CameraSurfaces::pass_on(std::span<const CameraRay> rays, std::size_t first, const Sink& sink) {
-    active_.clear();
-    segments_.clear();
+void CameraSurfaces::add_emission(const Surface& surface, const Sink& sink) {
+    const Material& material = scene_->materials()[surface.point.material];
+    const bool by_program = material.shader != nullptr && !surface.is_mirrored;
+    if (by_program && !material.shader->emission) {
+        return;
+    }
+    // The program's emission is what the camera sees; other surfaces are lit by the material's.
+    const Rgb emission = by_program ? color(surface, *material.shader->emission) : material.emission;
+    add_light(surface.ray, surface.is_mirrored, LightKind::emission, material.group, surface.throughput * emission,
+              sink);
+}
+
+/// Emission of the surfaces met last, and the paths that go on from there.
+void CameraSurfaces::pass_on(std::size_t first, const Sink& sink) {
     for (std::size_t i = first; i < surfaces_.size(); ++i) {
         const Surface& surface = surfaces_[i];
-        const Material& material = scene_->materials()[surface.point.material];
-        sink.light[surface.ray].opacity = 1;
-        if (material.shader == nullptr) {
-            add_light(surface.ray, LightKind::emission, material.group, surface.throughput * material.emission, sink);
+        if (!surface.is_mirrored) {
+            sink.light[surface.ray].opacity = 1;
+        }
+        add_emission(surface, sink);
+        if (surface.depth > transparent_bounces_) {
             continue;
         }
-        if (material.shader->emission) {
-            add_light(surface.ray, LightKind::emission, material.group,
-                      surface.throughput * color(surface, *material.shader->emission), sink);
-        }
-        if (material.shader->transparency) {
-            throughput_[surface.ray] *= transparency(surface);
-            if (surface.depth <= transparent_bounces_ && throughput_[surface.ray] != Rgb(0)) {
-                active_.push_back(surface.ray);
-                segments_.push_back(behind(rays[surface.ray].ray, surface.hit));
+        const Material& material = scene_->materials()[surface.point.material];
+        if (material.shader != nullptr && material.shader->transparency) {
+            const Rgb throughput = surface.throughput * transparency(surface);
+            if (throughput != Rgb(0)) {
+                start({surface.ray, surface.is_mirrored, surface.depth + 1, throughput, surface.way},
+                      behind(surface.way, surface.hit));
             }
         }
+        if (!surface.is_mirrored) {
+            reflect(surface, sink);
+        }
+    }
+}
+
+void CameraSurfaces::reflect(const Surface& surface, const Sink& sink) {
+    const auto lobes = materials_[surface.point.material].lobes();
+    if (std::none_of(lobes.begin(), lobes.end(), [](const Lobe& lobe) { return is_mirror(lobe.shape); })) {
+        return;
+    }
+    find_lobes(surface, lobes_);
+    for (const SurfaceLobe& lobe : lobes_) {
+        if (!is_mirror(lobe.shape) || lobe.weight == Rgb(0)) {
+            continue;
+        }
+        const ShadingFrame frame = shading_frame(surface.point.position, lobe.normal, surface.towards_viewer);
+        const double cosine = view_cosine(frame, surface.towards_viewer);
+        const Vec3d direction = frame.to_world(mirrored({std::sqrt(1 - cosine * cosine), 0, cosine}));
+        const Ray ray = {Vec3f(surface.point.off_surface()), 0, Vec3f(direction)};
+        const auto albedo = static_cast<float>(lobe_albedo(lobe.shape, cosine));
+        const Segment segment = {surface.ray, true, 0, surface.throughput * lobe.weight * albedo, ray};
+        add_lamps(LampViewer::unblocked_mirror, segment, ray, std::nullopt, sink);
+        start(segment, ray);
     }
 }
 
@@ -213,7 +257,8 @@ void CameraSurfaces::add_hits(std::span<const CameraRay> rays, std::size_t rays_
     hits.clear();
     order_.resize(surfaces_.size());
     std::iota(order_.begin(), order_.end(), 0U);
-    if (!surfaces_.empty() && surfaces_.back().depth > 0) {
+    std::erase_if(order_, [&](std::uint32_t i) { return surfaces_[i].is_mirrored; });
+    if (!order_.empty() && surfaces_[order_.back()].depth > 0) {
         std::stable_sort(order_.begin(), order_.end(),
                          [&](std::uint32_t a, std::uint32_t b) { return surfaces_[a].ray < surfaces_[b].ray; });
     }
@@ -290,7 +335,7 @@ void CameraSurfaces::add_lobes(const CameraRay& ray, const Surface& surface, con
     for (std::size_t i = first; i < shader.lobes.size(); ++i) {
         if (shares(i)) {
             const ShadedLobe& lobe = shader.lobes[i];
-            weights_[i] = surface.throughput * color(surface, lobe.weight);
+            weights_[i] = is_mirror(lobe.shape) ? Rgb(0) : surface.throughput * color(surface, lobe.weight);
             widths_[i] = lobe.alpha ? width(surface, *lobe.alpha) : 1.0F;
             any = any || weights_[i] != Rgb(0);
         }
@@ -317,7 +362,7 @@ void CameraSurfaces::add_hit(const CameraRay& ray, const Surface& surface, Hits&
     const float cosine = view_cosine(frame, surface.towards_viewer);
     weights_.clear();
     for (const Lobe& lobe : lobes) {
-        weights_.push_back(surface.throughput * lobe.scale(cosine));
+        weights_.push_back(is_mirror(lobe.shape) ? Rgb(0) : surface.throughput * lobe.scale(cosine));
     }
     hits.add(surface.point, frame, cosine, weights_, {}, ray.sample);
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // What the camera rays of a batch meet: surfaces, one behind the other as long as they let light through, and at last
-// the background. Shader programs run here, over all surfaces of a material at once.
+// the background. Where a surface is a mirror, a path goes on from there, and what lights it meets is light that the
+// surface reflects. Shader programs run here, over all surfaces of a material at once.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +28,7 @@ struct NeighbourRays {
     Ray right, below;
 };
 
-/// Light of a camera ray that surfaces do not reflect: their emission, lamps, and the background.
+/// Light of a camera ray that is met along its path: emission of surfaces, lamps, and the background, also in mirrors.
 struct RayLight {
     Rgb radiance{0};
     float opacity = 0;
@@ -55,22 +56,24 @@ class CameraSurfaces {
     void trace(std::span<const CameraRay> rays, std::span<const NeighbourRays> neighbours, std::size_t rays_per_pixel,
                Hits& hits, std::vector<RayLight>& light);
 
-    /// A surface that a camera ray has met.
+    /// A surface that a path has met.
     struct Surface {
         std::size_t ray;
-        std::uint32_t depth;  ///< surfaces that the ray has passed through
+        bool is_mirrored;     ///< in a mirror that the camera ray has met
+        std::uint32_t depth;  ///< surfaces that the path has passed through, since the mirror
+        Ray way;              ///< the camera ray, or the mirror's
         RayHit hit;
         SurfacePoint point;
         Vec3d towards_viewer;
-        double distance;      ///< from the ray's origin
-        double ray_length;    ///< from its beginning
+        double distance;      ///< from the origin of the camera ray, or the mirror
+        double ray_length;    ///< from where that begins
         Rgb throughput;       ///< share of its light that reaches the camera
         std::size_t results;  ///< of its program: where the first is
         std::size_t stride;   ///< and from result to result
     };
 
     // Results of the last call:
-    /// All surfaces; those of one ray are ordered by distance.
+    /// All surfaces; those of one camera ray that are not mirrored are ordered by distance.
     std::span<const Surface> surfaces() const { return surfaces_; }
     void find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const;
     /// The share of light that goes on straight through, not negative.
@@ -87,16 +90,31 @@ class CameraSurfaces {
         LightGroupBuffer& apart;
         std::size_t rays_per_pixel;
     };
-    void meet(std::span<const CameraRay> rays, std::uint32_t depth, const Sink& sink);
-    void leave_scene(const CameraRay& ray, std::size_t index, const Sink& sink);
-    void add_lamps(std::size_t index, const Ray& segment, const std::optional<double>& surface, const Sink& sink);
-    static void add_light(std::size_t index, LightKind kind, std::uint32_t group, const Rgb& radiance,
+    /// The path of a camera ray from its beginning, a mirror, or a surface that lets light through, to the next
+    /// surface.
+    struct Segment {
+        std::size_t ray;
+        bool is_mirrored;
+        std::uint32_t depth;  // see Surface
+        Rgb throughput;
+        Ray whole;  // from where the camera ray, or the mirror's, begins
+    };
+    void start(const Segment& segment, const Ray& part);
+    void meet(const Sink& sink);
+    void leave_scene(const Segment& segment, const Sink& sink);
+    void add_lamps(LampViewer viewer, const Segment& segment, const Ray& part, const std::optional<double>& surface,
+                   const Sink& sink);
+    /// kind: of light that no mirror shows.
+    static void add_light(std::size_t ray, bool is_mirrored, LightKind kind, std::uint32_t group, const Rgb& radiance,
                           const Sink& sink);
     void run_programs(std::span<const NeighbourRays> neighbours, std::size_t first);
     void run_program(std::span<const NeighbourRays> neighbours, std::span<const std::uint32_t> surfaces);
     /// neighbours: null where the program takes no differences.
     ShadedPlace place_of(const Surface& surface, const NeighbourRays* neighbours) const;
-    void pass_on(std::span<const CameraRay> rays, std::size_t first, const Sink& sink);
+    void add_emission(const Surface& surface, const Sink& sink);
+    void pass_on(std::size_t first, const Sink& sink);
+    /// The paths that go on from a surface in the directions of its mirrors.
+    void reflect(const Surface& surface, const Sink& sink);
     void add_hits(std::span<const CameraRay> rays, std::size_t rays_per_pixel, Hits& hits);
     void add_hit(const CameraRay& ray, const Surface& surface, Hits& hits);
     /// Unit.
@@ -114,10 +132,10 @@ class CameraSurfaces {
     const CompiledScene* scene_;
     std::span<const MaterialLobes> materials_;
     std::uint32_t transparent_bounces_;
-    std::vector<std::size_t> active_;  // rays that go on
-    std::vector<Ray> segments_;        // what is left of them
-    std::vector<Rgb> throughput_;      // of each ray
-    std::vector<Rgb> by_group_;        // of lamps along a ray
+    std::vector<Segment> segments_;
+    std::vector<Ray> parts_;     // of each segment's ray, what is left
+    std::vector<Rgb> by_group_;  // of lamps along a ray
+    std::vector<SurfaceLobe> lobes_;
     std::vector<RayHit> met_;
     std::vector<Surface> surfaces_;
     std::vector<std::uint32_t> order_;

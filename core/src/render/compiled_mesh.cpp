@@ -126,6 +126,7 @@ std::vector<Light> emissive_faces(const CompiledMesh& compiled, const Stopped& s
     }
     LightTraits traits;
     traits.group = mesh.group;
+    traits.is_surface = true;
     std::vector<Light> lights;
     for (std::uint32_t k = 0; k < mesh.transforms.size() && !emissive.empty(); ++k) {
         std::vector<Vec3d> vertices;

@@ -12,8 +12,8 @@
 #include <tbb/parallel_for.h>
 
 #include "base/scene_range.h"
-#include "render/camera_visible_lamps.h"
 #include "render/placed_meshes.h"
+#include "render/visible_lamps.h"
 #include "shlight/parallel.h"
 
 namespace shlight {
@@ -89,7 +89,9 @@ class CompiledScene::Impl {
         const bool alike =
             before != nullptr && std::ranges::equal(placed.meshes(), before->placed.meshes(), meets_rays_alike);
         rays = alike ? std::make_unique<const SceneRays>(*before->rays, transparency) : built_rays(stopped);
-        seen_lamps = CameraVisibleLamps(lights);
+        for (const LampViewer viewer : {LampViewer::camera, LampViewer::mirror, LampViewer::unblocked_mirror}) {
+            seen_lamps[static_cast<std::size_t>(viewer)] = VisibleLamps(lights, viewer);
+        }
         find_light_groups();
     }
 
@@ -102,7 +104,7 @@ class CompiledScene::Impl {
     std::uint32_t environment_group;
     Transparency transparency{*this};
     std::unique_ptr<const SceneRays> rays;
-    CameraVisibleLamps seen_lamps;
+    std::array<VisibleLamps, 3> seen_lamps;  // by LampViewer
     std::vector<std::uint32_t> light_groups;
 
   private:
@@ -227,11 +229,13 @@ std::span<const std::uint32_t> CompiledScene::light_groups() const {
 std::uint32_t CompiledScene::environment_group() const {
     return impl_->environment_group;
 }
-bool CompiledScene::shows_lamps() const {
-    return !impl_->seen_lamps.empty();
+bool CompiledScene::shows_lamps(LampViewer viewer) const {
+    return !impl_->seen_lamps[static_cast<std::size_t>(viewer)].empty();
 }
-Rgb CompiledScene::lamps_along(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group) const {
-    return impl_->seen_lamps.empty() ? Rgb(0) : impl_->seen_lamps.radiance(ray, surface, by_group);
+Rgb CompiledScene::lamps_along(LampViewer viewer, const Ray& ray, const std::optional<double>& surface,
+                               std::span<Rgb> by_group) const {
+    return shows_lamps(viewer) ? impl_->seen_lamps[static_cast<std::size_t>(viewer)].radiance(ray, surface, by_group)
+                               : Rgb(0);
 }
 const SceneRays& CompiledScene::rays() const {
     return *impl_->rays;

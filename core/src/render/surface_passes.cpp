@@ -50,6 +50,9 @@ void SurfacePasses::add(const CameraSurfaces& surfaces, std::size_t rays, std::s
                         std::span<double> sums) {
     rays_.assign(rays, {});
     for (const Surface& surface : surfaces.surfaces()) {
+        if (surface.is_mirrored) {
+            continue;
+        }
         double* pixel = &sums[surface.ray / rays_per_pixel * layout_->stride()];
         RayState& ray = rays_[surface.ray];
         const Rgb transparency = surfaces.transparency(surface);
@@ -198,6 +201,9 @@ double SurfacePasses::clearness(const Vec3d& position) const {
 void SurfacePasses::write_middles(const CameraSurfaces& surfaces, std::size_t rays, std::span<float> values) {
     rays_.assign(rays, {});
     for (const Surface& surface : surfaces.surfaces()) {
+        if (surface.is_mirrored) {
+            continue;
+        }
         RayState& ray = rays_[surface.ray];
         if (ray.found || !is_opaque_enough(surfaces.transparency(surface))) {
             continue;

@@ -24,7 +24,7 @@ void Hits::add(const SurfacePoint& surface, const ShadingFrame& shading_frame, f
                std::span<const Rgb> weights, std::span<const float> widths, std::uint32_t sample_index) {
     frame.push_back(shading_frame);
     cos_theta_o.push_back(view_cosine);
-    shadow_origin.push_back(surface.position + surface.error * surface.geometric_normal);
+    shadow_origin.push_back(surface.off_surface());
     error.push_back(surface.error);
     material.push_back(surface.material);
     lobe_weight.insert(lobe_weight.end(), weights.begin(), weights.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render/camera_visible_lamps.h"
+#include "render/visible_lamps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace shlight {
 namespace {
 
-/// The part of a camera ray where lamps are visible.
+/// The part of a ray where lamps are visible.
 struct View {
     Vec3d start;
     Vec3d direction;  // unit
@@ -86,7 +86,6 @@ bool meets(const SunLight& light, const View& view) {
     return view.reaches_suns && glm::length(view.direction - light.direction) <= 2 * std::sin(light.half_angle / 2);
 }
 
-/// Camera rays meet the faces of a mesh as surfaces.
 bool meets(const MeshLight&, const View&) {
     return false;
 }
@@ -101,15 +100,18 @@ bool meets(const ParallelSource&, const View&) {
 
 }  // namespace
 
-CameraVisibleLamps::CameraVisibleLamps(std::span<const Light> lights) {
+VisibleLamps::VisibleLamps(std::span<const Light> lights, LampViewer viewer) {
     for (const Light& light : lights) {
-        if (traits_of(light).seen_by_camera && !is_delta(light)) {
+        const LightTraits& traits = traits_of(light);
+        const bool in_mirrors = traits.lights_glossy && traits.casts_shadows == (viewer == LampViewer::mirror);
+        const bool seen = viewer == LampViewer::camera ? traits.seen_by_camera : in_mirrors;
+        if (seen && !traits.is_surface && !is_delta(light)) {
             lamps_.push_back(&light);
         }
     }
 }
 
-Rgb CameraVisibleLamps::radiance(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group) const {
+Rgb VisibleLamps::radiance(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group) const {
     const Vec3d direction = glm::normalize(Vec3d(ray.direction));
     const double end = std::min<double>(ray.t_max, surface.value_or(ray.t_max));
     const View view = {Vec3d(ray.origin) + double{ray.t_min} * direction, direction, end - ray.t_min, !surface};

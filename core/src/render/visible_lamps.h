@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Lamps that camera rays meet.
+// Lamps that rays meet. Surfaces that shine are met as surfaces.
 #pragma once
 
 #include <optional>
@@ -9,16 +9,16 @@
 
 #include "shlight/light.h"
 #include "shlight/ray_tracer.h"
+#include "shlight/scene.h"
 #include "shlight/types.h"
 
 namespace shlight {
 
-/// The lights with LightTraits::seen_by_camera.
-class CameraVisibleLamps {
+class VisibleLamps {
   public:
-    CameraVisibleLamps() = default;
-    /// The lights must outlive this.
-    explicit CameraVisibleLamps(std::span<const Light> lights);
+    VisibleLamps() = default;
+    /// Those of the lights that a viewer sees. The lights must outlive this.
+    VisibleLamps(std::span<const Light> lights, LampViewer viewer);
 
     bool empty() const { return lamps_.empty(); }
     /// The radiance that the lamps add to a ray, up to a surface at distance `surface`; without a surface up to t_max,
