@@ -22,9 +22,8 @@ ORDER = [
     "tracing",
     "emitters",
     "lights",
-    "shading",
     "environment",
-    "shadows",
+    "lighting",
     "render",
 ]
 # Public headers that no source of the same name implements.

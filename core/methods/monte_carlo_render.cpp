@@ -15,7 +15,7 @@
 #include "lights/seen_light.h"
 #include "random_directions.h"
 #include "random_numbers.h"
-#include "shadows/shadow_ray_spawner.h"
+#include "lighting/shadow_ray_spawner.h"
 #include "shlight/render.h"
 #include "surface_reflection.h"
 #include "tracing/hits.h"
@@ -198,7 +198,7 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
             radiance_[pixel] += Vec3d(p.scene.materials()[surface.material].emission);
             radiance_[pixel] += Vec3d(p.scene.lamps_along(LampViewer::camera, rays_[i], distance));
             const ShadingFrame frame = shading_frame(surface.position, surface.shading_normal, -direction);
-            hits_.add(surface, frame, view_cosine(frame, -direction), {}, {}, 0);
+            hits_.add(surface, frame, view_cosine(frame.z, -direction), {}, {}, 0);
             pixel_of_hit_.push_back(pixel);
             continue;
         }

@@ -12,7 +12,7 @@
 #include "kept_region.h"
 #include "math/gauss_legendre.h"
 #include "method.h"
-#include "shading/cubature_kernel.h"
+#include "lighting/cubature_kernel.h"
 #include "shlight/cap.h"
 
 namespace shlight::methods {

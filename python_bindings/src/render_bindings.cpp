@@ -255,7 +255,7 @@ void bind_render(py::module_& m) {
                                "Shares of what was shaded by harmonics, by their order. Once is a lobe of a camera hit "
                                "under a light that it sees.")
         .def_property_readonly("cubature_share", &Report::cubature_share, "Share of what was shaded by cubature.")
-        .def_property_readonly("mirror_share", &Report::mirror_share, "Share of what showed a light's own image.")
+        .def_property_readonly("mirror_share", &Report::mirror_share, "Share of what mirrors showed.")
         .def_property_readonly("over_tolerance", &Report::over_tolerance,
                                "Share whose estimated error exceeds the tolerance.")
         .def_property_readonly(

@@ -51,7 +51,7 @@ TEST(DeltaLights, ReflectAsEachByItself) {
         const ShadingFrame frame = shading_frame(100.0 * random.direction(), random.direction(), random.direction());
         std::vector<Light> lights;
         std::generate_n(std::back_inserter(lights), kCount, [&] { return random_light(random, frame.origin); });
-        const DeltaLights deltas(pointers_to(lights));
+        const DeltaLights deltas(lights);
         const auto cosine = static_cast<float>(random.uniform(0.1, 1));
         for (const LobeShape& shape : {LobeShape(LambertShape{}), LobeShape(GgxShape{0.3}), LobeShape(GgxShape{0})}) {
             for (const DeltaRange range : {DeltaRange{0, deltas.padded_size()}, DeltaRange{48, 32}}) {

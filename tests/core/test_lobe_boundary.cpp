@@ -13,7 +13,7 @@
 
 #include "lobe_truth.h"
 #include "random_input.h"
-#include "shading/cubature_kernel.h"
+#include "lighting/cubature_kernel.h"
 
 namespace shlight {
 namespace {

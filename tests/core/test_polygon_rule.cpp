@@ -10,7 +10,7 @@
 #include "math/triangle_cubature.h"
 #include "random_input.h"
 #include "regions/spherical_polygon.h"
-#include "shading/polygon_rule_kernel.h"
+#include "lighting/polygon_rule_kernel.h"
 #include "shlight/lobe_shape.h"
 
 namespace shlight {

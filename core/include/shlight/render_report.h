@@ -21,7 +21,7 @@ struct RenderReport {
     // A lobe of a camera hit under a light that it sees is shaded once, by …
     std::array<std::uint64_t, kMaxOrder + 1> order_counts{};  ///< … harmonics of this order
     std::uint64_t cubature_count = 0;                         ///< … values of f·cos
-    std::uint64_t mirror_count = 0;                           ///< … the light's own image
+    std::uint64_t mirror_count = 0;                           ///< paths into mirrors
     std::uint64_t over_tolerance = 0;                         ///< of these, where the estimate exceeds the tolerance
     std::uint64_t hits = 0;                                   ///< camera rays that met a surface
     std::uint64_t shadow_rays = 0;

@@ -16,7 +16,7 @@ struct SurfacePoint {
     double error;
     std::uint32_t material;
 
-    /// Where rays begin that must not meet this surface, on the side of the ray's origin.
+    /// Origin of rays that must not meet this surface, on the side of the ray that met it.
     Vec3d off_surface() const { return position + error * geometric_normal; }
 };
 

@@ -20,8 +20,8 @@ ShadingFrame shading_frame(const Vec3d& position, const Vec3d& normal, const Vec
     return {position, glm::cross(y, normal), y, normal};
 }
 
-float view_cosine(const ShadingFrame& frame, const Vec3d& towards_viewer) {
-    return static_cast<float>(std::clamp(glm::dot(frame.z, towards_viewer), kSmallestViewCosine, 1.0));
+float view_cosine(const Vec3d& normal, const Vec3d& towards_viewer) {
+    return static_cast<float>(std::clamp(glm::dot(normal, towards_viewer), kSmallestViewCosine, 1.0));
 }
 
 }  // namespace shlight

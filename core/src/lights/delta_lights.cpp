@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -19,20 +18,13 @@ constexpr double kNearest = 1e-12;
 
 }  // namespace
 
-std::vector<const Light*> pointers_to(std::span<const Light> lights) {
-    std::vector<const Light*> pointers;
-    std::transform(lights.begin(), lights.end(), std::back_inserter(pointers),
-                   [](const Light& light) { return &light; });
-    return pointers;
-}
-
 void DeltaViews::resize(std::size_t count) {
     for (std::vector<double>* array : {&x, &y, &z, &irradiance}) {
         array->resize(count);
     }
 }
 
-DeltaLights::DeltaLights(std::span<const Light* const> lights) : lights_(lights.begin(), lights.end()) {
+DeltaLights::DeltaLights(std::span<const Light> lights) : lights_(lights) {
     const std::size_t size = (lights.size() + kDeltaLanes - 1) / kDeltaLanes * kDeltaLanes;
     for (std::vector<double>* array : {&x_, &y_, &z_, &w_}) {
         array->resize(size);
@@ -44,20 +36,20 @@ DeltaLights::DeltaLights(std::span<const Light* const> lights) : lights_(lights.
     group_.resize(size);
     is_even_.resize(size);
     for (std::size_t i = 0; i < lights.size(); ++i) {
-        const auto* point = std::get_if<PointSource>(lights[i]);
-        const Vec3d& place = point != nullptr ? point->position : std::get<ParallelSource>(*lights[i]).direction;
+        const auto* point = std::get_if<PointSource>(&lights[i]);
+        const Vec3d& place = point != nullptr ? point->position : std::get<ParallelSource>(lights[i]).direction;
         x_[i] = place.x;
         y_[i] = place.y;
         z_[i] = place.z;
         w_[i] = point != nullptr ? 1 : 0;
-        const Rgb& strength = strength_of(*lights[i]);
+        const Rgb& strength = strength_of(lights[i]);
         r_[i] = strength.x;
         g_[i] = strength.y;
         b_[i] = strength.z;
         abs_r_[i] = std::abs(strength.x);
         abs_g_[i] = std::abs(strength.y);
         abs_b_[i] = std::abs(strength.z);
-        const LightTraits& traits = traits_of(*lights[i]);
+        const LightTraits& traits = traits_of(lights[i]);
         lights_diffuse_[i] = traits.lights_diffuse ? 1 : 0;
         lights_glossy_[i] = traits.lights_glossy ? 1 : 0;
         casts_shadows_[i] = traits.casts_shadows ? 1 : 0;
@@ -74,7 +66,7 @@ DeltaArrays DeltaLights::arrays(const DeltaRange& range) const {
 }
 
 double DeltaLights::factor(std::size_t i, const Vec3d& way) const {
-    return profile_factor(traits_of(*lights_[i]).profile, -glm::normalize(way));
+    return profile_factor(traits_of(lights_[i]).profile, -glm::normalize(way));
 }
 
 void DeltaLights::see(const DeltaRange& range, const ShadingFrame& frame, double error, DeltaViews& views) const {
@@ -118,7 +110,7 @@ Ray DeltaLights::ray(std::size_t i, const Vec3d& origin) const {
 double DeltaLights::changing_distance(const Vec3d& position) const {
     double distance = std::sqrt(nearest_delta_square(arrays({0, padded_size()}), position));
     for (const std::size_t i : uneven_) {
-        distance = std::min(distance, shlight::changing_distance(*lights_[i], position));
+        distance = std::min(distance, shlight::changing_distance(lights_[i], position));
     }
     return distance;
 }

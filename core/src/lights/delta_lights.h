@@ -17,8 +17,6 @@
 
 namespace shlight {
 
-std::vector<const Light*> pointers_to(std::span<const Light> lights);
-
 /// The sources begin … begin + count - 1; both numbers are multiples of kDeltaLanes.
 struct DeltaRange {
     std::size_t begin, count;
@@ -33,11 +31,11 @@ class DeltaViews {
     std::vector<double> x, y, z, irradiance;
 };
 
-/// Keeps pointers to the lights.
+/// The lights must outlive this.
 class DeltaLights {
   public:
     /// Precondition: is_delta() of all lights.
-    explicit DeltaLights(std::span<const Light* const> lights);
+    explicit DeltaLights(std::span<const Light> lights);
 
     /// Number of sources with padding, which has no strength.
     std::size_t padded_size() const { return x_.size(); }
@@ -70,7 +68,7 @@ class DeltaLights {
     /// The emission profile's factor of source i. way: world vector to the source, of any length > 0.
     double factor(std::size_t i, const Vec3d& way) const;
 
-    std::vector<const Light*> lights_;
+    std::span<const Light> lights_;
     std::vector<double> x_, y_, z_, w_;
     std::vector<float> r_, g_, b_, abs_r_, abs_g_, abs_b_;
     std::vector<float> lights_diffuse_, lights_glossy_;  // 1: it lights such lobes; 0: it does not

@@ -183,14 +183,6 @@ std::optional<WholeRectangle> WholeRectangle::see(const Light& light, const Shad
                           static_cast<float>(area * std::abs(height) / (nearest * nearest * nearest))};
 }
 
-LightSample WholeRectangle::sample(const ShadingFrame& frame, const glm::dvec2& point) const {
-    const Vec3d way = Vec3d(corner) + point.x * Vec3d(along) + point.y * Vec3d(across);
-    const double square = glm::dot(way, way);
-    const double relative = double{nearest_square} / square;
-    const double distance = std::sqrt(square);
-    return {frame.to_local(way) / distance, distance, double{most_weight} * relative * std::sqrt(relative)};
-}
-
 void draw_square_points(const SobolSequence& sequence, std::uint32_t first, std::size_t count, float* u, float* v) {
     HWY_DYNAMIC_DISPATCH(draw_square)(sequence, first, count, u, v);
 }

@@ -10,7 +10,6 @@
 #include <optional>
 
 #include "base/shading_frame.h"
-#include "math/light_sample.h"
 #include "shlight/light.h"
 #include "shlight/sampling.h"
 #include "shlight/types.h"
@@ -21,9 +20,6 @@ namespace shlight {
 struct WholeRectangle {
     /// Nothing for other lights, and for rectangles that are partly below the horizon. error: see SurfacePoint.
     static std::optional<WholeRectangle> see(const Light& light, const ShadingFrame& frame, double error);
-
-    /// The sample at one point of the unit square, in the shading frame; see place_points().
-    LightSample sample(const ShadingFrame& frame, const glm::dvec2& point) const;
 
     Vec3f corner;          ///< vector from the hit to the first vertex
     Vec3f along, across;   ///< the edges from there

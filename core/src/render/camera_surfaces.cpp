@@ -12,7 +12,7 @@ namespace {
 /// Normals that differ by less are those of floats and doubles of the same surface.
 constexpr double kSameNormal = 1e-6;
 
-bool is_bumped(const ShadedLobe& lobe) {
+bool is_bumped(const SurfaceLobe& lobe) {
     const auto* diffuse = std::get_if<DiffuseShape>(&lobe.shape);
     return diffuse != nullptr && diffuse->kind == Diffuse::bumped;
 }
@@ -41,6 +41,8 @@ void CameraSurfaces::trace(std::span<const CameraRay> rays, std::span<const Neig
                            std::size_t rays_per_pixel, Hits& hits, std::vector<RayLight>& light) {
     surfaces_.clear();
     results_.clear();
+    hit_count_ = 0;
+    mirror_count_ = 0;
     light.assign(rays.size(), {});
     hits.apart.reset(rays.size() / rays_per_pixel);
     const Sink sink = {light, hits.apart, rays_per_pixel};
@@ -212,6 +214,7 @@ void CameraSurfaces::pass_on(std::size_t first, const Sink& sink) {
     for (std::size_t i = first; i < surfaces_.size(); ++i) {
         const Surface& surface = surfaces_[i];
         if (!surface.is_mirrored) {
+            hit_count_ += surface.depth == 0 ? 1 : 0;
             sink.light[surface.ray].opacity = 1;
         }
         add_emission(surface, sink);
@@ -243,13 +246,14 @@ void CameraSurfaces::reflect(const Surface& surface, const Sink& sink) {
             continue;
         }
         const ShadingFrame frame = shading_frame(surface.point.position, lobe.normal, surface.towards_viewer);
-        const double cosine = view_cosine(frame, surface.towards_viewer);
+        const double cosine = view_cosine(frame.z, surface.towards_viewer);
         const Vec3d direction = frame.to_world(mirrored({std::sqrt(1 - cosine * cosine), 0, cosine}));
         const Ray ray = {Vec3f(surface.point.off_surface()), 0, Vec3f(direction)};
         const auto albedo = static_cast<float>(lobe_albedo(lobe.shape, cosine));
         const Segment segment = {surface.ray, true, 0, surface.throughput * lobe.weight * albedo, ray};
         add_lamps(LampViewer::unblocked_mirror, segment, ray, std::nullopt, sink);
         start(segment, ray);
+        ++mirror_count_;
     }
 }
 
@@ -294,77 +298,49 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
         for (const ShadedLobe& lobe : shader->lobes) {
             const LobeShape shape =
                 lobe.alpha ? with_width(lobe.shape, double{width(surface, *lobe.alpha)}) : lobe.shape;
-            lobes.push_back({shape, normal(surface, lobe), color(surface, lobe.weight), lobe.several_bounces});
+            const bool known = !lobes.empty() && lobe.normal == (&lobe - 1)->normal;
+            const Vec3d own = known ? lobes.back().normal : normal(surface, lobe);
+            lobes.push_back({shape, own, color(surface, lobe.weight), lobe.several_bounces});
         }
         return;
     }
-    const auto cosine = static_cast<float>(glm::dot(surface.point.shading_normal, surface.towards_viewer));
+    const Vec3d& normal = surface.point.shading_normal;
+    const float cosine = view_cosine(normal, surface.towards_viewer);
     for (const Lobe& lobe : materials_[surface.point.material].lobes()) {
-        lobes.push_back({lobe.shape, surface.point.shading_normal, lobe.scale(cosine)});
+        lobes.push_back({lobe.shape, normal, lobe.scale(cosine)});
     }
 }
 
 /// One hit for each normal that lobes have, and another for the lobes of bumps, whose view is the smooth normal.
-void CameraSurfaces::add_shaded(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader, Hits& hits) {
-    normals_.clear();
-    for (std::size_t i = 0; i < shader.lobes.size(); ++i) {
-        const bool known = i > 0 && shader.lobes[i].normal == shader.lobes[i - 1].normal;
-        normals_.push_back(known ? normals_.back() : normal(surface, shader.lobes[i]));
-    }
-    const std::size_t count = shader.lobes.size();
-    for (std::size_t first = 0; first < count; ++first) {
-        const auto shares = [&](std::size_t i) {
-            return normals_[i] == normals_[first] && is_bumped(shader.lobes[i]) == is_bumped(shader.lobes[first]);
-        };
-        std::size_t earlier = 0;
-        while (earlier < first && !shares(earlier)) {
-            ++earlier;
-        }
-        if (earlier == first) {
-            add_lobes(ray, surface, shader, shares, first, hits);
-        }
-    }
-}
-
-template <class Shares>
-void CameraSurfaces::add_lobes(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader,
-                               const Shares& shares, std::size_t first, Hits& hits) {
-    weights_.assign(shader.lobes.size(), Rgb(0));
-    widths_.assign(shader.lobes.size(), 1);
-    bool any = false;
-    for (std::size_t i = first; i < shader.lobes.size(); ++i) {
-        if (shares(i)) {
-            const ShadedLobe& lobe = shader.lobes[i];
-            weights_[i] = is_mirror(lobe.shape) ? Rgb(0) : surface.throughput * color(surface, lobe.weight);
-            widths_[i] = lobe.alpha ? width(surface, *lobe.alpha) : 1.0F;
-            any = any || weights_[i] != Rgb(0);
-        }
-    }
-    if (any) {
-        const Vec3d& view = is_bumped(shader.lobes[first]) ? surface.point.shading_normal : surface.towards_viewer;
-        const ShadingFrame frame = shading_frame(surface.point.position, normals_[first], view);
-        hits.add(surface.point, frame, view_cosine(frame, view), weights_, widths_, ray.sample);
-    }
-}
-
 void CameraSurfaces::add_hit(const CameraRay& ray, const Surface& surface, Hits& hits) {
     if (surface.depth > transparent_bounces_) {
         return;
     }
-    const Material& material = scene_->materials()[surface.point.material];
-    if (material.shader != nullptr) {
-        add_shaded(ray, surface, *material.shader, hits);
-        return;
+    find_lobes(surface, lobes_);
+    taken_.assign(lobes_.size(), 0);
+    for (std::size_t first = 0; first < lobes_.size(); ++first) {
+        if (taken_[first] != 0) {
+            continue;
+        }
+        const SurfaceLobe& own = lobes_[first];
+        const bool bumped = is_bumped(own);
+        weights_.assign(lobes_.size(), Rgb(0));
+        widths_.assign(lobes_.size(), 1);
+        for (std::size_t i = first; i < lobes_.size(); ++i) {
+            if (lobes_[i].normal == own.normal && is_bumped(lobes_[i]) == bumped) {
+                taken_[i] = 1;
+                if (!is_mirror(lobes_[i].shape)) {
+                    weights_[i] = surface.throughput * lobes_[i].weight;
+                    widths_[i] = static_cast<float>(lobe_width(lobes_[i].shape));
+                }
+            }
+        }
+        if (std::ranges::any_of(weights_, [](const Rgb& weight) { return weight != Rgb(0); })) {
+            const Vec3d& view = bumped ? surface.point.shading_normal : surface.towards_viewer;
+            const ShadingFrame frame = shading_frame(surface.point.position, own.normal, view);
+            hits.add(surface.point, frame, view_cosine(frame.z, view), weights_, widths_, ray.sample);
+        }
     }
-    const std::span<const Lobe> lobes = materials_[surface.point.material].lobes();
-    const ShadingFrame frame =
-        shading_frame(surface.point.position, surface.point.shading_normal, surface.towards_viewer);
-    const float cosine = view_cosine(frame, surface.towards_viewer);
-    weights_.clear();
-    for (const Lobe& lobe : lobes) {
-        weights_.push_back(is_mirror(lobe.shape) ? Rgb(0) : surface.throughput * lobe.scale(cosine));
-    }
-    hits.add(surface.point, frame, cosine, weights_, {}, ray.sample);
 }
 
 }  // namespace shlight

@@ -73,6 +73,9 @@ class CameraSurfaces {
     };
 
     // Results of the last call:
+    /// Numbers of camera rays that met a surface, and of paths into mirrors.
+    std::uint64_t hit_count() const { return hit_count_; }
+    std::uint64_t mirror_count() const { return mirror_count_; }
     /// All surfaces; those of one camera ray that are not mirrored are ordered by distance.
     std::span<const Surface> surfaces() const { return surfaces_; }
     void find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const;
@@ -119,11 +122,6 @@ class CameraSurfaces {
     void add_hit(const CameraRay& ray, const Surface& surface, Hits& hits);
     /// Unit.
     Vec3d normal(const Surface& surface, const ShadedLobe& lobe) const;
-    void add_shaded(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader, Hits& hits);
-    /// Adds the lobes from `first` on that share its normal.
-    template <class Shares>
-    void add_lobes(const CameraRay& ray, const Surface& surface, const SurfaceShader& shader, const Shares& shares,
-                   std::size_t first, Hits& hits);
     Vec3d vector(const Surface& surface, std::uint32_t result) const;
     /// A colour in which components that are not finite are 0.
     Rgb color(const Surface& surface, std::uint32_t result) const;
@@ -132,6 +130,7 @@ class CameraSurfaces {
     const CompiledScene* scene_;
     std::span<const MaterialLobes> materials_;
     std::uint32_t transparent_bounces_;
+    std::uint64_t hit_count_ = 0, mirror_count_ = 0;
     std::vector<Segment> segments_;
     std::vector<Ray> parts_;     // of each segment's ray, what is left
     std::vector<Rgb> by_group_;  // of lamps along a ray
@@ -142,7 +141,7 @@ class CameraSurfaces {
     std::vector<ShadedPlace> places_;
     std::vector<float> results_;
     ShaderProgram::Registers registers_;
-    std::vector<Vec3d> normals_;
+    std::vector<std::uint8_t> taken_;  // by lobe: whether a hit has it
     std::vector<Rgb> weights_;
     std::vector<float> widths_;
 };

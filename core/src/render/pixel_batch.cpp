@@ -218,7 +218,8 @@ void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRa
         }
     }
     surfaces_.trace(rays_, neighbours_, samples.count, hits_, ray_light_);
-    report_.hits += hits_.size();
+    report_.hits += surfaces_.hit_count();
+    report_.mirror_count += surfaces_.mirror_count();
 }
 
 void PixelBatch::add_ray(const glm::dvec2& place, const LensPoint& lens, std::uint32_t sample, double step) {

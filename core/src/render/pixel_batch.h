@@ -11,7 +11,7 @@
 
 #include "render/camera_surfaces.h"
 #include "render/surface_passes.h"
-#include "shadows/direct_lighting.h"
+#include "lighting/direct_lighting.h"
 #include "shlight/camera.h"
 #include "shlight/render.h"
 #include "shlight/scene.h"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <tuple>
 
-#include "shadows/ray_sums.h"
+#include "lighting/ray_sums.h"
 #include "shlight/parallel.h"
 
 namespace shlight {

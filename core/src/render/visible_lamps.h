@@ -17,7 +17,7 @@ namespace shlight {
 class VisibleLamps {
   public:
     VisibleLamps() = default;
-    /// Those of the lights that a viewer sees. The lights must outlive this.
+    /// Keeps pointers to the lights that a viewer sees.
     VisibleLamps(std::span<const Light> lights, LampViewer viewer);
 
     bool empty() const { return lamps_.empty(); }

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "base/checks.h"
+#include "lighting/lobe_batch.h"
+#include "lighting/seen_lights.h"
 #include "lobes/material_views.h"
 #include "regions/region_checks.h"
-#include "shading/lobe_batch.h"
-#include "shading/seen_lights.h"
 
 namespace shlight {
 namespace {

@@ -8,16 +8,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "lighting/shadow_policy.h"
+#include "lighting/shadow_targets.h"
 #include "lights/whole_rectangle.h"
-#include "lobes/lobe_rays.h"
-#include "shadows/shadow_policy.h"
 #include "shlight/sampling.h"
 
 namespace shlight {
-
-/// Rays that are drawn together; a multiple of all lanes.
-inline constexpr std::uint32_t kRaysAtOnce = 64;
-static_assert(kRaysAtOnce % kLightPointLanes == 0 && kRaysAtOnce % kLobeRayLanes == 0);
 
 /// Keeps its memory from pixel to pixel.
 class PixelPoints {

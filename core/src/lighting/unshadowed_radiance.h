@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "emitters/face_radiance.h"
+#include "lighting/lobe_batch.h"
+#include "lighting/seen_lights.h"
+#include "lighting/shading_points.h"
 #include "lights/profile_mean.h"
 #include "lobes/material_lobes.h"
 #include "lobes/material_views.h"
-#include "shading/lobe_batch.h"
-#include "shading/seen_lights.h"
-#include "shading/shading_points.h"
 #include "shlight/light.h"
 #include "shlight/render_report.h"
 
@@ -23,11 +23,13 @@ namespace shlight {
 
 /// Unshadowed radiance of one light for each lobe and shading point, at index lobe · points + point.
 struct LightRadiance {
-    std::span<const float> values;  ///< for unit strength
-    Rgb strength;
+    std::span<const float> values;  ///< for unit strength; empty: 1
+    Rgb strength{1};
     std::span<const Rgb> strengths;  ///< in its place, of a light whose parts differ; otherwise empty
 
-    Rgb operator[](std::size_t i) const { return values[i] * (strengths.empty() ? strength : strengths[i]); }
+    Rgb operator[](std::size_t i) const {
+        return (values.empty() ? 1.0F : values[i]) * (strengths.empty() ? strength : strengths[i]);
+    }
 };
 
 /// Radiance per light, lobe and shading point.
@@ -37,14 +39,14 @@ class UnshadowedRadiance {
 
     /// Adds to the report what the points' hits take. allowed_error: of the radiance of a lobe under one light; 0: the
     /// materials' tolerance of that light's own radiance × albedo. Precondition: no light is_delta().
-    void compute(const ShadingPoints& points, std::span<const MaterialLobes> materials,
-                 std::span<const Light* const> lights, double allowed_error, RenderReport& report);
+    void compute(const ShadingPoints& points, std::span<const MaterialLobes> materials, std::span<const Light> lights,
+                 double allowed_error, RenderReport& report);
     LightRadiance light(std::size_t index) const;
 
   private:
     /// Some points of one material, under all lights.
     void shade(const ShadingPoints& points, std::span<const std::uint32_t> some, const MaterialLobes& material,
-               std::span<const Light* const> lights, RenderReport& report);
+               std::span<const Light> lights, RenderReport& report);
     void integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
                    std::size_t light_index, RenderReport& report);
     /// Adds what the batch found of one lobe at some[numbers[k]].
@@ -78,7 +80,6 @@ class UnshadowedRadiance {
     double tolerance_ = 0, allowed_error_ = 0;
     ProfileMean profile_;
     FaceMean face_mean_;
-    std::vector<Rgb> met_;
 };
 
 }  // namespace shlight

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "shadows/shadowed_deltas.h"
+#include "lighting/shadowed_deltas.h"
 
 #include <algorithm>
 #include <limits>
 
 #include "base/even_steps.h"
-#include "shadows/shadow_policy.h"
+#include "lighting/shadow_policy.h"
 #include "shlight/sampling.h"
 
 namespace shlight {

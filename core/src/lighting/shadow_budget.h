@@ -7,10 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "shading/shading_points.h"
-#include "shading/unshadowed_radiance.h"
-#include "shadows/shadow_policy.h"
-#include "shlight/light.h"
+#include "lighting/shading_points.h"
+#include "lighting/shadow_policy.h"
+#include "lighting/unshadowed_light.h"
 
 namespace shlight {
 
@@ -26,24 +25,11 @@ class ShadowBudget {
     explicit ShadowBudget(std::size_t lobe_stride) : lobe_stride_(lobe_stride) {}
 
     /// Forgets all lights but these. points: stay as they are until the next call.
-    void start(const ShadingPoints& points, std::size_t light_count, const UnshadowedRadiance& unshadowed);
-    /// Counts another light in; returns its index. own(point): its brightness over one hit of a point.
-    template <class Own>
-    std::size_t add(const Own& own) {
-        for (std::size_t group = 0; group < all_.size(); ++group) {
-            float sum = 0;
-            for (std::size_t point = points_->pixel_begin[group]; point < points_->pixel_begin[group + 1]; ++point) {
-                sum += static_cast<float>(points_->hit_count(point)) * own(point);
-            }
-            own_.push_back(sum);
-            all_[group] += sum;
-        }
-        return own_.size() / all_.size() - 1;
-    }
+    void start(const ShadingPoints& points, std::span<const UnshadowedLight> lights);
 
     float of_group(std::size_t light, std::size_t group) const { return own_[light * all_.size() + group]; }
     /// Brightness under a light of start(), over all hits of a point.
-    float of_point(const LightRadiance& unshadowed, std::size_t point) const;
+    float of_point(const UnshadowedLight& light, std::size_t point) const;
     /// Brightness of each group from all lights. Callers add sources without extent, which are too many to be stored.
     std::span<float> all() { return all_; }
     /// Shadow rays of each hit for a light with this brightness over the group, or for several lights that share them.

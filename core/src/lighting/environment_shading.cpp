@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "environment/environment_shading.h"
+#include "lighting/environment_shading.h"
 
 #include <algorithm>
 #include <array>
@@ -225,8 +225,6 @@ class EnvironmentShading::Point {
         return weights > 0 ? sum / weights : Rgb(0);
     }
 
-    Rgb mirrored() const { return radiance_from(*map_->picture, to_map_ * shlight::mirrored(view_)); }
-
   private:
     const EnvironmentMap* map_;
     glm::dmat3 to_map_;  // from the shading frame
@@ -324,82 +322,77 @@ class EnvironmentShading::Harmonics {
     std::vector<float> basis_;
 };
 
-void EnvironmentShading::shade(const ShadingPoints& points, std::vector<UnshadowedParts>& values,
-                               RenderReport& report) const {
-    values.assign(lobe_stride_ * points.size(), {});
+void EnvironmentShading::shade(const ShadingPoints& points, UnshadowedParts& parts, RenderReport& report) const {
+    for (std::vector<Rgb>* part : {&parts.smooth, &parts.spots}) {
+        part->assign(lobe_stride_ * points.size(), Rgb(0));
+    }
     if (environment_->map() == nullptr) {
-        shade_constant(points, values, report);
+        shade_constant(points, parts.smooth, report);
     } else {
-        shade_map(points, values, report);
+        shade_map(points, parts, report);
     }
 }
 
-void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<UnshadowedParts> values,
+void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<Rgb> smooth,
                                         RenderReport& report) const {
     for (std::size_t point = 0; point < points.size(); ++point) {
-        const auto lobes = materials_[points.material[point]].lobes();
-        for (std::size_t i = 0; i < lobes.size(); ++i) {
+        const MaterialLobes& material = materials_[points.material[point]];
+        for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
             // A constant is one harmonic, and a lobe's own first coefficient its albedo.
-            const double albedo =
-                albedo_of(materials_[points.material[point]], i, points.widths(point)[i], points.cos_theta_o[point]);
-            values[i * points.size() + point].smooth =
+            const double albedo = albedo_of(material, lobe, points.widths(point)[lobe], points.cos_theta_o[point]);
+            smooth[lobe * points.size() + point] =
                 static_cast<float>(albedo) * environment_->radiance(points.frame[point].z);
-            (is_mirror(lobes[i].shape) ? report.mirror_count : report.order_counts[1]) += points.hit_count(point);
+            report.order_counts[1] += points.hit_count(point);
         }
     }
 }
 
 template <class Function>
-void EnvironmentShading::for_each_lobe(const ShadingPoints& points, std::span<UnshadowedParts> values,
-                                       const Function& function) const {
+void EnvironmentShading::for_each_lobe(const ShadingPoints& points, const Function& function) const {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Point point(*environment_->map(), points.frame[i], points.cos_theta_o[i]);
-        for (std::size_t lobe = 0; lobe < materials_[points.material[i]].lobes().size(); ++lobe) {
-            function(i, lobe, point, values[lobe * points.size() + i]);
+        const MaterialLobes& material = materials_[points.material[i]];
+        for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
+            const LobeShape shape = material.shape(lobe, points.widths(i)[lobe]);
+            if (!is_mirror(shape)) {
+                function(i, lobe, shape, point, lobe * points.size() + i);
+            }
         }
     }
 }
 
-void EnvironmentShading::shade_map(const ShadingPoints& points, std::span<UnshadowedParts> values,
-                                   RenderReport& report) const {
-    const EnvironmentMap& map = *environment_->map();
-    Harmonics harmonics(map.coefficients.channels);
-    for_each_lobe(points, values, [&](std::size_t i, std::size_t lobe, const Point& point, UnshadowedParts& value) {
-        const std::uint32_t material = points.material[i];
-        const float width = points.widths(i)[lobe];
-        if (is_mirror(materials_[material].shape(lobe, width))) return;
+void EnvironmentShading::shade_map(const ShadingPoints& points, UnshadowedParts& parts, RenderReport& report) const {
+    Harmonics harmonics(environment_->map()->coefficients.channels);
+    for_each_lobe(points, [&](std::size_t i, std::size_t lobe, const LobeShape&, const Point& point, std::size_t at) {
         const float cosine = points.cos_theta_o[i];
-        const PlanMix mix = plans(material, lobe, width);
+        const PlanMix mix = plans(points.material[i], lobe, points.widths(i)[lobe]);
         const int order = choose(mix, cosine).order;
-        harmonics.add(*mix.plans[0]->lobe, cosine, point.to_map(), order, 1 - mix.share, value.smooth);
+        Rgb& smooth = parts.smooth[at];
+        harmonics.add(*mix.plans[0]->lobe, cosine, point.to_map(), order, 1 - mix.share, smooth);
         if (mix.share > 0) {
-            harmonics.add(*mix.plans[1]->lobe, cosine, point.to_map(), order, mix.share, value.smooth);
+            harmonics.add(*mix.plans[1]->lobe, cosine, point.to_map(), order, mix.share, smooth);
         }
     });
     harmonics.finish();
-    for_each_lobe(points, values, [&](std::size_t i, std::size_t lobe, const Point& point, UnshadowedParts& value) {
-        const std::uint32_t material = points.material[i];
-        const float width = points.widths(i)[lobe];
-        const LobeShape shape = materials_[material].shape(lobe, width);
-        const double cosine = points.cos_theta_o[i];
-        const auto albedo = static_cast<float>(albedo_of(materials_[material], lobe, width, cosine));
-        if (is_mirror(shape)) {
-            value.smooth = albedo * point.mirrored();
-            report.mirror_count += points.hit_count(i);
-            return;
-        }
-        const Choice choice = choose(plans(material, lobe, width), cosine);
-        if (!sees_texels(shape)) {
-            value.spots = spots_.reflected(shape, cosine, point.to_map());
-        }
-        if (choice.directions) {
-            value.smooth += albedo * point.by_directions(shape, sees_texels(shape));
-        }
-        value.smooth = glm::max(value.smooth, Rgb(0));
-        (choice.directions ? report.cubature_count : report.order_counts[static_cast<std::size_t>(choice.order)]) +=
-            points.hit_count(i);
-        report.over_tolerance += choice.met ? 0 : points.hit_count(i);
-    });
+    for_each_lobe(
+        points, [&](std::size_t i, std::size_t lobe, const LobeShape& shape, const Point& point, std::size_t at) {
+            const std::uint32_t material = points.material[i];
+            const float width = points.widths(i)[lobe];
+            const double cosine = points.cos_theta_o[i];
+            const Choice choice = choose(plans(material, lobe, width), cosine);
+            if (!sees_texels(shape)) {
+                parts.spots[at] = spots_.reflected(shape, cosine, point.to_map());
+            }
+            Rgb& smooth = parts.smooth[at];
+            if (choice.directions) {
+                smooth += static_cast<float>(albedo_of(materials_[material], lobe, width, cosine)) *
+                          point.by_directions(shape, sees_texels(shape));
+            }
+            smooth = glm::max(smooth, Rgb(0));
+            (choice.directions ? report.cubature_count : report.order_counts[static_cast<std::size_t>(choice.order)]) +=
+                points.hit_count(i);
+            report.over_tolerance += choice.met ? 0 : points.hit_count(i);
+        });
 }
 
 }  // namespace shlight

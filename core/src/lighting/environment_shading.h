@@ -5,7 +5,7 @@
 // One radiance from everywhere: the lobe's albedo times it. A picture: its harmonics times the lobe's, turned to its
 // frame, of the smallest order that meets the tolerance, and its bright spots one by one. For a lobe too narrow for 64
 // bands, what they leave of the picture is summed over directions that the lobe reflects, blurred as far as these are
-// apart. A mirror shows the picture.
+// apart.
 #pragma once
 
 #include <array>
@@ -15,17 +15,18 @@
 #include <vector>
 
 #include "environment/bright_spots.h"
+#include "lighting/shading_points.h"
 #include "lobes/material_lobes.h"
 #include "lobes/sh_projection.h"
-#include "shading/shading_points.h"
 #include "shlight/environment.h"
 #include "shlight/render_report.h"
 
 namespace shlight {
 
-/// Radiance that a lobe reflects, in parts with separate shadows: a sun is hidden or not, independently of the sky.
+/// Radiance that each lobe reflects at each point, at index lobe · points + point, in parts with separate shadows: a
+/// sun is hidden or not, independently of the sky.
 struct UnshadowedParts {
-    Rgb smooth{0}, spots{0};
+    std::vector<Rgb> smooth, spots;
 };
 
 /// Immutable; any number of threads may read it.
@@ -38,8 +39,8 @@ class EnvironmentShading {
     EnvironmentShading& operator=(const EnvironmentShading&) = delete;
     ~EnvironmentShading();
 
-    /// values: lobe_stride × points; adds to the report what the points' hits take.
-    void shade(const ShadingPoints& points, std::vector<UnshadowedParts>& values, RenderReport& report) const;
+    /// Mirrors are left out. Adds to the report what the points' hits take.
+    void shade(const ShadingPoints& points, UnshadowedParts& parts, RenderReport& report) const;
     /// Whether spots are a part of their own for a lobe of this width.
     bool splits(std::size_t material, std::size_t lobe, float width) const;
 
@@ -68,11 +69,11 @@ class EnvironmentShading {
     /// Whether spots, too, have an extent beside the lobe.
     bool sees_texels(const LobeShape& shape) const;
     PlanMix plans(std::size_t material, std::size_t lobe, float width) const;
-    void shade_constant(const ShadingPoints& points, std::span<UnshadowedParts> values, RenderReport& report) const;
-    void shade_map(const ShadingPoints& points, std::span<UnshadowedParts> values, RenderReport& report) const;
-    /// function(point, lobe, Point, value)
+    void shade_constant(const ShadingPoints& points, std::span<Rgb> smooth, RenderReport& report) const;
+    void shade_map(const ShadingPoints& points, UnshadowedParts& parts, RenderReport& report) const;
+    /// function(point, lobe, its shape, Point, index in UnshadowedParts)
     template <class Function>
-    void for_each_lobe(const ShadingPoints& points, std::span<UnshadowedParts> values, const Function& function) const;
+    void for_each_lobe(const ShadingPoints& points, const Function& function) const;
     static Choice choose(const Plan& plan, double cos_theta_o);
     static Choice choose(const PlanMix& mix, double cos_theta_o);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "shading/polygon_rule_kernel.h"
+#include "lighting/polygon_rule_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "shading/polygon_rule_kernel.cpp"
+#define HWY_TARGET_INCLUDE "lighting/polygon_rule_kernel.cpp"
 #include <hwy/foreach_target.h>
 // Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
 #include <hwy/highway.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "shading/shading_points.h"
+#include "lighting/shading_points.h"
 
 #include <algorithm>
 #include <cmath>
@@ -127,7 +127,7 @@ void ShadingPoints::finish(std::size_t point) {
         const Vec3d viewer = glm::normalize(members.towards_viewer);
         frame[point] = shading_frame(members.position / static_cast<double>(members.count),
                                      glm::normalize(members.normal), viewer);
-        cos_theta_o[point] = view_cosine(frame[point], viewer);
+        cos_theta_o[point] = view_cosine(frame[point].z, viewer);
         for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
             lobe_weight[point * lobe_stride_ + lobe] /= static_cast<float>(members.count);
             lobe_width[point * lobe_stride_ + lobe] /= static_cast<float>(members.count);

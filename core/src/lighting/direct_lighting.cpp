@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "shadows/direct_lighting.h"
+#include "lighting/direct_lighting.h"
 
 #include <algorithm>
 #include <utility>
@@ -12,7 +12,6 @@ namespace {
 
 /// Seeds that separate the shadow rays of different kinds of lights.
 constexpr std::uint32_t kLightSeed = 0;
-constexpr std::uint32_t kEnvironmentSeed = 0xFFFFFFFFU;
 constexpr std::uint32_t kDeltaSeed = 0xFFFFFFFEU;
 
 }  // namespace
@@ -21,8 +20,7 @@ LightingScene::LightingScene(std::span<const Light> all, std::size_t extended_co
                              std::uint32_t sky_group, std::vector<MaterialLobes> lobes, int order,
                              double error_tolerance)
     : extended(all.first(extended_count)),
-      extended_list(pointers_to(extended)),
-      deltas(pointers_to(all.subspan(extended_count))),
+      deltas(all.subspan(extended_count)),
       environment(&sky),
       environment_group(sky_group),
       materials(std::move(lobes)),
@@ -42,8 +40,9 @@ DirectLighting::DirectLighting(const LightingScene& scene, const SceneRays& rays
       unshadowed_(scene.lobe_stride),
       budget_(scene.lobe_stride),
       shadowed_deltas_(tracer_, scene.materials, scene.lobe_stride),
-      shadowed_(tracer_, budget_, scene.materials, scene.lobe_stride, parts),
-      shadowed_environment_(tracer_, *scene.environment, scene.materials) {}
+      shared_(tracer_, budget_, scene.materials, scene.lobe_stride, parts),
+      shadowed_(tracer_, budget_, scene.materials, scene.lobe_stride),
+      environment_target_(*scene.environment) {}
 
 void DirectLighting::add(std::span<const std::uint32_t> seeds, const SampleRange& samples, Hits& hits,
                          RenderReport& report) {
@@ -58,19 +57,21 @@ void DirectLighting::add(std::span<const std::uint32_t> seeds, const SampleRange
 }
 
 void DirectLighting::find_unshadowed(RenderReport& report) {
-    unshadowed_.compute(points_, scene_->materials, scene_->extended_list, scene_->light_error, report);
-    budget_.start(points_, scene_->extended_list.size(), unshadowed_);
+    unshadowed_.compute(points_, scene_->materials, scene_->extended, scene_->light_error, report);
+    lights_.clear();
+    for (std::size_t i = 0; i < scene_->extended.size(); ++i) {
+        const LightTraits& traits = traits_of(scene_->extended[i]);
+        lights_.push_back({unshadowed_.light(i), {}, traits.group, traits.casts_shadows});
+    }
     if (scene_->environment_shading) {
         scene_->environment_shading->shade(points_, environment_, report);
-        environment_index_ = budget_.add([&](std::size_t point) {
-            float sum = 0;
-            for (std::size_t lobe = 0; lobe < scene_->lobe_stride; ++lobe) {
-                const UnshadowedParts& own = environment_[lobe * points_.size() + point];
-                sum += brightness_of(points_.weight(point, lobe) * (own.smooth + own.spots));
-            }
-            return sum;
-        });
+        lights_.push_back({{{}, Rgb(1), environment_.smooth},
+                           {{}, Rgb(1), environment_.spots},
+                           scene_->environment_group,
+                           true,
+                           &*scene_->environment_shading});
     }
+    budget_.start(points_, lights_);
 }
 
 void DirectLighting::add_shadowed(std::span<const std::uint32_t> seeds, const SampleRange& samples, Hits& hits,
@@ -79,10 +80,22 @@ void DirectLighting::add_shadowed(std::span<const std::uint32_t> seeds, const Sa
         shadowed_deltas_.add(scene_->deltas, points_, samples.shadow_rays > 0,
                              seeds_of(seeds, hash(kDeltaSeed, samples.first)), hits, budget_.all(), report);
     }
-    shadowed_.add(scene_->extended_list, unshadowed_, points_, samples, seeds_of(seeds, kLightSeed), hits);
-    if (scene_->environment_shading) {
-        shadowed_environment_.add(*scene_->environment_shading, scene_->environment_group, environment_, points_,
-                                  budget_, environment_index_, samples, seeds_of(seeds, kEnvironmentSeed), hits);
+    add_extended(samples, seeds_of(seeds, kLightSeed), hits);
+}
+
+void DirectLighting::add_extended(const SampleRange& samples, std::span<const std::uint32_t> seeds, Hits& hits) {
+    const std::size_t count = scene_->extended.size();
+    shared_.start(scene_->extended, std::span(lights_).first(count), samples);
+    shadowed_.start(points_, samples, seeds);
+    for (std::size_t i = 0; i < count; ++i) {
+        light_target_.set(scene_->extended[i]);
+        shadowed_.add(
+            light_target_, lights_[i], i, [&](std::size_t group) { return shared_.is_dim(i, group); }, hits);
+    }
+    shared_.add(points_, seeds, hits);
+    if (lights_.size() > count) {
+        shadowed_.add(
+            environment_target_, lights_[count], count, [](std::size_t) { return false; }, hits);
     }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "shadows/ray_sums.h"
+#include "lighting/ray_sums.h"
 
 namespace shlight {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "shading/lobe_batch.h"
+#include "lighting/lobe_batch.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "lighting/cubature_kernel.h"
+#include "lighting/polygon_rule_kernel.h"
 #include "lobes/boundary_integral.h"
 #include "regions/polygon_kernels.h"
 #include "regions/spherical_polygon.h"
-#include "shading/cubature_kernel.h"
-#include "shading/polygon_rule_kernel.h"
 
 namespace shlight {
 namespace {

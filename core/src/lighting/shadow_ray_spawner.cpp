@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "shadows/shadow_ray_spawner.h"
+#include "lighting/shadow_ray_spawner.h"
 
 #include <variant>
 

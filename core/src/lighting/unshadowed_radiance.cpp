@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "shading/unshadowed_radiance.h"
+#include "lighting/unshadowed_radiance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +19,7 @@ constexpr double kMeanTolerance = 3;
 void count(LobeMethod way, int order, std::uint32_t hits, RenderReport& report) {
     switch (way) {
         case LobeMethod::nothing:
-            break;
         case LobeMethod::mirror:
-            report.mirror_count += hits;
             break;
         case LobeMethod::harmonics:
             report.order_counts[static_cast<std::size_t>(order)] += hits;
@@ -39,17 +37,17 @@ bool reflects(const LightTraits& traits, const LobeShape& shape) {
 }  // namespace
 
 void UnshadowedRadiance::compute(const ShadingPoints& points, std::span<const MaterialLobes> materials,
-                                 std::span<const Light* const> lights, double allowed_error, RenderReport& report) {
+                                 std::span<const Light> lights, double allowed_error, RenderReport& report) {
     allowed_error_ = allowed_error;
     point_count_ = points.size();
     values_.assign(lights.size() * lobe_stride_ * point_count_, 0.0F);
     strengths_.clear();
     own_begin_.clear();
     std::size_t own_count = 0;
-    for (const Light* light : lights) {
-        const auto* mesh = std::get_if<MeshLight>(light);
+    for (const Light& light : lights) {
+        const auto* mesh = std::get_if<MeshLight>(&light);
         const bool differs = mesh != nullptr && mesh->faces != nullptr;
-        strengths_.push_back(strength_of(*light));
+        strengths_.push_back(strength_of(light));
         own_begin_.push_back(differs ? own_count : kNone);
         own_count += differs ? lobe_stride_ * point_count_ : 0;
     }
@@ -71,8 +69,7 @@ void UnshadowedRadiance::compute(const ShadingPoints& points, std::span<const Ma
 }
 
 void UnshadowedRadiance::shade(const ShadingPoints& points, std::span<const std::uint32_t> some,
-                               const MaterialLobes& material, std::span<const Light* const> lights,
-                               RenderReport& report) {
+                               const MaterialLobes& material, std::span<const Light> lights, RenderReport& report) {
     cosines_.resize(some.size());
     std::transform(some.begin(), some.end(), cosines_.begin(),
                    [&](std::uint32_t point) { return double{points.cos_theta_o[point]}; });
@@ -97,7 +94,7 @@ void UnshadowedRadiance::shade(const ShadingPoints& points, std::span<const std:
             allowed_for = strengths_[i];
             views_.allow_error(allowed_error_, strengths_[i]);
         }
-        integrate(points, some, *lights[i], i, report);
+        integrate(points, some, lights[i], i, report);
     }
 }
 
@@ -139,16 +136,8 @@ void UnshadowedRadiance::find_strengths(const ShadingPoints& points, std::span<c
         const ShadingFrame& frame = points.frame[point];
         const Vec3d towards_viewer = views_.positions().direction(view);
         Rgb& strength = own_strengths_[own_begin_[light_index] + lobe * point_count_ + point];
-        if (is_mirror(shape)) {
-            const Vec3d direction = frame.to_world(mirrored(towards_viewer));
-            const Ray ray = {Vec3f(frame.origin), 0, Vec3f(direction)};
-            met_.clear();
-            faces.along({&ray, 1}, met_);
-            strength = met_.front();
-        } else {
-            const double tolerance = std::max(tolerance_, views_.lobe(lobe).absolute_tolerance(view) / values[point]);
-            strength = face_mean_.of(faces, shape, towards_viewer, frame, values[point], kMeanTolerance * tolerance);
-        }
+        const double tolerance = std::max(tolerance_, views_.lobe(lobe).absolute_tolerance(view) / values[point]);
+        strength = face_mean_.of(faces, shape, towards_viewer, frame, values[point], kMeanTolerance * tolerance);
     }
 }
 

@@ -10,15 +10,13 @@
 #include <span>
 #include <vector>
 
-#include "lights/light_sampling.h"
-#include "lights/seen_light.h"
+#include "lighting/shading_points.h"
+#include "lighting/shadow_budget.h"
+#include "lighting/shadow_policy.h"
+#include "lighting/shadow_targets.h"
+#include "lighting/unshadowed_light.h"
 #include "lobes/material_lobes.h"
-#include "shading/shading_points.h"
-#include "shading/unshadowed_radiance.h"
-#include "shadows/shadow_budget.h"
-#include "shadows/shadow_policy.h"
 #include "shlight/light.h"
-#include "shlight/ray_tracer.h"
 #include "shlight/sampling.h"
 #include "tracing/hits.h"
 #include "tracing/light_parts.h"
@@ -35,7 +33,7 @@ class SharedShadowLights {
         : tracer_(&tracer), budget_(&budget), materials_(materials), lobe_stride_(lobe_stride), apart_(parts) {}
 
     /// To be called before the first of these lights, which the budget knows: they are referred to by number.
-    void start(std::span<const Light* const> lights, const UnshadowedRadiance& unshadowed, const SampleRange& samples);
+    void start(std::span<const Light> lights, std::span<const UnshadowedLight> unshadowed, const SampleRange& samples);
     bool is_dim(std::size_t light, std::size_t pixel) const;
     /// Adds the dim ones to the hits' radiance. points: of the hits; seeds: one per group.
     void add(const ShadingPoints& points, std::span<const std::uint32_t> seeds, Hits& hits);
@@ -67,9 +65,9 @@ class SharedShadowLights {
     /// Draws shadow samples for the gathered lights.
     void request(std::size_t pixel, std::size_t count, std::uint32_t seed, const Hits& hits);
     /// How bright points of a pixel are under a light.
-    void gather_points(std::size_t pixel, const LightRadiance& unshadowed);
+    void gather_points(std::size_t pixel, const UnshadowedLight& unshadowed);
     /// density: how many samples a unit of brightness gets.
-    void request_from(std::size_t hit, const Light& light, const LightRadiance& unshadowed, const glm::dvec2& place,
+    void request_from(std::size_t hit, const Light& light, const UnshadowedLight& unshadowed, const glm::dvec2& place,
                       double density, const Hits& hits);
     /// Adds the lights to the pixels that have samples.
     void finish(Hits& hits);
@@ -85,22 +83,20 @@ class SharedShadowLights {
     const ShadowBudget* budget_;
     std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
-    std::span<const Light* const> lights_;  // of the call of start()
-    const UnshadowedRadiance* unshadowed_ = nullptr;
+    std::span<const Light> lights_;                // of the call of start()
+    std::span<const UnshadowedLight> unshadowed_;  // likewise
     SampleRange samples_{};
     std::vector<std::uint8_t> may_share_;    // by light
     const ShadingPoints* points_ = nullptr;  // of the call of add()
     std::vector<PixelSamples> pixels_;
     std::vector<ShadowSample> shadow_samples_;
-    std::vector<Ray> rays_;                        // of each sample
-    std::vector<Rgb> visible_;                     // likewise
+    DrawnRays rays_;                               // of each sample
     std::vector<Rgb> group_seen_, group_sampled_;  // of light groups
     std::vector<Rgb> radiance_;                    // by shading point, of the dim lights if nothing blocks
     LightGroupBuffer apart_;                       // of that, by pixel
     std::vector<Member> dim_;                      // lights of a pixel
     std::vector<Member> dim_points_;               // of a pixel, under one of them
-    SeenLight seen_;
-    LightSampler sampler_;
+    LightTarget target_;
 };
 
 }  // namespace shlight

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "shadows/shared_shadow_lights.h"
+#include "lighting/shared_shadow_lights.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <optional>
 #include <utility>
 #include <variant>
 
-#include "lights/whole_rectangle.h"
-#include "shadows/ray_sums.h"
-#include "shadows/shadow_ray_spawner.h"
+#include "lighting/ray_sums.h"
 
 namespace shlight {
 namespace {
@@ -38,17 +36,17 @@ FoundMember find(const Members& members, double share) {
 
 }  // namespace
 
-void SharedShadowLights::start(std::span<const Light* const> lights, const UnshadowedRadiance& unshadowed,
+void SharedShadowLights::start(std::span<const Light> lights, std::span<const UnshadowedLight> unshadowed,
                                const SampleRange& samples) {
     lights_ = lights;
-    unshadowed_ = &unshadowed;
+    unshadowed_ = unshadowed;
     samples_ = samples;
     may_share_.clear();
-    for (std::size_t i = 0; i < lights.size(); ++i) {
+    for (const Light& light : lights) {
         // Shares are those of light that adds up; and rays to a mesh take another way.
-        const bool adds = glm::all(glm::greaterThanEqual(unshadowed.light(i).strength, Rgb(0)));
-        const bool is_mesh = std::holds_alternative<MeshLight>(*lights[i]);
-        may_share_.push_back(adds && !is_mesh && traits_of(*lights[i]).casts_shadows ? 1 : 0);
+        const bool adds = glm::all(glm::greaterThanEqual(strength_of(light), Rgb(0)));
+        const bool is_mesh = std::holds_alternative<MeshLight>(light);
+        may_share_.push_back(adds && !is_mesh && traits_of(light).casts_shadows ? 1 : 0);
     }
 }
 
@@ -98,7 +96,7 @@ void SharedShadowLights::request(std::size_t pixel, std::size_t count, std::uint
         const glm::dvec2 point = lattice_point(i, count, seed);
         const FoundMember drawn = find(dim_, point.x);
         const std::size_t light = dim_[drawn.number].index;
-        const LightRadiance unshadowed = unshadowed_->light(light);
+        const UnshadowedLight& unshadowed = unshadowed_[light];
         if (light != gathered) {
             // The samples come light by light.
             gather_points(pixel, unshadowed);
@@ -108,14 +106,14 @@ void SharedShadowLights::request(std::size_t pixel, std::size_t count, std::uint
         const auto own_hits = points_->hits_of(dim_points_[at.number].index);
         const auto number = static_cast<std::size_t>(at.into * static_cast<double>(own_hits.size()));
         const std::size_t hit = own_hits[std::min(number, own_hits.size() - 1)];
-        request_from(hit, *lights_[light], unshadowed, places.point(static_cast<std::uint32_t>(i)),
+        request_from(hit, lights_[light], unshadowed, places.point(static_cast<std::uint32_t>(i)),
                      at.length / static_cast<double>(own_hits.size()), hits);
     }
     pixels_.push_back({pixel, before, rays_.size()});
     add_unblocked(pixel);
 }
 
-void SharedShadowLights::gather_points(std::size_t pixel, const LightRadiance& unshadowed) {
+void SharedShadowLights::gather_points(std::size_t pixel, const UnshadowedLight& unshadowed) {
     dim_points_.clear();
     float sum = 0;
     for (std::size_t point = points_->pixel_begin[pixel]; point < points_->pixel_begin[pixel + 1]; ++point) {
@@ -127,52 +125,42 @@ void SharedShadowLights::gather_points(std::size_t pixel, const LightRadiance& u
     }
 }
 
-void SharedShadowLights::request_from(std::size_t hit, const Light& light, const LightRadiance& unshadowed,
+void SharedShadowLights::request_from(std::size_t hit, const Light& light, const UnshadowedLight& unshadowed,
                                       const glm::dvec2& place, double density, const Hits& hits) {
-    const MaterialLobes& material = materials_[hits.material[hit]];
-    const bool mirrors = std::any_of(material.lobes().begin(), material.lobes().end(),
-                                     [](const Lobe& lobe) { return is_mirror(lobe.shape); });
-    const auto rectangle = mirrors ? std::nullopt : WholeRectangle::see(light, hits.frame[hit], hits.error[hit]);
-    if (!rectangle) {
-        if (!seen_.look(light, hits.frame[hit], hits.error[hit])) {
-            return;
-        }
-        sampler_.reset(seen_);
+    target_.set(light);
+    target_.clear();
+    if (!target_.add(hits, hit)) {
+        return;
     }
-    const ShadowRaySpawner start(hits.frame[hit], hits.shadow_origin[hit], target_offset(light, hits.frame[hit]));
-    const auto push = [&](const Rgb& value, const Vec3d& direction, double distance) {
-        if (value != Rgb(0)) {
-            shadow_samples_.push_back({value, traits_of(light).group});
-            rays_.push_back(start.towards(direction, distance));
-        }
-    };
-    const LightSample sample = rectangle ? rectangle->sample(hits.frame[hit], place) : sampler_.sample(place);
-    const Vec3d view = hits.view(hit);
-    const double weight = rectangle ? sample.weight : sample.weight * seen_.profile().factor(sample.direction);
-    const Rgb strength = unshadowed.strength / static_cast<float>(density);
+    target_.aim(hits, hit, 0, true);
+    const std::size_t before = rays_.size();
+    std::array<float, kRaysAtOnce> u{}, v{};
+    u[0] = static_cast<float>(place.x);
+    v[0] = static_cast<float>(place.y);
+    target_.draw(u.data(), v.data(), 1, rays_);
+    if (rays_.size() == before) {
+        return;
+    }
+    const DrawnRay& drawn = rays_.drawn[before];
+    const Vec3d direction = hits.frame[hit].to_local(glm::normalize(Vec3d(drawn.way)));
+    const double weight = double{drawn.radiance} / (drawn.light_density * density);
+    const MaterialLobes& material = materials_[hits.material[hit]];
     Rgb value(0);
     for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
-        const std::size_t i = lobe * points_->size() + points_->of_hit[hit];
-        const Rgb reflected = strength * glm::abs(hits.weight(hit, lobe));
-        const LobeShape shape = material.shape(lobe, hits.widths(hit)[lobe]);
-        if (!(unshadowed.values[i] > 0)) {
-            continue;
-        }
-        if (is_mirror(shape)) {
-            const std::optional<double> distance = sampler_.meets(mirrored(view));
-            push(reflected * unshadowed.values[i], mirrored(view), distance.value_or(sample.distance));
-        } else {
-            value += reflected * static_cast<float>(weight * lobe_value(shape, sample.direction, view));
+        if (unshadowed[lobe * points_->size() + points_->of_hit[hit]] != Rgb(0)) {
+            const LobeShape shape = material.shape(lobe, hits.widths(hit)[lobe]);
+            value += glm::abs(hits.weight(hit, lobe)) *
+                     static_cast<float>(weight * lobe_value(shape, direction, hits.view(hit)));
         }
     }
-    push(value, sample.direction, sample.distance);
+    shadow_samples_.push_back({value * target_.strength(), traits_of(light).group});
 }
 
 void SharedShadowLights::add_unblocked(std::size_t pixel) {
     for (std::size_t point = points_->pixel_begin[pixel]; point < points_->pixel_begin[pixel + 1]; ++point) {
         for (const Member& member : dim_) {
-            const LightRadiance unshadowed = unshadowed_->light(member.index);
-            const std::uint32_t group = traits_of(*lights_[member.index]).group;
+            const UnshadowedLight& unshadowed = unshadowed_[member.index];
+            const std::uint32_t group = traits_of(lights_[member.index]).group;
             Rgb sum(0);
             for (std::size_t lobe = 0; lobe < lobe_stride_; ++lobe) {
                 const Rgb own = points_->weight(point, lobe) * unshadowed[lobe * points_->size() + point];
@@ -188,8 +176,8 @@ void SharedShadowLights::add_unblocked(std::size_t pixel) {
 }
 
 void SharedShadowLights::finish(Hits& hits) {
-    visible_.resize(rays_.size());
-    tracer_->visibility(rays_, visible_);
+    rays_.visible.resize(rays_.size());
+    tracer_->visibility(rays_.rays.all(), rays_.visible);
     for (const PixelSamples& own : pixels_) {
         const Share seen = share(own);
         Rgb sum(0);
@@ -214,12 +202,12 @@ SharedShadowLights::Share SharedShadowLights::share(const PixelSamples& own) con
     Vec3d seen(0);
     for (std::size_t i = own.begin; i < own.end; ++i) {
         all += shadow_samples_[i].value;
-        seen += shadow_samples_[i].value * visible_[i];
-        share.any_occluded = share.any_occluded || visible_[i] != Rgb(1);
+        seen += shadow_samples_[i].value * rays_.visible[i];
+        share.any_occluded = share.any_occluded || rays_.visible[i] != Rgb(1);
     }
     share.seen = Rgb(quotient(seen, all));
     for (std::size_t i = own.begin; i < own.end && share.any_occluded; ++i) {
-        const Vec3d off = quotient(Vec3d((visible_[i] - share.seen) * shadow_samples_[i].value), all);
+        const Vec3d off = quotient(Vec3d((rays_.visible[i] - share.seen) * shadow_samples_[i].value), all);
         share.variance += Rgb(off * off);
     }
     return share;
@@ -232,7 +220,7 @@ void SharedShadowLights::keep_apart(const PixelSamples& own, const Share& share,
     group_sampled_.assign(all.size(), Rgb(0));
     for (std::size_t i = own.begin; i < own.end; ++i) {
         const ShadowSample& sample = shadow_samples_[i];
-        group_seen_[sample.light_group] += sample.value * visible_[i];
+        group_seen_[sample.light_group] += sample.value * rays_.visible[i];
         group_sampled_[sample.light_group] += sample.value;
     }
     Rgb sum(0);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "shading/cubature_kernel.h"
+#include "lighting/cubature_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "shading/cubature_kernel.cpp"
+#define HWY_TARGET_INCLUDE "lighting/cubature_kernel.cpp"
 #include <hwy/foreach_target.h>
 // Highway's headers and code that is compiled once per instruction set follow foreach_target.h.
 #include <hwy/highway.h>

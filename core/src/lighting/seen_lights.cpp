@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "shading/seen_lights.h"
+#include "lighting/seen_lights.h"
 
 #include <algorithm>
 #include <numeric>

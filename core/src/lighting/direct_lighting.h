@@ -12,16 +12,18 @@
 #include <span>
 #include <vector>
 
-#include "environment/environment_shading.h"
+#include "lighting/environment_shading.h"
+#include "lighting/shading_points.h"
+#include "lighting/shadow_budget.h"
+#include "lighting/shadow_policy.h"
+#include "lighting/shadow_targets.h"
+#include "lighting/shadowed_deltas.h"
+#include "lighting/shadowed_light.h"
+#include "lighting/shared_shadow_lights.h"
+#include "lighting/unshadowed_light.h"
+#include "lighting/unshadowed_radiance.h"
 #include "lights/delta_lights.h"
 #include "lobes/material_lobes.h"
-#include "shading/shading_points.h"
-#include "shading/unshadowed_radiance.h"
-#include "shadows/shadow_budget.h"
-#include "shadows/shadow_policy.h"
-#include "shadows/shadowed_deltas.h"
-#include "shadows/shadowed_environment.h"
-#include "shadows/shadowed_light.h"
 #include "shlight/environment.h"
 #include "shlight/light.h"
 #include "shlight/render_report.h"
@@ -38,7 +40,6 @@ struct LightingScene {
                   std::uint32_t sky_group, std::vector<MaterialLobes> lobes, int order, double error_tolerance);
 
     std::span<const Light> extended;
-    std::vector<const Light*> extended_list;  ///< the same
     DeltaLights deltas;
     const Environment* environment;
     std::uint32_t environment_group;
@@ -69,6 +70,7 @@ class DirectLighting {
     void find_unshadowed(RenderReport& report);
     void add_shadowed(std::span<const std::uint32_t> seeds, const SampleRange& samples, Hits& hits,
                       RenderReport& report);
+    void add_extended(const SampleRange& samples, std::span<const std::uint32_t> seeds, Hits& hits);
     /// One seed of each group for a kind of light.
     std::span<const std::uint32_t> seeds_of(std::span<const std::uint32_t> seeds, std::uint32_t kind);
 
@@ -76,12 +78,14 @@ class DirectLighting {
     ShadowTracer tracer_;
     ShadingPoints points_;
     UnshadowedRadiance unshadowed_;
-    std::vector<UnshadowedParts> environment_;
+    UnshadowedParts environment_;
+    std::vector<UnshadowedLight> lights_;  // those with extent, then the environment, unless it is black
     ShadowBudget budget_;
-    std::size_t environment_index_ = 0;  // in the budget
     ShadowedDeltas shadowed_deltas_;
+    SharedShadowLights shared_;
     ShadowedLight shadowed_;
-    ShadowedEnvironment shadowed_environment_;
+    LightTarget light_target_;
+    EnvironmentTarget environment_target_;
     std::vector<std::uint32_t> seeds_;
 };
 

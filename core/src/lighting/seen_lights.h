@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "emitters/mesh_view.h"
+#include "lighting/lobe_batch.h"
 #include "lights/seen_light.h"
 #include "lobes/material_views.h"
 #include "regions/cap_arrays.h"
 #include "regions/polygon_batch.h"
 #include "regions/spherical_ellipse.h"
-#include "shading/lobe_batch.h"
 #include "shlight/light.h"
 
 namespace shlight {

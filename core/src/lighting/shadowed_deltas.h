@@ -12,9 +12,9 @@
 #include <span>
 #include <vector>
 
+#include "lighting/shading_points.h"
 #include "lights/delta_lights.h"
 #include "lobes/material_lobes.h"
-#include "shading/shading_points.h"
 #include "shlight/render_report.h"
 #include "tracing/hits.h"
 #include "tracing/shadow_tracer.h"

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+#include "lighting/shadow_targets.h"
+
+#include <algorithm>
+#include <array>
+
+#include "emitters/face_radiance.h"
+#include "environment/map_lookup.h"
+
+namespace shlight {
+namespace {
+
+static_assert(kRaysAtOnce % kLightPointLanes == 0 && kRaysAtOnce % kLobeRayLanes == 0);
+
+/// Only a lobe of whose reflected directions more than this share could meet the light takes rays of its own.
+constexpr double kLeastShare = 0.1;
+
+constexpr std::size_t kLookedUpAtOnce = 256;
+static_assert(kLookedUpAtOnce % kLookupLanes == 0);
+
+const ProfileView kEven;
+
+/// Elements are written before they are read.
+struct PointBuffer {
+    alignas(64) std::array<float, kRaysAtOnce> x, y, z, weight;
+
+    LightPointArrays arrays() { return {x.data(), y.data(), z.data(), weight.data()}; }
+};
+
+}  // namespace
+
+void DrawnRays::clear() {
+    drawn.clear();
+    rays.clear();
+    visible.clear();
+    color.clear();
+    spot_color.clear();
+}
+
+bool LightTarget::add(const Hits& hits, std::size_t hit) {
+    const std::size_t index = whole_.size();
+    if (seen_.size() == index) {
+        seen_.emplace_back();
+    }
+    const auto rectangle = WholeRectangle::see(*light_, hits.frame[hit], hits.error[hit]);
+    if (!rectangle && !seen_[index].look(*light_, hits.frame[hit], hits.error[hit])) {
+        return false;
+    }
+    whole_.push_back(rectangle);
+    return true;
+}
+
+void LightTarget::aim(const Hits& hits, std::size_t hit, std::size_t index, bool first) {
+    frame_ = &hits.frame[hit];
+    start_.emplace(*frame_, hits.shadow_origin[hit], target_offset(*light_, *frame_));
+    rectangle_ = whole_[index] ? &*whole_[index] : nullptr;
+    profile_ = &kEven;
+    if (rectangle_ == nullptr) {
+        profile_ = &seen_[index].profile();
+        if (first) {
+            sampler_.reset(seen_[index]);
+        } else {
+            sampler_.move(seen_[index]);
+        }
+    }
+}
+
+double LightTarget::solid_angle() const {
+    return rectangle_ != nullptr ? double{rectangle_->most_weight} : sampler_.solid_angle();
+}
+
+void LightTarget::draw(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) {
+    if (rectangle_ == nullptr) {
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const LightSample sample = sampler_.sample({u[i], v[i]});
+            push(sample.direction, sample.distance, sample.weight, sampler_.layers(sample.direction), rays);
+        }
+        return;
+    }
+    PointBuffer buffer;
+    for (std::uint32_t first = 0; first < count; first += kRaysAtOnce) {
+        const std::uint32_t some = std::min(count - first, kRaysAtOnce);
+        place_points(*rectangle_, u + first, v + first, some, buffer.arrays());
+        push(buffer.arrays(), some, rays);
+    }
+}
+
+bool LightTarget::may_meet(const LobeShape& lobe, const Vec3d& view) const {
+    return is_glossy(lobe) && solid_angle() * largest_lobe_density(lobe, view) > kLeastShare;
+}
+
+void LightTarget::meet(const RayVectors& directions, std::uint32_t count, DrawnRays& rays) {
+    if (rectangle_ != nullptr) {
+        PointBuffer buffer;
+        const LightPointArrays points = {directions.x, directions.y, directions.z, buffer.weight.data()};
+        meet_rectangle(*rectangle_, *frame_, count, points);
+        push(points, count, rays);
+        return;
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Vec3d direction(directions.x[i], directions.y[i], directions.z[i]);
+        const std::optional<double> distance = direction.z > 0 ? sampler_.meets(direction) : std::nullopt;
+        if (distance) {
+            push(direction, *distance, sampler_.solid_angle(), sampler_.layers(direction), rays);
+        }
+    }
+}
+
+void LightTarget::push(const LightPointArrays& points, std::uint32_t count, DrawnRays& rays) const {
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (points.weight[i] > 0) {
+            const Vec3f way(points.x[i], points.y[i], points.z[i]);
+            rays.drawn.extend(1)[0] = {way, 1 / points.weight[i], 1, false};
+            start_->to_end_of(way, rays.rays.extend(1)[0]);
+        }
+    }
+}
+
+/// layers: of the light, one behind the other, each of which the unshadowed radiance counts.
+void LightTarget::push(const Vec3d& direction, double distance, double weight, int layers, DrawnRays& rays) const {
+    const auto factor = static_cast<float>(profile_->factor(direction));
+    for (int layer = 0; weight > 0 && factor > 0 && layer < layers; ++layer) {
+        rays.push({Vec3f(frame_->to_world(direction)), static_cast<float>(1 / weight), factor, layer > 0},
+                  start_->towards(direction, distance));
+    }
+}
+
+Rgb LightTarget::strength() const {
+    const auto* mesh = std::get_if<MeshLight>(light_);
+    return mesh != nullptr && mesh->faces != nullptr ? Rgb(1) : glm::abs(strength_of(*light_));
+}
+
+void LightTarget::trace(ShadowTracer& tracer, DrawnRays& rays) {
+    rays.visible.resize(rays.size());
+    if (const auto* mesh = std::get_if<MeshLight>(light_)) {
+        follow(*mesh, tracer, rays);
+    } else {
+        tracer.visibility(rays.rays.all(), rays.visible);
+    }
+}
+
+/// Traces rays to a mesh light. The first surface that a ray meets is the light or blocks it. A ray that misses a mesh
+/// with an approximate outline is not blocked. Rays are shortened to their first hit.
+void LightTarget::follow(const MeshLight& mesh, ShadowTracer& tracer, DrawnRays& rays) {
+    if (mesh.faces != nullptr) {
+        mesh.faces->along(rays.rays.all(), rays.color);
+        for (std::size_t i = 0; i < rays.color.size(); ++i) {
+            // Radiance behind the first layer is not known.
+            rays.color[i] = rays.drawn[i].hidden_layer ? mesh.faces->mean() : rays.color[i];
+        }
+    }
+    met_.resize(rays.size());
+    tracer.intersect_opaque(rays.rays.all(), met_);
+    for (std::size_t i = 0; i < met_.size(); ++i) {
+        const bool seen = !rays.drawn[i].hidden_layer && (met_[i].missed() || mesh.holds(met_[i]));
+        rays.visible[i] = Rgb(seen ? 1 : 0);
+        rays.rays[i].t_max = met_[i].missed() ? rays.rays[i].t_max : met_[i].distance;
+    }
+    tracer.transmittance(rays.rays.all(), rays.visible);
+}
+
+void EnvironmentTarget::aim(const Hits& hits, std::size_t hit, std::size_t, bool) {
+    const ShadingFrame& frame = hits.frame[hit];
+    start_.emplace(frame, hits.shadow_origin[hit], Vec3d(0));
+    if (const EnvironmentMap* map = environment_->map()) {
+        to_map_ = {map->to_map(frame.x), map->to_map(frame.y), map->to_map(frame.z)};
+    }
+}
+
+void EnvironmentTarget::draw(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+        push(environment_->map()->sampler.sample({u[i], v[i]}) * to_map_, rays);
+    }
+}
+
+void EnvironmentTarget::meet(const RayVectors& directions, std::uint32_t count, DrawnRays& rays) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+        push(Vec3d(directions.x[i], directions.y[i], directions.z[i]), rays);
+    }
+}
+
+void EnvironmentTarget::push(const Vec3d& direction, DrawnRays& rays) const {
+    if (direction.z > 0) {
+        const Ray ray = start_->along(direction);
+        rays.push({ray.direction, 0, 1, false}, ray);
+    }
+}
+
+void EnvironmentTarget::trace(ShadowTracer& tracer, DrawnRays& rays) {
+    rays.visible.resize(rays.size());
+    tracer.visibility(rays.rays.all(), rays.visible);
+}
+
+Rgb EnvironmentTarget::strength() const {
+    return environment_->map() != nullptr ? Rgb(1) : environment_->radiance(Vec3d(0, 0, 1));
+}
+
+void EnvironmentTarget::find_radiance(std::span<const std::size_t> some, DrawnRays& rays) {
+    if (environment_->map() == nullptr) {
+        return;
+    }
+    const EnvironmentMap& map = *environment_->map();
+    rays.color.resize(rays.size());
+    rays.spot_color.resize(rays.size());
+    std::array<std::array<float, kLookedUpAtOnce>, 10> lanes{};
+    auto& [x, y, z, red, green, blue, spot_red, spot_green, spot_blue, density] = lanes;
+    for (std::size_t first = 0; first < some.size(); first += kLookedUpAtOnce) {
+        const std::size_t count = std::min(some.size() - first, kLookedUpAtOnce);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vec3f direction(map.to_map(Vec3d(rays.drawn[some[first + i]].way)));
+            x[i] = direction.x;
+            y[i] = direction.y;
+            z[i] = direction.z;
+        }
+        look_up(map, {x.data(), y.data(), z.data()}, count,
+                {{red.data(), green.data(), blue.data()},
+                 {spot_red.data(), spot_green.data(), spot_blue.data()},
+                 density.data()});
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t ray = some[first + i];
+            rays.drawn[ray].light_density = density[i];
+            rays.color[ray] = {red[i], green[i], blue[i]};
+            rays.spot_color[ray] = {spot_red[i], spot_green[i], spot_blue[i]};
+        }
+    }
+}
+
+}  // namespace shlight

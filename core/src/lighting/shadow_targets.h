@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+//
+// A light as the target of shadow rays: what draws points of it, meets it in given directions, and tells what it sends
+// from there. Lights with extent and the environment are drawn, traced and weighed alike (see ShadowRays).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/scratch.h"
+#include "lighting/shadow_ray_spawner.h"
+#include "lights/light_sampling.h"
+#include "lights/seen_light.h"
+#include "lights/whole_rectangle.h"
+#include "lobes/lobe_rays.h"
+#include "shlight/environment.h"
+#include "shlight/light.h"
+#include "tracing/hits.h"
+#include "tracing/shadow_tracer.h"
+
+namespace shlight {
+
+/// Rays that are drawn together; a multiple of all lanes.
+inline constexpr std::uint32_t kRaysAtOnce = 64;
+
+/// A shadow ray before it is traced.
+struct DrawnRay {
+    Vec3f way;            ///< from the hit, along the axes of the world; of any length
+    float light_density;  ///< per solid angle, of the points that the light draws; 0: of an environment, see
+                          ///< find_radiance
+    float radiance;       ///< the light's there ÷ ShadowTarget::strength()
+    bool hidden_layer;    ///< behind another layer of the light
+};
+
+/// The shadow rays of many hits.
+struct DrawnRays {
+    Scratch<DrawnRay> drawn;
+    Scratch<Ray> rays;            ///< as drawn
+    std::vector<Rgb> visible;     ///< once traced
+    std::vector<Rgb> color;       ///< factors of DrawnRay::radiance; empty: 1
+    std::vector<Rgb> spot_color;  ///< likewise, of bright spots
+
+    void clear();
+    std::size_t size() const { return drawn.size(); }
+    void push(const DrawnRay& ray, const Ray& way) {
+        drawn.extend(1)[0] = ray;
+        rays.extend(1)[0] = way;
+    }
+};
+
+/// Keeps its memory from hit to hit; one per thread.
+class ShadowTarget {
+  public:
+    ShadowTarget() = default;
+    ShadowTarget(const ShadowTarget&) = delete;
+    ShadowTarget& operator=(const ShadowTarget&) = delete;
+    virtual ~ShadowTarget() = default;
+
+    /// Forgets all hits.
+    virtual void clear() = 0;
+    /// Adds a hit, unless it does not see the light itself: it may see less of it than the point that it shares.
+    virtual bool add(const Hits& hits, std::size_t hit) = 0;
+    /// The rays pushed from now on are those of the hit that was added as number `index`. first: of a group.
+    virtual void aim(const Hits& hits, std::size_t hit, std::size_t index, bool first) = 0;
+    /// Whether it draws points of its own.
+    virtual bool draws() const = 0;
+    /// Pushes the rays to its points that belong to points of the unit square, whose arrays go on to a multiple of
+    /// kRaysAtOnce.
+    virtual void draw(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) = 0;
+    /// Whether rays in directions that a lobe reflects may meet it.
+    virtual bool may_meet(const LobeShape& lobe, const Vec3d& view) const = 0;
+    /// Pushes the rays in directions of the shading frame, at most kRaysAtOnce, that meet it.
+    virtual void meet(const RayVectors& directions, std::uint32_t count, DrawnRays& rays) = 0;
+    /// Finds what the rays see of it.
+    virtual void trace(ShadowTracer& tracer, DrawnRays& rays) = 0;
+    /// Radiance by which the rays' is multiplied.
+    virtual Rgb strength() const = 0;
+    /// Completes the light's density and colour of some rays.
+    virtual void find_radiance(std::span<const std::size_t> some, DrawnRays& rays) = 0;
+};
+
+/// A light with extent.
+class LightTarget : public ShadowTarget {
+  public:
+    void set(const Light& light) { light_ = &light; }
+
+    void clear() override { whole_.clear(); }
+    bool add(const Hits& hits, std::size_t hit) override;
+    void aim(const Hits& hits, std::size_t hit, std::size_t index, bool first) override;
+    bool draws() const override { return true; }
+    void draw(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) override;
+    bool may_meet(const LobeShape& lobe, const Vec3d& view) const override;
+    void meet(const RayVectors& directions, std::uint32_t count, DrawnRays& rays) override;
+    void trace(ShadowTracer& tracer, DrawnRays& rays) override;
+    Rgb strength() const override;
+    void find_radiance(std::span<const std::size_t>, DrawnRays&) override {}
+
+  private:
+    double solid_angle() const;
+    void push(const Vec3d& direction, double distance, double weight, int layers, DrawnRays& rays) const;
+    void push(const LightPointArrays& points, std::uint32_t count, DrawnRays& rays) const;
+    void follow(const MeshLight& mesh, ShadowTracer& tracer, DrawnRays& rays);
+
+    const Light* light_ = nullptr;
+    std::vector<std::optional<WholeRectangle>> whole_;  // as each hit sees it, or else …
+    std::vector<SeenLight> seen_;                       // … the light; may be longer
+    LightSampler sampler_;
+    std::vector<RayHit> met_;
+
+    // The hit that rays are drawn from:
+    const ShadingFrame* frame_ = nullptr;
+    const WholeRectangle* rectangle_ = nullptr;
+    const ProfileView* profile_ = nullptr;
+    std::optional<ShadowRaySpawner> start_;
+};
+
+/// The environment, which all hits see.
+class EnvironmentTarget : public ShadowTarget {
+  public:
+    explicit EnvironmentTarget(const Environment& environment) : environment_(&environment) {}
+
+    void clear() override {}
+    bool add(const Hits&, std::size_t) override { return true; }
+    void aim(const Hits& hits, std::size_t hit, std::size_t index, bool first) override;
+    bool draws() const override { return environment_->map() != nullptr; }
+    void draw(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) override;
+    bool may_meet(const LobeShape&, const Vec3d&) const override { return true; }
+    void meet(const RayVectors& directions, std::uint32_t count, DrawnRays& rays) override;
+    void trace(ShadowTracer& tracer, DrawnRays& rays) override;
+    Rgb strength() const override;
+    void find_radiance(std::span<const std::size_t> some, DrawnRays& rays) override;
+
+  private:
+    void push(const Vec3d& direction, DrawnRays& rays) const;
+
+    const Environment* environment_;
+    glm::dmat3 to_map_{1};  // from the shading frame of the hit that rays are drawn from
+    std::optional<ShadowRaySpawner> start_;
+};
+
+}  // namespace shlight
