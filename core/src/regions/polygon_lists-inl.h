@@ -122,10 +122,12 @@ class PolygonLists {
         float_arcs_.clear();
         double_arcs_.clear();
         sort_by_horizon(count, clip);
-        if constexpr (kBoosted || kInDouble) {
+        if (kBoosted || kInDouble || order_ <= 2) {
             take_apart<double, false>(whole_);
             take_apart<double, true>(cut_);
-        } else {
+            return;
+        }
+        if constexpr (!kBoosted && !kInDouble) {
             take_apart<float, false>(whole_);
             take_apart<float, true>(cut_);
             take_apart<double, false>(narrow_whole_);
