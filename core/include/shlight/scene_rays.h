@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -26,6 +27,9 @@ class SurfaceTransparency {
     virtual void find(std::span<const Ray> rays, std::span<const RayHit> hits, std::uint32_t depth,
                       std::span<Rgb> passed) const = 0;
 };
+
+/// A surface that the ray of this number meets.
+using SurfaceVisit = std::function<void(std::size_t ray, const RayHit& hit)>;
 
 /// The rest of a ray behind a surface that it has met.
 Ray behind(const Ray& ray, const RayHit& hit);
@@ -51,8 +55,11 @@ class SceneRays {
     /// The share of light that reaches the end of each ray. transparent_bounces: surfaces that a ray passes through, at
     /// most.
     void visibility(std::span<const Ray> rays, std::uint32_t transparent_bounces, std::span<Rgb> visible) const;
-    /// The same of surfaces that are not opaque alone.
-    void transmittance(std::span<const Ray> rays, std::uint32_t transparent_bounces, std::span<Rgb> visible) const;
+    /// Multiplies `visible` with the same of the surfaces alone that are not opaque. visit(ray, hit), unless it is
+    /// null: for each such surface, from front to back, when `visible` is the share of light that gets from there to
+    /// the ray's origin.
+    void transmittance(std::span<const Ray> rays, std::uint32_t transparent_bounces, std::span<Rgb> visible,
+                       const SurfaceVisit& visit = {}) const;
 
   private:
     std::shared_ptr<const RayTracer> opaque_, transparent_;  // null: there are no such surfaces

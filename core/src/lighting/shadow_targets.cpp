@@ -139,8 +139,9 @@ void LightTarget::trace(ShadowTracer& tracer, DrawnRays& rays) {
     }
 }
 
-/// Traces rays to a mesh light. The first surface that a ray meets is the light or blocks it. A ray that misses a mesh
-/// with an approximate outline is not blocked. Rays are shortened to their first hit.
+/// Traces rays to a mesh light. What a ray sees of it are all its faces that are not opaque, each through those before
+/// it, and the first opaque surface, which is the light or blocks it. A ray that misses a mesh with an approximate
+/// outline is not blocked.
 void LightTarget::follow(const MeshLight& mesh, ShadowTracer& tracer, DrawnRays& rays) {
     if (mesh.faces != nullptr) {
         mesh.faces->along(rays.rays.all(), rays.color);
@@ -152,11 +153,20 @@ void LightTarget::follow(const MeshLight& mesh, ShadowTracer& tracer, DrawnRays&
     met_.resize(rays.size());
     tracer.intersect_opaque(rays.rays.all(), met_);
     for (std::size_t i = 0; i < met_.size(); ++i) {
-        const bool seen = !rays.drawn[i].hidden_layer && (met_[i].missed() || mesh.holds(met_[i]));
-        rays.visible[i] = Rgb(seen ? 1 : 0);
         rays.rays[i].t_max = met_[i].missed() ? rays.rays[i].t_max : met_[i].distance;
     }
-    tracer.transmittance(rays.rays.all(), rays.visible);
+    passed_.assign(rays.size(), Rgb(1));
+    sheer_.assign(rays.size(), Rgb(0));
+    tracer.transmittance(rays.rays.all(), passed_, [&](std::size_t ray, const RayHit& hit) {
+        sheer_[ray] += mesh.holds(hit) ? passed_[ray] : Rgb(0);
+    });
+    for (std::size_t i = 0; i < met_.size(); ++i) {
+        const bool misses = met_[i].missed() && sheer_[i] == Rgb(0);
+        const bool meets = !met_[i].missed() && mesh.holds(met_[i]);
+        const Rgb seen = sheer_[i] + (misses || meets ? passed_[i] : Rgb(0));
+        // The rays to the light's other layers are the same ray, which has seen them all.
+        rays.visible[i] = rays.drawn[i].hidden_layer ? Rgb(0) : seen;
+    }
 }
 
 void EnvironmentTarget::aim(const Hits& hits, std::size_t hit, std::size_t, bool) {

@@ -107,7 +107,8 @@ class LightTarget : public ShadowTarget {
     std::vector<std::optional<WholeRectangle>> whole_;  // as each hit sees it, or else …
     std::vector<SeenLight> seen_;                       // … the light; may be longer
     LightSampler sampler_;
-    std::vector<RayHit> met_;
+    std::vector<RayHit> met_;          // by the rays: opaque surfaces
+    std::vector<Rgb> passed_, sheer_;  // by the rays: share of light that surfaces before let through, faces seen
 
     // The hit that rays are drawn from:
     const ShadingFrame* frame_ = nullptr;

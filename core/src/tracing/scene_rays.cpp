@@ -70,8 +70,8 @@ void SceneRays::visibility(std::span<const Ray> rays, std::uint32_t transparent_
     transmittance(rays, transparent_bounces, visible);
 }
 
-void SceneRays::transmittance(std::span<const Ray> rays, std::uint32_t transparent_bounces,
-                              std::span<Rgb> visible) const {
+void SceneRays::transmittance(std::span<const Ray> rays, std::uint32_t transparent_bounces, std::span<Rgb> visible,
+                              const SurfaceVisit& visit) const {
     if (transparent_ == nullptr) {
         return;
     }
@@ -99,6 +99,7 @@ void SceneRays::transmittance(std::span<const Ray> rays, std::uint32_t transpare
                 met.push_back(active[i]);
                 met_rays.push_back(segments[i]);
                 met_hits.push_back(hits[i]);
+                if (visit) visit(active[i], hits[i]);
             }
         }
         passed.assign(met.size(), Rgb(0));

@@ -25,8 +25,8 @@ class ShadowTracer {
         timed([&] { rays_->visibility(rays, transparent_bounces_, visible); });
     }
     /// To be called after intersect_opaque: as visibility, for surfaces that are not opaque.
-    void transmittance(std::span<const Ray> rays, std::span<Rgb> visible) {
-        timed([&] { rays_->transmittance(rays, transparent_bounces_, visible); });
+    void transmittance(std::span<const Ray> rays, std::span<Rgb> visible, const SurfaceVisit& visit) {
+        timed([&] { rays_->transmittance(rays, transparent_bounces_, visible, visit); });
     }
     void intersect_opaque(std::span<const Ray> rays, std::span<RayHit> hits) {
         traced_ += rays.size();
