@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "error_message.h"
@@ -87,7 +90,7 @@ TEST(RenderLights, TrianglesOfAQuadrilateralAreJoined) {
     for (const std::vector<Triangle>& triangles :
          {std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}, std::vector<Triangle>{{0, 1, 2}, {2, 3, 0}},
           std::vector<Triangle>{{1, 2, 3}, {3, 0, 1}}, std::vector<Triangle>{{3, 0, 1}, {2, 3, 1}}}) {
-        const std::vector<FaceOutline> outlines = merge_faces(vertices, triangles);
+        const std::vector<FaceOutline> outlines = merge_faces(vertices, triangles).value();
         ASSERT_EQ(outlines.size(), 1U);
         const PolygonLight light = make_polygon_light(outlines[0], Rgb(1), true);
         EXPECT_LE(std::abs(triangulated_area(light) - 2), 1e-12);
@@ -95,14 +98,50 @@ TEST(RenderLights, TrianglesOfAQuadrilateralAreJoined) {
     }
 }
 
-TEST(RenderLights, OnlyFlatConvexPairsAreJoined) {
+TEST(RenderLights, OnlyWhatIsFlatIsJoined) {
+    const auto parts = [](const std::vector<Vec3d>& vertices, const std::vector<Triangle>& triangles) {
+        return merge_faces(vertices, triangles).value().size();
+    };
     const std::vector<Vec3d> folded = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.01}, {0, 1, 0}};
-    EXPECT_EQ(merge_faces(folded, std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}).size(), 2U);
+    EXPECT_EQ(parts(folded, {{0, 1, 2}, {0, 2, 3}}), 2U);
     const std::vector<Vec3d> dart = {{0, 0, 0}, {2, 0, 0}, {0.4, 0.4, 0}, {0, 2, 0}};
-    EXPECT_EQ(merge_faces(dart, std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}).size(), 2U);
+    EXPECT_EQ(parts(dart, {{0, 1, 2}, {0, 2, 3}}), 1U);
     const std::vector<Vec3d> square = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-    EXPECT_EQ(merge_faces(square, std::vector<Triangle>{{0, 1, 2}, {0, 3, 2}}).size(), 2U) << "opposite windings";
-    EXPECT_EQ(merge_faces(square, std::vector<Triangle>{{0, 1, 2}, {0, 2, 2}}).size(), 1U) << "one without area";
+    EXPECT_EQ(parts(square, {{0, 1, 2}, {0, 3, 2}}), 2U) << "opposite windings";
+    EXPECT_EQ(parts(square, {{0, 1, 2}, {0, 2, 2}}), 1U) << "one without area";
+    EXPECT_EQ(merge_faces(square, std::vector<Triangle>{{0, 1, 2}}, 2), std::nullopt) << "too many corners";
+}
+
+/// A square of n × n cells, without the cells that leave_out(row, column) names; each cell has vertices of its own.
+std::pair<std::vector<Vec3d>, std::vector<Triangle>> cells(
+    std::uint32_t n, const std::function<bool(std::uint32_t, std::uint32_t)>& leave_out) {
+    std::pair<std::vector<Vec3d>, std::vector<Triangle>> mesh;
+    for (std::uint32_t row = 0; row < n; ++row) {
+        for (std::uint32_t column = 0; column < n; ++column) {
+            const auto first = static_cast<std::uint32_t>(mesh.first.size());
+            if (leave_out(row, column)) continue;
+            for (const auto& [x, y] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
+                mesh.first.emplace_back((column + x) / double{n}, (row + y) / double{n}, 0.1);
+            }
+            mesh.second.insert(mesh.second.end(), {{first, first + 1, first + 2}, {first, first + 2, first + 3}});
+        }
+    }
+    return mesh;
+}
+
+TEST(RenderLights, APartIsOneLightHoweverFinelyItIsDivided) {
+    const auto merged = [](const auto& mesh) { return merge_faces(mesh.first, mesh.second).value(); };
+    const auto square = merged(cells(40, [](std::uint32_t, std::uint32_t) { return false; }));
+    ASSERT_EQ(square.size(), 1U);
+    EXPECT_EQ(square[0].size(), 4U);
+    const auto corner = merged(cells(8, [](std::uint32_t row, std::uint32_t column) { return row < 3 && column < 5; }));
+    ASSERT_EQ(corner.size(), 1U);
+    EXPECT_EQ(corner[0].size(), 6U);
+    EXPECT_LE(std::abs(triangulated_area(make_polygon_light(corner[0], Rgb(1), true)) - (1 - 15 / 64.0)), 1e-12);
+    const auto ring = merged(cells(3, [](std::uint32_t row, std::uint32_t column) { return row == 1 && column == 1; }));
+    EXPECT_EQ(ring.size(), 16U) << "two boundaries";
+    const auto touching = merged(cells(2, [](std::uint32_t row, std::uint32_t column) { return row != column; }));
+    EXPECT_EQ(touching.size(), 2U) << "two squares with a corner in common";
 }
 
 }  // namespace

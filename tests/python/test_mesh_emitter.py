@@ -8,6 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 import shlight
+from shlight import nodes
 from shlight.bench.lamps import CENTER, RADIANCE, RADIUS, ball_on_floor, icosphere, under_mesh
 from shlight.metrics import mean_ratio, rel_mse
 
@@ -34,3 +35,20 @@ def test_icosphere_gives_the_picture_of_the_sphere(bsdf: shlight.Bsdf, shadow_ra
         # Each picture draws shadow rays of its own, and 80 faces show more to some sides than to others.
         most = 3e-3 if shadow_rays else 2e-3 if subdivisions == 1 else 1e-3
         assert abs(mean_ratio(image[below], expected[below]) - 1) <= most
+
+
+@pytest.mark.parametrize("share", [0.99, 0.5])
+def test_what_is_not_opaque_shines_through_itself(share: float) -> None:
+    """A ray to a closed emitter sees the near side, and through it the far one."""
+    bsdf = shlight.Bsdf.lambert(0.8)
+    ball = icosphere(3)
+    expected = share * (2 - share) * shlight.render(under_mesh(ball, bsdf), 64, 48)[..., :3]
+    scene = ball_on_floor(bsdf)
+    vertices, faces = ball
+    radiance = share * np.asarray(RADIANCE)
+    veil = nodes.mix(nodes.transparent(), nodes.emission(RADIANCE), share)
+    scene.add_mesh(RADIUS * vertices + CENTER, faces, bsdf=veil, emission=radiance)
+    image = shlight.render(scene, 64, 48)[..., :3]
+    below = slice(20, None)
+    assert rel_mse(image[below], expected[below]) <= 1e-3
+    assert abs(mean_ratio(image[below], expected[below]) - 1) <= 5e-3

@@ -3,6 +3,9 @@
 // Emissive faces of meshes as polygon lights.
 #pragma once
 
+#include <cstddef>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,12 +14,14 @@
 
 namespace shlight {
 
-/// The boundary of a face: three or four vertices with the winding of the triangles.
+/// The boundary of a flat part of a mesh, with the winding of its triangles.
 using FaceOutline = std::vector<Vec3d>;
 
-/// Joins pairs of triangles that share an edge, lie in one plane and make a convex quadrilateral, so that a
-/// quadrilateral face is one light and not two. Greedy: each triangle takes its first partner in the list, which for
-/// meshes split by the usual triangulators is the other half of its face. Triangles without area are left out.
-std::vector<FaceOutline> merge_faces(std::span<const Vec3d> vertices, std::span<const Triangle> triangles);
+/// Joins triangles that share edges and lie in one plane, so that a face is one light however finely it is divided.
+/// Triangles without area are left out, and those of a part whose boundary is more than one line stay alone. Nothing:
+/// the outlines would have more corners than `most_corners`.
+std::optional<std::vector<FaceOutline>> merge_faces(std::span<const Vec3d> vertices,
+                                                    std::span<const Triangle> triangles,
+                                                    std::size_t most_corners = std::numeric_limits<std::size_t>::max());
 
 }  // namespace shlight

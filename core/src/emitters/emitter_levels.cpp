@@ -8,16 +8,19 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 #include <meshoptimizer.h>
+
+#include "emitters/indexed_mesh.h"
 
 namespace shlight {
 namespace {
 
 /// Sine of the angle at an edge below which the edge counts as flat.
 constexpr double kFlat = 1e-7;
+/// Distance of vertices that are one ÷ the extent: poles and seams that were computed twice.
+constexpr double kWelded = 1e-6;
 /// Number of a level's faces ÷ that of the one before. Errors grow as fast as the number falls, so that their sum is
 /// little more than the last one.
 constexpr std::size_t kReduction = 4;
@@ -27,62 +30,12 @@ constexpr std::size_t kMostFaces = 5120;
 /// Largest error as a share of the extent: with more, a coarse mesh is nothing like the fine one.
 constexpr float kLargestError = 0.05F;
 
-/// A mesh whose vertices are distinct and used.
-struct IndexedMesh {
-    std::vector<Vec3d> vertices;
-    std::vector<Triangle> faces;
-};
-
-Vec3d scaled_normal(const IndexedMesh& mesh, const Triangle& t) {
-    const Vec3d& a = mesh.vertices[t.x];
-    return glm::cross(mesh.vertices[t.y] - a, mesh.vertices[t.z] - a);
-}
-
 double area(const IndexedMesh& mesh) {
     double sum = 0;
     for (const Triangle& t : mesh.faces) {
         sum += glm::length(scaled_normal(mesh, t)) / 2;
     }
     return sum;
-}
-
-/// Vertices sorted by coordinates, each once, without unused ones. Vertices closer than a millionth of the extent are
-/// merged: poles and seams that were computed twice.
-IndexedMesh welded(std::span<const Vec3d> vertices, std::span<const Triangle> triangles) {
-    std::vector<std::uint32_t> order;
-    double extent = 0;
-    for (const Triangle& t : triangles) {
-        for (int corner = 0; corner < 3; ++corner) {
-            const Vec3d v = glm::abs(vertices[t[corner]] - vertices[triangles.front().x]);
-            extent = std::max({extent, v.x, v.y, v.z});
-        }
-    }
-    std::vector<Vec3d> rounded(vertices.size());
-    for (std::size_t i = 0; i < vertices.size() && extent > 0; ++i) {
-        rounded[i] = glm::round((vertices[i] - vertices[triangles.front().x]) / (1e-6 * extent));
-    }
-    for (const Triangle& t : triangles) {
-        order.insert(order.end(), {t.x, t.y, t.z});
-    }
-    const auto key = [&](std::uint32_t i) { return std::tie(rounded[i].x, rounded[i].y, rounded[i].z); };
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-    IndexedMesh mesh;
-    std::vector<std::uint32_t> position(vertices.size());
-    const Vec3d* before = nullptr;
-    for (const std::uint32_t i : order) {
-        if (before == nullptr || *before != rounded[i]) {
-            mesh.vertices.push_back(vertices[i]);
-            before = &rounded[i];
-        }
-        position[i] = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
-    }
-    for (const Triangle& t : triangles) {
-        const Triangle face(position[t.x], position[t.y], position[t.z]);
-        if (face.x != face.y && face.y != face.z && face.z != face.x && scaled_normal(mesh, face) != Vec3d(0)) {
-            mesh.faces.push_back(face);
-        }
-    }
-    return mesh;
 }
 
 /// Each face's half edges, paired with those that run the other way.
@@ -191,7 +144,7 @@ bool simplify(IndexedMesh& mesh, std::size_t faces, bool closed, double& error) 
     for (std::size_t i = 0; i + 2 < kept.size(); i += 3) {
         triangles.emplace_back(kept[i], kept[i + 1], kept[i + 2]);
     }
-    IndexedMesh simple = welded(mesh.vertices, triangles);
+    IndexedMesh simple = welded(mesh.vertices, triangles, kWelded);
     if (2 * simple.faces.size() > mesh.faces.size() || simple.faces.empty() || has_border(edges_of(simple)) == closed) {
         return false;
     }
@@ -349,7 +302,7 @@ const EmitterLevel& level_for(const EmitterLevels& emitter, double distance, dou
 EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
                                   std::size_t least_faces, const Stopped& stopped) {
     EmitterLevels emitter{{}, false, false, Vec3d(0), 0, 0};
-    IndexedMesh mesh = welded(vertices, triangles);
+    IndexedMesh mesh = welded(vertices, triangles, kWelded);
     if (mesh.faces.empty()) {
         return emitter;
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <stdexcept>
 #include <utility>
 
 #include "base/ray_rounding.h"
@@ -15,8 +16,8 @@
 namespace shlight {
 namespace {
 
-/// Emissive triangles of a mesh that are lights one by one, or in pairs; more of them are one light.
-constexpr std::size_t kMostSingleFaces = 16;
+/// Corners of the flat parts of an emissive mesh that are lights of their own; one with more is one light.
+constexpr std::size_t kMostCorners = 64;
 /// Faces of the coarsest level of detail: with fewer, outlines lose their shape.
 constexpr std::size_t kLeastLevelFaces = 64;
 /// Triangles whose tree is built anew when their mesh moves: this many take some ten milliseconds of a core.
@@ -81,8 +82,11 @@ std::shared_ptr<const TriangleTree> tree_of(const CompiledMesh& compiled, const 
                : std::make_shared<const TriangleTree>(compiled.vertices(), triangles, std::move(numbers), stopped);
 }
 
-void add_single_faces(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
-                      std::span<const Rgb> radiance, const LightTraits& traits, std::vector<Light>& lights) {
+/// Adds the flat parts of a mesh as lights, unless they have too many corners or overlap; returns whether it has.
+bool add_flat_parts(std::span<const Vec3d> vertices, std::span<const Triangle> triangles, std::span<const Rgb> radiance,
+                    const LightTraits& traits, std::vector<Light>& lights) {
+    std::vector<Light> parts;
+    std::size_t corners = kMostCorners;
     std::vector<Rgb> left(radiance.begin(), radiance.end());
     while (!left.empty()) {
         const Rgb color = left.front();
@@ -92,11 +96,22 @@ void add_single_faces(std::span<const Vec3d> vertices, std::span<const Triangle>
                 alike.push_back(triangles[i]);
             }
         }
-        for (FaceOutline& outline : merge_faces(vertices, alike)) {
-            lights.emplace_back(make_polygon_light(std::move(outline), color, true, traits));
+        auto outlines = merge_faces(vertices, alike, corners);
+        if (!outlines) {
+            return false;
+        }
+        for (FaceOutline& outline : *outlines) {
+            corners -= outline.size();
+            try {
+                parts.emplace_back(make_polygon_light(std::move(outline), color, true, traits));
+            } catch (const std::invalid_argument&) {
+                return false;  // the boundary crosses itself
+            }
         }
         std::erase(left, color);
     }
+    lights.insert(lights.end(), parts.begin(), parts.end());
+    return true;
 }
 
 void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
@@ -133,11 +148,9 @@ std::vector<Light> emissive_faces(const CompiledMesh& compiled, const Stopped& s
         for (const Vec3f& v : compiled.vertices()) {
             vertices.push_back(compiled.is_baked() ? Vec3d(v) : transform_point(mesh.transforms[k], Vec3d(v)));
         }
-        if (emissive.size() > kMostSingleFaces) {
+        if (!add_flat_parts(vertices, emissive, radiance, traits, lights)) {
             add_mesh_light({nullptr, radiance.front(), nullptr, k, compiled.mesh, traits}, vertices, emissive, radiance,
                            stopped, lights);
-        } else {
-            add_single_faces(vertices, emissive, radiance, traits, lights);
         }
     }
     return lights;
