@@ -132,62 +132,48 @@ TEST(EnvironmentMap, CoefficientsAreIntegralsOfTheBilinearPicture) {
 
 // --- turns
 
-TEST(BandRotation, MovesAFunctionAsItsArgument) {
+/// Light of the harmonics at a direction shows what a lobe sends there.
+TEST(TurnedLobes, ReflectAsFunctionsMoveWithTheirArgument) {
     std::mt19937 random(9);
     std::normal_distribution<float> normal;
-    std::vector<float> coefficients(4096);
-    for (float& c : coefficients) {
-        c = normal(random) / 64;
+    std::vector<glm::dmat3> rotations = {glm::dmat3(1),
+                                         rotation_about({1, 2, 3}, 1.1),
+                                         rotation_about({-2, 1, 0.3}, 2.9),
+                                         rotation_about({0, 0, 1}, 0.7),
+                                         rotation_about({1, 1, 0}, kPi),
+                                         rotation_about({1, 0, 0}, 1e-7),
+                                         rotation_about({0, 1, 0}, kPi - 1e-7)};
+    while (rotations.size() < 2 * kTurnedLanes) {
+        rotations.push_back(rotation_about({normal(random), normal(random), normal(random)}, 3 * normal(random)));
     }
-    const std::vector<glm::dmat3> rotations = {glm::dmat3(1),
-                                               rotation_about({1, 2, 3}, 1.1),
-                                               rotation_about({-2, 1, 0.3}, 2.9),
-                                               rotation_about({0, 0, 1}, 0.7),
-                                               rotation_about({1, 1, 0}, kPi),
-                                               rotation_about({1, 0, 0}, 1e-7),
-                                               rotation_about({0, 1, 0}, kPi - 1e-7)};
-    for (const glm::dmat3& rotation : rotations) {
-        std::vector<float> turned = coefficients;
-        BandRotation(rotation).apply(64, turned.data());
-        for (int i = 0; i < 20; ++i) {
-            const Vec3d direction = glm::normalize(Vec3d(normal(random), normal(random), normal(random)));
-            const auto before = basis_at(direction, 64);
-            const auto after = basis_at(rotation * direction, 64);
-            double expected = 0, actual = 0;
-            for (std::size_t k = 0; k < 4096; ++k) {
-                expected += coefficients[k] * before[k];
-                actual += turned[k] * after[k];
-            }
-            EXPECT_NEAR(actual, expected, 2e-4);
-        }
-    }
-}
-
-TEST(TurnedLobes, ReflectAsEachTurnedByItself) {
-    std::mt19937 random(10);
-    std::normal_distribution<float> normal;
-    ColorHarmonics light;
-    for (std::vector<float>& channel : light) {
-        channel.resize(4096);
-        std::generate(channel.begin(), channel.end(), [&] { return normal(random) / 64; });
-    }
-    const auto lobe = sh_projection(GgxShape{0.25});
     for (const int order : {1, 2, 7, 40, 64}) {
         std::vector<TurnedLobe> lobes;
-        std::vector<Rgb> expected;
-        for (std::size_t i = 0; i < 2 * kTurnedLanes; ++i) {
-            const glm::dmat3 frame =
-                i == 3 ? glm::dmat3(1)
-                       : rotation_about({normal(random), normal(random), normal(random)}, 0.3 * double(i));
-            const float cosine = 1 - 0.03F * static_cast<float>(i);
-            lobe->coefficients(cosine, order, lobes.emplace_back(TurnedLobe{{}, BandRotation(frame)}).terms.data());
-            RotatedLobe alone(frame);
-            expected.push_back(RotatedLobe::reflected(light, alone.coefficients(*lobe, cosine, order), order));
+        for (const glm::dmat3& rotation : rotations) {
+            TurnedLobe& lobe = lobes.emplace_back(TurnedLobe{{}, BandRotation(rotation)});
+            std::generate_n(lobe.terms.begin(), cosine_count(order), [&] { return normal(random) / 64; });
         }
-        std::vector<Rgb> reflected(lobes.size());
-        reflect_turned(lobes, order, light, reflected);
-        for (std::size_t i = 0; i < lobes.size(); ++i) {
-            EXPECT_LE(glm::length(reflected[i] - expected[i]), 2e-6) << order << " " << i;
+        for (int i = 0; i < 20; ++i) {
+            std::array<Vec3d, 3> directions;
+            ColorHarmonics light;
+            for (std::size_t c = 0; c < 3; ++c) {
+                directions[c] = glm::normalize(Vec3d(normal(random), normal(random), normal(random)));
+                const auto basis = basis_at(directions[c], order);
+                light[c].assign(basis.begin(), basis.end());
+            }
+            std::vector<Rgb> reflected(lobes.size());
+            reflect_turned(lobes, order, light, reflected);
+            for (std::size_t k = 0; k < lobes.size(); ++k) {
+                for (int c = 0; c < 3; ++c) {
+                    const auto basis = basis_at(glm::transpose(rotations[k]) * directions[c], order);
+                    double expected = 0;
+                    for (int l = 0; l < order; ++l) {
+                        for (int m = 0; m <= l; ++m) {
+                            expected += lobes[k].terms[cosine_index(l, m)] * basis[coefficient_index(l, m)];
+                        }
+                    }
+                    EXPECT_NEAR(reflected[k][c], expected, 2e-4) << order << ' ' << k;
+                }
+            }
         }
     }
 }

@@ -19,7 +19,8 @@ constexpr std::size_t kRays = 37;  // no multiple of any number of lanes
 
 struct Vectors {
     explicit Vectors() : x(kRays + kLobeRayLanes), y(x), z(x) {}
-    RayVectors arrays() { return {x.data(), y.data(), z.data()}; }
+    std::array<float*, 3> arrays() { return {x.data(), y.data(), z.data()}; }
+    RayVectors vectors() const { return {x.data(), y.data(), z.data()}; }
     Vec3d operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
     std::vector<float> x, y, z;
 };
@@ -79,7 +80,7 @@ TEST(LobeRays, AreWorthWhatTheLobeReflects) {
         }
         std::vector<float> values(kRays + kLobeRayLanes);
         std::vector<float> densities(values);
-        weigh_lobe_rays(shape, frame, view, ways.arrays(), kRays, values.data(), densities.data());
+        weigh_lobe_rays(shape, frame, view, ways.vectors(), kRays, values.data(), densities.data());
         // A direction in floats is off by some 1e-7, the part α of which turns a half vector through the lobe.
         const double tolerance = 1e-5 + 4e-6 / lobe_width(shape);
         for (std::size_t i = 0; i < kRays; ++i) {

@@ -5,10 +5,33 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
 namespace shlight {
+
+/// Values at numbers 0 … count - 1, each made when it is first asked for. Thread-safe.
+template <class Value>
+class ValuesByNumber {
+  public:
+    explicit ValuesByNumber(std::size_t count) : entries_(std::make_unique<Entry[]>(count)) {}
+
+    /// make(): the value at this number, which must not depend on who asks.
+    template <class Make>
+    const Value& get(std::size_t number, const Make& make) const {
+        Entry& entry = entries_[number];
+        std::call_once(entry.once, [&] { entry.value.emplace(make()); });
+        return *entry.value;
+    }
+
+  private:
+    struct Entry {
+        std::once_flag once;
+        std::optional<Value> value;
+    };
+    std::unique_ptr<Entry[]> entries_;  // NOLINT(modernize-avoid-c-arrays): once_flags stay where they are
+};
 
 /// Values that are costly to make, each made once and shared by all who ask for the same key; the last ones asked for
 /// are kept. Thread-safe.

@@ -6,15 +6,15 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
-#include <mutex>
 #include <numbers>
 
 #include "environment/map_lookup.h"
+#include "lights/delta_kernel.h"
 #include "lobes/lobe_rays.h"
-#include "lobes/rotated_lobe.h"
 #include "lobes/turned_lobes.h"
 #include "lobes/view_grid.h"
 #include "shlight/basis.h"
+#include "simd/dot_products.h"
 
 namespace shlight {
 namespace {
@@ -77,47 +77,26 @@ constexpr std::size_t kWidthSteps = 96;  // down to the least width
 
 }  // namespace
 
-class EnvironmentShading::WidthPlans {
-  public:
-    WidthPlans(const EnvironmentShading& shading, const LobeShape& shape) : shading_(&shading), shape_(shape) {}
-
-    PlanMix at(float width) const {
-        const float place = std::clamp(-std::log(width) / kWidthStep, 0.0F, static_cast<float>(kWidthSteps - 2));
-        const auto step = static_cast<std::size_t>(place);
-        return {{&plan(step), &plan(step + 1)}, place - static_cast<float>(step)};
-    }
-
-  private:
-    const Plan& plan(std::size_t step) const {
-        Entry& entry = entries_[step];
-        std::call_once(entry.once, [&] {
-            const double width = std::exp(-double{kWidthStep} * static_cast<double>(step));
-            entry.plan = shading_->plan(with_width(shape_, width));
-        });
-        return entry.plan;
-    }
-
-    struct Entry {
-        std::once_flag once;
-        Plan plan;
-    };
-    const EnvironmentShading* shading_;
-    LobeShape shape_;
-    mutable std::array<Entry, kWidthSteps> entries_;
-};
-
-EnvironmentShading::~EnvironmentShading() = default;
-
 EnvironmentShading::EnvironmentShading(const Environment& environment, std::span<const MaterialLobes> materials,
                                        std::size_t lobe_stride, int order, double tolerance)
     : environment_(&environment),
       materials_(materials),
       lobe_stride_(lobe_stride),
       order_(order),
-      tolerance_(tolerance),
-      spots_(environment.map() != nullptr ? environment.map()->bright.spots : std::vector<BrightSpot>()) {
+      tolerance_(tolerance) {
     if (environment.map() == nullptr) {
         return;
+    }
+    const std::span<const BrightSpot> spots = environment.map()->bright.spots;
+    const std::size_t padded = (spots.size() + kLobeRayLanes - 1) / kLobeRayLanes * kLobeRayLanes;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto axis = static_cast<int>(k);
+        spots_[k].resize(padded, 1.0F);  // any direction serves for what has no irradiance
+        spots_[k + 3].resize(padded);
+        for (std::size_t i = 0; i < spots.size(); ++i) {
+            spots_[k][i] = static_cast<float>(spots[i].direction[axis]);
+            spots_[k + 3][i] = spots[i].irradiance[axis];
+        }
     }
     for (const MaterialLobes& material : materials) {
         auto& plans = plans_.emplace_back();
@@ -125,14 +104,24 @@ EnvironmentShading::EnvironmentShading(const Environment& environment, std::span
         for (const Lobe& lobe : material.lobes()) {
             const bool varies = lobe.varying_width != 0;
             plans.push_back(varies ? Plan() : plan(lobe.shape));
-            width_plans.push_back(varies ? std::make_unique<const WidthPlans>(*this, lobe.shape) : nullptr);
+            width_plans.push_back(varies ? std::make_unique<const ValuesByNumber<Plan>>(kWidthSteps) : nullptr);
         }
     }
 }
 
 EnvironmentShading::PlanMix EnvironmentShading::plans(std::size_t material, std::size_t lobe, float width) const {
-    const auto& varying = width_plans_[material][lobe];
-    return varying != nullptr ? varying->at(width) : PlanMix{{&plans_[material][lobe], &plans_[material][lobe]}, 0};
+    if (width_plans_[material][lobe] == nullptr) {
+        return {{&plans_[material][lobe], &plans_[material][lobe]}, 0};
+    }
+    const auto at = [&](std::size_t step) {
+        return &width_plans_[material][lobe]->get(step, [&] {
+            const double tabulated = std::exp(-double{kWidthStep} * static_cast<double>(step));
+            return plan(with_width(materials_[material].lobes()[lobe].shape, tabulated));
+        });
+    };
+    const float place = std::clamp(-std::log(width) / kWidthStep, 0.0F, static_cast<float>(kWidthSteps - 2));
+    const auto step = static_cast<std::size_t>(place);
+    return {{at(step), at(step + 1)}, place - static_cast<float>(step)};
 }
 
 bool EnvironmentShading::sees_texels(const LobeShape& shape) const {
@@ -200,10 +189,9 @@ class EnvironmentShading::Point {
         static const DirectionPoints points;
         DirectionArrays lanes;
         auto& [x, y, z, value, density, red, green, blue] = lanes.values;
-        const RayVectors directions = {x.data(), y.data(), z.data()};
-        sample_lobe_rays(shape, view_, points.u.data(), points.v.data(), kDirections, directions);
+        sample_lobe_rays(shape, view_, points.u.data(), points.v.data(), kDirections, {x.data(), y.data(), z.data()});
         const ShadingFrame own = {Vec3d(0), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-        weigh_lobe_rays(shape, own, view_, directions, kDirections, value.data(), density.data());
+        weigh_lobe_rays(shape, own, view_, {x.data(), y.data(), z.data()}, kDirections, value.data(), density.data());
         const glm::mat3 to_map(to_map_);
         for (std::size_t i = 0; i < kDirections; ++i) {
             const Vec3f turned = to_map * Vec3f(x[i], y[i], z[i]);
@@ -223,6 +211,15 @@ class EnvironmentShading::Point {
             weights += value[i];
         }
         return weights > 0 ? sum / weights : Rgb(0);
+    }
+
+    /// Radiance that a lobe reflects of spots, given as EnvironmentShading has them.
+    Rgb by_spots(const LobeShape& shape, const std::array<std::vector<float>, 6>& spots) const {
+        const ShadingFrame frame = {Vec3d(0), to_map_[0], to_map_[1], to_map_[2]};
+        const auto& [x, y, z, red, green, blue] = spots;
+        std::vector<float> values(x.size());
+        weigh_lobe_rays(shape, frame, view_, {x.data(), y.data(), z.data()}, x.size(), values.data(), nullptr);
+        return weighted_sum(values.data(), {red.data(), green.data(), blue.data()}, values.size());
     }
 
   private:
@@ -290,7 +287,11 @@ class EnvironmentShading::Harmonics {
             basis_.resize(size * own.size());
             sh_basis(std::span<const Vec3f>(normals_), order, std::span(basis_));
             for (std::size_t i = 0; i < own.size(); ++i) {
-                *own[i].value += own[i].share * RotatedLobe::reflected(reflected, &basis_[i * size], order);
+                Rgb sum;
+                for (int c = 0; c < 3; ++c) {
+                    dot_products(reflected[static_cast<std::size_t>(c)].data(), &basis_[i * size], size, 1, &sum[c]);
+                }
+                *own[i].value += own[i].share * sum;
             }
         }
     }
@@ -381,7 +382,7 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, UnshadowedParts&
             const double cosine = points.cos_theta_o[i];
             const Choice choice = choose(plans(material, lobe, width), cosine);
             if (!sees_texels(shape)) {
-                parts.spots[at] = spots_.reflected(shape, cosine, point.to_map());
+                parts.spots[at] = point.by_spots(shape, spots_);
             }
             Rgb& smooth = parts.smooth[at];
             if (choice.directions) {

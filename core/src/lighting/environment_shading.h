@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "environment/bright_spots.h"
+#include "base/recent_values.h"
 #include "lighting/shading_points.h"
 #include "lobes/material_lobes.h"
 #include "lobes/sh_projection.h"
@@ -35,9 +35,6 @@ class EnvironmentShading {
     /// order, tolerance: of RenderSettings.
     EnvironmentShading(const Environment& environment, std::span<const MaterialLobes> materials,
                        std::size_t lobe_stride, int order, double tolerance);
-    EnvironmentShading(const EnvironmentShading&) = delete;
-    EnvironmentShading& operator=(const EnvironmentShading&) = delete;
-    ~EnvironmentShading();
 
     /// Mirrors are left out. Adds to the report what the points' hits take.
     void shade(const ShadingPoints& points, UnshadowedParts& parts, RenderReport& report) const;
@@ -55,8 +52,6 @@ class EnvironmentShading {
         std::shared_ptr<const ShProjection> lobe;  // null: a mirror
         std::vector<Choice> choices;               // of each tabulated view
     };
-    /// Plans of a lobe whose width varies, at even steps of its logarithm; each is made when it is first needed.
-    class WidthPlans;
     /// A lobe's plan, or the plans between which its width lies.
     struct PlanMix {
         const Plan* plans[2];  // NOLINT(modernize-avoid-c-arrays)
@@ -82,9 +77,10 @@ class EnvironmentShading {
     std::size_t lobe_stride_;
     int order_;
     double tolerance_;
-    BrightSpots spots_;
-    std::vector<std::vector<Plan>> plans_;  // of each material's lobes; empty without a picture
-    std::vector<std::vector<std::unique_ptr<const WidthPlans>>> width_plans_;  // likewise; null: the width is the same
+    std::array<std::vector<float>, 6> spots_;  // directions' x, y, z, and irradiance, padded for lanes
+    std::vector<std::vector<Plan>> plans_;     // of each material's lobes; empty without a picture
+    /// Plans of lobes whose width varies, at even steps of its logarithm; null: the width is the same.
+    std::vector<std::vector<std::unique_ptr<const ValuesByNumber<Plan>>>> width_plans_;
 };
 
 }  // namespace shlight

@@ -47,8 +47,9 @@ void FitTable::look_up(double cos_theta_o, std::size_t column, std::span<float> 
     constexpr std::uint32_t kFirst = 0;
     AlignedFloats padded;
     padded.grow(out.size());
-    interpolate_views(values().data() + column, row_size_, AlignedFloats::padded(out.size()), row.data(),
-                      weights.data(), {&kFirst, 1}, padded.data(), 0);
+    const float* const table = values().data() + column;
+    interpolate_views({1, &table, nullptr}, row_size_, AlignedFloats::padded(out.size()), row.data(), weights.data(),
+                      {&kFirst, 1}, padded.data(), 0);
     std::copy_n(padded.data(), out.size(), out.begin());
 }
 

@@ -5,12 +5,11 @@
 
 #include <array>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "base/aligned_floats.h"
+#include "base/recent_values.h"
 #include "shlight/lobe_shape.h"
 #include "shlight/types.h"
 
@@ -85,15 +84,9 @@ class FitGrid {
     FitTable interpolated(double alpha) const;
 
   private:
-    const FitTable& table(int roughness) const;
-
-    struct Entry {
-        std::once_flag once;
-        std::optional<FitTable> table;
-    };
     GgxShape shape_;
     std::vector<int> orders_;
-    mutable std::vector<Entry> entries_;
+    ValuesByNumber<FitTable> tables_;
 };
 
 /// The grid of a Fresnel factor, ior and order, shared by all callers; the most recent ones are kept. Thread-safe.

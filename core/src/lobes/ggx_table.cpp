@@ -28,23 +28,18 @@ const double kLogStep = (std::log(1 + kAlphaOffset) - kFirstLog) / (kRoughnesses
 FitGrid::FitGrid(const GgxShape& shape, int order)
     : shape_(shape),
       orders_(order == 0 ? std::vector<int>(kBoostedOrders.begin(), kBoostedOrders.end()) : std::vector<int>{order}),
-      entries_(kRoughnesses) {}
-
-const FitTable& FitGrid::table(int roughness) const {
-    Entry& entry = entries_[static_cast<std::size_t>(roughness)];
-    std::call_once(entry.once, [&] {
-        const double alpha = std::exp(kFirstLog + kLogStep * roughness) - kAlphaOffset;
-        entry.table.emplace(fit_table(GgxShape{alpha, shape_.fresnel, shape_.ior}, orders_));
-    });
-    return *entry.table;
-}
+      tables_(kRoughnesses) {}
 
 FitGrid::Neighbours FitGrid::neighbours(double alpha) const {
     const double log_alpha = std::log(std::max(alpha, kLeastTabulatedAlpha) + kAlphaOffset);
     const CubicStencil stencil((log_alpha - kFirstLog) / kLogStep, 0, kRoughnesses);
     Neighbours found{{}, stencil.weights};
     for (std::size_t k = 0; k < kNeighbours; ++k) {
-        found.tables[k] = &table(stencil.first + static_cast<int>(k));
+        const std::size_t number = static_cast<std::size_t>(stencil.first) + k;
+        found.tables[k] = &tables_.get(number, [&] {
+            const double tabulated = std::exp(kFirstLog + kLogStep * static_cast<double>(number)) - kAlphaOffset;
+            return fit_table(GgxShape{tabulated, shape_.fresnel, shape_.ior}, orders_);
+        });
     }
     return found;
 }

@@ -81,18 +81,18 @@ HWY_INLINE Vectors sample(const GgxShape& shape, const Vec3d& view, V<Floats> u,
 
 template <class Shape>
 void sample_all(const Shape& shape, const Vec3d& view, const float* u, const float* v, std::size_t count,
-                const RayVectors& directions) {
+                const std::array<float*, 3>& directions) {
     const Floats d;
     for (std::size_t i = 0; i < count; i += kLaneCount<Floats>) {
         const Vectors direction = sample(shape, view, hn::LoadU(d, u + i), hn::LoadU(d, v + i));
-        hn::StoreU(direction.x, d, directions.x + i);
-        hn::StoreU(direction.y, d, directions.y + i);
-        hn::StoreU(direction.z, d, directions.z + i);
+        hn::StoreU(direction.x, d, directions[0] + i);
+        hn::StoreU(direction.y, d, directions[1] + i);
+        hn::StoreU(direction.z, d, directions[2] + i);
     }
 }
 
 void sample_rays(const LobeShape& shape, const Vec3d& view, const float* u, const float* v, std::size_t count,
-                 const RayVectors& directions) {
+                 const std::array<float*, 3>& directions) {
     std::visit([&](const auto& s) { sample_all(s.sampled(), view, u, v, count, directions); }, shape);
 }
 
@@ -133,7 +133,7 @@ HWY_EXPORT(sample_rays);
 HWY_EXPORT(weigh_rays);
 
 void sample_lobe_rays(const LobeShape& shape, const Vec3d& view, const float* u, const float* v, std::size_t count,
-                      const RayVectors& directions) {
+                      const std::array<float*, 3>& directions) {
     HWY_DYNAMIC_DISPATCH(sample_rays)(shape, view, u, v, count, directions);
 }
 

@@ -41,12 +41,6 @@ ViewOutput ViewPositions::arrays() {
     return {sine_.data(), fitted_sine_.data(), fitted_cosine_.data(), log_cosine_.data(), row_.data(), weights_.data()};
 }
 
-void ViewPositions::interpolate(const FitTable& table, std::size_t column, std::size_t width,
-                                std::span<const std::uint32_t> views, float* out, std::size_t stride) const {
-    interpolate_views(table.values().data() + column, table.row_size(), width, row_.data(), weights_.data(), views, out,
-                      stride);
-}
-
 void LobeViews::look_up(const MaterialLobes& material, std::size_t lobe, ViewPositions& positions,
                         const LobeWeights& weights, const LobeWidths& widths, bool judged) {
     lobe_ = &material.lobes()[lobe];
@@ -93,19 +87,16 @@ void LobeViews::find_widths(const LobeWidths& widths, const FitGrid* grid) {
 
 void LobeViews::interpolate(std::size_t column, std::size_t width, std::span<const std::uint32_t> views, float* out,
                             std::size_t stride) {
-    if (neighbours_.empty()) {
-        positions_->interpolate(*layout_, column, width, views, out, stride);
-        return;
-    }
-    columns_.resize(neighbours_.size());
-    for (const std::uint32_t view : views) {
+    columns_.assign(std::max<std::size_t>(1, neighbours_.size()), layout_->values().data() + column);
+    for (const std::uint32_t view : neighbours_.empty() ? views.first(0) : views) {
         const auto first = static_cast<std::ptrdiff_t>(FitGrid::kNeighbours * view);
         std::transform(neighbours_.begin() + first, neighbours_.begin() + first + FitGrid::kNeighbours,
                        columns_.begin() + first,
                        [column](const FitTable* table) { return table->values().data() + column; });
     }
-    positions_->interpolate(TableNeighbours{columns_.data(), neighbour_weights_.data()}, layout_->row_size(), width,
-                            views, out, stride);
+    const std::size_t count = neighbours_.empty() ? 1 : FitGrid::kNeighbours;
+    positions_->interpolate({count, columns_.data(), neighbour_weights_.data()}, layout_->row_size(), width, views, out,
+                            stride);
 }
 
 void LobeViews::find_albedos() {

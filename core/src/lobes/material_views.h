@@ -29,9 +29,7 @@ class ViewPositions {
     Vec3d direction(std::size_t view) const { return {sine_[view], 0, cosine_[view]}; }
     /// The arrays of view_kernel.h.
     ViewOutput arrays();
-    /// Interpolates `width` numbers from `column` on at the views listed, see interpolate_views().
-    void interpolate(const FitTable& table, std::size_t column, std::size_t width, std::span<const std::uint32_t> views,
-                     float* out, std::size_t stride) const;
+    /// Interpolates `width` numbers of tables at the views listed, see interpolate_views().
     void interpolate(const TableNeighbours& neighbours, std::size_t row_size, std::size_t width,
                      std::span<const std::uint32_t> views, float* out, std::size_t stride) const {
         interpolate_views(neighbours, row_size, width, row_.data(), weights_.data(), views, out, stride);

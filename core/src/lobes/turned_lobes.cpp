@@ -99,7 +99,7 @@ class LobeLanes {
         }
     }
 
-    /// BandRotation::apply without its last turn; degree m of the band is vector l + m of the result.
+    /// The lobes' band l without its last turn; degree m of the band is vector l + m of the result.
     HWY_INLINE const float* turn(int l) {
         const QuarterTurn& quarter = QuarterTurn::get();
         store(gather_each(&first_->terms[at(l, 0)]), band_.data(), l);

@@ -7,13 +7,16 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <vector>
 
-#include "lobes/rotated_lobe.h"
 #include "math/band_rotation.h"
 #include "math/legendre.h"
 #include "shlight/types.h"
 
 namespace shlight {
+
+/// Harmonics of a light in three colour channels.
+using ColorHarmonics = std::array<std::vector<float>, 3>;
 
 /// A lobe's cosine terms, 0 in bands that are not used, and the rotation from its frame to the light's.
 struct TurnedLobe {

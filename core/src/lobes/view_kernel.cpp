@@ -175,41 +175,27 @@ void boost_views_in_lanes(const float* alpha, const ViewOutput& views, std::size
     }
 }
 
-void interpolate_in_lanes(const float* table, std::size_t row_size, std::size_t width, const std::uint32_t* rows,
-                          const float* weights, std::span<const std::uint32_t> views, float* out, std::size_t stride) {
+void interpolate_in_lanes(const TableNeighbours& neighbours, std::size_t row_size, std::size_t width,
+                          const std::uint32_t* rows, const float* weights, std::span<const std::uint32_t> views,
+                          float* out, std::size_t stride) {
     const Floats d;
+    const std::size_t count = neighbours.count;
+    constexpr float kWhole = 1;
     for (const std::uint32_t view : views) {
-        const float* from = table + rows[view] * row_size;
-        const float* w = weights + std::size_t{4} * view;
-        float* to = out + view * stride;
-        const auto w0 = hn::Set(d, w[0]);
-        const auto w1 = hn::Set(d, w[1]);
-        const auto w2 = hn::Set(d, w[2]);
-        const auto w3 = hn::Set(d, w[3]);
-        for (std::size_t i = 0; i < width; i += kLanes) {
-            auto sum = hn::Mul(w0, hn::LoadU(d, from + i));
-            sum = hn::MulAdd(w1, hn::LoadU(d, from + row_size + i), sum);
-            sum = hn::MulAdd(w2, hn::LoadU(d, from + 2 * row_size + i), sum);
-            sum = hn::MulAdd(w3, hn::LoadU(d, from + 3 * row_size + i), sum);
-            hn::Store(sum, d, to + i);
+        const float* const* tables = neighbours.tables + (count == 1 ? 0 : count * view);
+        const float* shares = count == 1 ? &kWhole : neighbours.weights + count * view;
+        std::array<V<Floats>, 4> w;
+        for (std::size_t row = 0; row < 4; ++row) {
+            w[row] = hn::Set(d, weights[std::size_t{4} * view + row]);
         }
-    }
-}
-
-void interpolate_tables_in_lanes(const TableNeighbours& neighbours, std::size_t row_size, std::size_t width,
-                                 const std::uint32_t* rows, const float* weights, std::span<const std::uint32_t> views,
-                                 float* out, std::size_t stride) {
-    const Floats d;
-    for (const std::uint32_t view : views) {
-        const float* w = weights + std::size_t{4} * view;
         float* to = out + view * stride;
-        for (std::size_t k = 0; k < 4; ++k) {
-            const float* from = neighbours.tables[4 * view + k] + rows[view] * row_size;
-            const auto share = hn::Set(d, neighbours.weights[4 * view + k]);
+        for (std::size_t k = 0; k < count; ++k) {
+            const float* from = tables[k] + rows[view] * row_size;
+            const auto share = hn::Set(d, shares[k]);
             for (std::size_t i = 0; i < width; i += kLanes) {
-                auto sum = hn::Mul(hn::Set(d, w[0]), hn::LoadU(d, from + i));
+                auto sum = hn::Mul(w[0], hn::LoadU(d, from + i));
                 for (std::size_t row = 1; row < 4; ++row) {
-                    sum = hn::MulAdd(hn::Set(d, w[row]), hn::LoadU(d, from + row * row_size + i), sum);
+                    sum = hn::MulAdd(w[row], hn::LoadU(d, from + row * row_size + i), sum);
                 }
                 hn::Store(k == 0 ? hn::Mul(share, sum) : hn::MulAdd(share, sum, hn::Load(d, to + i)), d, to + i);
             }
@@ -227,7 +213,6 @@ namespace shlight {
 HWY_EXPORT(find_views_in_lanes);
 HWY_EXPORT(boost_views_in_lanes);
 HWY_EXPORT(interpolate_in_lanes);
-HWY_EXPORT(interpolate_tables_in_lanes);
 
 void find_views(const double* cos_theta_o, std::size_t count, const ViewOutput& out) {
     HWY_DYNAMIC_DISPATCH(find_views_in_lanes)(cos_theta_o, count, out);
@@ -237,15 +222,10 @@ void boost_views(const float* alpha, const ViewOutput& views, std::size_t count,
     HWY_DYNAMIC_DISPATCH(boost_views_in_lanes)(alpha, views, count, out);
 }
 
-void interpolate_views(const float* table, std::size_t row_size, std::size_t width, const std::uint32_t* rows,
-                       const float* weights, std::span<const std::uint32_t> views, float* out, std::size_t stride) {
-    HWY_DYNAMIC_DISPATCH(interpolate_in_lanes)(table, row_size, width, rows, weights, views, out, stride);
-}
-
 void interpolate_views(const TableNeighbours& neighbours, std::size_t row_size, std::size_t width,
                        const std::uint32_t* rows, const float* weights, std::span<const std::uint32_t> views,
                        float* out, std::size_t stride) {
-    HWY_DYNAMIC_DISPATCH(interpolate_tables_in_lanes)(neighbours, row_size, width, rows, weights, views, out, stride);
+    HWY_DYNAMIC_DISPATCH(interpolate_in_lanes)(neighbours, row_size, width, rows, weights, views, out, stride);
 }
 
 }  // namespace shlight

@@ -40,16 +40,16 @@ struct BoostOutput {
 /// like the views.
 void boost_views(const float* alpha, const ViewOutput& views, std::size_t count, const BoostOutput& out);
 
-/// Interpolated rows: for each i of `views` the weighted sum of four table rows, of which the first `width` numbers are
-/// written to out + i · stride. width and stride: multiples of 16. out: aligned to 64 bytes.
-void interpolate_views(const float* table, std::size_t row_size, std::size_t width, const std::uint32_t* rows,
-                       const float* weights, std::span<const std::uint32_t> views, float* out, std::size_t stride);
-
-/// The same between four tables for each view; those of view i, and their weights, begin at 4 i.
+/// Tables between which rows are interpolated: those of view i, and their weights, begin at count · i; one table serves
+/// all views.
 struct TableNeighbours {
+    std::size_t count;
     const float* const* tables;
     const float* weights;
 };
+
+/// Interpolated rows: for each i of `views` the weighted sum of four rows of each neighbouring table, of which the
+/// first `width` numbers are written to out + i · stride. width and stride: multiples of 16. out: aligned to 64 bytes.
 void interpolate_views(const TableNeighbours& neighbours, std::size_t row_size, std::size_t width,
                        const std::uint32_t* rows, const float* weights, std::span<const std::uint32_t> views,
                        float* out, std::size_t stride);

@@ -126,56 +126,12 @@ QuarterTurn::QuarterTurn() : bands_(kMaxOrder) {
     }
 }
 
-namespace {
-
-/// out at `to` = Σ_k columns[k] · in at from[k].
-void multiply(const std::vector<int>& from, const std::vector<int>& to, const std::vector<float>& columns,
-              const float* in, float* out) {
-    std::array<float, kMaxOrder> sums{};
-    const float* column = columns.data();
-    for (const int k : from) {
-        const float factor = in[k];
-        for (std::size_t i = 0; i < to.size(); ++i) {
-            sums[i] += factor * column[i];
-        }
-        column += to.size();
-    }
-    for (std::size_t i = 0; i < to.size(); ++i) {
-        out[to[i]] = sums[i];
-    }
-}
-
-}  // namespace
-
-void QuarterTurn::apply(int l, const float* in, float* out) const {
-    for (const Block& block : bands_[static_cast<std::size_t>(l)]) {
-        multiply(block.from, block.to, block.columns, in, out);
-    }
-}
-
-void QuarterTurn::apply_inverse(int l, const float* in, float* out) const {
-    for (const Block& block : bands_[static_cast<std::size_t>(l)]) {
-        multiply(block.to, block.from, block.rows, in, out);
-    }
-}
-
 void BandRotation::Turn::set(double cosine, double sine) {
     std::array<double, kMaxOrder> c, s;
     complex_powers(cosine, sine, kMaxOrder, c.data(), s.data());
     for (std::size_t m = 0; m < kMaxOrder; ++m) {
         cosines[m] = static_cast<float>(c[m]);
         sines[m] = static_cast<float>(s[m]);
-    }
-}
-
-void BandRotation::Turn::apply(int l, float* band) const {
-    float* center = band + l;
-    for (int m = 1; m <= l; ++m) {
-        const auto i = static_cast<std::size_t>(m);
-        const float even = center[m];
-        const float odd = center[-m];
-        center[m] = cosines[i] * even - sines[i] * odd;
-        center[-m] = sines[i] * even + cosines[i] * odd;
     }
 }
 
@@ -193,19 +149,6 @@ BandRotation::BandRotation(const glm::dmat3& rotation) {
         const double length = std::hypot(y.x, y.y);
         first.set(1, 0);
         third.set(y.y / length, -y.x / length);
-    }
-}
-
-void BandRotation::apply(int order, float* coefficients) const {
-    const QuarterTurn& quarter = QuarterTurn::get();
-    std::array<float, 2 * kMaxOrder> turned;
-    for (int l = 1; l < order; ++l) {
-        float* band = coefficients + l * l;
-        turns_[0].apply(l, band);
-        quarter.apply(l, band, turned.data());
-        turns_[1].apply(l, turned.data());
-        quarter.apply_inverse(l, turned.data(), band);
-        turns_[2].apply(l, band);
     }
 }
 

@@ -22,11 +22,6 @@ class QuarterTurn {
   public:
     static const QuarterTurn& get();
 
-    /// in: coefficients of band l of f, degrees -l … l. out: those of g(ω) = f(turn⁻¹ ω).
-    void apply(int l, const float* in, float* out) const;
-    /// The opposite turn.
-    void apply_inverse(int l, const float* in, float* out) const;
-
     /// The matrix from degrees with one symmetry to degrees with another. Degree m has the number l + m.
     struct Block {
         std::vector<int> from, to;
@@ -47,14 +42,10 @@ class BandRotation {
     /// rotation: orthogonal with determinant 1; takes vectors of f's frame to those of the result's.
     explicit BandRotation(const glm::dmat3& rotation);
 
-    /// coefficients: order² of f, replaced by those of g(ω) = f(rotation⁻¹ ω).
-    void apply(int order, float* coefficients) const;
-
     /// A turn about z by φ: cos mφ and sin mφ.
     struct Turn {
         std::array<float, kMaxOrder> cosines, sines;
         void set(double cosine, double sine);
-        void apply(int l, float* band) const;
     };
     /// The turns about z, y and z, in the order in which they apply.
     const std::array<Turn, 3>& turns() const { return turns_; }

@@ -5,8 +5,9 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <mutex>
 #include <numbers>
+
+#include "base/recent_values.h"
 
 namespace shlight {
 namespace {
@@ -86,10 +87,8 @@ template class MomentSteps<float>;
 template class MomentSteps<double>;
 
 const PotentialConstants& PotentialConstants::of(int order) {
-    static std::array<std::once_flag, kMaxOrder + 1> flags;
-    static std::array<PotentialConstants, kMaxOrder + 1> constants;
-    std::call_once(flags[order], [&] { constants[order] = make(order); });
-    return constants[order];
+    static const ValuesByNumber<PotentialConstants> constants(kMaxOrder + 1);
+    return constants.get(static_cast<std::size_t>(order), [&] { return make(order); });
 }
 
 }  // namespace shlight
