@@ -40,8 +40,8 @@ class LightInView {
         cone_.reset();
         ellipse_.reset();
         if (const auto* disk = std::get_if<DiskLight>(&light)) {
-            ellipse_.emplace(Ellipse<double>{frame.point_to_local(disk->center), frame.to_local(disk->half_axis_u),
-                                             frame.to_local(disk->half_axis_v)});
+            ellipse_.emplace(Ellipse{frame.point_to_local(disk->center), frame.to_local(disk->half_axis_u),
+                                     frame.to_local(disk->half_axis_v)});
             return;
         }
         const auto& polygon = std::get<PolygonLight>(light);

@@ -71,7 +71,7 @@ RandomDirection DiskSampler::sample(const glm::dvec2& point) const {
     return {place / distance, distance * distance * distance / (pi * radius * radius)};
 }
 
-EllipseAreaSampler::EllipseAreaSampler(const Ellipse<double>& ellipse)
+EllipseAreaSampler::EllipseAreaSampler(const Ellipse& ellipse)
     : ellipse_(ellipse), normal_(glm::cross(ellipse.half_axis_u, ellipse.half_axis_v)) {
     const double length = glm::length(normal_);
     area_ = pi * length;

@@ -105,7 +105,7 @@ class TriangleSampler {
 /// Uniform over the area of any ellipse; an ellipse seen edge-on has density 0.
 class EllipseAreaSampler {
   public:
-    explicit EllipseAreaSampler(const Ellipse<double>& ellipse);
+    explicit EllipseAreaSampler(const Ellipse& ellipse);
     RandomDirection sample(const glm::dvec2& point) const;
     /// 0 outside.
     double density(const Vec3d& direction) const;
@@ -116,7 +116,7 @@ class EllipseAreaSampler {
     /// Density of a direction that meets the ellipse.
     double density_at(double distance) const { return distance * distance * distance / (area_ * std::abs(height_)); }
 
-    Ellipse<double> ellipse_;
+    Ellipse ellipse_;
     Vec3d normal_;
     double area_, height_;
 };

@@ -28,13 +28,13 @@ namespace {
 using namespace testing;
 using std::numbers::pi;
 
-Ellipse<double> ellipse_of(const EllipseInput& e) {
+Ellipse ellipse_of(const EllipseInput& e) {
     return {e.center, e.half_axis_u, e.half_axis_v};
 }
 
 /// Relative to L_00.
-double polygon_error(const Ellipse<double>& disk, int order) {
-    const SphericalEllipse<double> ellipse(disk, true);
+double polygon_error(const Ellipse& disk, int order) {
+    const SphericalEllipse ellipse(disk, true);
     if (ellipse.empty()) {
         return 0;
     }
@@ -43,7 +43,7 @@ double polygon_error(const Ellipse<double>& disk, int order) {
     const auto count = static_cast<std::size_t>(coefficient_count(order));
     std::vector<double> exact(count);
     std::vector<double> found(count);
-    disk_coefficients<double>(disk, order, true, exact.data());
+    disk_coefficients<double>({&disk.center, 1}, {&disk.half_axis_u, 1}, {&disk.half_axis_v, 1}, order, true, exact);
     polygon_coefficients<double>(std::span<const Vec3d>(corners), order, true, found.data());
     double error = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -66,7 +66,7 @@ TEST(DiskPolygon, IsWithinATenThousandthOfTheDisk) {
 }
 
 /// ∫ f·cos over the polygon of so many vertices: Gauss's product rule in each triangle about the cone's axis.
-double reflected(const SphericalEllipse<double>& ellipse, int size, const LobeShape& shape, const Vec3d& wo) {
+double reflected(const SphericalEllipse& ellipse, int size, const LobeShape& shape, const Vec3d& wo) {
     std::vector<Vec3d> corners;
     append_disk_polygon(ellipse, size, corners);
     const Vec3d& axis = ellipse.cone().axis;
@@ -92,8 +92,7 @@ TEST(DiskPolygon, ReflectsWhatTheDiskDoes) {
         const Vec3d normal = glm::normalize(center + 0.7 * random.direction());
         const Vec3d u = glm::normalize(glm::cross(normal, random.direction()));
         const double half = random.uniform(0.05, 1) * distance_of_change(shape, center, wo);
-        const SphericalEllipse<double> ellipse(
-            {center, half * u, random.uniform(0.3, 1) * half * glm::cross(normal, u)}, true);
+        const SphericalEllipse ellipse({center, half * u, random.uniform(0.3, 1) * half * glm::cross(normal, u)}, true);
         if (center.z < 0.02 || ellipse.empty() || ellipse.cut()) {
             continue;
         }

@@ -50,7 +50,8 @@ std::vector<double> truth(const SeenLight& light) {
         const double radius = sphere ? cap->radius : cap->radius * distance / std::hypot(distance, cap->radius);
         sphere_coefficients<double>(std::span(&cap->center, 1), std::span(&radius, 1), kOrder, true, l);
     } else {
-        disk_coefficients<double>(light.ellipse(), kOrder, true, l.data());
+        const Ellipse& disk = light.ellipse();
+        disk_coefficients<double>({&disk.center, 1}, {&disk.half_axis_u, 1}, {&disk.half_axis_v, 1}, kOrder, true, l);
     }
     return l;
 }

@@ -142,9 +142,9 @@ TEST(RenderSampling, EllipsesCoverWhatIsAboveTheHorizon) {
         RandomInput random(24);
         for (int i = 0; i < 20; ++i) {
             const testing::EllipseInput e = c.draw(random);
-            const Ellipse<double> disk = {e.center, e.half_axis_u, e.half_axis_v};
+            const Ellipse disk = {e.center, e.half_axis_u, e.half_axis_v};
             std::vector<double> coefficients(4);
-            disk_coefficients<double>(disk, 2, true, coefficients.data());
+            disk_coefficients<double>({&e.center, 1}, {&e.half_axis_u, 1}, {&e.half_axis_v, 1}, 2, true, coefficients);
             const glm::dvec2 truth = exact(coefficients);
             const EllipseSampler sampler(disk);
             const glm::dvec2 sampled = solid_angle_and_projection(sampler);

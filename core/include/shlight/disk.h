@@ -15,18 +15,12 @@ namespace shlight {
 
 /// The points centre + a u + b v with a² + b² ≤ 1, in the shading frame. u and v are any two conjugate half axes:
 /// linearly independent, not necessarily perpendicular, in either order, as the orientation does not matter.
-template <class T>
 struct Ellipse {
-    Vec3<T> center, half_axis_u, half_axis_v;
+    Vec3d center, half_axis_u, half_axis_v;
 };
 
-/// Coefficients of one disk, order² values. A disk seen edge-on has zero coefficients.
+/// Coefficients of many disks: count × order², row by row. A disk seen edge-on has zero coefficients.
 /// clip: keep only what lies above the horizon.
-/// Precondition, not checked: the arguments that the batch function accepts.
-template <class T>
-void disk_coefficients(const Ellipse<T>& disk, int order, bool clip, T* coefficients);
-
-/// Many disks. coefficients: count × order², row by row.
 /// Throws std::invalid_argument naming the argument: order outside 1 … 64, sizes that do not fit, a non-finite number,
 /// half axes that are dependent, a shading point inside a disk.
 template <class T>

@@ -24,10 +24,6 @@ using Vec3d = Vec3<double>;
 /// Linear colour or radiance [W m⁻² sr⁻¹], Rec. 709 primaries.
 using Rgb = glm::vec<3, float, glm::defaultp>;
 
-/// The type in which lights of precision T are prepared.
-template <class T>
-using Wider = std::conditional_t<std::is_same_v<T, float>, double, long double>;
-
 /// The highest order: bands 0 … 63.
 inline constexpr int kMaxOrder = 64;
 

@@ -210,13 +210,12 @@ void LightShader::disks(std::span<const Vec3<T>> centers, std::span<const Vec3<T
     check_size("radiance", radiance.size(), count);
     check_size("effort", effort.size(), effort.empty() ? 0 : count);
     for (std::size_t i = 0; i < count; ++i) {
-        using Wide = Vec3<Wider<T>>;
-        check_disk<T>({Wide(centers[i]), Wide(half_axes_u[i]), Wide(half_axes_v[i])});
+        check_disk({Vec3d(centers[i]), Vec3d(half_axes_u[i]), Vec3d(half_axes_v[i])},
+                   std::numeric_limits<T>::epsilon());
     }
     work_->in_chunks(cos_theta_o, count, [&](std::size_t first, std::size_t size) {
         const auto disk = [&](std::size_t i) {
-            return Ellipse<double>{Vec3d(centers[first + i]), Vec3d(half_axes_u[first + i]),
-                                   Vec3d(half_axes_v[first + i])};
+            return Ellipse{Vec3d(centers[first + i]), Vec3d(half_axes_u[first + i]), Vec3d(half_axes_v[first + i])};
         };
         work_->shade_disks(disk, radiance.subspan(first, size), effort.empty() ? effort : effort.subspan(first, size));
     });

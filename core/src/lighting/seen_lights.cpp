@@ -84,8 +84,8 @@ void SeenLights::add_polygon(std::size_t first, std::uint32_t number, bool fille
                          static_cast<std::uint32_t>(size), number});
 }
 
-void SeenLights::add_disk(const Ellipse<double>& disk, std::uint32_t number) {
-    const SphericalEllipse<double> ellipse(disk, true);
+void SeenLights::add_disk(const Ellipse& disk, std::uint32_t number) {
+    const SphericalEllipse ellipse(disk, true);
     if (!ellipse.empty()) {
         holds_all_ = false;
         polygons_.push_back({static_cast<std::uint32_t>(disks_.size()), 0, 0, number});
@@ -157,7 +157,7 @@ std::uint32_t SeenLights::size_of(const Polygon& polygon, const LobeViews& lobe,
     }
     const std::uint32_t view = view_of[polygon.number];
     const LobeShape shape = lobe.shape(view);
-    const SphericalEllipse<double>& disk = disks_[polygon.first];
+    const SphericalEllipse& disk = disks_[polygon.first];
     const Vec3d towards_viewer = lobe.positions().direction(view);
     return static_cast<std::uint32_t>(disk_polygon_size(disk, narrowest(shape, towards_viewer.z),
                                                         distance_of_change(shape, disk.cone().axis, towards_viewer),

@@ -27,7 +27,7 @@ class SeenLights {
     /// the light by; tolerance: of what a mesh gives.
     void look(const Light& light, const ShadingFrame& frame, double error, double tolerance, std::uint32_t number);
     /// A disk in the shading frame; what lies below the horizon or is seen edge-on is left out.
-    void add_disk(const Ellipse<double>& disk, std::uint32_t number);
+    void add_disk(const Ellipse& disk, std::uint32_t number);
     /// In the place of all others: spheres in the shading frame, numbered 0, 1, 2 … Those of floats are kept by
     /// reference.
     void set_spheres(std::span<const Vec3f> centers, const float* radii);
@@ -107,7 +107,7 @@ class SeenLights {
     MeshView mesh_view_;
     std::vector<Vec3d> vertices_;
     std::vector<Polygon> polygons_;
-    std::vector<SphericalEllipse<double>> disks_;
+    std::vector<SphericalEllipse> disks_;
     std::vector<std::uint32_t> sizes_, order_;
     PolygonBatch gathered_;
     std::vector<std::uint32_t> numbers_;  // of gathered_

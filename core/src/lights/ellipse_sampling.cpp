@@ -24,14 +24,14 @@ double equal_area(double sine, double cosine) {
 
 }  // namespace
 
-EllipseSampler::EllipseSampler(const Ellipse<double>& disk)
+EllipseSampler::EllipseSampler(const Ellipse& disk)
     : ellipse_(disk, true),
       normal_(glm::normalize(glm::cross(disk.half_axis_u, disk.half_axis_v))),
       height_(glm::dot(normal_, disk.center)) {
     if (ellipse_.empty()) {
         return;
     }
-    const Cone<double>& cone = ellipse_.cone();
+    const Cone& cone = ellipse_.cone();
     long_ = equal_area(cone.sin_long, cone.cos_long);
     short_ = equal_area(cone.sin_short, cone.cos_short);
     cot_square_long_ = square(cone.cos_long / cone.sin_long);
@@ -51,7 +51,7 @@ EllipseSampler::EllipseSampler(const Ellipse<double>& disk)
 }
 
 EllipseSampler::Meridian EllipseSampler::meridian(const Turn& parameter) const {
-    const Cone<double>& cone = ellipse_.cone();
+    const Cone& cone = ellipse_.cone();
     const double along = long_ * parameter.sine;
     const double across = short_ * parameter.cosine;
     const double radius_square = along * along + across * across;
@@ -106,7 +106,7 @@ std::optional<double> EllipseSampler::meets(const Vec3d& direction) const {
     if (ellipse_.empty()) {
         return std::nullopt;
     }
-    const Cone<double>& cone = ellipse_.cone();
+    const Cone& cone = ellipse_.cone();
     const double ahead = glm::dot(direction, cone.axis);
     const double off = square(glm::dot(direction, cone.long_axis)) * cot_square_long_ +
                        square(glm::dot(direction, cone.short_axis)) * cot_square_short_;

@@ -15,7 +15,7 @@ namespace shlight {
 class EllipseSampler {
   public:
     /// disk: in the shading frame.
-    explicit EllipseSampler(const Ellipse<double>& disk);
+    explicit EllipseSampler(const Ellipse& disk);
     /// If nothing lies above the horizon, a sample with weight and distance 0.
     LightSample sample(const glm::dvec2& point) const;
     /// Patches between meridians, see PolygonSampler::patch_count().
@@ -51,7 +51,7 @@ class EllipseSampler {
     Meridian meridian(const Turn& parameter) const;
     double distance(const Vec3d& direction) const { return height_ / glm::dot(normal_, direction); }
 
-    SphericalEllipse<double> ellipse_;
+    SphericalEllipse ellipse_;
     Vec3d normal_;
     double height_;
     double long_ = 0, short_ = 0;     // half axes in the equal-area plane

@@ -221,7 +221,7 @@ bool ProfileRings::add_polygon(std::span<const Vec3d> corners) {
     return true;
 }
 
-void ProfileRings::add_disk(const Ellipse<double>& ellipse) {
+void ProfileRings::add_disk(const Ellipse& ellipse) {
     const Vec3d center = to_rings(ellipse.center);
     const Vec3d u = to_rings(ellipse.half_axis_u);
     const Vec3d v = to_rings(ellipse.half_axis_v);

@@ -70,7 +70,7 @@ class ProfileRings {
     void add_horizon() { add_side(to_rings({0, 0, 1}), 0); }
     bool add_cap(const CapView& cap);
     bool add_polygon(std::span<const Vec3d> corners);
-    void add_disk(const Ellipse<double>& ellipse);
+    void add_disk(const Ellipse& ellipse);
     bool holds(const Vec3d& direction) const;
     void find_events(std::span<const double> kinks);
     void add_between(std::span<const double> angles);

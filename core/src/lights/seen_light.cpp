@@ -111,7 +111,7 @@ void clip(std::vector<Vec3d>& corners, const Vec3d& normal, double limit) {
 
 /// A part of a disk.
 struct LitDisk {
-    Ellipse<double> ellipse;
+    Ellipse ellipse;
     std::vector<Vec3d> corners;  ///< if there are any, the part is this convex polygon
 };
 
@@ -166,7 +166,7 @@ LitDisk lit_part(const DiskLight& light, const ShadingFrame& frame) {
     if (spread != nullptr && height > 0) {
         restrict(light, frame.origin - height * light.normal, height * spread->tangent, lit);
     }
-    Ellipse<double>& e = lit.ellipse;
+    Ellipse& e = lit.ellipse;
     e = {frame.point_to_local(e.center), frame.to_local(e.half_axis_u), frame.to_local(e.half_axis_v)};
     for (Vec3d& corner : lit.corners) {
         corner = frame.point_to_local(corner);

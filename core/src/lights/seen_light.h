@@ -90,7 +90,7 @@ class SeenLight {
     /// Whether the corners are those of a part of the light, which is convex.
     bool is_part() const { return is_part_; }
     /// A disk light without corners, in the shading frame.
-    const Ellipse<double>& ellipse() const { return ellipse_; }
+    const Ellipse& ellipse() const { return ellipse_; }
 
   private:
     bool look_at(const PolygonLight& light);
@@ -103,7 +103,7 @@ class SeenLight {
     std::optional<CapView> cap_;
     std::vector<Vec3d> corners_;
     bool is_part_ = false;
-    Ellipse<double> ellipse_{};
+    Ellipse ellipse_{};
 };
 
 /// Whether SeenLight::look() or delta_view() finds light, for callers that need nothing else.

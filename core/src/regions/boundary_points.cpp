@@ -23,7 +23,7 @@ struct StripHeight {
 using HeightStrip = std::array<StripHeight, kHeights>;
 
 HeightStrip strip_of(double complement) {
-    const EllipticFunctions<double> across(std::max(std::sqrt((1 - complement) * (1 + complement)), 1e-5));
+    const EllipticFunctions across(std::max(std::sqrt((1 - complement) * (1 + complement)), 1e-5));
     const double top = std::min(across.quarter_period(), kHighest);
     constexpr std::array<double, kHeights> kShares = {0.25, 0.45, 0.6, 0.75, 0.87, 0.95};
     HeightStrip strip;
@@ -104,16 +104,11 @@ int points_across(double half, double degree, double digits) {
     return std::clamp(static_cast<int>(least) + 1, 1, kMaxGaussPoints);
 }
 
-template <class T>
-double digits_for(const SphericalEllipse<Wider<T>>& ellipse, int order) {
+double digits_for(const SphericalEllipse& ellipse, int order, double epsilon) {
     // Double cannot resolve more than this.
     constexpr double kLeastTolerance = 1e-19;
-    const double allowed = 0.25 * order * std::numeric_limits<T>::epsilon() *
-                           static_cast<double>(ellipse.least_solid_angle() / ellipse.boundary());
+    const double allowed = 0.25 * order * epsilon * ellipse.least_solid_angle() / ellipse.boundary();
     return -std::log(std::max(allowed, kLeastTolerance));
 }
-
-template double digits_for<float>(const SphericalEllipse<double>&, int);
-template double digits_for<double>(const SphericalEllipse<long double>&, int);
 
 }  // namespace shlight

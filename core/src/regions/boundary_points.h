@@ -39,8 +39,7 @@ class BoundaryPoints {
 int points_across(double half, double degree, double digits);
 
 /// Natural logarithm of the reciprocal of what a harmonic's integral over a disk may err by, as a part of its largest
-/// value along the boundary, for coefficients in T.
-template <class T>
-double digits_for(const SphericalEllipse<Wider<T>>& ellipse, int order);
+/// value along the boundary, for coefficients whose roundings are `epsilon`.
+double digits_for(const SphericalEllipse& ellipse, int order, double epsilon);
 
 }  // namespace shlight

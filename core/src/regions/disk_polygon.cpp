@@ -38,7 +38,7 @@ struct Turn {
     double sine, cosine;
 };
 
-Turn turn_at(const SphericalEllipse<double>& ellipse, double u) {
+Turn turn_at(const SphericalEllipse& ellipse, double u) {
     const auto f = ellipse.functions().at(u);
     return {ellipse.cone().complement * f.sn / f.dn, f.cn / f.dn};
 }
@@ -53,7 +53,7 @@ double angle_between(const Turn& a, const Turn& b) {
 /// Points of the plane across the cone's axis, at distance 1.
 class AcrossAxis {
   public:
-    explicit AcrossAxis(const Cone<double>& cone)
+    explicit AcrossAxis(const Cone& cone)
         : cone_(cone),
           along_(cone.sin_long / cone.cos_long * cone.long_axis),
           across_(cone.sin_short / cone.cos_short * cone.short_axis) {}
@@ -69,7 +69,7 @@ class AcrossAxis {
     }
 
   private:
-    const Cone<double>& cone_;
+    const Cone& cone_;
     Vec3d along_, across_;
 };
 
@@ -80,7 +80,7 @@ double scale_over(const Turn& before, const Turn& middle, const Turn& after) {
 }
 
 /// The same in each quarter.
-void append_closed(const SphericalEllipse<double>& ellipse, int size, std::vector<Vec3d>& vertices) {
+void append_closed(const SphericalEllipse& ellipse, int size, std::vector<Vec3d>& vertices) {
     const AcrossAxis plane(ellipse.cone());
     const auto quarter = static_cast<std::size_t>(size / 4);
     std::array<Turn, kMost / 4 + 2> turns;  // the quarter's and a neighbour on both sides
@@ -105,9 +105,9 @@ void append_closed(const SphericalEllipse<double>& ellipse, int size, std::vecto
 }
 
 /// Vertices from one end of the horizon's chord to the other; every other one is a point of the ellipse.
-void append_cut(const SphericalEllipse<double>& ellipse, int size, std::vector<Vec3d>& vertices) {
+void append_cut(const SphericalEllipse& ellipse, int size, std::vector<Vec3d>& vertices) {
     const AcrossAxis plane(ellipse.cone());
-    const HorizonCut<double>& cut = *ellipse.cut();
+    const HorizonCut& cut = *ellipse.cut();
     const int sides = size - 2;
     const double step = (cut.to - cut.from) / sides;
     Turn before = turn_at(ellipse, cut.from);
@@ -122,8 +122,8 @@ void append_cut(const SphericalEllipse<double>& ellipse, int size, std::vector<V
     vertices.push_back(vertices.back());
 }
 
-bool meets_horizon(const SphericalEllipse<double>& ellipse) {
-    const Cone<double>& cone = ellipse.cone();
+bool meets_horizon(const SphericalEllipse& ellipse) {
+    const Cone& cone = ellipse.cone();
     const double rise = std::hypot(cone.sin_long / cone.cos_long * cone.long_axis.z,
                                    cone.sin_short / cone.cos_short * cone.short_axis.z);
     return ellipse.cut() || cone.axis.z < kMostOutside * rise;
@@ -131,11 +131,11 @@ bool meets_horizon(const SphericalEllipse<double>& ellipse) {
 
 }  // namespace
 
-int disk_polygon_size(const SphericalEllipse<double>& ellipse, double narrowest, double near, double tolerance) {
+int disk_polygon_size(const SphericalEllipse& ellipse, double narrowest, double near, double tolerance) {
     if (narrowest == 0) {
         return kOfMirror;
     }
-    const Cone<double>& cone = ellipse.cone();
+    const Cone& cone = ellipse.cone();
     double vertices = std::max(vertices_for(kSizes, cone.sin_long), kPerWidth * ellipse.boundary() / narrowest);
     if (meets_horizon(ellipse)) {
         vertices = std::max<double>(vertices, kLeastAtHorizon);
@@ -147,7 +147,7 @@ int disk_polygon_size(const SphericalEllipse<double>& ellipse, double narrowest,
     return std::clamp(size, kDiskPolygonStep, kMost);
 }
 
-void append_disk_polygon(const SphericalEllipse<double>& ellipse, int size, std::vector<Vec3d>& vertices) {
+void append_disk_polygon(const SphericalEllipse& ellipse, int size, std::vector<Vec3d>& vertices) {
     if (ellipse.cut()) {
         append_cut(ellipse, size, vertices);
     } else {

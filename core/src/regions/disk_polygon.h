@@ -19,10 +19,10 @@ inline constexpr int kDiskPolygonStep = 8;
 /// How many vertices keep a coefficient within `tolerance` of L_00, 1e-5 … 1e-2, or the reflection of a lobe that
 /// changes over `narrowest` [rad], and near the disk's middle over `near`; 0: of a mirror, whose image of the light is
 /// then off by 1e-4 of its size. Precondition: not ellipse.empty().
-int disk_polygon_size(const SphericalEllipse<double>& ellipse, double narrowest, double near, double tolerance);
+int disk_polygon_size(const SphericalEllipse& ellipse, double narrowest, double near, double tolerance);
 
 /// Appends `size` vertices, some of them repeated, of what is kept of the ellipse: planar, and not below the horizon if
 /// that was clipped. Precondition: not ellipse.empty(); size: from disk_polygon_size.
-void append_disk_polygon(const SphericalEllipse<double>& ellipse, int size, std::vector<Vec3d>& vertices);
+void append_disk_polygon(const SphericalEllipse& ellipse, int size, std::vector<Vec3d>& vertices);
 
 }  // namespace shlight

@@ -103,8 +103,7 @@ class VertexLanes {
         }
         const auto distance =
             hn::Mul(dot<double>(normal, sum), all(d, 1 / static_cast<double>(polygons_.vertex_count)));
-        const auto least =
-            hn::Mul(all(d, kEdgeOn<double> * kEdgeOn<double>), hn::Mul(farthest, dot<double>(normal, normal)));
+        const auto least = hn::Mul(all(d, kEdgeOn * kEdgeOn), hn::Mul(farthest, dot<double>(normal, normal)));
         const auto seen = hn::Gt(hn::Mul(distance, distance), least);
         const auto side = hn::IfThenElseZero(seen, hn::CopySign(all(d, 1), distance));
         const auto length = hn::Sqrt(hn::Max(dot<double>(normal, normal), all(d, std::numeric_limits<double>::min())));

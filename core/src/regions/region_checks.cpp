@@ -92,7 +92,7 @@ bool is_edge_on(const Vec3d& normal, std::span<const Vec3d> v, double epsilon) {
         farthest = std::max(farthest, glm::length(v[i]));
         decided = decided || is_decided(v[i], v[(i + 1) % v.size()], v[(i + 2) % v.size()], epsilon);
     }
-    return !decided || std::abs(glm::dot(normal, v[0])) <= kEdgeOn<double> * farthest * glm::length(normal);
+    return !decided || std::abs(glm::dot(normal, v[0])) <= kEdgeOn * farthest * glm::length(normal);
 }
 
 /// True for all that is_edge_on, for those of unusual units, and for some others.
@@ -104,7 +104,7 @@ bool may_be_edge_on(const Vec3d& normal, std::span<const Vec3d> v, double epsilo
     if (!(farthest > kLeastSquare && farthest < 1 / kLeastSquare)) {
         return true;
     }
-    const double granted = 2 * std::max(kInPlane * epsilon, kEdgeOn<double>);
+    const double granted = 2 * std::max(kInPlane * epsilon, kEdgeOn);
     const double distance = glm::dot(normal, v[0]);
     return distance * distance <= granted * granted * farthest * glm::dot(normal, normal);
 }
@@ -259,24 +259,19 @@ void prepare_polygons(std::span<Vec3d> vertices, int vertex_count) {
 template void prepare_polygons<float>(std::span<Vec3d>, int);
 template void prepare_polygons<double>(std::span<Vec3d>, int);
 
-template <class T>
-void check_disk(const Ellipse<Wider<T>>& disk) {
-    using Real = Wider<T>;
+void check_disk(const Ellipse& disk, double epsilon) {
     check_finite("centers", disk.center);
     check_finite("half_axes_u", disk.half_axis_u);
     check_finite("half_axes_v", disk.half_axis_v);
-    const Vec3<Real>& u = disk.half_axis_u;
-    const Vec3<Real>& v = disk.half_axis_v;
-    if (u == Vec3<Real>(0)) {
+    const Vec3d& u = disk.half_axis_u;
+    const Vec3d& v = disk.half_axis_v;
+    if (u == Vec3d(0)) {
         reject("half_axes_u contains a zero vector");
     }
-    const Vec3<Real> a = u / glm::length(u);
-    const Vec3<Real> b = v / glm::length(v);
-    constexpr Real kEpsilon = std::numeric_limits<T>::epsilon();
-    if (!(glm::length(glm::cross(a, b)) > 4 * kEpsilon)) {
+    const double longest = std::max(safe_length(u), safe_length(v));
+    if (!(glm::length(glm::cross(u / safe_length(u), v / safe_length(v))) > 4 * epsilon)) {
         reject("half_axes_v: a disk's half axes are dependent");
     }
-    const Real longest = std::max(glm::length(u), glm::length(v));
     if (!(glm::length(glm::cross(u / longest, v / longest)) > kNarrowestEllipse)) {
         reject("half_axes_v: an ellipse may be 1e9 times as long as it is wide, at most");
     }
@@ -284,8 +279,5 @@ void check_disk(const Ellipse<Wider<T>>& disk) {
         reject("centers: the shading point lies inside a disk");
     }
 }
-
-template void check_disk<float>(const Ellipse<double>&);
-template void check_disk<double>(const Ellipse<long double>&);
 
 }  // namespace shlight

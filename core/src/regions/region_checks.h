@@ -32,8 +32,8 @@ void check_vertex_count(int vertex_count);
 template <class T>
 void prepare_polygons(std::span<Vec3d> vertices, int vertex_count);
 
-/// Finite, with half axes that are independent to the precision of T, and a shading point that is not on the disk.
-template <class T>
-void check_disk(const Ellipse<Wider<T>>& disk);
+/// Finite, with half axes that are independent to a few epsilon, the rounding of the numbers as they were given, and a
+/// shading point that is not on the disk.
+void check_disk(const Ellipse& disk, double epsilon);
 
 }  // namespace shlight

@@ -40,38 +40,36 @@ namespace {
 /// The side from a to b is the longest. Where it is nearly half a turn, a·(b×c) and 1 + a·b + b·c + c·a of the unit
 /// vectors both vanish as the square of a + b: they are formed from that sum and from c's distance to its neighbour b
 /// or a. The sum, in turn, lies across the chord b - a in their plane, where a×(b-a) has every digit.
-template <class Real>
-Real solid_angle_with_long_side(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c) {
-    const Real la = glm::length(a);
-    const Real lb = glm::length(b);
-    const Vec3<Real> chord = b / lb - a / la;
-    const Vec3<Real> sum = glm::cross(chord, glm::cross(a, b - a)) * (2 / (la * lb * glm::dot(chord, chord)));
-    const Vec3<Real> end = c / glm::length(c);
+double solid_angle_with_long_side(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    const double la = glm::length(a);
+    const double lb = glm::length(b);
+    const Vec3d chord = b / lb - a / la;
+    const Vec3d sum = glm::cross(chord, glm::cross(a, b - a)) * (2 / (la * lb * glm::dot(chord, chord)));
+    const Vec3d end = c / glm::length(c);
     const bool near_b = glm::dot(chord, c) > 0;
-    const Vec3<Real> neighbour = near_b ? b / lb : a / la;
-    const Vec3<Real> step = end - neighbour;
-    const Real triple = glm::dot(sum, glm::cross(neighbour, step));
+    const Vec3d neighbour = near_b ? b / lb : a / la;
+    const Vec3d step = end - neighbour;
+    const double triple = glm::dot(sum, glm::cross(neighbour, step));
     return 2 * std::atan2(near_b ? triple : -triple, glm::dot(sum, sum + step));
 }
 
 }  // namespace
 
-template <class Real>
-Real triangle_solid_angle(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c) {
-    const Real la = glm::length(a);
-    const Real lb = glm::length(b);
-    const Real lc = glm::length(c);
-    const Real ab = glm::dot(a, b) * lc;
-    const Real bc = glm::dot(b, c) * la;
-    const Real ca = glm::dot(c, a) * lb;
-    const Real product = la * lb * lc;
-    const Real least = std::min({ab, bc, ca});
+double triangle_solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    const double la = glm::length(a);
+    const double lb = glm::length(b);
+    const double lc = glm::length(c);
+    const double ab = glm::dot(a, b) * lc;
+    const double bc = glm::dot(b, c) * la;
+    const double ca = glm::dot(c, a) * lb;
+    const double product = la * lb * lc;
+    const double least = std::min({ab, bc, ca});
     if (least < -product / 2) {
         return least == ab   ? solid_angle_with_long_side(a, b, c)
                : least == bc ? solid_angle_with_long_side(b, c, a)
                              : solid_angle_with_long_side(c, a, b);
     }
-    const Real triple = glm::dot(a, glm::cross(b - a, c - a));
+    const double triple = glm::dot(a, glm::cross(b - a, c - a));
     return 2 * std::atan2(triple, product + ab + bc + ca);
 }
 
@@ -95,7 +93,7 @@ SphericalPolygon::SphericalPolygon(std::span<const Vec3d> vertices, bool clip) {
     }
     farthest = std::sqrt(farthest);
     distance /= static_cast<double>(vertices.size());
-    if (!(std::abs(distance) > kEdgeOn<double> * farthest * glm::length(normal))) {
+    if (!(std::abs(distance) > kEdgeOn * farthest * glm::length(normal))) {
         return;
     }
     const std::size_t count = v.size();
@@ -119,8 +117,5 @@ SphericalPolygon::SphericalPolygon(std::span<const Vec3d> vertices, bool clip) {
         over_length = over_next;
     }
 }
-
-template double triangle_solid_angle(const Vec3<double>&, const Vec3<double>&, const Vec3<double>&);
-template long double triangle_solid_angle(const Vec3<long double>&, const Vec3<long double>&, const Vec3<long double>&);
 
 }  // namespace shlight

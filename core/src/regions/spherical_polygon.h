@@ -12,8 +12,7 @@
 namespace shlight {
 
 /// A plane is seen edge-on if its distance from the origin is at most this part of that of its farthest point.
-template <class Real>
-inline constexpr Real kEdgeOn = 64 * std::numeric_limits<Real>::epsilon();
+inline constexpr double kEdgeOn = 64 * std::numeric_limits<double>::epsilon();
 
 class SphericalPolygon {
   public:
@@ -40,7 +39,6 @@ std::vector<Vec3d> clipped_by_horizon(std::span<const Vec3d> v);
 
 /// Solid angle of a triangle (Van Oosterom & Strackee 1983), signed by its winding. The triple product is taken of edge
 /// vectors, so that its error is relative to the triangle and not to the sphere.
-template <class Real>
-Real triangle_solid_angle(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c);
+double triangle_solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
 }  // namespace shlight
