@@ -15,12 +15,12 @@ namespace shlight {
 template <class Value>
 class ValuesByNumber {
   public:
-    explicit ValuesByNumber(std::size_t count) : entries_(std::make_unique<Entry[]>(count)) {}
+    explicit ValuesByNumber(std::size_t count) : entries_(std::make_unique<std::vector<Entry>>(count)) {}
 
     /// make(): the value at this number, which must not depend on who asks.
     template <class Make>
     const Value& get(std::size_t number, const Make& make) const {
-        Entry& entry = entries_[number];
+        Entry& entry = (*entries_)[number];
         std::call_once(entry.once, [&] { entry.value.emplace(make()); });
         return *entry.value;
     }
@@ -30,7 +30,7 @@ class ValuesByNumber {
         std::once_flag once;
         std::optional<Value> value;
     };
-    std::unique_ptr<Entry[]> entries_;  // NOLINT(modernize-avoid-c-arrays): once_flags stay where they are
+    std::unique_ptr<std::vector<Entry>> entries_;
 };
 
 /// Values that are costly to make, each made once and shared by all who ask for the same key; the last ones asked for

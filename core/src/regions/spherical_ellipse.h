@@ -51,7 +51,7 @@ class SphericalEllipse {
     Vec3d direction(double u) const;
     /// Its z where functions() have these values, to a rounding however low the cut by the horizon leaves it.
     /// Precondition: cut().
-    double height(const EllipticFunctions::Values& at) const;
+    double height(const EllipticFunctions::Values& f) const;
     /// Between a third of what is kept and all of it: of a polygon on its boundary.
     double least_solid_angle() const { return least_solid_angle_; }
     /// About the length of the boundary of what is kept.
