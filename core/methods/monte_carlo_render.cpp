@@ -11,11 +11,12 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "base/checks.h"
+#include "delta_view.h"
+#include "lighting/shadow_ray_spawner.h"
 #include "lights/cap_sampling.h"
 #include "lights/seen_light.h"
 #include "random_directions.h"
 #include "random_numbers.h"
-#include "lighting/shadow_ray_spawner.h"
 #include "shlight/render.h"
 #include "surface_reflection.h"
 #include "tracing/hits.h"
@@ -220,12 +221,9 @@ void Worker::shade(std::size_t hit) {
     const double choice = random.next();
     const RandomDirection reflected = reflection_.sample(choice, random.point());
     for (const Light& light : picture_->scene.lights()) {
-        if (!is_seen(light, hits_.frame[hit], hits_.error[hit])) {
-            continue;
-        }
         if (is_delta(light)) {
             shade_by_delta(light, hit);
-        } else {
+        } else if (SeenLight().look(light, hits_.frame[hit], hits_.error[hit])) {
             shade(light, hit, reflected);
         }
     }
@@ -250,9 +248,10 @@ void Worker::shade_environment(std::size_t hit, const RandomDirection& reflected
 }
 
 void Worker::shade_by_delta(const Light& light, std::size_t hit) {
-    const DeltaView seen = *delta_view(light, hits_.frame[hit], hits_.error[hit]);
-    push(light, hit, seen.direction, seen.distance,
-         reflected_radiance(light, seen.direction) * static_cast<float>(seen.irradiance));
+    if (const auto seen = delta_view(light, hits_.frame[hit], hits_.error[hit])) {
+        push(light, hit, seen->direction, seen->distance,
+             reflected_radiance(light, seen->direction) * static_cast<float>(seen->irradiance));
+    }
 }
 
 void Worker::shade(const Light& light, std::size_t hit, const RandomDirection& reflected) {

@@ -11,8 +11,8 @@
 #include <numbers>
 #include <vector>
 
+#include "clipped_cap.h"
 #include "random_input.h"
-#include "regions/clipped_cap.h"
 #include "shlight/cap.h"
 
 namespace shlight {

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <vector>
 
+#include "delta_view.h"
 #include "lights/delta_lights.h"
 #include "lights/seen_light.h"
 #include "random_input.h"

@@ -19,8 +19,8 @@ constexpr std::size_t kRays = 37;  // no multiple of any number of lanes
 
 struct Vectors {
     explicit Vectors() : x(kRays + kLobeRayLanes), y(x), z(x) {}
-    std::array<float*, 3> arrays() { return {x.data(), y.data(), z.data()}; }
-    RayVectors vectors() const { return {x.data(), y.data(), z.data()}; }
+    RayVectors arrays() { return {x.data(), y.data(), z.data()}; }
+    ConstRayVectors vectors() const { return {x.data(), y.data(), z.data()}; }
     Vec3d operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
     std::vector<float> x, y, z;
 };

@@ -213,30 +213,6 @@ std::optional<CapView> cap_view(const Light& light, const ShadingFrame& frame) {
     return sun != nullptr ? view(*sun, frame) : std::nullopt;
 }
 
-std::optional<DeltaView> delta_view(const Light& light, const ShadingFrame& frame, double error) {
-    DeltaView seen{};
-    if (const auto* parallel = std::get_if<ParallelSource>(&light)) {
-        seen = {frame.to_local(parallel->direction), std::numeric_limits<double>::infinity(), 1.0};
-    } else {
-        const Vec3d way = std::get<PointSource>(light).position - frame.origin;
-        seen.distance = glm::length(way);
-        if (!(seen.distance > 2 * error)) {
-            return std::nullopt;
-        }
-        seen.direction = frame.to_local(way / seen.distance);
-        seen.irradiance = 1 / (seen.distance * seen.distance);
-    }
-    if (!(seen.direction.z > 0)) {
-        return std::nullopt;
-    }
-    // Most sources have no profile, and the world direction is computed for the others only.
-    const EmissionProfile& profile = traits_of(light).profile;
-    if (!std::holds_alternative<EvenProfile>(profile)) {
-        seen.irradiance *= profile_factor(profile, -frame.to_world(seen.direction));
-    }
-    return seen.irradiance > 0 ? std::optional(seen) : std::nullopt;
-}
-
 ProfileView::ProfileView(const Light& light, const ShadingFrame& frame) {
     const EmissionProfile& profile = traits_of(light).profile;
     // A point inside a sphere sees the sphere's surface shine inwards in all directions, without a profile.
@@ -305,10 +281,6 @@ bool SeenLight::look(const Light& light, const ShadingFrame& frame, double error
     }
     profile_ = seen ? ProfileView(light, frame) : ProfileView();
     return seen && profile_.range().high > 0;
-}
-
-bool is_seen(const Light& light, const ShadingFrame& frame, double error) {
-    return is_delta(light) ? delta_view(light, frame, error).has_value() : SeenLight().look(light, frame, error);
 }
 
 double least_distance(const Light& light, const Vec3d& position) {

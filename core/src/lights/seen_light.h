@@ -34,17 +34,6 @@ std::optional<CapView> view(const SunLight& light, const ShadingFrame& frame);
 /// The cap of a sphere light or sun; nothing for other lights.
 std::optional<CapView> cap_view(const Light& light, const ShadingFrame& frame);
 
-/// A source without extent, seen from a point.
-struct DeltaView {
-    Vec3d direction;    ///< unit, in the shading frame
-    double distance;    ///< may be infinite
-    double irradiance;  ///< on a perpendicular surface, from a source of strength 1
-};
-
-/// Nothing for a source below the horizon, one whose profile is 0 in this direction, or one within twice `error` of the
-/// hit. Precondition: is_delta(light).
-std::optional<DeltaView> delta_view(const Light& light, const ShadingFrame& frame, double error);
-
 /// Whether a hit lies off the plane of a planar light, on a side that the light shines to. height: over that plane.
 template <class PlanarLight>
 bool is_lit_side(const PlanarLight& light, double height, double error) {
@@ -105,9 +94,6 @@ class SeenLight {
     bool is_part_ = false;
     Ellipse ellipse_{};
 };
-
-/// Whether SeenLight::look() or delta_view() finds light, for callers that need nothing else.
-bool is_seen(const Light& light, const ShadingFrame& frame, double error);
 
 /// A lower bound of the distance to the light's points; 0 if none is known.
 double least_distance(const Light& light, const Vec3d& position);

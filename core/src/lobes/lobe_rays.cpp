@@ -29,7 +29,7 @@ struct Vectors {
     V<Floats> x, y, z;
 };
 
-HWY_INLINE Vectors load(const RayVectors& arrays, std::size_t i) {
+HWY_INLINE Vectors load(const ConstRayVectors& arrays, std::size_t i) {
     const Floats d;
     return {hn::LoadU(d, arrays.x + i), hn::LoadU(d, arrays.y + i), hn::LoadU(d, arrays.z + i)};
 }
@@ -81,24 +81,24 @@ HWY_INLINE Vectors sample(const GgxShape& shape, const Vec3d& view, V<Floats> u,
 
 template <class Shape>
 void sample_all(const Shape& shape, const Vec3d& view, const float* u, const float* v, std::size_t count,
-                const std::array<float*, 3>& directions) {
+                const RayVectors& directions) {
     const Floats d;
     for (std::size_t i = 0; i < count; i += kLaneCount<Floats>) {
         const Vectors direction = sample(shape, view, hn::LoadU(d, u + i), hn::LoadU(d, v + i));
-        hn::StoreU(direction.x, d, directions[0] + i);
-        hn::StoreU(direction.y, d, directions[1] + i);
-        hn::StoreU(direction.z, d, directions[2] + i);
+        hn::StoreU(direction.x, d, directions.x + i);
+        hn::StoreU(direction.y, d, directions.y + i);
+        hn::StoreU(direction.z, d, directions.z + i);
     }
 }
 
 void sample_rays(const LobeShape& shape, const Vec3d& view, const float* u, const float* v, std::size_t count,
-                 const std::array<float*, 3>& directions) {
+                 const RayVectors& directions) {
     std::visit([&](const auto& s) { sample_all(s.sampled(), view, u, v, count, directions); }, shape);
 }
 
 template <class Lobe>
-void weigh_all(const Lobe& lobe, double width, const ShadingFrame& frame, const Vec3d& view, const RayVectors& ways,
-               std::size_t count, float* values, float* densities) {
+void weigh_all(const Lobe& lobe, double width, const ShadingFrame& frame, const Vec3d& view,
+               const ConstRayVectors& ways, std::size_t count, float* values, float* densities) {
     const Floats d;
     const auto zero = hn::Zero(d);
     const auto cos_o = all(d, view.z);
@@ -115,7 +115,7 @@ void weigh_all(const Lobe& lobe, double width, const ShadingFrame& frame, const 
     }
 }
 
-void weigh_rays(const LobeShape& shape, const ShadingFrame& frame, const Vec3d& view, const RayVectors& ways,
+void weigh_rays(const LobeShape& shape, const ShadingFrame& frame, const Vec3d& view, const ConstRayVectors& ways,
                 std::size_t count, float* values, float* densities) {
     with_lobe_lanes(shape, [&](const auto& lobe) {
         weigh_all(lobe, lobe_width(shape), frame, view, ways, count, values, densities);
@@ -133,11 +133,11 @@ HWY_EXPORT(sample_rays);
 HWY_EXPORT(weigh_rays);
 
 void sample_lobe_rays(const LobeShape& shape, const Vec3d& view, const float* u, const float* v, std::size_t count,
-                      const std::array<float*, 3>& directions) {
+                      const RayVectors& directions) {
     HWY_DYNAMIC_DISPATCH(sample_rays)(shape, view, u, v, count, directions);
 }
 
-void weigh_lobe_rays(const LobeShape& shape, const ShadingFrame& frame, const Vec3d& view, const RayVectors& ways,
+void weigh_lobe_rays(const LobeShape& shape, const ShadingFrame& frame, const Vec3d& view, const ConstRayVectors& ways,
                      std::size_t count, float* values, float* densities) {
     HWY_DYNAMIC_DISPATCH(weigh_rays)(shape, frame, view, ways, count, values, densities);
 }

@@ -3,7 +3,6 @@
 // Rays drawn from a lobe at one view, and the lobe's value and density for any rays, one lane for each ray.
 #pragma once
 
-#include <array>
 #include <cstddef>
 
 #include "base/shading_frame.h"
@@ -17,17 +16,20 @@ inline constexpr std::size_t kLobeRayLanes = 16;
 
 /// Vectors of rays, one array for each component.
 struct RayVectors {
+    float *x, *y, *z;
+};
+struct ConstRayVectors {
     const float *x, *y, *z;
 };
 
 /// The directions of sample_lobe() at points (u, v), in the shading frame and up to a float's rounding.
-/// directions: arrays of their components. view: above the horizon and in the xz-plane.
+/// view: above the horizon and in the xz-plane.
 void sample_lobe_rays(const LobeShape& shape, const Vec3d& view, const float* u, const float* v, std::size_t count,
-                      const std::array<float*, 3>& directions);
+                      const RayVectors& directions);
 
 /// lobe_value() and lobe_density() of rays, whose vectors are in world axes and of any length. A mirror counts as a
 /// very narrow lobe. densities: may be null.
-void weigh_lobe_rays(const LobeShape& shape, const ShadingFrame& frame, const Vec3d& view, const RayVectors& ways,
+void weigh_lobe_rays(const LobeShape& shape, const ShadingFrame& frame, const Vec3d& view, const ConstRayVectors& ways,
                      std::size_t count, float* values, float* densities);
 
 }  // namespace shlight

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The coefficients of a cap above the horizon in scalars: the text that the kernels of this folder take into lanes, and
-// the oracle of their tests. docs/theory.md, 3, derives it. Eq. n is an equation of Zhou & Wei 2020, "Spherical Light
-// Integration over Spherical Caps via Spherical Harmonics".
+// The coefficients of a cap above the horizon in scalars: the text that the kernels of core/src/regions take into
+// lanes, and the oracle of their tests. docs/theory.md, 3, derives it. Eq. n is an equation of Zhou & Wei 2020,
+// "Spherical Light Integration over Spherical Caps via Spherical Harmonics".
 //
 // The paper integrates 2n-1 zonal functions along the cap's boundary (Eq. 9 to 18) and takes them to harmonics by a
 // matrix (Eq. 6 and 8). Here a turn of the sphere about the cap's axis, under which the cap's edge moves along itself,
