@@ -86,7 +86,7 @@ class LightInView {
 
 struct Picture {
     const CompiledScene& scene;
-    const Camera& camera;
+    Camera camera;
     int width, height;
     MonteCarloSettings settings;
     Window window;
@@ -315,7 +315,8 @@ void render_monte_carlo(const CompiledScene& scene, const Camera& camera, int wi
             reject("scene: render_monte_carlo knows emissive meshes of a few faces only");
         }
     }
-    const Picture picture = {scene, camera, width, height, settings, camera.window(width, height)};
+    const Picture picture = {scene,    camera.moved(-scene.origin()), width, height,
+                             settings, camera.window(width, height)};
     check_size("image", image.size(), 4 * picture.pixels());
     tbb::enumerable_thread_specific<Worker> workers([&picture] { return Worker(picture); });
     const std::size_t each = std::max<std::size_t>(1, kBatch / picture.samples());

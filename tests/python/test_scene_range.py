@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from scene_cases import FACES, FLOOR, lit_floor
 
 import shlight
-from shlight import Bsdf, Scene
+from shlight import Bsdf, Scene, nodes
 
 LAMPS: dict[str, Callable[[Scene, float], None]] = {
     "sphere": lambda scene, s: scene.add_sphere_light(np.array([0.5, 0.25, 2]) * s, 0.5 * s, [4, 2, 1]),
@@ -105,3 +106,25 @@ def test_the_brightest_lights_give_finite_pictures(bsdf: Bsdf, order: Any) -> No
     }.items():
         with pytest.raises(ValueError, match=rf"^{name}\b"):
             add()
+
+
+@pytest.mark.parametrize("kind", ["polygon", "disk", "mesh"])
+def test_a_flat_light_shines_alike_far_from_the_origin(kind: str) -> None:
+    """Also where it is nearer to a surface than what floats resolve of the coordinates."""
+
+    def picture(x: float) -> NDArray[np.float32]:
+        scene, at, up = shlight.Scene(), np.array([x, 0.0, 0.0]), np.array([0.0, 0.0, 0.25])
+        faces, square = [[0, 1, 2], [0, 2, 3]], np.array([(-1.0, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)])
+        scene.add_mesh(4 * square + at, faces, bsdf=nodes.lambert(0.5 + 0.25 * (nodes.position().x - x)))
+        if kind == "polygon":
+            scene.add_polygon_light(square[::-1] + at + up, (5, 5, 5))
+        elif kind == "disk":
+            scene.add_disk_light(at + up, (0, 1, 0), (1, 0, 0), (5, 5, 5))
+        else:
+            scene.add_mesh(square + at + up, faces, bsdf=shlight.Bsdf.lambert(0), emission=(5, 5, 5))
+        camera = np.eye(4)
+        camera[:3, 3] = at + 0.8 * up
+        scene.set_camera(camera, 1.0)
+        return shlight.render(scene, 16, 16, passes=["position"])["combined"]
+
+    np.testing.assert_allclose(picture(2.0**17), picture(0.0), rtol=2e-2)

@@ -41,6 +41,7 @@ class Camera {
     Camera(const glm::dmat4& to_world, const Panorama& panorama, const Window& window = {0, 1, 0, 1},
            const ClipRange& clip = {}, const Aperture& aperture = {});
 
+    Camera moved(const Vec3d& way) const;
     /// The window of an image of this size.
     Window window(int width, int height) const;
     /// Whether rays through different points of the aperture differ.

@@ -108,6 +108,8 @@ const LightTraits& traits_of(const Light& light);
 const Rgb& strength_of(const Light& light);
 /// Whether the light has no extent.
 bool is_delta(const Light& light);
+/// The light, moved. Precondition: no MeshLight.
+Light moved(const Light& light, const Vec3d& way);
 
 /// Throws std::invalid_argument naming the argument: a number outside docs/conventions.md's range, a radius ≤ 0.
 /// Radiance may be negative: such a light removes light.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -104,7 +105,22 @@ void check_shape(const MeshShape& shape);
 /// check_shape() for the use of a shape; a transform must be affine and invertible.
 void check_use(const MeshShape& shape, const MeshUse& use);
 
-/// A bound of the world coordinates of all instances.
-double reach(const MeshShape& shape, const MeshUse& use);
+struct Box {
+    Vec3d least{std::numeric_limits<double>::infinity()}, largest{-std::numeric_limits<double>::infinity()};
+
+    void add(const Vec3d& point) {
+        least = glm::min(least, point);
+        largest = glm::max(largest, point);
+    }
+    bool empty() const { return !(least.x <= largest.x); }
+    /// The largest coordinate in it; 0 if it is empty.
+    double reach() const {
+        const Vec3d far = glm::max(-least, largest);
+        return std::max({0.0, far.x, far.y, far.z});
+    }
+};
+
+/// A box around all instances, in the world.
+Box bounds(const MeshShape& shape, const MeshUse& use);
 
 }  // namespace shlight

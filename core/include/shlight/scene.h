@@ -49,6 +49,8 @@ class CompiledScene {
     CompiledScene& operator=(const CompiledScene&) = delete;
     ~CompiledScene();
 
+    /// The origin of the frame in which everything here stands, in the world: rays in float have more digits near it.
+    const Vec3d& origin() const;
     std::span<const Material> materials() const;
     /// Lights with extent come first, then sources without. Both lists hold lamps in the order in which they were
     /// added, then emissive faces.
@@ -134,7 +136,7 @@ class Scene {
                                                  const CompiledScene* before = nullptr) const;
 
   private:
-    void check_size() const;
+    Box checked_bounds() const;
 
     std::map<MeshNumber, std::shared_ptr<const SceneMesh>> meshes_;
     MeshNumber next_mesh_ = 0;

@@ -159,6 +159,25 @@ bool is_delta(const Light& light) {
     return std::holds_alternative<PointSource>(light) || std::holds_alternative<ParallelSource>(light);
 }
 
+Light moved(const Light& light, const Vec3d& way) {
+    Light result = light;
+    if (auto* sphere = std::get_if<SphereLight>(&result)) {
+        sphere->center += way;
+    } else if (auto* point = std::get_if<PointSource>(&result)) {
+        point->position += way;
+    } else if (auto* polygon = std::get_if<PolygonLight>(&result)) {
+        std::vector<Vec3d> vertices = polygon->vertices;
+        for (Vec3d& vertex : vertices) {
+            vertex += way;
+        }
+        return make_polygon_light(std::move(vertices), polygon->radiance, polygon->two_sided, polygon->traits);
+    } else if (const auto* disk = std::get_if<DiskLight>(&light)) {
+        return make_disk_light(disk->center + way, disk->half_axis_u, disk->half_axis_v, disk->radiance,
+                               disk->two_sided, disk->traits);
+    }
+    return result;
+}
+
 SphereLight make_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk,
                               const LightTraits& traits) {
     check_position("center", center);

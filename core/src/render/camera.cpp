@@ -83,6 +83,12 @@ void Camera::check() const {
     check_aperture(aperture_);
 }
 
+Camera Camera::moved(const Vec3d& way) const {
+    Camera result = *this;
+    result.to_world_[3] += glm::dvec4(way, 0);
+    return result;
+}
+
 Window Camera::window(int width, int height) const {
     if (window_) {
         return *window_;

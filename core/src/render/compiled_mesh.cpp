@@ -37,8 +37,9 @@ bool is_baked(const SceneMesh& mesh) {
     const double scale = inf_norm(linear);
     const double inverse_scale = inf_norm(glm::inverse(linear));
     const double origin = largest_component(Vec3d(to_world[3]));
+    const Box box = bounds(*mesh.shape, mesh);
     return !(scale * inverse_scale <= kLargestCondition && scale <= kLargestScale && inverse_scale <= kLargestScale &&
-             origin <= 2 * reach(*mesh.shape, mesh));
+             origin <= 2 * box.reach());
 }
 
 std::vector<Vec3f> moved(const std::vector<Vec3f>& vertices, const glm::dmat4& to_world) {
@@ -46,6 +47,18 @@ std::vector<Vec3f> moved(const std::vector<Vec3f>& vertices, const glm::dmat4& t
     result.reserve(vertices.size());
     for (const Vec3f& v : vertices) {
         result.emplace_back(transform_point(to_world, Vec3d(v)));
+    }
+    return result;
+}
+
+/// The mesh in a frame with this origin.
+std::shared_ptr<const SceneMesh> moved(const std::shared_ptr<const SceneMesh>& mesh, const Vec3d& origin) {
+    if (origin == Vec3d(0)) {
+        return mesh;
+    }
+    auto result = std::make_shared<SceneMesh>(*mesh);
+    for (glm::dmat4& to_world : result->transforms) {
+        to_world[3] -= glm::dvec4(origin, 0);
     }
     return result;
 }
@@ -158,15 +171,18 @@ std::vector<Light> emissive_faces(const CompiledMesh& compiled, const Stopped& s
 
 }  // namespace
 
-std::shared_ptr<const CompiledMesh> compile_mesh(const std::shared_ptr<const SceneMesh>& mesh,
+std::shared_ptr<const CompiledMesh> compile_mesh(const std::shared_ptr<const SceneMesh>& given, const Vec3d& origin,
                                                  const std::shared_ptr<const CompiledMesh>& before,
                                                  const Stopped& stopped) {
-    if (before != nullptr && before->mesh == mesh) {
+    if (before != nullptr && before->given == given && before->origin == origin) {
         return before;
     }
     end_if(stopped);
     auto compiled = std::make_shared<CompiledMesh>();
+    const std::shared_ptr<const SceneMesh> mesh = moved(given, origin);
+    compiled->given = given;
     compiled->mesh = mesh;
+    compiled->origin = origin;
     const MeshShape& shape = *mesh->shape;
     const bool baked = is_baked(*mesh);
     const bool is_in_place =

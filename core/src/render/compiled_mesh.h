@@ -16,7 +16,9 @@
 namespace shlight {
 
 struct CompiledMesh {
-    std::shared_ptr<const SceneMesh> mesh;
+    std::shared_ptr<const SceneMesh> given;                    ///< as the scene has it
+    std::shared_ptr<const SceneMesh> mesh;                     ///< the same, in the scene's frame
+    Vec3d origin;                                              ///< of that frame
     std::shared_ptr<const std::vector<Vec3f>> world_vertices;  ///< null: rays meet the mesh in its own frame
     std::shared_ptr<const TriangleTree> opaque, transparent;   ///< null: there are no such triangles
     std::vector<Light> lights;  ///< MeshLight::instance counts the instances of this mesh
@@ -26,9 +28,9 @@ struct CompiledMesh {
     std::span<const Vec3f> vertices() const { return is_baked() ? *world_vertices : mesh->shape->vertices; }
 };
 
-/// before: the mesh of the same shape in the scene before, or null.
+/// origin: see CompiledScene::origin(); before: the mesh of the same shape in the scene before, or null.
 /// Throws what TriangleTree throws.
-std::shared_ptr<const CompiledMesh> compile_mesh(const std::shared_ptr<const SceneMesh>& mesh,
+std::shared_ptr<const CompiledMesh> compile_mesh(const std::shared_ptr<const SceneMesh>& given, const Vec3d& origin,
                                                  const std::shared_ptr<const CompiledMesh>& before,
                                                  const Stopped& stopped);
 

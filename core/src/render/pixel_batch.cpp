@@ -120,7 +120,7 @@ void PixelSums::add(const Rgb& ray_radiance, const Rgb& ray_noise, const glm::dv
 Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const RenderSettings& r,
                  std::vector<glm::dvec2> points, std::uint32_t preview_points, const Stopped& stopped)
     : scene(&s),
-      camera(&c),
+      camera(c.moved(-s.origin())),
       settings(r),
       layout(r.passes),
       width(w),
@@ -147,7 +147,7 @@ PixelBatch::PixelBatch(const Picture& picture)
     : picture_(&picture),
       surfaces_(*picture.scene, picture.lighting.materials,
                 static_cast<std::uint32_t>(picture.settings.transparent_bounces)),
-      surface_passes_(*picture.scene, *picture.camera, picture.settings.passes, picture.layout),
+      surface_passes_(*picture.scene, picture.camera, picture.settings.passes, picture.layout),
       hits_(picture.lighting.lobe_stride, picture.parts),
       lighting_(picture.lighting, picture.scene->rays(),
                 static_cast<std::uint32_t>(picture.settings.transparent_bounces), picture.parts),
@@ -193,13 +193,13 @@ double PixelBatch::reflected(std::span<const Pixel> pixels, std::uint32_t shadow
 
 Ray PixelBatch::camera_ray(double column, double row, const LensPoint& lens) const {
     const Window& window = picture_->window;
-    return picture_->camera->ray(window.left + column / picture_->width * (window.right - window.left),
-                                 window.top + row / picture_->height * (window.bottom - window.top), lens);
+    return picture_->camera.ray(window.left + column / picture_->width * (window.right - window.left),
+                                window.top + row / picture_->height * (window.bottom - window.top), lens);
 }
 
 /// The pixel's point and this are one of four dimensions. A preview's is the one before the first, the sequence's last.
 PixelBatch::LensPoint PixelBatch::lens_point(std::uint32_t sample, std::uint32_t pixel_seed) const {
-    return picture_->camera->has_depth_of_field()
+    return picture_->camera.has_depth_of_field()
                ? LensPoint(sobol_beyond(sample - picture_->previews, hash(pixel_seed, kLensSeed)))
                : std::nullopt;
 }

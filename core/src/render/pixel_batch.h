@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "lighting/direct_lighting.h"
 #include "render/camera_surfaces.h"
 #include "render/surface_passes.h"
-#include "lighting/direct_lighting.h"
 #include "shlight/camera.h"
 #include "shlight/render.h"
 #include "shlight/scene.h"
@@ -54,7 +54,7 @@ struct Picture {
     std::uint32_t batch_samples() const;
 
     const CompiledScene* scene;
-    const Camera* camera;
+    Camera camera;  ///< in the scene's frame
     RenderSettings settings;
     PassLayout layout;
     LightParts parts;  ///< that the passes need

@@ -39,6 +39,12 @@ std::array<double, 3> weights_of(const RayHit& hit) {
     return {1.0 - hit.u - hit.v, hit.u, hit.v};
 }
 
+glm::dmat4 moved_by(const Vec3d& way) {
+    glm::dmat4 matrix(1);
+    matrix[3] = glm::dvec4(way, 1);
+    return matrix;
+}
+
 /// Row by row.
 float matrix_number(const glm::dmat4& matrix, std::uint32_t component) {
     return static_cast<float>(matrix[static_cast<int>(component % 4)][static_cast<int>(component / 4)]);
@@ -227,7 +233,8 @@ void PlacedMeshes::read(const ShaderInput& input, const std::vector<std::uint32_
     const auto placement = [&](const SurfacePlace& at) -> const Placement& { return placements_[at.hit.instance]; };
     switch (input.source) {
         case ShaderSource::position:
-            return fill([&](const auto&, const SurfacePlace& at) { return at.position[component]; });
+            return fill(
+                [&](const auto&, const SurfacePlace& at) { return at.position[component] + origin_[component]; });
         case ShaderSource::normal:
         case ShaderSource::geometric_normal:
             return fill([&](const ShadedPlace& shaded, const SurfacePlace&) {
@@ -248,11 +255,11 @@ void PlacedMeshes::read(const ShaderInput& input, const std::vector<std::uint32_
         }
         case ShaderSource::object_to_world:
             return fill([&](const auto&, const SurfacePlace& at) {
-                return matrix_number(placement(at).to_world, input.component);
+                return matrix_number(moved_by(origin_) * placement(at).to_world, input.component);
             });
         case ShaderSource::world_to_object:
             return fill([&](const auto&, const SurfacePlace& at) {
-                return matrix_number(placement(at).to_object, input.component);
+                return matrix_number(placement(at).to_object * moved_by(-origin_), input.component);
             });
         case ShaderSource::object_value:
             return fill([&](const auto&, const SurfacePlace& at) { return object_value(placement(at), input.index); });

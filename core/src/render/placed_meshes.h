@@ -33,6 +33,8 @@ struct Placement {
 
 class PlacedMeshes {
   public:
+    /// The origin of the frame in which everything stands, for programs, which read the world's.
+    void set_origin(const Vec3d& origin) { origin_ = origin; }
     /// first_material: number of the mesh's first material in the scene.
     void add(std::shared_ptr<const CompiledMesh> mesh, std::uint32_t first_material);
 
@@ -60,6 +62,7 @@ class PlacedMeshes {
 
     const SceneMesh& mesh_of(const Placement& placement) const { return *meshes_[placement.mesh]->mesh; }
 
+    Vec3d origin_{0};
     std::vector<std::shared_ptr<const CompiledMesh>> meshes_;
     std::vector<Placement> placements_;
 };

@@ -19,17 +19,25 @@
 namespace shlight {
 namespace {
 
-/// The largest coordinate of a lamp that has a place, within its size.
-struct Reach {
-    double operator()(const SunLight&) const { return 0; }
-    double operator()(const ParallelSource&) const { return 0; }
-    double operator()(const MeshLight&) const { return 0; }
-    double operator()(const PointSource& light) const { return largest_component(light.position); }
+/// A box around what has a place of a lamp.
+struct LampBounds {
+    Box operator()(const SunLight&) const { return {}; }
+    Box operator()(const ParallelSource&) const { return {}; }
+    Box operator()(const MeshLight&) const { return {}; }
+    Box operator()(const PointSource& light) const { return {light.position, light.position}; }
     template <class AreaLight>
-    double operator()(const AreaLight& light) const {
-        return largest_component(light.center) + light.radius;
+    Box operator()(const AreaLight& light) const {
+        return {light.center - light.radius, light.center + light.radius};
     }
 };
+
+/// A scene keeps the world's frame, or the one before, if it is no more of its own sizes away from its origin.
+constexpr double kSizesAway = 8;
+
+bool is_near(const Box& box, const Vec3d& origin) {
+    const double size = largest_component(box.largest - box.least) / 2;
+    return largest_component((box.least + box.largest) / 2.0 - origin) <= kSizesAway * size;
+}
 
 /// The same triangles in the same places, opaque or not.
 bool meets_rays_alike(const std::shared_ptr<const CompiledMesh>& a, const std::shared_ptr<const CompiledMesh>& b) {
@@ -67,18 +75,25 @@ class CompiledScene::Impl {
         const Impl* scene_;
     };
 
-    Impl(std::vector<Light> lamps, Environment all_around, bool environment_visible, std::uint32_t group)
-        : lights(std::move(lamps)),
+    Impl(const Vec3d& frame_origin, std::span<const Light> lamps, Environment all_around, bool environment_visible,
+         std::uint32_t group)
+        : origin(frame_origin),
           environment(std::move(all_around)),
           has_background(environment_visible),
-          environment_group(group) {}
+          environment_group(group) {
+        for (const Light& lamp : lamps) {
+            lights.push_back(origin == Vec3d(0) ? lamp : moved(lamp, -origin));
+        }
+        placed.set_origin(origin);
+    }
 
     /// before: whose meshes and rays are shared as far as they are the same; null: nothing.
     void build(std::span<const std::shared_ptr<const SceneMesh>> meshes, const Impl* before, const Stopped& stopped) {
         environment = environment.prepared(before == nullptr ? Environment() : before->environment, stopped);
         std::vector<std::shared_ptr<const CompiledMesh>> compiled(meshes.size());
         tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t i) {
-            compiled[i] = compile_mesh(meshes[i], before == nullptr ? nullptr : before->of_shape(*meshes[i]), stopped);
+            compiled[i] =
+                compile_mesh(meshes[i], origin, before == nullptr ? nullptr : before->of_shape(*meshes[i]), stopped);
         });
         for (std::shared_ptr<const CompiledMesh>& mesh : compiled) {
             add(std::move(mesh));
@@ -95,6 +110,7 @@ class CompiledScene::Impl {
         find_light_groups();
     }
 
+    Vec3d origin;
     PlacedMeshes placed;
     std::vector<Material> materials;
     std::vector<Light> lights;
@@ -207,6 +223,10 @@ void CompiledScene::Impl::find_light_groups() {
 
 CompiledScene::CompiledScene(std::unique_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 CompiledScene::~CompiledScene() = default;
+
+const Vec3d& CompiledScene::origin() const {
+    return impl_->origin;
+}
 
 std::span<const Material> CompiledScene::materials() const {
     return impl_->materials;
@@ -326,26 +346,36 @@ void Scene::set_environment(Environment environment, bool visible, std::uint32_t
     environment_group_ = group;
 }
 
-void Scene::check_size() const {
-    double farthest = 0;
+Box Scene::checked_bounds() const {
+    Box box;
+    const auto add = [&](const Box& own) {
+        if (!own.empty()) {
+            box.add(own.least);
+            box.add(own.largest);
+        }
+    };
     for (const auto& [number, mesh] : meshes_) {
-        farthest = std::max(farthest, reach(*mesh->shape, *mesh));
+        add(bounds(*mesh->shape, *mesh));
     }
-    if (farthest == 0 || farthest >= kLeastReach) {
-        return;
-    }
+    const bool is_tiny = box.reach() > 0 && box.reach() < kLeastReach;
     for (const Light& lamp : lamps_) {
-        farthest = std::max(farthest, std::visit(Reach{}, lamp));
+        add(std::visit(LampBounds{}, lamp));
     }
-    if (farthest < kLeastReach) {
+    if (is_tiny && box.reach() < kLeastReach) {
         reject("scene reaches less than 1e-6 m from the origin, which rays in float do not resolve");
     }
+    return box;
 }
 
 std::shared_ptr<const CompiledScene> Scene::compile(int threads, const Progress& progress,
                                                     const CompiledScene* before) const {
-    check_size();
-    auto impl = std::make_unique<CompiledScene::Impl>(lamps_, environment_, environment_visible_, environment_group_);
+    const Box box = checked_bounds();
+    const Vec3d last = before == nullptr ? Vec3d(0) : before->origin();
+    const Vec3d origin = box.empty() || is_near(box, Vec3d(0)) ? Vec3d(0)
+                         : is_near(box, last)                  ? last
+                                                               : (box.least + box.largest) / 2.0;
+    auto impl =
+        std::make_unique<CompiledScene::Impl>(origin, lamps_, environment_, environment_visible_, environment_group_);
     std::vector<std::shared_ptr<const SceneMesh>> meshes;
     for (const auto& [number, mesh] : meshes_) {
         if (!mesh->shape->triangles.empty() && !mesh->transforms.empty()) {

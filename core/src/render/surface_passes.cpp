@@ -219,7 +219,7 @@ void SurfacePasses::write_middles(const CameraSurfaces& surfaces, std::size_t ra
         write(Pass::object_index, double{scene_->object_label(surface.hit).index});
         write(Pass::material_index, double{scene_->materials()[surface.point.material].label.index});
         for (int i = 0; i < 3 && has(Pass::position); ++i) {
-            at(Pass::position, pixel)[i] = static_cast<float>(surface.point.position[i]);
+            at(Pass::position, pixel)[i] = static_cast<float>(surface.point.position[i] + scene_->origin()[i]);
         }
     }
 }

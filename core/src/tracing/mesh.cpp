@@ -75,25 +75,20 @@ void check_scale(const glm::dmat4& transform) {
 
 }  // namespace
 
-double reach(const MeshShape& shape, const MeshUse& use) {
-    if (shape.vertices.empty()) {
-        return 0;
-    }
-    Vec3d least(shape.vertices.front());
-    Vec3d largest = least;
+Box bounds(const MeshShape& shape, const MeshUse& use) {
+    Box local;
     for (const Vec3f& v : shape.vertices) {
-        least = glm::min(least, Vec3d(v));
-        largest = glm::max(largest, Vec3d(v));
+        local.add(Vec3d(v));
     }
-    double farthest = 0;
+    Box world;
     for (const glm::dmat4& transform : use.transforms) {
-        for (int corner = 0; corner < 8; ++corner) {
-            const Vec3d p(corner & 1 ? least.x : largest.x, corner & 2 ? least.y : largest.y,
-                          corner & 4 ? least.z : largest.z);
-            farthest = std::max(farthest, largest_component(transform_point(transform, p)));
+        for (int corner = 0; corner < 8 && !shape.vertices.empty(); ++corner) {
+            world.add(transform_point(
+                transform, {corner & 1 ? local.least.x : local.largest.x, corner & 2 ? local.least.y : local.largest.y,
+                            corner & 4 ? local.least.z : local.largest.z}));
         }
     }
-    return farthest;
+    return world;
 }
 
 void check_shape(const MeshShape& shape) {
@@ -142,7 +137,7 @@ void check_use(const MeshShape& shape, const MeshUse& use) {
             check_scale(transform);
         }
     }
-    check_reach("transforms", reach(shape, use));
+    check_reach("transforms", bounds(shape, use).reach());
 }
 
 }  // namespace shlight
