@@ -22,7 +22,8 @@ void cap(const CapLight& light, int order, bool clip, const Options& /*options*/
 
 template <class T>
 void polygon(std::span<const Vec3<T>> vertices, int order, bool clip, const Options& /*options*/, T* coefficients) {
-    polygon_coefficients(vertices, order, clip, coefficients);
+    polygon_coefficients(vertices, static_cast<int>(vertices.size()), order, clip,
+                         std::span<T>(coefficients, static_cast<std::size_t>(order * order)));
 }
 
 }  // namespace

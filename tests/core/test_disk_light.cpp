@@ -44,7 +44,7 @@ double polygon_error(const Ellipse& disk, int order) {
     std::vector<double> exact(count);
     std::vector<double> found(count);
     disk_coefficients<double>({&disk.center, 1}, {&disk.half_axis_u, 1}, {&disk.half_axis_v, 1}, order, true, exact);
-    polygon_coefficients<double>(std::span<const Vec3d>(corners), order, true, found.data());
+    polygon_coefficients<double>(corners, static_cast<int>(corners.size()), order, true, found);
     double error = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const double off = std::abs(found[i] - exact[i]);

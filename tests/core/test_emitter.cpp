@@ -51,7 +51,7 @@ Row sum_of_faces(const EmitterLevel& level, bool outer_only, const Vec3d& point,
             corners.push_back(level.vertices[level.faces[i][k]] - point);
         }
         Row row{};
-        polygon_coefficients<double>(corners, kOrder, clip, row.data());
+        polygon_coefficients<double>(corners, static_cast<int>(corners.size()), kOrder, clip, row);
         for (std::size_t j = 0; j < row.size(); ++j) {
             sum[j] += row[j];
         }
@@ -70,7 +70,7 @@ Row of_outline(const EmitterLevels& emitter, const EmitterLevel& level, const Ve
     for (const FlatOutline::Vertex& v : flat.line(0)) {
         outline.push_back(flat.direction(v.at));
     }
-    polygon_coefficients<double>(outline, kOrder, clip, row.data());
+    polygon_coefficients<double>(outline, static_cast<int>(outline.size()), kOrder, clip, row);
     return row;
 }
 

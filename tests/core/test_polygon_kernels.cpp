@@ -74,7 +74,7 @@ double worst_error(const std::vector<Vec3d>& vertices, const std::vector<double>
     double worst = 0;
     std::vector<double> light(static_cast<std::size_t>(coefficient_count(order)));
     for (std::size_t i = 0; i < count; ++i) {
-        polygon_coefficients<double>(std::span(vertices).subspan(4 * i, 4), order, true, light.data());
+        polygon_coefficients<double>(std::span(vertices).subspan(4 * i, 4), 4, order, true, light);
         const double truth = shade_cosine(light.data(), terms.data(), order);
         const double size = light[0] * std::sqrt(4 * std::numbers::pi);
         const double error = std::abs(static_cast<double>(values[i]) - truth);

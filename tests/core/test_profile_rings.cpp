@@ -42,7 +42,7 @@ ShadingFrame random_frame(testing::RandomInput& random) {
 std::vector<double> truth(const SeenLight& light) {
     std::vector<double> l(kTerms);
     if (!light.corners().empty()) {
-        polygon_coefficients<double>(light.corners(), kOrder, true, l.data());
+        polygon_coefficients<double>(light.corners(), static_cast<int>(light.corners().size()), kOrder, true, l);
     } else if (const std::optional<CapView>& cap = light.cap()) {
         const bool sphere = cap->kind == CapView::Kind::sphere;
         const double distance = glm::length(cap->center);

@@ -128,7 +128,7 @@ TEST(RenderSampling, PolygonsCoverWhatIsAboveTheHorizon) {
         std::vector<Vec3d> vertices = {center - u - v, center + u - v, center + u + v, center - u + v};
         const PolygonLight light = make_polygon_light(vertices, Rgb(1), true);
         std::vector<double> coefficients(4);
-        polygon_coefficients<double>(std::span<const Vec3d>(light.vertices), 2, true, coefficients.data());
+        polygon_coefficients<double>(light.vertices, static_cast<int>(light.vertices.size()), 2, true, coefficients);
         const glm::dvec2 truth = exact(coefficients);
         if (truth.x < 1e-9) continue;
         sampler.reset(light.vertices, light.triangles, light.normal);

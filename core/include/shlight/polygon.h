@@ -12,15 +12,10 @@
 
 namespace shlight {
 
-/// Coefficients of one polygon, order² values.
-/// vertices: k ≥ 3, planar, finite, in the shading frame, in either winding, as the orientation does not matter.
-/// A polygon without area, or seen edge-on, has zero coefficients.
+/// Coefficients of many polygons with the same number of vertices: count × order², row by row.
+/// vertices: count × vertex_count, those of each polygon planar, in the shading frame, in either winding, as the
+/// orientation does not matter. A polygon without area, or seen edge-on, has zero coefficients.
 /// clip: keep only what lies above the horizon.
-template <class T>
-void polygon_coefficients(std::span<const Vec3<T>> vertices, int order, bool clip, T* coefficients);
-
-/// Many polygons with the same number of vertices.
-/// vertices: count × vertex_count; coefficients: count × order², row by row.
 /// Throws std::invalid_argument naming the argument: order outside 1 … 64, fewer than 3 vertices, sizes that do not
 /// fit, a non-finite number, vertices that are not planar, a shading point inside a polygon or on its outline (where
 /// the rounding of the vertices leaves open on which side of the plane it lies).

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "shlight/polygon.h"
 
-#include <type_traits>
 #include <vector>
 
 #include "base/checks.h"
@@ -9,26 +8,6 @@
 #include "regions/region_checks.h"
 
 namespace shlight {
-namespace {
-
-/// use(vertices) with each number in double, which holds all floats.
-template <class T, class Use>
-void in_double(std::span<const Vec3<T>> vertices, const Use& use) {
-    if constexpr (std::is_same_v<T, double>) {
-        use(vertices);
-    } else {
-        use(std::vector<Vec3d>(vertices.begin(), vertices.end()));
-    }
-}
-
-}  // namespace
-
-template <class T>
-void polygon_coefficients(std::span<const Vec3<T>> vertices, int order, bool clip, T* coefficients) {
-    in_double(vertices, [&](std::span<const Vec3d> v) {
-        polygon_rows(v, static_cast<int>(v.size()), order, clip, coefficients);
-    });
-}
 
 template <class T>
 void polygon_coefficients(std::span<const Vec3<T>> vertices, int vertex_count, int order, bool clip,
@@ -44,8 +23,6 @@ void polygon_coefficients(std::span<const Vec3<T>> vertices, int vertex_count, i
     polygon_rows(prepared, vertex_count, order, clip, coefficients.data());
 }
 
-template void polygon_coefficients(std::span<const Vec3f>, int, bool, float*);
-template void polygon_coefficients(std::span<const Vec3d>, int, bool, double*);
 template void polygon_coefficients(std::span<const Vec3f>, int, int, bool, std::span<float>);
 template void polygon_coefficients(std::span<const Vec3d>, int, int, bool, std::span<double>);
 

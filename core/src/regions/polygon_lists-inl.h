@@ -103,8 +103,8 @@ HWY_INLINE void write_rows(const std::array<const LaneValues<R>*, kColumns>& col
 }
 
 /// Takes a chunk of polygons apart, sorted by the horizon and by the precision that they need for results in T. Derived
-/// tells by number in the chunk: polygon(i), vertex(i), view(i), and takes low_bands(solid angles, ∫ u du, numbers,
-/// count) of vectors, the last word for each number being the right one, 0 for what is not seen.
+/// tells by number in the chunk: polygon(i), view(i), and takes low_bands(solid angles, ∫ u du, numbers, count) of
+/// vectors, the last word for each number being the right one, 0 for what is not seen.
 template <class Derived, class T, bool kBoosted>
 class PolygonLists {
   protected:
@@ -135,6 +135,11 @@ class PolygonLists {
         }
     }
 
+    const double* vertex(std::size_t i) { return polygons_.vertices + 3 * polygons_.vertex_count * self().polygon(i); }
+
+    static constexpr double kBand0 = 0.28209479177387814;  ///< 1 / √4π
+    static constexpr double kBand1 = 0.48860251190291992;  ///< √(3 / 4π)
+
     PolygonArray polygons_;
     int order_;
     std::vector<std::uint32_t> narrowest_;  ///< cubature is better
@@ -153,7 +158,7 @@ class PolygonLists {
         std::size_t whole = 0;
         std::size_t cut = 0;
         for (std::uint32_t i = 0; i < count; ++i) {
-            const double* z = self().vertex(i) + 2;
+            const double* z = vertex(i) + 2;
             std::size_t above = 0;
             for (std::size_t k = 0; k < polygons_.vertex_count; ++k) {
                 above += z[3 * k] >= 0 ? 1 : 0;

@@ -47,9 +47,6 @@ class PolygonRows : public PolygonLists<PolygonRows<T>, T, false> {
 
   private:
     std::size_t polygon(std::size_t i) const { return first_ + i; }
-    const double* vertex(std::size_t i) const {
-        return this->polygons_.vertices + 3 * this->polygons_.vertex_count * polygon(i);
-    }
     static std::uint32_t view(std::size_t) { return 0; }
     T* row(std::size_t i) const { return rows_ + (first_ + i) * numbers_; }
 
@@ -59,10 +56,10 @@ class PolygonRows : public PolygonLists<PolygonRows<T>, T, false> {
         const Lanes<R> d;
         std::array<LaneValues<R>, 4> values;
         // Rounding may leave less than nothing of thin polygons.
-        put<R>(values[0], hn::Mul(all(d, kBand0), hn::Max(solid_angle, hn::Zero(d))));
-        put<R>(values[1], hn::Mul(all(d, kBand1), moment.y));
-        put<R>(values[2], hn::Mul(all(d, kBand1), moment.z));
-        put<R>(values[3], hn::Mul(all(d, kBand1), moment.x));
+        put<R>(values[0], hn::Mul(all(d, Base::kBand0), hn::Max(solid_angle, hn::Zero(d))));
+        put<R>(values[1], hn::Mul(all(d, Base::kBand1), moment.y));
+        put<R>(values[2], hn::Mul(all(d, Base::kBand1), moment.z));
+        put<R>(values[3], hn::Mul(all(d, Base::kBand1), moment.x));
         for (std::size_t lane = 0; lane < count; ++lane) {
             for (std::size_t c = 0; c < std::min(values.size(), numbers_); ++c) {
                 row(list[lane])[c] = static_cast<T>(values[c][lane]);
@@ -100,9 +97,6 @@ class PolygonRows : public PolygonLists<PolygonRows<T>, T, false> {
     }
 
     static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-    static constexpr double kBand0 = 0.28209479177387814;  ///< 1 / √4π
-    static constexpr double kBand1 = 0.48860251190291992;  ///< √(3 / 4π)
-
     std::size_t numbers_;
     T* rows_;
     std::size_t first_ = 0;  ///< first polygon of the present chunk

@@ -55,9 +55,6 @@ class PolygonShading : public PolygonLists<PolygonShading<kBoosted>, float, kBoo
 
   private:
     std::size_t polygon(std::size_t i) const { return polygon_of_[first_ + i]; }
-    const double* vertex(std::size_t i) const {
-        return this->polygons_.vertices + 3 * this->polygons_.vertex_count * polygon(i);
-    }
     std::uint32_t view(std::size_t i) const { return view_of_[first_ + i]; }
     const BoostArrays& boosts() const { return lobe_.boosts; }
     const float* terms(std::size_t i) const { return lobe_.terms + view(i) * lobe_.stride; }
@@ -74,7 +71,8 @@ class PolygonShading : public PolygonLists<PolygonShading<kBoosted>, float, kBoo
         }
         const auto first = hn::MulAdd(moment.z, f[1], hn::Mul(moment.x, f[2]));
         LaneValues<R> values;
-        put<R>(values, hn::MulAdd(all(d, kBand0), hn::Mul(solid_angle, f[0]), hn::Mul(all(d, kBand1), first)));
+        put<R>(values,
+               hn::MulAdd(all(d, Base::kBand0), hn::Mul(solid_angle, f[0]), hn::Mul(all(d, Base::kBand1), first)));
         for (std::size_t lane = 0; lane < count; ++lane) {
             sums_[list[lane]] = static_cast<double>(values[lane]);
         }
@@ -162,14 +160,11 @@ class PolygonShading : public PolygonLists<PolygonShading<kBoosted>, float, kBoo
         std::vector<Vec3d> polygon(this->polygons_.vertex_count);
         std::array<float, static_cast<std::size_t>(coefficient_count(kMaxOrder))> coefficients;
         for (const std::uint32_t i : this->narrowest_) {
-            std::copy_n(vertex(i), 3 * polygon.size(), &polygon.data()->x);
+            std::copy_n(this->vertex(i), 3 * polygon.size(), &polygon.data()->x);
             polygon_by_cubature(polygon, this->order_, true, coefficients.data());
             values_[first_ + i] = shade_cosine(coefficients.data(), terms(i), this->order_);
         }
     }
-
-    static constexpr double kBand0 = 0.28209479177387814;  ///< 1 / √4π
-    static constexpr double kBand1 = 0.48860251190291992;  ///< √(3 / 4π)
 
     const std::uint32_t* polygon_of_;
     const LobeArrays& lobe_;
