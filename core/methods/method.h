@@ -10,6 +10,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <type_traits>
 
 #include "regions/spherical_polygon.h"
 #include "shlight/cap.h"
