@@ -17,6 +17,8 @@
 #include "lights/seen_light.h"
 #include "random_directions.h"
 #include "random_numbers.h"
+#include "render/placed_meshes.h"
+#include "render/visible_lamps.h"
 #include "shlight/render.h"
 #include "surface_reflection.h"
 #include "tracing/hits.h"
@@ -193,11 +195,11 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
         const std::size_t pixel = pixel_of_camera_ray_[i];
         if (!ray_hits_[i].missed()) {
-            const SurfacePoint surface = p.scene.surface(ray_hits_[i], rays_[i].direction);
+            const SurfacePoint surface = p.scene.placed().surface(ray_hits_[i], rays_[i].direction);
             const Vec3d direction = glm::normalize(Vec3d(rays_[i].direction));
             const double distance = glm::dot(surface.position - Vec3d(rays_[i].origin), direction);
             radiance_[pixel] += Vec3d(p.scene.materials()[surface.material].emission);
-            radiance_[pixel] += Vec3d(p.scene.lamps_along(LampViewer::camera, rays_[i], distance));
+            radiance_[pixel] += Vec3d(p.scene.visible_lamps(LampViewer::camera).radiance(rays_[i], distance));
             const ShadingFrame frame = shading_frame(surface.position, surface.shading_normal, -direction);
             hits_.add(surface, frame, view_cosine(frame.z, -direction), {}, {}, 0);
             pixel_of_hit_.push_back(pixel);
@@ -207,7 +209,7 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
             ++covered_[pixel];
             continue;
         }
-        radiance_[pixel] += Vec3d(p.scene.lamps_along(LampViewer::camera, rays_[i], std::nullopt));
+        radiance_[pixel] += Vec3d(p.scene.visible_lamps(LampViewer::camera).radiance(rays_[i], std::nullopt));
         if (const Environment* background = p.scene.background()) {
             radiance_[pixel] += Vec3d(background->radiance(glm::normalize(Vec3d(rays_[i].direction))));
             ++covered_[pixel];

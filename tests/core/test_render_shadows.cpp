@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/ray_rounding.h"
+#include "render/placed_meshes.h"
 #include "render_scenes.h"
 
 namespace shlight {
@@ -240,7 +241,7 @@ TEST(RenderShadows, ALargeMeshFarFromItsOriginKeepsItsPrecision) {
     RayHit hit;
     compiled->rays().intersect({&down, 1}, {&hit, 1});
     ASSERT_FALSE(hit.missed());
-    const SurfacePoint point = compiled->surface(hit, down.direction);
+    const SurfacePoint point = compiled->placed().surface(hit, down.direction);
     EXPECT_LE(glm::distance(point.position, {1, 1, 0}), 1e-6);
     EXPECT_LE(point.error, 2 * kRayRounding);
 }

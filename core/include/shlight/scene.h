@@ -5,12 +5,10 @@
 // A Scene collects; compile() makes of it an immutable CompiledScene that any number of threads may read.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <numbers>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,75 +17,66 @@
 #include "shlight/mesh.h"
 #include "shlight/parallel.h"
 #include "shlight/scene_rays.h"
-#include "shlight/surface_point.h"
 #include "shlight/types.h"
 
 namespace shlight {
 
-/// A place on a surface where a shader program runs.
-struct SurfacePlace {
-    RayHit hit;
-    Vec3d position;
-    Vec3d towards_viewer;  ///< unit
-};
-
-/// The same, and the surface's neighbours in the picture (see shader_program.h).
-struct ShadedPlace {
-    std::array<SurfacePlace, 3> at;          ///< the hit, to the right, below
-    Vec3d shading_normal, geometric_normal;  ///< at the hit
-    double ray_length;
-    std::uint32_t transparent_depth;
-};
+class PlacedMeshes;
+class VisibleLamps;
 
 /// Who sees lamps: a camera those with LightTraits::seen_by_camera, a mirror those that light glossy lobes, of which
 /// those without shadows are seen through surfaces.
 enum class LampViewer : std::uint8_t { camera, mirror, unblocked_mirror };
 
-class CompiledScene {
+class CompiledScene : public SurfaceTransparency {
   public:
     CompiledScene(const CompiledScene&) = delete;
     CompiledScene& operator=(const CompiledScene&) = delete;
-    ~CompiledScene();
+    ~CompiledScene() override;
 
     /// The origin of the frame in which everything here stands, in the world: rays in float have more digits near it.
-    const Vec3d& origin() const;
-    std::span<const Material> materials() const;
+    const Vec3d& origin() const { return origin_; }
+    std::span<const Material> materials() const { return materials_; }
     /// Lights with extent come first, then sources without. Both lists hold lamps in the order in which they were
     /// added, then emissive faces.
-    std::span<const Light> lights() const;
+    std::span<const Light> lights() const { return lights_; }
     /// Number of lights with extent.
-    std::size_t extended_light_count() const;
+    std::size_t extended_light_count() const { return extended_light_count_; }
     /// The prepared environment.
-    const Environment& environment() const;
+    const Environment& environment() const { return environment_; }
     /// The environment's LightTraits::group.
-    std::uint32_t environment_group() const;
+    std::uint32_t environment_group() const { return environment_group_; }
     /// Groups of all lights and of all surfaces that may be seen shining, ascending.
-    std::span<const std::uint32_t> light_groups() const;
+    std::span<const std::uint32_t> light_groups() const { return light_groups_; }
     /// The environment that the camera sees; null: the background is transparent.
-    const Environment* background() const;
-    bool shows_lamps(LampViewer viewer) const;
-    /// Radiance that lamps add to a ray of a viewer, up to a surface at this distance along it, if there is one.
-    /// by_group: each group's part is added to its entry; empty: no parts are wanted.
-    Rgb lamps_along(LampViewer viewer, const Ray& ray, const std::optional<double>& surface,
-                    std::span<Rgb> by_group = {}) const;
-    const SceneRays& rays() const;
-    /// Precondition: not hit.missed(); direction is the ray's.
-    SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
-    /// The place where another ray meets the plane of a surface, which may lie outside its triangle. The ray is taken
-    /// to be at most twice as long as the hit's. Precondition: as of surface().
-    SurfacePlace neighbour(const SurfacePlace& place, const Vec3d& normal, double length, const Ray& ray) const;
-    /// The value of Pass::uv, whose last component is 1; 0 on meshes without texture coordinates.
-    Vec3d uv(const RayHit& hit) const;
-    const Label& object_label(const RayHit& hit) const;
-    /// Reads an input of a material's program. place: 0 at the hit, 1 and 2 at its neighbours.
-    void read(const ShaderInput& input, const Material& material, int place, std::span<const ShadedPlace> places,
-              std::span<float> out) const;
+    const Environment* background() const { return environment_visible_ ? &environment_ : nullptr; }
+    const VisibleLamps& visible_lamps(LampViewer viewer) const;
+    const PlacedMeshes& placed() const { return *placed_; }
+    const SceneRays& rays() const { return *rays_; }
 
   private:
     friend class Scene;
-    class Impl;
-    explicit CompiledScene(std::unique_ptr<const Impl> impl);
-    std::unique_ptr<const Impl> impl_;
+    CompiledScene(const Vec3d& origin, std::span<const Light> lamps, Environment environment, bool environment_visible,
+                  std::uint32_t group);
+    /// before: whose meshes and rays are shared as far as they are the same; null: nothing.
+    void build(std::span<const std::shared_ptr<const SceneMesh>> meshes, const CompiledScene* before,
+               const Stopped& stopped);
+    void build_rays(const CompiledScene* before, const Stopped& stopped);
+    void find_light_groups();
+    void find(std::span<const Ray> rays, std::span<const RayHit> hits, std::uint32_t depth,
+              std::span<Rgb> passed) const override;
+
+    Vec3d origin_;
+    std::unique_ptr<PlacedMeshes> placed_;
+    std::vector<Material> materials_;
+    std::vector<Light> lights_;
+    std::size_t extended_light_count_ = 0;
+    Environment environment_;
+    bool environment_visible_;
+    std::uint32_t environment_group_;
+    std::unique_ptr<const SceneRays> rays_;
+    std::vector<VisibleLamps> visible_lamps_;  // by LampViewer
+    std::vector<std::uint32_t> light_groups_;
 };
 
 class Scene {

@@ -19,22 +19,6 @@ bool is_bumped(const SurfaceLobe& lobe) {
 
 constexpr float kLeastWidth = kLeastRoughness * kLeastRoughness;
 
-/// Reads the inputs of one material's program.
-class PlaceReader : public ShaderReader {
-  public:
-    PlaceReader(const CompiledScene& scene, const Material& material, std::span<const ShadedPlace> places)
-        : scene_(&scene), material_(&material), places_(places) {}
-
-    void read(const ShaderInput& input, int place, std::size_t first, std::span<float> out) const override {
-        scene_->read(input, *material_, place, places_.subspan(first, out.size()), out);
-    }
-
-  private:
-    const CompiledScene* scene_;
-    const Material* material_;
-    std::span<const ShadedPlace> places_;
-};
-
 }  // namespace
 
 void CameraSurfaces::trace(std::span<const CameraRay> rays, std::span<const NeighbourRays> neighbours,
@@ -81,7 +65,7 @@ void CameraSurfaces::meet(const Sink& sink) {
             leave_scene(segment, sink);
             continue;
         }
-        const SurfacePoint point = scene_->surface(met_[i], segment.whole.direction);
+        const SurfacePoint point = scene_->placed().surface(met_[i], segment.whole.direction);
         const Vec3d direction = glm::normalize(Vec3d(segment.whole.direction));
         const double distance = glm::dot(point.position - Vec3d(segment.whole.origin), direction);
         add_lamps(viewer, segment, parts_[i], distance, sink);
@@ -93,13 +77,11 @@ void CameraSurfaces::meet(const Sink& sink) {
 }
 
 ShadedPlace CameraSurfaces::place_of(const Surface& surface, const NeighbourRays* neighbours) const {
-    ShadedPlace place = {
-        {}, surface.point.shading_normal, surface.point.geometric_normal, surface.ray_length, surface.depth};
-    place.at.fill({surface.hit, surface.point.position, surface.towards_viewer});
+    ShadedPlace place(surface.point, surface.hit, surface.towards_viewer, surface.ray_length, surface.depth);
     if (neighbours != nullptr) {
         const Vec3d& normal = surface.point.geometric_normal;
-        place.at[1] = scene_->neighbour(place.at[0], normal, surface.distance, neighbours->right);
-        place.at[2] = scene_->neighbour(place.at[0], normal, surface.distance, neighbours->below);
+        place.at[1] = scene_->placed().neighbour(place.at[0], normal, surface.distance, neighbours->right);
+        place.at[2] = scene_->placed().neighbour(place.at[0], normal, surface.distance, neighbours->below);
     }
     return place;
 }
@@ -122,11 +104,12 @@ void CameraSurfaces::leave_scene(const Segment& segment, const Sink& sink) {
 
 void CameraSurfaces::add_lamps(LampViewer viewer, const Segment& segment, const Ray& part,
                                const std::optional<double>& surface, const Sink& sink) {
-    if (!scene_->shows_lamps(viewer)) {
+    const VisibleLamps& lamps = scene_->visible_lamps(viewer);
+    if (lamps.empty()) {
         return;
     }
     by_group_.assign(sink.apart.empty() ? 0 : sink.apart.parts().count - kLightKinds, Rgb(0));
-    const Rgb radiance = scene_->lamps_along(viewer, part, surface, by_group_);
+    const Rgb radiance = lamps.radiance(part, surface, by_group_);
     sink.light[segment.ray].radiance += segment.throughput * radiance;
     for (std::size_t group = 0; group < by_group_.size(); ++group) {
         sink.apart.add(segment.ray / sink.rays_per_pixel, segment.is_mirrored ? LightKind::glossy : LightKind::emission,
@@ -144,21 +127,15 @@ void CameraSurfaces::add_light(std::size_t ray, bool is_mirrored, LightKind kind
 
 void CameraSurfaces::run_programs(std::span<const NeighbourRays> neighbours, std::size_t first) {
     order_.clear();
+    material_of_.resize(surfaces_.size());
     for (std::size_t i = first; i < surfaces_.size(); ++i) {
-        const SurfaceShader* shader = scene_->materials()[surfaces_[i].point.material].shader.get();
+        material_of_[i] = surfaces_[i].point.material;
+        const SurfaceShader* shader = scene_->materials()[material_of_[i]].shader.get();
         if (shader != nullptr && (!surfaces_[i].is_mirrored || shader->transparency)) {
             order_.push_back(static_cast<std::uint32_t>(i));
         }
     }
-    const auto material = [&](std::uint32_t i) { return surfaces_[i].point.material; };
-    std::stable_sort(order_.begin(), order_.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return material(a) < material(b); });
-    for (auto begin = order_.begin(); begin != order_.end();) {
-        const auto end =
-            std::find_if(begin, order_.end(), [&](std::uint32_t i) { return material(i) != material(*begin); });
-        run_program(neighbours, {begin, end});
-        begin = end;
-    }
+    for_each_run(order_, material_of_, [&](auto surfaces) { run_program(neighbours, surfaces); });
 }
 
 void CameraSurfaces::run_program(std::span<const NeighbourRays> neighbours, std::span<const std::uint32_t> surfaces) {
@@ -172,8 +149,8 @@ void CameraSurfaces::run_program(std::span<const NeighbourRays> neighbours, std:
     }
     const std::size_t begin = results_.size();
     results_.resize(begin + program.result_count() * surfaces.size());
-    program.evaluate(PlaceReader(*scene_, material, places_), surfaces.size(), program.takes_differences(), registers_,
-                     std::span(results_).subspan(begin));
+    scene_->placed().run(program, material, places_, program.takes_differences(), registers_,
+                         std::span(results_).subspan(begin));
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
         surfaces_[surfaces[k]].results = begin + k;
         surfaces_[surfaces[k]].stride = surfaces.size();

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "lobes/material_lobes.h"
+#include "render/placed_meshes.h"
+#include "render/visible_lamps.h"
 #include "shlight/scene.h"
 #include "shlight/types.h"
 #include "tracing/hits.h"
@@ -137,7 +139,7 @@ class CameraSurfaces {
     std::vector<SurfaceLobe> lobes_;
     std::vector<RayHit> met_;
     std::vector<Surface> surfaces_;
-    std::vector<std::uint32_t> order_;
+    std::vector<std::uint32_t> order_, material_of_;
     std::vector<ShadedPlace> places_;
     std::vector<float> results_;
     ShaderProgram::Registers registers_;

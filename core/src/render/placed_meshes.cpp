@@ -222,7 +222,28 @@ bool PlacedMeshes::is_back(const RayHit& hit, const Vec3d& towards_viewer) const
     return (glm::dot(normal, towards_viewer) < 0) != mirrored;
 }
 
-void PlacedMeshes::read(const ShaderInput& input, const std::vector<std::uint32_t>& attributes, int place,
+/// Reads the inputs of one material's program.
+class PlacedMeshes::PlaceReader : public ShaderReader {
+  public:
+    PlaceReader(const PlacedMeshes& placed, const Material& material, std::span<const ShadedPlace> places)
+        : placed_(&placed), material_(&material), places_(places) {}
+
+    void read(const ShaderInput& input, int place, std::size_t first, std::span<float> out) const override {
+        placed_->read(input, *material_, place, places_.subspan(first, out.size()), out);
+    }
+
+  private:
+    const PlacedMeshes* placed_;
+    const Material* material_;
+    std::span<const ShadedPlace> places_;
+};
+
+void PlacedMeshes::run(const ShaderProgram& program, const Material& material, std::span<const ShadedPlace> places,
+                       bool neighbours, ShaderProgram::Registers& registers, std::span<float> results) const {
+    program.evaluate(PlaceReader(*this, material, places), places.size(), neighbours, registers, results);
+}
+
+void PlacedMeshes::read(const ShaderInput& input, const Material& material, int place,
                         std::span<const ShadedPlace> places, std::span<float> out) const {
     const auto fill = [&](const auto& number) {
         std::transform(places.begin(), places.end(), out.begin(), [&](const ShadedPlace& shaded) {
@@ -244,7 +265,7 @@ void PlacedMeshes::read(const ShaderInput& input, const std::vector<std::uint32_
             return fill([&](const auto&, const SurfacePlace& at) { return at.towards_viewer[component]; });
         case ShaderSource::attribute: {
             const std::uint32_t index =
-                input.index < attributes.size() ? attributes[input.index] : MeshShader::kNoAttribute;
+                input.index < material.attributes.size() ? material.attributes[input.index] : MeshShader::kNoAttribute;
             if (index == MeshShader::kNoAttribute) {
                 std::fill(out.begin(), out.end(), component == kAlpha ? 1.0F : 0.0F);
                 return;

@@ -3,6 +3,7 @@
 // Meshes where they stand in a scene: what a ray meets there, as shading wants it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -15,11 +16,49 @@
 #include "render/compiled_mesh.h"
 #include "shlight/mesh.h"
 #include "shlight/ray_tracer.h"
-#include "shlight/scene.h"
+#include "shlight/shader_program.h"
 #include "shlight/surface_point.h"
 #include "shlight/types.h"
 
 namespace shlight {
+
+/// A place on a surface where a shader program runs.
+struct SurfacePlace {
+    RayHit hit;
+    Vec3d position;
+    Vec3d towards_viewer;  ///< unit
+};
+
+/// The same, and the surface's neighbours in the picture (see shader_program.h).
+struct ShadedPlace {
+    /// Its neighbours are in the same place.
+    ShadedPlace(const SurfacePoint& point, const RayHit& hit, const Vec3d& towards_viewer, double length,
+                std::uint32_t depth)
+        : shading_normal(point.shading_normal),
+          geometric_normal(point.geometric_normal),
+          ray_length(length),
+          transparent_depth(depth) {
+        at.fill({hit, point.position, towards_viewer});
+    }
+
+    std::array<SurfacePlace, 3> at;          ///< the hit, to the right, below
+    Vec3d shading_normal, geometric_normal;  ///< at the hit
+    double ray_length;
+    std::uint32_t transparent_depth;
+};
+
+/// Sorts numbers by their keys, and calls f with each run of those whose keys are the same, in the order in which they
+/// were.
+template <class Function>
+void for_each_run(std::span<std::uint32_t> numbers, std::span<const std::uint32_t> keys, const Function& f) {
+    const auto key = [&](std::uint32_t i) { return keys[i]; };
+    std::ranges::stable_sort(numbers, {}, key);
+    for (auto begin = numbers.begin(); begin != numbers.end();) {
+        const auto end = std::ranges::upper_bound(begin, numbers.end(), key(*begin), {}, key);
+        f(std::span<const std::uint32_t>(begin, end));
+        begin = end;
+    }
+}
 
 struct Placement {
     std::uint32_t mesh, number;    // number: of the mesh's instances
@@ -41,15 +80,24 @@ class PlacedMeshes {
     std::span<const std::shared_ptr<const CompiledMesh>> meshes() const { return meshes_; }
     std::span<const Placement> placements() const { return placements_; }
 
-    /// These do what CompiledScene's functions of the same names do.
+    /// Precondition: not hit.missed(); direction is the ray's.
     SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
+    /// The value of Pass::uv, whose last component is 1; 0 on meshes without texture coordinates.
     Vec3d uv(const RayHit& hit) const;
     const Label& label(const RayHit& hit) const;
+    /// The place where another ray meets the plane of a surface, which may lie outside its triangle. The ray is taken
+    /// to be at most twice as long as the hit's. Precondition: as of surface().
     SurfacePlace neighbour(const SurfacePlace& place, const Vec3d& normal, double length, const Ray& ray) const;
-    void read(const ShaderInput& input, const std::vector<std::uint32_t>& attributes, int place,
-              std::span<const ShadedPlace> places, std::span<float> out) const;
+    /// Evaluates a material's program, see ShaderProgram::evaluate().
+    void run(const ShaderProgram& program, const Material& material, std::span<const ShadedPlace> places,
+             bool neighbours, ShaderProgram::Registers& registers, std::span<float> results) const;
 
   private:
+    class PlaceReader;
+
+    /// place: see ShaderReader.
+    void read(const ShaderInput& input, const Material& material, int place, std::span<const ShadedPlace> places,
+              std::span<float> out) const;
     /// The mesh's own, of no particular length; false: it is flat there.
     bool smooth_normal(const RayHit& hit, Vec3d& normal) const;
     /// Corners of the hit triangle in the world.

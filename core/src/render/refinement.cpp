@@ -68,6 +68,19 @@ Refinement::Refinement(int width, int height, const PixelSampling& sampling, boo
         }
     }
     rays_left_ = static_cast<double>(states_.size()) * samples(least_level_);
+    for (int more = -most_level_; more <= most_level_; ++more) {
+        noise_shares_.push_back(std::pow(std::ldexp(1.0, -2 * more), kNoiseDecay));
+    }
+}
+
+/// Calls f with the index of the pixel and of each in the picture that is at most so many columns and rows away.
+template <class Function>
+void Refinement::for_each_around(int column, int row, int reach, const Function& f) const {
+    for (int y = std::max(row - reach, 0); y <= std::min(row + reach, height_ - 1); ++y) {
+        for (int x = std::max(column - reach, 0); x <= std::min(column + reach, width_ - 1); ++x) {
+            f(index(x, y));
+        }
+    }
 }
 
 void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std::span<float> image) {
@@ -182,18 +195,15 @@ double Refinement::squared_error(double variance, int level) const {
 }
 
 double Refinement::shadow_error(int column, int row, int level) const {
-    const double count_here = samples(level);
     double sum = 0;
     int count = 0;
-    for (int y = std::max(row - kNoiseReach, 0); y <= std::min(row + kNoiseReach, height_ - 1); ++y) {
-        for (int x = std::max(column - kNoiseReach, 0); x <= std::min(column + kNoiseReach, width_ - 1); ++x) {
-            const State& state = states_[index(x, y)];
-            if (kept_samples(state.level) > 0) {
-                sum += state.noise * std::pow(samples(state.level) / count_here, kNoiseDecay);
-                ++count;
-            }
+    for_each_around(column, row, kNoiseReach, [&](std::size_t i) {
+        const State& state = states_[i];
+        if (kept_samples(state.level) > 0) {
+            sum += state.noise * noise_shares_[static_cast<std::size_t>(level - state.level + most_level_)];
+            ++count;
         }
-    }
+    });
     return count > 0 ? sum / count : 0.0;
 }
 
@@ -218,8 +228,7 @@ Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float
     if (least_square_ > 0) {  // or else the picture is black
         variance = std::max(variance, mean(Vec3d(state.variance) / scale));
     }
-    const double noise = shadow_error(column, row, level);
-    variance += noise * variance_per_error(level);
+    variance += shadow_error(column, row, level) * variance_per_error(level);
     const int enough = std::max(sufficient_level(variance), level);
     // One ray knows nothing of its pixel, and what is known to need more need not be supposed to.
     if ((enough == level || level == 0) && good_enough_ > 0 && least_square_ > 0) {
@@ -228,37 +237,27 @@ Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float
         supposed =
             squared_error(neighbours_variance(column, row, scale, image), level) * kNeighbourShare / (missed * missed);
     }
+    bool is_one_enough = false;
     if (state.level < 0) {
         const double between = error_between(column, row, image);
         supposed = std::max(between, kEdgeVariance * kNeighbourShare);
         // One ray, which has no noise without a shadow nearby, suffices on a textured surface.
-        if (between >= supposed && is_calm(column, row)) {
-            return {enough, 0, squared_error(variance, level), supposed};
-        }
+        is_one_enough = between >= supposed && is_calm(column, row);
     }
-    const int next = enough > level || supposed > good_enough_ ? level + 1 : enough;
-    return {enough, std::min(next, most_level_), squared_error(variance, level), supposed};
+    const int next = enough > level || supposed > good_enough_ ? std::min(level + 1, most_level_) : enough;
+    return {enough, is_one_enough ? 0 : next, squared_error(variance, level), supposed};
 }
 
 bool Refinement::is_touched(int column, int row) const {
-    for (int y = std::max(row - kNoiseReach, 0); y <= std::min(row + kNoiseReach, height_ - 1); ++y) {
-        for (int x = std::max(column - kNoiseReach, 0); x <= std::min(column + kNoiseReach, width_ - 1); ++x) {
-            if (states_[index(x, y)].merged == round_) {
-                return true;
-            }
-        }
-    }
-    return false;
+    bool touched = false;
+    for_each_around(column, row, kNoiseReach, [&](std::size_t i) { touched = touched || states_[i].merged == round_; });
+    return touched;
 }
 
 bool Refinement::is_calm(int column, int row) const {
     const int reach = kept_samples(states_[index(column, row)].level) == 0 ? 2 * first_step() - 1 : 1;
     bool calm = true;
-    for (int y = std::max(row - reach, 0); y <= std::min(row + reach, height_ - 1); ++y) {
-        for (int x = std::max(column - reach, 0); x <= std::min(column + reach, width_ - 1); ++x) {
-            calm = calm && !states_[index(x, y)].obstructed;
-        }
-    }
+    for_each_around(column, row, reach, [&](std::size_t i) { calm = calm && !states_[i].obstructed; });
     return calm;
 }
 
@@ -277,13 +276,11 @@ RefinementGroup Refinement::unrendered() const {
 double Refinement::error_between(int column, int row, std::span<const float> image) const {
     const Vec3d value = color(image, index(column, row));
     double largest = 0;
-    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, height_ - 1); ++y) {
-        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, width_ - 1); ++x) {
-            const Vec3d other = color(image, index(x, y));
-            const Vec3d scale = other * other + std::max(least_square_, std::numeric_limits<double>::min());
-            largest = std::max(largest, mean((other - value) * (other - value) / scale));
-        }
-    }
+    for_each_around(column, row, 1, [&](std::size_t i) {
+        const Vec3d other = color(image, i);
+        const Vec3d scale = other * other + std::max(least_square_, std::numeric_limits<double>::min());
+        largest = std::max(largest, mean((other - value) * (other - value) / scale));
+    });
     return largest;
 }
 
@@ -291,14 +288,11 @@ double Refinement::neighbours_variance(int column, int row, const Vec3d& scale, 
     const Vec3d value = color(image, index(column, row));
     const Vec3d over_scale = 1.0 / scale;
     double largest = 0;
-    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, height_ - 1); ++y) {
-        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, width_ - 1); ++x) {
-            const std::size_t i = index(x, y);
-            const Vec3d difference = color(image, i) - value;
-            const Vec3d variance = glm::max(Vec3d(states_[i].variance), kEdgeVariance * difference * difference);
-            largest = std::max(largest, mean(variance * over_scale));
-        }
-    }
+    for_each_around(column, row, 1, [&](std::size_t i) {
+        const Vec3d difference = color(image, i) - value;
+        const Vec3d variance = glm::max(Vec3d(states_[i].variance), kEdgeVariance * difference * difference);
+        largest = std::max(largest, mean(variance * over_scale));
+    });
     return largest;
 }
 

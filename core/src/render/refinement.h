@@ -83,6 +83,8 @@ class Refinement {
         double errors = 0, rays_left = 0;
     };
 
+    template <class Function>
+    void for_each_around(int column, int row, int reach, const Function& f) const;
     Row next_of(int row, std::span<const float> image);
     /// Whether rays of the pixel or of those around it were merged since the last round.
     bool is_touched(int column, int row) const;
@@ -107,7 +109,8 @@ class Refinement {
     bool depth_of_field_;
     double least_square_ = 0;  // 0.01 r̄²
     double noise_ = 0, rays_left_ = 0;
-    std::uint16_t round_ = 0;  // which merges since the last call of next_round() belong to
+    std::uint16_t round_ = 0;           // which merges since the last call of next_round() belong to
+    std::vector<double> noise_shares_;  // of shadow rays' squared error: what so many levels more leave of it
     std::vector<State> states_;
 };
 

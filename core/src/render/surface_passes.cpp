@@ -87,7 +87,7 @@ void SurfacePasses::add_first(const Surface& surface, double share, double* pixe
         shlight::add(share * (length > 0 ? sum / length : surface.point.shading_normal), at(Pass::normal, pixel));
     }
     if (has(Pass::uv)) {
-        shlight::add(share * scene_->uv(surface.hit), at(Pass::uv, pixel));
+        shlight::add(share * scene_->placed().uv(surface.hit), at(Pass::uv, pixel));
     }
 }
 
@@ -118,7 +118,7 @@ void SurfacePasses::add_mattes(const Surface& surface, double share, double* pix
             add_to_matte({at(kind, pixel), matte_size_}, identity, share);
         }
     };
-    const Label& object = scene_->object_label(surface.hit);
+    const Label& object = scene_->placed().label(surface.hit);
     add_to(Pass::cryptomatte_object, object.name);
     add_to(Pass::cryptomatte_material, scene_->materials()[surface.point.material].label.name);
     add_to(Pass::cryptomatte_asset, object.asset);
@@ -216,7 +216,7 @@ void SurfacePasses::write_middles(const CameraSurfaces& surfaces, std::size_t ra
             }
         };
         write(Pass::depth, camera_->depth(surface.point.position));
-        write(Pass::object_index, double{scene_->object_label(surface.hit).index});
+        write(Pass::object_index, double{scene_->placed().label(surface.hit).index});
         write(Pass::material_index, double{scene_->materials()[surface.point.material].label.index});
         for (int i = 0; i < 3 && has(Pass::position); ++i) {
             at(Pass::position, pixel)[i] = static_cast<float>(surface.point.position[i] + scene_->origin()[i]);

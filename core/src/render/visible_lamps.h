@@ -24,7 +24,7 @@ class VisibleLamps {
     /// The radiance that the lamps add to a ray, up to a surface at distance `surface`; without a surface up to t_max,
     /// and from suns. Lamps hide neither each other nor anything else. by_group: the radiance of each light group is
     /// added to it, unless it is empty.
-    Rgb radiance(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group) const;
+    Rgb radiance(const Ray& ray, const std::optional<double>& surface, std::span<Rgb> by_group = {}) const;
 
   private:
     std::vector<const Light*> lamps_;
