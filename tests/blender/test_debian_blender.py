@@ -145,12 +145,17 @@ def test_the_menu_of_nodes_is_left_as_it_was(pictures: dict[str, Any]) -> None:
 
 
 def run_in_window(
-    *arguments: str, script: str, folder: Path, after: tuple[str, ...] = (), seconds: float = 240
+    *arguments: str,
+    script: str,
+    folder: Path,
+    size: tuple[int, int] = (1280, 800),
+    after: tuple[str, ...] = (),
+    seconds: float = 240,
 ) -> tuple[int, str]:
-    """Runs Blender with a window; returns its exit code and what it says."""
+    """Runs Blender with a window of this size; returns its exit code and what it says."""
     if shutil.which("xvfb-run") is None:
         pytest.skip("xvfb-run is not installed")
-    window = ("-noaudio", "--window-geometry", "0", "0", "1280", "800", *arguments)
+    window = ("-noaudio", "--window-geometry", "0", "0", *map(str, size), *arguments)
     screen = ("xvfb-run", "-a", "-s", "-screen 0 1280x800x24 +extension GLX")
     done = run_blender(*window, script=script, folder=folder, before=screen, after=after, seconds=seconds)
     return done.returncode, spoken(done)
@@ -232,7 +237,8 @@ PARTS = {
 
 def test_the_rendered_viewport(tmp_path: Path) -> None:
     """It follows whatever changes, exports no more than that, and shows what a final render shows."""
-    code, output = run_in_window(script="debian_viewport.py", folder=tmp_path)
+    # Small, since each change draws a picture of the whole viewport.
+    code, output = run_in_window(script="debian_viewport.py", folder=tmp_path, size=(640, 480))
     assert code == 0, output
     assert "Traceback" not in output, output
     found = json.loads((tmp_path / "found.json").read_text())

@@ -31,7 +31,7 @@ COMMAND = [
     "import sys; from shlight_blender.survey import command; command.WORKER = 'faulty_worker'; "
     "sys.exit(command.main(sys.argv[1:]))",
 ]
-TIME_LIMIT = 8  # s: several times what a file takes
+TIME_LIMIT = 15  # s: several times what a file takes
 
 # A worker that crashes or hangs where shlight renders a file of such a name.
 FAULTY_WORKER = """

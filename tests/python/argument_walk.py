@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Calls public functions with each argument replaced by what a stranger may type, and says what came of it.
 
-Run as a script with the name of one call: a call that ends the process is seen by whoever ran it.
+Run as a script with the names of calls: one that ends the process is seen by whoever ran it.
 """
 
 from __future__ import annotations
 
 import contextlib
+import itertools
 import reprlib
 import sys
 import tempfile
@@ -298,10 +299,9 @@ def printable(value: Any) -> bool:
 
 def main() -> None:
     """Problems to standard output; to standard error what is tried, so that its last line is what ended the process."""
-    call = sys.argv[1]
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
-        for name in CALLS[call][1]:
-            for value in WRONG:
+        for call in sys.argv[1:]:
+            for name, value in itertools.product(CALLS[call][1], WRONG):
                 shown = f"{call}({name}={reprlib.repr(value) if printable(value) else type(value)})"
                 print(shown, file=sys.stderr, flush=True)
                 problem = complaint(call, name, value)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -41,8 +42,14 @@ def floor(bsdf: Any, light: str, indices: Any = None) -> Any:
     return shlight.render(scene, 48, 32, pixel_samples=4, max_samples=4, shadow_rays=0)
 
 
-@pytest.mark.parametrize("ior", [None, 1.5])
-@pytest.mark.parametrize("light", ["sphere", "polygon", "point", "environment"])
+@pytest.mark.parametrize(
+    ("light", "ior"),
+    [
+        *itertools.product(["sphere", "polygon", "point"], [None, 1.5]),
+        pytest.param("environment", None, marks=pytest.mark.slow),
+        ("environment", 1.5),
+    ],
+)
 def test_a_width_that_varies(light: str, ior: float | None) -> None:
     base = shlight.Bsdf.lambert((0.1, 0.2, 0.3))
     f0 = (0.5, 0.3, 0.1)
