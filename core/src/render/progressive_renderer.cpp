@@ -111,7 +111,7 @@ bool ProgressiveRenderer::first_pass(const Watch& caller) {
             show_now(caller);
         }
     }
-    seconds_per_first_ray_ = (seconds() - begin) / std::max(rays_done(), 1.0);
+    seconds_per_first_ray_ = (seconds() - begin) / std::max(rays_done_.load(), 1.0);
     const std::lock_guard lock(telling_);
     told_.passes = 1;
     return goes_on && !is_left_;
@@ -121,9 +121,9 @@ std::vector<RefinementGroup> ProgressiveRenderer::judge(const Stopped& stopped) 
     const double begin = seconds();
     auto groups = refinement_.next_round(image_, picture_->settings.threads, stopped);
     judge_seconds_ = seconds() - begin;
+    rays_left_ = refinement_.rays_left();
     const std::lock_guard lock(telling_);
     told_.noise = refinement_.noise();
-    work_.left = refinement_.rays_left();
     return groups;
 }
 
@@ -170,24 +170,19 @@ ProgressiveRenderer::Job ProgressiveRenderer::job_of(const RefinementGroup& grou
 }
 
 bool ProgressiveRenderer::run_job(const Job& job, double until, const Stopped& stopped) {
-    {
-        const std::lock_guard lock(telling_);
-        work_.left = std::max(work_.left - job.rays, 0.0);
-        work_.job = job.rays;
-        work_.tasks = std::max<std::size_t>(job.tasks, 1);
-        tasks_done_ = 0;
-    }
+    const double left = std::max(rays_left_ - job.rays, 0.0);
+    rays_left_ = left + job.rays;
+    const double rays_of_task = job.rays / static_cast<double>(std::max<std::size_t>(job.tasks, 1));
     std::atomic<std::size_t> next = 0;  // tasks begin in their order, whatever the scheduler prefers
     parallel_for(job.tasks, picture_->settings.threads, [&](std::size_t) {
         end_if(stopped);
         if (!is_left_ && seconds() <= until) {
             job.task(next++);
-            ++tasks_done_;
+            rays_done_ += rays_of_task;
+            rays_left_ -= rays_of_task;
         }
     });
-    const std::lock_guard lock(telling_);
-    work_.done += work_.job * static_cast<double>(tasks_done_) / static_cast<double>(work_.tasks);
-    work_.job = 0;
+    rays_left_ = left;
     return next == job.tasks;
 }
 
@@ -209,17 +204,9 @@ void ProgressiveRenderer::fill_unrendered() {
     }
 }
 
-double ProgressiveRenderer::rays_done() const {
-    const std::lock_guard lock(telling_);
-    return work_.done + work_.job * static_cast<double>(tasks_done_) / static_cast<double>(work_.tasks);
-}
-
 /// All that is known of rays to come is how long those before them took.
 double ProgressiveRenderer::seconds_left() const {
-    const double done = rays_done();
-    const std::lock_guard lock(telling_);
-    const double rays = work_.done + work_.job + work_.left - done;
-    const double left = done > 0 ? seconds() * rays / done : 0.0;
+    const double left = rays_done_ > 0 ? seconds() * std::max(rays_left_ / rays_done_, 0.0) : 0.0;
     return std::clamp(time_limit() - seconds(), 0.0, left);
 }
 

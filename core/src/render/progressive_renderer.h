@@ -75,14 +75,6 @@ class ProgressiveRenderer {
     double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
     double time_limit() const;
 
-    /// Camera rays as far as they are known.
-    struct Work {
-        double done = 0;  ///< by jobs that have ended
-        double job = 0;   ///< of the one that runs
-        double left = 0;  ///< after it
-        std::size_t tasks = 1;
-    };
-    double rays_done() const;
     double seconds_left() const;
 
     const Picture* picture_;
@@ -98,11 +90,10 @@ class ProgressiveRenderer {
     tbb::enumerable_thread_specific<PixelBatch> batches_;
 
     std::shared_mutex merging_;   // shared by those that write pixels
-    mutable std::mutex telling_;  // guards told_ and work_
+    mutable std::mutex telling_;  // guards told_
     RenderReport told_;
-    Work work_;
-    std::atomic<std::size_t> tasks_done_ = 0;
-    std::atomic<bool> is_complete_ = false;  // whether there is a picture to show
+    std::atomic<double> rays_done_ = 0, rays_left_ = 0;  // camera rays, as far as they are known
+    std::atomic<bool> is_complete_ = false;              // whether there is a picture to show
     std::atomic<bool> wants_show_ = false;
     std::atomic<bool> is_left_ = false;  // by on_update
 
