@@ -121,7 +121,7 @@ std::pair<std::vector<Vec3d>, std::vector<Triangle>> cells(
             const auto first = static_cast<std::uint32_t>(mesh.first.size());
             if (leave_out(row, column)) continue;
             for (const auto& [x, y] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
-                mesh.first.emplace_back((column + x) / double{n}, (row + y) / double{n}, 0.1);
+                mesh.first.emplace_back((column + x) / static_cast<double>(n), (row + y) / static_cast<double>(n), 0.1);
             }
             mesh.second.insert(mesh.second.end(), {{first, first + 1, first + 2}, {first, first + 2, first + 3}});
         }
