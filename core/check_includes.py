@@ -23,8 +23,10 @@ ORDER = [
     "emitters",
     "lights",
     "environment",
+    "camera",
+    "surfaces",
     "lighting",
-    "render",
+    "film",
 ]
 # Public headers that no source of the same name implements.
 WITHOUT_SOURCE = {"surface_point": "tracing", "render_report": "base"}

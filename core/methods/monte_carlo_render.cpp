@@ -14,13 +14,13 @@
 #include "delta_view.h"
 #include "lighting/shadow_ray_spawner.h"
 #include "lights/cap_sampling.h"
-#include "lights/seen_light.h"
+#include "lights/local_light.h"
 #include "random_directions.h"
 #include "random_numbers.h"
-#include "render/placed_meshes.h"
-#include "render/visible_lamps.h"
 #include "shlight/render.h"
 #include "surface_reflection.h"
+#include "surfaces/placed_meshes.h"
+#include "surfaces/visible_lamps.h"
 #include "tracing/hits.h"
 
 namespace shlight::methods {
@@ -225,7 +225,7 @@ void Worker::shade(std::size_t hit) {
     for (const Light& light : picture_->scene.lights()) {
         if (is_delta(light)) {
             shade_by_delta(light, hit);
-        } else if (SeenLight().look(light, hits_.frame[hit], hits_.error[hit])) {
+        } else if (LocalLight().look(light, hits_.frame[hit], hits_.error[hit])) {
             shade(light, hit, reflected);
         }
     }

@@ -10,9 +10,9 @@
 
 #include "base/perpendicular.h"
 #include "kept_region.h"
+#include "lighting/cubature_kernel.h"
 #include "math/gauss_legendre.h"
 #include "method.h"
-#include "lighting/cubature_kernel.h"
 #include "shlight/cap.h"
 
 namespace shlight::methods {

@@ -10,7 +10,7 @@
 
 #include "delta_view.h"
 #include "lights/delta_lights.h"
-#include "lights/seen_light.h"
+#include "lights/local_light.h"
 #include "random_input.h"
 
 namespace shlight {

@@ -11,9 +11,9 @@
 #include <cstdint>
 #include <numbers>
 
+#include "lighting/cubature_kernel.h"
 #include "lobe_truth.h"
 #include "random_input.h"
-#include "lighting/cubature_kernel.h"
 
 namespace shlight {
 namespace {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <vector>
 
+#include "lighting/polygon_rule_kernel.h"
 #include "math/triangle_cubature.h"
 #include "random_input.h"
 #include "regions/spherical_polygon.h"
-#include "lighting/polygon_rule_kernel.h"
 #include "shlight/lobe_shape.h"
 
 namespace shlight {

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "lights/local_light.h"
 #include "lights/profile_rings.h"
-#include "lights/seen_light.h"
 #include "random_input.h"
 #include "shlight/basis.h"
 #include "shlight/cap.h"
@@ -39,7 +39,7 @@ ShadingFrame random_frame(testing::RandomInput& random) {
 }
 
 /// Coefficients of what of the light shines on the hit, by the methods for even lights.
-std::vector<double> truth(const SeenLight& light) {
+std::vector<double> truth(const LocalLight& light) {
     std::vector<double> l(kTerms);
     if (!light.corners().empty()) {
         polygon_coefficients<double>(light.corners(), static_cast<int>(light.corners().size()), kOrder, true, l);
@@ -60,7 +60,7 @@ struct Error {
     double largest, whole;  // of the integrals of the basis over the light; L_00
 };
 
-Error error_of(ProfileRings& rings, const SeenLight& light) {
+Error error_of(ProfileRings& rings, const LocalLight& light) {
     const std::vector<double> expected = truth(light);
     std::vector<double> sums(kTerms), basis(kTerms);
     rings.for_nodes(
@@ -84,7 +84,7 @@ template <class Make>
 void compare(unsigned seed, double known, const Make& make) {
     testing::RandomInput random(seed), focus(seed + 100);
     ProfileRings rings;
-    SeenLight seen_light;
+    LocalLight seen_light;
     int seen = 0, covered = 0;
     for (int i = 0; i < kLights; ++i) {
         const ShadingFrame frame = random_frame(random);
@@ -171,7 +171,7 @@ TEST(ProfileRings, LeaveStretchedConesAndConcavePolygonsToOthers) {
     ProfileRings rings;
     const ShadingFrame frame = shading_frame({}, {0, 0, 1}, {0, 0, 1});
     const auto knows = [&](const Light& light) {
-        SeenLight seen;
+        LocalLight seen;
         EXPECT_TRUE(seen.look(light, frame, 0));
         return rings.reset(seen);
     };

@@ -209,7 +209,7 @@ double distance_from(const Light& light, const Vec3d& p) {
 void expect_met(const Light& light) {
     const ShadingFrame frame = {Vec3d(0), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     LightSampler sampler;
-    SeenLight seen;
+    LocalLight seen;
     ASSERT_TRUE(seen.look(light, frame, 0));
     sampler.reset(seen);
     double weight = 0;

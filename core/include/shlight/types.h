@@ -8,7 +8,6 @@
 //   * order n means the bands l = 0 … n-1, that is n² coefficients at index l² + l + m.
 #pragma once
 
-
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>

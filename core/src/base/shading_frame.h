@@ -23,8 +23,8 @@ struct ShadingFrame {
 /// The frame of a point; normal and towards_viewer are unit vectors.
 ShadingFrame shading_frame(const Vec3d& position, const Vec3d& normal, const Vec3d& towards_viewer);
 
-/// cosθ_o of unit vectors, at least 1e-4. An interpolated normal may turn away from a grazing viewer; the surface is then shaded as
-/// seen at that grazing angle.
+/// cosθ_o of unit vectors, at least 1e-4. An interpolated normal may turn away from a grazing viewer; the surface is
+/// then shaded as seen at that grazing angle.
 float view_cosine(const Vec3d& normal, const Vec3d& towards_viewer);
 
 }  // namespace shlight

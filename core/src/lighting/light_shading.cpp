@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/checks.h"
-#include "lighting/lobe_batch.h"
-#include "lighting/seen_lights.h"
+#include "lighting/lobe_integrator.h"
+#include "lighting/local_lights.h"
 #include "lobes/material_views.h"
 #include "regions/region_checks.h"
 
@@ -155,11 +155,11 @@ class LightShaderWork {
 
     MaterialLobes material_;
     MaterialViews views_;
-    LobeBatch batch_;
+    LobeIntegrator batch_;
     std::vector<double> cosines_;
     std::vector<Rgb> weights_;  // of the lobes at each view, or at all
     std::vector<std::uint32_t> view_of_;
-    SeenLights seen_;
+    LocalLights seen_;
 };
 
 LightShader::LightShader(const Bsdf& bsdf, const ShadeSettings& settings)

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lights/seen_light.h"
+#include "lights/local_light.h"
 
 namespace shlight {
 namespace {

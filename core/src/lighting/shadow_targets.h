@@ -12,7 +12,7 @@
 #include "base/scratch.h"
 #include "lighting/shadow_ray_spawner.h"
 #include "lights/light_sampling.h"
-#include "lights/seen_light.h"
+#include "lights/local_light.h"
 #include "lights/whole_rectangle.h"
 #include "lobes/lobe_rays.h"
 #include "shlight/environment.h"
@@ -105,7 +105,7 @@ class LightTarget : public ShadowTarget {
 
     const Light* light_ = nullptr;
     std::vector<std::optional<WholeRectangle>> whole_;  // as each hit sees it, or else …
-    std::vector<SeenLight> seen_;                       // … the light; may be longer
+    std::vector<LocalLight> seen_;                      // … the light; may be longer
     LightSampler sampler_;
     std::vector<RayHit> met_;          // by the rays: opaque surfaces
     std::vector<Rgb> passed_, sheer_;  // by the rays: share of light that surfaces before let through, faces seen

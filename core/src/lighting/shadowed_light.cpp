@@ -60,7 +60,7 @@ void ShadowedLight::shade_lit(Hits& hits) {
     }
     for (const LitGroup& group : groups_) {
         if (shadows && rays_.any_occluded(group.range)) {
-            hits.obstructed[group.group] = 1;
+            hits.any_occluded[group.group] = 1;
             occluded_.push_back(group);
             ranges_.push_back(group.range);
         } else {

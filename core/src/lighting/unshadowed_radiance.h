@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "emitters/face_radiance.h"
-#include "lighting/lobe_batch.h"
-#include "lighting/seen_lights.h"
+#include "lighting/lobe_integrator.h"
+#include "lighting/local_lights.h"
 #include "lighting/shading_points.h"
 #include "lights/profile_mean.h"
 #include "lobes/material_lobes.h"
@@ -75,8 +75,8 @@ class UnshadowedRadiance {
     std::vector<Rgb> weights_;
     std::vector<float> widths_;
     MaterialViews views_;  // of some points
-    LobeBatch batch_;
-    SeenLights seen_;
+    LobeIntegrator batch_;
+    LocalLights seen_;
     double tolerance_ = 0, allowed_error_ = 0;
     ProfileMean profile_;
     FaceMean face_mean_;

@@ -7,7 +7,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "lights/seen_light.h"
+#include "lights/local_light.h"
 #include "math/light_sample.h"
 #include "shlight/types.h"
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "base/ray_rounding.h"
-#include "lights/seen_light.h"
+#include "lights/local_light.h"
 
 namespace shlight {
 

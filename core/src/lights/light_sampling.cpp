@@ -14,7 +14,7 @@ const Vec3d& normal_of(const Light& light) {
 
 }  // namespace
 
-void LightSampler::reset(const SeenLight& seen) {
+void LightSampler::reset(const LocalLight& seen) {
     const ShadingFrame& frame = seen.frame();
     if (const auto* mesh = std::get_if<MeshLight>(&seen.light())) {
         kind_ = Kind::mesh;
@@ -34,7 +34,7 @@ void LightSampler::reset(const SeenLight& seen) {
     }
 }
 
-void LightSampler::move(const SeenLight& seen) {
+void LightSampler::move(const LocalLight& seen) {
     if (const auto* mesh = std::get_if<MeshLight>(&seen.light())) {
         mesh_.move(*mesh, seen.frame());
     } else {

@@ -13,15 +13,15 @@
 
 #include "lights/cap_sampling.h"
 #include "lights/ellipse_sampling.h"
+#include "lights/local_light.h"
 #include "lights/mesh_sampling.h"
 #include "lights/polygon_sampling.h"
-#include "lights/seen_light.h"
 #include "math/light_sample.h"
 #include "shlight/types.h"
 
 namespace shlight {
 
-/// The sampler of any light with extent. Precondition: SeenLight::look() returned true.
+/// The sampler of any light with extent. Precondition: LocalLight::look() returned true.
 class LightSampler {
     enum class Kind { cap, ellipse, polygon, mesh };
 
@@ -42,9 +42,9 @@ class LightSampler {
     }
 
   public:
-    void reset(const SeenLight& seen);
+    void reset(const LocalLight& seen);
     /// reset() for the same light from a nearby hit; a mesh may keep the contour found for the previous hit.
-    void move(const SeenLight& seen);
+    void move(const LocalLight& seen);
     LightSample sample(const glm::dvec2& point) const {
         return with([&](const auto& sampler) { return sampler.sample(point); });
     }

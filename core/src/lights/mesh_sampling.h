@@ -11,8 +11,8 @@
 #include "emitters/flat_outline.h"
 #include "emitters/mesh_view.h"
 #include "lights/cap_sampling.h"
+#include "lights/local_light.h"
 #include "lights/polygon_sampling.h"
-#include "lights/seen_light.h"
 #include "math/light_sample.h"
 #include "shlight/types.h"
 

@@ -11,8 +11,8 @@
 #pragma once
 
 #include "lights/light_sampling.h"
+#include "lights/local_light.h"
 #include "lights/profile_rings.h"
-#include "lights/seen_light.h"
 #include "shlight/light.h"
 #include "shlight/lobe_shape.h"
 
@@ -46,7 +46,7 @@ class ProfileMean {
     void for_light_nodes(int points, const Visit& visit);
     void add(const Reflection& reflection, const Vec3d& direction, double weight, double factor, Sums& sums) const;
 
-    SeenLight seen_;
+    LocalLight seen_;
     LightSampler sampler_;
     ProfileRings rings_;
     bool has_rings_ = false;

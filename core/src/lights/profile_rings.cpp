@@ -137,7 +137,7 @@ void ProfileRings::Disk::add_cuts(double circle, std::vector<double>& cuts) cons
     }
 }
 
-bool ProfileRings::reset(const SeenLight& seen) {
+bool ProfileRings::reset(const LocalLight& seen) {
     sides_.clear();
     corner_sides_ = 0;
     disk_.reset();

@@ -14,7 +14,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 
-#include "lights/seen_light.h"
+#include "lights/local_light.h"
 #include "math/gauss_legendre.h"
 #include "shlight/disk.h"
 #include "shlight/types.h"
@@ -27,7 +27,7 @@ class ProfileRings {
     /// False, and no other function may be called, for lights that this rule does not support: stretched cones, whose
     /// axis is not an axis in world space, tiny lights, and lights that are neither caps, convex polygons nor disks. A
     /// rectangle or disk with a spread is reduced to the part that shines on the hit.
-    bool reset(const SeenLight& seen);
+    bool reset(const LocalLight& seen);
 
     /// Adds ends of pieces on both sides of a unit direction of the shading frame, at multiples of `width` [rad]: for a
     /// lobe that is narrower than the light. Valid until the next reset().

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <variant>
 
-#include "lights/seen_light.h"
+#include "lights/local_light.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -16,7 +16,7 @@ void Hits::clear() {
     of_pixel.clear();
     noise.clear();
     shared_noise.clear();
-    obstructed.clear();
+    any_occluded.clear();
     pixel_begin.assign(1, 0);
 }
 

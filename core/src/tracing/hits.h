@@ -38,7 +38,7 @@ struct Hits {
     std::vector<Rgb> noise;               ///< the part of its variance that comes from shadow rays
     /// For each pixel the variance of its sum of radiance from shadow rays that its hits share.
     std::vector<Rgb> shared_noise;
-    std::vector<std::uint8_t> obstructed;        ///< by pixel: whether any shadow ray has met something
+    std::vector<std::uint8_t> any_occluded;      ///< by pixel: whether any shadow ray has met something
     std::vector<std::size_t> pixel_begin = {0};  ///< pixel p has the hits pixel_begin[p] … pixel_begin[p + 1] - 1
 
     std::size_t size() const { return frame.size(); }
@@ -68,12 +68,12 @@ struct Hits {
     void end_pixel() {
         pixel_begin.push_back(size());
         shared_noise.emplace_back(0);
-        obstructed.push_back(0);
+        any_occluded.push_back(0);
     }
     /// Adds the variance of a pixel's shared shadow rays, and whether any was blocked.
     void add_shared(std::size_t pixel, const Rgb& variance, bool any_obstructed) {
         shared_noise[pixel] += variance;
-        obstructed[pixel] |= any_obstructed ? 1 : 0;
+        any_occluded[pixel] |= any_obstructed ? 1 : 0;
     }
 };
 

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "base/checks.h"
-#include "render/pixel_batch.h"
-#include "render/progressive_renderer.h"
-#include "render/refinement.h"
+#include "film/pixel_batch.h"
+#include "film/progressive_renderer.h"
+#include "film/refinement.h"
 #include "shlight/sampling.h"
 
 namespace shlight {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render/pixel_order.h"
+#include "film/pixel_order.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render/refinement.h"
+#include "film/refinement.h"
 
 #include <algorithm>
 #include <bit>
@@ -117,7 +117,7 @@ void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std
              0,
              static_cast<std::int16_t>(level),
              round_,
-             state.obstructed || sums.obstructed,
+             state.any_occluded || sums.any_occluded,
              false};
 }
 
@@ -257,7 +257,7 @@ bool Refinement::is_touched(int column, int row) const {
 bool Refinement::is_calm(int column, int row) const {
     const int reach = kept_samples(states_[index(column, row)].level) == 0 ? 2 * first_step() - 1 : 1;
     bool calm = true;
-    for_each_around(column, row, reach, [&](std::size_t i) { calm = calm && !states_[i].obstructed; });
+    for_each_around(column, row, reach, [&](std::size_t i) { calm = calm && !states_[i].any_occluded; });
     return calm;
 }
 

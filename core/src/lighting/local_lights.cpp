@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lighting/seen_lights.h"
+#include "lighting/local_lights.h"
 
 #include <algorithm>
 #include <numeric>
@@ -20,7 +20,7 @@ constexpr double kDiskTolerance = 1e-4;
 
 }  // namespace
 
-void SeenLights::clear() {
+void LocalLights::clear() {
     given_ = Given::none;
     caps_.clear();
     cap_numbers_.clear();
@@ -31,8 +31,8 @@ void SeenLights::clear() {
     holds_all_ = false;
 }
 
-void SeenLights::look(const Light& light, const ShadingFrame& frame, double error, double tolerance,
-                      std::uint32_t number) {
+void LocalLights::look(const Light& light, const ShadingFrame& frame, double error, double tolerance,
+                       std::uint32_t number) {
     if (const auto* mesh = std::get_if<MeshLight>(&light)) {
         look_at(*mesh, frame, tolerance, number);
     } else if (!seen_.look(light, frame, error)) {
@@ -49,7 +49,7 @@ void SeenLights::look(const Light& light, const ShadingFrame& frame, double erro
     }
 }
 
-void SeenLights::look_at(const MeshLight& light, const ShadingFrame& frame, double tolerance, std::uint32_t number) {
+void LocalLights::look_at(const MeshLight& light, const ShadingFrame& frame, double tolerance, std::uint32_t number) {
     const std::size_t first = vertices_.size();
     // The tolerance is relative to the emitter's light, which from afar is little of a surrounding surface's.
     const double share = shown_share(*light.shape, glm::length(light.shape->center - frame.origin));
@@ -76,7 +76,7 @@ void SeenLights::look_at(const MeshLight& light, const ShadingFrame& frame, doub
     }
 }
 
-void SeenLights::add_polygon(std::size_t first, std::uint32_t number, bool filled_up) {
+void LocalLights::add_polygon(std::size_t first, std::uint32_t number, bool filled_up) {
     const std::size_t count = vertices_.size() - first;
     const std::size_t size = filled_up ? (count + kSizeStep - 1) / kSizeStep * kSizeStep : count;
     holds_all_ = false;
@@ -84,7 +84,7 @@ void SeenLights::add_polygon(std::size_t first, std::uint32_t number, bool fille
                          static_cast<std::uint32_t>(size), number});
 }
 
-void SeenLights::add_disk(const Ellipse& disk, std::uint32_t number) {
+void LocalLights::add_disk(const Ellipse& disk, std::uint32_t number) {
     const SphericalEllipse ellipse(disk, true);
     if (!ellipse.empty()) {
         holds_all_ = false;
@@ -93,23 +93,23 @@ void SeenLights::add_disk(const Ellipse& disk, std::uint32_t number) {
     }
 }
 
-void SeenLights::set_spheres(std::span<const Vec3f> centers, const float* radii) {
+void LocalLights::set_spheres(std::span<const Vec3f> centers, const float* radii) {
     clear();
     given_ = Given::spheres;
     float_centers_ = centers;
     float_radii_ = radii;
 }
 
-void SeenLights::set_spheres(std::span<const Vec3d> centers, const double* radii) {
+void LocalLights::set_spheres(std::span<const Vec3d> centers, const double* radii) {
     clear();
     given_ = Given::spheres;
     float_centers_ = {};
     circles_.set_spheres(centers, radii);
 }
 
-void SeenLights::shade_spheres(LobeViews& lobe, std::span<const std::uint32_t> view_of, bool with_statistics,
-                               LobeBatch& batch) {
-    if (!float_centers_.empty() && LobeBatch::shades_alike(lobe)) {
+void LocalLights::shade_spheres(LobeViews& lobe, std::span<const std::uint32_t> view_of, bool with_statistics,
+                                LobeIntegrator& batch) {
+    if (!float_centers_.empty() && LobeIntegrator::shades_alike(lobe)) {
         batch.shade(lobe, SphereArrays{float_centers_.data(), float_radii_}, view_of, with_statistics);
         return;
     }
@@ -121,7 +121,7 @@ void SeenLights::shade_spheres(LobeViews& lobe, std::span<const std::uint32_t> v
 }
 
 template <class T>
-void SeenLights::set_polygons(std::span<const Vec3<T>> vertices, std::size_t vertex_count) {
+void LocalLights::set_polygons(std::span<const Vec3<T>> vertices, std::size_t vertex_count) {
     clear();
     gathered_.clear(vertex_count);
     gathered_.append(vertices.data(), vertices.size() / vertex_count);
@@ -130,7 +130,7 @@ void SeenLights::set_polygons(std::span<const Vec3<T>> vertices, std::size_t ver
 }
 
 /// Finds the circles of spheres in lanes.
-void SeenLights::find_circles() {
+void LocalLights::find_circles() {
     if (caps_.empty()) {
         return;
     }
@@ -150,8 +150,8 @@ void SeenLights::find_circles() {
     caps_.clear();  // the circles stand for them from now on
 }
 
-std::uint32_t SeenLights::size_of(const Polygon& polygon, const LobeViews& lobe, std::span<const std::uint32_t> view_of,
-                                  double tolerance) const {
+std::uint32_t LocalLights::size_of(const Polygon& polygon, const LobeViews& lobe,
+                                   std::span<const std::uint32_t> view_of, double tolerance) const {
     if (polygon.count > 0) {
         return polygon.size;
     }
@@ -164,7 +164,7 @@ std::uint32_t SeenLights::size_of(const Polygon& polygon, const LobeViews& lobe,
                                                         std::min(tolerance, kDiskTolerance)));
 }
 
-void SeenLights::sort(const LobeViews& lobe, std::span<const std::uint32_t> view_of, double tolerance) {
+void LocalLights::sort(const LobeViews& lobe, std::span<const std::uint32_t> view_of, double tolerance) {
     sizes_.clear();
     for (const Polygon& polygon : polygons_) {
         sizes_.push_back(size_of(polygon, lobe, view_of, tolerance));
@@ -177,7 +177,7 @@ void SeenLights::sort(const LobeViews& lobe, std::span<const std::uint32_t> view
     }
 }
 
-std::size_t SeenLights::gather(std::size_t first) {
+std::size_t LocalLights::gather(std::size_t first) {
     const std::uint32_t size = sizes_[order_[first]];
     gathered_.clear(size);
     numbers_.clear();
@@ -194,7 +194,7 @@ std::size_t SeenLights::gather(std::size_t first) {
     return first;
 }
 
-void SeenLights::append_filled_up(const Polygon& polygon, std::uint32_t size) {
+void LocalLights::append_filled_up(const Polygon& polygon, std::uint32_t size) {
     corners_.clear();
     if (polygon.count == 0) {
         append_disk_polygon(disks_[polygon.first], static_cast<int>(size), corners_);
@@ -206,8 +206,8 @@ void SeenLights::append_filled_up(const Polygon& polygon, std::uint32_t size) {
     gathered_.append(corners_.data(), 1);
 }
 
-std::span<const std::uint32_t> SeenLights::views(std::span<const std::uint32_t> numbers,
-                                                 std::span<const std::uint32_t> view_of) {
+std::span<const std::uint32_t> LocalLights::views(std::span<const std::uint32_t> numbers,
+                                                  std::span<const std::uint32_t> view_of) {
     views_.clear();
     for (const std::uint32_t number : numbers) {
         views_.push_back(view_of[number]);
@@ -215,7 +215,7 @@ std::span<const std::uint32_t> SeenLights::views(std::span<const std::uint32_t> 
     return views_;
 }
 
-template void SeenLights::set_polygons(std::span<const Vec3<float>>, std::size_t);
-template void SeenLights::set_polygons(std::span<const Vec3<double>>, std::size_t);
+template void LocalLights::set_polygons(std::span<const Vec3<float>>, std::size_t);
+template void LocalLights::set_polygons(std::span<const Vec3<double>>, std::size_t);
 
 }  // namespace shlight

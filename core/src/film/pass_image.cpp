@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render/pass_image.h"
+#include "film/pass_image.h"
 
 #include <algorithm>
 #include <array>

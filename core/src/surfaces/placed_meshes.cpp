@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render/placed_meshes.h"
+#include "surfaces/placed_meshes.h"
 
 #include <algorithm>
 #include <array>

@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "film/surface_passes.h"
 #include "lighting/direct_lighting.h"
-#include "render/camera_surfaces.h"
-#include "render/surface_passes.h"
 #include "shlight/camera.h"
 #include "shlight/render.h"
 #include "shlight/scene.h"
+#include "surfaces/camera_surfaces.h"
 #include "tracing/hits.h"
 
 namespace shlight {
@@ -33,7 +33,7 @@ struct PixelSums {
     Vec3d noise{0};                ///< that part
     Vec3d shared_noise{0};         ///< the variance of `radiance` by shadow rays that camera rays have in common
     Vec3d early{0};                ///< radiance of the camera rays in the first half of all that the pixel then has
-    bool obstructed = false;       ///< whether any shadow ray has met something
+    bool any_occluded = false;     ///< whether any shadow ray has met something
     Vec3d along_x{0}, along_y{0};  ///< of radiance times the ray's distance from the pixel's centre
 
     /// Variance over the pixel of what is not linear in the place: rays in even number, spread evenly, average that

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "lobes/material_lobes.h"
-#include "render/placed_meshes.h"
-#include "render/visible_lamps.h"
 #include "shlight/scene.h"
 #include "shlight/types.h"
+#include "surfaces/placed_meshes.h"
+#include "surfaces/visible_lamps.h"
 #include "tracing/hits.h"
 
 namespace shlight {

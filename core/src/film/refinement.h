@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "render/pixel_batch.h"
+#include "film/pixel_batch.h"
 
 namespace shlight {
 
@@ -64,7 +64,7 @@ class Refinement {
         float error = 0;         // squared; as it was when a round looked at it
         std::int16_t level = -1;
         std::uint16_t merged = 0;  // the number of the round
-        bool obstructed = false;
+        bool any_occluded = false;
         bool has_enough = false;  // when a round looked at it
     };
     /// The level that is known to do, and the next one, which may be higher for what is only supposed.

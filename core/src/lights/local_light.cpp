@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lights/seen_light.h"
+#include "lights/local_light.h"
 
 #include <algorithm>
 #include <cmath>
@@ -225,7 +225,7 @@ ProfileView::ProfileView(const Light& light, const ShadingFrame& frame) {
     range_ = profile_range(profile, -bounds.towards, bounds.half_angle);
 }
 
-bool SeenLight::look_at(const PolygonLight& light) {
+bool LocalLight::look_at(const PolygonLight& light) {
     const std::optional<LitEdges> edges = lit_edges(light, frame_->origin);
     if ((edges && edges->empty()) ||
         !is_lit_side(light, glm::dot(light.normal, frame_->origin - light.vertices[0]), error_)) {
@@ -246,7 +246,7 @@ bool SeenLight::look_at(const PolygonLight& light) {
     return above;
 }
 
-bool SeenLight::look_at(const DiskLight& light) {
+bool LocalLight::look_at(const DiskLight& light) {
     if (!is_lit_side(light, glm::dot(light.normal, frame_->origin - light.center), error_)) {
         return false;
     }
@@ -261,7 +261,7 @@ bool SeenLight::look_at(const DiskLight& light) {
     return true;
 }
 
-bool SeenLight::look(const Light& light, const ShadingFrame& frame, double error) {
+bool LocalLight::look(const Light& light, const ShadingFrame& frame, double error) {
     light_ = &light;
     frame_ = &frame;
     error_ = error;

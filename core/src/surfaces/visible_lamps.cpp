@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render/visible_lamps.h"
+#include "surfaces/visible_lamps.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "render/surface_passes.h"
+#include "film/surface_passes.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "render/pass_image.h"
+#include "film/pass_image.h"
 
 namespace shlight {
 namespace {

@@ -23,7 +23,7 @@ namespace shlight {
 enum class LobeMethod { nothing, mirror, harmonics, cubature };
 
 /// Keeps its memory from call to call; one per thread.
-class LobeBatch {
+class LobeIntegrator {
   public:
     /// SphericalCap i, clipped by the horizon, is seen by view view_of[i]. with_statistics: whether anything but
     /// values() will be asked for.

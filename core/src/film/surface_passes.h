@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "lobes/albedo_table.h"
-#include "render/camera_surfaces.h"
 #include "shlight/camera.h"
 #include "shlight/render_passes.h"
 #include "shlight/scene.h"
+#include "surfaces/camera_surfaces.h"
 
 namespace shlight {
 

@@ -13,12 +13,12 @@
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 
-#include "render/compiled_mesh.h"
 #include "shlight/mesh.h"
 #include "shlight/ray_tracer.h"
 #include "shlight/shader_program.h"
 #include "shlight/surface_point.h"
 #include "shlight/types.h"
+#include "surfaces/compiled_mesh.h"
 
 namespace shlight {
 

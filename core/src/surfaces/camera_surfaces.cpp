@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render/camera_surfaces.h"
+#include "surfaces/camera_surfaces.h"
 
 #include <algorithm>
 #include <cmath>

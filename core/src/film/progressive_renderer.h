@@ -15,10 +15,10 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include "render/pass_image.h"
-#include "render/pixel_batch.h"
-#include "render/pixel_order.h"
-#include "render/refinement.h"
+#include "film/pass_image.h"
+#include "film/pixel_batch.h"
+#include "film/pixel_order.h"
+#include "film/refinement.h"
 #include "shlight/parallel.h"
 #include "shlight/render.h"
 

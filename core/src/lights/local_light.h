@@ -61,7 +61,7 @@ class ProfileView {
 
 /// A light with extent in the frame of a hit: computed once, then read by shading, profiles and shadow rays. Keeps
 /// pointers to the light and the frame. Memory is reused from light to light.
-class SeenLight {
+class LocalLight {
   public:
     /// Returns whether the light shines on the hit: the hit lies off a polygon's or disk's plane on an emitting side,
     /// some of the light is above the horizon, and its profile is not 0 here. A hit in the plane, within its error, is

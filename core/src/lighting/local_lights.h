@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Lights as views see them, each in the shading frame of its view, in the form that LobeBatch reads: caps as circles,
-// all else as polygons, those with equally many vertices together.
+// Lights as views see them, each in the shading frame of its view, in the form that LobeIntegrator reads: caps as
+// circles, all else as polygons, those with equally many vertices together.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "emitters/mesh_view.h"
-#include "lighting/lobe_batch.h"
-#include "lights/seen_light.h"
+#include "lighting/lobe_integrator.h"
+#include "lights/local_light.h"
 #include "lobes/material_views.h"
 #include "regions/cap_arrays.h"
 #include "regions/polygon_batch.h"
@@ -20,7 +20,7 @@
 namespace shlight {
 
 /// Keeps its memory from call to call; one per thread.
-class SeenLights {
+class LocalLights {
   public:
     void clear();
     /// Adds what a hit sees of a light, which may be nothing, or several faces of a mesh. number: what the caller knows
@@ -42,7 +42,7 @@ class SeenLights {
     /// tolerance: of the polygon that stands for a disk.
     template <class Visit>
     void shade(LobeViews& lobe, std::span<const std::uint32_t> view_of, double tolerance, bool with_statistics,
-               LobeBatch& batch, const Visit& visit) {
+               LobeIntegrator& batch, const Visit& visit) {
         if (given_ == Given::spheres) {
             shade_spheres(lobe, view_of, with_statistics, batch);
             visit(std::span<const std::uint32_t>());
@@ -79,7 +79,8 @@ class SeenLights {
     /// All lights of one kind that came at once.
     enum class Given { none, spheres, polygons };
 
-    void shade_spheres(LobeViews& lobe, std::span<const std::uint32_t> view_of, bool with_statistics, LobeBatch& batch);
+    void shade_spheres(LobeViews& lobe, std::span<const std::uint32_t> view_of, bool with_statistics,
+                       LobeIntegrator& batch);
     void look_at(const MeshLight& light, const ShadingFrame& frame, double tolerance, std::uint32_t number);
     /// The vertices from `first` on. filled_up: so that few sizes occur.
     void add_polygon(std::size_t first, std::uint32_t number, bool filled_up);
@@ -94,7 +95,7 @@ class SeenLights {
     std::span<const std::uint32_t> views(std::span<const std::uint32_t> numbers,
                                          std::span<const std::uint32_t> view_of);
 
-    SeenLight seen_;
+    LocalLight seen_;
     Given given_ = Given::none;
     std::vector<CapView> caps_;
     std::vector<std::uint32_t> cap_numbers_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render/compiled_mesh.h"
+#include "surfaces/compiled_mesh.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render/progressive_renderer.h"
+#include "film/progressive_renderer.h"
 
 #include <algorithm>
 #include <limits>

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "render/pixel_batch.h"
-#include "render/refinement.h"
+#include "film/pixel_batch.h"
+#include "film/refinement.h"
 
 namespace shlight {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render/pixel_batch.h"
+#include "film/pixel_batch.h"
 
 #include <algorithm>
 #include <array>
@@ -259,7 +259,7 @@ void PixelBatch::add_up(const SampleRange& samples, std::uint32_t second_half, s
                             rays_[ray].sample < second_half);
         }
         sums[pixel].rays += samples.count;
-        sums[pixel].obstructed = sums[pixel].obstructed || hits_.obstructed[pixel] != 0;
+        sums[pixel].any_occluded = sums[pixel].any_occluded || hits_.any_occluded[pixel] != 0;
         sums[pixel].shared_noise += glm::min(Vec3d(hits_.shared_noise[pixel]), kBrightestRay * kBrightestRay);
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lighting/lobe_batch.h"
+#include "lighting/lobe_integrator.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,35 +39,35 @@ void without_ringing(std::span<float> values) {
 
 }  // namespace
 
-void LobeBatch::shade(LobeViews& lobe, const CapArrays& circles, std::span<const std::uint32_t> view_of,
-                      bool with_statistics) {
+void LobeIntegrator::shade(LobeViews& lobe, const CapArrays& circles, std::span<const std::uint32_t> view_of,
+                           bool with_statistics) {
     shade_any(lobe, circles, view_of, with_statistics);
 }
 
-void LobeBatch::shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of,
-                      bool with_statistics) {
+void LobeIntegrator::shade(LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of,
+                           bool with_statistics) {
     shade_any(lobe, polygons, view_of, with_statistics);
 }
 
-void LobeBatch::shade(LobeViews& lobe, const SphereArrays& spheres, std::span<const std::uint32_t> view_of,
-                      bool with_statistics) {
+void LobeIntegrator::shade(LobeViews& lobe, const SphereArrays& spheres, std::span<const std::uint32_t> view_of,
+                           bool with_statistics) {
     begin(lobe, view_of.size());
     shade_alike(lobe, spheres, view_of, with_statistics);
 }
 
-bool LobeBatch::shades_alike(const LobeViews& lobe) {
+bool LobeIntegrator::shades_alike(const LobeViews& lobe) {
     return !lobe.chooses() && !is_mirror(lobe.shape()) && !lobe.any_black();
 }
 
-void LobeBatch::begin(const LobeViews& lobe, std::size_t count) {
+void LobeIntegrator::begin(const LobeViews& lobe, std::size_t count) {
     values_.resize(count);
     efforts_.resize(count);
     same_lobe_ = shades_alike(lobe);
 }
 
 template <class Lights>
-void LobeBatch::shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of,
-                          bool with_statistics) {
+void LobeIntegrator::shade_any(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of,
+                               bool with_statistics) {
     begin(lobe, view_of.size());
     if (view_of.empty()) {
         return;
@@ -80,8 +80,8 @@ void LobeBatch::shade_any(LobeViews& lobe, Lights& lights, std::span<const std::
 }
 
 template <class Lights>
-void LobeBatch::shade_alike(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of,
-                            bool with_statistics) {
+void LobeIntegrator::shade_alike(LobeViews& lobe, const Lights& lights, std::span<const std::uint32_t> view_of,
+                                 bool with_statistics) {
     const std::size_t count = view_of.size();
     if (const std::size_t known = all_.size(); known < count) {
         all_.resize(count);
@@ -99,7 +99,7 @@ void LobeBatch::shade_alike(LobeViews& lobe, const Lights& lights, std::span<con
 }
 
 template <class Lights>
-void LobeBatch::shade_sorted(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of) {
+void LobeIntegrator::shade_sorted(LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of) {
     std::fill(values_.begin(), values_.end(), 0.0F);
     std::fill(efforts_.begin(), efforts_.end(), 0);
     find_keys(lobe, lights, view_of);
@@ -124,7 +124,7 @@ void LobeBatch::shade_sorted(LobeViews& lobe, Lights& lights, std::span<const st
     }
 }
 
-LobeMethod LobeBatch::method(std::size_t light) const {
+LobeMethod LobeIntegrator::method(std::size_t light) const {
     if (same_lobe_) {
         return efforts_[light] > 0 ? LobeMethod::harmonics : LobeMethod::nothing;
     }
@@ -135,7 +135,7 @@ LobeMethod LobeBatch::method(std::size_t light) const {
                               : LobeMethod::cubature;
 }
 
-bool LobeBatch::within_tolerance(const LobeViews& lobe, std::size_t light, std::size_t view) const {
+bool LobeIntegrator::within_tolerance(const LobeViews& lobe, std::size_t light, std::size_t view) const {
     switch (method(light)) {
         case LobeMethod::nothing:
         case LobeMethod::mirror:
@@ -148,23 +148,23 @@ bool LobeBatch::within_tolerance(const LobeViews& lobe, std::size_t light, std::
     return true;
 }
 
-bool LobeBatch::lies_below(const CapArrays& circles, std::size_t light) {
+bool LobeIntegrator::lies_below(const CapArrays& circles, std::size_t light) {
     return circles.z[light] <= -circles.sine[light];
 }
 
-bool LobeBatch::lies_below(const SphereArrays& spheres, std::size_t light) {
+bool LobeIntegrator::lies_below(const SphereArrays& spheres, std::size_t light) {
     return spheres.centers[light].z <= -spheres.radii[light];
 }
 
-bool LobeBatch::lies_below(const PolygonBatch& polygons, std::size_t light) {
+bool LobeIntegrator::lies_below(const PolygonBatch& polygons, std::size_t light) {
     return polygons.lies_below(light);
 }
 
-bool LobeBatch::shows_mirrored(const CapArrays& circles, std::size_t light, const Vec3d& direction) {
+bool LobeIntegrator::shows_mirrored(const CapArrays& circles, std::size_t light, const Vec3d& direction) {
     return glm::dot(direction, axis_of(circles, light)) >= circles.cosine[light];
 }
 
-bool LobeBatch::shows_mirrored(const PolygonBatch& polygons, std::size_t light, const Vec3d& direction) {
+bool LobeIntegrator::shows_mirrored(const PolygonBatch& polygons, std::size_t light, const Vec3d& direction) {
     // The winding of the outline about the direction, as angles between neighbouring vertices.
     const SphericalPolygon polygon(polygons.polygon(light), true);
     const std::vector<Vec3d>& v = polygon.directions();
@@ -177,17 +177,19 @@ bool LobeBatch::shows_mirrored(const PolygonBatch& polygons, std::size_t light, 
     return winding > 1 && std::any_of(v.begin(), v.end(), [&](const Vec3d& d) { return glm::dot(d, direction) > 0; });
 }
 
-void LobeBatch::choose_rules(const LobeViews& lobe, const CapArrays& circles, std::span<const std::uint32_t> view_of) {
+void LobeIntegrator::choose_rules(const LobeViews& lobe, const CapArrays& circles,
+                                  std::span<const std::uint32_t> view_of) {
     choose_cap_rules(lobe.widths(), circles, lobe.positions().directions(), lobe.tolerances(), view_of, rules_);
 }
 
-void LobeBatch::choose_rules(const LobeViews& lobe, PolygonBatch& polygons, std::span<const std::uint32_t> view_of) {
+void LobeIntegrator::choose_rules(const LobeViews& lobe, PolygonBatch& polygons,
+                                  std::span<const std::uint32_t> view_of) {
     choose_polygon_rules(lobe.widths(), polygons.views(), lobe.positions().directions(), lobe.tolerances(), view_of,
                          rules_);
 }
 
 template <class Lights>
-void LobeBatch::find_keys(const LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of) {
+void LobeIntegrator::find_keys(const LobeViews& lobe, Lights& lights, std::span<const std::uint32_t> view_of) {
     keys_.resize(view_of.size());
     if (!lobe.chooses()) {
         const auto key = is_mirror(lobe.shape()) ? kMirror : static_cast<Key>(kHarmonics + lobe.order(0));
@@ -209,7 +211,7 @@ void LobeBatch::find_keys(const LobeViews& lobe, Lights& lights, std::span<const
     }
 }
 
-void LobeBatch::sort() {
+void LobeIntegrator::sort() {
     begin_.fill(0);
     for (const Key key : keys_) {
         ++begin_[key + std::size_t{1}];
@@ -223,7 +225,7 @@ void LobeBatch::sort() {
 }
 
 template <class Lights>
-void LobeBatch::integrate(LobeViews& lobe, Lights& lights, Key key) {
+void LobeIntegrator::integrate(LobeViews& lobe, Lights& lights, Key key) {
     if (key == kMirror) {
         mirror(lobe, lights);
     } else if (key == kOutline) {
@@ -241,7 +243,7 @@ void LobeBatch::integrate(LobeViews& lobe, Lights& lights, Key key) {
 }
 
 template <class Lights>
-void LobeBatch::mirror(const LobeViews& lobe, Lights& lights) {
+void LobeIntegrator::mirror(const LobeViews& lobe, Lights& lights) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
         const Vec3d direction = mirrored(lobe.positions().direction(item_views_[k]));
         item_values_[k] = shows_mirrored(lights, items_[k], direction)
@@ -250,21 +252,21 @@ void LobeBatch::mirror(const LobeViews& lobe, Lights& lights) {
     }
 }
 
-void LobeBatch::by_harmonics(LobeViews& lobe, const CapArrays& circles, int order) {
+void LobeIntegrator::by_harmonics(LobeViews& lobe, const CapArrays& circles, int order) {
     shade_caps(circles, items_, lobe.arrays(order, item_views_), item_views_, item_values_);
 }
 
-void LobeBatch::by_harmonics(LobeViews& lobe, const SphereArrays& spheres, int order) {
+void LobeIntegrator::by_harmonics(LobeViews& lobe, const SphereArrays& spheres, int order) {
     shade_caps(spheres, lobe.arrays(order, item_views_), item_views_, item_values_);
 }
 
-void LobeBatch::by_harmonics(LobeViews& lobe, const PolygonBatch& polygons, int order) {
+void LobeIntegrator::by_harmonics(LobeViews& lobe, const PolygonBatch& polygons, int order) {
     shade_polygons(polygons.vertices(), polygons.vertex_count(), items_, lobe.arrays(order, item_views_), item_views_,
                    item_values_);
 }
 
 template <class Lights>
-void LobeBatch::by_largest_order(LobeViews& lobe, const Lights& lights) {
+void LobeIntegrator::by_largest_order(LobeViews& lobe, const Lights& lights) {
     if (!(lobe.relative_tolerance() > 0)) {
         return;
     }
@@ -278,7 +280,7 @@ void LobeBatch::by_largest_order(LobeViews& lobe, const Lights& lights) {
     }
 }
 
-void LobeBatch::by_rule(const LobeViews& lobe, const CapArrays& circles, int rule) {
+void LobeIntegrator::by_rule(const LobeViews& lobe, const CapArrays& circles, int rule) {
     integrate_caps(lobe.shape(), lobe.widths(), circles, items_, lobe.positions().directions(), item_views_, rule,
                    item_values_);
     const int points = cap_rule_points(rule);
@@ -287,7 +289,7 @@ void LobeBatch::by_rule(const LobeViews& lobe, const CapArrays& circles, int rul
     }
 }
 
-void LobeBatch::by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule) {
+void LobeIntegrator::by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int rule) {
     integrate_polygons(lobe.shape(), lobe.widths(), polygons.vertices(), polygons.vertex_count(), items_,
                        lobe.positions().directions(), item_views_, rule, item_values_);
     const int points = polygon_rule_points(rule, polygons.vertex_count());
@@ -296,7 +298,7 @@ void LobeBatch::by_rule(const LobeViews& lobe, const PolygonBatch& polygons, int
     }
 }
 
-void LobeBatch::by_outline(const LobeViews& lobe, const CapArrays& circles) {
+void LobeIntegrator::by_outline(const LobeViews& lobe, const CapArrays& circles) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
         if (const std::uint32_t i = items_[k]; keys_[i] == kOutline) {
             integrate_outline(lobe, k, CapBoundary({axis_of(circles, i), circles.cosine[i], circles.sine[i]}).arcs());
@@ -304,7 +306,7 @@ void LobeBatch::by_outline(const LobeViews& lobe, const CapArrays& circles) {
     }
 }
 
-void LobeBatch::by_outline(const LobeViews& lobe, const PolygonBatch& polygons) {
+void LobeIntegrator::by_outline(const LobeViews& lobe, const PolygonBatch& polygons) {
     for (std::size_t k = 0; k < items_.size(); ++k) {
         if (const std::uint32_t i = items_[k]; keys_[i] == kOutline) {
             integrate_outline(lobe, k, polygon_boundary(SphericalPolygon(polygons.polygon(i), true)));
@@ -312,7 +314,7 @@ void LobeBatch::by_outline(const LobeViews& lobe, const PolygonBatch& polygons) 
     }
 }
 
-void LobeBatch::integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const Arc<double>> arcs) {
+void LobeIntegrator::integrate_outline(const LobeViews& lobe, std::size_t item, std::span<const Arc<double>> arcs) {
     const std::uint32_t view = item_views_[item];
     const double tolerance = lobe.absolute_tolerance(view);
     const BoundaryIntegral integral =

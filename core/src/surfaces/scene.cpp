@@ -12,9 +12,9 @@
 #include <tbb/parallel_for.h>
 
 #include "base/scene_range.h"
-#include "render/placed_meshes.h"
-#include "render/visible_lamps.h"
 #include "shlight/parallel.h"
+#include "surfaces/placed_meshes.h"
+#include "surfaces/visible_lamps.h"
 
 namespace shlight {
 namespace {
