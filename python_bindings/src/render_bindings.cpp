@@ -45,8 +45,8 @@ pixel_filter, filter_width: "box" of one pixel, or "gaussian" or "blackman_harri
 time_limit: seconds, or None. The render ends then; pixels that have no ray yet are interpolated. A first grid of about
     a thousand pixels is always made.
 shadows: whether lights cast them.
-shadow_rays: per camera ray and light, at most, and again for each roughness of the material's glossy lobes; a quarter
-    of them where light and shadow are plain; 0 ... 16384. 0: no shadows.
+shadow_rays: per camera ray and light, at most, and again for each roughness of the material's lobes; lights get them in
+    proportion to what they add to the pixel, and one where nothing has been in the way so far; 0 ... 16384. 0: no shadows.
 transparent_bounces: surfaces that let light through which a shadow ray passes, at most, 0 ... 1024; a camera ray
     passes one more.
 passes: names of what else is wanted of the picture, by the units and values of Blender's render engine Cycles.
