@@ -339,6 +339,9 @@ void EnvironmentShading::shade_constant(const ShadingPoints& points, std::span<R
     for (std::size_t point = 0; point < points.size(); ++point) {
         const MaterialLobes& material = materials_[points.material[point]];
         for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
+            if (is_mirror(material.shape(lobe, points.widths(point)[lobe]))) {
+                continue;
+            }
             // A constant is one harmonic, and a lobe's own first coefficient its albedo.
             const double albedo = albedo_of(material, lobe, points.widths(point)[lobe], points.cos_theta_o[point]);
             smooth[lobe * points.size() + point] =

@@ -13,11 +13,6 @@
 
 namespace shlight {
 
-/// Sum of the absolute values of a colour's channels.
-inline float brightness_of(const Rgb& color) {
-    return glm::dot(glm::abs(color), Rgb(1));
-}
-
 /// A light's brightness over a group is that of its reflected radiance, summed up over the hits. Keeps its memory; one
 /// per thread.
 class ShadowBudget {

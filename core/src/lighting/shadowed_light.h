@@ -25,7 +25,7 @@ class ShadowedLight {
   public:
     ShadowedLight(ShadowTracer& tracer, const ShadowBudget& budget, std::span<const MaterialLobes> materials,
                   std::size_t lobe_stride)
-        : materials_(materials), lobe_stride_(lobe_stride), budget_(&budget), rays_(tracer, materials, lobe_stride) {}
+        : lobe_stride_(lobe_stride), budget_(&budget), rays_(tracer, materials, lobe_stride) {}
 
     /// To be called before the lights of these points. samples: what the hits are of; seeds: one per group.
     void start(const ShadingPoints& points, const SampleRange& samples, std::span<const std::uint32_t> seeds) {
@@ -85,7 +85,6 @@ class ShadowedLight {
         return lit_.shines[lit_index * lobe_stride_ + lobe] != 0;
     }
 
-    std::span<const MaterialLobes> materials_;
     std::size_t lobe_stride_;
     const ShadowBudget* budget_;
     ShadowRays rays_;

@@ -93,9 +93,6 @@ double ProfileMean::mean(const LobeShape& lobe, double cos_theta_o, double toler
         return (range().low + range().high) / 2;
     }
     const Vec3d view(std::sqrt(1 - cos_theta_o * cos_theta_o), 0, cos_theta_o);
-    if (is_mirror(lobe)) {
-        return seen_.profile().factor(mirrored(view));
-    }
     const bool narrow = sampler_.solid_angle() * largest_lobe_density(lobe, view) > kNarrowLobe;
     const double width = narrowest(lobe, cos_theta_o);
     const bool focused = narrow && has_rings_ && width > kLeastFocus;

@@ -27,7 +27,7 @@ class ProfileMean {
     /// The bounds of what mean() returns.
     const ProfileRange& range() const { return seen_.profile().range(); }
     /// The mean for one lobe. The number of nodes along each axis grows by half until successive means agree within the
-    /// tolerance twice, or the largest rule is reached.
+    /// tolerance twice, or the largest rule is reached. Precondition: no mirror.
     double mean(const LobeShape& lobe, double cos_theta_o, double tolerance);
 
   private:

@@ -39,16 +39,8 @@ std::array<double, 3> weights_of(const RayHit& hit) {
     return {1.0 - hit.u - hit.v, hit.u, hit.v};
 }
 
-glm::dmat4 moved_by(const Vec3d& way) {
-    glm::dmat4 matrix(1);
-    matrix[3] = glm::dvec4(way, 1);
-    return matrix;
-}
-
-/// Row by row.
-float matrix_number(const glm::dmat4& matrix, std::uint32_t component) {
-    return static_cast<float>(matrix[static_cast<int>(component % 4)][static_cast<int>(component / 4)]);
-}
+/// Numbers of matrices are counted row by row; the last column holds the translation.
+constexpr int kTranslation = 3;
 
 }  // namespace
 
@@ -214,6 +206,22 @@ float PlacedMeshes::object_value(const Placement& placement, std::uint32_t index
     return known ? values[placement.number][index] : 0.0F;
 }
 
+double PlacedMeshes::to_world_number(const Placement& placement, std::uint32_t component) const {
+    const auto column = static_cast<int>(component % 4);
+    const auto row = static_cast<int>(component / 4);
+    return placement.to_world[column][row] + (column == kTranslation && row < 3 ? origin_[row] : 0.0);
+}
+
+double PlacedMeshes::to_object_number(const Placement& placement, std::uint32_t component) const {
+    const auto column = static_cast<int>(component % 4);
+    const auto row = static_cast<int>(component / 4);
+    double number = placement.to_object[column][row];
+    for (int axis = 0; axis < 3 && column == kTranslation; ++axis) {
+        number -= placement.to_object[axis][row] * origin_[axis];
+    }
+    return number;
+}
+
 bool PlacedMeshes::is_back(const RayHit& hit, const Vec3d& towards_viewer) const {
     const std::array<Vec3d, 3> corners = this->corners(hit);
     const Vec3d normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -275,13 +283,11 @@ void PlacedMeshes::read(const ShaderInput& input, const Material& material, int 
             });
         }
         case ShaderSource::object_to_world:
-            return fill([&](const auto&, const SurfacePlace& at) {
-                return matrix_number(moved_by(origin_) * placement(at).to_world, input.component);
-            });
+            return fill(
+                [&](const auto&, const SurfacePlace& at) { return to_world_number(placement(at), input.component); });
         case ShaderSource::world_to_object:
-            return fill([&](const auto&, const SurfacePlace& at) {
-                return matrix_number(placement(at).to_object * moved_by(-origin_), input.component);
-            });
+            return fill(
+                [&](const auto&, const SurfacePlace& at) { return to_object_number(placement(at), input.component); });
         case ShaderSource::object_value:
             return fill([&](const auto&, const SurfacePlace& at) { return object_value(placement(at), input.index); });
         case ShaderSource::barycentric:

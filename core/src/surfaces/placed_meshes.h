@@ -105,6 +105,9 @@ class PlacedMeshes {
     /// place: see ShaderReader.
     Vec3d normal_at(const ShadedPlace& shaded, int place, bool smooth) const;
     float object_value(const Placement& placement, std::uint32_t index) const;
+    /// A number of the matrix from the mesh's frame to the world, and of its inverse, row by row.
+    double to_world_number(const Placement& placement, std::uint32_t component) const;
+    double to_object_number(const Placement& placement, std::uint32_t component) const;
     bool is_back(const RayHit& hit, const Vec3d& towards_viewer) const;
     float attribute(const MeshAttribute& attribute, std::uint32_t component, const RayHit& hit) const;
 
