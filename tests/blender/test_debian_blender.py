@@ -156,7 +156,10 @@ def run_in_window(
     if shutil.which("xvfb-run") is None:
         pytest.skip("xvfb-run is not installed")
     window = ("-noaudio", "--window-geometry", "0", "0", *map(str, size), *arguments)
-    screen = ("xvfb-run", "-a", "-s", "-screen 0 1280x800x24 +extension GLX")
+    # Without a given authority xvfb-run makes a temporary folder, and sometimes exits with 5 because it cannot remove it.
+    authority = folder / "Xauthority"
+    authority.touch()
+    screen = ("xvfb-run", "-a", "-f", str(authority), "-s", "-screen 0 1280x800x24 +extension GLX")
     done = run_blender(*window, script=script, folder=folder, before=screen, after=after, seconds=seconds)
     return done.returncode, spoken(done)
 
