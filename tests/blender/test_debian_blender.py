@@ -156,7 +156,7 @@ def run_in_window(
     if shutil.which("xvfb-run") is None:
         pytest.skip("xvfb-run is not installed")
     window = ("-noaudio", "--window-geometry", "0", "0", *map(str, size), *arguments)
-    # Without a given authority xvfb-run makes a temporary folder, and sometimes exits with 5 because it cannot remove it.
+    # Without a given authority xvfb-run makes a folder, and exits with 5 where it cannot remove it.
     authority = folder / "Xauthority"
     authority.touch()
     screen = ("xvfb-run", "-a", "-f", str(authority), "-s", "-screen 0 1280x800x24 +extension GLX")
