@@ -415,6 +415,7 @@ class _RenderOptions(TypedDict, total=False):
     alpha_threshold: float  # 0.5 unless given
     mist: tuple[float, float, float]
     cryptomatte_levels: int  # 6 unless given
+    exposure: float  # 1 unless given
     threads: int  # 0, all, unless given
     seed: int  # 0 unless given
     progress: Callable[[float], object] | None

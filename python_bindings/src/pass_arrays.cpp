@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -64,6 +65,13 @@ std::string name_of(const RenderPass& pass, const SceneObject& scene) {
     return known->first;
 }
 
+/// Whether a pass grows with the light of the scene.
+bool is_light(Pass kind) {
+    constexpr std::array kLight = {Pass::emission, Pass::environment, Pass::diffuse_direct, Pass::glossy_direct,
+                                   Pass::light_group};
+    return std::ranges::find(kLight, kind) != kLight.end();
+}
+
 }  // namespace
 
 bool PassArguments::any() const {
@@ -102,6 +110,28 @@ void add_named_passes(const PassArguments& arguments, const SceneObject& scene, 
         }
         for (const std::uint32_t number : known) {
             settings.passes.push_back({scene.aovs[number].second ? Pass::aov_color : Pass::aov_value, number});
+        }
+    }
+}
+
+void expose(py::array_t<float>& pixels, std::size_t first, std::size_t count, float factor) {
+    if (factor == 1) {
+        return;
+    }
+    const auto stride = static_cast<std::size_t>(pixels.shape(2));
+    const std::span<float> all(pixels.mutable_data(), static_cast<std::size_t>(pixels.size()));
+    for (std::size_t pixel = first; pixel < all.size(); pixel += stride) {
+        for (float& value : all.subspan(pixel, count)) {
+            value *= factor;
+        }
+    }
+}
+
+void expose_light(const PassSettings& settings, py::array_t<float>& values, float factor) {
+    const PassLayout layout(settings);
+    for (const PassLayout::Place& place : layout.places()) {
+        if (is_light(place.pass.kind)) {
+            expose(values, place.first, place.size, factor);
         }
     }
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -59,6 +60,7 @@ groups: also the part of the picture that the lights of each group give, "combin
 aovs: also what materials have as `Shader.with_aovs`, "aov_NAME".
 alpha_threshold: 0 ... 1, a surface that lets more than 1 - this through is passed over by normals, places and indices.
 mist: start and depth [m] and the power of its falloff. cryptomatte_levels: 2 ... 16 identities of a pixel.
+exposure: a factor on all light of the picture and its passes, not on colours; 0 or more.
 threads: at most; 0: all cores. The image does not depend on it.
 seed: 0 ... 2^32 - 1; another one draws other rays, so that the noise of two images is independent.
 progress: is called with the finished share, 0 ... 1, about every 10 ms; returning False cancels.
@@ -185,13 +187,14 @@ PixelFilter filter_from(const py::object& pixel_filter, const py::object& filter
 }
 
 /// A PictureUpdate that calls a Python callback, or none for None; keeps a reference to the callback.
-PictureUpdate update_from(const py::object& callback, int width, int height, double build_seconds) {
+PictureUpdate update_from(const py::object& callback, int width, int height, float exposure, double build_seconds) {
     if (callback.is_none()) {
         return {};
     }
-    return [&callback, width, height, build_seconds](std::span<const float> image, const RenderReport& report) {
+    return [=, &callback](std::span<const float> image, const RenderReport& report) {
         const py::gil_scoped_acquire acquire;
-        const py::array_t<float> copy({height, width, 4}, image.data());
+        py::array_t<float> copy({height, width, 4}, image.data());
+        expose(copy, 0, 3, exposure);
         return !is_false(callback(copy, Report{report, build_seconds}));
     };
 }
@@ -203,8 +206,8 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
                         const py::object& shadows, const py::object& shadow_rays, const py::object& transparent_bounces,
                         const py::object& passes, const py::object& groups, const py::object& aovs,
                         const py::object& alpha_threshold, const py::object& mist, const py::object& cryptomatte_levels,
-                        const py::object& threads, const py::object& seed, const py::object& progress,
-                        const py::object& on_update, const py::object& return_report) {
+                        const py::object& exposure, const py::object& threads, const py::object& seed,
+                        const py::object& progress, const py::object& on_update, const py::object& return_report) {
     auto& scene = object_from<SceneObject>("scene", scene_object, "Scene");
     const int most_shadow_rays = int_from("shadow_rays", shadow_rays);
     const PassArguments pass_arguments = {passes, groups, aovs, alpha_threshold, mist, cryptomatte_levels};
@@ -219,6 +222,10 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
                                pass_settings_from(pass_arguments)};
     const int columns = int_from("width", width);
     const int rows = int_from("height", height);
+    const auto light_factor = static_cast<float>(real_from("exposure", exposure));
+    if (!(light_factor >= 0 && std::isfinite(light_factor))) {
+        throw std::invalid_argument("exposure must be 0 or more, got " + std::to_string(light_factor));
+    }
     const bool with_report = flag_from("return_report", return_report);
     check_render(settings, columns, rows);
     check_callable("on_update", on_update);
@@ -229,13 +236,15 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
     py::array_t<float> image({rows, columns, 4});
     py::array_t<float> values({rows, columns, static_cast<int>(PassLayout(settings.passes).stride())});
     const std::span<float> pixels(image.mutable_data(), static_cast<std::size_t>(image.size()));
-    const RenderWatch watch = {report_progress, update_from(on_update, columns, rows, build_seconds)};
+    const RenderWatch watch = {report_progress, update_from(on_update, columns, rows, light_factor, build_seconds)};
     RenderReport report;
     {
         const py::gil_scoped_release release;
         report = render(*compiled_scene, camera, columns, rows, settings, pixels, watch,
                         {values.mutable_data(), static_cast<std::size_t>(values.size())});
     }
+    expose(image, 0, 3, light_factor);
+    expose_light(settings.passes, values, light_factor);
     py::object result =
         pass_arguments.any() ? py::object(pass_dict(settings.passes, scene, image, values)) : py::object(image);
     if (with_report) {
@@ -289,7 +298,7 @@ void bind_render(py::module_& m) {
           "passes"_a = py::tuple(), "groups"_a = false, "aovs"_a = false,
           "alpha_threshold"_a = PassSettings().alpha_threshold,
           "mist"_a = py::make_tuple(MistRange().start, MistRange().depth, MistRange().falloff),
-          "cryptomatte_levels"_a = PassSettings().cryptomatte_levels, "threads"_a = 0, "seed"_a = 0,
+          "cryptomatte_levels"_a = PassSettings().cryptomatte_levels, "exposure"_a = 1.0, "threads"_a = 0, "seed"_a = 0,
           "progress"_a = py::none(), "on_update"_a = py::none(), "return_report"_a = false);
 }
 

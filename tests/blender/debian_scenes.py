@@ -102,6 +102,8 @@ def shine_on(studio, shader, **values):
 
 
 def glossy(studio):
+    """Twice as bright by the film's exposure."""
+    studio.scene.cycles.film_exposure = 2.0
     shine_on(studio, "ShaderNodeBsdfGlossy", Color=(0.9, 0.6, 0.3), distribution="GGX")
 
 

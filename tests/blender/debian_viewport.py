@@ -141,6 +141,11 @@ def perspective():
     bpy.context.scene.camera.data.dof.use_dof = False
 
 
+def exposure():
+    bpy.context.scene.cycles.film_exposure = 2.0
+    area().tag_redraw()  # as Blender does where a user changes it
+
+
 CHANGES = {
     "select": lambda: cube().select_set(not cube().select_get()),
     "move a lamp": lambda: setattr(bpy.data.objects["Light"], "location", (1, -3, 4)),
@@ -163,6 +168,7 @@ CHANGES = {
     "panorama": panorama,
     "in focus": perspective,
     "local view": local_view,
+    "exposure": exposure,
 }
 
 

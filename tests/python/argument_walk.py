@@ -121,6 +121,7 @@ SETTINGS = {
     "aovs": True,
     "alpha_threshold": 0.5,
     "mist": (1.0, 2.0, 1.0),
+    "exposure": 2.0,
     "cryptomatte_levels": 4,
     "seed": 3,
     "on_update": None,

@@ -188,7 +188,6 @@ def use_cycles(
     if denoise:
         use_denoiser(cycles)
     cycles.use_guiding = False
-    cycles.film_exposure = 1.0
     for layer in scene.view_layers:
         layer.samples = 0  # 0: the scene's number
 

@@ -31,6 +31,7 @@ class RenderSettings:
     filter_width: float
     shadow_rays: int
     transparent_bounces: int
+    exposure: float
     threads: int
 
     def arguments(self) -> dict[str, Any]:
@@ -39,7 +40,7 @@ class RenderSettings:
 
 
 def render_settings(scene: Any) -> RenderSettings:
-    """Reads `scene.shlight`, the number of threads of `scene.render`, and Cycles' filter and transparent bounces."""
+    """Reads `scene.shlight`, the threads of `scene.render`, and Cycles' filter, exposure and transparent bounces."""
     settings = scene.shlight
     render = scene.render
     cycles = getattr(scene, "cycles", None)  # its add-on may be off
@@ -56,6 +57,7 @@ def render_settings(scene: Any) -> RenderSettings:
         filter_width=float(getattr(cycles, "filter_width", render.filter_size)),
         shadow_rays=int(settings.shadow_rays) if settings.use_shadows else 0,
         transparent_bounces=int(getattr(cycles, "transparent_max_bounces", 8)),
+        exposure=float(getattr(cycles, "film_exposure", 1.0)),
         threads=int(render.threads) if render.threads_mode == "FIXED" else 0,
     )
 
