@@ -169,6 +169,20 @@ def orthographic(studio):
     camera.dof.focus_distance, camera.dof.aperture_fstop = 2.0, 1.5
 
 
+def simplified(studio):
+    """Boxes before, beside and far from the camera, some of which are culled, and no light from the world."""
+    studio.plane(60, material=studio.material())
+    studio.lamp("SUN", 2, (0, 0, 5), angle=0.2, rotation_euler=(1.1, 0.6, 0.4))
+    for i in range(64):
+        made = studio.box((0.5, 0.6, 0.7), location=(3 * (i % 8 - 4), 3 * (i // 8 - 4), 0.4))
+        made.cycles.use_camera_cull, made.cycles.use_distance_cull = bool(i % 3), bool(i % 4)
+    render, cycles = studio.scene.render, studio.scene.cycles
+    render.use_simplify = cycles.use_camera_cull = cycles.use_distance_cull = True
+    cycles.camera_cull_margin, cycles.distance_cull_margin = 0.05, 8.0
+    studio.world((0.3, 0.3, 0.3))
+    studio.scene.view_layers[0].use_sky = False
+
+
 def flat_camera(studio):
     lit_by(studio, "POINT", 60)
     studio.scene.camera.scale = (1, 0, 1)
@@ -176,7 +190,7 @@ def flat_camera(studio):
 
 SCENES = [
     point, area, spot, small_spot, small_point, sun, small_sun, spread, textured, textured_by_default, smooth, glossy,
-    metal, principled, curves, sky, dark, panoramic, orthographic, flat_camera,
+    metal, principled, curves, sky, dark, panoramic, orthographic, simplified, flat_camera,
 ]  # fmt: skip
 
 polls = [item.poll for item in nodes_by_engine()]

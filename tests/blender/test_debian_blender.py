@@ -94,7 +94,10 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 LAMPS = ["point", "area", "spot", "small_spot", "small_point", "sun", "small_sun", "spread", "textured"]
 
 
-@pytest.mark.parametrize("scene", [*LAMPS, "smooth", "glossy", "metal", "curves", "sky", "panoramic", "orthographic"])
+OTHERS = ["smooth", "glossy", "metal", "curves", "sky", "panoramic", "orthographic", "simplified"]
+
+
+@pytest.mark.parametrize("scene", [*LAMPS, *OTHERS])
 def test_pictures_against_cycles(pictures: dict[str, Any], scene: str) -> None:
     result = pictures[scene]
     assert result["messages"] == []

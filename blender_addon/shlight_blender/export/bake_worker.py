@@ -162,7 +162,7 @@ class Baker:
         image.pixels.foreach_get(flat)
         pixels = flat.reshape(height, width, image.channels)[::-1, :, :3]
         bpy.data.images.remove(image)
-        return np.clip(np.nan_to_num(pixels, posinf=BRIGHTEST), 0.0, None)
+        return np.nan_to_num(pixels, posinf=BRIGHTEST, neginf=-BRIGHTEST)
 
 
 def _be_diffuse_ray(tree: Any, node: Any) -> None:

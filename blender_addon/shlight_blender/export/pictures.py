@@ -15,7 +15,7 @@ BRIGHTEST = 65504.0
 
 
 def linear_pixels(image: Any) -> NDArray[np.float32] | None:
-    """Pixels (height, width, 3) with row 0 on top, never negative; None for an image without data.
+    """Pixels (height, width, 3) with row 0 on top; None for an image without data.
 
     Blender keeps floats as linear light, whatever their file has; bytes are in the image's colour space.
     """
@@ -27,7 +27,7 @@ def linear_pixels(image: Any) -> NDArray[np.float32] | None:
     image.pixels.foreach_get(flat)
     pixels = flat.reshape(height, width, channels)[::-1]
     rgb = pixels[..., :3] if channels >= 3 else np.repeat(pixels[..., :1], 3, axis=2)
-    rgb = np.clip(np.nan_to_num(rgb, posinf=BRIGHTEST), 0.0, None)
+    rgb = np.nan_to_num(rgb, posinf=BRIGHTEST, neginf=-BRIGHTEST)
     if not image.is_float and channels == 4 and image.alpha_mode == "STRAIGHT":
         rgb = rgb * pixels[..., 3:]  # before the colour space is undone, as Cycles does
     space = image.colorspace_settings.name

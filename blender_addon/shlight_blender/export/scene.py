@@ -18,13 +18,14 @@ from ..report import Effect, ExportCancelled, ExportError, ExportReport
 from .bake import Baked, Waiting, bake_world
 from .camera import Eye, View, set_camera
 from .changes import Changes, everything
+from .culling import Culling, culling_of
 from .expressions import Surroundings
 from .image_pixels import TEXTURES
 from .lights import add_lamp
 from .meshes import SceneMeshes
 from .settings import report_unsupported_settings
 from .shares import shares_of_picture
-from .world import Bake, SceneWorld
+from .world import Bake, SceneWorld, world_of
 
 ASKING_SECONDS = 0.05  # between questions whether the export is to go on
 
@@ -37,6 +38,8 @@ UNSUPPORTED_TYPES = {
     "GPENCIL": "grease pencil drawings",
     "GREASEPENCIL": "grease pencil drawings",
 }
+# Filters of a view layer that leave some of them out of Cycles' picture too.
+FILTERS = {"CURVES": "use_strand", "VOLUME": "use_volumes"}
 
 # Flags of an object with the value at which they change nothing.
 VISIBILITY = {
@@ -56,20 +59,21 @@ class _State(NamedTuple):
     material_override: Any = None
     moving_frame: float = 0.0  # of pictures that change with the frame
     passes: PassWishes = PassWishes()
-    shown: tuple[int, ...] = ()  # the objects of all instances that are seen
+    shown: tuple[Any, ...] = ()  # whether meshes are, what is culled, and the objects of all instances that are seen
 
     @staticmethod
-    def of(depsgraph: Any, viewport: Any) -> _State:
+    def of(depsgraph: Any, viewport: Any, culling: Culling | None) -> _State:
         scene, view_layer = depsgraph.scene_eval, depsgraph.view_layer_eval
-        world = getattr(view_layer, "world_override", None) or scene.world
+        world = world_of(scene, view_layer)
         moving = any(image.source in {"SEQUENCE", "MOVIE"} for image in bpy.data.images)
         override = view_layer.material_override
+        seen = (own.object.as_pointer() for own in depsgraph.object_instances if _is_seen(own, viewport))
         return _State(
             (world and world.as_pointer(), scene.render.film_transparent, scene.shlight.world_width),
             override and override.as_pointer(),
             scene.frame_current_final if moving else 0.0,
             pass_wishes(scene, view_layer) if viewport is None else PassWishes(),
-            tuple(own.object.as_pointer() for own in depsgraph.object_instances if _is_seen(own, viewport)),
+            (view_layer.use_solid, culling, *seen),
         )
 
 
@@ -85,6 +89,7 @@ class ExportedScene:
         self.dark = ""
         self._view: View | None = None
         self._frame: Frame | None = None  # of a camera's picture
+        self._culling: Culling | None = None
         self._surroundings = Surroundings()
         self._meshes = SceneMeshes(self.scene)
         self._world = SceneWorld(self.scene)
@@ -127,11 +132,12 @@ class ExportedScene:
         report = self._new_report("camera")
         self._view = set_camera(self.scene, eye, depsgraph, frame, blender_scene.render, report)
         self._frame = frame
+        self._culling = culling_of(blender_scene, eye.camera.evaluated_get(depsgraph).data, self._view)
 
     def look_through(self, view: Any) -> None:
         """A view of a viewport in place of a camera; view: a ViewportView."""
         self._new_report("camera")
-        self._view, self._frame = view.set_camera(self.scene), None
+        self._view, self._frame, self._culling = view.set_camera(self.scene), None, None
 
     def update(
         self,
@@ -147,7 +153,7 @@ class ExportedScene:
         viewport: a SpaceView3D; what is hidden in it is left out, in place of what is hidden in renders.
         bake: makes pictures of worlds of nodes in another way than `bake_world`; it may take its time.
         """
-        self._find_more(changes, _State.of(depsgraph, viewport))
+        self._find_more(changes, _State.of(depsgraph, viewport, self._culling))
         blender_scene, view_layer = depsgraph.scene_eval, depsgraph.view_layer_eval
         report_unsupported_settings(blender_scene, view_layer, self._new_report("settings"))
         if changes.world:
@@ -200,7 +206,7 @@ class ExportedScene:
                 if changes.lamps:
                     self._is_lit["lamps"] |= self._add_lamp(instance)
             elif walks_meshes:
-                self._add_object(instance)
+                self._add_object(instance, depsgraph.view_layer_eval)
         if walks_meshes:
             self._is_lit["objects"] = self._meshes.finish(ask)
             self._reports["objects"].extend(self._meshes.report)
@@ -210,12 +216,15 @@ class ExportedScene:
         _report_light_linking((instance.object, instancer), f"Light '{instance.object.name}'", report)
         return add_lamp(self.scene, instance.object, _to_world(instance), report, self._surroundings, instancer)
 
-    def _add_object(self, instance: Any) -> None:
+    def _add_object(self, instance: Any, view_layer: Any) -> None:
         seen, report = instance.object, self._reports["objects"]
+        if self._culling is not None and self._culling.leaves_out(seen, _to_world(instance)):
+            return
         if seen.type == "MESH":
-            _report_object(seen, _instancer(instance), report)
-            self._meshes.add(instance, _to_world(instance))
-        elif seen.type in UNSUPPORTED_TYPES:
+            _report_object(seen, _instancer(instance), view_layer, report)
+            if view_layer.use_solid:
+                self._meshes.add(instance, _to_world(instance))
+        elif seen.type in UNSUPPORTED_TYPES and getattr(view_layer, FILTERS.get(seen.type, ""), True):
             text = f"{UNSUPPORTED_TYPES[seen.type]} are not supported; left out"
             report.add(f"Object '{seen.name}'", text, Effect.THING)
 
@@ -308,12 +317,12 @@ def _to_world(instance: Any) -> Any:
     return np.array(instance.matrix_world, dtype=np.float64)
 
 
-def _report_object(seen: Any, instancer: Any, report: ExportReport) -> None:
+def _report_object(seen: Any, instancer: Any, view_layer: Any, report: ExportReport) -> None:
     place = f"Object '{seen.name}'"
     for name, (neutral, text) in VISIBILITY.items():
-        if any(bool(getattr(shown, name, neutral)) != neutral for shown in (seen, instancer)):
+        if view_layer.use_solid and any(bool(getattr(shown, name, neutral)) != neutral for shown in (seen, instancer)):
             report.add(place, text, Effect.THING)
-    for system in seen.particle_systems:
+    for system in seen.particle_systems if view_layer.use_strand else ():
         settings = system.settings
         if settings.type == "HAIR" and settings.render_type == "PATH":
             hair = f"{place}, particle system '{system.name}'"

@@ -6,6 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
+import bpy
+
 from ..compat import DENOISING_LEFT_OUT, PASSES, REC709, working_space
 from ..passes import CRYPTOMATTES, stores_denoising_data
 from ..report import Effect, ExportReport
@@ -97,6 +99,9 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
         report.add(place, "motion blur is not supported; everything stands still")
     if getattr(render, "use_freestyle", False):
         report.add(place, "Freestyle lines are not supported; left out")
+    limit = getattr(getattr(scene, "cycles", None), "texture_limit_render", "OFF")
+    if render.use_simplify and limit != "OFF" and any(max(image.size) > int(limit) for image in bpy.data.images):
+        report.add(place, "Simplify's Texture Limit is not supported; textures keep their size", Effect.SLIGHT)
     if working_space() != REC709:
         report.add(place, f"working space {working_space()} is not supported; skies and pictures stay Rec. 709")
     tree = getattr(scene.world, "node_tree", None)

@@ -23,6 +23,8 @@ from .pictures import linear_pixels
 # Bakes a world in its scene; None while the bake goes on.
 Bake = Callable[[Any, Any], "Baked | None"]
 
+MOST_NEGATIVE = 1e-3  # of a world's light, beyond which the report says that it is left out; skies have a little
+
 # Kinds of rays that Cycles can hide the world from.
 RAY_KINDS = ("camera", "diffuse", "glossy")
 
@@ -31,7 +33,7 @@ RAY_KINDS = ("camera", "diffuse", "glossy")
 class World:
     """Arguments of `Scene.set_environment`, and suns beside it."""
 
-    radiance: NDArray[Any]  # RGB, or a lat-long picture (height, width, 3)
+    radiance: NDArray[Any]  # RGB, or a lat-long picture (height, width, 3); what is negative gives no light
     to_world: NDArray[np.float64] | None = None  # a rotation of the picture
     suns: list[Sun] = field(default_factory=list)
 
@@ -46,24 +48,36 @@ class SceneWorld:
         self._group: str | None = None
 
     def read(self, blender_scene: Any, view_layer: Any, passes: PassWishes, report: ExportReport, bake: Bake) -> bool:
-        """Sets the environment to the scene's, unless the view layer has another; True if it gives light.
+        """Sets the environment to the view layer's; True if it gives light.
 
         bake: see `ExportedScene.update`.
         Blender's film is opaque: without a world the camera sees black behind the scene, unless the film is
         transparent. `add_suns` is to follow.
         """
         self._visible = not blender_scene.render.film_transparent
-        world = getattr(view_layer, "world_override", None) or blender_scene.world
+        world = world_of(blender_scene, view_layer)
         read = _black() if world is None else _read_world(world, blender_scene, report, bake)
         self._group = None if world is None else passes.light_part(WORLD, world.lightgroup)
-        self._scene.set_environment(read.radiance, to_world=read.to_world, visible=self._visible, group=self._group)
+        radiance = read.radiance
+        if radiance.min() < 0.0:
+            radiance = np.maximum(radiance, 0.0)
+            if np.sum(radiance - read.radiance) > MOST_NEGATIVE * np.sum(radiance):
+                text = "where it is negative, it takes light away in Cycles; it is black there"
+                report.add(f"World '{world.name}'", text, Effect.LIGHT)
+        self._scene.set_environment(radiance, to_world=read.to_world, visible=self._visible, group=self._group)
         self._suns = read.suns
-        return bool(read.radiance.any() or read.suns)
+        return bool(radiance.any() or read.suns)
 
     def add_suns(self) -> None:
         """Adds the discs of the world's sky to the scene's lights."""
         for sun in self._suns:
             self._scene.add_sun_light(sun.direction, sun.angle, sun.irradiance, camera=self._visible, group=self._group)
+
+
+def world_of(scene: Any, view_layer: Any) -> Any:
+    """The world of a view layer, which may override the scene's or have none."""
+    world = getattr(view_layer, "world_override", None) or scene.world
+    return world if view_layer.use_sky else None
 
 
 def _black() -> World:
@@ -107,7 +121,7 @@ def _read_surface(source: Origin, reader: ConstantReader) -> World:
             reader.at(source.node), f"{source.node.bl_label} is not supported; black is used", Effect.LIGHT
         )
         return _black()
-    strength = max(reader.number(source.node, "Strength", source.groups), 0.0)
+    strength = reader.number(source.node, "Strength", source.groups)
     color = origin(source.node.inputs["Color"], source.groups)
     if color.node is None or color.node.type != "TEX_ENVIRONMENT":
         return World(strength * reader.color(source.node, "Color", source.groups))
