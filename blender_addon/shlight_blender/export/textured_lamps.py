@@ -45,7 +45,7 @@ class EvenLamp(NamedTuple):
 
 def even_lamp(emission: VaryingEmission, is_round: bool, remark: Remark) -> EvenLamp:
     """A lamp that shines as `emission`; `remark` is told what is not as in Cycles."""
-    lacking = sorted({_entry.name for entry in emission.inputs if entry[2] < 2} - {""})
+    lacking = sorted({_name_of(entry) for entry in emission.inputs if entry[2] < 2} - {""})
     if lacking:
         remark(f"a lamp has no {', '.join(lacking)}; one colour of its texture is used")
     cells = _cut_lamp(emission, is_round)
