@@ -17,6 +17,8 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from .names import name_of
+
 VERSION: tuple[int, int, int] = bpy.app.version
 IS_BLENDER_4 = VERSION >= (4, 0, 0)
 
@@ -162,7 +164,7 @@ DENOISING_LEFT_OUT = ("Denoising Specular Albedo", "Denoising Roughness") if VER
 
 def aov_name(node: Any) -> str:
     """The pass that an AOV Output node writes."""
-    return str(node.aov_name if hasattr(node, "aov_name") else node.name)
+    return name_of(node, "aov_name" if "aov_name" in node.bl_rna.properties else "name")
 
 
 REC709 = "Linear Rec.709"

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from . import record, running
 from .compat import write_pass
 from .frame import Frame, frame_of, memory_problem
+from .names import is_utf8, name_of, printable
 from .native import native_problem
-from .passes import Arrays, layer_passes, pass_arguments, stamp_cryptomattes, write_passes
+from .passes import Arrays, LayerPass, layer_passes, pass_arguments, stamp_cryptomattes, write_passes
 from .report import ExportCancelled, ExportError
 from .running import ENGINE
 from .status import status_of
@@ -42,13 +43,12 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         if self.is_preview:
             self._render_preview(depsgraph)
             return
+        frame = frame_of(depsgraph.scene.render)
         if depsgraph.scene.original not in bpy.data.scenes.values():  # one of Freestyle's own, of strokes
-            self._deliver(depsgraph, frame_of(depsgraph.scene.render), {})
+            self._deliver(depsgraph, frame, {})
             return
-        frame: Frame | None = None
-        self._begin(depsgraph)
         try:
-            frame = frame_of(depsgraph.scene.render)
+            self._begin(depsgraph)
             if problem := native_problem() or memory_problem(frame):
                 raise ExportError(problem)
             views: dict[str, Arrays | None] = {}
@@ -96,12 +96,13 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
 
     def _begin(self, depsgraph: Any) -> None:
         """Starts the record of a render with its first view layer; the others add to it."""
-        view_layer = depsgraph.view_layer.name
+        view_layer = name_of(depsgraph.view_layer)
         # Blender makes an engine for each frame, or keeps one for all (Persistent Data).
         if view_layer in getattr(self, "_view_layers", {view_layer}):
             record.begin(depsgraph.scene)
             self._view_layers: set[str] = set()
             self._shown: set[str] = set()
+            self._delivered: dict[tuple[str, str], tuple[list[LayerPass], Arrays]] = {}  # by layer and view
             self._said = ""
             self._exported: dict[str, Any] = getattr(self, "_exported", {})  # by view layer
         self._view_layers.add(view_layer)
@@ -170,7 +171,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         """The scene as one view sees it. With Persistent Data, what has not changed since the last render is kept."""
         from .export import Changes, ExportedScene, changes_of, everything
 
-        layer = depsgraph.view_layer.name
+        layer = name_of(depsgraph.view_layer)
         exported = self._exported.pop(layer, None)  # one whose export ends half way is not kept
         if exported is None:
             exported, changes = ExportedScene(), everything()
@@ -222,25 +223,35 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         for line in reversed(shown):
             self.report({"WARNING"}, f"shlight: {line}")
 
-    def _fail(self, depsgraph: Any, frame: Frame | None, text: str) -> None:
+    def _fail(self, depsgraph: Any, frame: Frame, text: str) -> None:
         self._say_error(text)
-        if frame is not None:
+        try:
             self._deliver(depsgraph, frame, {})
+        except Exception:  # about passes: any result will do
+            traceback.print_exc()
+            self.end_result(self.begin_result(0, 0, frame.width, frame.height))
 
     def _say_error(self, text: str) -> None:
-        self.report({"ERROR"}, f"shlight: {text}")
+        self.report({"ERROR"}, printable(f"shlight: {text}"))
 
     def _deliver(self, depsgraph: Any, frame: Frame, views: dict[str, Arrays | None]) -> None:
         """Hands over pictures of views; empty ones for all if there are none: without, saving crashes Blender."""
         passes = layer_passes(depsgraph.scene, depsgraph.view_layer)
+        name = name_of(depsgraph.view_layer)
+        # Blender takes no other names than UTF-8; without one it gives all layers, and forgets what they had.
+        asked = name if is_utf8(depsgraph.view_layer) else ""
+        keeps = not all(is_utf8(layer) for layer in depsgraph.scene.view_layers)
         for own in passes:
-            self.add_pass(own.name, len(own.channels), own.channels, layer=depsgraph.view_layer.name)
+            self.add_pass(own.name, len(own.channels), own.channels, layer=asked)
         for view, arrays in (views or dict.fromkeys(_views(depsgraph.scene.render))).items():
-            result = self.begin_result(0, 0, frame.width, frame.height, layer=depsgraph.view_layer.name, view=view)
-            if arrays is not None:
-                for layer in result.layers:
-                    write_pass(layer.passes["Combined"], arrays["combined"][::-1].reshape(-1, 4))
-                    write_passes(layer, passes, arrays)
+            result = self.begin_result(0, 0, frame.width, frame.height, layer=asked, view=view)
+            made = {} if arrays is None else {(name, view): (passes, arrays)}
+            if keeps:
+                made = self._delivered = self._delivered | made
+            for layer in result.layers:
+                for own_passes, own_arrays in [made[key]] if (key := (name_of(layer), view)) in made else ():
+                    write_pass(layer.passes["Combined"], own_arrays["combined"][::-1].reshape(-1, 4))
+                    write_passes(layer, own_passes, own_arrays)
             self.end_result(result)
 
     def view_update(self, context: Any, depsgraph: Any) -> None:
@@ -262,7 +273,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
 
 def _views(render: Any) -> list[str]:
     """Names of the views of a render; that of a picture without views is empty."""
-    return [view.name for view in render.views if view.use] if render.use_multiview else [""]
+    return [name_of(view) for view in render.views if view.use] if render.use_multiview else [""]
 
 
 def register() -> None:

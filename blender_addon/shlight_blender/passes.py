@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .compat import PASSES, write_pass
+from .names import name_of, with_name
 
 Arrays = Mapping[str, NDArray[np.float32]]
 
@@ -68,9 +69,10 @@ def layer_passes(scene: Any, view_layer: Any) -> list[LayerPass]:
     for aov in view_layer.aovs:
         if aov.is_valid:
             channels, kind = ("X", "VALUE") if aov.type == "VALUE" else ("RGBA", "COLOR")
-            found.append(LayerPass(aov.name, channels, kind, f"aov_{aov.name}"))
+            found.append(LayerPass(name_of(aov), channels, kind, f"aov_{name_of(aov)}"))
     for group in view_layer.lightgroups:
-        found.append(LayerPass(f"Combined_{group.name}", "RGB", "COLOR", light=(1, group.name)))
+        name = name_of(group)
+        found.append(LayerPass(f"Combined_{name}", "RGB", "COLOR", light=(1, name)))
     if scene.shlight.use_pass_lights:
         for lamp in dict.fromkeys([*_lamps(view_layer), SURFACES, WORLD]):
             found.append(LayerPass(f"Light_{lamp}", "RGB", "COLOR", light=(0, lamp)))
@@ -87,11 +89,11 @@ def _lamps(view_layer: Any) -> Iterator[str]:
     waiting = list(view_layer.objects)
     while waiting:
         shown = waiting.pop(0)
-        if shown.name in seen:
+        if (name := name_of(shown)) in seen:
             continue
-        seen.add(shown.name)
+        seen.add(name)
         if shown.type == "LIGHT":
-            yield shown.name
+            yield name
         if shown.instance_type == "COLLECTION" and shown.instance_collection is not None:
             waiting += shown.instance_collection.all_objects
 
@@ -117,7 +119,7 @@ def pass_wishes(scene: Any, view_layer: Any) -> PassWishes:
         bool(scene.shlight.use_pass_lights),
         len(view_layer.lightgroups) > 0,
         bool(view_layer.use_pass_uv),
-        {aov.name: aov.type for aov in view_layer.aovs if aov.is_valid},
+        {name_of(aov): aov.type for aov in view_layer.aovs if aov.is_valid},
     )
 
 
@@ -146,7 +148,7 @@ def stamp_cryptomattes(result: Any, view_layer: Any, names: Mapping[str, set[str
 
     for kind, name in CRYPTOMATTES.items():
         if getattr(view_layer, f"use_pass_cryptomatte_{kind}"):
-            layer = f"{view_layer.name}.{name}"
+            layer = f"{name_of(view_layer)}.{name}"
             prefix = f"cryptomatte/{cryptomatte_hash(layer):08x}"[: len("cryptomatte/") + 7]
             manifest = {own: f"{cryptomatte_hash(own):08x}" for own in sorted(names[kind])}
             result.stamp_data_add_field(f"{prefix}/name", layer)
@@ -159,6 +161,6 @@ def write_passes(layer: Any, passes: list[LayerPass], arrays: Arrays) -> None:
     """Writes arrays, row 0 on top, into the passes of a render layer that there are."""
     for own in passes:
         pixels = own.find(arrays)
-        target = layer.passes.get(own.name)
+        target = with_name(layer.passes, own.name)
         if pixels is not None and target is not None:
             write_pass(target, pixels[::-1].reshape(-1, len(own.channels)))

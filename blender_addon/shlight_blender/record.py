@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from .names import name_of
 from .report import ExportReport
 
 
@@ -30,7 +31,7 @@ class RenderRecord:
 
     def is_of(self, scene: Any) -> bool:
         """Whether it is of this scene."""
-        return bool(self.scene == scene.name)
+        return bool(self.scene == name_of(scene))
 
 
 last = RenderRecord()
@@ -40,14 +41,14 @@ shown = last  # in the Report panel: of the latest render, or of a viewport afte
 def begin(scene: Any) -> RenderRecord:
     """Starts the record of a new render."""
     global last, shown
-    last = shown = RenderRecord(scene.name)
+    last = shown = RenderRecord(name_of(scene))
     return last
 
 
 def show_viewport(scene: Any, exported: Any) -> None:
     """Shows what a viewport's `export.ExportedScene` says."""
     global shown
-    shown = RenderRecord(scene.name, report=exported.report)
+    shown = RenderRecord(name_of(scene), report=exported.report)
 
 
 def forget() -> None:

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
 
+from .names import printable
+
 
 class ExportError(ValueError):
     """The scene cannot be rendered at all (no camera, a camera type without a picture plane)."""
@@ -60,6 +62,7 @@ class ExportReport:
 
     def add(self, place: str, text: str, effect: Effect = Effect.LOOK) -> None:
         """Notes `text` about `place`, for instance "Material 'Wood', node 'Noise Texture'"."""
+        place, text = printable(place), printable(text)
         message = self._messages.setdefault(text, Message(text, effect))
         message.effect = min(message.effect, effect)
         if place not in message.places:

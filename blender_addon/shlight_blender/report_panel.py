@@ -11,6 +11,7 @@ import bpy
 
 from . import record
 from .engine_panel import EnginePanel
+from .names import name_of, with_name
 from .report import Effect, Message
 
 MOST_PLACES = 4
@@ -38,7 +39,9 @@ class SHLIGHT_OT_show_place(bpy.types.Operator):
             if getattr(context.space_data, "type", "") == "PROPERTIES":
                 context.space_data.context = "WORLD"
             return {"FINISHED"}
-        shown = _user_of(context.view_layer, name) if kind == "Material" else context.view_layer.objects.get(name)
+        shown = (
+            _user_of(context.view_layer, name) if kind == "Material" else with_name(context.view_layer.objects, name)
+        )
         if shown is None:
             self.report({"ERROR"}, f"shlight: {self.place} is not in this view layer")
             return {"CANCELLED"}
@@ -47,8 +50,8 @@ class SHLIGHT_OT_show_place(bpy.types.Operator):
         shown.select_set(True)
         context.view_layer.objects.active = shown
         if kind == "Material":
-            shown.active_material_index = [slot.name for slot in shown.material_slots].index(name)
-            _select_node(bpy.data.materials.get(name), node)
+            shown.active_material_index = [name_of(slot) for slot in shown.material_slots].index(name)
+            _select_node(with_name(bpy.data.materials, name), node)
         else:
             _select_node(shown.data, node)
         return {"FINISHED"}
@@ -56,7 +59,7 @@ class SHLIGHT_OT_show_place(bpy.types.Operator):
 
 def _user_of(view_layer: Any, material: str) -> Any:
     for each in view_layer.objects:
-        if any(slot.name == material for slot in each.material_slots):
+        if any(name_of(slot) == material for slot in each.material_slots):
             return each
     return None
 
@@ -64,7 +67,7 @@ def _user_of(view_layer: Any, material: str) -> Any:
 def _select_node(owner: Any, name: str | None) -> None:
     tree: Any = getattr(owner, "node_tree", None)
     for node in tree.nodes if tree and name else ():
-        node.select = name in (node.name, node.label)
+        node.select = name in (name_of(node), name_of(node, "label"))
         if node.select:
             tree.nodes.active = node
 

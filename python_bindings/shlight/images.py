@@ -52,7 +52,8 @@ def write_exr(path: str | os.PathLike[str], image: npt.ArrayLike) -> None:
     """Writes an image of 1, 3 or 4 channels as 32-bit float OpenEXR, compressed without loss.
 
     With 4 channels RGB is premultiplied by alpha, as OpenEXR asks and as `shlight.render` returns it.
-    Raises ValueError for an array that is no such image, OSError when the file cannot be written.
+    Raises ValueError for an array that is no such image and for a path that ends like another format's, OSError when
+    the file cannot be written.
     """
     pixels = _checked_image("image", checked_array("image", image, np.float32))
     _write(_checked_path(path), pixels, "openexr", "float", {"compression": "zip"})
@@ -65,7 +66,8 @@ def write_layers(
 
     Channels are named as in Blender's files of up to version 4.5, "ViewLayer.Depth.Z" for instance: light groups
     "Combined_NAME", AOVs NAME, and other names than those of passes as they are. view_layer: what names begin with.
-    Raises ValueError for arrays that are no images of one size, OSError when the file cannot be written.
+    Raises ValueError for arrays that are no images of one size and for a path that ends like another format's, OSError
+    when the file cannot be written.
     """
     if not isinstance(view_layer, str) or not view_layer or "\0" in view_layer:
         raise ValueError("view_layer must be a string that is not empty")
@@ -122,7 +124,7 @@ def _opened(path: str | os.PathLike[str], *, associate: bool = True) -> Any:
         pass
     wishes = oiio.ImageSpec()
     wishes["oiio:UnassociatedAlpha"] = 0 if associate else 1
-    source = oiio.ImageInput.open(str(path), wishes)
+    source = oiio.ImageInput.open(_as_it_is(path), wishes)
     if source is None:
         raise OSError(f"{path}: {oiio.geterror().strip()}")
     return source
@@ -146,7 +148,8 @@ def _read(path: str | os.PathLike[str], *, only: str | None = None, associate: b
 def write_png(path: str | os.PathLike[str], image_srgb_uint8: npt.ArrayLike) -> None:
     """Writes a uint8 image of 1, 3 or 4 channels, sRGB encoded, alpha not premultiplied, as PNG.
 
-    Raises ValueError for an array that is no such image, OSError when the file cannot be written.
+    Raises ValueError for an array that is no such image and for a path that ends like another format's, OSError when
+    the file cannot be written.
     """
     if getattr(image_srgb_uint8, "dtype", None) != np.uint8:
         raise ValueError("image_srgb_uint8 must be of dtype uint8; linear_to_srgb8 makes it from linear light")
@@ -200,6 +203,19 @@ def _checked_path(path: str | os.PathLike[str]) -> Path:
     return checked
 
 
+def _check_suffix(path: Path, file_format: str, known: str) -> None:
+    """known: suffixes of all formats, as "png:png;jpeg:jpg,jpeg"."""
+    for entry in known.split(";"):
+        other, _, suffixes = entry.partition(":")
+        if other != file_format and path.suffix[1:].lower() in suffixes.split(","):
+            raise ValueError(f"path must not end in {path.suffix}: the file is {file_format}, not {other}")
+
+
+def _as_it_is(path: Path) -> Any:
+    """A file's name for OpenImageIO, which need not be UTF-8."""
+    return os.fsencode(path)
+
+
 @contextmanager
 def complete_or_absent(path: Path) -> Iterator[Path]:
     """A new empty file beside `path`, renamed to it when the block ends well and removed when not.
@@ -231,6 +247,7 @@ def _write(
 ) -> None:
     import OpenImageIO as oiio
 
+    _check_suffix(path, file_format, oiio.get_string_attribute("extension_list"))
     height, width, channels = pixels.shape
     spec = oiio.ImageSpec(width, height, channels, channel_type)
     spec.channelnames = names or _CHANNEL_NAMES[channels]
@@ -240,6 +257,6 @@ def _write(
         target = oiio.ImageOutput.create(file_format)
         if target is None:
             raise OSError(f"{path}: {oiio.geterror().strip()}")
-        done = target.open(str(temporary), spec) and target.write_image(pixels)
+        done = target.open(_as_it_is(temporary), spec) and target.write_image(pixels)
         if not (target.close() and done):
             raise OSError(f"{path}: {target.geterror().strip() or 'the file could not be written'}")

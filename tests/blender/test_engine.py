@@ -195,7 +195,7 @@ def test_settings_reach_the_renderer(studio: Any, monkeypatch: pytest.MonkeyPatc
     scene.shlight.noise_threshold, scene.shlight.time_limit, scene.shlight.pixel_samples = 0.05, 100.0, 0
     scene.shlight.min_samples, scene.shlight.max_samples = 8, 64
     scene.cycles.pixel_filter_type, scene.cycles.filter_width = "GAUSSIAN", 2.5
-    scene.cycles.transparent_max_bounces = 5
+    scene.cycles.transparent_max_bounces, scene.cycles.film_exposure = 5, 0.5
     scene.render.threads_mode, scene.render.threads = "FIXED", 1
     studio.render("SHLIGHT")
     passed = {name: value for name, value in given.items() if name not in {"progress", "on_update", "return_report"}}
@@ -203,6 +203,7 @@ def test_settings_reach_the_renderer(studio: Any, monkeypatch: pytest.MonkeyPatc
     assert passed == {
         "order": 12,
         "tolerance": pytest.approx(0.02),
+        "exposure": 0.5,
         "noise_threshold": pytest.approx(0.05),
         "min_samples": 8,
         "max_samples": 64,

@@ -14,6 +14,7 @@ from typing import Any
 import bpy
 
 from ..comparison.process import WorkerError, WorkerProcess
+from ..names import name_of
 from ..native import native_problem
 from ..other_blender import command, environment, save_unsaved_images
 from ..running import ENGINE
@@ -101,7 +102,7 @@ def _check(context: Any) -> None:
     if getattr(scene, "cycles", None) is None:
         raise CompareError("Cycles is not there: enable its add-on, Cycles Render Engine")
     if scene.camera is None:
-        raise CompareError(f"scene '{scene.name}' has no camera")
+        raise CompareError(f"scene '{name_of(scene)}' has no camera")
     if bpy.app.is_job_running("RENDER"):
         raise CompareError("a render is running; wait for its end")
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import bpy
 
+from ..names import name_of
 from . import overlay, results
 from .job import CompareError, Job, one_line
 from .session import session
@@ -85,7 +86,7 @@ class SHLIGHT_OT_compare(bpy.types.Operator):
         except CompareError as error:
             self._fail(error)
             return False
-        self._scene = context.scene.name
+        self._scene = name_of(context.scene)
         return True
 
     def _finish(self, seconds: float = 0.0) -> bool:

@@ -11,6 +11,7 @@ import bpy
 from mathutils import Matrix, Vector
 
 from ..frame import frame_of
+from ..names import name_of
 from ..report import ExportReport
 from ..report_panel import PLACE
 
@@ -84,7 +85,7 @@ class Finder:
         )
         location, rotation, _ = camera.matrix_world.decompose()
         # Objects at a pixel of a panorama are not looked up; the report may name the camera.
-        self._panorama = Seen(f"Camera '{camera.name}'") if camera.data.type == "PANO" else None
+        self._panorama = Seen(f"Camera '{name_of(camera)}'") if camera.data.type == "PANO" else None
         self._from_picture = Matrix.LocRotScale(location, rotation, None) @ projection.inverted()
         self._lamps = [seen for seen in view_layer.objects if seen.type == "LIGHT" and not seen.hide_render]
 
@@ -98,7 +99,7 @@ class Finder:
         seen, distance = self._surface(start, end)
         for lamp in self._lamps:
             if lamp.visible_camera and (nearer := _distance_to_lamp(lamp, start, end)) < distance:
-                seen, distance = Seen(f"Light '{lamp.name}'"), nearer
+                seen, distance = Seen(f"Light '{name_of(lamp)}'"), nearer
         return seen
 
     def _point(self, *of_picture: float) -> Any:
@@ -118,14 +119,14 @@ class Finder:
                 break
             distance = (location - start).length
             if shown.original.visible_camera:
-                return Seen(f"Object '{shown.original.name}'", self._materials(shown, face)), distance
+                return Seen(f"Object '{name_of(shown.original)}'", self._materials(shown, face)), distance
             origin = location + direction * 1e-4 * max(distance, 1e-3)
         world = self._scene.world
-        return Seen(f"World '{world.name}'" if world else "Background"), math.inf
+        return Seen(f"World '{name_of(world)}'" if world else "Background"), math.inf
 
     def _materials(self, shown: Any, face: int) -> tuple[str, ...]:
         """The material of a face; all of the object's where it is no mesh."""
-        names = [slot.material.name if slot.material else "" for slot in shown.original.material_slots]
+        names = [name_of(slot.material) if slot.material else "" for slot in shown.original.material_slots]
         faces = getattr(shown.evaluated_get(self._depsgraph).data, "polygons", ())
         if 0 <= face < len(faces) and faces[face].material_index < len(names):
             names = [names[faces[face].material_index]]

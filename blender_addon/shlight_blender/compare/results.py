@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..comparison.pictures import difference_limit, in_palette
+from ..names import name_of
 from .job import temporary_folder
 
 COMPARISON, DIFFERENCE, REFERENCE = "shlight Comparison", "shlight Difference", "shlight Reference"
@@ -161,4 +162,4 @@ def show(names: list[tuple[Any, str]]) -> None:
 
 def are_of(scene: Any) -> bool:
     """Whether there are results, and of this scene."""
-    return last is not None and last.scene == scene.name
+    return last is not None and last.scene == name_of(scene)

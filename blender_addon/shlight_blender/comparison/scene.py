@@ -15,6 +15,7 @@ from .. import register as register_addon
 from ..compat import set_sample_range
 from ..export.expressions import Surroundings
 from ..export.materials import read_material
+from ..names import name_of
 from ..report import ExportReport
 from .options import RenderOptions
 
@@ -38,7 +39,7 @@ def open_scene(path: Path) -> Any:
     if scene is None:
         raise SceneError("there is no scene in it")
     if scene.camera is None:
-        raise SceneError(f"scene '{scene.name}' has no camera")
+        raise SceneError(f"scene '{name_of(scene)}' has no camera")
     return scene
 
 

@@ -163,6 +163,8 @@ def _write(folder: Path, world: Any, scene: Any) -> None:
     try:
         bpy.data.libraries.write(str(folder / "world.blend"), {world.original}, path_remap="ABSOLUTE")
         (folder / "request.json").write_text(json.dumps(_request(world, scene, folder)), encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise BakeError("its name, or that of an image in it, is not UTF-8; rename it") from error
     except (OSError, RuntimeError, ValueError) as error:
         raise BakeError(" ".join(str(error).split())) from error
 

@@ -49,7 +49,7 @@ def bake_key(world: Any, scene: Any) -> bytes | None:
         reader.add("space", working_space())
         reader.tree(world.node_tree)
         reader.tree(world.original.node_tree)
-    except (_UnknownError, OSError, RuntimeError):
+    except (_UnknownError, OSError, RuntimeError, UnicodeDecodeError):
         return None
     if reader.is_animated or _is_animated(world):
         reader.add("frame", (scene.frame_current, scene.frame_subframe))

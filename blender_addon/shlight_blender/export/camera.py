@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 import shlight
 
 from ..frame import Frame
+from ..names import name_of
 from ..report import ExportError, ExportReport
 from .lens import aperture_of, panorama_of
 
@@ -48,7 +49,7 @@ def set_camera(scene: shlight.Scene, eye: Eye, depsgraph: Any, frame: Frame, ren
     """Gives `scene` the eye, looking at `frame`; ExportError for a camera of a kind that is not supported."""
     camera = eye.camera.evaluated_get(depsgraph)
     lens = camera.data
-    place = f"Camera '{camera.name}'"
+    place = f"Camera '{name_of(camera)}'"
     if lens.type not in {"PERSP", "ORTHO", "PANO"}:
         raise ExportError(
             f"{place}: {lens.type.lower()} cameras are not supported; use a perspective, orthographic or panoramic one"

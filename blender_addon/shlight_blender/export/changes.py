@@ -8,6 +8,8 @@ from typing import Any
 
 import bpy
 
+from ..names import name_of
+
 
 @dataclass
 class Changes:
@@ -61,7 +63,7 @@ def _add(changes: Changes, update: Any) -> None:
     elif isinstance(changed, bpy.types.Object):
         changes.objects = changes.lamps = True
         if update.is_updated_geometry:
-            changes.shapes.add(changed.name_full)
+            changes.shapes.add(name_of(changed, "name_full"))
     elif isinstance(changed, bpy.types.Scene):
         return  # what its settings mean for the picture is compared
     elif isinstance(changed, (bpy.types.NodeTree, bpy.types.Image, bpy.types.Texture)):

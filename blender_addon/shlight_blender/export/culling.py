@@ -16,7 +16,7 @@ Points = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Culling:
-    """What Cycles leaves out, by the corners of an object's bounding box; a render border changes nothing of it."""
+    """Tells what Cycles leaves out by the corners of its bounding box; a render border changes nothing of it."""
 
     view: View
     clips: tuple[float, float]
@@ -34,7 +34,7 @@ class Culling:
         return not (beside and self._is_near_picture(corners)) and not (far and self._is_near_camera(corners))
 
     def _is_near_picture(self, corners: Points) -> bool:
-        """As Cycles has it, where corners before the near plane count as on the other side of the picture."""
+        """Corners before the near plane count as on the other side of the picture, as in Cycles."""
         margin, (near, far) = self.margin or 0.0, self.clips
         to_camera = np.array(self.view.to_camera)
         x, y, z = (corners @ to_camera[:, :3].T + to_camera[:, 3]).T

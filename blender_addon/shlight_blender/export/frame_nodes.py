@@ -14,6 +14,7 @@ from shlight.nodes.inputs import normal_to_object, normal_to_world, point_to_obj
 from shlight.nodes.mathematics import reflect
 from shlight.nodes.values import cross, dot, length, normalize
 
+from ..names import name_of
 from .camera import View
 from .expressions import Expression, NodeInputs, ReadNode
 from .mesh_attributes import GENERATED, TANGENT
@@ -140,7 +141,7 @@ def _tangent(inputs: NodeInputs) -> Vector:
     node = inputs.node
     if node.direction_type == "RADIAL":
         return around(node.axis)
-    return _in_surface(Vector(*nodes.attribute(f"{TANGENT}{node.uv_map}")))
+    return _in_surface(Vector(*nodes.attribute(f"{TANGENT}{name_of(node, 'uv_map')}")))
 
 
 FRAME_NODES: dict[str, ReadNode] = {

@@ -14,6 +14,7 @@ from shlight import nodes
 from shlight.nodes import Color, Value, Vector
 from shlight.nodes.values import Number, clamp, dot, operation, select, sqrt
 
+from ..names import name_of
 from ..report import Effect
 from .color_spaces import is_known
 from .expressions import NodeInputs
@@ -62,7 +63,7 @@ def _textures(inputs: NodeInputs, image: Any) -> Any:
             inputs.remark(f"images of the kind {image.source} are not supported; the picture in memory is used")
         found = found or datablock_texture(image, as_normals=as_normals)
     if not found:
-        inputs.remark(f"its picture '{image.filepath or image.name}' is missing; magenta is used", Effect.THING)
+        inputs.remark(f"its picture '{image.filepath or name_of(image)}' is missing; magenta is used", Effect.THING)
         return None
     return found
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from shlight import _core, images
 from shlight.nodes.textures import texture_pixels
 
+from ..names import name_of
 from .color_spaces import SRGB, is_known, linear_light, needs_conversion
 
 # The colour that Cycles shows for a missing picture.
@@ -131,7 +132,16 @@ def datablock_texture(image: Any, *, as_normals: bool) -> Texture | None:
         return None
     generated = (image.generated_type, *image.generated_color) if image.source == "GENERATED" else ()
     key = (
-        *(image.as_pointer(), image.name_full, width, height, image.channels, image.is_float, image.source, generated),
+        *(
+            image.as_pointer(),
+            name_of(image, "name_full"),
+            width,
+            height,
+            image.channels,
+            image.is_float,
+            image.source,
+            generated,
+        ),
         *(image.colorspace_settings.name, image.alpha_mode, as_normals, *_stamp(image)),
     )
     if image.is_dirty:

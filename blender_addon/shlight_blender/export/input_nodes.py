@@ -9,6 +9,7 @@ from shlight import nodes
 from shlight.nodes import Color, Value, Vector
 from shlight.nodes.values import clamp, dot, maximum, number, operation, select, sqrt
 
+from ..names import name_of
 from .blackbody import blackbody_rgb
 from .expressions import Expression, NodeInputs, ReadNode
 from .frame_nodes import around
@@ -19,12 +20,12 @@ from .object_values import RANDOM, property_color
 def _uv_map(inputs: NodeInputs) -> Vector:
     if inputs.node.from_instancer:
         inputs.remark("'From Instancer' is not supported; the object's own map is used")
-    return nodes.uv(inputs.node.uv_map)
+    return nodes.uv(name_of(inputs.node, "uv_map"))
 
 
 def _attribute(inputs: NodeInputs) -> Expression:
     node, around = inputs.node, inputs.reader.surroundings
-    name, kind = node.attribute_name, node.attribute_type
+    name, kind = name_of(node, "attribute_name"), node.attribute_type
     if not name:
         return number(0.0)
     if kind == "GEOMETRY":
@@ -53,7 +54,7 @@ def _channel(inputs: NodeInputs, found: Color, mean: Value | None = None) -> Exp
 
 
 def _color_attribute(inputs: NodeInputs) -> Expression:
-    found = nodes.attribute(f"{COLOR}{inputs.node.layer_name}")
+    found = nodes.attribute(f"{COLOR}{name_of(inputs.node, 'layer_name')}")
     return found.alpha if inputs.output.identifier == "Alpha" else found
 
 
@@ -144,7 +145,9 @@ def _normal_map(inputs: NodeInputs) -> Vector:
     color: Vector = inputs.color("Color")
     if node.space.startswith("BLENDER"):
         color = Vector(color.x, 1.0 - color.y, 1.0 - color.z)
-    return nodes.normal_map(color, inputs.number("Strength"), space=space, tangents=f"{TANGENT}{node.uv_map}")
+    return nodes.normal_map(
+        color, inputs.number("Strength"), space=space, tangents=f"{TANGENT}{name_of(node, 'uv_map')}"
+    )
 
 
 def _bump(inputs: NodeInputs) -> Vector:

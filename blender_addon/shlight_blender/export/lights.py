@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 import shlight
 
 from ..compat import LAMPS, lamp_casts_shadows, lamp_is_normalized, lamp_tint, point_is_disk, uses_nodes
+from ..names import name_of
 from ..report import Effect, ExportReport
 from .expressions import Surroundings
 from .materials import with_light
@@ -67,7 +68,7 @@ def add_lamp(
     instancer: the object that shows it, if it is an instance.
     """
     lamp = lamp_object.data
-    place = f"Light '{lamp_object.name}'"
+    place = f"Light '{name_of(lamp_object)}'"
     if lamp.type == "AREA" and getattr(getattr(lamp, "cycles", None), "is_portal", False):
         return False  # guides Cycles' sampling of the world, emits nothing
     unit = float(lamp.energy) * lamp_tint(lamp)
@@ -87,7 +88,7 @@ def add_lamp(
         "diffuse": all(shown.visible_diffuse for shown in shown_by),
         "camera": all(shown.visible_camera for shown in shown_by),
         "glossy": all(shown.visible_glossy for shown in shown_by),
-        "group": surroundings.passes.light_part(lamp_object.name, lamp_object.lightgroup),
+        "group": surroundings.passes.light_part(name_of(lamp_object), name_of(lamp_object, "lightgroup")),
     }
     parts = [part._replace(emission=unit * part.emission) for part in glow.parts]
     return LAMP_TYPES[lamp.type](scene, Lamp(lamp, power, parts, to_world, place, traits), report)

@@ -13,6 +13,7 @@ from shlight.nodes import Shader
 from shlight.nodes.rays import Ray, color_on_ray
 
 from ..compat import MATERIALS, lets_light_through, uses_nodes
+from ..names import name_of
 from ..report import Effect, ExportReport
 from .aovs import with_aovs
 from .emission import VaryingEmission
@@ -59,13 +60,13 @@ def read_material(material: Any, report: ExportReport, surroundings: Surrounding
     if material is None:
         return default_surface()
     surface = _read(material, report, surroundings)
-    return replace(surface, name=material.name, pass_index=int(material.pass_index))
+    return replace(surface, name=name_of(material), pass_index=int(material.pass_index))
 
 
 def _read(material: Any, report: ExportReport, surroundings: Surroundings) -> Surface:
     if not uses_nodes(material):
         return Surface(nodes.lambert([max(c, 0.0) for c in material.diffuse_color[:3]]))
-    place = f"Material '{material.name}'"
+    place = f"Material '{name_of(material)}'"
     output = material.node_tree.get_output_node("CYCLES")
     if output is None:
         report.add(place, "there is no Material Output node; drawn black", Effect.THING)

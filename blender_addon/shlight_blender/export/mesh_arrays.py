@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compat import mesh_triangles, smooth_corner_normals, smooth_vertex_normals
+from ..names import name_of
 from ..report import Effect, ExportReport
 from .mesh_attributes import COLOR, mesh_attributes
 
@@ -55,7 +56,7 @@ def complete(arrays: MeshArrays, mesh_object: Any, names: Sequence[str], report:
     for name in missing:
         what = f"attribute or UV map '{name}'" if name else "UV map"
         text = f"it has no {what}, which its material reads; 0 is used, as in Cycles"
-        report.add(f"Object '{mesh_object.name}'", text, Effect.SLIGHT)
+        report.add(f"Object '{name_of(mesh_object)}'", text, Effect.SLIGHT)
     black = np.zeros((len(arrays.triangles), 3, 4), dtype=np.float32)
     arrays.attributes |= {name: black for name in missing if name.startswith(COLOR)}
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compat import Triangles, uv_coordinates, values_of
+from ..names import with_name
 from .mesh_shape import pointiness, random_per_island
 
 Array = NDArray[np.float32]
@@ -66,12 +67,14 @@ def _attribute(mesh: Any, triangles: Triangles, name: str) -> Array | None:
     uvs = _uvs(mesh, triangles, name)
     if uvs is not None:
         return uvs
-    layer = mesh.attributes.get(name) if name else None
+    layer = with_name(mesh.attributes, name) if name else None
     return None if layer is None else _layer(triangles, layer)
 
 
 def _uv_layer(mesh: Any, name: str) -> Any:
-    return mesh.uv_layers.get(name) if name else next((map_ for map_ in mesh.uv_layers if map_.active_render), None)
+    return (
+        with_name(mesh.uv_layers, name) if name else next((map_ for map_ in mesh.uv_layers if map_.active_render), None)
+    )
 
 
 def _uvs(mesh: Any, triangles: Triangles, name: str) -> Array | None:
@@ -87,7 +90,7 @@ def _tangents(mesh: Any, triangles: Triangles, name: str) -> Array | None:
         return None
     try:
         mesh.calc_tangents(uvmap=layer.name)
-    except RuntimeError:  # faces of more than four corners; they have none
+    except (RuntimeError, UnicodeDecodeError):  # faces of more than four corners, or an odd name; they have none
         return None
     tangents = values_of(mesh.loops, "tangent", np.float32, 3)
     signs = values_of(mesh.loops, "bitangent_sign", np.float32)
@@ -98,7 +101,7 @@ def _tangents(mesh: Any, triangles: Triangles, name: str) -> Array | None:
 def _color(mesh: Any, triangles: Triangles, name: str) -> Array | None:
     layers = mesh.color_attributes
     index = layers.render_color_index
-    layer = layers.get(name) if name else layers[index] if 0 <= index < len(layers) else None
+    layer = with_name(layers, name) if name else layers[index] if 0 <= index < len(layers) else None
     return None if layer is None else _layer(triangles, layer)
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 import shlight
 
 from ..compat import slot_materials
+from ..names import name_of
 from ..passes import SURFACES
 from ..report import Effect, ExportReport
 from .changes import Changes
@@ -44,7 +45,7 @@ def _label(shown: Any) -> Label:
     root = shown
     while root.parent is not None:
         root = root.parent
-    return Label(shown.name, root.name, int(shown.pass_index))
+    return Label(name_of(shown), name_of(root), int(shown.pass_index))
 
 
 @dataclass
@@ -107,12 +108,12 @@ class SceneMeshes:
     def add(self, instance: Any, to_world: Matrix) -> None:
         """Notes one instance of the depsgraph that shows a mesh, at `to_world`."""
         mesh_object = instance.object
-        place = f"Object '{mesh_object.name}'"
+        place = f"Object '{name_of(mesh_object)}'"
         if not np.isfinite(to_world).all():
             self.report.add(place, "its transform is not finite; left out", Effect.THING)
             return
         materials = slot_materials(mesh_object)
-        group = self._surroundings.passes.light_part(SURFACES, mesh_object.lightgroup)
+        group = self._surroundings.passes.light_part(SURFACES, name_of(mesh_object, "lightgroup"))
         key = (mesh_object.data.as_pointer(), group, *(material and material.as_pointer() for material in materials))
         flat = _is_flat(to_world)
         if flat:  # a mesh of its own, which stands where it is
@@ -135,7 +136,7 @@ class SceneMeshes:
         if kept is None or self._changes.all_shapes:
             return None
         shapes = self._changes.shapes
-        if instance.object.name_full in shapes or (kept.owner in shapes if kept.owner else bool(shapes)):
+        if name_of(instance.object, "name_full") in shapes or (kept.owner in shapes if kept.owner else bool(shapes)):
             return None
         first_place = kept.transforms[0]
         kept.transforms, kept.object_values, kept.labels = [], [], []
@@ -274,7 +275,7 @@ def _owner(instance: Any, depsgraph: Any) -> str | None:
         own = shown.original.evaluated_get(depsgraph).data
         if own is None or own.as_pointer() != shown.data.as_pointer():
             return None
-    return str(shown.name_full)
+    return name_of(shown, "name_full")
 
 
 def _is_flat(to_world: Matrix) -> bool:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..names import name_of
 from ..report import ExportReport
 from .blackbody import blackbody_rgb
 
@@ -104,7 +105,7 @@ def all_nodes(tree: Any) -> Iterator[Any]:
 
 def node_name(node: Any) -> str:
     """A node as the user finds it: its label if it has one, else its name."""
-    return str(node.label or node.name)
+    return name_of(node, "label") or name_of(node)
 
 
 class ConstantReader:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..names import name_bytes
 from .random_numbers import ALL_BITS, hashed, hashed_text, share
 
 RANDOM = "random"
@@ -33,7 +34,7 @@ class ObjectValues:
 
 def _values(instance: Any, kind: str, name: str) -> tuple[float, ...]:
     if kind == RANDOM:
-        own = hashed(hashed_text(instance.object.name), 0)
+        own = hashed(hashed_text(name_bytes(instance.object)), 0)
         return (share(instance.random_id & ALL_BITS if instance.is_instance else own), 0.0, 0.0, 0.0)
     owners = [instance.object, instance.object.data]
     if kind == "INSTANCER" and instance.is_instance:

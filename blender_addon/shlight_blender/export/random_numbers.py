@@ -22,10 +22,10 @@ def hashed(*keys: int) -> int:
     return state[2]
 
 
-def hashed_text(text: str) -> int:
+def hashed_text(text: bytes) -> int:
     """A number of 32 bits for a name; bytes from 128 on count as negative ones."""
     found = 0
-    for byte in text.encode():
+    for byte in text:
         found = (found * 37 + (byte if byte < 128 else byte - 256)) & ALL_BITS
     return found
 

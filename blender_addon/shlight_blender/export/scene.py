@@ -13,6 +13,7 @@ import numpy as np
 import shlight
 
 from ..frame import Frame, frame_of
+from ..names import name_of
 from ..passes import PassWishes, pass_wishes
 from ..report import Effect, ExportCancelled, ExportError, ExportReport
 from .bake import Baked, Waiting, bake_world
@@ -213,7 +214,7 @@ class ExportedScene:
 
     def _add_lamp(self, instance: Any) -> bool:
         report, instancer = self._reports["lamps"], _instancer(instance)
-        _report_light_linking((instance.object, instancer), f"Light '{instance.object.name}'", report)
+        _report_light_linking((instance.object, instancer), f"Light '{name_of(instance.object)}'", report)
         return add_lamp(self.scene, instance.object, _to_world(instance), report, self._surroundings, instancer)
 
     def _add_object(self, instance: Any, view_layer: Any) -> None:
@@ -226,7 +227,7 @@ class ExportedScene:
                 self._meshes.add(instance, _to_world(instance))
         elif seen.type in UNSUPPORTED_TYPES and getattr(view_layer, FILTERS.get(seen.type, ""), True):
             text = f"{UNSUPPORTED_TYPES[seen.type]} are not supported; left out"
-            report.add(f"Object '{seen.name}'", text, Effect.THING)
+            report.add(f"Object '{name_of(seen)}'", text, Effect.THING)
 
     def _weigh_report(self, depsgraph: Any) -> None:
         """Orders the report of a picture by how much of it each finding can change."""
@@ -241,8 +242,8 @@ class ExportedScene:
         if not any(self._is_lit.values()):
             left_out = [message.line() for message in self.report if message.effect == Effect.LIGHT]
             text = ". ".join(["it has no light that shlight can render; the picture is black", *left_out])
-            self.dark = f"Scene '{blender_scene.name}': {text}"
-            report.add(f"Scene '{blender_scene.name}'", text, Effect.DARK)
+            self.dark = f"Scene '{name_of(blender_scene)}': {text}"
+            report.add(f"Scene '{name_of(blender_scene)}'", text, Effect.DARK)
 
 
 def export_scene(
@@ -268,9 +269,11 @@ def _eye(camera: Any, blender_scene: Any, depsgraph: Any) -> Eye:
     if isinstance(camera, Eye):
         return camera
     if camera is None:
-        raise ExportError(f"Scene '{blender_scene.name}' has no camera")
+        raise ExportError(f"Scene '{name_of(blender_scene)}' has no camera")
     if camera.type != "CAMERA":
-        raise ExportError(f"the active camera of scene '{blender_scene.name}', '{camera.name}', is not a camera")
+        raise ExportError(
+            f"the active camera of scene '{name_of(blender_scene)}', '{name_of(camera)}', is not a camera"
+        )
     evaluated = camera.evaluated_get(depsgraph)
     return Eye(camera, evaluated.matrix_world, evaluated.data.shift_x)
 
@@ -318,14 +321,14 @@ def _to_world(instance: Any) -> Any:
 
 
 def _report_object(seen: Any, instancer: Any, view_layer: Any, report: ExportReport) -> None:
-    place = f"Object '{seen.name}'"
+    place = f"Object '{name_of(seen)}'"
     for name, (neutral, text) in VISIBILITY.items():
         if view_layer.use_solid and any(bool(getattr(shown, name, neutral)) != neutral for shown in (seen, instancer)):
             report.add(place, text, Effect.THING)
     for system in seen.particle_systems if view_layer.use_strand else ():
         settings = system.settings
         if settings.type == "HAIR" and settings.render_type == "PATH":
-            hair = f"{place}, particle system '{system.name}'"
+            hair = f"{place}, particle system '{name_of(system)}'"
             report.add(hair, "hair is not supported; left out", Effect.THING)
     _report_light_linking((seen, instancer), place, report)
 

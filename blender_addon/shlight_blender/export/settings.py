@@ -9,6 +9,7 @@ from typing import Any
 import bpy
 
 from ..compat import DENOISING_LEFT_OUT, PASSES, REC709, working_space
+from ..names import name_of
 from ..passes import CRYPTOMATTES, stores_denoising_data
 from ..report import Effect, ExportReport
 from .nodes import all_nodes
@@ -93,7 +94,7 @@ def preview_settings(scene: Any) -> RenderSettings:
 
 def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportReport) -> None:
     """Notes settings of the scene and its view layer that change Cycles' picture and not shlight's."""
-    place = f"Scene '{scene.name}'"
+    place = f"Scene '{name_of(scene)}'"
     render = scene.render
     if render.use_motion_blur:
         report.add(place, "motion blur is not supported; everything stands still")
@@ -106,10 +107,10 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
         report.add(place, f"working space {working_space()} is not supported; skies and pictures stay Rec. 709")
     tree = getattr(scene.world, "node_tree", None)
     if tree is not None and any(node.type == "OUTPUT_AOV" for node in all_nodes(tree)):
-        report.add(f"World '{scene.world.name}'", "AOVs of worlds are not supported; left out", Effect.SLIGHT)
+        report.add(f"World '{name_of(scene.world)}'", "AOVs of worlds are not supported; left out", Effect.SLIGHT)
     passes = ", ".join(_passes_not_written(view_layer))
     if passes:
-        report.add(f"View layer '{view_layer.name}'", f"passes that are not supported: {passes}", Effect.SLIGHT)
+        report.add(f"View layer '{name_of(view_layer)}'", f"passes that are not supported: {passes}", Effect.SLIGHT)
     _report_layer_collections(view_layer.layer_collection, report)
 
 
@@ -128,5 +129,5 @@ def _report_layer_collections(layer_collection: Any, report: ExportReport) -> No
     for child in layer_collection.children:
         if child.holdout or child.indirect_only:
             text = "holdout and indirect only are not supported; drawn as usual"
-            report.add(f"Collection '{child.name}'", text, Effect.THING)
+            report.add(f"Collection '{name_of(child)}'", text, Effect.THING)
         _report_layer_collections(child, report)

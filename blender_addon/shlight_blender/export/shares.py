@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..compat import lamp_tint, slot_materials
 from ..frame import Frame
+from ..names import name_of
 from .camera import View
 
 Array = NDArray[np.float64]
@@ -31,9 +32,14 @@ def shares_of_picture(depsgraph: Any, view: View, frame: Frame, wanted: Containe
         shown = instance.object
         if shown.type == "LIGHT":
             if shown.data.type != "SUN":
-                power[f"Light '{shown.name}'"] += abs(float(shown.data.energy) * float(lamp_tint(shown.data).mean()))
+                power[f"Light '{name_of(shown)}'"] += abs(
+                    float(shown.data.energy) * float(lamp_tint(shown.data).mean())
+                )
             continue
-        names = {f"Object '{shown.name}'", *(f"Material '{each.name}'" for each in slot_materials(shown) if each)}
+        names = {
+            f"Object '{name_of(shown)}'",
+            *(f"Material '{name_of(each)}'" for each in slot_materials(shown) if each),
+        }
         owned = [name for name in names if name in wanted]
         if owned and instance.show_self:
             to_world = np.array(instance.matrix_world)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 import shlight
 
 from ..compat import uses_nodes
+from ..names import name_of
 from ..passes import WORLD, PassWishes
 from ..report import Effect, ExportReport
 from .bake import Baked, BakeError, Sun
@@ -57,13 +58,13 @@ class SceneWorld:
         self._visible = not blender_scene.render.film_transparent
         world = world_of(blender_scene, view_layer)
         read = _black() if world is None else _read_world(world, blender_scene, report, bake)
-        self._group = None if world is None else passes.light_part(WORLD, world.lightgroup)
+        self._group = None if world is None else passes.light_part(WORLD, name_of(world, "lightgroup"))
         radiance = read.radiance
         if radiance.min() < 0.0:
             radiance = np.maximum(radiance, 0.0)
             if np.sum(radiance - read.radiance) > MOST_NEGATIVE * np.sum(radiance):
                 text = "where it is negative, it takes light away in Cycles; it is black there"
-                report.add(f"World '{world.name}'", text, Effect.LIGHT)
+                report.add(f"World '{name_of(world)}'", text, Effect.LIGHT)
         self._scene.set_environment(radiance, to_world=read.to_world, visible=self._visible, group=self._group)
         self._suns = read.suns
         return bool(radiance.any() or read.suns)
@@ -85,7 +86,7 @@ def _black() -> World:
 
 
 def _read_world(world: Any, blender_scene: Any, report: ExportReport, bake: Bake) -> World:
-    place = f"World '{world.name}'"
+    place = f"World '{name_of(world)}'"
     _report_visibility(world, place, report)
     if not uses_nodes(world):
         return World(np.array(world.color, dtype=np.float64))

@@ -15,6 +15,7 @@ from shlight.quiet import quiet
 from ..comparison.scene import SceneError, open_scene
 from ..compat import compositing_nodes
 from ..frame import frame_of
+from ..names import name_of
 from ..running import ENGINE
 
 NUMBERS = {"FLOAT": float, "INT": int}
@@ -72,7 +73,7 @@ def closed_to_others(scene: Any) -> list[str]:
     if render.use_sequencer and (getattr(editor, "strips", None) or getattr(editor, "sequences", None)):
         left_out.append("the sequencer is left out")
     left_out += [f"the fluid of '{name}' is left out; it is replayed, and not baked" for name in _replayed_fluids()]
-    return [f"Scene '{scene.name}': {text}" for text in left_out]
+    return [f"Scene '{name_of(scene)}': {text}" for text in left_out]
 
 
 def apply_settings(scene: Any, settings: Mapping[str, Any]) -> None:
