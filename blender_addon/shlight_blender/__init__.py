@@ -3,7 +3,7 @@
 
 import atexit
 
-from .native import find_packages, forget_packages
+from .native import find_packages, forget_packages, numpy_problem
 
 bl_info = {
     "name": "shlight",
@@ -22,11 +22,18 @@ find_packages()
 def register() -> None:
     """Adds the engine, its scene settings and its panels to Blender. Does nothing where they are.
 
+    Without numpy only the preferences are added, which say so.
     Raises RuntimeError if they are those of another copy of the add-on.
     """
     import bpy
 
-    from . import engine, panels, preferences, properties, running
+    from . import preferences
+
+    if problem := numpy_problem():
+        print(f"shlight: {problem}")
+        preferences.register()
+        return
+    from . import engine, panels, properties, running
     from .compare import registration
 
     if properties.are_registered():
@@ -48,7 +55,12 @@ def register() -> None:
 
 def unregister() -> None:
     """Stops renders and removes everything that `register` added. Does nothing where it is removed."""
-    from . import engine, panels, preferences, properties
+    from . import preferences
+
+    if numpy_problem():
+        preferences.unregister()
+        return
+    from . import engine, panels, properties
     from .compare import registration
 
     if not properties.are_registered():

@@ -58,7 +58,8 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             for view in _views(depsgraph.scene.render):
                 views[view] = self._render(depsgraph, frame, view)
             if running.renders.stopped:
-                self._say_error(running.STOPPED)  # after an error Blender begins no other frame
+                text = f"the render was stopped because {running.renders.stopped} was disabled"
+                self._say_error(text)  # after an error Blender begins no other frame
             self._deliver(depsgraph, frame, views)
         except ExportError as error:
             record.last.scene_error = str(error)
@@ -285,7 +286,7 @@ def register() -> None:
 
 def unregister() -> None:
     """Stops the render that runs, and removes the engine."""
-    if running.renders.stop():  # else Blender would use what is removed
+    if running.renders.stop(ShlightRenderEngine.bl_label):  # else Blender would use what is removed
         try:
             bpy.utils.unregister_class(ShlightRenderEngine)
         except RuntimeError:  # where Blender lets no script write the add-on stays as it is, and renders

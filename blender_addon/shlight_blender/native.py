@@ -35,6 +35,13 @@ _unpacking_problem = ""
 _unpacked: Path | None = None  # what `import` finds
 
 
+def numpy_problem() -> str:
+    """Says what to install where Blender's Python lacks numpy, as Debian's may; empty if it has it."""
+    if importlib.util.find_spec("numpy") is not None:
+        return ""
+    return "Blender's Python lacks numpy: install it ('apt install python3-numpy' on Debian) and restart Blender"
+
+
 def find_packages() -> None:
     """Makes `import shlight` work where Blender does not see to that itself."""
     global _unpacking_problem, _unpacked
@@ -100,6 +107,8 @@ def _remove_others(named: Collection[str], unpacked: Path) -> None:
 
 def native_problem() -> str:
     """Why the package cannot be used and what to do; empty if it can."""
+    if problem := numpy_problem():
+        return problem
     try:
         import shlight
         from shlight import render  # noqa: F401

@@ -17,7 +17,6 @@ from . import record
 
 ENGINE = "SHLIGHT"
 LONGEST_WAIT = 30.0  # seconds; the longest part of an export that does not ask whether it is to end takes a few
-STOPPED = "the render was stopped because a render engine was removed"
 
 
 class Renders:
@@ -26,7 +25,7 @@ class Renders:
     def __init__(self) -> None:
         self._changed = threading.Condition()
         self._thread: int | None = None
-        self.stopped = False
+        self.stopped = ""  # the engine that is removed, for which renders end; empty: they run
 
     def begin(self) -> None:
         """The job has begun in this thread."""
@@ -38,10 +37,13 @@ class Renders:
             self._thread = None
             self._changed.notify_all()
 
-    def stop(self) -> bool:
-        """Ends the job, and keeps others from running until `resume`; False if it does not end."""
+    def stop(self, removed: str) -> bool:
+        """Ends the job, and keeps others from running until `resume`; False if it does not end.
+
+        removed: the engine that is removed, by its name for users.
+        """
         with self._changed:
-            self.stopped = True
+            self.stopped = removed
             if self._thread == threading.get_ident():
                 return False
             if not bpy.app.is_job_running("RENDER"):
@@ -50,7 +52,7 @@ class Renders:
 
     def resume(self) -> None:
         """Lets renders run."""
-        self.stopped = False
+        self.stopped = ""
 
 
 renders = Renders()
@@ -75,7 +77,7 @@ def _note_file(*_: Any) -> None:
 def _stop_for(cls: Any) -> None:
     """Blender calls a class's `unregister` before it removes it."""
     if not renders.stopped:
-        renders.stop()
+        renders.stop(cls.bl_label or cls.bl_idname)
         renders.resume()
 
 

@@ -93,7 +93,6 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 LAMPS = ["point", "area", "spot", "small_spot", "small_point", "sun", "small_sun", "spread", "textured"]
 
-
 OTHERS = ["smooth", "glossy", "metal", "curves", "sky", "panoramic", "orthographic", "simplified"]
 
 
@@ -185,8 +184,27 @@ def test_a_walk_in_the_window(tmp_path: Path, steps: int) -> None:
     assert code in {0, 1}, output  # 1 after a render that was stopped, which is an operator's error
     assert "step 0: quit" in output, output
     assert "Traceback" not in output, output
-    stopped = "Error: shlight: the render was stopped because a render engine was removed"
-    assert all(line == stopped for line in output.splitlines() if line.startswith("Error")), output
+    stopped = {f"Error: shlight: the render was stopped because {name} was disabled" for name in ("shlight", "Cycles")}
+    assert {line for line in output.splitlines() if line.startswith("Error")} <= stopped, output
+
+
+def test_without_numpy_one_line_says_what_to_install(tmp_path: Path) -> None:
+    addons = tmp_path / ".config/blender/3.4/scripts/addons"
+    addons.mkdir(parents=True)
+    (addons / "shlight_blender").symlink_to(ROOT / "blender_addon/shlight_blender")
+    script = tmp_path / "enable.py"
+    script.write_text(
+        "import sys\nimport bpy\nsys.modules['numpy'] = None\n"
+        "for switch in ('enable', 'disable', 'enable'):\n"
+        "    getattr(bpy.ops.preferences, f'addon_{switch}')(module='shlight_blender')\n"
+    )
+    done = run_blender("-b", script=str(script), folder=tmp_path)
+    assert done.returncode == 0, spoken(done)
+    assert "Traceback" not in spoken(done)
+    text = (
+        "shlight: Blender's Python lacks numpy: install it ('apt install python3-numpy' on Debian) and restart Blender"
+    )
+    assert spoken(done).count(text) == 2
 
 
 def test_window(tmp_path: Path) -> None:
