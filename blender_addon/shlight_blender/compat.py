@@ -176,6 +176,17 @@ def lets_light_through(material: Any) -> bool:
     return bool(getattr(owner, "use_transparent_shadow", True))
 
 
+def terminator_offsets(shown: Any) -> tuple[float, float]:
+    """An object's Shadow Terminator offsets, Geometry and Shading.
+
+    Cycles reads the object's own where it has them (since Blender 4.2), else its add-on's; 0.1 and 0 by default.
+    """
+    if hasattr(shown, "shadow_terminator_geometry_offset"):
+        return shown.shadow_terminator_geometry_offset, shown.shadow_terminator_shading_offset
+    own = getattr(shown, "cycles", None)
+    return getattr(own, "shadow_terminator_geometry_offset", 0.1), getattr(own, "shadow_terminator_offset", 0.0)
+
+
 def working_space() -> str:
     """The file's working colour space; since Blender 5.0 it may be another one than Rec. 709."""
     colors = getattr(bpy.data, "colorspace", None)

@@ -291,6 +291,8 @@ class Scene:
         object_indices: ArrayLike | None = None,
         material_names: str | Sequence[str] | None = None,
         material_pass_indices: ArrayLike | None = None,
+        terminator_geometry_offset: float = 0.0,
+        terminator_shading_offset: float = 0.0,
     ) -> SceneMesh: ...
     def remove_lights(self) -> None: ...
     def add_sphere_light(

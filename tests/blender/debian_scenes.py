@@ -188,9 +188,17 @@ def flat_camera(studio):
     studio.scene.camera.scale = (1, 0, 1)
 
 
+def coarse(studio):
+    """Balls of few faces, with the default of Shadow Terminator and with a Shading Offset."""
+    studio.ball(1.0, studio.material(), rings=4, location=(-1.1, 0, 1))
+    studio.terminator(studio.ball(1.0, studio.material(), rings=4, location=(1.1, 0, 1)), 0.1, 0.3)
+    studio.lamp("SUN", 3, (0, 0, 0), rotation_euler=(0.2, 1.1, 0), angle=0.3)
+
+
 SCENES = [
     point, area, spot, small_spot, small_point, sun, small_sun, spread, textured, textured_by_default, smooth, glossy,
     metal, principled, curves, sky, dark, panoramic, orthographic, simplified, flat_camera,
+    coarse,
 ]  # fmt: skip
 
 polls = [item.poll for item in nodes_by_engine()]

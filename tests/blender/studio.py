@@ -103,6 +103,13 @@ class Studio:
         made.data.polygons.foreach_set("use_smooth", [smooth] * len(made.data.polygons))
         return made
 
+    def terminator(self, shown: Any, geometry: float, shading: float) -> None:
+        """An object's Shadow Terminator offsets, which are Cycles' own before Blender 4.2."""
+        own = hasattr(shown, "shadow_terminator_geometry_offset")
+        settings, name = (shown, "shading_offset") if own else (shown.cycles, "offset")
+        settings.shadow_terminator_geometry_offset = geometry
+        setattr(settings, f"shadow_terminator_{name}", shading)
+
     def lamp(self, kind: str, energy: float, location: Sequence[float], **properties: Any) -> Any:
         """A lamp; properties of its data and of the object may be mixed."""
         data = bpy.data.lights.new(kind.title(), kind)

@@ -93,7 +93,7 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 LAMPS = ["point", "area", "spot", "small_spot", "small_point", "sun", "small_sun", "spread", "textured"]
 
-OTHERS = ["smooth", "glossy", "metal", "curves", "sky", "panoramic", "orthographic", "simplified"]
+OTHERS = ["smooth", "coarse", "glossy", "metal", "curves", "sky", "panoramic", "orthographic", "simplified"]
 
 
 @pytest.mark.parametrize("scene", [*LAMPS, *OTHERS])

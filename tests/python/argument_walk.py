@@ -98,6 +98,8 @@ MESH = {
     "object_indices": [1],
     "material_names": ["Matt"],
     "material_pass_indices": 2,
+    "terminator_geometry_offset": 0.1,
+    "terminator_shading_offset": 0.1,
 }
 OF_MATERIALS = ("bsdf", "emission", "group", "material_names", "material_pass_indices")
 OF_PLACES = ("transforms", "object_values", "object_names", "asset_names", "object_indices")

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import shlight
 
-from ..compat import slot_materials
+from ..compat import slot_materials, terminator_offsets
 from ..names import name_of
 from ..passes import SURFACES
 from ..report import Effect, ExportReport
@@ -114,14 +114,16 @@ class SceneMeshes:
             return
         materials = slot_materials(mesh_object)
         group = self._surroundings.passes.light_part(SURFACES, name_of(mesh_object, "lightgroup"))
-        key = (mesh_object.data.as_pointer(), group, *(material and material.as_pointer() for material in materials))
+        offsets = terminator_offsets(mesh_object)
+        own = (material and material.as_pointer() for material in materials)
+        key = (mesh_object.data.as_pointer(), group, offsets, *own)
         flat = _is_flat(to_world)
         if flat:  # a mesh of its own, which stands where it is
             key = (*key, len(self._seen))
         surfaces = [self._surface(material) for material in materials or [None]]
         if key not in self._seen:
             self._seen[key] = self._kept_mesh(key, instance, to_world, surfaces) or self._convert(
-                instance, to_world, place, surfaces, group, flat
+                instance, to_world, place, surfaces, group, flat, offsets
             )
         use = self._seen[key]
         use.transforms.append(np.eye(4) if flat else to_world)
@@ -154,9 +156,17 @@ class SceneMeshes:
         return _attribute_names(surfaces) | ({UV} if self._surroundings.passes.uvs else set())
 
     def _convert(
-        self, instance: Any, to_world: Matrix, place: str, surfaces: list[Surface], group: str | None, flat: bool
+        self,
+        instance: Any,
+        to_world: Matrix,
+        place: str,
+        surfaces: list[Surface],
+        group: str | None,
+        flat: bool,
+        offsets: tuple[float, float],
     ) -> KeptMesh:
-        """The mesh of an instance, added to the scene where nothing shows it yet; flat: as it stands at to_world."""
+        """The mesh of an instance, added to the scene where nothing shows it yet; flat: as it stands at to_world;
+        offsets: see terminator_offsets."""
         report = ExportReport()
         attributes = self._attributes(surfaces)
         arrays = object_arrays(instance.object, place, sorted(attributes), report)
@@ -183,6 +193,8 @@ class SceneMeshes:
                 attributes=arrays.attributes,
                 material_indices=slots,
                 transforms=np.empty((0, 4, 4)),
+                terminator_geometry_offset=offsets[0],
+                terminator_shading_offset=offsets[1],
                 **_materials(made),
             )
         return made

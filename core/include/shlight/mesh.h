@@ -65,6 +65,14 @@ struct MeshShape {
     }
 };
 
+/// What keeps flat triangles from showing at the edge of a smooth surface's own shadow, as Cycles has it: 0 … 1, 0 for
+/// nothing. See Terminator.
+struct TerminatorOffsets {
+    double geometry =
+        0;               ///< cosine of the light below which shadow rays start on the surface that the normals describe
+    double shading = 0;  ///< how much earlier the light ends
+};
+
 /// The materials and the instances of a shape. Surfaces are two-sided: normals are turned to the viewer.
 struct MeshUse {
     std::vector<Bsdf> bsdfs = {Bsdf()};    ///< one per material, or one for all
@@ -73,9 +81,10 @@ struct MeshUse {
     std::vector<MeshShader> shaders;
     std::vector<glm::dmat4> transforms = {glm::dmat4(1)};  ///< object to world, one per instance
     std::vector<std::vector<float>> object_values;         ///< one list per instance, or none: see ShaderSource
-    std::uint32_t group = 0;                               ///< light group of its emission, see LightTraits::group
-    std::vector<Label> object_labels;                      ///< one per instance, or none
-    std::vector<Label> material_labels;                    ///< one per material, or none
+    TerminatorOffsets terminator;
+    std::uint32_t group = 0;             ///< light group of its emission, see LightTraits::group
+    std::vector<Label> object_labels;    ///< one per instance, or none
+    std::vector<Label> material_labels;  ///< one per material, or none
 
     std::size_t material_count() const { return std::max({bsdfs.size(), emission.size(), shaders.size()}); }
     const Bsdf& bsdf(std::size_t material) const { return bsdfs[bsdfs.size() == 1 ? 0 : material]; }

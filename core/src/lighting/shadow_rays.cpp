@@ -7,7 +7,7 @@
 namespace shlight {
 
 ShadowRays::ShadowRays(ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride)
-    : tracer_(&tracer), lobe_stride_(lobe_stride), lobes_(materials), points_(0) {
+    : tracer_(&tracer), lobe_stride_(lobe_stride), lobes_(materials), points_(0), terminator_(materials) {
     for (const MaterialLobes& material : materials) {
         Material& sets = materials_.emplace_back();
         for (const Lobe& lobe : material.lobes()) {
@@ -37,6 +37,20 @@ void ShadowRays::draw(const LitRange& pixel, const SampleRange& samples, std::ui
     for (std::size_t i = pixel.begin; i < pixel.end; ++i) {
         target_->aim(*hits_, lit_->hit[i], i, i == pixel.begin);
         draw_hit(i, samples.shadow_rays);
+    }
+}
+
+void ShadowRays::trace(bool shadows) {
+    if (shadows) {
+        target_->trace(*tracer_, rays_);
+    } else {
+        rays_.visible.assign(rays_.size(), Rgb(1));
+    }
+    for (std::size_t i = 0; i < lit_->hit.size(); ++i) {
+        const std::size_t hit = lit_->hit[i];
+        for (std::size_t ray = runs_[i].begin; hits_->terminator[hit].dims() && ray < runs_[i].end; ++ray) {
+            rays_.visible[ray] *= static_cast<float>(hits_->let_in(hit, Vec3d(rays_.drawn[ray].way)));
+        }
     }
 }
 
@@ -70,6 +84,7 @@ void ShadowRays::draw_hit(std::size_t lit_index, std::uint32_t rays) {
             draw_set(lit_index, set, shape, rays);
         }
     }
+    terminator_.lift(*hits_, hit, *target_, runs_[lit_index].begin, rays_);
     runs_[lit_index].end = rays_.size();
 }
 
@@ -134,7 +149,7 @@ ShadowRays::Sums ShadowRays::sum(std::size_t lit_index, std::size_t lobe, bool s
     gather(lit_index);
     weighed_.weigh(lobes_[hits_->material[hit]].shape(lobe, hits_->widths(hit)[lobe]), hits_->frame[hit],
                    hits_->view(hit), false);
-    const bool is_grey = rays_.color.empty() && tracer_->is_opaque();
+    const bool is_grey = rays_.color.empty() && tracer_->is_opaque() && !hits_->terminator[hit].dims();
     GreySums grey;
     Sums sums;
     for (std::size_t i = 0; i < weighed_.size(); ++i) {

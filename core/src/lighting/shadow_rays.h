@@ -17,6 +17,7 @@
 #include "lighting/ray_sums.h"
 #include "lighting/shadow_policy.h"
 #include "lighting/shadow_targets.h"
+#include "lighting/terminator_rays.h"
 #include "lighting/weighed_rays.h"
 #include "lobes/material_lobes.h"
 #include "tracing/hits.h"
@@ -49,8 +50,8 @@ class ShadowRays {
     void start(ShadowTarget& target, const Hits& hits, const LitHits& lit);
     /// Draws the rays of a pixel's hits among lit. samples.shadow_rays: of each set; seed: see PixelPoints.
     void draw(const LitRange& pixel, const SampleRange& samples, std::uint32_t seed);
-    /// Traces all rays that were drawn.
-    void trace() { target_->trace(*tracer_, rays_); }
+    /// Traces all rays that were drawn, or lets them all reach the light.
+    void trace(bool shadows);
 
     /// Whether anything takes light away from any ray of a pixel.
     bool any_occluded(const LitRange& pixel) const;
@@ -93,6 +94,7 @@ class ShadowRays {
     const LitHits* lit_ = nullptr;
     PixelPoints points_;
     DrawnRays rays_;
+    TerminatorRays terminator_;
     std::vector<Run> runs_;                // by lit hit
     std::vector<std::uint8_t> takes_set_;  // lit hits × set_stride
     std::vector<float> lobe_density_;      // of rays, summed up over the sets of lobes

@@ -138,7 +138,7 @@ void ShadowedDeltas::add_sample(const DeltaRange& range, std::size_t light, std:
         samples_.push_back({hit, kAbove});
     } else {
         samples_.push_back({hit, static_cast<std::uint32_t>(rays_.size())});
-        rays_.push_back(lights_->ray(i, hits.shadow_origin[hit]));
+        rays_.push_back(lights_->ray(i, hits.shadow_start(hit, lights_->way(i, hits.frame[hit].origin))));
     }
 }
 
@@ -152,14 +152,16 @@ void ShadowedDeltas::find_shares(const ShadingPoints& points, const PixelRange& 
     for (std::vector<float>* array : {&seen_r_, &seen_g_, &seen_b_}) {
         array->assign(range.count, 0.0F);
     }
-    const auto visible = [&](const ShadowSample& q) {
-        return q.ray == kAbove ? Rgb(1) : q.ray == kBelow ? Rgb(0) : visible_[q.ray];
-    };
     std::size_t begin = 0;
     for (const SampledSource& sampled : sampled_) {
         const std::span<const ShadowSample> samples(&samples_[begin], sampled.end - begin);
         begin = sampled.end;
-        const Rgb strength = lights_->strength(range.begin + sampled.light);
+        const std::size_t light = range.begin + sampled.light;
+        const Rgb strength = lights_->strength(light);
+        const auto visible = [&](const ShadowSample& q) {
+            const Rgb reaches = q.ray == kAbove ? Rgb(1) : q.ray == kBelow ? Rgb(0) : visible_[q.ray];
+            return reaches * static_cast<float>(hits.let_in(q.hit, lights_->way(light, hits.frame[q.hit].origin)));
+        };
         Rgb seen(0);
         for (const ShadowSample& q : samples) {
             seen += visible(q);
@@ -177,8 +179,7 @@ void ShadowedDeltas::find_shares(const ShadingPoints& points, const PixelRange& 
             const Rgb share = visible(q);
             for (std::size_t lobe = 0; lobe < lobes.size() && share != Rgb(0); ++lobe) {
                 const float value = values(points.of_hit[q.hit] - pixel.first_point, lobe, range)[sampled.light];
-                hits.reflect(q.hit, lobe, lights_->group(range.begin + sampled.light),
-                             hits.weight(q.hit, lobe) * strength * share * value);
+                hits.reflect(q.hit, lobe, lights_->group(light), hits.weight(q.hit, lobe) * strength * share * value);
             }
         }
     }

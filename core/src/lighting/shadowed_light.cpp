@@ -50,13 +50,14 @@ void ShadowedLight::find_lit(std::size_t index, std::size_t group, const Hits& h
 void ShadowedLight::shade_lit(Hits& hits) {
     occluded_.clear();
     ranges_.clear();
-    const bool shadows = samples_.shadow_rays > 0 && light_.casts_shadows;
+    const auto dims = [&](std::size_t hit) { return hits.terminator[hit].dims(); };
+    const bool shadows = samples_.shadow_rays > 0 && (light_.casts_shadows || std::ranges::any_of(lit_.hit, dims));
     if (shadows) {
         rays_.start(*target_, hits, lit_);
         for (const LitGroup& group : groups_) {
             rays_.draw(group.range, group.samples, group.seed);
         }
-        rays_.trace();
+        rays_.trace(light_.casts_shadows);
     }
     for (const LitGroup& group : groups_) {
         if (shadows && rays_.any_occluded(group.range)) {

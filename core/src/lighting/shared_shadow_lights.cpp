@@ -141,6 +141,7 @@ void SharedShadowLights::request_from(std::size_t hit, const Light& light, const
     if (rays_.size() == before) {
         return;
     }
+    terminator_.lift(hits, hit, target_, before, rays_);
     const DrawnRay& drawn = rays_.drawn[before];
     const Vec3d direction = hits.frame[hit].to_local(glm::normalize(Vec3d(drawn.way)));
     const double weight = double{drawn.radiance} / (drawn.light_density * density);
@@ -153,7 +154,8 @@ void SharedShadowLights::request_from(std::size_t hit, const Light& light, const
                      static_cast<float>(weight * lobe_value(shape, direction, hits.view(hit)));
         }
     }
-    shadow_samples_.push_back({value * target_.strength(), traits_of(light).group});
+    shadow_samples_.push_back(
+        {value * target_.strength(), traits_of(light).group, static_cast<float>(hits.let_in(hit, Vec3d(drawn.way)))});
 }
 
 void SharedShadowLights::add_unblocked(std::size_t pixel) {
@@ -178,6 +180,9 @@ void SharedShadowLights::add_unblocked(std::size_t pixel) {
 void SharedShadowLights::finish(Hits& hits) {
     rays_.visible.resize(rays_.size());
     tracer_->visibility(rays_.rays.all(), rays_.visible);
+    for (std::size_t i = 0; i < rays_.visible.size(); ++i) {
+        rays_.visible[i] *= shadow_samples_[i].let_in;
+    }
     for (const PixelSamples& own : pixels_) {
         const Share seen = share(own);
         Rgb sum(0);

@@ -14,6 +14,7 @@
 #include "lighting/shadow_budget.h"
 #include "lighting/shadow_policy.h"
 #include "lighting/shadow_targets.h"
+#include "lighting/terminator_rays.h"
 #include "lighting/unshadowed_light.h"
 #include "lobes/material_lobes.h"
 #include "shlight/light.h"
@@ -30,7 +31,12 @@ class SharedShadowLights {
     /// Refers to the budget and the parts.
     SharedShadowLights(ShadowTracer& tracer, const ShadowBudget& budget, std::span<const MaterialLobes> materials,
                        std::size_t lobe_stride, const LightParts& parts)
-        : tracer_(&tracer), budget_(&budget), materials_(materials), lobe_stride_(lobe_stride), apart_(parts) {}
+        : tracer_(&tracer),
+          budget_(&budget),
+          materials_(materials),
+          lobe_stride_(lobe_stride),
+          apart_(parts),
+          terminator_(materials) {}
 
     /// To be called before the first of these lights, which the budget knows: they are referred to by number.
     void start(std::span<const Light> lights, std::span<const UnshadowedLight> unshadowed, const SampleRange& samples);
@@ -49,6 +55,7 @@ class SharedShadowLights {
     struct ShadowSample {
         Rgb value;
         std::uint32_t light_group;  // see LightTraits
+        float let_in;               // of what reaches the hit
     };
     /// The samples of a pixel: those numbered begin … end - 1.
     struct PixelSamples {
@@ -97,6 +104,7 @@ class SharedShadowLights {
     std::vector<Member> dim_;                      // lights of a pixel
     std::vector<Member> dim_points_;               // of a pixel, under one of them
     LightTarget target_;
+    TerminatorRays terminator_;
 };
 
 }  // namespace shlight

@@ -55,16 +55,17 @@ class DeltaLights {
     /// that do not light such lobes.
     void reflect(const DeltaRange& range, const DeltaViews& views, const LobeShape& shape, float cos_theta_o,
                  float* values) const;
-    /// A shadow ray to source i. origin: see Hits::shadow_origin.
+    /// To source i, of any length.
+    Vec3d way(std::size_t i, const Vec3d& from) const {
+        return {x_[i] - w_[i] * from.x, y_[i] - w_[i] * from.y, z_[i] - w_[i] * from.z};
+    }
+    /// A shadow ray to source i. origin: see Hits::shadow_start.
     Ray ray(std::size_t i, const Vec3d& origin) const;
     /// The least changing_distance() of all sources.
     double changing_distance(const Vec3d& position) const;
 
   private:
     DeltaArrays arrays(const DeltaRange& range) const;
-    Vec3d way(std::size_t i, const Vec3d& from) const {
-        return {x_[i] - w_[i] * from.x, y_[i] - w_[i] * from.y, z_[i] - w_[i] * from.z};
-    }
     /// The emission profile's factor of source i. way: world vector to the source, of any length > 0.
     double factor(std::size_t i, const Vec3d& way) const;
 

@@ -226,7 +226,8 @@ void CameraSurfaces::reflect(const Surface& surface, const Sink& sink) {
         const double cosine = view_cosine(frame.z, surface.towards_viewer);
         const Vec3d direction = frame.to_world(mirrored({std::sqrt(1 - cosine * cosine), 0, cosine}));
         const Ray ray = {Vec3f(surface.point.off_surface()), 0, Vec3f(direction)};
-        const auto albedo = static_cast<float>(lobe_albedo(lobe.shape, cosine));
+        const double let_in = scene_->placed().terminator(surface.hit, surface.point).let_in(cosine);
+        const auto albedo = static_cast<float>(let_in * lobe_albedo(lobe.shape, cosine));
         const Segment segment = {surface.ray, true, 0, surface.throughput * lobe.weight * albedo, ray};
         add_lamps(LampViewer::unblocked_mirror, segment, ray, std::nullopt, sink);
         start(segment, ray);
@@ -315,7 +316,8 @@ void CameraSurfaces::add_hit(const CameraRay& ray, const Surface& surface, Hits&
         if (std::ranges::any_of(weights_, [](const Rgb& weight) { return weight != Rgb(0); })) {
             const Vec3d& view = bumped ? surface.point.shading_normal : surface.towards_viewer;
             const ShadingFrame frame = shading_frame(surface.point.position, own.normal, view);
-            hits.add(surface.point, frame, view_cosine(frame.z, view), weights_, widths_, ray.sample);
+            hits.add(surface.point, scene_->placed().terminator(surface.hit, surface.point), frame,
+                     view_cosine(frame.z, view), weights_, widths_, ray.sample);
         }
     }
 }

@@ -39,6 +39,10 @@ std::array<double, 3> weights_of(const RayHit& hit) {
     return {1.0 - hit.u - hit.v, hit.u, hit.v};
 }
 
+Vec3d weighted(const std::array<Vec3d, 3>& corners, const std::array<double, 3>& weights) {
+    return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+}
+
 /// Numbers of matrices are counted row by row; the last column holds the translation.
 constexpr int kTranslation = 3;
 
@@ -68,23 +72,48 @@ std::array<Vec3d, 3> PlacedMeshes::corners(const RayHit& hit) const {
     return result;
 }
 
-bool PlacedMeshes::smooth_normal(const RayHit& hit, Vec3d& normal) const {
+std::optional<std::array<Vec3d, 3>> PlacedMeshes::corner_normals(const RayHit& hit) const {
     const Placement& placement = placements_[hit.instance];
     const MeshShape& mesh = *mesh_of(placement).shape;
     if (mesh.vertex_normals.empty() && mesh.corner_normals.empty()) {
-        return false;
+        return std::nullopt;
     }
     const Triangle& triangle = mesh.triangles[hit.triangle];
-    const std::array<double, 3> weights = weights_of(hit);
-    Vec3d local(0);
+    const glm::dmat3 to_world = glm::transpose(glm::dmat3(placement.to_object));
+    std::array<Vec3d, 3> normals;
     for (int i = 0; i < 3; ++i) {
-        const Vec3f& own = mesh.corner_normals.empty()
-                               ? mesh.vertex_normals[triangle[i]]
-                               : mesh.corner_normals[3 * std::size_t{hit.triangle} + static_cast<std::size_t>(i)];
-        local += weights[static_cast<std::size_t>(i)] * Vec3d(own);
+        const auto corner = static_cast<std::size_t>(i);
+        const Vec3f& own = mesh.corner_normals.empty() ? mesh.vertex_normals[triangle[i]]
+                                                       : mesh.corner_normals[3 * std::size_t{hit.triangle} + corner];
+        normals[corner] = to_world * Vec3d(own);
     }
-    normal = glm::transpose(glm::dmat3(placement.to_object)) * local;
-    return true;
+    return normals;
+}
+
+Terminator PlacedMeshes::terminator(const RayHit& hit, const SurfacePoint& point) const {
+    const TerminatorOffsets& offsets = mesh_of(placements_[hit.instance]).terminator;
+    Terminator result;
+    result.frequency = 1 / (1 - offsets.shading / 2);
+    std::optional<std::array<Vec3d, 3>> normals;
+    if (!(offsets.geometry > 0) || !(normals = corner_normals(hit))) {
+        return result;
+    }
+    const std::array<double, 3> weights = weights_of(hit);
+    for (Vec3d& own : *normals) {
+        own = normalized_or(own, point.shading_normal);
+    }
+    if (glm::dot(weighted(*normals, weights), point.geometric_normal) < 0) {
+        for (Vec3d& own : *normals) {
+            own = -own;
+        }
+    }
+    result.lift = lift_to_smooth_surface(corners(hit), *normals, weights);
+    if (largest_component(result.lift) > point.error) {
+        result.smooth = point.shading_normal;
+        result.geometric = point.geometric_normal;
+        result.cutoff = offsets.geometry;
+    }
+    return result;
 }
 
 SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) const {
@@ -92,7 +121,7 @@ SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) co
     const Placement& placement = placements_[hit.instance];
     const std::array<double, 3> weights = weights_of(hit);
     const std::array<Vec3d, 3> corners = this->corners(hit);
-    const Vec3d position = weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+    const Vec3d position = weighted(corners, weights);
     // The corners in double give a point in the triangle's plane to double precision, which the ray would not.
     const Vec3d towards_viewer = -Vec3d(direction);
     Vec3d geometric =
@@ -101,8 +130,8 @@ SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) co
         geometric = -geometric;
     }
     Vec3d shading = geometric;
-    if (smooth_normal(hit, shading)) {
-        shading = normalized_or(shading, geometric);
+    if (const auto normals = corner_normals(hit)) {
+        shading = normalized_or(weighted(*normals, weights), geometric);
         // The side decides, since mirrored instances and some faces are wound the other way.
         if (glm::dot(shading, geometric) < 0) {
             shading = -shading;

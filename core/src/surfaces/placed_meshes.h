@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "shlight/surface_point.h"
 #include "shlight/types.h"
 #include "surfaces/compiled_mesh.h"
+#include "tracing/terminator.h"
 
 namespace shlight {
 
@@ -82,6 +84,8 @@ class PlacedMeshes {
 
     /// Precondition: not hit.missed(); direction is the ray's.
     SurfacePoint surface(const RayHit& hit, const Vec3f& direction) const;
+    /// point: surface() there.
+    Terminator terminator(const RayHit& hit, const SurfacePoint& point) const;
     /// The value of Pass::uv, whose last component is 1; 0 on meshes without texture coordinates.
     Vec3d uv(const RayHit& hit) const;
     const Label& label(const RayHit& hit) const;
@@ -98,8 +102,8 @@ class PlacedMeshes {
     /// place: see ShaderReader.
     void read(const ShaderInput& input, const Material& material, int place, std::span<const ShadedPlace> places,
               std::span<float> out) const;
-    /// The mesh's own, of no particular length; false: it is flat there.
-    bool smooth_normal(const RayHit& hit, Vec3d& normal) const;
+    /// The mesh's own at the corners of the hit triangle, in the world, of no particular length; none: it is flat.
+    std::optional<std::array<Vec3d, 3>> corner_normals(const RayHit& hit) const;
     /// Corners of the hit triangle in the world.
     std::array<Vec3d, 3> corners(const RayHit& hit) const;
     /// place: see ShaderReader.

@@ -7,6 +7,7 @@ void Hits::clear() {
     frame.clear();
     cos_theta_o.clear();
     shadow_origin.clear();
+    terminator.clear();
     error.clear();
     material.clear();
     lobe_weight.clear();
@@ -20,11 +21,13 @@ void Hits::clear() {
     pixel_begin.assign(1, 0);
 }
 
-void Hits::add(const SurfacePoint& surface, const ShadingFrame& shading_frame, float view_cosine,
-               std::span<const Rgb> weights, std::span<const float> widths, std::uint32_t sample_index) {
+void Hits::add(const SurfacePoint& surface, const Terminator& terminator_there, const ShadingFrame& shading_frame,
+               float view_cosine, std::span<const Rgb> weights, std::span<const float> widths,
+               std::uint32_t sample_index) {
     frame.push_back(shading_frame);
     cos_theta_o.push_back(view_cosine);
     shadow_origin.push_back(surface.off_surface());
+    terminator.push_back(terminator_there);
     error.push_back(surface.error);
     material.push_back(surface.material);
     lobe_weight.insert(lobe_weight.end(), weights.begin(), weights.end());

@@ -12,6 +12,7 @@
 #include "shlight/surface_point.h"
 #include "shlight/types.h"
 #include "tracing/light_parts.h"
+#include "tracing/terminator.h"
 
 namespace shlight {
 
@@ -25,7 +26,8 @@ struct Hits {
     std::vector<ShadingFrame> frame;
     std::vector<float> cos_theta_o;
     std::vector<Vec3d> shadow_origin;  ///< off the surface, on the viewer's side
-    std::vector<double> error;         ///< see SurfacePoint
+    std::vector<Terminator> terminator;
+    std::vector<double> error;  ///< see SurfacePoint
     std::vector<std::uint32_t> material;
     /// Weight of lobe i of hit h at h · lobe_stride + i: its colour as the viewer sees it. 0 for lobes that the
     /// material does not have.
@@ -52,6 +54,16 @@ struct Hits {
         const double cosine = cos_theta_o[hit];
         return {std::sqrt(1.0 - cosine * cosine), 0, cosine};
     }
+    /// The origin of a shadow ray. way: to the light, of any length.
+    Vec3d shadow_start(std::size_t hit, const Vec3d& way) const {
+        const Terminator& own = terminator[hit];
+        return own.lifts() ? shadow_origin[hit] + own.share(glm::normalize(way)) * own.lift : shadow_origin[hit];
+    }
+    /// What part of light from a direction, of any length, its lobes take.
+    double let_in(std::size_t hit, const Vec3d& way) const {
+        const Terminator& own = terminator[hit];
+        return own.dims() ? own.let_in(glm::dot(frame[hit].z, glm::normalize(way))) : 1.0;
+    }
     std::size_t pixel_count() const { return pixel_begin.size() - 1; }
     void clear();
     /// Adds the light of a group that a lobe of a hit reflects.
@@ -62,8 +74,9 @@ struct Hits {
         }
     }
     /// weights, widths: of the material's lobes.
-    void add(const SurfacePoint& surface, const ShadingFrame& shading_frame, float view_cosine,
-             std::span<const Rgb> weights, std::span<const float> widths, std::uint32_t sample_index);
+    void add(const SurfacePoint& surface, const Terminator& terminator_there, const ShadingFrame& shading_frame,
+             float view_cosine, std::span<const Rgb> weights, std::span<const float> widths,
+             std::uint32_t sample_index);
     /// The hits added since the last call are those of one pixel.
     void end_pixel() {
         pixel_begin.push_back(size());

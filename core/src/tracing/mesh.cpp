@@ -65,6 +65,12 @@ void check_materials(const MeshShape& shape, const MeshUse& use) {
     }
 }
 
+void check_share(const char* name, double value) {
+    if (!(value >= 0 && value <= 1)) {
+        reject(std::string(name) + " must be in 0 … 1");
+    }
+}
+
 /// Rays go through instances' frames, in float.
 void check_scale(const glm::dmat4& transform) {
     const glm::dmat3 linear(transform);
@@ -120,6 +126,8 @@ void check_shape(const MeshShape& shape) {
 }
 
 void check_use(const MeshShape& shape, const MeshUse& use) {
+    check_share("terminator_geometry_offset", use.terminator.geometry);
+    check_share("terminator_shading_offset", use.terminator.shading);
     check_materials(shape, use);
     check_shaders(shape, use);
     if (!use.object_values.empty()) {
