@@ -130,6 +130,24 @@ def test_a_picture_far_away_is_its_mean(extension: str) -> None:
     np.testing.assert_allclose(found[:3], expected, rtol=1e-5)
 
 
+@pytest.mark.parametrize("interpolation", ["closest", "linear", "cubic"])
+@pytest.mark.parametrize("encoding", ["linear", "srgb"])
+@pytest.mark.parametrize("kind", [np.uint8, np.uint16])
+def test_a_picture_is_as_bright_from_afar(kind: type[np.generic], encoding: str, interpolation: str) -> None:
+    """White noise, the worst case, against the mean of what is shown close up."""
+    size, places = 16, 12  # places: of a texel, along each side
+    pixels = np.random.default_rng(3).integers(0, np.iinfo(kind).max, (size, size), endpoint=True).astype(kind)
+    texture = nodes.image(pixels, encoding=encoding, interpolation=interpolation).x.step.data.core
+    near = (np.arange(size * places) + 0.5) / (size * places)
+    mean = np.mean([texture.sample(u, v, (0.0, 0.0, 0.0, 0.0))[0] for u in near for v in near])
+    # Simpson's rule sees little of the fourth power in a cubic spline's cell.
+    tolerance = 3e-3 if (encoding, interpolation) == ("srgb", "cubic") else 1e-3
+    far = (np.arange(2 * size) + 0.5) / (2 * size)
+    for texels in (4, 8, 15):
+        found = [texture.sample(u, v, (texels / size, 0.0, 0.0, texels / size))[0] for u in far for v in far]
+        np.testing.assert_allclose(np.mean(found), mean, rtol=tolerance)
+
+
 @pytest.mark.parametrize("kind", [np.uint8, np.uint16, np.float16, np.float32])
 def test_numbers_of_a_picture_keep_their_type(kind: type[np.generic]) -> None:
     random = np.random.default_rng(5)
@@ -142,7 +160,9 @@ def test_numbers_of_a_picture_keep_their_type(kind: type[np.generic]) -> None:
         largest = np.finfo(kind).max
         values, step = np.nan_to_num(pixels.astype(float), nan=0.0, posinf=largest, neginf=-largest), 0.0
     texture = nodes.image(pixels, interpolation="closest").x.step.data.core
-    assert nodes.textures.texture_pixels(pixels).size_in_bytes == (32 + 8 + 2 + 1) * 3 * pixels.itemsize
+    bytes_of_means = max(pixels.itemsize, 2)
+    size = 3 * (32 * pixels.itemsize + (8 + 2 + 1) * bytes_of_means)
+    assert nodes.textures.texture_pixels(pixels).size_in_bytes == size
 
     def at(x: float, y: float, wide: float) -> Any:
         return texture.sample(x / 8, y / 4, (wide / 8, 0.0, 0.0, wide / 4))[:3]

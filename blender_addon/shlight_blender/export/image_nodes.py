@@ -18,7 +18,7 @@ from ..names import name_of
 from ..report import Effect
 from .color_spaces import is_known
 from .expressions import NodeInputs
-from .image_pixels import MISSING, associates_alpha, datablock_texture, file_texture, has_plain_file
+from .image_pixels import MISSING, TextureUse, associates_alpha, datablock_texture, file_texture, has_plain_file
 
 INTERPOLATIONS = {"Closest": "closest", "Linear": "linear", "Cubic": "cubic", "Smart": "cubic"}
 EXTENSIONS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
@@ -48,20 +48,20 @@ def _textures(inputs: NodeInputs, image: Any) -> Any:
     space = image.colorspace_settings.name
     if not is_known(space):
         inputs.remark(f"colour space {space} is unknown; taken for sRGB")
-    as_normals = holds_normals(inputs)
+    use = TextureUse(holds_normals(inputs), INTERPOLATIONS[inputs.node.interpolation])
     if image.source == "TILED":
-        found: Any = _tiles(image, as_normals)
+        found: Any = _tiles(image, use)
     elif image.source == "SEQUENCE":
         path = bpy.path.abspath(image.filepath_from_user(image_user=inputs.node.image_user), library=image.library)
-        found = file_texture(image, path, as_normals=as_normals)
+        found = file_texture(image, path, use)
     else:
         found = None
         if has_plain_file(image):
             path = bpy.path.abspath(image.filepath, library=image.library)
-            found = file_texture(image, path, as_normals=as_normals)
+            found = file_texture(image, path, use)
         if image.source in ("MOVIE", "VIEWER"):
             inputs.remark(f"images of the kind {image.source} are not supported; the picture in memory is used")
-        found = found or datablock_texture(image, as_normals=as_normals)
+        found = found or datablock_texture(image, use)
     if not found:
         inputs.remark(f"its picture '{image.filepath or name_of(image)}' is missing; magenta is used", Effect.THING)
         return None
@@ -79,16 +79,16 @@ def holds_normals(inputs: NodeInputs) -> bool:
     return is_read and node.image.colorspace_settings.name == "Non-Color" and node.projection != "BOX"
 
 
-def _tiles(image: Any, as_normals: bool) -> dict[tuple[int, int], Any]:
+def _tiles(image: Any, use: TextureUse) -> dict[tuple[int, int], Any]:
     pattern = bpy.path.abspath(image.filepath, library=image.library)
     found: dict[tuple[int, int], Any] = {}
     for tile in image.tiles:
         column, row = (tile.number - FIRST_TILE) % 10, (tile.number - FIRST_TILE) // 10
         name = f"u{column + 1}_v{row + 1}"
         path = pattern.replace("<UDIM>", str(tile.number)).replace("<UVTILE>", name)
-        texture = file_texture(image, path, as_normals=as_normals) if Path(path).is_file() else None
+        texture = file_texture(image, path, use) if Path(path).is_file() else None
         if texture is None and len(found) == 0 and tile == image.tiles[0]:
-            texture = datablock_texture(image, as_normals=as_normals)
+            texture = datablock_texture(image, use)
         if texture is not None:
             found[column, row] = texture
     return found

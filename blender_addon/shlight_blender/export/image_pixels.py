@@ -109,12 +109,19 @@ def space_of(image: Any) -> str:
     return space if is_known(space) else SRGB
 
 
-def _texture(pixels: NDArray[Any], space: str, as_normals: bool) -> _core.TexturePixels:
-    if as_normals:
-        return texture_pixels(pixels, "normal")
+class TextureUse(NamedTuple):
+    """The settings of a node that affect how its picture looks from afar."""
+
+    as_normals: bool
+    interpolation: str  # see shlight.nodes.image
+
+
+def _texture(pixels: NDArray[Any], space: str, use: TextureUse) -> _core.TexturePixels:
+    if use.as_normals:
+        return texture_pixels(pixels, "normal", use.interpolation)
     if needs_conversion(space):
-        return texture_pixels(linear_light(pixels, space))
-    return texture_pixels(pixels, "srgb" if space == SRGB else "linear")
+        return texture_pixels(linear_light(pixels, space), "linear", use.interpolation)
+    return texture_pixels(pixels, "srgb" if space == SRGB else "linear", use.interpolation)
 
 
 class FileSettings(NamedTuple):
@@ -125,7 +132,7 @@ class FileSettings(NamedTuple):
     alpha_mode: str
 
 
-def datablock_texture(image: Any, *, as_normals: bool) -> Texture | None:
+def datablock_texture(image: Any, use: TextureUse) -> Texture | None:
     """The texture of an image with one picture; None if it has no pixels."""
     width, height = image.size
     if width < 1 or height < 1:
@@ -142,15 +149,15 @@ def datablock_texture(image: Any, *, as_normals: bool) -> Texture | None:
             image.source,
             generated,
         ),
-        *(image.colorspace_settings.name, image.alpha_mode, as_normals, *_stamp(image)),
+        *(image.colorspace_settings.name, image.alpha_mode, use, *_stamp(image)),
     )
     if image.is_dirty:
         key = (*key, TEXTURES._export)  # painted pixels have no stamp
     space = "Linear" if image.is_float else space_of(image)  # Blender keeps floats as linear light
-    return TEXTURES.get(key, lambda: _texture(_pixels(image), space, as_normals))
+    return TEXTURES.get(key, lambda: _texture(_pixels(image), space, use))
 
 
-def file_texture(image: Any, path: str, *, as_normals: bool) -> Texture | None:
+def file_texture(image: Any, path: str, use: TextureUse) -> Texture | None:
     """The texture of a file that belongs to an image, being read; None if it is missing or of an unknown format, or if
     there is no OpenImageIO."""
     try:
@@ -159,8 +166,8 @@ def file_texture(image: Any, path: str, *, as_normals: bool) -> Texture | None:
     except (ImportError, OSError, ValueError):
         return None
     settings = FileSettings(space_of(image), associates_alpha(image), image.alpha_mode)
-    key = (path, stamp, settings, as_normals)
-    return TEXTURES.from_file(key, path, lambda: _read_file(path, settings, as_normals))
+    key = (path, stamp, settings, use)
+    return TEXTURES.from_file(key, path, lambda: _read_file(path, settings, use))
 
 
 def has_plain_file(image: Any) -> bool:
@@ -190,10 +197,10 @@ def _pixels(image: Any) -> NDArray[Any]:
     return _with_alpha(pixels, associate=associates_alpha(image) and not image.is_float, mode=image.alpha_mode)
 
 
-def _read_file(path: str, settings: FileSettings, as_normals: bool) -> _core.TexturePixels:
+def _read_file(path: str, settings: FileSettings, use: TextureUse) -> _core.TexturePixels:
     pixels = images.read_texture(path, associate=False)
     pixels = _with_alpha(pixels, associate=settings.associate, mode=settings.alpha_mode)
-    return _texture(pixels, settings.space, as_normals)
+    return _texture(pixels, settings.space, use)
 
 
 def _with_alpha(pixels: NDArray[Any], *, associate: bool, mode: str) -> NDArray[Any]:

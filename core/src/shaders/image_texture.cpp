@@ -15,6 +15,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "shaders/shown_rows.h"
+#include "shaders/srgb.h"
+
 namespace shlight {
 namespace {
 
@@ -25,13 +28,8 @@ constexpr float kFarthest = 1e7F;
 
 constexpr glm::vec4 kMissing(1, 0, 1, 1);
 
-float linear_from_srgb(float encoded) {
-    return encoded <= 0.04045F ? std::max(encoded, 0.0F) / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
-}
-
-float srgb_from_linear(float linear) {
-    return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1 / 2.4F) - 0.055F;
-}
+/// Smaller shares of a texel are rounding errors.
+constexpr float kLeastCover = 1e-6F;
 
 using ByteTable = std::array<float, 256>;
 
@@ -105,12 +103,6 @@ void assign(float value, Half& to) {
     to.bits = static_cast<std::uint16_t>(rounded | (std::signbit(value) ? std::uint32_t{kSignOfHalf} : 0U));
 }
 
-glm::vec4 encoded(const glm::vec4& linear, TexelEncoding encoding) {
-    return encoding != TexelEncoding::srgb ? linear
-                                           : glm::vec4(srgb_from_linear(linear.x), srgb_from_linear(linear.y),
-                                                       srgb_from_linear(linear.z), linear.w);
-}
-
 /// Encodes a mean of unit vectors, given as (n + 1) / 2: its direction, and √(1 - its length) as the fourth channel.
 glm::vec4 unit_with_spread(const glm::vec4& mean) {
     const glm::vec3 n = glm::vec3(mean) * 2.0F - 1.0F;
@@ -167,7 +159,7 @@ glm::vec4 Texels::vector(const glm::vec4& color) const {
 }
 
 TexturePixels::TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint32_t height, int channels,
-                             TexelEncoding encoding)
+                             TexelEncoding encoding, TextureInterpolation interpolation)
     : encoding_(encoding == TexelEncoding::normal && channels < 3 ? TexelEncoding::linear : encoding) {
     std::visit(
         [](auto& numbers) {
@@ -176,7 +168,7 @@ TexturePixels::TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint
         pixels);
     add({width, height, channels, std::move(pixels)});
     while (levels_.back().width > 1 || levels_.back().height > 1) {
-        add(halved(levels_.size() - 1));
+        add(halved(levels_.size() - 1, interpolation));
     }
 }
 
@@ -206,7 +198,7 @@ void TexturePixels::add(Level level) {
     // Moving a level keeps the addresses of its numbers, to which stored_ and linear_ point.
     levels_.push_back(std::move(level));
     stored_.push_back(texels(levels_.back(), bytes_as_stored()));
-    const bool srgb = encoding_ == TexelEncoding::srgb;
+    const bool srgb = is_srgb(levels_.size() - 1);
     Texels& linear = linear_.emplace_back(texels(levels_.back(), srgb ? bytes_from_srgb() : bytes_as_stored()));
     linear.from_srgb_ = srgb;
     linear.of_vectors_ = encoding_ == TexelEncoding::normal;
@@ -214,7 +206,7 @@ void TexturePixels::add(Level level) {
 }
 
 void TexturePixels::store(Level& level, std::size_t texel, const glm::vec4& linear) const {
-    const glm::vec4 value = encoding_ == TexelEncoding::normal ? unit_with_spread(linear) : encoded(linear, encoding_);
+    const glm::vec4 value = encoding_ == TexelEncoding::normal ? unit_with_spread(linear) : linear;
     const auto channels = static_cast<std::size_t>(level.channels);
     std::visit(
         [&](auto& numbers) {
@@ -226,12 +218,16 @@ void TexturePixels::store(Level& level, std::size_t texel, const glm::vec4& line
 }
 
 /// The next level; each of its texels is the mean over an equal share of the area, also if a side is odd.
-TexturePixels::Level TexturePixels::halved(std::size_t level) const {
+TexturePixels::Level TexturePixels::halved(std::size_t level, TextureInterpolation interpolation) const {
     const Level& from = levels_[level];
     Level to = {
         (from.width + 1) / 2, (from.height + 1) / 2, encoding_ == TexelEncoding::normal ? 4 : from.channels, {}};
     const std::size_t count = std::size_t{to.width} * to.height * static_cast<std::size_t>(to.channels);
-    std::visit([&](const auto& numbers) { to.pixels = std::decay_t<decltype(numbers)>(count); }, from.pixels);
+    if (encoding_ != TexelEncoding::normal && std::holds_alternative<std::vector<std::uint8_t>>(from.pixels)) {
+        to.pixels = std::vector<Half>(count);
+    } else {
+        std::visit([&](const auto& numbers) { to.pixels = std::decay_t<decltype(numbers)>(count); }, from.pixels);
+    }
     // Part i of `parts` covers i size/parts … (i + 1) size/parts, which overlaps at most three texels.
     struct Cover {
         std::int64_t first;
@@ -252,22 +248,26 @@ TexturePixels::Level TexturePixels::halved(std::size_t level) const {
     for (std::uint32_t x = 0; x < to.width; ++x) {
         columns.push_back(cover(x, to.width, from.width));
     }
-    const Texels& texels = linear(level);
+    ShownRows shown(stored(level), linear(level), is_srgb(level), interpolation);
+    std::vector<glm::vec4> sums(to.width);
     for (std::uint32_t y = 0; y < to.height; ++y) {
         const Cover rows = cover(y, to.height, from.height);
-        for (std::uint32_t x = 0; x < to.width; ++x) {
-            glm::vec4 sum(0);
-            for (int j = 0; j < 3; ++j) {
-                for (int i = 0; i < 3; ++i) {
-                    const float weight =
-                        rows.weights[static_cast<std::size_t>(j)] * columns[x].weights[static_cast<std::size_t>(i)];
-                    if (weight > 1e-6F) {
-                        sum += weight * texels(std::min<std::int64_t>(columns[x].first + i, from.width - 1),
-                                               std::min<std::int64_t>(rows.first + j, from.height - 1));
-                    }
+        std::fill(sums.begin(), sums.end(), glm::vec4(0));
+        for (std::size_t j = 0; j < 3; ++j) {
+            if (rows.weights[j] <= kLeastCover) {
+                continue;
+            }
+            const auto& row =
+                shown.row(std::min<std::int64_t>(rows.first + static_cast<std::int64_t>(j), from.height - 1));
+            for (std::uint32_t x = 0; x < to.width; ++x) {
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const std::size_t column = std::min(static_cast<std::size_t>(columns[x].first) + i, row.size() - 1);
+                    sums[x] += rows.weights[j] * columns[x].weights[i] * row[column];
                 }
             }
-            store(to, std::size_t{y} * to.width + x, sum);
+        }
+        for (std::uint32_t x = 0; x < to.width; ++x) {
+            store(to, std::size_t{y} * to.width + x, sums[x]);
         }
     }
     return to;
@@ -276,8 +276,24 @@ TexturePixels::Level TexturePixels::halved(std::size_t level) const {
 /// Reads one picture, continued beyond its edges. Places are in texels of the level.
 class ImageTexture::Reader {
   public:
-    Reader(const TexturePixels& pixels, TextureExtension extension) : pixels_(&pixels), extension_(extension) {}
+    Reader(const TexturePixels& pixels, TextureInterpolation interpolation, TextureExtension extension)
+        : pixels_(&pixels), interpolation_(interpolation), extension_(extension) {}
 
+    /// The stored value at a place, as Cycles interpolates it.
+    glm::vec4 interpolated(const glm::vec2& place) const {
+        return interpolation_ == TextureInterpolation::closest  ? closest(place)
+               : interpolation_ == TextureInterpolation::linear ? bilinear(pixels_->stored(0), place)
+                                                                : cubic(place);
+    }
+    /// Linear light, interpolated between two levels; place: 0 … 1 over the picture.
+    glm::vec4 trilinear(float level, const glm::vec2& place) const {
+        const auto low = static_cast<std::size_t>(level);
+        const float share = level - static_cast<float>(low);
+        const glm::vec4 fine = at_level(low, place);
+        return share > 0 ? glm::mix(fine, at_level(low + 1, place), share) : fine;
+    }
+
+  private:
     /// The stored value of the closest texel.
     glm::vec4 closest(const glm::vec2& place) const {
         return texel(pixels_->stored(0), static_cast<std::int64_t>(std::floor(place.x)),
@@ -297,16 +313,6 @@ class ImageTexture::Reader {
         }
         return sum;
     }
-    glm::vec4 bilinear(const glm::vec2& place) const { return bilinear(pixels_->stored(0), place); }
-    /// Linear light, interpolated between two levels; place: 0 … 1 over the picture.
-    glm::vec4 trilinear(float level, const glm::vec2& place) const {
-        const auto low = static_cast<std::size_t>(level);
-        const float share = level - static_cast<float>(low);
-        const glm::vec4 fine = bilinear_at(low, place);
-        return share > 0 ? glm::mix(fine, bilinear_at(low + 1, place), share) : fine;
-    }
-
-  private:
     /// The texel to the lower left of a place, and the weights of the texels to the right and above.
     struct Corner {
         explicit Corner(const glm::vec2& place) {
@@ -319,9 +325,13 @@ class ImageTexture::Reader {
         glm::vec2 share{};
     };
 
-    glm::vec4 bilinear_at(std::size_t level, const glm::vec2& place) const {
+    glm::vec4 at_level(std::size_t level, const glm::vec2& place) const {
         const Texels& texels = pixels_->linear(level);
-        return bilinear(texels, place * glm::vec2(texels.width, texels.height));
+        const glm::vec2 inside = place * glm::vec2(texels.width, texels.height);
+        const bool is_decoded_last = level == 0 && pixels_->encoding() == TexelEncoding::srgb;
+        return is_decoded_last && interpolation_ != TextureInterpolation::closest
+                   ? decoded(interpolated(inside), TexelEncoding::srgb)
+                   : bilinear(texels, inside);
     }
     glm::vec4 bilinear(const Texels& texels, const glm::vec2& place) const {
         const Corner c(place);
@@ -355,6 +365,7 @@ class ImageTexture::Reader {
     }
 
     const TexturePixels* pixels_;
+    TextureInterpolation interpolation_;
     TextureExtension extension_;
 };
 
@@ -422,14 +433,11 @@ glm::vec4 ImageTexture::read(const Lookup& lookup) const {
     if (lookup.pixels == nullptr) {
         return kMissing;
     }
-    const Reader reader(*lookup.pixels, extension_);
+    const Reader reader(*lookup.pixels, interpolation_, extension_);
     const TexelEncoding encoding = lookup.pixels->encoding();
     if (lookup.probes == 0) {
         const glm::vec2 texels = lookup.place * glm::vec2(lookup.pixels->width(), lookup.pixels->height());
-        const glm::vec4 stored = interpolation_ == TextureInterpolation::closest  ? reader.closest(texels)
-                                 : interpolation_ == TextureInterpolation::linear ? reader.bilinear(texels)
-                                                                                  : reader.cubic(texels);
-        return finished(stored, encoding);
+        return finished(reader.interpolated(texels), encoding);
     }
     glm::vec4 sum(0);
     for (int i = 0; i < lookup.probes; ++i) {

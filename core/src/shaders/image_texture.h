@@ -92,8 +92,10 @@ class Texels {
 class TexturePixels {
   public:
     /// pixels: rows from v = 0 on with 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. NaN becomes 0, and
-    /// infinity the largest number of its type.
-    TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint32_t height, int channels, TexelEncoding encoding);
+    /// infinity the largest number of its type. interpolation: that of the textures; coarser levels are means of what
+    /// they show.
+    TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint32_t height, int channels, TexelEncoding encoding,
+                  TextureInterpolation interpolation);
     TexturePixels(const TexturePixels&) = delete;
     TexturePixels& operator=(const TexturePixels&) = delete;
     ~TexturePixels() = default;
@@ -109,7 +111,8 @@ class TexturePixels {
     const Texels& linear(std::size_t level) const { return linear_[level]; }
 
   private:
-    /// A level, half as wide and high as the previous one, rounded up.
+    /// A level, half as wide and high as the previous one, rounded up. Those after the first hold linear light, as
+    /// halves where the picture has bytes: all texels of even parts of a picture would round in the same direction.
     struct Level {
         std::uint32_t width, height;
         /// Means of unit vectors are stored as unit vectors, with √(1 - the mean's length) in a fourth channel, which
@@ -119,7 +122,9 @@ class TexturePixels {
     };
     void add(Level level);
     static Texels texels(const Level& level, const std::array<float, 256>& bytes);
-    Level halved(std::size_t level) const;
+    Level halved(std::size_t level, TextureInterpolation interpolation) const;
+    /// Whether numbers of a level are encoded as sRGB.
+    bool is_srgb(std::size_t level) const { return level == 0 && encoding_ == TexelEncoding::srgb; }
     void store(Level& level, std::size_t texel, const glm::vec4& linear) const;
 
     std::vector<Level> levels_;

@@ -28,15 +28,17 @@ def _chosen(name: str, value: str, choices: tuple[str, ...]) -> int:
     return choices.index(value)
 
 
-def texture_pixels(pixels: Any, encoding: str = "linear") -> _core.TexturePixels:
+def texture_pixels(pixels: Any, encoding: str = "linear", interpolation: str = "linear") -> _core.TexturePixels:
     """A picture made ready for lookups: with it, any number of `image` share its memory.
 
     pixels: (height, width) or (height, width, channels), of uint8 or uint16 for 0 … 1, of float16 or other numbers as
         they are, row 0 on top; 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. Or the path of a file.
     encoding: "linear", "srgb", or "normal" for unit vectors n as (n + 1) / 2, which `normal_map` takes.
+    interpolation: as `image` will be told; a picture seen from afar has the mean brightness of what it shows.
     Raises ValueError naming the argument.
     """
     number = _chosen("encoding", encoding, ENCODINGS)
+    filtering = _chosen("interpolation", interpolation, INTERPOLATIONS)
     if isinstance(pixels, str | os.PathLike):
         pixels = images.read_texture(pixels)
     array: NDArray[Any] = np.asarray(pixels)
@@ -46,7 +48,7 @@ def texture_pixels(pixels: Any, encoding: str = "linear") -> _core.TexturePixels
         raise ValueError(f"pixels must have shape (height, width) or (height, width, 1, 3 or 4), got {array.shape}")
     if array.dtype not in (np.uint8, np.uint16, np.float16):
         array = array.astype(np.float32)
-    return _core.texture_pixels(np.ascontiguousarray(array[::-1]), number)
+    return _core.texture_pixels(np.ascontiguousarray(array[::-1]), number, filtering)
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +82,7 @@ def image(
     pixels: as of `texture_pixels`, or what that returns, or a Future of it, or a dict {(u, v): pixels} of pictures
         that cover u … u + 1 and v … v + 1 each (UDIM tiles).
     encoding: as of `texture_pixels`, also where that has made the pixels.
+    interpolation: "linear", "closest" or "cubic" (a B-spline) between texels.
     place: (u, v), (0, 0) at the lower left corner; None: `uv()`.
     unassociate: divide colours by alpha.
     Raises ValueError naming the argument.
@@ -87,8 +90,9 @@ def image(
     filtering = _chosen("interpolation", interpolation, INTERPOLATIONS)
     beyond = _chosen("extension", extension, EXTENSIONS)
     tiled = isinstance(pixels, Mapping)
+    made = (_core.TexturePixels, Future)
     tiles = [
-        (int(u), int(v), own if isinstance(own, _core.TexturePixels | Future) else texture_pixels(own, encoding))
+        (int(u), int(v), own if isinstance(own, made) else texture_pixels(own, encoding, interpolation))
         for (u, v), own in (pixels if tiled else {(0, 0): pixels}).items()
     ]
     texture = ImageLookup(tiles, filtering, beyond, unassociate, tiled)
