@@ -161,7 +161,7 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
         surface_passes_.add(surfaces_, rays_.size(), samples.count, pass_sums);
     }
     clock.end(RenderStage::camera_rays);
-    lighting_.add(pixel_seeds_, samples, hits_, report_);
+    lighting_.add(pixel_seeds_, penumbrae_, samples, hits_, report_);
     StageClock last(report_);
     add_up(samples, second_half, sums);
     if (!picture_->parts.empty()) {
@@ -183,7 +183,7 @@ void PixelBatch::write_middles(std::span<const Pixel> pixels, std::span<float> v
 double PixelBatch::reflected(std::span<const Pixel> pixels, std::uint32_t shadow_rays) {
     const SampleRange first = {0, 1, shadow_rays, 0};
     trace_camera_rays(pixels, first);
-    lighting_.add(pixel_seeds_, first, hits_, report_);
+    lighting_.add(pixel_seeds_, penumbrae_, first, hits_, report_);
     double sum = 0;
     for (const Rgb& radiance : hits_.radiance) {
         sum += glm::dot(glm::abs(radiance), Rgb(1.0F / 3));
@@ -234,11 +234,13 @@ void PixelBatch::add_ray(const glm::dvec2& place, const LensPoint& lens, std::ui
 
 void PixelBatch::seed_pixels(std::span<const Pixel> pixels) {
     pixel_seeds_.clear();
+    penumbrae_.clear();
     for (const Pixel& pixel : pixels) {
         const std::uint32_t place =
             hash(static_cast<std::uint32_t>(pixel.column), static_cast<std::uint32_t>(pixel.row));
         const std::uint32_t seed = picture_->settings.seed;
         pixel_seeds_.push_back(seed == 0 ? place : hash(place, seed));
+        penumbrae_.push_back(pixel.penumbrae);
     }
 }
 
@@ -259,7 +261,7 @@ void PixelBatch::add_up(const SampleRange& samples, std::uint32_t second_half, s
                             rays_[ray].sample < second_half);
         }
         sums[pixel].rays += samples.count;
-        sums[pixel].any_occluded = sums[pixel].any_occluded || hits_.any_occluded[pixel] != 0;
+        sums[pixel].visibility |= hits_.visibility[pixel];
         sums[pixel].shared_noise += glm::min(Vec3d(hits_.shared_noise[pixel]), kBrightestRay * kBrightestRay);
     }
 }

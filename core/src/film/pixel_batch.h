@@ -16,11 +16,14 @@
 #include "shlight/scene.h"
 #include "surfaces/camera_surfaces.h"
 #include "tracing/hits.h"
+#include "tracing/light_bits.h"
 
 namespace shlight {
 
 struct Pixel {
     int column, row;
+    /// Lights, as in LightBits, that rays near it have found partly hidden; all if nothing is known.
+    std::uint32_t penumbrae = LightBits::kAll;
 };
 
 /// Sums over the camera rays of one pixel. A ray that met no surface is transparent, unless there is a
@@ -33,7 +36,7 @@ struct PixelSums {
     Vec3d noise{0};                ///< that part
     Vec3d shared_noise{0};         ///< the variance of `radiance` by shadow rays that camera rays have in common
     Vec3d early{0};                ///< radiance of the camera rays in the first half of all that the pixel then has
-    bool any_occluded = false;     ///< whether any shadow ray has met something
+    LightBits visibility;          ///< of lights, by the shadow rays
     Vec3d along_x{0}, along_y{0};  ///< of radiance times the ray's distance from the pixel's centre
 
     /// Variance over the pixel of what is not linear in the place: rays in even number, spread evenly, average that
@@ -114,6 +117,7 @@ class PixelBatch {
     DirectLighting lighting_;
     std::vector<PartPlace> part_places_;
     std::vector<std::uint32_t> pixel_seeds_;  // one per pixel
+    std::vector<std::uint32_t> penumbrae_;    // likewise
 };
 
 }  // namespace shlight

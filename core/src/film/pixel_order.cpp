@@ -104,7 +104,7 @@ std::vector<RefinementGroup> most_urgent(std::span<const RefinementGroup> groups
                      [](const Block* a, const Block* b) { return a->gain * b->rays > b->gain * a->rays; });
     std::vector<RefinementGroup> urgent;
     for (const RefinementGroup& group : groups) {
-        urgent.push_back({group.from, group.to, group.calm, group.rays, {}, {}});
+        urgent.push_back({group.from, group.to, group.rays, {}, {}});
     }
     double gained = 0;
     double taken = 0;

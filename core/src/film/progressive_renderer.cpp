@@ -154,17 +154,15 @@ ProgressiveRenderer::Job ProgressiveRenderer::job_of(const Grid& grid) {
     const auto tiles = tiles_of(picture_->width, picture_->height, grid, refinement_.samples(0), batch_samples_);
     const double share = 1.0 / (grid.step * grid.step) - (grid.wider > 0 ? 1.0 / (grid.wider * grid.wider) : 0.0);
     const double rays = share * refinement_.samples(0) * picture_->width * picture_->height;
-    return {rays, tiles.size(),
-            [this, tiles, grid](std::size_t i) { render(pixels_of(tiles[i], grid), -1, 0, false); }};
+    return {rays, tiles.size(), [this, tiles, grid](std::size_t i) { render(pixels_of(tiles[i], grid), -1, 0); }};
 }
 
 ProgressiveRenderer::Job ProgressiveRenderer::job_of(const RefinementGroup& group) {
     const auto rays = static_cast<std::size_t>(group.rays);
     const std::size_t count = batch_samples_ / std::clamp<std::size_t>(rays, 1, batch_samples_);
-    const auto task = [this, count, pixels = group.pixels, from = group.from, to = group.to,
-                       calm = group.calm](std::size_t i) {
+    const auto task = [this, count, pixels = group.pixels, from = group.from, to = group.to](std::size_t i) {
         const std::size_t first = i * count;
-        render(std::span(pixels).subspan(first, std::min(count, pixels.size() - first)), from, to, calm);
+        render(std::span(pixels).subspan(first, std::min(count, pixels.size() - first)), from, to);
     };
     return {static_cast<double>(rays * group.pixels.size()), (group.pixels.size() + count - 1) / count, task};
 }
@@ -266,9 +264,8 @@ std::uint32_t ProgressiveRenderer::points_before(int level) const {
     return points;
 }
 
-void ProgressiveRenderer::render(std::span<const Pixel> pixels, int from, int to, bool calm) {
+void ProgressiveRenderer::render(std::span<const Pixel> pixels, int from, int to) {
     const std::uint32_t shadow_rays = shadow_rays_at(to);
-    const std::uint32_t rays_of_hit = calm ? std::min(shadow_rays, 1U) : shadow_rays;
     const std::uint32_t most = std::max<std::uint32_t>(
         refinement_.samples(0), std::min<std::uint32_t>(batch_samples_, kMostRaysPerPixel / std::max(shadow_rays, 1U)));
     const std::uint32_t previews = to == 0 ? 0 : picture_->previews;
@@ -278,7 +275,7 @@ void ProgressiveRenderer::render(std::span<const Pixel> pixels, int from, int to
     std::uint32_t first_point = points_before(to);
     for (std::uint32_t first = refinement_.kept_samples(from); first < refinement_.samples(to);) {
         const std::uint32_t count = std::min(most, refinement_.samples(to) - first);
-        batch.add(pixels, {first + previews, count, rays_of_hit, first_point}, refinement_.samples(to) / 2 + previews,
+        batch.add(pixels, {first + previews, count, shadow_rays, first_point}, refinement_.samples(to) / 2 + previews,
                   sums, pass_sums);
         first_point += count * shadow_rays;
         first += count;

@@ -63,7 +63,7 @@ class ProgressiveRenderer {
     bool refine(const Watch& caller);
     Job job_of(const Grid& grid);
     Job job_of(const RefinementGroup& group);
-    void render(std::span<const Pixel> pixels, int from, int to, bool calm);
+    void render(std::span<const Pixel> pixels, int from, int to);
     std::uint32_t shadow_rays_at(int level) const;
     std::uint32_t points_before(int level) const;
     /// Begins no task after the second `until`; false if that left any out, or on_update did.

@@ -27,6 +27,8 @@ constexpr double kMostNoise = 4;
 /// Pixels around one whose noise counts as its own: a pixel's few rays may agree by chance, and one that ended by its
 /// own rays alone would be too bright more often than too dark.
 constexpr int kNoiseReach = 2;
+/// The number of camera rays from which on a pixel's own rays tell more of its noise than those around it do.
+constexpr double kOwnRays = 64;
 /// Threshold ÷ estimated error of a pixel that has enough: few of the errors, which scatter, then exceed the threshold.
 constexpr double kMargin = 1.3;
 /// The squared error by shadow rays falls with this power of their number: 1 behind many thin things, 1.5 at one edge.
@@ -41,11 +43,10 @@ Vec3d color(std::span<const float> image, std::size_t pixel) {
 }
 
 /// The one of these; made if it is missing.
-RefinementGroup& group_of(int from, int to, bool calm, std::vector<RefinementGroup>& groups) {
-    const auto known = std::find_if(groups.begin(), groups.end(), [&](const RefinementGroup& g) {
-        return g.from == from && g.to == to && g.calm == calm;
-    });
-    return known != groups.end() ? *known : groups.emplace_back(RefinementGroup{from, to, calm, 0, {}, {}});
+RefinementGroup& group_of(int from, int to, std::vector<RefinementGroup>& groups) {
+    const auto known = std::find_if(groups.begin(), groups.end(),
+                                    [&](const RefinementGroup& g) { return g.from == from && g.to == to; });
+    return known != groups.end() ? *known : groups.emplace_back(RefinementGroup{from, to, 0, {}, {}});
 }
 
 }  // namespace
@@ -104,20 +105,25 @@ void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std
     const double shared =
         old_share * old_share * state.shared_noise + mean(quotient(sums.shared_noise / (all * all), scale));
     double noise = 0;
+    double independent_noise = 0;
     if (all > 1 && kept_samples(level) > 0) {
         const double half = std::floor(all / 2);
         const Vec3d early = (before * old + sums.early) / half;
         const Vec3d late = (all * radiance - half * early) / (all - half);
         const Vec3d independent = sums.noise / (all * static_cast<double>(sums.rays));
         noise = mean(quotient(glm::min((early - late) * (early - late) / 4.0, kMostNoise * independent), scale));
+        independent_noise = mean(quotient(independent, scale));
     }
+    LightBits visibility = state.visibility;
+    visibility |= sums.visibility;
     state = {Rgb(variance),
-             static_cast<float>(noise + shared),
+             static_cast<float>(noise),
+             static_cast<float>(independent_noise),
              static_cast<float>(shared),
              0,
              static_cast<std::int16_t>(level),
              round_,
-             state.any_occluded || sums.any_occluded,
+             visibility,
              false};
 }
 
@@ -144,14 +150,14 @@ std::vector<RefinementGroup> Refinement::next_round(std::span<const float> image
         errors += row.errors;
         rays_left_ += row.rays_left;
         for (const RefinementGroup& part : row.groups) {
-            RefinementGroup& group = group_of(part.from, part.to, part.calm, groups);
+            RefinementGroup& group = group_of(part.from, part.to, groups);
             group.rays = samples(part.to) - kept_samples(part.from);
             group.pixels.insert(group.pixels.end(), part.pixels.begin(), part.pixels.end());
             group.gains.insert(group.gains.end(), part.gains.begin(), part.gains.end());
         }
     }
     std::sort(groups.begin(), groups.end(), [](const RefinementGroup& a, const RefinementGroup& b) {
-        return std::tuple(a.from, a.to, b.calm) < std::tuple(b.from, b.to, a.calm);
+        return std::tuple(a.from, a.to) < std::tuple(b.from, b.to);
     });
     noise_ = std::sqrt(errors / static_cast<double>(states_.size()));
     ++round_;
@@ -176,8 +182,8 @@ Refinement::Row Refinement::next_of(int row, std::span<const float> image) {
         found.errors += level.error;
         found.rays_left += level.next > state ? samples(std::max(level.enough, level.next)) - kept_samples(from) : 0;
         if (level.next > state) {
-            RefinementGroup& group = group_of(from, level.next, is_calm(column, row), found.groups);
-            group.pixels.push_back({column, row});
+            RefinementGroup& group = group_of(from, level.next, found.groups);
+            group.pixels.push_back({column, row, penumbrae(column, row)});
             group.gains.push_back(level.error + level.supposed_error);
         }
     }
@@ -194,17 +200,31 @@ double Refinement::squared_error(double variance, int level) const {
     return variance / variance_per_error(level);
 }
 
+/// The own rays tell how the light varies; by how much less they err because they are spread, only many pixels tell.
 double Refinement::shadow_error(int column, int row, int level) const {
-    double sum = 0;
+    const auto left = [&](const State& state) {
+        return noise_shares_[static_cast<std::size_t>(level - state.level + most_level_)];
+    };
+    double noise = 0;
+    double independent = 0;
+    double shared = 0;
     int count = 0;
     for_each_around(column, row, kNoiseReach, [&](std::size_t i) {
         const State& state = states_[i];
         if (kept_samples(state.level) > 0) {
-            sum += state.noise * noise_shares_[static_cast<std::size_t>(level - state.level + most_level_)];
+            noise += state.noise * left(state);
+            independent += state.independent_noise * left(state);
+            shared += state.shared_noise * left(state);
             ++count;
         }
     });
-    return count > 0 ? sum / count : 0.0;
+    if (count == 0) {
+        return 0;
+    }
+    const State& own = states_[index(column, row)];
+    const double own_noise = independent > 0 ? own.independent_noise * left(own) * noise / independent : 0.0;
+    const double own_share = kept_samples(own.level) / (kept_samples(own.level) + kOwnRays);
+    return own_share * own_noise + (1 - own_share) * noise / count + shared / count;
 }
 
 int Refinement::sufficient_level(double variance) const {
@@ -242,7 +262,7 @@ Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float
         const double between = error_between(column, row, image);
         supposed = std::max(between, kEdgeVariance * kNeighbourShare);
         // One ray, which has no noise without a shadow nearby, suffices on a textured surface.
-        is_one_enough = between >= supposed && is_calm(column, row);
+        is_one_enough = between >= supposed && penumbrae(column, row) == 0;
     }
     const int next = enough > level || supposed > good_enough_ ? std::min(level + 1, most_level_) : enough;
     return {enough, is_one_enough ? 0 : next, squared_error(variance, level), supposed};
@@ -254,15 +274,15 @@ bool Refinement::is_touched(int column, int row) const {
     return touched;
 }
 
-bool Refinement::is_calm(int column, int row) const {
+std::uint32_t Refinement::penumbrae(int column, int row) const {
     const int reach = kept_samples(states_[index(column, row)].level) == 0 ? 2 * first_step() - 1 : 1;
-    bool calm = true;
-    for_each_around(column, row, reach, [&](std::size_t i) { calm = calm && !states_[i].any_occluded; });
-    return calm;
+    LightBits visibility;
+    for_each_around(column, row, reach, [&](std::size_t i) { visibility |= states_[i].visibility; });
+    return visibility.partly_hidden();
 }
 
 RefinementGroup Refinement::unrendered() const {
-    RefinementGroup group = {-1, 0, false, 1.0 * samples(0), {}, {}};
+    RefinementGroup group = {-1, 0, 1.0 * samples(0), {}, {}};
     for (int row = 0; row < height_; ++row) {
         for (int column = 0; column < width_; ++column) {
             if (states_[index(column, row)].level < 0) {

@@ -22,7 +22,6 @@ namespace shlight {
 /// Pixels that go from one level to a higher one; one of level l has first_samples · 4^l rays, one of -1 none.
 struct RefinementGroup {
     int from, to;
-    bool calm;    // rays from here and near have met nothing so far: one of a hit will do
     double rays;  // of each
     std::vector<Pixel> pixels;
     std::vector<double> gains;  // of each: what more rays may take from its squared error
@@ -59,12 +58,13 @@ class Refinement {
   private:
     struct State {
         Rgb variance{0};         // of one ray, without the noise of its shadow rays
-        float noise = 0;         // squared error of the mean by shadow rays, relative, as the pixel's own rays show it
-        float shared_noise = 0;  // the part of that which its camera rays have in common
+        // Squared errors of the mean by shadow rays, relative: as the pixel's own rays show them, as they would be if
+        // each ray were drawn by itself, and the part that its camera rays have in common, which adds to the first.
+        float noise = 0, independent_noise = 0, shared_noise = 0;
         float error = 0;         // squared; as it was when a round looked at it
         std::int16_t level = -1;
         std::uint16_t merged = 0;  // the number of the round
-        bool any_occluded = false;
+        LightBits visibility;
         bool has_enough = false;  // when a round looked at it
     };
     /// The level that is known to do, and the next one, which may be higher for what is only supposed.
@@ -93,9 +93,9 @@ class Refinement {
     double variance_per_error(int level) const;
     double squared_error(double variance, int level) const;
     int sufficient_level(double variance) const;
-    /// Whether shadow rays from the pixel and those around it have met nothing; one that has no rays of its own, or
-    /// only a replaced one, looks farther.
-    bool is_calm(int column, int row) const;
+    /// Lights, as in LightBits, that shadow rays from the pixel and those around it disagree about; one that has no
+    /// rays of its own, or only a replaced one, looks farther.
+    std::uint32_t penumbrae(int column, int row) const;
     /// Squared, of what is shown of a pixel that has no rays, if it is as one beside it.
     double error_between(int column, int row, std::span<const float> image) const;
     /// Squared error that shadow rays leave at a level, by those of the pixel and of all around it.

@@ -44,12 +44,13 @@ DirectLighting::DirectLighting(const LightingScene& scene, const SceneRays& rays
       shadowed_(tracer_, budget_, scene.materials, scene.lobe_stride),
       environment_target_(*scene.environment) {}
 
-void DirectLighting::add(std::span<const std::uint32_t> seeds, const SampleRange& samples, Hits& hits,
-                         RenderReport& report) {
+void DirectLighting::add(std::span<const std::uint32_t> seeds, std::span<const std::uint32_t> penumbrae,
+                         const SampleRange& samples, Hits& hits, RenderReport& report) {
     StageClock clock(report);
     points_.assign(hits, scene_->materials, scene_->extended, scene_->deltas, scene_->tolerance);
     clock.end(RenderStage::views);
     find_unshadowed(report);
+    budget_.start(points_, lights_, penumbrae);
     clock.end(RenderStage::light);
     add_shadowed(seeds, samples, hits, report);
     clock.end(RenderStage::shadows);
@@ -71,7 +72,6 @@ void DirectLighting::find_unshadowed(RenderReport& report) {
                            true,
                            &*scene_->environment_shading});
     }
-    budget_.start(points_, lights_);
 }
 
 void DirectLighting::add_shadowed(std::span<const std::uint32_t> seeds, const SampleRange& samples, Hits& hits,

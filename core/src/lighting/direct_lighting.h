@@ -63,7 +63,9 @@ class DirectLighting {
 
     /// Adds what the lights bring to the radiance and noise of the hits, and what that takes to the report. seeds: one
     /// of each group; samples: which rays of each group the hits belong to.
-    void add(std::span<const std::uint32_t> seeds, const SampleRange& samples, Hits& hits, RenderReport& report);
+    /// penumbrae: likewise, see ShadowBudget.
+    void add(std::span<const std::uint32_t> seeds, std::span<const std::uint32_t> penumbrae, const SampleRange& samples,
+             Hits& hits, RenderReport& report);
 
   private:
     /// Light of all kinds but sources without extent, whose shadows are found along with it.

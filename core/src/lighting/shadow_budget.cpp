@@ -6,8 +6,10 @@
 
 namespace shlight {
 
-void ShadowBudget::start(const ShadingPoints& points, std::span<const UnshadowedLight> lights) {
+void ShadowBudget::start(const ShadingPoints& points, std::span<const UnshadowedLight> lights,
+                         std::span<const std::uint32_t> penumbrae) {
     points_ = &points;
+    penumbrae_ = penumbrae;
     const std::size_t groups = points.pixel_begin.size() - 1;
     all_.assign(groups, 0.0F);
     own_.assign(lights.size() * groups, 0.0F);
@@ -32,8 +34,8 @@ float ShadowBudget::of_point(const UnshadowedLight& light, std::size_t point) co
 
 SampleRange ShadowBudget::samples_of(std::size_t light, std::size_t group, const SampleRange& samples) const {
     SampleRange own = samples;
-    own.shadow_rays = std::clamp(static_cast<std::uint32_t>(std::ceil(rays(of_group(light, group), group, samples))),
-                                 std::min(samples.shadow_rays, 1U), samples.shadow_rays);
+    own.shadow_rays = std::clamp(static_cast<std::uint32_t>(std::ceil(rays(light, group, samples))),
+                                 std::min(samples.shadow_rays, 1U), most_rays(light, group, samples));
     return own;
 }
 

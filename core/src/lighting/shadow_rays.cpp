@@ -100,10 +100,12 @@ void ShadowRays::draw_set(std::size_t lit_index, std::size_t set, const LobeShap
     }
 }
 
-bool ShadowRays::any_occluded(const LitRange& pixel) const {
-    const std::size_t begin = runs_[pixel.begin].begin;
-    const auto own = std::span(rays_.visible).subspan(begin, runs_[pixel.end - 1].end - begin);
-    return std::any_of(own.begin(), own.end(), [](const Rgb& visible) { return visible != Rgb(1); });
+LightBits ShadowRays::visibility(const LitRange& pixel, std::size_t light) const {
+    LightBits bits;
+    for (std::size_t ray = runs_[pixel.begin].begin; ray < runs_[pixel.end - 1].end; ++ray) {
+        bits.add(light, rays_.visible[ray]);
+    }
+    return bits;
 }
 
 void ShadowRays::gather(std::size_t lit_index) {

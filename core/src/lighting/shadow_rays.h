@@ -21,6 +21,7 @@
 #include "lighting/weighed_rays.h"
 #include "lobes/material_lobes.h"
 #include "tracing/hits.h"
+#include "tracing/light_bits.h"
 #include "tracing/shadow_tracer.h"
 
 namespace shlight {
@@ -53,8 +54,8 @@ class ShadowRays {
     /// Traces all rays that were drawn, or lets them all reach the light.
     void trace(bool shadows);
 
-    /// Whether anything takes light away from any ray of a pixel.
-    bool any_occluded(const LitRange& pixel) const;
+    /// Whether rays of a pixel see the light, which has this number, and whether any does not.
+    LightBits visibility(const LitRange& pixel, std::size_t light) const;
     /// Weighs the rays of the pixels whose sums are asked for.
     void weigh(std::span<const LitRange> pixels);
     /// lit_index: of LitHits; split: or else all is in Sums::smooth.

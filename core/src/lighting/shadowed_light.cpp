@@ -43,7 +43,7 @@ void ShadowedLight::find_lit(std::size_t index, std::size_t group, const Hits& h
     const LitRange range = {begin, lit_.hit.size()};
     if (range.size() > 0) {
         const std::uint32_t seed = hash(seeds_[group], static_cast<std::uint32_t>(index));
-        groups_.push_back({range, group, budget_->samples_of(index, group, samples_), seed});
+        groups_.push_back({range, group, index, budget_->samples_of(index, group, samples_), seed});
     }
 }
 
@@ -60,8 +60,9 @@ void ShadowedLight::shade_lit(Hits& hits) {
         rays_.trace(light_.casts_shadows);
     }
     for (const LitGroup& group : groups_) {
-        if (shadows && rays_.any_occluded(group.range)) {
-            hits.any_occluded[group.group] = 1;
+        const LightBits seen = shadows ? rays_.visibility(group.range, group.light) : LightBits{};
+        hits.visibility[group.group] |= seen;
+        if (seen.hidden != 0) {
             occluded_.push_back(group);
             ranges_.push_back(group.range);
         } else {

@@ -56,6 +56,7 @@ class ShadowedLight {
     struct LitGroup {
         LitRange range;
         std::size_t group;
+        std::size_t light;  // its number in the budget
         SampleRange samples;
         std::uint32_t seed;
     };

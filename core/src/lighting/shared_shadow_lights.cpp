@@ -51,8 +51,7 @@ void SharedShadowLights::start(std::span<const Light> lights, std::span<const Un
 }
 
 bool SharedShadowLights::is_dim(std::size_t light, std::size_t pixel) const {
-    return may_share_[light] != 0 && samples_.shadow_rays > 0 &&
-           budget_->rays(budget_->of_group(light, pixel), pixel, samples_) < 1;
+    return may_share_[light] != 0 && samples_.shadow_rays > 0 && budget_->rays(light, pixel, samples_) < 1;
 }
 
 void SharedShadowLights::add(const ShadingPoints& points, std::span<const std::uint32_t> seeds, Hits& hits) {
@@ -60,14 +59,13 @@ void SharedShadowLights::add(const ShadingPoints& points, std::span<const std::u
     radiance_.assign(points.size(), Rgb(0));
     apart_.reset(hits.pixel_count());
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
-        const float own = gather(pixel);
+        const double rays = gather(pixel);
         if (dim_.empty()) {
             continue;
         }
         const auto hit_count = static_cast<double>(hits.pixel_begin[pixel + 1] - hits.pixel_begin[pixel]);
-        const double rays = budget_->rays(own, pixel, samples_) * hit_count;
-        request(pixel, static_cast<std::size_t>(std::ceil(rays)), hash(hash(seeds[pixel], samples_.first), kSharedSeed),
-                hits);
+        request(pixel, static_cast<std::size_t>(std::ceil(rays * hit_count)),
+                hash(hash(seeds[pixel], samples_.first), kSharedSeed), hits);
         if (rays_.size() >= kRaysTogether) {
             finish(hits);
         }
@@ -75,17 +73,19 @@ void SharedShadowLights::add(const ShadingPoints& points, std::span<const std::u
     finish(hits);
 }
 
-float SharedShadowLights::gather(std::size_t pixel) {
+double SharedShadowLights::gather(std::size_t pixel) {
     dim_.clear();
     float sum = 0;
+    double rays = 0;
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         const float own = budget_->of_group(i, pixel);
         if (own > 0 && is_dim(i, pixel)) {
             sum += own;
+            rays += budget_->rays(i, pixel, samples_);
             dim_.push_back({i, sum});
         }
     }
-    return sum;
+    return rays;
 }
 
 void SharedShadowLights::request(std::size_t pixel, std::size_t count, std::uint32_t seed, const Hits& hits) {
@@ -106,7 +106,7 @@ void SharedShadowLights::request(std::size_t pixel, std::size_t count, std::uint
         const auto own_hits = points_->hits_of(dim_points_[at.number].index);
         const auto number = static_cast<std::size_t>(at.into * static_cast<double>(own_hits.size()));
         const std::size_t hit = own_hits[std::min(number, own_hits.size() - 1)];
-        request_from(hit, lights_[light], unshadowed, places.point(static_cast<std::uint32_t>(i)),
+        request_from(hit, light, places.point(static_cast<std::uint32_t>(i)),
                      at.length / static_cast<double>(own_hits.size()), hits);
     }
     pixels_.push_back({pixel, before, rays_.size()});
@@ -125,9 +125,10 @@ void SharedShadowLights::gather_points(std::size_t pixel, const UnshadowedLight&
     }
 }
 
-void SharedShadowLights::request_from(std::size_t hit, const Light& light, const UnshadowedLight& unshadowed,
-                                      const glm::dvec2& place, double density, const Hits& hits) {
-    target_.set(light);
+void SharedShadowLights::request_from(std::size_t hit, std::size_t light, const glm::dvec2& place, double density,
+                                      const Hits& hits) {
+    const UnshadowedLight& unshadowed = unshadowed_[light];
+    target_.set(lights_[light]);
     target_.clear();
     if (!target_.add(hits, hit)) {
         return;
@@ -155,7 +156,7 @@ void SharedShadowLights::request_from(std::size_t hit, const Light& light, const
         }
     }
     shadow_samples_.push_back(
-        {value * target_.strength(), traits_of(light).group, static_cast<float>(hits.let_in(hit, Vec3d(drawn.way)))});
+        {value * target_.strength(), light, static_cast<float>(hits.let_in(hit, Vec3d(drawn.way)))});
 }
 
 void SharedShadowLights::add_unblocked(std::size_t pixel) {
@@ -194,7 +195,8 @@ void SharedShadowLights::finish(Hits& hits) {
         if (!apart_.empty()) {
             keep_apart(own, seen, apart_.of(own.pixel), hits.apart);
         }
-        hits.add_shared(own.pixel, seen.variance * sum * sum, seen.any_occluded);
+        hits.shared_noise[own.pixel] += seen.variance * sum * sum;
+        hits.visibility[own.pixel] |= seen.lights;
     }
     pixels_.clear();
     shadow_samples_.clear();
@@ -208,10 +210,10 @@ SharedShadowLights::Share SharedShadowLights::share(const PixelSamples& own) con
     for (std::size_t i = own.begin; i < own.end; ++i) {
         all += shadow_samples_[i].value;
         seen += shadow_samples_[i].value * rays_.visible[i];
-        share.any_occluded = share.any_occluded || rays_.visible[i] != Rgb(1);
+        share.lights.add(shadow_samples_[i].light, rays_.visible[i]);
     }
     share.seen = Rgb(quotient(seen, all));
-    for (std::size_t i = own.begin; i < own.end && share.any_occluded; ++i) {
+    for (std::size_t i = own.begin; i < own.end && share.lights.hidden != 0; ++i) {
         const Vec3d off = quotient(Vec3d((rays_.visible[i] - share.seen) * shadow_samples_[i].value), all);
         share.variance += Rgb(off * off);
     }
@@ -225,8 +227,9 @@ void SharedShadowLights::keep_apart(const PixelSamples& own, const Share& share,
     group_sampled_.assign(all.size(), Rgb(0));
     for (std::size_t i = own.begin; i < own.end; ++i) {
         const ShadowSample& sample = shadow_samples_[i];
-        group_seen_[sample.light_group] += sample.value * rays_.visible[i];
-        group_sampled_[sample.light_group] += sample.value;
+        const std::uint32_t group = traits_of(lights_[sample.light]).group;
+        group_seen_[group] += sample.value * rays_.visible[i];
+        group_sampled_[group] += sample.value;
     }
     Rgb sum(0);
     for (std::size_t group = 0; group < all.size(); ++group) {

@@ -54,8 +54,8 @@ class SharedShadowLights {
     /// A ray from a hit to a light, and what it stands for if nothing blocks it, ≥ 0.
     struct ShadowSample {
         Rgb value;
-        std::uint32_t light_group;  // see LightTraits
-        float let_in;               // of what reaches the hit
+        std::size_t light;
+        float let_in;  // of what reaches the hit
     };
     /// The samples of a pixel: those numbered begin … end - 1.
     struct PixelSamples {
@@ -64,18 +64,17 @@ class SharedShadowLights {
     /// The visible share of a pixel's shared light in each colour channel, and the variance of that estimate.
     struct Share {
         Rgb seen{0}, variance{0};
-        bool any_occluded = false;
+        LightBits lights;
     };
 
-    /// The dim lights of a pixel; returns their brightness.
-    float gather(std::size_t pixel);
+    /// The dim lights of a pixel; returns the rays that a hit has for all of them.
+    double gather(std::size_t pixel);
     /// Draws shadow samples for the gathered lights.
     void request(std::size_t pixel, std::size_t count, std::uint32_t seed, const Hits& hits);
     /// How bright points of a pixel are under a light.
     void gather_points(std::size_t pixel, const UnshadowedLight& unshadowed);
     /// density: how many samples a unit of brightness gets.
-    void request_from(std::size_t hit, const Light& light, const UnshadowedLight& unshadowed, const glm::dvec2& place,
-                      double density, const Hits& hits);
+    void request_from(std::size_t hit, std::size_t light, const glm::dvec2& place, double density, const Hits& hits);
     /// Adds the lights to the pixels that have samples.
     void finish(Hits& hits);
     Share share(const PixelSamples& own) const;

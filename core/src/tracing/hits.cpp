@@ -17,7 +17,7 @@ void Hits::clear() {
     of_pixel.clear();
     noise.clear();
     shared_noise.clear();
-    any_occluded.clear();
+    visibility.clear();
     pixel_begin.assign(1, 0);
 }
 

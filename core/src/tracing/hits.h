@@ -11,6 +11,7 @@
 #include "base/shading_frame.h"
 #include "shlight/surface_point.h"
 #include "shlight/types.h"
+#include "tracing/light_bits.h"
 #include "tracing/light_parts.h"
 #include "tracing/terminator.h"
 
@@ -40,7 +41,7 @@ struct Hits {
     std::vector<Rgb> noise;               ///< the part of its variance that comes from shadow rays
     /// For each pixel the variance of its sum of radiance from shadow rays that its hits share.
     std::vector<Rgb> shared_noise;
-    std::vector<std::uint8_t> any_occluded;      ///< by pixel: whether any shadow ray has met something
+    std::vector<LightBits> visibility;           ///< by pixel: of its lights, by its shadow rays
     std::vector<std::size_t> pixel_begin = {0};  ///< pixel p has the hits pixel_begin[p] … pixel_begin[p + 1] - 1
 
     std::size_t size() const { return frame.size(); }
@@ -81,12 +82,7 @@ struct Hits {
     void end_pixel() {
         pixel_begin.push_back(size());
         shared_noise.emplace_back(0);
-        any_occluded.push_back(0);
-    }
-    /// Adds the variance of a pixel's shared shadow rays, and whether any was blocked.
-    void add_shared(std::size_t pixel, const Rgb& variance, bool any_obstructed) {
-        shared_noise[pixel] += variance;
-        any_occluded[pixel] |= any_obstructed ? 1 : 0;
+        visibility.emplace_back();
     }
 };
 
