@@ -10,7 +10,8 @@ from shlight._load import load_core
 
 load_core()
 
-from shlight import images, methods  # noqa: E402
+from shlight import _core, images, methods  # noqa: E402
+from shlight._calls import explain_methods, explained  # noqa: E402
 from shlight._core import (  # noqa: E402
     DEFAULT_TOLERANCE,
     Bsdf,
@@ -18,7 +19,6 @@ from shlight._core import (  # noqa: E402
     RenderReport,
     Scene,
     SceneMesh,
-    render,
 )
 from shlight.coefficients import (  # noqa: E402
     cap_coefficients,
@@ -30,6 +30,10 @@ from shlight.coefficients import (  # noqa: E402
     sphere_coefficients,
 )
 from shlight.shading import shade_disks, shade_polygons, shade_spheres  # noqa: E402
+
+render = explained(_core.render)
+for _kind in (Bsdf, Scene, SceneMesh):
+    explain_methods(_kind)
 
 __version__ = "0.1.0"
 

@@ -12,6 +12,7 @@ methods that there are to compare with (shlight.methods).
 from __future__ import annotations
 
 import math
+import warnings
 from typing import Literal
 
 import numpy as np
@@ -32,9 +33,11 @@ from shlight._arrays import (
     rows,
     shaped,
 )
+from shlight._calls import names_rows
 from shlight.methods import PARTS_OF_EXACT, coefficient_options
 
 
+@names_rows
 def sh_basis(directions: ArrayLike, order: int, dtype: DTypeLike = np.float32, *, threads: int = 0) -> Floats:
     """The real spherical harmonics of all bands below `order` in given directions.
 
@@ -47,6 +50,7 @@ def sh_basis(directions: ArrayLike, order: int, dtype: DTypeLike = np.float32, *
     return flat.reshape(*d.shape[:-1], n * n)
 
 
+@names_rows
 def evaluate(coefficients: ArrayLike, directions: ArrayLike, *, threads: int = 0) -> Floats:
     """The value of expansions in given directions: Σ coefficient · basis.
 
@@ -63,6 +67,7 @@ def evaluate(coefficients: ArrayLike, directions: ArrayLike, *, threads: int = 0
     return shaped(flat, shape)
 
 
+@names_rows
 def sphere_coefficients(
     centers: ArrayLike,
     radii: ArrayLike,
@@ -97,6 +102,7 @@ def sphere_coefficients(
     return flat.reshape(*shape, n * n)
 
 
+@names_rows
 def cap_coefficients(
     axes: ArrayLike,
     half_angles: ArrayLike,
@@ -130,6 +136,7 @@ def cap_coefficients(
     return flat.reshape(*shape, n * n)
 
 
+@names_rows
 def polygon_coefficients(
     vertices: ArrayLike,
     order: int,
@@ -164,6 +171,7 @@ def polygon_coefficients(
     return flat.reshape(*v.shape[:-2], n * n)
 
 
+@names_rows
 def disk_coefficients(
     centers: ArrayLike,
     half_axes_u: ArrayLike,
@@ -191,6 +199,7 @@ def disk_coefficients(
     return flat.reshape(*shape, n * n)
 
 
+@names_rows
 def shade(light_coefficients: ArrayLike, bsdf_coefficients: ArrayLike, *, threads: int = 0) -> Floats:
     """Outgoing radiance, Σ light · material (Zhou & Wei 2020, Eq. 5).
 
@@ -205,6 +214,9 @@ def shade(light_coefficients: ArrayLike, bsdf_coefficients: ArrayLike, *, thread
     if bsdf.shape[-1] != order * order:
         raise ValueError(f"bsdf_coefficients has {bsdf.shape[-1]} coefficients, light_coefficients has {order * order}")
     shape = broadcast(light_coefficients=light.shape[:-1], bsdf_coefficients=bsdf.shape[:-1])
+    if light.ndim > 1 and light.shape[-2:-1] == bsdf.shape[-2:-1] == (3,):
+        text = "3 lights and 3 rows of bsdf_coefficients are paired; for RGB pass light_coefficients[..., None, :]"
+        warnings.warn(text, stacklevel=3)
     size = order * order
     flat = _core.shade(rows(light, shape, size), rows(bsdf, shape, size), order, checked_threads(threads))
     return shaped(flat, shape)

@@ -9,6 +9,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from shlight._arrays import checked_array, checked_integer, checked_number
+
 __all__ = [
     "box_mean",
     "mean_ratio",
@@ -90,7 +92,9 @@ def share_within(image: npt.ArrayLike, reference: npt.ArrayLike, error: npt.Arra
     Differences under a millionth of the reference's mean count as none: float32 holds no more.
     """
     x, r = _pair(image, reference)
-    limit = np.maximum(factor * np.asarray(error, dtype=np.float64), 1e-6 * np.abs(r).mean())
+    limit = np.maximum(
+        checked_number("factor", factor) * checked_array("error", error, np.float64), 1e-6 * np.abs(r).mean()
+    )
     if limit.shape != r.shape:
         raise ValueError(f"error must have the reference's shape {r.shape}, not {limit.shape}")
     return float(np.mean(np.all(np.abs(x - r) <= limit, axis=-1)))
@@ -101,7 +105,7 @@ def _pair(
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     arrays = []
     for value, name in zip((first, second), names, strict=True):
-        array = np.asarray(value, dtype=np.float64)
+        array = checked_array(name, value, np.float64)
         if array.ndim != 3 or array.shape[2] < 3 or array.size == 0:
             raise ValueError(f"{name} must have shape (height, width, 3 or more), not {array.shape}")
         array = array[..., :3]
@@ -122,7 +126,8 @@ def _scale2(reference: npt.NDArray[np.float64], mean: float | None = None) -> np
 
 def box_mean(values: npt.ArrayLike, radius: int) -> npt.NDArray[np.float64]:
     """Mean over the (2 radius + 1)² neighbours of pixels (height, width, …), at the border over those that exist."""
-    mean = np.asarray(values, dtype=np.float64)
+    mean = checked_array("values", values, np.float64, core_axes=2)
+    radius = checked_integer("radius", radius, 0, 2**31 - 1)
     for axis in range(2):
         mean = np.moveaxis(mean, axis, 0)
         size = len(mean)

@@ -27,6 +27,7 @@ from shlight._arrays import (
     checked_tolerance,
     rows,
 )
+from shlight._calls import names_rows
 from shlight._core import DEFAULT_TOLERANCE
 from shlight.methods import checked_shading_method, shading_options
 
@@ -72,6 +73,7 @@ def shade_spheres(
     return_effort: Literal[True],
     **settings: Unpack[_MethodSettings],
 ) -> tuple[Radiance, Effort]: ...
+@names_rows
 def shade_spheres(
     centers: ArrayLike,
     radii: ArrayLike,
@@ -136,6 +138,7 @@ def shade_polygons(
     return_effort: Literal[True],
     **settings: Unpack[_MethodSettings],
 ) -> tuple[Radiance, Effort]: ...
+@names_rows
 def shade_polygons(
     vertices: ArrayLike,
     bsdf: _core.Bsdf,
@@ -198,6 +201,7 @@ def shade_disks(
     return_effort: Literal[True],
     **settings: Unpack[_Settings],
 ) -> tuple[Radiance, Effort]: ...
+@names_rows
 def shade_disks(
     centers: ArrayLike,
     half_axes_u: ArrayLike,

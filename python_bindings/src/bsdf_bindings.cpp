@@ -278,6 +278,15 @@ Raises ValueError for cos_theta_o outside [0, 1] or an order outside 1 … 64.)"
              R"(f·cos for directions (..., 3) in the shading frame, which broadcast against each other:
 shape (...), or (..., 3) if the material has colour. Zero where either direction lies below the horizon.)")
         .def(py::self + py::self)
+        .def(
+            "__radd__",
+            [](const Bsdf& bsdf, const py::int_& start) {
+                if (!start.equal(py::int_(0))) {
+                    throw py::type_error("a Bsdf can be added to Bsdfs alone");
+                }
+                return bsdf;
+            },
+            py::arg("start"), py::is_operator(), "What sum() begins with, 0, adds nothing.")
         .def("__mul__", &scaled, py::arg("factor"), py::is_operator())
         .def("__rmul__", &scaled, py::arg("factor"), py::is_operator())
         // Otherwise numpy would apply `array * bsdf` to each element of the array.

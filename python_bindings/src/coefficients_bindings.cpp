@@ -3,7 +3,9 @@
 // Batch functions on flat arrays; shlight/coefficients.py broadcasts their arguments.
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <initializer_list>
+#include <string>
 #include <utility>
 
 #include "arrays.h"
@@ -39,7 +41,12 @@ void check_sums(std::span<const T> sums, std::initializer_list<std::pair<const c
         return;
     }
     for (const auto& [name, values] : terms) {
-        check_all_finite(name, values);
+        const auto* wrong =
+            std::find_if(values.data(), values.data() + values.size(), [](T x) { return !std::isfinite(x); });
+        if (const auto place = static_cast<std::size_t>(wrong - values.data()); place < values.size()) {
+            const std::string text = std::string(name) + " contains a number that is not finite";
+            throw WrongRow(text, place / (values.size() / sums.size()));
+        }
     }
 }
 
@@ -159,6 +166,13 @@ void bind_coefficients_for(py::module_& m) {
 }  // namespace
 
 void bind_coefficients(py::module_& m) {
+    py::register_exception_translator([](std::exception_ptr thrown) {
+        try {
+            std::rethrow_exception(std::move(thrown));
+        } catch (const WrongRow& error) {
+            PyErr_SetObject(PyExc_ValueError, py::make_tuple(error.what(), error.row()).ptr());
+        }
+    });
     bind_coefficients_for<float>(m);
     bind_coefficients_for<double>(m);
 }

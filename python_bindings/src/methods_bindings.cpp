@@ -43,9 +43,12 @@ Array<T> integrated(std::size_t count, int order, int threads, const Integrate& 
     const auto row = static_cast<std::size_t>(coefficient_count(order));
     Array<T> out({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(row)});
     T* data = out.mutable_data();
-    in_chunks(count, threads, [&](std::size_t first, std::size_t some) {
-        integrate(first, some, std::span<T>(data + first * row, some * row));
-    });
+    in_chunks(
+        count, threads,
+        [&](std::size_t first, std::size_t some) {
+            integrate(first, some, std::span<T>(data + first * row, some * row));
+        },
+        kSmallChunk);
     return out;
 }
 
@@ -103,11 +106,14 @@ py::tuple shaded_spheres(const std::string& method, const Array<double>& centers
     const auto r = values(radii);
     const auto views = values(cos_theta_o);
     const Shaded out(c.size());
-    in_chunks(c.size(), threads, [&](std::size_t first, std::size_t count) {
-        methods::shade_spheres(found, c.subspan(first, count), r.subspan(first, count), bsdf,
-                               views.subspan(first, count), options, first, out.colors.subspan(first, count),
-                               out.efforts.subspan(first, count));
-    });
+    in_chunks(
+        c.size(), threads,
+        [&](std::size_t first, std::size_t count) {
+            methods::shade_spheres(found, c.subspan(first, count), r.subspan(first, count), bsdf,
+                                   views.subspan(first, count), options, first, out.colors.subspan(first, count),
+                                   out.efforts.subspan(first, count));
+        },
+        kSmallChunk);
     return out.result();
 }
 
@@ -118,11 +124,14 @@ py::tuple shaded_polygons(const std::string& method, const Array<double>& vertic
     const auto k = static_cast<std::size_t>(vertices.shape(1));
     const auto views = values(cos_theta_o);
     const Shaded out(views.size());
-    in_chunks(views.size(), threads, [&](std::size_t first, std::size_t count) {
-        methods::shade_polygons(found, v.subspan(first * k, count * k), static_cast<int>(k), bsdf,
-                                views.subspan(first, count), options, first, out.colors.subspan(first, count),
-                                out.efforts.subspan(first, count));
-    });
+    in_chunks(
+        views.size(), threads,
+        [&](std::size_t first, std::size_t count) {
+            methods::shade_polygons(found, v.subspan(first * k, count * k), static_cast<int>(k), bsdf,
+                                    views.subspan(first, count), options, first, out.colors.subspan(first, count),
+                                    out.efforts.subspan(first, count));
+        },
+        kSmallChunk);
     return out.result();
 }
 

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "chunks.h"
+
 namespace shlight::python {
 
 namespace py = pybind11;
@@ -24,9 +26,7 @@ Progress progress_from(const py::object& callback) {
     check_callable("progress", callback);
     return [&callback](double share) {
         const py::gil_scoped_acquire acquire;
-        if (PyErr_CheckSignals() != 0) {
-            throw py::error_already_set();
-        }
+        check_signals();
         return callback.is_none() || !is_false(callback(share));
     };
 }

@@ -36,9 +36,9 @@ def public_functions() -> Iterator[tuple[str, Any]]:
 
 
 def argument_names(function: Any) -> set[str]:
-    """The names of a function's arguments; those of the core's functions are in the first line of its docstring."""
+    """The names of a function's arguments; those of the core's operators are in the first line of its docstring."""
     if inspect.isfunction(function):
-        return set(inspect.signature(function).parameters)
+        return set(inspect.signature(function).parameters) - {"self"}
     return set(re.findall(r"(\w+): ", function.__doc__.splitlines()[0])) - {"self"}
 
 

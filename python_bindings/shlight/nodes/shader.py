@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from shlight import _core
 from shlight.nodes.inputs import normal as smooth_normal
@@ -73,6 +73,9 @@ class Shader:
             color(self.transparency + other.transparency),
             {**self.aovs, **other.aovs},
         )
+
+    def __radd__(self, start: Literal[0]) -> Shader:  # what sum() begins with
+        return self if start == 0 else NotImplemented
 
     def __mul__(self, factor: Varying) -> Shader:
         by = color(factor, "factor")

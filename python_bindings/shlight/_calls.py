@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""What calls say of wrong arguments: which row of a batch, and which name was meant."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import inspect
+import re
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar, cast
+
+import numpy as np
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+# Arguments of batch functions, and how many of their last axes belong to one light.
+_CORE_AXES = {
+    "directions": 1,
+    "coefficients": 1,
+    "centers": 1,
+    "radii": 0,
+    "axes": 1,
+    "half_angles": 0,
+    "vertices": 2,
+    "half_axes_u": 1,
+    "half_axes_v": 1,
+    "light_coefficients": 1,
+    "bsdf_coefficients": 1,
+    "cos_theta_o": 0,
+}
+
+
+def names_rows(function: Function) -> Function:
+    """The function, whose errors about a row of the flat arrays, a text and its number, name the caller's row."""
+    signature = inspect.signature(function)
+
+    @functools.wraps(function)
+    def call(*given: Any, **named: Any) -> Any:
+        try:
+            return function(*given, **named)
+        except ValueError as error:
+            if len(error.args) != 2:
+                raise
+            text, row = error.args
+            arguments = signature.bind(*given, **named).arguments
+        raise ValueError(_with_row(text, row, arguments))
+
+    return cast("Function", call)
+
+
+def _with_row(text: str, row: int, arguments: Mapping[str, Any]) -> str:
+    shapes = {
+        name: np.shape(value)[: np.ndim(value) - _CORE_AXES[name]]
+        for name, value in arguments.items()
+        if name in _CORE_AXES
+    }
+    name = re.match(r"\w*", text)[0]  # type: ignore[index]
+    own = shapes.get(name)
+    if not own:
+        return text
+    index = np.unravel_index(row, np.broadcast_shapes(*shapes.values()))[-len(own) :]
+    place = ", ".join(str(i if size > 1 else 0) for i, size in zip(index, own, strict=True))
+    return f"{name}[{place}]{text[len(name) :]}"
+
+
+def explained(function: Function) -> Function:
+    """A function of the native module whose errors about arguments that it does not have are short.
+
+    Its own list the types of all arguments.
+    """
+    signature = _signature(function)
+
+    @functools.wraps(function)
+    def call(*given: Any, **named: Any) -> Any:
+        try:
+            return function(*given, **named)
+        except TypeError as error:
+            if "incompatible function arguments" not in str(error):
+                raise
+            text = _why(signature, given, named) or str(error)
+        raise TypeError(text)
+
+    call.__signature__ = signature  # type: ignore[attr-defined]
+    return cast("Function", call)
+
+
+def explain_methods(kind: type) -> None:
+    """Makes `explained` of all public methods of a class of the native module."""
+    for name, method in list(vars(kind).items()):
+        if not name.startswith("_") and callable(method):
+            made = explained(getattr(kind, name))
+            setattr(kind, name, staticmethod(made) if isinstance(method, staticmethod) else made)
+
+
+def _signature(function: Callable[..., Any]) -> inspect.Signature:
+    """The signature that pybind11 writes into a docstring, without types."""
+    kind: Any = inspect.Parameter.POSITIONAL_OR_KEYWORD
+    parameters = []
+    for name, default in re.findall(
+        r"(\*(?=,)|\w+(?=: ))(?:: [\w.\[\]]+( =)?)?", (function.__doc__ or "").partition("\n")[0]
+    ):
+        if name == "*":
+            kind = inspect.Parameter.KEYWORD_ONLY
+        else:
+            value = None if default else inspect.Parameter.empty
+            parameters.append(inspect.Parameter(name, kind, default=value))
+    return inspect.Signature(parameters)
+
+
+def _why(signature: inspect.Signature, given: tuple[Any, ...], named: Mapping[str, Any]) -> str:
+    """What is wrong with a call; empty if its arguments are those of the signature."""
+    for name in named:
+        if name not in signature.parameters:
+            others = sorted(set(signature.parameters) - {"self"} - set(named))
+            near = max(others, key=lambda other: difflib.SequenceMatcher(None, name, other).ratio(), default="")
+            return f"unknown argument {name!r}; did you mean {near!r}?" if near else f"unknown argument {name!r}"
+    try:
+        signature.bind(*given, **named)
+    except TypeError as error:
+        return str(error)
+    return ""
