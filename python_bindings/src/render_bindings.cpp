@@ -78,6 +78,7 @@ Raises ValueError naming the argument, RenderCancelled.)";
 struct Report {
     RenderReport core;
     double build_seconds;
+    std::string dark;
 
     double share(std::uint64_t count) const {
         const std::uint64_t harmonics =
@@ -113,7 +114,7 @@ struct Report {
 };
 
 using ReportState = std::tuple<std::array<std::uint64_t, kMaxOrder + 1>, std::array<std::uint64_t, 6>,
-                               std::array<double, 2>, std::array<double, kRenderStages.size()>, double>;
+                               std::array<double, 2>, std::array<double, kRenderStages.size()>, double, std::string>;
 
 ReportState report_state(const Report& report) {
     const RenderReport& core = report.core;
@@ -121,16 +122,18 @@ ReportState report_state(const Report& report) {
             {core.cubature_count, core.mirror_count, core.over_tolerance, core.hits, core.shadow_rays, core.passes},
             {core.noise, core.seconds},
             core.stage_seconds,
-            report.build_seconds};
+            report.build_seconds,
+            report.dark};
 }
 
 Report report_from(const ReportState& state) {
-    const auto& [order_counts, counts, floats, stage_seconds, build_seconds] = state;
+    const auto& [order_counts, counts, floats, stage_seconds, build_seconds, dark] = state;
     const auto& [cubature, mirror, over_tolerance, hits, shadow_rays, passes] = counts;
     const auto& [noise, seconds] = floats;
     return {{order_counts, cubature, mirror, over_tolerance, hits, shadow_rays, static_cast<std::uint32_t>(passes),
              noise, seconds, 0, stage_seconds},
-            build_seconds};
+            build_seconds,
+            dark};
 }
 
 int order_from(const py::object& order) {
@@ -195,8 +198,23 @@ PictureUpdate update_from(const py::object& callback, int width, int height, flo
         const py::gil_scoped_acquire acquire;
         py::array_t<float> copy({height, width, 4}, image.data());
         expose(copy, 0, 3, exposure);
-        return !is_false(callback(copy, Report{report, build_seconds}));
+        return !is_false(callback(copy, Report{report, build_seconds, {}}));
     };
+}
+
+/// Why a picture is black, as far as it is for want of light; empty if it is not.
+std::string darkness(const CompiledScene& scene, std::span<const float> pixels, std::uint64_t hits) {
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        if (i % 4 != 3 && pixels[i] != 0) {
+            return {};
+        }
+    }
+    if (scene.lights().empty() && scene.environment().is_black()) {
+        return "the scene has no light";
+    }
+    return hits == 0 ? std::string()
+                     : "no light reaches what the camera sees; polygon lights shine to the side that sees their "
+                       "vertices counter-clockwise, disk lights along half_axis_u x half_axis_v";
 }
 
 py::object render_scene(const py::object& scene_object, const py::object& width, const py::object& height,
@@ -243,12 +261,13 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
         report = render(*compiled_scene, camera, columns, rows, settings, pixels, watch,
                         {values.mutable_data(), static_cast<std::size_t>(values.size())});
     }
+    const std::string dark = darkness(*compiled_scene, pixels, report.hits);
     expose(image, 0, 3, light_factor);
     expose_light(settings.passes, values, light_factor);
     py::object result =
         pass_arguments.any() ? py::object(pass_dict(settings.passes, scene, image, values)) : py::object(image);
     if (with_report) {
-        return py::make_tuple(result, Report{report, build_seconds});
+        return py::make_tuple(result, Report{report, build_seconds, dark});
     }
     return result;
 }
@@ -280,6 +299,7 @@ void bind_render(py::module_& m) {
             "seconds_left", [](const Report& r) { return r.core.seconds_left; },
             "Time that the render will probably go on; 0 when it has ended.")
         .def_readonly("build_seconds", &Report::build_seconds, "Time for building what rays are traced in; 0 if kept.")
+        .def_readonly("dark", &Report::dark, "Why the picture is black, as far as light is missing; else empty.")
         .def_property_readonly(
             "render_seconds", [](const Report& r) { return r.core.seconds; }, "Time for rendering.")
         .def_property_readonly(

@@ -419,3 +419,17 @@ def test_negative_light_takes_light_away() -> None:
     dark = shlight.render(scene, 4, 4)
     assert bright[..., :3].min() > 0
     np.testing.assert_allclose(dark[..., :3], 0, atol=1e-7)
+
+
+def test_the_report_says_why_a_picture_is_black() -> None:
+    def dark(*vertices: Any, radiance: Any = (1, 1, 1)) -> str:
+        scene = shlight.Scene()
+        scene.add_mesh(FLOOR, FACES)
+        if vertices:
+            scene.add_polygon_light(vertices, radiance)
+        return str(shlight.render(from_above(scene), 4, 4, return_report=True)[1].dark)
+
+    above = [[-1, -1, 3], [1, -1, 3], [1, 1, 3]]
+    assert dark() == "the scene has no light"
+    assert "the side that sees their vertices counter-clockwise" in dark(*above)
+    assert dark(*above[::-1]) == ""
