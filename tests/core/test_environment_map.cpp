@@ -358,6 +358,25 @@ class Floor {
         });
     }
 
+    /// The same, of a part of a picture between these texels.
+    double expected(const LatLong& picture, const Bsdf& bsdf, const glm::dvec2& first, const glm::dvec2& last) const {
+        constexpr int kSteps = 64;
+        const glm::dmat3 frame(x_, y_, normal_);
+        const glm::dvec2 step = (last - first) / double{kSteps};
+        double sum = 0;
+        for (int i = 0; i < kSteps * kSteps; ++i) {
+            const glm::dvec2 texel = first + (glm::dvec2(i % kSteps, i / kSteps) + 0.5) * step;  // NOLINT
+            const Vec3d direction = direction_of(texel, picture.width, picture.height);
+            const Vec3d local = direction * frame;
+            const double sine = std::hypot(direction.x, direction.y);
+            sum += local.z > 0
+                       ? sine * double{bsdf.evaluate(local, view_ * frame).x * radiance_from(picture, direction).x}
+                       : 0.0;
+        }
+        return sum * step.x * step.y * 2 * kPi / picture.width * kPi / picture.height;
+    }
+    Vec3d mirrored() const { return 2 * glm::dot(view_, normal_) * normal_ - view_; }
+
   private:
     Vec3d normal_, x_, y_, view_;
 };
@@ -376,6 +395,24 @@ TEST(EnvironmentMap, SurfacesReflectTheirIntegral) {
             const double expected = floor.expected(picture, bsdf);
             const double ratio = floor.rendered(picture, bsdf).x / expected;
             EXPECT_NEAR(ratio, 1, tolerance) << cosine << " " << roughness;
+        }
+    }
+}
+
+/// Where a lobe is about as wide as a texel, neither one direction nor a few of the lobe stand for it.
+TEST(EnvironmentMap, ASunOfOneTexelHasItsExtent) {
+    const int width = 256;
+    const int height = 128;
+    const Floor floor(0.8);
+    const glm::dvec2 peak = glm::floor(texel_of(floor.mirrored(), width, height));
+    for (const float roughness : {0.3F, 0.2F, 0.15F, 0.1F, 0.06F}) {
+        for (const int off : {0, 1, 3}) {
+            const Bsdf bsdf = Bsdf::ggx(roughness, Rgb(0.5F));
+            LatLong picture{std::vector<Rgb>(std::size_t{width} * height), width, height};
+            const glm::dvec2 sun = peak + glm::dvec2(off, 0);
+            picture.pixels[static_cast<std::size_t>(sun.y * width + sun.x)] = Rgb(1000);
+            const double expected = floor.expected(picture, bsdf, sun - 0.5, sun + 1.5);
+            EXPECT_NEAR(floor.rendered(picture, bsdf).x / expected, 1, 0.03) << roughness << " " << off;
         }
     }
 }

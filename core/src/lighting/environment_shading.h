@@ -29,6 +29,9 @@ struct UnshadowedParts {
     std::vector<Rgb> smooth, spots;
 };
 
+/// Spots of a picture: directions' x, y and z, and irradiance in three channels, padded for lanes.
+using SpotArrays = std::array<std::vector<float>, 6>;
+
 /// Immutable; any number of threads may read it.
 class EnvironmentShading {
   public:
@@ -77,8 +80,8 @@ class EnvironmentShading {
     std::size_t lobe_stride_;
     int order_;
     double tolerance_;
-    std::array<std::vector<float>, 6> spots_;  // directions' x, y, z, and irradiance, padded for lanes
-    std::vector<std::vector<Plan>> plans_;     // of each material's lobes; empty without a picture
+    SpotArrays spots_;                      // one direction each
+    std::vector<std::vector<Plan>> plans_;  // of each material's lobes; empty without a picture
     /// Plans of lobes whose width varies, at even steps of its logarithm; null: the width is the same.
     std::vector<std::vector<std::unique_ptr<const ValuesByNumber<Plan>>>> width_plans_;
 };
