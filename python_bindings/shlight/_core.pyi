@@ -294,6 +294,7 @@ class Scene:
         object_indices: ArrayLike | None = None,
         material_names: str | Sequence[str] | None = None,
         material_pass_indices: ArrayLike | None = None,
+        turn_normals: bool = True,
         terminator_geometry_offset: float = 0.0,
         terminator_shading_offset: float = 0.0,
     ) -> SceneMesh: ...

@@ -368,6 +368,7 @@ Mesh mesh_from(const MeshArguments& arguments, AttributeNames& names, SceneObjec
             indices("material_indices", arguments.material_indices, {static_cast<py::ssize_t>(mesh.triangles.size())});
     }
     set_places(mesh, arguments.places);
+    mesh.turns_normals = flag_from("turn_normals", arguments.turn_normals);
     mesh.terminator = {real_from("terminator_geometry_offset", arguments.terminator_geometry_offset),
                        real_from("terminator_shading_offset", arguments.terminator_shading_offset)};
     return mesh;

@@ -48,7 +48,7 @@ struct MeshArguments {
     pybind11::object vertices, triangles, normals, uvs, colors, attributes, material_indices;
     MaterialArguments materials;
     PlaceArguments places;
-    pybind11::object terminator_geometry_offset, terminator_shading_offset;
+    pybind11::object turn_normals, terminator_geometry_offset, terminator_shading_offset;
 };
 
 /// The names of a mesh's attributes, in their order.

@@ -43,6 +43,8 @@ group: name of the light group of what it emits, or None.
 object_names, asset_names: what Cryptomatte knows its instances by: one string for all, or one for each instance.
 object_indices: integers >= 0 for the pass object_index: one for all, or one for each instance.
 material_names, material_pass_indices: likewise, of its materials.
+turn_normals: whether normals that lie on the back of their triangle are turned to its front. Otherwise their light comes
+    from that side, as in Cycles: closed meshes are black there.
 terminator_geometry_offset, terminator_shading_offset: 0 ... 1, against flat triangles that show at the edge of a smooth
     mesh's own shadow, as in Cycles. The first is the cosine of the light to a triangle below which shadow rays start
     on the smooth surface that its normals describe; the second lets the light end earlier.
@@ -91,8 +93,8 @@ MeshHandle add_mesh(const py::object& self, const py::object& vertices, const py
                     const py::object& material_indices, const py::object& transforms, const py::object& object_values,
                     const py::object& group, const py::object& object_names, const py::object& asset_names,
                     const py::object& object_indices, const py::object& material_names,
-                    const py::object& material_pass_indices, const py::object& terminator_geometry_offset,
-                    const py::object& terminator_shading_offset) {
+                    const py::object& material_pass_indices, const py::object& turn_normals,
+                    const py::object& terminator_geometry_offset, const py::object& terminator_shading_offset) {
     MeshHandle handle = {self, 0, {}};
     SceneObject& scene = handle.scene();
     Mesh mesh = mesh_from({vertices,
@@ -104,6 +106,7 @@ MeshHandle add_mesh(const py::object& self, const py::object& vertices, const py
                            material_indices,
                            {bsdf, emission, group, material_names, material_pass_indices},
                            {transforms, object_values, object_names, asset_names, object_indices},
+                           turn_normals,
                            terminator_geometry_offset,
                            terminator_shading_offset},
                           handle.names, scene);
@@ -200,7 +203,7 @@ void bind_scene(py::module_& m) {
              "emission"_a = py::none(), "material_indices"_a = py::none(), "transforms"_a = py::none(),
              "object_values"_a = py::none(), "group"_a = py::none(), "object_names"_a = py::none(),
              "asset_names"_a = py::none(), "object_indices"_a = py::none(), "material_names"_a = py::none(),
-             "material_pass_indices"_a = py::none(), "terminator_geometry_offset"_a = 0.0,
+             "material_pass_indices"_a = py::none(), "turn_normals"_a = true, "terminator_geometry_offset"_a = 0.0,
              "terminator_shading_offset"_a = 0.0)
         .def("remove_lights", &remove_lights,
              "Take out all lights that the add_..._light methods have added; emissive meshes and the environment stay.")

@@ -98,6 +98,7 @@ MESH = {
     "object_indices": [1],
     "material_names": ["Matt"],
     "material_pass_indices": 2,
+    "turn_normals": False,
     "terminator_geometry_offset": 0.1,
     "terminator_shading_offset": 0.1,
 }

@@ -78,6 +78,9 @@ def _read(material: Any, report: ExportReport, surroundings: Surroundings) -> Su
     reader = ShaderReader(material, place, report, surroundings, SHADERS)
     shader = with_aovs(reader.shader(output.inputs["Surface"]), reader, material.node_tree)
     if not lets_light_through(material):
+        if shader.transparency.constant != (0.0, 0.0, 0.0) and surroundings.depsgraph.scene.world is not None:
+            text = "its Transparent Shadows are off; it stops all light of the world, part of which passes it in Cycles"
+            report.add(place, text, Effect.LIGHT)
         passes = shader.transparency * (1.0 - nodes.rays.shadow_ray())
         shader = replace(shader, transparency=nodes.values.color(passes))
     return with_light(shader, place, report)
@@ -89,6 +92,8 @@ def with_light(shader: Shader, place: str, report: ExportReport) -> Surface:
     constant = emitted.constant
     if constant is None:
         varying = VaryingEmission(emitted)
+        if any(source == "backfacing" for source, _, _ in varying.inputs):
+            report.add(place, "its light depends on Backfacing; it lights both sides as its front does", Effect.LIGHT)
         if varying.inputs:
             return Surface(shader, varying=varying)
         constant = tuple(varying.radiance({}, 1)[0])

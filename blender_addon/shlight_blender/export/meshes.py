@@ -193,6 +193,7 @@ class SceneMeshes:
                 attributes=arrays.attributes,
                 material_indices=slots,
                 transforms=np.empty((0, 4, 4)),
+                turn_normals=False,
                 terminator_geometry_offset=offsets[0],
                 terminator_shading_offset=offsets[1],
                 **_materials(made),

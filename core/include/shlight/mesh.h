@@ -73,7 +73,8 @@ struct TerminatorOffsets {
     double shading = 0;  ///< how much earlier the light ends
 };
 
-/// The materials and the instances of a shape. Surfaces are two-sided: normals are turned to the viewer.
+/// The materials and the instances of a shape. Surfaces are two-sided: triangles are turned to the viewer, and with
+/// them their normals.
 struct MeshUse {
     std::vector<Bsdf> bsdfs = {Bsdf()};    ///< one per material, or one for all
     std::vector<Rgb> emission = {Rgb(0)};  ///< radiance of both sides: one per material, or one for all
@@ -82,6 +83,9 @@ struct MeshUse {
     std::vector<glm::dmat4> transforms = {glm::dmat4(1)};  ///< object to world, one per instance
     std::vector<std::vector<float>> object_values;         ///< one list per instance, or none: see ShaderSource
     TerminatorOffsets terminator;
+    /// Normals on the other side of their triangle than the viewer are turned once more. Otherwise they stay there, and
+    /// what lights them is on that side, as in Cycles.
+    bool turns_normals = true;
     std::uint32_t group = 0;             ///< light group of its emission, see LightTraits::group
     std::vector<Label> object_labels;    ///< one per instance, or none
     std::vector<Label> material_labels;  ///< one per material, or none

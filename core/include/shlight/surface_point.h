@@ -11,7 +11,7 @@ namespace shlight {
 struct SurfacePoint {
     Vec3d position;
     Vec3d geometric_normal;  ///< unit
-    Vec3d shading_normal;    ///< unit, on the side of the geometric normal
+    Vec3d shading_normal;    ///< unit; on the side of the geometric normal if MeshUse::turns_normals
     /// Bound of the distance between this point and the surface that rays in float meet here [m].
     double error;
     std::uint32_t material;

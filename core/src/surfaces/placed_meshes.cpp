@@ -21,6 +21,7 @@ Placement place(std::uint32_t mesh, std::uint32_t number, std::uint32_t first_ma
             number,
             first_material,
             baked,
+            glm::determinant(linear) < 0,
             to_world,
             glm::inverse(to_world),
             baked ? 1.0 : inf_norm(linear) * inf_norm(glm::inverse(linear)),
@@ -126,14 +127,16 @@ SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) co
     const Vec3d towards_viewer = -Vec3d(direction);
     Vec3d geometric =
         normalized_or(glm::cross(corners[1] - corners[0], corners[2] - corners[0]), glm::normalize(towards_viewer));
-    if (glm::dot(geometric, towards_viewer) < 0) {
+    const bool clockwise = glm::dot(geometric, towards_viewer) < 0;
+    if (clockwise) {
         geometric = -geometric;
     }
     Vec3d shading = geometric;
     if (const auto normals = corner_normals(hit)) {
         shading = normalized_or(weighted(*normals, weights), geometric);
-        // The side decides, since mirrored instances and some faces are wound the other way.
-        if (glm::dot(shading, geometric) < 0) {
+        const bool turned =
+            mesh_of(placement).turns_normals ? glm::dot(shading, geometric) < 0 : clockwise != placement.mirrored;
+        if (turned) {
             shading = -shading;
         }
     }
@@ -254,9 +257,7 @@ double PlacedMeshes::to_object_number(const Placement& placement, std::uint32_t 
 bool PlacedMeshes::is_back(const RayHit& hit, const Vec3d& towards_viewer) const {
     const std::array<Vec3d, 3> corners = this->corners(hit);
     const Vec3d normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-    // A mirrored instance shows its front where its corners, as they stand in the world, run clockwise.
-    const bool mirrored = glm::determinant(glm::dmat3(placements_[hit.instance].to_world)) < 0;
-    return (glm::dot(normal, towards_viewer) < 0) != mirrored;
+    return (glm::dot(normal, towards_viewer) < 0) != placements_[hit.instance].mirrored;
 }
 
 /// Reads the inputs of one material's program.

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: MIT
+"""Custom normals of meshes on either side of their faces, against Cycles."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+
+@pytest.mark.parametrize("light", ["world", "lamp"])
+@pytest.mark.parametrize("shader", ["ShaderNodeBsdfDiffuse", "ShaderNodeBsdfPrincipled"])
+@pytest.mark.parametrize("scale", [(1, 1, 1), (1, -1, 1)], ids=["", "mirrored"])
+@pytest.mark.parametrize("turn", [-1.0, 0.3])
+def test_normals_on_the_back_of_their_faces(
+    studio: Any, light: str, shader: str, scale: tuple[float, ...], turn: float
+) -> None:
+    """A ball whose normals point inwards, which Cycles draws black, or lean over so that some of them do.
+
+    Turned to the viewer, the first was as bright as any other ball.
+    """
+    made = studio.ball(material=studio.material(shader), rings=8, scale=scale)
+    normals = np.array([vertex.co for vertex in made.data.vertices])
+    normals = -normals if turn < 0 else turn * normals + (0.0, 0.0, 1.0)
+    made.data.polygons.foreach_set("use_smooth", [True] * len(made.data.polygons))
+    made.data.normals_split_custom_set_from_vertices(normals)
+    studio.camera((0, -4, 1), (0, 0, 0))
+    if light == "world":
+        studio.world((1.0, 0.8, 0.6))
+    else:
+        studio.area(200, (2, -2, 2), rotation_euler=(0.8, 0.3, 0.5))
+    studio.scene.cycles.samples = 512
+    if turn > 0:
+        studio.compare(mean=5e-3, error=1e-3)
+    else:
+        image, reference = studio.render("SHLIGHT"), studio.render("CYCLES")
+        assert np.abs(image - reference).mean() <= 5e-3
