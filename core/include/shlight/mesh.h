@@ -65,12 +65,11 @@ struct MeshShape {
     }
 };
 
-/// What keeps flat triangles from showing at the edge of a smooth surface's own shadow, as Cycles has it: 0 … 1, 0 for
-/// nothing. See Terminator.
+/// Two numbers, 0 … 1, keep flat triangles from showing at the edge of a smooth surface's own shadow, as in Cycles; at
+/// 0 they do nothing. See Terminator.
 struct TerminatorOffsets {
-    double geometry =
-        0;               ///< cosine of the light below which shadow rays start on the surface that the normals describe
-    double shading = 0;  ///< how much earlier the light ends
+    double geometry = 0;  ///< cosine of the light below which shadow rays start on the smooth surface
+    double shading = 0;   ///< how much earlier the light ends
 };
 
 /// The materials and the instances of a shape. Surfaces are two-sided: triangles are turned to the viewer, and with

@@ -25,11 +25,11 @@ class TerminatorRays {
     void lift(const Hits& hits, std::size_t hit, ShadowTarget& target, std::size_t begin, DrawnRays& rays);
 
   private:
-    /// By the lobes together, of each of the rays that may be moved.
+    /// Finds the density of the lobes together for each ray that may be moved.
     void find_densities(const Hits& hits, std::size_t hit, const DrawnRays& rays);
 
     std::span<const MaterialLobes> materials_;
-    // Of rays that may be moved:
+    // The rays that may be moved:
     std::vector<std::size_t> number_;
     std::vector<double> share_, density_;
     WeighedRays weighed_;

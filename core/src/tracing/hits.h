@@ -60,7 +60,7 @@ struct Hits {
         const Terminator& own = terminator[hit];
         return own.lifts() ? shadow_origin[hit] + own.share(glm::normalize(way)) * own.lift : shadow_origin[hit];
     }
-    /// What part of light from a direction, of any length, its lobes take.
+    /// The part of light from a direction that its lobes take. way: to the light, of any length.
     double let_in(std::size_t hit, const Vec3d& way) const {
         const Terminator& own = terminator[hit];
         return own.dims() ? own.let_in(glm::dot(frame[hit].z, glm::normalize(way))) : 1.0;

@@ -13,8 +13,8 @@
 
 namespace shlight {
 
-/// Where shadow rays of one hit start: on its triangle, or, if they are as flat as the light at the shadow's edge, on
-/// the smooth surface that the triangle stands for; and what part of the light is let in.
+/// Shadow rays of one hit start on its triangle, or, if they are as flat as the light at the shadow's edge, on the
+/// smooth surface that the triangle stands for; and a part of the light is let in.
 struct Terminator {
     Vec3d lift{0};                  ///< from the triangle to the smooth surface
     Vec3d smooth{0}, geometric{0};  ///< unit normals of both, on the viewer's side
