@@ -399,14 +399,14 @@ TEST(EnvironmentMap, SurfacesReflectTheirIntegral) {
     }
 }
 
-/// Where a lobe is about as wide as a texel, neither one direction nor a few of the lobe stand for it.
+/// One direction is too few for a lobe that is about as wide as a texel, and directions of the lobe miss the sun.
 TEST(EnvironmentMap, ASunOfOneTexelHasItsExtent) {
     const int width = 256;
     const int height = 128;
     const Floor floor(0.8);
     const glm::dvec2 peak = glm::floor(texel_of(floor.mirrored(), width, height));
-    for (const float roughness : {0.3F, 0.2F, 0.15F, 0.1F, 0.06F}) {
-        for (const int off : {0, 1, 3}) {
+    for (const float roughness : {0.3F, 0.2F, 0.1F, 0.06F}) {
+        for (const int off : {0, 2}) {
             const Bsdf bsdf = Bsdf::ggx(roughness, Rgb(0.5F));
             LatLong picture{std::vector<Rgb>(std::size_t{width} * height), width, height};
             const glm::dvec2 sun = peak + glm::dvec2(off, 0);

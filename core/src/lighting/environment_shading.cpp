@@ -267,7 +267,7 @@ class EnvironmentShading::Point {
         weigh_lobe_rays(shape, frame, view_, {x.data(), y.data(), z.data()}, x.size(), values.data(), nullptr);
         return weighted_sum(values.data(), {red.data(), green.data(), blue.data()}, values.size());
     }
-    /// What spots near the peak of a lobe of this width bring, as many directions, beyond what they do as one.
+    /// Spots near the peak of a lobe of this width, as many directions each, and less their one direction.
     SpotArrays near_spots(double width) const {
         const Vec3d peak = to_map_ * mirrored(view_);
         const double spot_width = 2 * map_->texel() * kAcrossWidth;
