@@ -57,11 +57,11 @@ class Refinement {
 
   private:
     struct State {
-        Rgb variance{0};         // of one ray, without the noise of its shadow rays
+        Rgb variance{0};  // of one ray, without the noise of its shadow rays
         // Squared errors of the mean by shadow rays, relative: as the pixel's own rays show them, as they would be if
         // each ray were drawn by itself, and the part that its camera rays have in common, which adds to the first.
         float noise = 0, independent_noise = 0, shared_noise = 0;
-        float error = 0;         // squared; as it was when a round looked at it
+        float error = 0;  // squared; as it was when a round looked at it
         std::int16_t level = -1;
         std::uint16_t merged = 0;  // the number of the round
         LightBits visibility;

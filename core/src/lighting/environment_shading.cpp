@@ -279,7 +279,7 @@ class EnvironmentShading::Point {
                 // The half vector turns by half the angle.
                 const double away = std::acos(std::min(cosine, 1.0)) / 2;
                 const double pairs = std::ceil(spot_width / std::max(width, away) / 2);
-                const int across = 2 * static_cast<int>(std::min<double>(pairs, kMostAcross / 2));
+                const int across = 2 * std::min(static_cast<int>(pairs), kMostAcross / 2);
                 add_spot(*map_->picture, spot, {across, 1}, near);
                 add_spot(*map_->picture, spot, {1, -1}, near);
             }

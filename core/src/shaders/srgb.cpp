@@ -25,7 +25,8 @@ glm::vec3 linear_from_srgb_near(const glm::vec3& encoded) {
         return values;
     }();
     const auto near = [&](float x) {
-        return table[static_cast<std::size_t>(std::clamp(x, 0.0F, 1.0F) * kSteps + 0.5F)];
+        // Positive numbers round to nearest so; std::lround is slower.
+        return table[static_cast<std::size_t>(std::clamp(x, 0.0F, 1.0F) * kSteps + 0.5F)];  // NOLINT
     };
     return {near(encoded.x), near(encoded.y), near(encoded.z)};
 }
