@@ -45,11 +45,11 @@ struct DirectionArrays {
 constexpr double kDirectionError = 5e-3;
 
 /// A lobe less than this many times as wide as a texel sees spots as areas: its directions miss none that count.
-constexpr double kLeastWidth = 0.125;
+constexpr double kLeastWidth = 1.0 / 32;
 /// Directions of a spot along each side, at most; and how many of them are as far apart as a lobe is wide, or as it is
 /// far from the lobe's peak, where lobes change as slowly.
-constexpr int kMostAcross = 32;
-constexpr double kAcrossWidth = 2;
+constexpr int kMostAcross = 64;
+constexpr double kAcrossWidth = 4;
 /// First band from which the power per degree of a picture is extrapolated as constant, as for bright points.
 constexpr int kFirstOfLastBands = 48;
 
