@@ -212,8 +212,19 @@ def _check_suffix(path: Path, file_format: str, known: str) -> None:
 
 
 def _as_it_is(path: Path) -> Any:
-    """A file's name for OpenImageIO, which need not be UTF-8."""
-    return os.fsencode(path)
+    """A file's name for OpenImageIO; as bytes where it is not UTF-8. Raises OSError where this version takes none."""
+    name = os.fspath(path)
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        import OpenImageIO as oiio
+
+        try:
+            oiio.ImageInput.open(os.fsencode(path))
+        except TypeError:
+            raise OSError(f"{name!a}: OpenImageIO {oiio.VERSION_STRING} takes no name that is not UTF-8") from None
+        return os.fsencode(path)
+    return name
 
 
 @contextmanager
