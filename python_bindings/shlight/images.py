@@ -219,11 +219,12 @@ def _as_it_is(path: Path) -> Any:
     except UnicodeEncodeError:
         import OpenImageIO as oiio
 
+        given: Any = os.fsencode(path)
         try:
-            oiio.ImageInput.open(os.fsencode(path))
+            oiio.ImageInput.open(given)
         except TypeError:
             raise OSError(f"{name!a}: OpenImageIO {oiio.VERSION_STRING} takes no name that is not UTF-8") from None
-        return os.fsencode(path)
+        return given
     return name
 
 
