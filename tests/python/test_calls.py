@@ -97,9 +97,7 @@ def alarm() -> Iterator[None]:
         raise KeyboardInterrupt
 
     before = signal.signal(signal.SIGALRM, interrupt)
-    signal.setitimer(signal.ITIMER_REAL, 0.05)
     yield
-    signal.setitimer(signal.ITIMER_REAL, 0)
     signal.signal(signal.SIGALRM, before)
 
 
@@ -112,6 +110,8 @@ LONG: dict[str, Callable[[], Any]] = {
 
 
 def _within_alarm(call: Callable[[], Any]) -> None:
+    # Again and again: Python ignores what a handler raises within a callback of the garbage collector.
+    signal.setitimer(signal.ITIMER_REAL, 0.1, 0.1)
     try:
         call()
     finally:
