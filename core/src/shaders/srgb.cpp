@@ -2,6 +2,7 @@
 #include "shaders/srgb.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -9,10 +10,6 @@ namespace shlight {
 
 float linear_from_srgb(float encoded) {
     return encoded <= 0.04045F ? std::max(encoded, 0.0F) / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
-}
-
-float srgb_from_linear(float linear) {
-    return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1 / 2.4F) - 0.055F;
 }
 
 glm::vec3 linear_from_srgb_near(const glm::vec3& encoded) {

@@ -3,14 +3,11 @@
 // The encoding of sRGB (IEC 61966-2-1).
 #pragma once
 
-#include <array>
-
 #include <glm/vec3.hpp>
 
 namespace shlight {
 
 float linear_from_srgb(float encoded);
-float srgb_from_linear(float linear);
 
 /// linear_from_srgb from a table of the means of up to four bytes, 0 … 1.
 glm::vec3 linear_from_srgb_near(const glm::vec3& encoded);
