@@ -296,6 +296,7 @@ void CameraSurfaces::add_hit(const CameraRay& ray, const Surface& surface, Hits&
     }
     find_lobes(surface, lobes_);
     taken_.assign(lobes_.size(), 0);
+    const Terminator terminator = scene_->placed().terminator(surface.hit, surface.point);
     for (std::size_t first = 0; first < lobes_.size(); ++first) {
         if (taken_[first] != 0) {
             continue;
@@ -316,8 +317,7 @@ void CameraSurfaces::add_hit(const CameraRay& ray, const Surface& surface, Hits&
         if (std::ranges::any_of(weights_, [](const Rgb& weight) { return weight != Rgb(0); })) {
             const Vec3d& view = bumped ? surface.point.shading_normal : surface.towards_viewer;
             const ShadingFrame frame = shading_frame(surface.point.position, own.normal, view);
-            hits.add(surface.point, scene_->placed().terminator(surface.hit, surface.point), frame,
-                     view_cosine(frame.z, view), weights_, widths_, ray.sample);
+            hits.add(surface.point, terminator, frame, view_cosine(frame.z, view), weights_, widths_, ray.sample);
         }
     }
 }
