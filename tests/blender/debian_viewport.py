@@ -2,6 +2,7 @@
 """Runs inside a window of Debian's Blender: changes a scene and its view in a rendered viewport, and quits."""
 
 import json
+import os
 import sys
 import traceback
 from pathlib import Path
@@ -250,6 +251,7 @@ def run(plan):
         (FOLDER / "found.json").write_text(json.dumps(found))
     except Exception:
         traceback.print_exc()
+        os._exit(1)
     bpy.ops.wm.quit_blender()
     return None
 

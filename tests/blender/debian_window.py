@@ -2,6 +2,7 @@
 """Runs inside a window of Debian's Blender: selects shlight, shows panels and viewport, renders twice, and quits."""
 
 import json
+import os
 import sys
 import traceback
 from pathlib import Path
@@ -128,6 +129,7 @@ def run(plan):
         (FOLDER / "drawn.json").write_text(json.dumps(drawn))
     except Exception:
         traceback.print_exc()
+        os._exit(1)
     bpy.ops.wm.quit_blender()
     return None
 
