@@ -17,6 +17,7 @@
 #include "light_errors.h"
 #include "quad_truth.h"
 #include "random_disk.h"
+#include "regions/spherical_ellipse.h"
 
 namespace shlight {
 namespace {
@@ -92,6 +93,20 @@ TEST(Disk, AgreesWithReferenceUpToOrder16) {
 }
 TEST(Disk, AgreesWithReferenceAtOrders33And64) {
     compare(1 * kMore, {33, 64}, 1600);
+}
+
+/// The rounding of its numbers alone keeps it off the shading point.
+EllipseInput rounded_off_contact(RandomInput& random) {
+    const testing::Plane plane(random, random.direction());
+    EllipseInput disk{};
+    do {
+        const Vec3d aside = random.uniform(-0.4, 0.4) * plane.u + random.uniform(-0.4, 0.4) * plane.v;
+        disk = testing::conjugate(random, aside, plane, 1, random.uniform(0.5, 1));
+    } while (place_of_origin({disk.center, disk.half_axis_u, disk.half_axis_v}) != OriginPlace::beside_plane);
+    return disk;
+}
+TEST(Disk, OneOfItsSidesIsSeenHoweverNear) {
+    compare_class({"rounded off contact", rounded_off_contact}, 24, {1, 2, 8}, 1800);
 }
 
 TEST(Disk, NothingIsSeenEdgeOnOrBelowTheHorizon) {

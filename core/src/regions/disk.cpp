@@ -69,10 +69,8 @@ Pieces cut_up(const SphericalEllipse& ellipse, int order, double epsilon) {
 /// Between an arc of the horizon and the axis q: 2 arg (cos h + q·m + i sin h q·z), m the arc's middle and h half of
 /// it.
 double horizon_fan(const HorizonCut& cut, const Vec3d& axis) {
-    const double c = std::cos(cut.angle / 2);
-    const double s = std::sin(cut.angle / 2);
-    const Vec3d middle(cut.last.x * c - cut.last.y * s, cut.last.x * s + cut.last.y * c, 0);
-    return 2 * std::atan2(s * axis.z, c + glm::dot(axis, middle));
+    return 2 *
+           std::atan2(std::sin(cut.angle / 2) * axis.z, std::cos(cut.angle / 2) + glm::dot(axis, horizon_middle(cut)));
 }
 
 /// Boundaries that wait for the lanes, with sums in R, and where their results go.

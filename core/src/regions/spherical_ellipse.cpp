@@ -128,17 +128,19 @@ SphericalEllipse::SphericalEllipse(const Ellipse& ellipse, bool clip) {
     double distance = glm::length(principal.center);
     double half_long = glm::length(principal.half_axis_u);
     double half_short = glm::length(principal.half_axis_v);
+    // Neither turns nor boosts change it.
+    double volume = triple_product(e.center, e.half_axis_u, e.half_axis_v);
     if (half_long < half_short) {
         std::swap(half_long, half_short);
         std::swap(principal.half_axis_u, principal.half_axis_v);
+        volume = -volume;
     }
-    // A column that is short beside the others comes from their difference, and has fewer digits: the two longer
-    // columns give all directions, and with the volume, which neither turns nor boosts change, the third length.
-    const double volume = std::abs(triple_product(e.center, e.half_axis_u, e.half_axis_v));
-    (distance < half_short ? distance : half_short) = volume / (half_long * std::max(distance, half_short));
+    // A column that is short beside the others comes from their difference, and has fewer digits, or none: the two
+    // longer columns give all directions, and with the volume the third length.
+    (distance < half_short ? distance : half_short) = std::abs(volume) / (half_long * std::max(distance, half_short));
     if (distance < half_short) {
         const Vec3d away = glm::cross(principal.half_axis_u, principal.half_axis_v);
-        cone_.axis = glm::normalize(glm::dot(away, principal.center) < 0 ? -away : away);
+        cone_.axis = glm::normalize(volume < 0 ? -away : away);
     } else {
         cone_.axis = principal.center / distance;
     }
@@ -219,6 +221,12 @@ double SphericalEllipse::height(const EllipticFunctions::Values& f) const {
     return 2 * cut_->rise * std::sin((cut_->reach - angle) / 2) * std::sin((cut_->reach + angle) / 2) * f.dn;
 }
 
+Vec3d horizon_middle(const HorizonCut& cut) {
+    const double c = std::cos(cut.angle / 2);
+    const double s = std::sin(cut.angle / 2);
+    return {cut.last.x * c - cut.last.y * s, cut.last.x * s + cut.last.y * c, 0};
+}
+
 void SphericalEllipse::measure() {
     if (!cut_) {
         // The irradiance of the cone at right angles to its axis.
@@ -228,13 +236,14 @@ void SphericalEllipse::measure() {
         boundary_ = 2 * std::numbers::pi * std::sqrt((along * along + across * across) / 2);
         return;
     }
+    // Triangles meet in the middle of the arc of the horizon: in an end of it, which may lie opposite to the other,
+    // they would not tell a lune from nothing.
+    const Vec3d middle = horizon_middle(*cut_);
     const std::array<Vec3d, 5> points = {cut_->first, cut_->rising, cut_->highest, cut_->falling, cut_->last};
     boundary_ = cut_->angle;
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
         boundary_ += glm::length(points[i + 1] - points[i]);
-        if (i > 0) {
-            least_solid_angle_ += std::abs(triangle_solid_angle(points[0], points[i], points[i + 1]));
-        }
+        least_solid_angle_ += std::abs(triangle_solid_angle(middle, points[i], points[i + 1]));
     }
 }
 

@@ -36,6 +36,9 @@ struct HorizonCut {
     double rise, reach, cos_highest, sin_highest;
 };
 
+/// The middle of the arc of the horizon.
+Vec3d horizon_middle(const HorizonCut& cut);
+
 class SphericalEllipse {
   public:
     /// clip: keep only z ≥ 0.
