@@ -11,27 +11,49 @@ namespace shlight::python {
 namespace {
 
 [[noreturn]] void refuse_type(const char* name, const char* expected, const py::handle& value) {
+    if (PyErr_Occurred() != nullptr && PyErr_ExceptionMatches(PyExc_Exception) == 0) {
+        throw py::error_already_set();  // an interrupt
+    }
     PyErr_Clear();
     throw std::invalid_argument(std::string(name) + " must be " + expected + ", got " + Py_TYPE(value.ptr())->tp_name);
 }
 
-/// numpy's context manager that silences warnings about numbers out of range.
+/// Silences numpy's warnings about numbers out of range. Signals may interrupt Python code anywhere, numpy's too, so
+/// that what was set is set until it stays, and an interrupt meanwhile comes afterwards.
 class QuietConversion {
   public:
-    QuietConversion() : context_(py::module_::import("numpy").attr("errstate")(py::arg("all") = "ignore")) {
-        context_.attr("__enter__")();
+    QuietConversion()
+        : set_(py::module_::import("numpy").attr("seterr")), before_(py::module_::import("numpy").attr("geterr")()) {
+        try {
+            set_(py::arg("all") = "ignore");
+        } catch (...) {
+            restore();
+            throw;
+        }
     }
-    ~QuietConversion() {
-        const py::error_scope error;
-        PyObject* left = PyObject_CallMethod(context_.ptr(), "__exit__", "OOO", Py_None, Py_None, Py_None);
-        Py_XDECREF(left);
-        PyErr_Clear();
-    }
+    ~QuietConversion() { restore(); }
     QuietConversion(const QuietConversion&) = delete;
     QuietConversion& operator=(const QuietConversion&) = delete;
 
   private:
-    py::object context_;
+    void restore() const {
+        constexpr int kMostTries = 100;
+        const py::error_scope error;
+        bool interrupted = false;
+        for (int i = 0; i < kMostTries; ++i) {
+            if (PyObject* const set = PyObject_Call(set_.ptr(), py::tuple().ptr(), before_.ptr())) {
+                Py_DECREF(set);
+                break;
+            }
+            interrupted = interrupted || PyErr_ExceptionMatches(PyExc_KeyboardInterrupt) != 0;
+            PyErr_Clear();
+        }
+        if (interrupted) {
+            PyErr_SetInterrupt();
+        }
+    }
+
+    py::object set_, before_;
 };
 
 struct Integer {
@@ -62,10 +84,19 @@ Integer integer(const char* name, const py::handle& value) {
 template <class T>
 AnyArray<T> array_from(const char* name, const py::handle& value, const char* kinds) {
     const QuietConversion quiet;
-    const py::array raw = py::array::ensure(value);
-    if (!raw || std::strchr(kinds, raw.dtype().kind()) == nullptr) {
-        refuse_type(name, std::strchr(kinds, 'f') != nullptr ? "an array of real numbers" : "an array of integers",
-                    value);
+    const char* const expected =
+        std::strchr(kinds, 'f') != nullptr ? "an array of real numbers" : "an array of integers";
+    py::array raw;
+    try {
+        raw = py::array(py::reinterpret_borrow<py::object>(value));
+    } catch (const py::error_already_set& error) {
+        if (!error.matches(PyExc_Exception)) {
+            throw;  // an interrupt
+        }
+        refuse_type(name, expected, value);
+    }
+    if (std::strchr(kinds, raw.dtype().kind()) == nullptr) {
+        refuse_type(name, expected, value);
     }
     return AnyArray<T>(raw);
 }

@@ -124,3 +124,13 @@ def test_an_interrupt_ends_a_long_call(alarm: None, call: str) -> None:
     with pytest.raises(KeyboardInterrupt):
         _within_alarm(LONG[call])
     assert time.perf_counter() - start <= 1.0
+    assert np.geterr()["divide"] == "warn"  # as numpy has it
+
+
+def test_an_interrupt_while_an_argument_is_read_is_an_interrupt() -> None:
+    class Interrupted:
+        def __array__(self, *_: object, **__: object) -> Any:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        shlight.sphere_coefficients(Interrupted(), 0.5, 2)
