@@ -110,7 +110,10 @@ def test_a_crowd_of_far_lamps(studio: Any) -> None:
 # --- film
 
 
-@pytest.mark.parametrize(("kind", "width"), [("GAUSSIAN", 1.5), ("BLACKMAN_HARRIS", 1.5), ("BLACKMAN_HARRIS", 4.0)])
+@pytest.mark.parametrize(
+    ("kind", "width"),
+    [("GAUSSIAN", 1.5), pytest.param("BLACKMAN_HARRIS", 1.5, marks=pytest.mark.slow), ("BLACKMAN_HARRIS", 4.0)],
+)
 def test_pixel_filters(studio: Any, kind: str, width: float) -> None:
     """Bright edges against grey, as wide as the filter makes them."""
     studio.world((0.5, 0.5, 0.5))

@@ -84,7 +84,7 @@ def ball_and_floor(studio: Any) -> None:
 def test_sky(studio: Any) -> None:
     studio.ball_in_view_of_the_world()
     set_sky(studio, disc=False)
-    studio.scene.shlight.pixel_samples = 64
+    studio.scene.shlight.pixel_samples = 16
     studio.compare(error=2e-3)
     assert studio.messages() == []
 
@@ -108,7 +108,7 @@ def test_sky_with_its_sun(studio: Any, sun: dict[str, float]) -> None:
 def test_gradient_and_noise(studio: Any) -> None:
     studio.ball_in_view_of_the_world()
     set_gradient(studio)
-    studio.scene.shlight.pixel_samples = 64
+    studio.scene.shlight.pixel_samples = 16
     studio.compare(error=2e-3)
     assert studio.messages() == []
 

@@ -11,8 +11,15 @@ import pytest
 
 @pytest.mark.parametrize("light", ["world", "lamp"])
 @pytest.mark.parametrize("shader", ["ShaderNodeBsdfDiffuse", "ShaderNodeBsdfPrincipled"])
-@pytest.mark.parametrize("scale", [(1, 1, 1), (1, -1, 1)], ids=["", "mirrored"])
-@pytest.mark.parametrize("turn", [-1.0, 0.3])
+@pytest.mark.parametrize(
+    ("turn", "scale"),
+    [
+        pytest.param(-1.0, (1, 1, 1), marks=pytest.mark.slow, id="inwards"),
+        pytest.param(-1.0, (1, -1, 1), id="inwards-mirrored"),
+        pytest.param(0.3, (1, 1, 1), id="leaning"),
+        pytest.param(0.3, (1, -1, 1), marks=pytest.mark.slow, id="leaning-mirrored"),
+    ],
+)
 def test_normals_on_the_back_of_their_faces(
     studio: Any, light: str, shader: str, scale: tuple[float, ...], turn: float
 ) -> None:

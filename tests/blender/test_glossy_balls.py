@@ -20,14 +20,11 @@ SIDE = 64  # pixels of a picture, which one ball fills
 LENS = 270.0  # focal length [mm] that makes it do so
 SAMPLES = {0.1: 256}  # of each half of the reference, where it takes more than 128
 QUICK = {
-    (0.1, "quad", False),
     (0.1, "small", True),
     (0.2, "quad", True),
     (0.3, "quad", False),
     (0.3, "sphere", True),
     (0.5, "sphere", False),
-    (0.5, "quad", True),
-    (0.8, "sphere", True),
     (0.8, "small", False),
 }
 

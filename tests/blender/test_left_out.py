@@ -35,8 +35,17 @@ def field(studio: Any) -> None:
     studio.scene.render.use_simplify = True
 
 
-@pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
-@pytest.mark.parametrize("culled", ["camera", "distance", "camera distance"])
+@pytest.mark.parametrize(
+    ("culled", "kind"),
+    [
+        ("camera", "ORTHO"),
+        pytest.param("camera", "PERSP", marks=pytest.mark.slow),
+        pytest.param("distance", "ORTHO", marks=pytest.mark.slow),
+        ("distance", "PERSP"),
+        pytest.param("camera distance", "ORTHO", marks=pytest.mark.slow),
+        ("camera distance", "PERSP"),
+    ],
+)
 def test_simplify_leaves_out_what_cycles_does(studio: Any, kind: str, culled: str) -> None:
     field(studio)
     cycles, lens = studio.scene.cycles, studio.scene.camera.data

@@ -59,8 +59,11 @@ LAMPS: dict[str, dict[str, Any]] = {
     "not_glossy": {"kind": "POINT", "energy": 60, "shadow_soft_size": 0.4, "visible_glossy": False},
 }  # fmt: skip
 QUICK = {
-    "point", "point_disk", "point_small", "spot", "spot_small", "sun", "sun_small", "square", "spread", "disk",
-    "ellipse",
+    "diffuse": {
+        "point", "point_disk", "point_small", "spot", "spot_small", "sun", "sun_small", "square", "spread", "disk",
+        "ellipse",
+    },
+    "glossy": {"point_disk", "spot", "sun_small", "square"},
 }  # fmt: skip
 
 
@@ -82,9 +85,13 @@ def set_up(studio: Any, lamp: str, glossy: bool) -> None:
     studio.scene.shlight.tolerance = 1e-4  # below the noise of the reference
 
 
-@pytest.mark.parametrize("material", ["diffuse", "glossy"])
 @pytest.mark.parametrize(
-    "lamp", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in LAMPS]
+    ("lamp", "material"),
+    [
+        pytest.param(lamp, material, marks=() if lamp in quick else pytest.mark.slow)
+        for material, quick in QUICK.items()
+        for lamp in LAMPS
+    ],
 )
 def test_lamp(studio: Any, lamp: str, material: str) -> None:
     set_up(studio, lamp, material == "glossy")

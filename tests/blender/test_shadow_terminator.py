@@ -49,9 +49,9 @@ DEFAULT, FAR, SHADING = (0.1, 0.0), (0.5, 0.0), (0.0, 0.3)
         ("even world", "diffuse", FAR),
         ("uneven world", "diffuse", FAR),
         ("area", "glossy", SHADING),
-        ("point", "diffuse", SHADING),
+        pytest.param("point", "diffuse", SHADING, marks=pytest.mark.slow),
         ("even world", "glossy", SHADING),
-        ("uneven world", "diffuse", SHADING),
+        pytest.param("uneven world", "diffuse", SHADING, marks=pytest.mark.slow),
     ],
 )
 def test_a_coarse_ball_and_a_roof(studio: Any, light: str, shader: str, offsets: tuple[float, float]) -> None:

@@ -63,7 +63,7 @@ def test_the_world_of_a_view_layer(studio: Any) -> None:
 
 WORLDS = Path(bpy.utils.system_resource("DATAFILES")) / "studiolights" / "world"
 NAMES = ["city", "courtyard", "forest", "interior", "night", "studio", "sunrise", "sunset"]
-QUICK = {("courtyard", False), ("sunrise", True)}
+QUICK = {("sunrise", True)}
 
 
 def set_picture(studio: Any, image: Any, *turns: tuple[float, float, float]) -> Any:
@@ -94,7 +94,10 @@ def gradient(width: int = 32, height: int = 16) -> Any:
     return image
 
 
-@pytest.mark.parametrize("kind", ["", "POINT", "TEXTURE", "VECTOR", "NORMAL"])
+SLOW_KINDS = [pytest.param(kind, marks=pytest.mark.slow) for kind in ("TEXTURE", "VECTOR")]
+
+
+@pytest.mark.parametrize("kind", ["", "POINT", "NORMAL", *SLOW_KINDS])
 def test_orientation_of_a_picture(studio: Any, kind: str) -> None:
     """The picture alone, and rotated by two Mapping nodes, the last one of each kind."""
     studio.ball_in_view_of_the_world()
