@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
 # Writes to OUTPUT what ctest shall run of PROGRAM: one test for each suite, whatever its types and parameters, and the
-# suites whose names match ACCURACY once more for each of TARGETS.
+# suites whose names match ACCURACY once more for each of TARGETS, without the tests that match LEFT_OUT.
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "\n[^ \n]+\\." suites "\n${listed}")
 list(TRANSFORM suites STRIP)
@@ -9,17 +9,18 @@ list(TRANSFORM suites REPLACE "(/[0-9]+)?\\.$" "")
 list(REMOVE_DUPLICATES suites)
 
 set(tests)
-function(add_suite name suite properties)
-  string(APPEND tests "add_test([[${name}]] [[${PROGRAM}]] --gtest_brief=1 [[--gtest_filter=${suite}.*:${suite}/*]])\n"
+function(add_suite name suite left_out properties)
+  set(filter "${suite}.*:${suite}/*-${left_out}")
+  string(APPEND tests "add_test([[${name}]] [[${PROGRAM}]] --gtest_brief=1 [[--gtest_filter=${filter}]])\n"
     "set_tests_properties([[${name}]] PROPERTIES TIMEOUT 600 ${properties})\n")
   set(tests "${tests}" PARENT_SCOPE)
 endfunction()
 
 foreach(suite IN LISTS suites)
-  add_suite(${suite} ${suite} "")
+  add_suite(${suite} ${suite} "" "")
   if(suite MATCHES "^(${ACCURACY})$")
     foreach(target IN LISTS TARGETS)
-      add_suite(${target}/${suite} ${suite} "ENVIRONMENT SHLIGHT_KERNEL_TARGET=${target}")
+      add_suite(${target}/${suite} ${suite} "${LEFT_OUT}" "ENVIRONMENT SHLIGHT_KERNEL_TARGET=${target}")
     endforeach()
   endif()
 endforeach()
