@@ -159,8 +159,8 @@ void SurfacePasses::add_colors(const Surface& surface, double* pixel) {
 void SurfacePasses::add_denoising(const Surface& surface, double share, const Rgb& transparency, RayState& ray,
                                   double* pixel) {
     if (has(Pass::denoising_depth)) {
-        *at(Pass::denoising_depth, pixel) += share * (surface.ray_length - ray.reached);
-        ray.reached = surface.ray_length;
+        *at(Pass::denoising_depth, pixel) += share * (surface.ray_length() - ray.reached);
+        ray.reached = surface.ray_length();
     }
     if (!has(Pass::denoising_normal) && !has(Pass::denoising_albedo)) {
         return;

@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "environment/map_lookup.h"
-#include "lights/delta_kernel.h"
 #include "lobes/lobe_rays.h"
 #include "lobes/turned_lobes.h"
 #include "lobes/view_grid.h"
@@ -46,10 +45,6 @@ constexpr double kDirectionError = 5e-3;
 
 /// A lobe less than this many times as wide as a texel sees spots as areas: its directions miss none that count.
 constexpr double kLeastWidth = 1.0 / 32;
-/// Directions of a spot along each side, at most; and how many of them are as far apart as a lobe is wide, or as it is
-/// far from the lobe's peak, where lobes change as slowly.
-constexpr int kMostAcross = 64;
-constexpr double kAcrossWidth = 4;
 /// First band from which the power per degree of a picture is extrapolated as constant, as for bright points.
 constexpr int kFirstOfLastBands = 48;
 
@@ -79,45 +74,6 @@ double albedo_of(const MaterialLobes& material, std::size_t lobe, float width, d
 constexpr float kWidthStep = 0.125F;
 constexpr std::size_t kWidthSteps = 96;  // down to the least width
 
-/// Fills the lanes of a vector; any direction serves for what has no irradiance.
-void pad(SpotArrays& spots) {
-    const std::size_t size = (spots[0].size() + kLobeRayLanes - 1) / kLobeRayLanes * kLobeRayLanes;
-    for (std::size_t k = 0; k < spots.size(); ++k) {
-        spots[k].resize(size, k < 3 ? 1.0F : 0.0F);
-    }
-}
-
-/// Directions of a spot along each side of the two texels that its light is interpolated over, and a factor. One, or an
-/// even number: the shares of an odd one would not add up to 1.
-struct Spread {
-    int across;
-    double factor;
-};
-
-void add_spot(const LatLong& picture, const BrightSpot& spot, const Spread& spread, SpotArrays& spots) {
-    const auto add = [&](const Vec3d& direction, double share) {
-        for (int k = 0; k < 3; ++k) {
-            spots[static_cast<std::size_t>(k)].push_back(static_cast<float>(direction[k]));
-            spots[static_cast<std::size_t>(k) + 3].push_back(spot.irradiance[k] * static_cast<float>(share));
-        }
-    };
-    if (spread.across == 1) {
-        add(spot.direction, spread.factor);
-        return;
-    }
-    const glm::dvec2 texel = texel_of(spot.direction, picture.width, picture.height);
-    const double step = 2.0 / spread.across;
-    const double sine = std::hypot(spot.direction.x, spot.direction.y);
-    for (int row = 0; row < spread.across; ++row) {
-        for (int column = 0; column < spread.across; ++column) {
-            const glm::dvec2 off = (glm::dvec2(column, row) + 0.5) * step - 1.0;
-            const Vec3d direction = direction_of(texel + off, picture.width, picture.height);
-            const double share = (1 - std::abs(off.x)) * (1 - std::abs(off.y)) * step * step;
-            add(direction, spread.factor * share * std::hypot(direction.x, direction.y) / sine);
-        }
-    }
-}
-
 }  // namespace
 
 EnvironmentShading::EnvironmentShading(const Environment& environment, std::span<const MaterialLobes> materials,
@@ -130,10 +86,7 @@ EnvironmentShading::EnvironmentShading(const Environment& environment, std::span
     if (environment.map() == nullptr) {
         return;
     }
-    for (const BrightSpot& spot : environment.map()->bright.spots) {
-        add_spot(*environment.map()->picture, spot, {1, 1}, spots_);
-    }
-    pad(spots_);
+    spots_.emplace(*environment.map());
     for (const MaterialLobes& material : materials) {
         auto& plans = plans_.emplace_back();
         auto& width_plans = width_plans_.emplace_back();
@@ -219,6 +172,7 @@ class EnvironmentShading::Point {
           view_(std::sqrt(1 - cos_theta_o * cos_theta_o), 0, cos_theta_o) {}
 
     const glm::dmat3& to_map() const { return to_map_; }
+    const Vec3d& view() const { return view_; }
 
     /// The mean of what the directions show of the remainder, weighed with f·cos over their density.
     Rgb by_directions(const LobeShape& shape, bool with_spots) const {
@@ -249,45 +203,7 @@ class EnvironmentShading::Point {
         return weights > 0 ? sum / weights : Rgb(0);
     }
 
-    /// Radiance that a lobe reflects of spots, given as EnvironmentShading has them.
-    Rgb by_spots(const LobeShape& shape, const SpotArrays& spots) const {
-        Rgb sum = sum_over(spots, shape);
-        if (is_glossy(shape)) {
-            const SpotArrays near = near_spots(lobe_width(shape));
-            sum += near[0].empty() ? Rgb(0) : sum_over(near, shape);
-        }
-        return sum;
-    }
-
   private:
-    Rgb sum_over(const SpotArrays& spots, const LobeShape& shape) const {
-        const ShadingFrame frame = {Vec3d(0), to_map_[0], to_map_[1], to_map_[2]};
-        const auto& [x, y, z, red, green, blue] = spots;
-        std::vector<float> values(x.size());
-        weigh_lobe_rays(shape, frame, view_, {x.data(), y.data(), z.data()}, x.size(), values.data(), nullptr);
-        return weighted_sum(values.data(), {red.data(), green.data(), blue.data()}, values.size());
-    }
-    /// Spots near the peak of a lobe of this width, as many directions each, and less their one direction.
-    SpotArrays near_spots(double width) const {
-        const Vec3d peak = to_map_ * mirrored(view_);
-        const double spot_width = 2 * map_->texel() * kAcrossWidth;
-        const double least_cosine = width < spot_width ? std::cos(std::min(2 * spot_width, std::numbers::pi)) : 2.0;
-        SpotArrays near;
-        for (const BrightSpot& spot : map_->bright.spots) {
-            const double cosine = glm::dot(peak, spot.direction);
-            if (cosine > least_cosine) {
-                // The half vector turns by half the angle.
-                const double away = std::acos(std::min(cosine, 1.0)) / 2;
-                const double pairs = std::ceil(spot_width / std::max(width, away) / 2);
-                const int across = 2 * std::min(static_cast<int>(pairs), kMostAcross / 2);
-                add_spot(*map_->picture, spot, {across, 1}, near);
-                add_spot(*map_->picture, spot, {1, -1}, near);
-            }
-        }
-        pad(near);
-        return near;
-    }
-
     const EnvironmentMap* map_;
     glm::dmat3 to_map_;  // from the shading frame
     Vec3d view_;
@@ -450,7 +366,7 @@ void EnvironmentShading::shade_map(const ShadingPoints& points, UnshadowedParts&
             const double cosine = points.cos_theta_o[i];
             const Choice choice = choose(plans(material, lobe, width), cosine);
             if (!sees_texels(shape)) {
-                parts.spots[at] = point.by_spots(shape, spots_);
+                parts.spots[at] = spots_->reflected(shape, point.to_map(), point.view());
             }
             Rgb& smooth = parts.smooth[at];
             if (choice.directions) {

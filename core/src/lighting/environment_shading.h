@@ -8,13 +8,14 @@
 // apart.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "base/recent_values.h"
+#include "lighting/environment_spots.h"
 #include "lighting/shading_points.h"
 #include "lobes/material_lobes.h"
 #include "lobes/sh_projection.h"
@@ -28,9 +29,6 @@ namespace shlight {
 struct UnshadowedParts {
     std::vector<Rgb> smooth, spots;
 };
-
-/// Spots of a picture: directions' x, y and z, and irradiance in three channels, padded for lanes.
-using SpotArrays = std::array<std::vector<float>, 6>;
 
 /// Immutable; any number of threads may read it.
 class EnvironmentShading {
@@ -80,7 +78,7 @@ class EnvironmentShading {
     std::size_t lobe_stride_;
     int order_;
     double tolerance_;
-    SpotArrays spots_;                      // one direction each
+    std::optional<EnvironmentSpots> spots_;
     std::vector<std::vector<Plan>> plans_;  // of each material's lobes; empty without a picture
     /// Plans of lobes whose width varies, at even steps of its logarithm; null: the width is the same.
     std::vector<std::vector<std::unique_ptr<const ValuesByNumber<Plan>>>> width_plans_;

@@ -69,15 +69,14 @@ void CameraSurfaces::meet(const Sink& sink) {
         const Vec3d direction = glm::normalize(Vec3d(segment.whole.direction));
         const double distance = glm::dot(point.position - Vec3d(segment.whole.origin), direction);
         add_lamps(viewer, segment, parts_[i], distance, sink);
-        surfaces_.push_back({segment.ray, segment.is_mirrored, segment.depth, segment.whole, met_[i], point, -direction,
-                             distance, distance - segment.whole.t_min, segment.throughput, 0, 0});
+        surfaces_.push_back({segment, met_[i], point, -direction, distance, 0, 0});
     }
     segments_.clear();
     parts_.clear();
 }
 
 ShadedPlace CameraSurfaces::place_of(const Surface& surface, const NeighbourRays* neighbours) const {
-    ShadedPlace place(surface.point, surface.hit, surface.towards_viewer, surface.ray_length, surface.depth);
+    ShadedPlace place(surface.point, surface.hit, surface.towards_viewer, surface.ray_length(), surface.depth);
     if (neighbours != nullptr) {
         const Vec3d& normal = surface.point.geometric_normal;
         place.at[1] = scene_->placed().neighbour(place.at[0], normal, surface.distance, neighbours->right);
@@ -91,8 +90,8 @@ void CameraSurfaces::leave_scene(const Segment& segment, const Sink& sink) {
     const Rgb& left = segment.throughput;
     const Vec3d direction = glm::normalize(Vec3d(segment.whole.direction));
     if (background != nullptr) {
-        add_light(segment.ray, segment.is_mirrored, LightKind::environment, scene_->environment_group(),
-                  left * background->radiance(direction), sink);
+        add_light(segment, LightKind::environment, scene_->environment_group(), left * background->radiance(direction),
+                  sink);
     } else if (!sink.apart.empty()) {
         sink.apart.of(segment.ray / sink.rays_per_pixel)[LightParts::of_kind(LightKind::environment)] +=
             left * scene_->environment().radiance(direction);
@@ -117,11 +116,12 @@ void CameraSurfaces::add_lamps(LampViewer viewer, const Segment& segment, const 
     }
 }
 
-void CameraSurfaces::add_light(std::size_t ray, bool is_mirrored, LightKind kind, std::uint32_t group,
-                               const Rgb& radiance, const Sink& sink) {
-    sink.light[ray].radiance += radiance;
+void CameraSurfaces::add_light(const Segment& segment, LightKind kind, std::uint32_t group, const Rgb& radiance,
+                               const Sink& sink) {
+    sink.light[segment.ray].radiance += radiance;
     if (!sink.apart.empty() && radiance != Rgb(0)) {  // groups without light have no part
-        sink.apart.add(ray / sink.rays_per_pixel, is_mirrored ? LightKind::glossy : kind, group, radiance);
+        sink.apart.add(segment.ray / sink.rays_per_pixel, segment.is_mirrored ? LightKind::glossy : kind, group,
+                       radiance);
     }
 }
 
@@ -182,8 +182,7 @@ void CameraSurfaces::add_emission(const Surface& surface, const Sink& sink) {
     }
     // The program's emission is what the camera sees; other surfaces are lit by the material's.
     const Rgb emission = by_program ? color(surface, *material.shader->emission) : material.emission;
-    add_light(surface.ray, surface.is_mirrored, LightKind::emission, material.group, surface.throughput * emission,
-              sink);
+    add_light(surface, LightKind::emission, material.group, surface.throughput * emission, sink);
 }
 
 /// Emission of the surfaces met last, and the paths that go on from there.
@@ -202,8 +201,8 @@ void CameraSurfaces::pass_on(std::size_t first, const Sink& sink) {
         if (material.shader != nullptr && material.shader->transparency) {
             const Rgb throughput = surface.throughput * transparency(surface);
             if (throughput != Rgb(0)) {
-                start({surface.ray, surface.is_mirrored, surface.depth + 1, throughput, surface.way},
-                      behind(surface.way, surface.hit));
+                start({surface.ray, surface.is_mirrored, surface.depth + 1, throughput, surface.whole},
+                      behind(surface.whole, surface.hit));
             }
         }
         if (!surface.is_mirrored) {

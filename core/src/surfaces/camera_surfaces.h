@@ -58,20 +58,26 @@ class CameraSurfaces {
     void trace(std::span<const CameraRay> rays, std::span<const NeighbourRays> neighbours, std::size_t rays_per_pixel,
                Hits& hits, std::vector<RayLight>& light);
 
-    /// A surface that a path has met.
-    struct Surface {
+    /// The path of a camera ray from its beginning, a mirror, or a surface that lets light through, to the next
+    /// surface.
+    struct Segment {
         std::size_t ray;
         bool is_mirrored;     ///< in a mirror that the camera ray has met
         std::uint32_t depth;  ///< surfaces that the path has passed through, since the mirror
-        Ray way;              ///< the camera ray, or the mirror's
+        Rgb throughput;       ///< share of its light that reaches the camera
+        Ray whole;            ///< from where the camera ray, or the mirror's, begins
+    };
+    /// The surface at the end of a segment.
+    struct Surface : Segment {
         RayHit hit;
         SurfacePoint point;
         Vec3d towards_viewer;
-        double distance;      ///< from the origin of the camera ray, or the mirror
-        double ray_length;    ///< from where that begins
-        Rgb throughput;       ///< share of its light that reaches the camera
+        double distance;      ///< from the origin of the whole ray
         std::size_t results;  ///< of its program: where the first is
         std::size_t stride;   ///< and from result to result
+
+        /// Distance from where the whole ray begins, at its t_min.
+        double ray_length() const { return distance - whole.t_min; }
     };
 
     // Results of the last call:
@@ -95,22 +101,13 @@ class CameraSurfaces {
         LightGroupBuffer& apart;
         std::size_t rays_per_pixel;
     };
-    /// The path of a camera ray from its beginning, a mirror, or a surface that lets light through, to the next
-    /// surface.
-    struct Segment {
-        std::size_t ray;
-        bool is_mirrored;
-        std::uint32_t depth;  // see Surface
-        Rgb throughput;
-        Ray whole;  // from where the camera ray, or the mirror's, begins
-    };
     void start(const Segment& segment, const Ray& part);
     void meet(const Sink& sink);
     void leave_scene(const Segment& segment, const Sink& sink);
     void add_lamps(LampViewer viewer, const Segment& segment, const Ray& part, const std::optional<double>& surface,
                    const Sink& sink);
     /// kind: of light that no mirror shows.
-    static void add_light(std::size_t ray, bool is_mirrored, LightKind kind, std::uint32_t group, const Rgb& radiance,
+    static void add_light(const Segment& segment, LightKind kind, std::uint32_t group, const Rgb& radiance,
                           const Sink& sink);
     void run_programs(std::span<const NeighbourRays> neighbours, std::size_t first);
     void run_program(std::span<const NeighbourRays> neighbours, std::span<const std::uint32_t> surfaces);

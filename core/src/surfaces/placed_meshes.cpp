@@ -40,10 +40,6 @@ std::array<double, 3> weights_of(const RayHit& hit) {
     return {1.0 - hit.u - hit.v, hit.u, hit.v};
 }
 
-Vec3d weighted(const std::array<Vec3d, 3>& corners, const std::array<double, 3>& weights) {
-    return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
-}
-
 /// Numbers of matrices are counted row by row; the last column holds the translation.
 constexpr int kTranslation = 3;
 

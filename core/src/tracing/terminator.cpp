@@ -7,7 +7,7 @@ namespace shlight {
 
 Vec3d lift_to_smooth_surface(const std::array<Vec3d, 3>& corners, const std::array<Vec3d, 3>& normals,
                              const std::array<double, 3>& weights) {
-    const Vec3d point = weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+    const Vec3d point = weighted(corners, weights);
     // A convex surface lies below the corners' tangent planes. A corner that sees another one above its plane has a
     // concave surface before it, and its plane counts as raised to that corner.
     double envelope = std::numeric_limits<double>::infinity();
@@ -23,8 +23,7 @@ Vec3d lift_to_smooth_surface(const std::array<Vec3d, 3>& corners, const std::arr
         const double bend = glm::dot(normals[next] - normals[i], corners[next] - corners[i]);
         quadratic += 0.5 * bend * weights[i] * weights[next];
     }
-    const Vec3d normal = weights[0] * normals[0] + weights[1] * normals[1] + weights[2] * normals[2];
-    return std::max(envelope, quadratic) * normal;
+    return std::max(envelope, quadratic) * weighted(normals, weights);
 }
 
 }  // namespace shlight

@@ -41,6 +41,11 @@ struct Terminator {
     }
 };
 
+/// The point of a triangle, or the normal there, of which the corners have these shares.
+inline Vec3d weighted(const std::array<Vec3d, 3>& corners, const std::array<double, 3>& weights) {
+    return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+}
+
 /// The way from a point of a triangle to the smooth surface that its corners' normals describe, not to its back.
 /// normals: unit, on the viewer's side; weights: of the corners, of sum 1.
 Vec3d lift_to_smooth_surface(const std::array<Vec3d, 3>& corners, const std::array<Vec3d, 3>& normals,
