@@ -28,7 +28,11 @@ def changed_since(commit: str) -> set[Path] | None:
     except subprocess.CalledProcessError:
         return None
     changed = {Path(name).resolve() for name in names + printed("git", "ls-files", "--others", "--exclude-standard")}
-    concerns_all = (path.name in (".clang-tidy", "CMakeLists.txt") or path.suffix == ".cmake" for path in changed)
+    tests = Path("tests").resolve()
+    concerns_all = (
+        (path.name in (".clang-tidy", "CMakeLists.txt") or path.suffix == ".cmake") and tests not in path.parents
+        for path in changed
+    )
     return None if any(concerns_all) else changed
 
 
