@@ -182,7 +182,12 @@ def test_a_walk_in_the_window(tmp_path: Path, steps: int) -> None:
     (addons / "shlight_blender").symlink_to(ROOT / "blender_addon/shlight_blender")
     walk = (os.environ.get("SHLIGHT_SEED", "1"), str(steps))
     code, output = run_in_window(
-        "--enable-event-simulate", script="debian_walk.py", folder=tmp_path, after=walk, seconds=60 + 3 * steps
+        "--enable-event-simulate",
+        script="debian_walk.py",
+        folder=tmp_path,
+        size=(640, 480),
+        after=walk,
+        seconds=60 + 3 * steps,
     )
     output = READ_ONLY.sub("", output)
     assert code in {0, 1}, output  # 1 after a render that was stopped, which is an operator's error
@@ -216,7 +221,7 @@ def test_window(tmp_path: Path) -> None:
 
     They run beside the window, as with F12, in a world that is baked for the first of them.
     """
-    code, output = run_in_window(script="debian_window.py", folder=tmp_path)
+    code, output = run_in_window(script="debian_window.py", folder=tmp_path, size=(800, 600))
     assert code == 0, output
     assert "Traceback" not in output, output
     drawn = json.loads((tmp_path / "drawn.json").read_text())
@@ -297,7 +302,9 @@ def check_screen(folder: Path, region: list[int]) -> None:
 
 def test_comparing_in_the_window(tmp_path: Path) -> None:
     """Compares next to the window, with results shown, dragged and kept over undo; an end leaves nothing behind."""
-    code, output = run_in_window("--enable-event-simulate", script="debian_compare.py", folder=tmp_path)
+    code, output = run_in_window(
+        "--enable-event-simulate", script="debian_compare.py", folder=tmp_path, size=(800, 600)
+    )
     assert code == 0, output
     assert "Traceback" not in output, output
     found = json.loads((tmp_path / "found.json").read_text())
