@@ -147,16 +147,16 @@ void SharedShadowLights::request_from(std::size_t hit, std::size_t light, const 
     const Vec3d direction = hits.frame[hit].to_local(glm::normalize(Vec3d(drawn.way)));
     const double weight = double{drawn.radiance} / (drawn.light_density * density);
     const MaterialLobes& material = materials_[hits.material[hit]];
-    Rgb value(0);
+    // In double, as the density of a very dim light is too small to divide by in float.
+    Vec3d value(0);
     for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
         if (unshadowed[lobe * points_->size() + points_->of_hit[hit]] != Rgb(0)) {
             const LobeShape shape = material.shape(lobe, hits.widths(hit)[lobe]);
-            value += glm::abs(hits.weight(hit, lobe)) *
-                     static_cast<float>(weight * lobe_value(shape, direction, hits.view(hit)));
+            value += Vec3d(glm::abs(hits.weight(hit, lobe))) * (weight * lobe_value(shape, direction, hits.view(hit)));
         }
     }
     shadow_samples_.push_back(
-        {value * target_.strength(), light, static_cast<float>(hits.let_in(hit, Vec3d(drawn.way)))});
+        {Rgb(value * Vec3d(target_.strength())), light, static_cast<float>(hits.let_in(hit, Vec3d(drawn.way)))});
 }
 
 void SharedShadowLights::add_unblocked(std::size_t pixel) {
