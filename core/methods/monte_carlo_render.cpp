@@ -198,7 +198,8 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
             const SurfacePoint surface = p.scene.placed().surface(ray_hits_[i], rays_[i].direction);
             const Vec3d direction = glm::normalize(Vec3d(rays_[i].direction));
             const double distance = glm::dot(surface.position - Vec3d(rays_[i].origin), direction);
-            radiance_[pixel] += Vec3d(p.scene.materials()[surface.material].emission);
+            radiance_[pixel] +=
+                Vec3d(p.scene.placed().emission(p.scene.materials()[surface.material], ray_hits_[i], -direction));
             radiance_[pixel] += Vec3d(p.scene.visible_lamps(LampViewer::camera).radiance(rays_[i], distance));
             const ShadingFrame frame = shading_frame(surface.position, surface.shading_normal, -direction);
             hits_.add(surface, {}, frame, view_cosine(frame.z, -direction), {}, {}, 0);

@@ -229,15 +229,21 @@ std::vector<float> pass_indices(const char* name, const py::object& value, std::
     return result;
 }
 
-std::vector<Rgb> emission_from(const py::object& value) {
+std::vector<Emission> emission_from(const py::object& value) {
     if (value.is_none()) {
         return {Rgb(0)};
     }
     const AnyArray<float> array = array_from<float>("emission", value);
-    if (!fits(array, {3}) && !(fits(array, {kAny, 3}) && array.size() > 0)) {
-        throw std::invalid_argument("emission must have shape (3,) or (m, 3)");
+    const bool has_sides = fits(array, {kAny, 2, 3});
+    if (!fits(array, {3}) && !((fits(array, {kAny, 3}) || has_sides) && array.size() > 0)) {
+        throw std::invalid_argument("emission must have shape (3,), (m, 3) or (m, 2, 3)");
     }
-    return copy_vectors("emission", array);
+    const std::span<const Rgb> all = vectors("emission", array);
+    std::vector<Emission> result;
+    for (std::size_t i = 0; i < all.size(); i += has_sides ? 2 : 1) {
+        result.emplace_back(all[i], all[has_sides ? i + 1 : i]);
+    }
+    return result;
 }
 
 /// Normals per vertex or per corner; the other list stays empty.

@@ -34,8 +34,9 @@ uvs: (n, 2) per vertex or (k, 3, 2) per triangle corner, or a dict of such array
 colors, attributes: likewise, of one to four numbers per vertex, triangle or triangle corner; shlight.nodes.attribute()
     reads them.
 bsdf: a Bsdf or a Shader of shlight.nodes, or a sequence with one per material; None: Bsdf.lambert(0.8).
-emission: emitted radiance [W m^-2 sr^-1] of both sides, RGB, or (m, 3) with one per material; None: none. Emissive
-    faces light the scene, are seen by the camera and block light.
+emission: emitted radiance [W m^-2 sr^-1] of both sides, RGB, or (m, 3) with one per material, or (m, 2, 3) with that of
+    the front, from where a triangle's corners run counter-clockwise in the mesh's frame, and that of the back; None:
+    none. Emissive faces light the scene, are seen by the camera and block light.
 material_indices: (k,) integers, the material of each triangle; None: 0 for all.
 transforms: (i, 4, 4), one object-to-world matrix per instance, for column vectors; None: one at the identity.
 object_values: (i, v), numbers of each instance, which shlight.nodes.object_value() reads.

@@ -41,8 +41,9 @@ def mesh(rng: Rng, unit: float) -> Call:
         triangles = one_of(rng, np.arange(faces)[:, None] + np.arange(3), rng.integers(0, faces + 2, (faces, 3)))
     given: dict[str, Any] = {"vertices": vertices * unit, "triangles": triangles, "bsdf": material(rng)}
     if chance(rng, 0.3):
-        given["emission"] = one_of(rng, rgb(rng), np.stack([rgb(rng), rgb(rng), np.zeros(3)]))
-        given["material_indices"] = rng.integers(0, given["emission"].size // 3, len(triangles))
+        each = np.stack([rgb(rng), rgb(rng), np.zeros(3)])
+        given["emission"] = one_of(rng, rgb(rng), each, np.stack([each, each[::-1]], axis=1))
+        given["material_indices"] = rng.integers(0, 1 if given["emission"].ndim == 1 else 3, len(triangles))
     if chance(rng, 0.3):
         shape = one_of(rng, vertices.shape, (len(triangles), 3, 3))
         given["normals"] = rng.normal(size=shape) * one_of(rng, 0, 1, 1e-30, 1e30, 1)

@@ -52,3 +52,16 @@ def test_what_is_not_opaque_shines_through_itself(share: float) -> None:
     below = slice(20, None)
     assert rel_mse(image[below], expected[below]) <= 1e-3
     assert abs(mean_ratio(image[below], expected[below]) - 1) <= 5e-3
+
+
+def test_a_closed_emitter_of_two_colours_may_be_wound_either_way() -> None:
+    vertices, faces = icosphere(2)
+    upper = vertices[faces].mean(axis=1)[:, 2] > 0
+    images = []
+    for wound in (faces, faces[:, ::-1]):
+        scene = ball_on_floor(shlight.Bsdf.lambert(0.8))
+        scene.add_mesh(
+            RADIUS * vertices + CENTER, wound, emission=[(4, 0.1, 0), (0.1, 4, 0)], material_indices=upper.astype(int)
+        )
+        images.append(shlight.render(scene, 64, 48)[..., :3])
+    np.testing.assert_array_equal(*images)

@@ -114,6 +114,33 @@ def test_emission_per_material_and_instances() -> None:
     assert image[27, 3 * 64 // 4 + 4, 1] == 1
 
 
+@pytest.mark.parametrize("radiance", [1e-39, 1e-44])
+def test_a_light_too_dim_for_its_inverse_to_be_a_float_is_drawn(radiance: float) -> None:
+    scene = lit_floor()
+    scene.add_mesh(FLOOR / 18 + [0, 0, 0.5], FACES, emission=[radiance] * 3)
+    image = shlight.render(scene, 16, 16, pixel_samples=1, shadow_rays=1)
+    assert np.isfinite(image).all()
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_each_side_emits_as_a_lamp_that_shines_there(mirrored: bool) -> None:
+    square = np.array([[0, -0.5, 0.2], [0, 0.5, 0.2], [0, 0.5, 1], [0, -0.5, 1]])  # whose front is at x > 0
+    front, back = np.array([4, 2, 1]), np.array([0, 1, 3])
+    glowing, lamps = (shlight.Scene() for _ in range(2))
+    for scene in (glowing, lamps):
+        scene.add_mesh(FLOOR, FACES)
+        from_above(scene)
+    transform = np.diag([1, -1 if mirrored else 1, 1, 1])
+    black = shlight.Bsdf.lambert(0.0)
+    glowing.add_mesh(square, FACES, bsdf=black, emission=[[front, back]], transforms=[transform])
+    lamps.add_mesh(square, FACES, bsdf=black)
+    away = np.array([1e-6, 0, 0])
+    lamps.add_polygon_light(square + away, front, camera=False)
+    lamps.add_polygon_light(square[::-1] - away, back, camera=False)
+    images = [shlight.render(scene, 32, 32, pixel_samples=1) for scene in (glowing, lamps)]
+    np.testing.assert_allclose(*images, rtol=1e-3, atol=1e-4)
+
+
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 @pytest.mark.parametrize("index", [np.int32, np.int64, np.uint32])
 def test_array_types_do_not_matter(dtype: Any, index: Any) -> None:

@@ -18,8 +18,16 @@ from shlight.nodes.values import Step, in_order
 Array = NDArray[np.float64]
 # An input of a program: its source, the index or name, and the component.
 Input = tuple[str, int | str, int]
+# Inputs that are opposite on the back of a surface.
+TURNED = ("normal", "geometric_normal", "towards_viewer")
 # Texture coordinates that no picture has count as one of this size.
 NO_PICTURE = (1.0, 1.0)
+
+
+def of_both_sides(radiance: Array) -> Array:
+    """The radiance of one or two sides, (3 or 6,), as (3,) where they are the same, else (2, 3)."""
+    sides = radiance.reshape(-1, 3)
+    return sides[0] if np.allclose(sides, sides[:1], rtol=1e-4, atol=0.0) else sides
 
 
 @dataclass(frozen=True)
@@ -64,6 +72,15 @@ class VaryingEmission:
     def radiance(self, inputs: Mapping[Input, Array], count: int) -> Array:
         """Linear RGB (count, 3), never negative; `inputs` are (count,), and what is missing is 0."""
         return np.clip(np.nan_to_num(self._evaluate(inputs, count)[:3].T), 0.0, None)
+
+    def of_sides(self, inputs: Mapping[Input, Array], count: int) -> Array:
+        """The radiance of the front, whose inputs are given, and, if it may differ, of the back: (count, 3 or 6)."""
+        front = self.radiance(inputs, count)
+        if not any(source in (*TURNED, "backfacing") for source, _, _ in self.inputs):
+            return front
+        back = {entry: -values if entry[0] in TURNED else values for entry, values in inputs.items()}
+        back |= {entry: np.ones(count) for entry in self.inputs if entry[0] == "backfacing"}
+        return np.concatenate([front, self.radiance(back, count)], axis=1)
 
     def texels(self, inputs: Mapping[Input, Array], count: int) -> list[Array]:
         """The coordinates of look-ups in texels: (count, 2) for each picture."""

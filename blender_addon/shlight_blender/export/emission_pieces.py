@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-Radiance = Callable[[Array], Array]  # of places (n, c), linear RGB (n, 3)
+Radiance = Callable[[Array], Array]  # of places (n, c), linear RGB (n, 3), or (n, 6) of two sides
 
 # Error that the pieces, and then their colours, may have: root mean square ÷ that of the radiance.
 TOLERANCE = 0.05
@@ -51,7 +51,7 @@ class Pieces(NamedTuple):
 
     triangle: IntArray  # (n,) which triangle it is of
     corners: Array  # (n, 3, 3): row i are the barycentric coordinates of corner i
-    radiance: Array  # (n, 3) linear RGB, the mean over the piece
+    radiance: Array  # (n, 3 or 6) linear RGB, the mean over the piece
     area: Array  # (n,)
     error: float
 
@@ -67,7 +67,7 @@ def corners_at(level: int) -> Array:
 
 @dataclass(frozen=True)
 class _Pyramid:
-    """Means (4^level, 3) and mean squares (4^level,) of a triangle's parts, for each level."""
+    """Means (4^level, 3 or 6) and mean squares (4^level,) of a triangle's parts, for each level."""
 
     means: list[Array]
     squares: list[Array]
@@ -93,15 +93,15 @@ def _pyramid(radiance: Radiance, uvs: Array, kept: int, finer: int) -> _Pyramid:
     parts = np.einsum("pij,jk->pik", corners_at(kept), uvs)
     centers = corners_at(finer).mean(axis=1)
     step = max(SAMPLES_AT_ONCE >> (2 * finer), 1)
-    mean, square = np.empty((len(parts), 3)), np.empty(len(parts))
+    mean, square = [], []
     for first in range(0, len(parts), step):
         places = np.einsum("sj,pjk->psk", centers, parts[first : first + step])
-        found = radiance(places.reshape(-1, places.shape[-1])).reshape(*places.shape[:2], 3)
-        mean[first : first + step] = found.mean(axis=1)
-        square[first : first + step] = (found**2).sum(axis=2).mean(axis=1)
-    means, squares = [mean], [square]
+        found = radiance(places.reshape(-1, places.shape[-1])).reshape(*places.shape[:2], -1)
+        mean.append(found.mean(axis=1))
+        square.append((found**2).sum(axis=2).mean(axis=1))
+    means, squares = [np.concatenate(mean)], [np.concatenate(square)]
     for _ in range(kept):
-        means.insert(0, means[0].reshape(-1, 4, 3).mean(axis=1))
+        means.insert(0, means[0].reshape(-1, 4, means[0].shape[1]).mean(axis=1))
         squares.insert(0, squares[0].reshape(-1, 4).mean(axis=1))
     return _Pyramid(means, squares)
 
@@ -161,12 +161,12 @@ class Colors(NamedTuple):
     """Few colours for many pieces; `error` as of Pieces, but only what the colours add to it."""
 
     color_of: IntArray  # (n,) which colour a piece has
-    radiance: Array  # (k, 3) linear RGB, the mean by area over the pieces that have it
+    radiance: Array  # (k, 3 or 6) linear RGB, the mean by area over the pieces that have it
     error: float
 
 
 def share_colors(radiance: Array, area: Array, most: int = MOST_COLORS) -> Colors:
-    """Gives pieces of radiance (n, 3) and area (n,) at most `most` colours besides black, which stays black.
+    """Gives pieces of radiance (n, 3 or 6) and area (n,) at most `most` colours besides black, which stays black.
 
     The group that deviates most is cut in two across its longest axis; after each cut every piece goes to the colour
     that is nearest to it (Linde, Buzo & Gray 1980).
@@ -175,7 +175,7 @@ def share_colors(radiance: Array, area: Array, most: int = MOST_COLORS) -> Color
     values, weights = radiance[lit], area[lit]
     whole = float(weights @ (values**2).sum(axis=1))
     labels: IntArray = np.zeros(len(values), dtype=np.int64)
-    colors = np.zeros((0, 3))
+    colors = np.zeros((0, radiance.shape[1]))
     squares: NDArray[Any] = np.zeros(0)
     for _ in range(most if len(values) else 0):
         if len(squares):
@@ -186,7 +186,7 @@ def share_colors(radiance: Array, area: Array, most: int = MOST_COLORS) -> Color
             break
     color_of = np.full(len(radiance), len(colors))
     color_of[lit] = labels
-    black = np.zeros((0 if lit.all() else 1, 3))
+    black = np.zeros((0 if lit.all() else 1, radiance.shape[1]))
     return Colors(color_of, np.concatenate([colors, black]), _part(float(squares.sum()), whole))
 
 

@@ -104,7 +104,7 @@ def _glow_of_nodes(lamp: Any, place: str, report: ExportReport, surroundings: Su
     reader = ShaderReader(lamp, place, report, surroundings, SHADERS)
     surface = with_light(reader.shader(output.inputs["Surface"]), place, report)
     if surface.varying is None:
-        return EvenLamp(surface.emission, [])
+        return EvenLamp(np.atleast_2d(surface.emission)[0], [])
     remark = partial(report.add, place)
     if lamp.type == "AREA":
         return even_lamp(surface.varying, lamp.shape in ROUND_SHAPES, remark)

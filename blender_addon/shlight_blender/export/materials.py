@@ -16,7 +16,7 @@ from ..compat import MATERIALS, lets_light_through, uses_nodes
 from ..names import name_of
 from ..report import Effect, ExportReport
 from .aovs import with_aovs
-from .emission import VaryingEmission
+from .emission import VaryingEmission, of_both_sides
 from .expressions import Surroundings
 from .nodes import RGB, origin
 from .shaders import SHADERS
@@ -28,7 +28,7 @@ DEFAULT_ALBEDO = 0.8
 
 @dataclass(frozen=True)
 class Surface:
-    """A material's shader, and the light that it gives on both sides: a constant (RGB), or what varies."""
+    """A material's shader and the light that it gives: RGB, or (2, 3) of front and back, or what varies."""
 
     shader: Shader = field(default_factory=Shader)
     emission: RGB = field(default_factory=lambda: np.zeros(3))
@@ -92,11 +92,9 @@ def with_light(shader: Shader, place: str, report: ExportReport) -> Surface:
     constant = emitted.constant
     if constant is None:
         varying = VaryingEmission(emitted)
-        if any(source == "backfacing" for source, _, _ in varying.inputs):
-            report.add(place, "its light depends on Backfacing; it lights both sides as its front does", Effect.LIGHT)
-        if varying.inputs:
+        if any(source != "backfacing" for source, _, _ in varying.inputs):
             return Surface(shader, varying=varying)
-        constant = tuple(varying.radiance({}, 1)[0])
+        return Surface(shader, of_both_sides(varying.of_sides({}, 1)[0]))
     light = np.array(constant)
     if not np.isfinite(light).all():
         report.add(place, "the emitted light is not finite; nothing is emitted", Effect.LIGHT)

@@ -274,7 +274,7 @@ def _materials(use: KeptMesh) -> dict[str, Any]:
     """The arguments of `shlight.Scene.add_mesh` about materials."""
     return {
         "bsdf": [own.shader for own in use.surfaces],
-        "emission": np.array([own.emission for own in use.surfaces]) if use.emits() else None,
+        "emission": np.array([np.broadcast_to(own.emission, (2, 3)) for own in use.surfaces]) if use.emits() else None,
         "group": use.group,
         "material_names": [own.name for own in use.surfaces],
         "material_pass_indices": [own.pass_index for own in use.surfaces],

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .emission import Input, VaryingEmission
+from .emission import TURNED, Input, VaryingEmission, of_both_sides
 from .emission_pieces import MOST_PIECES, TOLERANCE, Colors, Pieces, cut, sampling_levels, share_colors
 from .materials import Surface
 from .mesh_arrays import MeshArrays
@@ -39,7 +39,7 @@ def with_even_emission(
         colors = share_colors(pieces.radiance, pieces.area)
         _report_error(pieces, colors, remark)
         parts.append(_of_pieces(part, pieces, len(made) + colors.color_of))
-        made += [replace(surfaces[slot], emission=color, varying=None) for color in colors.radiance]
+        made += [replace(surfaces[slot], emission=of_both_sides(color), varying=None) for color in colors.radiance]
     return _joined(parts), made
 
 
@@ -67,7 +67,7 @@ def _cut_surface(
     levels = np.max([sampling_levels(places) for places in texels or [np.zeros((len(corners), 3, 2))]], axis=0)
 
     def radiance(places: Array) -> Array:
-        return emission.radiance({entry: places[:, i] for i, entry in enumerate(inputs)}, len(places))
+        return emission.of_sides({entry: places[:, i] for i, entry in enumerate(inputs)}, len(places))
 
     return cut(radiance, known, levels, area, most)
 
@@ -93,8 +93,8 @@ def _at_corners(
     if source == "object_value" and int(index) < len(object_values):
         return np.full(corners.shape[:2], object_values[int(index)])
     face = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
-    face /= np.maximum(np.linalg.norm(face, axis=1, keepdims=True), 1e-30)
-    if source in ("normal", "geometric_normal", "towards_viewer"):
+    face *= np.sign(np.linalg.det(to_world[:3, :3])) / np.maximum(np.linalg.norm(face, axis=1, keepdims=True), 1e-30)
+    if source in TURNED:
         return np.repeat(face[:, None, component], 3, axis=1)
     return np.zeros(corners.shape[:2])
 

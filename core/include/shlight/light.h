@@ -86,19 +86,20 @@ struct ParallelSource {
 struct EmitterLevels;
 class FaceRadiance;
 
-/// The emissive faces of a mesh with many of them; both sides shine.
+/// The emissive faces of a mesh with many of them.
 struct MeshLight {
     std::shared_ptr<const EmitterLevels> shape;
     Rgb radiance;                               ///< mean over the area
     std::shared_ptr<const FaceRadiance> faces;  ///< null: all have the same radiance
-    // holds() finds the light's faces among those that rays meet.
+    // shines_at() finds the light's faces among those that rays meet.
     std::uint32_t instance;  ///< RayHit::instance
     std::shared_ptr<const SceneMesh> mesh;
     LightTraits traits = {};
+    FaceSide side = FaceSide::both;      ///< that shines; of `shape` it is the outer one
+    glm::dmat3 to_mesh = glm::dmat3(1);  ///< from the world to the mesh's frame
 
-    bool holds(const RayHit& hit) const {
-        return hit.instance == instance && mesh->emitted(mesh->shape->material_index(hit.triangle)) != Rgb(0);
-    }
+    /// Whether it is what a ray in this direction meets, on a side that shines.
+    bool shines_at(const RayHit& hit, const Vec3f& direction) const;
 };
 
 using Light = std::variant<SphereLight, PolygonLight, DiskLight, MeshLight, SunLight, PointSource, ParallelSource>;

@@ -28,10 +28,30 @@ struct Label {
     float name = 0, asset = 0;  ///< identities, see cryptomatte_id(); 0: none
 };
 
+/// Which side of a face: the front is that from which its corners, in the mesh's frame, run counter-clockwise.
+enum class FaceSide : std::uint8_t { both, front, back };
+
+/// Emitted radiance.
+struct Emission {
+    Rgb front{0}, back{0};
+
+    Emission(const Rgb& both = Rgb(0)) : front(both), back(both) {}
+    Emission(const Rgb& of_front, const Rgb& of_back) : front(of_front), back(of_back) {}
+
+    friend bool operator==(const Emission&, const Emission&) = default;
+    /// Sides that emit alike are one part; otherwise each is one. The others are 0.
+    Rgb part(FaceSide side) const {
+        if ((front == back) != (side == FaceSide::both)) {
+            return Rgb(0);
+        }
+        return side == FaceSide::back ? back : front;
+    }
+};
+
 /// A material as the renderer meets it.
 struct Material {
     Bsdf bsdf;
-    Rgb emission{0};                              ///< radiance of both sides
+    Emission emission;
     std::shared_ptr<const SurfaceShader> shader;  ///< replaces both; null: they are constant
     std::vector<std::uint32_t> attributes;        ///< see MeshShader
     std::uint32_t group = 0;                      ///< light group of its emission, see LightTraits::group
@@ -75,8 +95,8 @@ struct TerminatorOffsets {
 /// The materials and the instances of a shape. Surfaces are two-sided: triangles are turned to the viewer, and with
 /// them their normals.
 struct MeshUse {
-    std::vector<Bsdf> bsdfs = {Bsdf()};    ///< one per material, or one for all
-    std::vector<Rgb> emission = {Rgb(0)};  ///< radiance of both sides: one per material, or one for all
+    std::vector<Bsdf> bsdfs = {Bsdf()};         ///< one per material, or one for all
+    std::vector<Emission> emission = {Rgb(0)};  ///< one per material, or one for all
     /// One per material, or none. The camera sees the emission of shaders; lights are made from `emission`.
     std::vector<MeshShader> shaders;
     std::vector<glm::dmat4> transforms = {glm::dmat4(1)};  ///< object to world, one per instance
@@ -91,7 +111,7 @@ struct MeshUse {
 
     std::size_t material_count() const { return std::max({bsdfs.size(), emission.size(), shaders.size()}); }
     const Bsdf& bsdf(std::size_t material) const { return bsdfs[bsdfs.size() == 1 ? 0 : material]; }
-    const Rgb& emitted(std::size_t material) const { return emission[emission.size() == 1 ? 0 : material]; }
+    const Emission& emitted(std::size_t material) const { return emission[emission.size() == 1 ? 0 : material]; }
     Material material(std::size_t index) const {
         const MeshShader shader = shaders.empty() ? MeshShader() : shaders[index];
         return {bsdf(index),

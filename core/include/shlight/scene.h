@@ -84,9 +84,8 @@ class Scene {
     /// Number of a mesh, valid as long as the scene or a copy of it holds the mesh.
     using MeshNumber = std::uint64_t;
 
-    /// Throws as check_shape and check_use do. Emissive faces become two-sided polygon lights,
-    /// many of them one mesh light; as every face, the camera sees them
-    /// and they block light.
+    /// Throws as check_shape and check_use do. Emissive faces become polygon lights, many of them one mesh light; as
+    /// every face, the camera sees them and they block light.
     MeshNumber add_mesh(Mesh mesh);
     /// Throws std::invalid_argument unless the scene holds the mesh.
     const SceneMesh& mesh(MeshNumber number) const;

@@ -300,27 +300,30 @@ const EmitterLevel& level_for(const EmitterLevels& emitter, double distance, dou
 }
 
 EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
-                                  std::size_t least_faces, const Stopped& stopped) {
-    EmitterLevels emitter{{}, false, false, Vec3d(0), 0, 0};
+                                  std::size_t least_faces, const Stopped& stopped, bool one_sided) {
+    EmitterLevels emitter{{}, one_sided, false, false, false, Vec3d(0), 0, 0};
     IndexedMesh mesh = welded(vertices, triangles, kWelded);
     if (mesh.faces.empty()) {
         return emitter;
     }
     end_if(stopped);
     find_extent(mesh, emitter);
-    emitter.closed = !has_border(edges_of(mesh));
-    if (emitter.closed && volume(mesh) < 0) {
+    const bool whole = !has_border(edges_of(mesh));
+    const bool is_inverted = whole && volume(mesh) < 0;
+    emitter.turned = is_inverted && !one_sided;
+    if (emitter.turned) {
         for (Triangle& t : mesh.faces) {
             std::swap(t.y, t.z);
         }
     }
+    emitter.closed = whole && is_inverted == emitter.turned;
     emitter.area = area(mesh);
     end_if(stopped);
     emitter.convex = emitter.closed && is_convex(mesh);
     end_if(stopped);
     double error = 0;
     if (mesh.faces.size() > kMostFaces) {
-        simplify(mesh, kMostFaces, emitter.closed, error);
+        simplify(mesh, kMostFaces, whole, error);
     }
     do {
         end_if(stopped);
@@ -328,7 +331,7 @@ EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<con
         scale(level, emitter.center, std::sqrt(emitter.area / area(level)));
         emitter.levels.push_back(level_of(std::move(level), error));
     } while (mesh.faces.size() / kReduction >= least_faces &&
-             simplify(mesh, mesh.faces.size() / kReduction, emitter.closed, error));
+             simplify(mesh, mesh.faces.size() / kReduction, whole, error));
     return emitter;
 }
 

@@ -60,14 +60,19 @@ struct EmitterLevel {
     double error;  ///< distance between this surface and the finest, about [m]
 };
 
-/// A surface that emits to both sides, in the world frame.
+/// A surface that emits to both sides, or to that of its normals, in the world frame.
 struct EmitterLevels {
     std::vector<EmitterLevel> levels;  ///< from fine to coarse, at least one
-    bool closed;                       ///< encloses a volume, and is wound so that its normals point out of it
-    bool convex;                       ///< and every point before some face lies outside
-    Vec3d center;                      ///< of the bounding box
-    double radius;                     ///< largest distance of a vertex from it
+    bool one_sided;
+    bool turned;    ///< the given mesh is wound the other way
+    bool closed;    ///< encloses a volume, and is wound so that its normals point out of it
+    bool convex;    ///< and every point before some face lies outside
+    Vec3d center;   ///< of the bounding box
+    double radius;  ///< largest distance of a vertex from it
     double area;
+
+    /// Whether the inner sides of faces are dark or behind others.
+    bool only_outer() const { return closed || one_sided; }
 };
 
 /// Net share of the strip between two outlines that is on one side: for levels of equal area, at most a seventh was
@@ -84,8 +89,9 @@ const EmitterLevel& level_for(const EmitterLevels& emitter, double distance, dou
 /// Equal vertices are joined, and triangles without area left out. The finest level has at most some 5000 faces, each
 /// one after it about a quarter of those of the one before, down to `least_faces`; all are scaled to the area of the
 /// given mesh: a closed surface shows a quarter of its area on average (Cauchy), so that no level is brighter.
-/// No levels if no triangle has an area. Throws RenderCancelled once it is to end.
+/// A closed surface that is not one-sided may be wound either way. No levels if no triangle has an area. Throws
+/// RenderCancelled once it is to end.
 EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
-                                  std::size_t least_faces, const Stopped& stopped = {});
+                                  std::size_t least_faces, const Stopped& stopped = {}, bool one_sided = false);
 
 }  // namespace shlight

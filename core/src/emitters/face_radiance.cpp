@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "shlight/scene_rays.h"
+
 namespace shlight {
 namespace {
 
@@ -24,8 +26,8 @@ double largest(const Rgb& color) {
 }  // namespace
 
 FaceRadiance::FaceRadiance(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
-                           std::vector<Rgb> radiance, bool closed, const Stopped& stopped)
-    : closed_(closed), of_triangle_(std::move(radiance)) {
+                           std::vector<Rgb> radiance, bool only_outer, const Stopped& stopped)
+    : only_outer_(only_outer), of_triangle_(std::move(radiance)) {
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const Triangle& t = triangles[i];
         faces_.push_back({vertices[t.x], vertices[t.y], vertices[t.z], of_triangle_[i]});
@@ -37,6 +39,9 @@ FaceRadiance::FaceRadiance(std::span<const Vec3d> vertices, std::span<const Tria
         node.part.difference = largest(node.part.radiance - mean());
     }
     const std::vector<Vec3f> traced(vertices.begin(), vertices.end());
+    for (const Triangle& t : triangles) {
+        normals_.push_back(glm::cross(traced[t.y] - traced[t.x], traced[t.z] - traced[t.x]));
+    }
     auto tree = std::make_shared<const TriangleTree>(traced, triangles, std::vector<std::uint32_t>(), stopped);
     rays_ = std::make_unique<const RayTracer>(std::vector<TracedInstance>{{std::move(tree), glm::dmat4(1)}}, stopped);
 }
@@ -112,7 +117,12 @@ void FaceRadiance::find_variation(std::uint32_t first, std::uint32_t last, FaceP
 void FaceRadiance::along(std::span<const Ray> rays, std::vector<Rgb>& radiance) const {
     std::vector<RayHit> met(rays.size());
     rays_->intersect(rays, met);
-    for (const RayHit& hit : met) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        RayHit hit = met[i];
+        while (only_outer_ && !hit.missed() && glm::dot(normals_[hit.triangle], rays[i].direction) > 0) {
+            const Ray rest = behind(rays[i], hit);
+            rays_->intersect({&rest, 1}, {&hit, 1});
+        }
         radiance.push_back(hit.missed() ? mean() : of_triangle_[hit.triangle]);
     }
 }
@@ -125,7 +135,7 @@ FaceMean::Weighed FaceMean::weigh(const FacePart& part) const {
     const double distance = std::max(glm::length(way), 1e-3 * part.radius);
     const Vec3d direction = frame_->to_local(way) / distance;
     const double facing = -glm::dot(part.area_vector, way) / distance;
-    const double shown = faces_->closed_ ? std::max(facing, 0.0) : std::abs(facing);
+    const double shown = faces_->only_outer_ ? std::max(facing, 0.0) : std::abs(facing);
     const double square = std::max(distance * distance, part.radius * part.radius);
     const double width = part.radius / distance;
     const double value = direction.z > 0 ? lobe_value(*lobe_, direction, view_) : 0.0;

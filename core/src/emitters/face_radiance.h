@@ -36,14 +36,15 @@ struct FacePart {
 /// Immutable; any number of threads may read it.
 class FaceRadiance {
   public:
-    /// In the world frame; radiance: one for each triangle. closed: see EmitterLevels.
+    /// In the world frame; radiance: one for each triangle. only_outer: see EmitterLevels.
     /// Throws what TriangleTree throws.
     FaceRadiance(std::span<const Vec3d> vertices, std::span<const Triangle> triangles, std::vector<Rgb> radiance,
-                 bool closed, const Stopped& stopped = {});
+                 bool only_outer, const Stopped& stopped = {});
 
     /// Mean radiance by area.
     const Rgb& mean() const { return nodes_.front().part.radiance; }
-    /// Appends the radiance of the face that each ray meets, as if nothing else were in its way; mean() for a miss.
+    /// Appends the radiance of the face that each ray meets, if only_outer on that side, as if nothing else were in its
+    /// way; mean() for a miss.
     void along(std::span<const Ray> rays, std::vector<Rgb>& radiance) const;
 
   private:
@@ -67,8 +68,9 @@ class FaceRadiance {
 
     std::vector<Face> faces_;
     std::vector<Node> nodes_;
-    bool closed_;
+    bool only_outer_;
     std::vector<Rgb> of_triangle_;
+    std::vector<Vec3f> normals_;  // of each triangle, of any length
     std::unique_ptr<const RayTracer> rays_;
 };
 

@@ -49,18 +49,19 @@ MeshView::Kind MeshView::look(const EmitterLevels& emitter, const ShadingFrame& 
     const EmitterLevel& level = level_for(emitter, distance, tolerance);
     error_ = level.error;
     Vec3d point = frame.origin;
-    bool outlined = silhouette_.find(level, emitter.closed, point);
+    bool outlined = silhouette_.find(level, emitter.only_outer(), point);
     const auto is_inside = [&] { return emitter.convex ? !silhouette_.any_front() : encloses(level, point); };
     if (emitter.closed && distance < emitter.radius + error_ && is_inside()) {
         // A coarse level may be in front of the surface that was hit, and rounding on either side of it.
         point += (2 * error_ + kRounding * emitter.radius) * frame.z;
         outlined = silhouette_.find(level, true, point);
-        if (is_inside()) {
+        if (is_inside() && !emitter.one_sided) {
             return outlined ? look_at_faces(level, point, frame, false) : Kind::inside;
         }
     }
     if (!outlined) {
-        return Kind::hidden;
+        const bool surrounds = emitter.one_sided && silhouette_.any_front();
+        return surrounds ? Kind::inside : Kind::hidden;
     }
     local_.clear();
     for (const Vec3d& direction : silhouette_.directions()) {
@@ -83,7 +84,7 @@ MeshView::Kind MeshView::look(const EmitterLevels& emitter, const ShadingFrame& 
         outline_.join();
         return Kind::outline;
     }
-    return look_at_faces(level, point, frame, emitter.closed);
+    return look_at_faces(level, point, frame, emitter.only_outer());
 }
 
 /// front_only: only faces that show their outer side; the others are hidden behind these.

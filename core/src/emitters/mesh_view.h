@@ -21,7 +21,7 @@ class MeshView {
         hidden,
         outline,  ///< the region inside outline()
         faces,    ///< the region of each of faces(): the outline is wider than half of space, or around it
-        inside    ///< all directions: the hit lies within a closed surface
+        inside    ///< all directions: the surface surrounds the hit
     };
 
     /// tolerance: error as radiance of a white surface.

@@ -141,7 +141,7 @@ void LightTarget::trace(ShadowTracer& tracer, DrawnRays& rays) {
 
 /// Traces rays to a mesh light. What a ray sees of it are all its faces that are not opaque, each through those before
 /// it, and the first opaque surface, which is the light or blocks it. A ray that misses a mesh with an approximate
-/// outline is not blocked.
+/// outline is not blocked; where what shines may be behind the dark sides of other faces, it does not count.
 void LightTarget::follow(const MeshLight& mesh, ShadowTracer& tracer, DrawnRays& rays) {
     if (mesh.faces != nullptr) {
         mesh.faces->along(rays.rays.all(), rays.color);
@@ -150,6 +150,7 @@ void LightTarget::follow(const MeshLight& mesh, ShadowTracer& tracer, DrawnRays&
             rays.color[i] = rays.drawn[i].hidden_layer ? mesh.faces->mean() : rays.color[i];
         }
     }
+    const bool is_shell = mesh.shape->one_sided && !mesh.shape->closed;
     met_.resize(rays.size());
     tracer.intersect_opaque(rays.rays.all(), met_);
     for (std::size_t i = 0; i < met_.size(); ++i) {
@@ -158,14 +159,17 @@ void LightTarget::follow(const MeshLight& mesh, ShadowTracer& tracer, DrawnRays&
     passed_.assign(rays.size(), Rgb(1));
     sheer_.assign(rays.size(), Rgb(0));
     tracer.transmittance(rays.rays.all(), passed_, [&](std::size_t ray, const RayHit& hit) {
-        sheer_[ray] += mesh.holds(hit) ? passed_[ray] : Rgb(0);
+        sheer_[ray] += mesh.shines_at(hit, rays.rays[ray].direction) ? passed_[ray] : Rgb(0);
     });
     for (std::size_t i = 0; i < met_.size(); ++i) {
         const bool misses = met_[i].missed() && sheer_[i] == Rgb(0);
-        const bool meets = !met_[i].missed() && mesh.holds(met_[i]);
+        const bool meets = !met_[i].missed() && mesh.shines_at(met_[i], rays.rays[i].direction);
         const Rgb seen = sheer_[i] + (misses || meets ? passed_[i] : Rgb(0));
         // The rays to the light's other layers are the same ray, which has seen them all.
         rays.visible[i] = rays.drawn[i].hidden_layer ? Rgb(0) : seen;
+        if (misses && is_shell) {
+            rays.drawn[i].radiance = 0;
+        }
     }
 }
 

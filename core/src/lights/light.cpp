@@ -189,6 +189,20 @@ SphereLight make_sphere_light(const Vec3d& center, double radius, const Rgb& rad
     return {center, radius, radiance, facing_disk, traits};
 }
 
+bool MeshLight::shines_at(const RayHit& hit, const Vec3f& direction) const {
+    const MeshShape& own = *mesh->shape;
+    if (hit.instance != instance || mesh->emitted(own.material_index(hit.triangle)).part(side) == Rgb(0)) {
+        return false;
+    }
+    if (side == FaceSide::both) {
+        return true;
+    }
+    const Triangle& t = own.triangles[hit.triangle];
+    const Vec3d origin(own.vertices[t.x]);
+    const Vec3d normal = glm::cross(Vec3d(own.vertices[t.y]) - origin, Vec3d(own.vertices[t.z]) - origin);
+    return (glm::dot(normal, to_mesh * Vec3d(direction)) < 0) == (side == FaceSide::front);
+}
+
 PolygonLight make_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance, bool two_sided,
                                 const LightTraits& traits) {
     if (vertices.size() < 3) {

@@ -181,7 +181,8 @@ void CameraSurfaces::add_emission(const Surface& surface, const Sink& sink) {
         return;
     }
     // The program's emission is what the camera sees; other surfaces are lit by the material's.
-    const Rgb emission = by_program ? color(surface, *material.shader->emission) : material.emission;
+    const Rgb emission = by_program ? color(surface, *material.shader->emission)
+                                    : scene_->placed().emission(material, surface.hit, surface.towards_viewer);
     add_light(surface, LightKind::emission, material.group, surface.throughput * emission, sink);
 }
 

@@ -97,7 +97,7 @@ std::shared_ptr<const TriangleTree> tree_of(const CompiledMesh& compiled, const 
 
 /// Adds the flat parts of a mesh as lights, unless they have too many corners or overlap; returns whether it has.
 bool add_flat_parts(std::span<const Vec3d> vertices, std::span<const Triangle> triangles, std::span<const Rgb> radiance,
-                    const LightTraits& traits, std::vector<Light>& lights) {
+                    bool two_sided, const LightTraits& traits, std::vector<Light>& lights) {
     std::vector<Light> parts;
     std::size_t corners = kMostCorners;
     std::vector<Rgb> left(radiance.begin(), radiance.end());
@@ -116,7 +116,7 @@ bool add_flat_parts(std::span<const Vec3d> vertices, std::span<const Triangle> t
         for (FaceOutline& outline : *outlines) {
             corners -= outline.size();
             try {
-                parts.emplace_back(make_polygon_light(std::move(outline), color, true, traits));
+                parts.emplace_back(make_polygon_light(std::move(outline), color, two_sided, traits));
             } catch (const std::invalid_argument&) {
                 return false;  // the boundary crosses itself
             }
@@ -127,26 +127,39 @@ bool add_flat_parts(std::span<const Vec3d> vertices, std::span<const Triangle> t
     return true;
 }
 
+std::vector<Triangle> turned(std::span<const Triangle> triangles) {
+    std::vector<Triangle> result(triangles.begin(), triangles.end());
+    for (Triangle& t : result) {
+        std::swap(t.y, t.z);
+    }
+    return result;
+}
+
 void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
                     const std::vector<Rgb>& radiance, const Stopped& stopped, std::vector<Light>& lights) {
-    EmitterLevels levels = make_emitter_levels(vertices, triangles, kLeastLevelFaces, stopped);
+    EmitterLevels levels =
+        make_emitter_levels(vertices, triangles, kLeastLevelFaces, stopped, light.side != FaceSide::both);
     if (levels.levels.empty()) {
         return;
     }
     if (std::ranges::any_of(radiance, [&](const Rgb& color) { return color != radiance.front(); })) {
-        light.faces = std::make_shared<const FaceRadiance>(vertices, triangles, radiance, levels.closed, stopped);
+        const std::vector<Triangle> outwards = levels.turned ? turned(triangles) : std::vector<Triangle>();
+        light.faces = std::make_shared<const FaceRadiance>(vertices, levels.turned ? outwards : triangles, radiance,
+                                                           levels.only_outer(), stopped);
         light.radiance = light.faces->mean();
     }
     light.shape = std::make_shared<const EmitterLevels>(std::move(levels));
     lights.emplace_back(std::move(light));
 }
 
-std::vector<Light> emissive_faces(const CompiledMesh& compiled, const Stopped& stopped) {
+/// Adds the faces' light of Emission::part(side).
+void add_emissive_faces(const CompiledMesh& compiled, FaceSide side, const Stopped& stopped,
+                        std::vector<Light>& lights) {
     const SceneMesh& mesh = *compiled.mesh;
     std::vector<Triangle> emissive;
     std::vector<Rgb> radiance;  // of each of them
     for (std::size_t i = 0; i < mesh.shape->triangles.size(); ++i) {
-        const Rgb& emitted = mesh.emitted(mesh.shape->material_index(i));
+        const Rgb emitted = mesh.emitted(mesh.shape->material_index(i)).part(side);
         if (emitted != Rgb(0)) {
             emissive.push_back(mesh.shape->triangles[i]);
             radiance.push_back(emitted);
@@ -155,18 +168,20 @@ std::vector<Light> emissive_faces(const CompiledMesh& compiled, const Stopped& s
     LightTraits traits;
     traits.group = mesh.group;
     traits.is_surface = true;
-    std::vector<Light> lights;
+    const bool two_sided = side == FaceSide::both;
     for (std::uint32_t k = 0; k < mesh.transforms.size() && !emissive.empty(); ++k) {
         std::vector<Vec3d> vertices;
         for (const Vec3f& v : compiled.vertices()) {
             vertices.push_back(compiled.is_baked() ? Vec3d(v) : transform_point(mesh.transforms[k], Vec3d(v)));
         }
-        if (!add_flat_parts(vertices, emissive, radiance, traits, lights)) {
-            add_mesh_light({nullptr, radiance.front(), nullptr, k, compiled.mesh, traits}, vertices, emissive, radiance,
-                           stopped, lights);
+        const glm::dmat3 linear(mesh.transforms[k]);
+        const bool runs_clockwise = (side == FaceSide::back) != (glm::determinant(linear) < 0);
+        const std::vector<Triangle> faces = runs_clockwise && !two_sided ? turned(emissive) : emissive;
+        if (!add_flat_parts(vertices, faces, radiance, two_sided, traits, lights)) {
+            add_mesh_light({nullptr, radiance.front(), nullptr, k, compiled.mesh, traits, side, glm::inverse(linear)},
+                           vertices, faces, radiance, stopped, lights);
         }
     }
-    return lights;
 }
 
 }  // namespace
@@ -201,7 +216,9 @@ std::shared_ptr<const CompiledMesh> compile_mesh(const std::shared_ptr<const Sce
         compiled->opaque = tree_of(*compiled, transparent, false, stopped);
         compiled->transparent = tree_of(*compiled, transparent, true, stopped);
     }
-    compiled->lights = emissive_faces(*compiled, stopped);
+    for (const FaceSide side : {FaceSide::both, FaceSide::front, FaceSide::back}) {
+        add_emissive_faces(*compiled, side, stopped, compiled->lights);
+    }
     return compiled;
 }
 

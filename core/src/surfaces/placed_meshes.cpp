@@ -219,6 +219,11 @@ const Label& PlacedMeshes::label(const RayHit& hit) const {
     return labels.empty() ? kNoLabel : labels[placement.number];
 }
 
+const Rgb& PlacedMeshes::emission(const Material& material, const RayHit& hit, const Vec3d& towards_viewer) const {
+    const Emission& both = material.emission;
+    return both.front != both.back && is_back(hit, towards_viewer) ? both.back : both.front;
+}
+
 Vec3d PlacedMeshes::normal_at(const ShadedPlace& shaded, int place, bool smooth) const {
     if (place == 0) {
         return smooth ? shaded.shading_normal : shaded.geometric_normal;

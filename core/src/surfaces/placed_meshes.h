@@ -90,6 +90,8 @@ class PlacedMeshes {
     /// The value of Pass::uv, whose last component is 1; 0 on meshes without texture coordinates.
     Vec3d uv(const RayHit& hit) const;
     const Label& label(const RayHit& hit) const;
+    /// The radiance that the material emits to the side of the viewer.
+    const Rgb& emission(const Material& material, const RayHit& hit, const Vec3d& towards_viewer) const;
     /// The place where another ray meets the plane of a surface, which may lie outside its triangle. The ray is taken
     /// to be at most twice as long as the hit's. Precondition: as of surface().
     SurfacePlace neighbour(const SurfacePlace& place, const Vec3d& normal, double length, const Ray& ray) const;

@@ -159,7 +159,7 @@ void CompiledScene::find_light_groups() {
         light_groups_.push_back(traits_of(light).group);
     }
     for (const Material& material : materials_) {
-        if (material.emission != Rgb(0) || (material.shader != nullptr && material.shader->emission)) {
+        if (material.emission != Emission() || (material.shader != nullptr && material.shader->emission)) {
             light_groups_.push_back(material.group);
         }
     }

@@ -55,8 +55,10 @@ void check_materials(const MeshShape& shape, const MeshUse& use) {
     const std::size_t count = use.material_count();
     check_per_material("bsdf", use.bsdfs.size(), count);
     check_per_material("emission", use.emission.size(), count);
-    std::for_each(use.emission.begin(), use.emission.end(),
-                  [](const Rgb& color) { check_strength("emission", color); });
+    for (const Emission& own : use.emission) {
+        check_strength("emission", own.front);
+        check_strength("emission", own.back);
+    }
     for (const std::uint32_t index : shape.material_indices) {
         if (index >= count) {
             reject("material_indices: " + std::to_string(index) + " is out of range for " + std::to_string(count) +
