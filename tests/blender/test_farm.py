@@ -218,7 +218,7 @@ def names(folder: Path) -> list[str]:
 def test_survives_a_killed_worker_and_a_frame_that_fails(scene: Path, tmp_path: Path) -> None:
     (tmp_path / "fault").touch()
     out, alone = tmp_path / "out", tmp_path / "alone"
-    options = [scene, "--frames", "1-8", "--set", "shlight.noise_threshold=0.002", "--workers"]
+    options = [scene, "--frames", "1-6", "--set", "shlight.noise_threshold=0.002", "--workers"]
     process = start(*options, 2, "--out", out / "x_##.exr")
     wait_for(out / "x_01.exr")
     os.kill(renderers(process.pid)[-1], signal.SIGKILL)
@@ -227,15 +227,15 @@ def test_survives_a_killed_worker_and_a_frame_that_fails(scene: Path, tmp_path: 
     assert process.returncode == 1
     assert " is lost" in output
     assert "  frame 5: Camera 'Camera': its transform is not finite or has scale 0" in output
-    assert names(out) == [f"x_0{frame}.exr" for frame in (1, 2, 3, 4, 6, 7, 8)]
+    assert names(out) == [f"x_0{frame}.exr" for frame in (1, 2, 3, 4, 6)]
 
     (tmp_path / "fault").unlink()
     assert run(*options, 0, "--out", alone / "x_##.exr")[0] == 0
-    (out / "x_07.exr").write_bytes((out / "x_07.exr").read_bytes()[:-100])
+    (out / "x_06.exr").write_bytes((out / "x_06.exr").read_bytes()[:-100])
     code, output = run(*options, 2, "--out", out / "x_##.exr")
     assert code == 0
-    assert "2 rendered, 6 kept, 0 failed" in output  # the one that failed, and the one that is not whole
-    for frame in range(1, 9):
+    assert "2 rendered, 4 kept, 0 failed" in output  # the one that failed, and the one that is not whole
+    for frame in range(1, 7):
         assert (out / f"x_0{frame}.exr").read_bytes() == (alone / f"x_0{frame}.exr").read_bytes()
 
 

@@ -151,8 +151,14 @@ def test_emissive_meshes_of_geometry_nodes(studio: Any) -> None:
     assert studio.messages() == []
 
 
-@pytest.mark.parametrize("carrier", ["instancer", "lamp"])
-@pytest.mark.parametrize("flag", ["visible_diffuse", "visible_glossy", "visible_shadow", "visible_camera"])
+@pytest.mark.parametrize(
+    ("flag", "carrier"),
+    [
+        pytest.param(flag, carrier, marks=() if i % 2 == j else SLOW)
+        for i, flag in enumerate(("visible_diffuse", "visible_glossy", "visible_shadow", "visible_camera"))
+        for j, carrier in enumerate(("instancer", "lamp"))
+    ],
+)
 def test_ray_visibility(studio: Any, flag: str, carrier: str) -> None:
     """An object that shows a lamp can also hide it from Blender 4.5 on."""
     stage(studio)

@@ -29,7 +29,13 @@ def shine_on(studio: Any, material: Any, *, sharp: bool = False) -> None:
 
 
 @pytest.mark.parametrize(
-    ("distribution", "roughness"), [("GGX", 0.4), ("GGX", 0.6), ("MULTI_GGX", 0.4), ("MULTI_GGX", 0.7)]
+    ("distribution", "roughness"),
+    [
+        ("GGX", 0.4),
+        pytest.param("GGX", 0.6, marks=pytest.mark.slow),
+        pytest.param("MULTI_GGX", 0.4, marks=pytest.mark.slow),
+        ("MULTI_GGX", 0.7),
+    ],
 )
 def test_glossy(studio: Any, distribution: str, roughness: float) -> None:
     shine_on(

@@ -155,7 +155,7 @@ def turned_and_shifted(studio: Any) -> Any:
     return texture
 
 
-@pytest.mark.parametrize("kind", ["shifted", "mirror ball"])
+@pytest.mark.parametrize("kind", ["shifted", pytest.param("mirror ball", marks=pytest.mark.slow)])
 def test_pictures_that_are_baked(studio: Any, kind: str) -> None:
     studio.ball_in_view_of_the_world()
     texture = turned_and_shifted(studio)
