@@ -138,19 +138,9 @@ def datablock_texture(image: Any, use: TextureUse) -> Texture | None:
     if width < 1 or height < 1:
         return None
     generated = (image.generated_type, *image.generated_color) if image.source == "GENERATED" else ()
-    key = (
-        *(
-            image.as_pointer(),
-            name_of(image, "name_full"),
-            width,
-            height,
-            image.channels,
-            image.is_float,
-            image.source,
-            generated,
-        ),
-        *(image.colorspace_settings.name, image.alpha_mode, use, *_stamp(image)),
-    )
+    shape = (width, height, image.channels, image.is_float, image.source, generated)
+    meaning = (image.colorspace_settings.name, image.alpha_mode, use)
+    key = (image.as_pointer(), name_of(image, "name_full"), *shape, *meaning, *_stamp(image))
     if image.is_dirty:
         key = (*key, TEXTURES._export)  # painted pixels have no stamp
     space = "Linear" if image.is_float else space_of(image)  # Blender keeps floats as linear light
