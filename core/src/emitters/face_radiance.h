@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// Emitters whose faces differ in radiance, such as textured meshes.
+// Emitters that no outline stands for: surfaces that hide parts of themselves, and those whose faces differ in
+// radiance.
 //
-// The light of such a surface is that of one of even radiance, times the mean of the faces' radiance weighted by the
-// lobe. The faces are leaves of a tree, and a hit descends only where a node's mean has a visible error.
+// The faces are leaves of a tree. The light of a surface is that of a cut through the tree, which is fine only where a
+// node has a visible error as a whole.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -18,6 +21,11 @@
 
 namespace shlight {
 
+/// Of the absolute values.
+inline double largest_channel(const Vec3d& color) {
+    return std::max({std::abs(color.x), std::abs(color.y), std::abs(color.z)});
+}
+
 /// Some faces of an emitter.
 struct FacePart {
     Vec3d center;  ///< of their area
@@ -28,27 +36,51 @@ struct FacePart {
     Rgb radiance;       ///< the mean by area
     double deviation;   ///< root mean square of the faces' radiance about it
     double slope;       ///< the mean of (radiance - mean) · (place - center) ÷ radius, 0 … deviation
-    double difference;  ///< of the mean from the emitter's
     double unlike;      ///< 0 … 1: 1 - |area_vector| ÷ area
     double bend;        ///< no normal is farther, as a vector of length 1, from that of area_vector
+    double brightness;  ///< root mean square of the faces' radiance
+};
+
+/// A part as a hit sees it.
+struct PartView {
+    /// front_only: the part's faces shine to their outer side only; is_face: there is one.
+    PartView(const FacePart& part, const ShadingFrame& frame, bool front_only, bool is_face);
+
+    Vec3d way;        ///< from the hit
+    double distance;  ///< > 0
+    double width;     ///< radius ÷ distance
+    double rise;      ///< sine of the elevation over the horizon
+    double facing;    ///< area that it shows the hit; < 0 from behind
+    double unclear;   ///< and may show, if its faces do not all turn the same side to the hit
+    bool one_side;    ///< they do
+    bool hidden;      ///< nothing of it shines on the hit
 };
 
 /// Immutable; any number of threads may read it.
 class FaceRadiance {
   public:
-    /// In the world frame; radiance: one for each triangle. only_outer: see EmitterLevels.
+    /// In the world frame; radiance: one for each triangle. closed, one_sided: see EmitterLevels.
     /// Throws what TriangleTree throws.
-    FaceRadiance(std::span<const Vec3d> vertices, std::span<const Triangle> triangles, std::vector<Rgb> radiance,
-                 bool only_outer, const Stopped& stopped = {});
+    FaceRadiance(std::span<const Vec3d> vertices, std::span<const Triangle> triangles, std::span<const Rgb> radiance,
+                 bool closed, bool one_sided, const Stopped& stopped = {});
 
     /// Mean radiance by area.
     const Rgb& mean() const { return nodes_.front().part.radiance; }
-    /// Appends the radiance of the face that each ray meets, if only_outer on that side, as if nothing else were in its
-    /// way; mean() for a miss.
-    void along(std::span<const Ray> rays, std::vector<Rgb>& radiance) const;
+    const Vec3d& center() const { return nodes_.front().part.center; }
+    /// No place is farther from the center.
+    double radius() const { return nodes_.front().part.radius; }
+    double area() const { return nodes_.front().part.area; }
+    /// A point over a hit with this error of its position, from where rays do not meet the surface that was hit.
+    Vec3d above(const ShadingFrame& frame, double error) const;
+    /// Whether only faces that turn their outer side to the point shine on it: others are dark there, or hidden by
+    /// them.
+    bool shows_front_only(const Vec3d& point) const;
+    /// The radiance that comes from a direction, if nothing else is in the way.
+    Rgb from(const Vec3d& point, const Vec3d& direction) const;
 
   private:
-    friend class FaceMean;
+    friend class FaceSum;
+    friend class FaceSampler;
 
     static constexpr std::uint32_t kLeaf = 0xFFFFFFFFU;
 
@@ -60,50 +92,25 @@ class FaceRadiance {
     struct Face {
         Vec3d a, b, c;
         Rgb radiance;
+        std::uint32_t triangle;
     };
+
+    /// Whether a ray meets the outer side of a face.
+    static bool is_front(const Face& face, const Vec3d& direction);
+    /// The faces first … last - 1 of a node are halved here.
+    static std::uint32_t middle_of(std::uint32_t first, std::uint32_t last) { return first + (last - first) / 2; }
+    /// The first face that a ray meets, from whatever side, or null.
+    const Face* face_at(const Vec3d& point, const Vec3d& direction) const;
 
     /// Sets the part's members that tell how its faces differ.
     void find_variation(std::uint32_t first, std::uint32_t last, FacePart& part) const;
     void build(std::uint32_t node, std::uint32_t first, std::uint32_t last, const Stopped& stopped);
 
     std::vector<Face> faces_;
+    std::vector<std::uint32_t> leaf_of_;  // the place in faces_ of each triangle
     std::vector<Node> nodes_;
-    bool only_outer_;
-    std::vector<Rgb> of_triangle_;
-    std::vector<Vec3f> normals_;  // of each triangle, of any length
+    bool closed_, one_sided_;
     std::unique_ptr<const RayTracer> rays_;
-};
-
-/// The mean radiance of the faces that a hit sees. Memory is reused; one per thread.
-class FaceMean {
-  public:
-    /// The mean weighted with f·cos of a lobe, not a mirror, for a viewer in the direction `view` of the frame. value:
-    /// the radiance reflected if the emitter has unit radiance; tolerance: relative to the result.
-    Rgb of(const FaceRadiance& faces, const LobeShape& shape, const Vec3d& view, const ShadingFrame& frame,
-           double value, double tolerance);
-
-  private:
-    struct Weighed {
-        double weight;  // solid angle times f·cos
-        Vec3d light;    // the same times radiance
-        double error;   // of the light, if the part counts as a whole
-    };
-
-    Weighed weigh(const FacePart& part) const;
-    bool suffices(const Weighed& weighed) const;
-    void add(const Weighed& weighed);
-    /// A face or a part of one, quartered at most this many more times.
-    void add_face(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Rgb& radiance, int quarterings);
-
-    const FaceRadiance* faces_ = nullptr;
-    const LobeShape* lobe_ = nullptr;
-    const ShadingFrame* frame_ = nullptr;
-    Vec3d view_{0}, brightest_{0};  // brightest: where f·cos is largest, about
-    double width_ = 1;
-    double light_ = 0, allowed_ = 0;
-    Vec3d sum_{0};
-    double weights_ = 0;
-    std::vector<std::uint32_t> open_;
 };
 
 }  // namespace shlight

@@ -38,6 +38,8 @@ constexpr int kPilotStep = 8;
 constexpr int kMostPilotPixels = 16;
 /// Pilot pixels per batch.
 constexpr std::size_t kPilotBatch = 32;
+/// Error of light that is summed up over faces ÷ the noise that is asked for: it is smooth, and smaller than that.
+constexpr double kFaceShare = 0.5;
 
 /// Turns the bits of a coordinate that a seed names: sets that are spread evenly stay so.
 double scrambled(double coordinate, std::uint32_t seed) {
@@ -140,6 +142,7 @@ RenderReport render(const CompiledScene& scene, const Camera& camera, int width,
         picture.emplace(scene, camera, width, height, settings, pixel_points(refinement, settings.seed),
                         refinement.has_preview() ? 1 : 0, caller.stopped);
         const auto shadow_rays = std::min(static_cast<std::uint32_t>(settings.shadow_rays), kLeastShadowRays);
+        picture->lighting.face_tolerance = kFaceShare * settings.sampling.noise_threshold;
         picture->lighting.light_error = light_error(*picture, shadow_rays, caller.stopped);
         std::fill(image.begin(), image.end(), 0.0F);
         std::fill(passes.begin(), passes.end(), 0.0F);

@@ -47,6 +47,7 @@ struct LightingScene {
     std::size_t lobe_stride = 1;  ///< lobes of any material, at most
     double tolerance;
     double light_error = 0;                                 ///< see UnshadowedRadiance::compute
+    double face_tolerance = 0;                              ///< likewise
     std::optional<EnvironmentShading> environment_shading;  ///< none: the environment is black
 };
 

@@ -84,6 +84,12 @@ void LocalLights::add_polygon(std::size_t first, std::uint32_t number, bool fill
                          static_cast<std::uint32_t>(size), number});
 }
 
+void LocalLights::add_polygon(std::span<const Vec3d> corners, std::uint32_t number) {
+    const std::size_t first = vertices_.size();
+    vertices_.insert(vertices_.end(), corners.begin(), corners.end());
+    add_polygon(first, number, false);
+}
+
 void LocalLights::add_disk(const Ellipse& disk, std::uint32_t number) {
     const SphericalEllipse ellipse(disk, true);
     if (!ellipse.empty()) {

@@ -26,6 +26,8 @@ class LocalLights {
     /// Adds what a hit sees of a light, which may be nothing, or several faces of a mesh. number: what the caller knows
     /// the light by; tolerance: of what a mesh gives.
     void look(const Light& light, const ShadingFrame& frame, double error, double tolerance, std::uint32_t number);
+    /// Corners in the shading frame, at least one above the horizon.
+    void add_polygon(std::span<const Vec3d> corners, std::uint32_t number);
     /// A disk in the shading frame; what lies below the horizon or is seen edge-on is left out.
     void add_disk(const Ellipse& disk, std::uint32_t number);
     /// In the place of all others: spheres in the shading frame, numbered 0, 1, 2 … Those of floats are kept by

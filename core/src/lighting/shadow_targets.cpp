@@ -55,7 +55,11 @@ void LightTarget::aim(const Hits& hits, std::size_t hit, std::size_t index, bool
     start_.emplace(*frame_, hits.shadow_origin[hit], target_offset(*light_, *frame_));
     rectangle_ = whole_[index] ? &*whole_[index] : nullptr;
     profile_ = &kEven;
-    if (rectangle_ == nullptr) {
+    const auto* mesh = std::get_if<MeshLight>(light_);
+    has_faces_ = mesh != nullptr && mesh->faces != nullptr;
+    if (has_faces_) {
+        face_sampler_.reset(*mesh->faces, *frame_, hits.error[hit]);
+    } else if (rectangle_ == nullptr) {
         profile_ = &seen_[index].profile();
         if (first) {
             sampler_.reset(seen_[index]);
@@ -66,14 +70,20 @@ void LightTarget::aim(const Hits& hits, std::size_t hit, std::size_t index, bool
 }
 
 double LightTarget::solid_angle() const {
-    return rectangle_ != nullptr ? double{rectangle_->most_weight} : sampler_.solid_angle();
+    return rectangle_ != nullptr ? double{rectangle_->most_weight}
+           : has_faces_          ? face_sampler_.solid_angle()
+                                 : sampler_.solid_angle();
 }
 
 void LightTarget::draw(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) {
     if (rectangle_ == nullptr) {
         for (std::uint32_t i = 0; i < count; ++i) {
+            if (has_faces_) {
+                push(face_sampler_.sample({u[i], v[i]}), rays);
+                continue;
+            }
             const LightSample sample = sampler_.sample({u[i], v[i]});
-            push(sample.direction, sample.distance, sample.weight, sampler_.layers(sample.direction), rays);
+            push(sample.direction, sample.distance, sample.weight, rays);
         }
         return;
     }
@@ -99,9 +109,13 @@ void LightTarget::meet(const RayVectors& directions, std::uint32_t count, DrawnR
     }
     for (std::uint32_t i = 0; i < count; ++i) {
         const Vec3d direction(directions.x[i], directions.y[i], directions.z[i]);
+        if (has_faces_) {
+            push(face_sampler_.meets(direction), rays);
+            continue;
+        }
         const std::optional<double> distance = direction.z > 0 ? sampler_.meets(direction) : std::nullopt;
         if (distance) {
-            push(direction, *distance, sampler_.solid_angle(), sampler_.layers(direction), rays);
+            push(direction, *distance, sampler_.solid_angle(), rays);
         }
     }
 }
@@ -116,12 +130,19 @@ void LightTarget::push(const LightPointArrays& points, std::uint32_t count, Draw
     }
 }
 
-/// layers: of the light, one behind the other, each of which the unshadowed radiance counts.
-void LightTarget::push(const Vec3d& direction, double distance, double weight, int layers, DrawnRays& rays) const {
+void LightTarget::push(const Vec3d& direction, double distance, double weight, DrawnRays& rays) const {
     const auto factor = static_cast<float>(profile_->factor(direction));
-    for (int layer = 0; weight > 0 && factor > 0 && layer < layers; ++layer) {
-        rays.push({Vec3f(frame_->to_world(direction)), static_cast<float>(1 / weight), factor, layer > 0},
+    if (weight > 0 && factor > 0) {
+        rays.push({Vec3f(frame_->to_world(direction)), static_cast<float>(1 / weight), factor, false},
                   start_->towards(direction, distance));
+    }
+}
+
+void LightTarget::push(const std::optional<FaceSample>& sample, DrawnRays& rays) const {
+    if (sample) {
+        rays.push({Vec3f(frame_->to_world(sample->direction)), static_cast<float>(sample->density), 1, sample->hidden},
+                  start_->along(sample->direction));
+        rays.color.push_back(sample->radiance);
     }
 }
 
@@ -141,16 +162,8 @@ void LightTarget::trace(ShadowTracer& tracer, DrawnRays& rays) {
 
 /// Traces rays to a mesh light. What a ray sees of it are all its faces that are not opaque, each through those before
 /// it, and the first opaque surface, which is the light or blocks it. A ray that misses a mesh with an approximate
-/// outline is not blocked; where what shines may be behind the dark sides of other faces, it does not count.
+/// outline is not blocked.
 void LightTarget::follow(const MeshLight& mesh, ShadowTracer& tracer, DrawnRays& rays) {
-    if (mesh.faces != nullptr) {
-        mesh.faces->along(rays.rays.all(), rays.color);
-        for (std::size_t i = 0; i < rays.color.size(); ++i) {
-            // Radiance behind the first layer is not known.
-            rays.color[i] = rays.drawn[i].hidden_layer ? mesh.faces->mean() : rays.color[i];
-        }
-    }
-    const bool is_shell = mesh.shape->one_sided && !mesh.shape->closed;
     met_.resize(rays.size());
     tracer.intersect_opaque(rays.rays.all(), met_);
     for (std::size_t i = 0; i < met_.size(); ++i) {
@@ -165,11 +178,8 @@ void LightTarget::follow(const MeshLight& mesh, ShadowTracer& tracer, DrawnRays&
         const bool misses = met_[i].missed() && sheer_[i] == Rgb(0);
         const bool meets = !met_[i].missed() && mesh.shines_at(met_[i], rays.rays[i].direction);
         const Rgb seen = sheer_[i] + (misses || meets ? passed_[i] : Rgb(0));
-        // The rays to the light's other layers are the same ray, which has seen them all.
+        // What is seen through the layers before is part of what a ray to these sees.
         rays.visible[i] = rays.drawn[i].hidden_layer ? Rgb(0) : seen;
-        if (misses && is_shell) {
-            rays.drawn[i].radiance = 0;
-        }
     }
 }
 

@@ -11,6 +11,7 @@
 
 #include "base/scratch.h"
 #include "lighting/shadow_ray_spawner.h"
+#include "lights/face_sampling.h"
 #include "lights/light_sampling.h"
 #include "lights/local_light.h"
 #include "lights/whole_rectangle.h"
@@ -31,7 +32,7 @@ struct DrawnRay {
     float light_density;  ///< per solid angle, of the points that the light draws; 0: of an environment, see
                           ///< find_radiance
     float radiance;       ///< the light's there ÷ ShadowTarget::strength()
-    bool hidden_layer;    ///< behind another layer of the light
+    bool hidden_layer;    ///< behind another layer of the light, as only rays that the light draws are
 };
 
 /// The shadow rays of many hits.
@@ -99,7 +100,8 @@ class LightTarget : public ShadowTarget {
 
   private:
     double solid_angle() const;
-    void push(const Vec3d& direction, double distance, double weight, int layers, DrawnRays& rays) const;
+    void push(const Vec3d& direction, double distance, double weight, DrawnRays& rays) const;
+    void push(const std::optional<FaceSample>& sample, DrawnRays& rays) const;
     void push(const LightPointArrays& points, std::uint32_t count, DrawnRays& rays) const;
     void follow(const MeshLight& mesh, ShadowTracer& tracer, DrawnRays& rays);
 
@@ -107,12 +109,14 @@ class LightTarget : public ShadowTarget {
     std::vector<std::optional<WholeRectangle>> whole_;  // as each hit sees it, or else …
     std::vector<LocalLight> seen_;                      // … the light; may be longer
     LightSampler sampler_;
+    FaceSampler face_sampler_;
     std::vector<RayHit> met_;          // by the rays: opaque surfaces
     std::vector<Rgb> passed_, sheer_;  // by the rays: share of light that surfaces before let through, faces seen
 
     // The hit that rays are drawn from:
     const ShadingFrame* frame_ = nullptr;
     const WholeRectangle* rectangle_ = nullptr;
+    bool has_faces_ = false;
     const ProfileView* profile_ = nullptr;
     std::optional<ShadowRaySpawner> start_;
 };

@@ -12,10 +12,6 @@ namespace {
 /// Points that are shaded at a time, as many as fit the cache with what is known of their views.
 constexpr std::size_t kPointsPerChunk = 1024;
 
-/// Error of the mean radiance of faces that differ ÷ the tolerance. Each face is the mean of what shines there, and the
-/// mean over all of them is hardly ever as wrong as a part that is looked at alone.
-constexpr double kMeanTolerance = 3;
-
 void count(LobeMethod way, int order, std::uint32_t hits, RenderReport& report) {
     switch (way) {
         case LobeMethod::nothing:
@@ -37,8 +33,10 @@ bool reflects(const LightTraits& traits, const LobeShape& shape) {
 }  // namespace
 
 void UnshadowedRadiance::compute(const ShadingPoints& points, std::span<const MaterialLobes> materials,
-                                 std::span<const Light> lights, double allowed_error, RenderReport& report) {
+                                 std::span<const Light> lights, double allowed_error, double face_tolerance,
+                                 RenderReport& report) {
     allowed_error_ = allowed_error;
+    face_tolerance_ = face_tolerance;
     point_count_ = points.size();
     values_.assign(lights.size() * lobe_stride_ * point_count_, 0.0F);
     strengths_.clear();
@@ -100,6 +98,10 @@ void UnshadowedRadiance::shade(const ShadingPoints& points, std::span<const std:
 
 void UnshadowedRadiance::integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
                                    std::size_t light_index, RenderReport& report) {
+    if (own_begin_[light_index] != kNone) {
+        sum_faces(points, some, std::get<MeshLight>(light), light_index, report);
+        return;
+    }
     seen_.clear();
     for (std::uint32_t i = 0; i < some.size(); ++i) {
         seen_.look(light, points.frame[some[i]], points.error[some[i]], tolerance_, i);
@@ -110,35 +112,26 @@ void UnshadowedRadiance::integrate(const ShadingPoints& points, std::span<const 
                         [&](std::span<const std::uint32_t> numbers) {
                             add(points, some, numbers, light, light_index, lobe, report);
                         });
-            if (own_begin_[light_index] != kNone) {
-                find_strengths(points, some, *std::get<MeshLight>(light).faces, light_index, lobe);
-            }
         }
+    }
+}
+
+void UnshadowedRadiance::sum_faces(const ShadingPoints& points, std::span<const std::uint32_t> some,
+                                   const MeshLight& light, std::size_t light_index, RenderReport& report) {
+    const std::size_t size = lobe_stride_ * point_count_;
+    face_shading_.shade(*light.faces, points, some, views_, std::max(face_tolerance_, tolerance_), tolerance_,
+                        std::span(own_strengths_).subspan(own_begin_[light_index], size));
+    for (const std::uint32_t point : some) {
+        report.cubature_count += points.hit_count(point);
     }
 }
 
 LightRadiance UnshadowedRadiance::light(std::size_t index) const {
     const std::size_t size = lobe_stride_ * point_count_;
-    const std::size_t own = own_begin_[index];
-    return {std::span(values_).subspan(index * size, size), strengths_[index],
-            own == kNone ? std::span<const Rgb>() : std::span(own_strengths_).subspan(own, size)};
-}
-
-void UnshadowedRadiance::find_strengths(const ShadingPoints& points, std::span<const std::uint32_t> some,
-                                        const FaceRadiance& faces, std::size_t light_index, std::size_t lobe) {
-    const float* values = values_of(light_index, lobe);
-    for (std::uint32_t view = 0; view < some.size(); ++view) {
-        const std::uint32_t point = some[view];
-        if (!(values[point] > 0)) {
-            continue;
-        }
-        const LobeShape shape = views_.lobe(lobe).shape(view);
-        const ShadingFrame& frame = points.frame[point];
-        const Vec3d towards_viewer = views_.positions().direction(view);
-        Rgb& strength = own_strengths_[own_begin_[light_index] + lobe * point_count_ + point];
-        const double tolerance = std::max(tolerance_, views_.lobe(lobe).absolute_tolerance(view) / values[point]);
-        strength = face_mean_.of(faces, shape, towards_viewer, frame, values[point], kMeanTolerance * tolerance);
+    if (own_begin_[index] != kNone) {
+        return {{}, Rgb(1), std::span(own_strengths_).subspan(own_begin_[index], size)};
     }
+    return {std::span(values_).subspan(index * size, size), strengths_[index], {}};
 }
 
 void UnshadowedRadiance::add(const ShadingPoints& points, std::span<const std::uint32_t> some,
@@ -149,9 +142,6 @@ void UnshadowedRadiance::add(const ShadingPoints& points, std::span<const std::u
     for (std::size_t k = 0; k < numbers.size(); ++k) {
         const std::uint32_t point = some[numbers[k]];
         values[point] += batch_.values()[k];
-        if (k > 0 && numbers[k] == numbers[k - 1]) {
-            continue;  // another face of the same mesh
-        }
         const std::uint32_t hits = points.hit_count(point);
         count(batch_.method(k), batch_.efforts()[k], hits, report);
         report.over_tolerance += batch_.within_tolerance(views_.lobe(lobe), k, numbers[k]) ? 0 : hits;

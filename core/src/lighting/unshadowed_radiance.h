@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "emitters/face_radiance.h"
+#include "lighting/face_shading.h"
 #include "lighting/lobe_integrator.h"
 #include "lighting/local_lights.h"
 #include "lighting/shading_points.h"
@@ -38,9 +38,10 @@ class UnshadowedRadiance {
     explicit UnshadowedRadiance(std::size_t lobe_stride) : lobe_stride_(lobe_stride) {}
 
     /// Adds to the report what the points' hits take. allowed_error: of the radiance of a lobe under one light; 0: the
-    /// materials' tolerance of that light's own radiance × albedo. Precondition: no light is_delta().
+    /// materials' tolerance of that light's own radiance × albedo. face_tolerance: least relative error of what is
+    /// summed up over faces. Precondition: no light is_delta().
     void compute(const ShadingPoints& points, std::span<const MaterialLobes> materials, std::span<const Light> lights,
-                 double allowed_error, RenderReport& report);
+                 double allowed_error, double face_tolerance, RenderReport& report);
     LightRadiance light(std::size_t index) const;
 
   private:
@@ -52,9 +53,9 @@ class UnshadowedRadiance {
     /// Adds what the batch found of one lobe at some[numbers[k]].
     void add(const ShadingPoints& points, std::span<const std::uint32_t> some, std::span<const std::uint32_t> numbers,
              const Light& light, std::size_t light_index, std::size_t lobe, RenderReport& report);
-    /// Strengths of a mesh whose faces differ, as the lobe sees them from the points.
-    void find_strengths(const ShadingPoints& points, std::span<const std::uint32_t> some, const FaceRadiance& faces,
-                        std::size_t light_index, std::size_t lobe);
+    /// A mesh by the sum over its faces.
+    void sum_faces(const ShadingPoints& points, std::span<const std::uint32_t> some, const MeshLight& light,
+                   std::size_t light_index, RenderReport& report);
     /// Multiplies the value of a lobe at a view with the mean of the light's profile.
     void apply_profile(std::size_t lobe, std::size_t view, const ShadingPoints& points, std::uint32_t point,
                        const Light& light, float& value);
@@ -69,6 +70,7 @@ class UnshadowedRadiance {
     std::vector<float> values_;                   // (light · lobe_stride + lobe) · points + point
     std::vector<Rgb> strengths_, own_strengths_;  // of lights; and of those whose parts differ, as values_
     std::vector<std::size_t> own_begin_;          // where a light's are; kNone: it has one strength
+    double face_tolerance_ = 0;
 
     std::vector<std::uint32_t> by_material_;
     std::vector<double> cosines_;
@@ -79,7 +81,7 @@ class UnshadowedRadiance {
     LocalLights seen_;
     double tolerance_ = 0, allowed_error_ = 0;
     ProfileMean profile_;
-    FaceMean face_mean_;
+    FaceShading face_shading_;
 };
 
 }  // namespace shlight

@@ -142,10 +142,11 @@ void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<
     if (levels.levels.empty()) {
         return;
     }
-    if (std::ranges::any_of(radiance, [&](const Rgb& color) { return color != radiance.front(); })) {
+    const bool is_even = std::ranges::all_of(radiance, [&](const Rgb& color) { return color == radiance.front(); });
+    if (!is_even || !levels.convex) {
         const std::vector<Triangle> outwards = levels.turned ? turned(triangles) : std::vector<Triangle>();
         light.faces = std::make_shared<const FaceRadiance>(vertices, levels.turned ? outwards : triangles, radiance,
-                                                           levels.only_outer(), stopped);
+                                                           levels.closed, levels.one_sided, stopped);
         light.radiance = light.faces->mean();
     }
     light.shape = std::make_shared<const EmitterLevels>(std::move(levels));

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "lights/face_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace shlight {
+
+void FaceSampler::reset(const FaceRadiance& faces, const ShadingFrame& frame, double error) {
+    faces_ = &faces;
+    frame_ = frame;
+    start_ = faces.above(frame, error);
+    front_only_ = faces.shows_front_only(start_);
+    const Vec3d way = faces.center() - frame.origin;
+    const double square = glm::dot(way, way);
+    solid_angle_ = square > faces.radius() * faces.radius() ? std::min(faces.area() / square, 2 * std::numbers::pi)
+                                                            : 2 * std::numbers::pi;
+}
+
+double FaceSampler::importance(const FaceRadiance::Node& node) const {
+    const FacePart& part = node.part;
+    const PartView seen(part, frame_, front_only_, node.first_child == FaceRadiance::kLeaf);
+    if (seen.hidden) {
+        return 0;
+    }
+    const double area = front_only_ ? seen.facing : std::abs(seen.facing);
+    const double shown = seen.one_side ? area : std::max(area, 0.5 * seen.unclear);
+    const double square = std::max(seen.distance * seen.distance, part.radius * part.radius);
+    return part.brightness * shown * std::min(1.0, seen.rise + seen.width) / square;
+}
+
+double FaceSampler::share_of_first(std::uint32_t first_child) const {
+    const double first = importance(faces_->nodes_[first_child]);
+    const double second = importance(faces_->nodes_[first_child + 1]);
+    return first + second > 0 ? first / (first + second) : -1;
+}
+
+std::optional<FaceSample> FaceSampler::sample(const glm::dvec2& point) const {
+    double place = point.x;
+    double probability = 1;
+    std::uint32_t node = 0;
+    while (faces_->nodes_[node].first_child != FaceRadiance::kLeaf) {
+        node = faces_->nodes_[node].first_child;
+        const double share = share_of_first(node);
+        if (share < 0) {
+            return std::nullopt;
+        }
+        if (place < share) {
+            place /= share;
+            probability *= share;
+        } else {
+            place = std::min((place - share) / (1 - share), 1.0);
+            probability *= 1 - share;
+            ++node;
+        }
+    }
+    const FaceRadiance::Face& face = faces_->faces_[faces_->nodes_[node].face];
+    const double root = std::sqrt(place);
+    const Vec3d to = (1 - root) * face.a + root * (1 - point.y) * face.b + root * point.y * face.c;
+    const Vec3d way = to - frame_.origin;
+    const double density = probability * density_over(face, way);
+    const Vec3d direction = frame_.to_local(glm::normalize(way));
+    if (!(density > 0) || !std::isfinite(density) || !(direction.z > 0)) {
+        return std::nullopt;
+    }
+    const bool hidden = faces_->face_at(start_, to - start_) != &face;
+    return FaceSample{direction, density, face.radiance, hidden};
+}
+
+std::optional<FaceSample> FaceSampler::meets(const Vec3d& direction) const {
+    const Vec3d world = frame_.to_world(direction);
+    const FaceRadiance::Face* face = faces_->face_at(start_, world);
+    if (face == nullptr || !(direction.z > 0)) {
+        return std::nullopt;
+    }
+    const Vec3d normal = glm::cross(face->b - face->a, face->c - face->a);
+    const double along = glm::dot(normal, face->a - frame_.origin) / glm::dot(normal, world);
+    const double density = density_over(*face, along * world);
+    if (!(density > 0) || !std::isfinite(density)) {
+        return std::nullopt;
+    }
+    const auto leaf = static_cast<std::uint32_t>(face - faces_->faces_.data());
+    return FaceSample{direction, probability(leaf) * density, face->radiance, false};
+}
+
+double FaceSampler::probability(std::uint32_t leaf) const {
+    double probability = 1;
+    std::uint32_t node = 0;
+    auto last = static_cast<std::uint32_t>(faces_->faces_.size());
+    for (std::uint32_t first = 0; last - first > 1;) {
+        node = faces_->nodes_[node].first_child;
+        const double share = share_of_first(node);
+        const std::uint32_t middle = FaceRadiance::middle_of(first, last);
+        if (leaf < middle) {
+            last = middle;
+            probability *= std::max(share, 0.0);
+        } else {
+            first = middle;
+            probability *= share < 0 ? 0 : 1 - share;
+            ++node;
+        }
+    }
+    return probability;
+}
+
+double FaceSampler::density_over(const FaceRadiance::Face& face, const Vec3d& way) const {
+    // The area times the cosine at the face times the distance.
+    const double facing = -0.5 * glm::dot(glm::cross(face.b - face.a, face.c - face.a), way);
+    const double shown = front_only_ ? facing : std::abs(facing);
+    const double distance = glm::length(way);
+    return shown > 0 ? distance * distance * distance / shown : 0;
+}
+
+}  // namespace shlight

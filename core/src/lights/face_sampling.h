@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+//
+// Directions to the faces of an emitter, drawn by what each can bring to a hit.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <glm/vec2.hpp>
+
+#include "base/shading_frame.h"
+#include "emitters/face_radiance.h"
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// A direction to a face.
+struct FaceSample {
+    Vec3d direction;  ///< unit, in the shading frame
+    double density;   ///< with which the sampler draws this direction for the sake of this face, per solid angle
+    Rgb radiance;     ///< the face's
+    bool hidden;      ///< another face of the emitter is before it
+};
+
+/// Descends the faces' tree by the radiance, area and angles of its nodes (Conty Estevez & Kulla 2018, Importance
+/// Sampling of Many Lights with Adaptive Tree Splitting).
+class FaceSampler {
+  public:
+    /// error: of the hit's position.
+    void reset(const FaceRadiance& faces, const ShadingFrame& frame, double error);
+    /// Nothing if the face that a point of the unit square belongs to is seen edge-on or from behind.
+    std::optional<FaceSample> sample(const glm::dvec2& point) const;
+    /// The first face in a direction, if it shines on the hit.
+    std::optional<FaceSample> meets(const Vec3d& direction) const;
+    /// Solid angle of the faces, about.
+    double solid_angle() const { return solid_angle_; }
+
+  private:
+    /// What a node can bring, about; 0 only if that is nothing.
+    double importance(const FaceRadiance::Node& node) const;
+    /// The share of the first of two children that are neighbours.
+    double share_of_first(std::uint32_t first_child) const;
+    /// The probability of the face at this place of the tree.
+    double probability(std::uint32_t leaf) const;
+    /// Density of a point of a face per solid angle, if it is drawn evenly over the face; 0 where it does not shine.
+    double density_over(const FaceRadiance::Face& face, const Vec3d& way) const;
+
+    const FaceRadiance* faces_ = nullptr;
+    ShadingFrame frame_{};
+    Vec3d start_{0};  // of rays that look for faces
+    bool front_only_ = false;
+    double solid_angle_ = 0;
+};
+
+}  // namespace shlight

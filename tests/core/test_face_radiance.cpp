@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+//
+// The light of an emitter's faces as a cut through their tree sums it up, and as directions to them are drawn, against
+// the sum over small parts of all faces.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "base/perpendicular.h"
+#include "emitters/face_radiance.h"
+#include "emitters/face_sum.h"
+#include "lights/face_sampling.h"
+#include "random_input.h"
+#include "shlight/lobe_shape.h"
+#include "solids.h"
+
+namespace shlight {
+namespace {
+
+using testing::RandomInput;
+using testing::Solid;
+
+struct Emitter {
+    Solid solid;
+    std::vector<Rgb> radiance;
+    bool closed;
+
+    FaceRadiance faces() const { return {solid.vertices, solid.triangles, radiance, closed, false}; }
+};
+
+Emitter emitter(Solid solid, bool closed, RandomInput& random) {
+    std::vector<Rgb> radiance;
+    for (std::size_t i = 0; i < solid.triangles.size(); ++i) {
+        radiance.emplace_back(random.uniform(0, 1), random.uniform(0, 3), random.chance(0.2) ? 2 : 0);
+    }
+    return {std::move(solid), std::move(radiance), closed};
+}
+
+std::vector<Emitter> emitters() {
+    RandomInput random(3);
+    Solid bowl = testing::icosphere(2);
+    std::erase_if(bowl.triangles, [&](const Triangle& t) { return bowl.vertices[t.x].z > 0.3; });
+    return {emitter(testing::torus(1, 0.3, 24, 12), true, random), emitter(testing::icosphere(3), true, random),
+            emitter(bowl, false, random)};
+}
+
+struct View {
+    ShadingFrame frame;
+    Vec3d to_viewer;
+};
+
+/// Outside of the solids, and in the torus's hole and the bowl.
+View random_view(RandomInput& random) {
+    const Vec3d origin = random.chance(0.3) ? Vec3d(0.3, 0.2, 0.1) + Vec3d(0, 0, random.uniform(1, 1.5))
+                                            : random.uniform(1.4, 8) * random.direction();
+    const Vec3d z = glm::normalize(random.direction() - 0.5 * glm::normalize(origin));
+    const Vec3d x = perpendicular(z);
+    return {{origin, x, glm::cross(z, x), z}, glm::normalize(Vec3d(std::abs(random.direction().x), 0, 0.8))};
+}
+
+/// The sum over a triangle's parts at their middles, quartered until they are small.
+Vec3d light_of(const std::array<Vec3d, 3>& corners, const Vec3d& radiance, bool front_only, const LobeShape& lobe,
+               const View& view, int quarterings) {
+    const auto& [a, b, c] = corners;
+    if (quarterings > 0) {
+        const Vec3d ab = 0.5 * (a + b);
+        const Vec3d bc = 0.5 * (b + c);
+        const Vec3d ca = 0.5 * (c + a);
+        Vec3d sum(0);
+        for (const std::array<Vec3d, 3>& part : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}}) {
+            sum += light_of(part, radiance, front_only, lobe, view, quarterings - 1);
+        }
+        return sum;
+    }
+    const Vec3d way = (a + b + c) / 3.0 - view.frame.origin;
+    const double distance = glm::length(way);
+    const double facing = -0.5 * glm::dot(glm::cross(b - a, c - a), way) / distance;
+    const Vec3d direction = view.frame.to_local(way / distance);
+    if (direction.z <= 0 || (front_only && facing < 0)) {
+        return Vec3d(0);
+    }
+    return lobe_value(lobe, direction, view.to_viewer) * std::abs(facing) / (distance * distance) * radiance;
+}
+
+Vec3d brute_force(const Emitter& emitter, const LobeShape& lobe, const View& view) {
+    Vec3d sum(0);
+    for (std::size_t i = 0; i < emitter.solid.triangles.size(); ++i) {
+        const Triangle& t = emitter.solid.triangles[i];
+        const std::array<Vec3d, 3> corners = {emitter.solid.vertices[t.x], emitter.solid.vertices[t.y],
+                                              emitter.solid.vertices[t.z]};
+        sum += light_of(corners, Vec3d(emitter.radiance[i]), emitter.closed, lobe, view, 4);
+    }
+    return sum;
+}
+
+/// What brute force makes of near faces.
+Vec3d near_light(const std::vector<NearFace>& near, const LobeShape& lobe, const View& view) {
+    const View local = {{Vec3d(0), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, view.to_viewer};
+    Vec3d sum(0);
+    for (const NearFace& face : near) {
+        sum += light_of(face.corners, Vec3d(face.radiance), false, lobe, local, 4);
+    }
+    return sum;
+}
+
+double relative_error(const Vec3d& found, const Vec3d& truth) {
+    const Vec3d off = glm::abs(found - truth);
+    return std::max({off.x, off.y, off.z}) / std::max({truth.x, truth.y, truth.z});
+}
+
+const std::vector<LobeShape> kLobes = {LambertShape{}, GgxShape{0.5}, GgxShape{0.15}};
+
+TEST(FaceSum, IsTheSumOverAllFacesWithinItsTolerance) {
+    RandomInput random(5);
+    FaceSum sum;
+    const std::vector<Emitter> all = emitters();
+    for (std::size_t e = 0; e < all.size(); ++e) {
+        const FaceRadiance faces = all[e].faces();
+        for (const double tolerance : {0.03, 0.003}) {
+            double squares = 0;
+            int count = 0;
+            for (int i = 0; i < 60; ++i) {
+                const View view = random_view(random);
+                const LobeShape& lobe = kLobes[static_cast<std::size_t>(i) % kLobes.size()];
+                std::vector<NearFace> near;
+                std::array<SummedLobe, 1> summed = {{{lobe, 1}}};
+                sum.add_up(faces, view.to_viewer, view.frame, faces.shows_front_only(view.frame.origin), tolerance, 0,
+                           summed, near);
+                const Vec3d found = summed[0].light;
+                const Vec3d truth = brute_force(all[e], lobe, view);
+                if (truth.y < 1e-3) {
+                    EXPECT_LE(found.y, 2e-3);
+                    continue;
+                }
+                const double error = relative_error(found + near_light(near, lobe, view), truth);
+                EXPECT_LE(error, 5 * tolerance) << "emitter " << e << ", view " << i;
+                squares += error * error;
+                ++count;
+            }
+            // The errors of parts are estimates.
+            EXPECT_LE(std::sqrt(squares / count), 1.25 * tolerance) << "emitter " << e;
+        }
+    }
+}
+
+/// Directions that are drawn or met bring the same light, and agree about the density of what both find.
+TEST(FaceSampler, BringsTheSumOverAllFaces) {
+    RandomInput random(6);
+    const std::vector<Emitter> all = emitters();
+    for (std::size_t e = 0; e < all.size(); ++e) {
+        const FaceRadiance faces = all[e].faces();
+        for (int i = 0; i < 8; ++i) {
+            const View view = random_view(random);
+            FaceSampler sampler;
+            sampler.reset(faces, view.frame, 0);
+            Vec3d sum(0);
+            Vec3d squares(0);
+            constexpr int kSamples = 20'000;
+            int agree = 0;
+            int met = 0;
+            for (int k = 0; k < kSamples; ++k) {
+                const auto sample = sampler.sample({random.uniform(0, 1), random.uniform(0, 1)});
+                if (!sample) {
+                    continue;
+                }
+                const Vec3d value = lobe_value(LambertShape{}, sample->direction, view.to_viewer) / sample->density *
+                                    Vec3d(sample->radiance);
+                sum += value;
+                squares += value * value;
+                const auto same = sampler.meets(sample->direction);
+                met += sample->hidden ? 0 : 1;
+                agree += !sample->hidden && same && std::abs(same->density / sample->density - 1) < 1e-3 ? 1 : 0;
+            }
+            const Vec3d truth = brute_force(all[e], LambertShape{}, view);
+            const Vec3d mean = sum / double{kSamples};
+            const Vec3d error = glm::sqrt(glm::max(squares / double{kSamples} - mean * mean, 0.0) / double{kSamples});
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_NEAR(mean[c], truth[c], 4.5 * error[c] + 0.003 * truth.y) << "emitter " << e << ", view " << i;
+            }
+            // At the edges of faces rays in float may meet the next one.
+            EXPECT_GE(agree, 0.99 * met) << "emitter " << e << ", view " << i;
+        }
+    }
+}
+
+TEST(FaceRadiance, ShowsItsInnerSideWithinAClosedSurfaceUnlessThatIsDark) {
+    for (const Emitter& emitter : emitters()) {
+        const FaceRadiance faces = emitter.faces();
+        EXPECT_EQ(faces.shows_front_only({0.9, 0.02, 0.01}), false);
+        EXPECT_EQ(faces.shows_front_only({1.5, 0.02, 0.01}), emitter.closed);
+        const FaceRadiance one_sided(emitter.solid.vertices, emitter.solid.triangles, emitter.radiance, emitter.closed,
+                                     true);
+        EXPECT_EQ(one_sided.shows_front_only({0.9, 0.02, 0.01}), true);
+    }
+}
+
+}  // namespace
+}  // namespace shlight
