@@ -97,7 +97,7 @@ Vec3d brute_force(const Emitter& emitter, const LobeShape& lobe, const View& vie
     return sum;
 }
 
-/// What brute force makes of near faces.
+/// The light of near faces by brute force.
 Vec3d near_light(const std::vector<NearFace>& near, const LobeShape& lobe, const View& view) {
     const View local = {{Vec3d(0), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, view.to_viewer};
     Vec3d sum(0);

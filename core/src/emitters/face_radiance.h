@@ -21,7 +21,7 @@
 
 namespace shlight {
 
-/// Of the absolute values.
+/// The largest absolute value of the three.
 inline double largest_channel(const Vec3d& color) {
     return std::max({std::abs(color.x), std::abs(color.y), std::abs(color.z)});
 }

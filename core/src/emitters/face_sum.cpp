@@ -17,7 +17,7 @@ constexpr double kCurvature = 1;
 
 constexpr auto has_less_error = [](const auto& a, const auto& b) { return a.error < b.error; };
 
-/// Where f·cos is largest, about.
+/// The direction in which f·cos is largest, about.
 Vec3d brightest(const LobeShape& lobe, const Vec3d& view) {
     return is_glossy(lobe) ? mirrored(view) : Vec3d(0, 0, 1);
 }

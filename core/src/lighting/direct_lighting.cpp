@@ -58,8 +58,8 @@ void DirectLighting::add(std::span<const std::uint32_t> seeds, std::span<const s
 }
 
 void DirectLighting::find_unshadowed(RenderReport& report) {
-    unshadowed_.compute(points_, scene_->materials, scene_->extended, scene_->light_error,
-                        scene_->face_tolerance, report);
+    unshadowed_.compute(points_, scene_->materials, scene_->extended, scene_->light_error, scene_->face_tolerance,
+                        report);
     lights_.clear();
     for (std::size_t i = 0; i < scene_->extended.size(); ++i) {
         const LightTraits& traits = traits_of(scene_->extended[i]);

@@ -36,7 +36,7 @@ class FaceSampler {
     double solid_angle() const { return solid_angle_; }
 
   private:
-    /// What a node can bring, about; 0 only if that is nothing.
+    /// An estimate of what a node brings; it is 0 only if that is nothing.
     double importance(const FaceRadiance::Node& node) const;
     /// The share of the first of two children that are neighbours.
     double share_of_first(std::uint32_t first_child) const;
