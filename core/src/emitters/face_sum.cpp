@@ -10,7 +10,7 @@ namespace {
 /// Share of a lobe's width: over a smaller part f·cos is its value at the middle, except at the horizon.
 constexpr double kBroad = 0.2;
 /// Radius ÷ distance from which on a part is never good enough as a whole.
-constexpr double kWide = 0.5;
+constexpr double kWide = 0.35;
 /// Relative error of a part as a whole ÷ (its radius as a share of the least distance over which the light changes)².
 /// Parts' errors have a common sign in part, so that their squares alone would add up to too little.
 constexpr double kCurvature = 1;
