@@ -62,7 +62,7 @@ struct EmitterLevel {
 
 /// A surface that emits to both sides, or to that of its normals, in the world frame.
 struct EmitterLevels {
-    std::vector<EmitterLevel> levels;  ///< from fine to coarse, at least one
+    std::vector<EmitterLevel> levels;  ///< from fine to coarse; one of a surface that is not convex
     bool one_sided;
     bool turned;    ///< the given mesh is wound the other way
     bool closed;    ///< encloses a volume, and is wound so that its normals point out of it
@@ -70,9 +70,6 @@ struct EmitterLevels {
     Vec3d center;   ///< of the bounding box
     double radius;  ///< largest distance of a vertex from it
     double area;
-
-    /// Whether the inner sides of faces are dark or behind others.
-    bool only_outer() const { return closed || one_sided; }
 };
 
 /// Net share of the strip between two outlines that is on one side: for levels of equal area, at most a seventh was

@@ -14,13 +14,13 @@
 
 namespace shlight {
 
-/// Views of one mesh after another; memory is reused.
+/// Views of one convex mesh after another; memory is reused.
 class MeshView {
   public:
     enum class Kind {
         hidden,
         outline,  ///< the region inside outline()
-        faces,    ///< the region of each of faces(): the outline is wider than half of space, or around it
+        faces,    ///< the region of all faces(): the outline is almost half of space
         inside    ///< all directions: the surface surrounds the hit
     };
 
@@ -36,7 +36,7 @@ class MeshView {
     double error() const { return error_; }
 
   private:
-    Kind look_at_faces(const EmitterLevel& level, const Vec3d& point, const ShadingFrame& frame, bool front_only);
+    Kind look_at_faces(const EmitterLevel& level, const Vec3d& point, const ShadingFrame& frame);
 
     Silhouette silhouette_;
     FlatOutline outline_;

@@ -34,7 +34,7 @@ Side side_of(const EdgeBlock& block, const Vec3d& point) {
 
 }  // namespace
 
-bool Silhouette::find(const EmitterLevel& level, bool closed, const Vec3d& point) {
+bool Silhouette::find(const EmitterLevel& level, const Vec3d& point) {
     any_front_ = false;
     steps_.clear();
     origins_.clear();
@@ -50,7 +50,7 @@ bool Silhouette::find(const EmitterLevel& level, bool closed, const Vec3d& point
             case Side::back:
                 break;
             case Side::both:
-                find_steps(level, block, closed, point);
+                find_steps(level, block, point);
                 break;
         }
     }
@@ -60,31 +60,29 @@ bool Silhouette::find(const EmitterLevel& level, bool closed, const Vec3d& point
     return !ends_.empty();
 }
 
-void Silhouette::find_steps(const EmitterLevel& level, const EdgeBlock& block, bool closed, const Vec3d& point) {
+void Silhouette::find_steps(const EmitterLevel& level, const EdgeBlock& block, const Vec3d& point) {
     std::array<std::int8_t, 2 * kBlockEdges> sides;
     for (std::size_t i = 0; i < block.plane_count; ++i) {
         const EmitterPlane& plane = level.block_planes[block.first_plane + i];
         const double height = glm::dot(plane.normal, point) - plane.height;
         any_front_ |= height > 0;
-        sides[i] = static_cast<std::int8_t>(int{height > 0} - (closed ? 0 : int{height < 0}));
+        sides[i] = height > 0 ? 1 : 0;
     }
     for (std::size_t i = block.first; i < block.last; ++i) {
         const BlockEdge& edge = level.edges[i];
         const int times = sides[edge.left] - sides[edge.right];
         if (times > 0) {
-            add(edge.from, edge.to, times);
+            add(edge.from, edge.to);
         } else if (times < 0) {
-            add(edge.to, edge.from, -times);
+            add(edge.to, edge.from);
         }
     }
 }
 
-void Silhouette::add(std::uint32_t from, std::uint32_t to, int times) {
-    for (int i = 0; i < times; ++i) {
-        steps_.push_back({to, first_step_[from]});
-        first_step_[from] = static_cast<std::uint32_t>(steps_.size() - 1);
-        origins_.push_back(from);
-    }
+void Silhouette::add(std::uint32_t from, std::uint32_t to) {
+    steps_.push_back({to, first_step_[from]});
+    first_step_[from] = static_cast<std::uint32_t>(steps_.size() - 1);
+    origins_.push_back(from);
 }
 
 /// Walks along steps. Equally many enter and leave each vertex, so that every walk ends where it began.

@@ -16,12 +16,11 @@ namespace shlight {
 /// Finds outlines; memory is reused.
 class Silhouette {
   public:
-    /// Finds the silhouette. An edge between two faces seen from the same side is passed once in each direction and
-    /// cancels; the remaining edges are those where the surface turns away, and its borders. They enclose all faces
-    /// whose outer side is visible (closed surfaces, whose other faces are hidden unless the surface is concave), or
-    /// all faces from either side (others). Several visible layers count several times. Returns false if there is none:
-    /// the point is inside a closed surface, or every face is seen edge-on.
-    bool find(const EmitterLevel& level, bool closed, const Vec3d& point);
+    /// Finds the silhouette of a closed surface. An edge between two faces that both show the point their outer side is
+    /// passed once in each direction and cancels; the remaining edges are those where the surface turns away. They
+    /// enclose all faces whose outer side is visible. Several visible layers count several times. Returns false if
+    /// there is none: the point is inside, or every face is seen edge-on.
+    bool find(const EmitterLevel& level, const Vec3d& point);
 
     /// Closed lines that pass no vertex twice, relative to the point, one after the other; counter-clockwise, as seen
     /// from the point, around faces that show it their outer side.
@@ -32,8 +31,8 @@ class Silhouette {
     bool any_front() const { return any_front_; }
 
   private:
-    void find_steps(const EmitterLevel& level, const EdgeBlock& block, bool closed, const Vec3d& point);
-    void add(std::uint32_t from, std::uint32_t to, int times);
+    void find_steps(const EmitterLevel& level, const EdgeBlock& block, const Vec3d& point);
+    void add(std::uint32_t from, std::uint32_t to);
     void walk(std::uint32_t origin, const EmitterLevel& level, const Vec3d& point);
     void cut_off(std::size_t first, const EmitterLevel& level, const Vec3d& point);
 

@@ -64,8 +64,6 @@ class LightSampler {
         return with([&](const auto& sampler) { return sampler.meets(direction); });
     }
 
-    int layers(const Vec3d& direction) const { return kind_ == Kind::mesh ? mesh_.layers(direction) : 1; }
-
   private:
     Kind kind_ = Kind::polygon;
     std::optional<CapSampler> cap_;

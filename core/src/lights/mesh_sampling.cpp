@@ -50,7 +50,6 @@ glm::dvec2 middle_of(std::span<const glm::dvec2> points) {
 void MeshSampler::reset(const MeshLight& light, const ShadingFrame& frame) {
     const EmitterLevels& shape = *light.shape;
     around_.reset();
-    convex_ = shape.convex;
     looked_from_ = frame.origin;
     const double distance = glm::length(shape.center - frame.origin);
     const double part = std::clamp(distance / shape.radius - 1, kLeastShare, 1.0);
@@ -118,35 +117,35 @@ void MeshSampler::enclose() {
 LightSample MeshSampler::sample(const glm::dvec2& point) const {
     LightSample drawn = around_ ? around_->sample(point) : rectangle_.sample(point);
     drawn.distance = std::numeric_limits<double>::infinity();
-    if (layers(drawn.direction) == 0) {
+    if (!covers(drawn.direction)) {
         drawn.weight = 0;
     }
     return drawn;
 }
 
 std::optional<double> MeshSampler::meets(const Vec3d& direction) const {
-    return layers(direction) > 0 ? std::optional(std::numeric_limits<double>::infinity()) : std::nullopt;
+    return covers(direction) ? std::optional(std::numeric_limits<double>::infinity()) : std::nullopt;
 }
 
-int MeshSampler::layers(const Vec3d& direction) const {
+bool MeshSampler::covers(const Vec3d& direction) const {
     if (kind_ == MeshView::Kind::faces) {
         const std::span<const Vec3d> corners = view_.faces();
-        int count = 0;
         for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
             const bool through = line_meets(direction, corners[i], corners[i + 1], corners[i + 2]);
             if (through && glm::dot(direction, corners[i] + corners[i + 1] + corners[i + 2]) > 0) {
-                ++count;
+                return true;
             }
         }
-        return count;
+        return false;
     }
     if (kind_ != MeshView::Kind::outline) {
-        return kind_ == MeshView::Kind::inside ? 1 : 0;
+        return kind_ == MeshView::Kind::inside;
     }
     if (!(glm::dot(direction, plane_.axis()) > 0)) {
-        return 0;
+        return false;
     }
-    // The winding number of the outline about the direction, counted over edges that cross the ray to its right.
+    // The winding number of the outline about the direction, counted over edges that cross the ray to its right. More
+    // than one is an error of a coarse level.
     const glm::dvec2 p = plane_.shown(direction);
     int winding = 0;
     for (std::size_t i = 0; i < outline_.size(); ++i) {
@@ -156,7 +155,7 @@ int MeshSampler::layers(const Vec3d& direction) const {
         winding += a.y <= p.y && b.y > p.y && left > 0 ? 1 : 0;
         winding -= a.y > p.y && b.y <= p.y && left < 0 ? 1 : 0;
     }
-    return convex_ ? std::min(1, std::abs(winding)) : std::abs(winding);
+    return winding != 0;
 }
 
 }  // namespace shlight

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Directions to an emissive mesh; light_sampling.h says what samplers do.
+// Directions to a convex emissive mesh; light_sampling.h says what samplers do.
 #pragma once
 
 #include <optional>
@@ -31,16 +31,15 @@ class MeshSampler {
     double solid_angle() const { return around_ ? around_->solid_angle() : rectangle_.solid_angle(); }
     /// Infinity if the direction meets the mesh.
     std::optional<double> meets(const Vec3d& direction) const;
-    /// Number of layers of the mesh in a direction, as counted by its outline.
-    int layers(const Vec3d& direction) const;
 
   private:
+    /// Whether the mesh lies in a direction.
+    bool covers(const Vec3d& direction) const;
     void keep(const ShadingFrame& frame);
     void enclose();
 
     MeshView view_;
     MeshView::Kind kind_ = MeshView::Kind::hidden;
-    bool convex_ = false;               // a fold of the outline is then an error of the coarse level
     std::optional<CapSampler> around_;  // used if there is no outline
     Vec3d looked_from_{0};
     double shrink_ = 0;                // share by which the outline is shrunk about its middle
