@@ -64,4 +64,6 @@ def test_a_closed_emitter_of_two_colours_may_be_wound_either_way() -> None:
             RADIUS * vertices + CENTER, wound, emission=[(4, 0.1, 0), (0.1, 4, 0)], material_indices=upper.astype(int)
         )
         images.append(shlight.render(scene, 64, 48)[..., :3])
-    np.testing.assert_array_equal(*images)
+    # Shadow rays go to other points of faces whose corners come in another order.
+    assert rel_mse(*images) <= 1e-3
+    assert abs(mean_ratio(*images) - 1) <= 3e-3
