@@ -242,11 +242,12 @@ class Triangles:
 def mesh_triangles(mesh: Any) -> Triangles:
     """The triangles of an evaluated mesh.
 
-    Attributes are handed over at once, other values one by one, which takes some 0.2 s for a million of them. Only the
-    first is asked for where both are there, which is since Blender 4.1.
+    Attributes, and the corners of triangles as the unsigned numbers that they are, are handed over at once, other
+    values one by one, which takes some 0.2 s for a million of them. Only the first are asked for where both are there,
+    which is since Blender 4.1.
     """
     mesh.calc_loop_triangles()
-    corners = values_of(mesh.loop_triangles, "loops", np.int32, 3)
+    corners = values_of(mesh.loop_triangles, "loops", np.uint32, 3).view(np.int32)
     position, corner_vertex = mesh.attributes.get("position"), mesh.attributes.get(".corner_vert")
     if position is None or corner_vertex is None or not hasattr(mesh, "loop_triangle_polygons"):
         vertices = values_of(mesh.vertices, "co", np.float32, 3)
