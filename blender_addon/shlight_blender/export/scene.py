@@ -97,6 +97,7 @@ class ExportedScene:
         self._state = _State()
         self._is_lit: dict[str, bool] = {}  # by the part of the scene that gives light or none
         self._reports: dict[str, ExportReport] = {}  # likewise
+        self._told: set[Any] = set()  # the objects, and what shows them, that the report of objects has
 
     @property
     def report(self) -> ExportReport:
@@ -199,6 +200,7 @@ class ExportedScene:
         if walks_meshes:
             self._meshes.begin(changes, self._surroundings, depsgraph.view_layer_eval.material_override)
             self._new_report("objects")
+            self._told = set()
         for instance in depsgraph.object_instances:
             ask()
             if not _is_seen(instance, viewport):
@@ -222,7 +224,12 @@ class ExportedScene:
         if self._culling is not None and self._culling.leaves_out(seen, _to_world(instance)):
             return
         if seen.type == "MESH":
-            _report_object(seen, _instancer(instance), view_layer, report)
+            instancer = _instancer(instance)
+            # Instances share one address, which is not that of what they show.
+            key = (seen.original.as_pointer(), instancer and instancer.as_pointer())
+            if key not in self._told:
+                self._told.add(key)
+                _report_object(seen, instancer, view_layer, report)
             if view_layer.use_solid:
                 self._meshes.add(instance, _to_world(instance))
         elif seen.type in UNSUPPORTED_TYPES and getattr(view_layer, FILTERS.get(seen.type, ""), True):
