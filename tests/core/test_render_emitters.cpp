@@ -216,6 +216,19 @@ TEST(RenderEmitters, LayersBehindEachOtherShineOnce) {
     EXPECT_LE(mean_difference(layered, alone), 0.015);
 }
 
+TEST(RenderEmitters, ARingBehindAWallIsHiddenFromFewRays) {
+    // Most directions pass by a ring: rays that tell nothing of it must not count as a clear view.
+    Mesh wall;
+    wall.vertices = {{-99, 1.9F, 0}, {99, 1.9F, 0}, {99, 1.9F, 99}, {-99, 1.9F, 99}};
+    wall.triangles = {{0, 1, 2}, {0, 2, 3}};
+    wall.bsdfs = {Bsdf::lambert(Rgb(0))};
+    RenderSettings settings = testing::analytic_settings();
+    settings.shadow_rays = 1;
+    const Mesh ring = emissive(testing::torus(1, 0.1, 24, 12), kCenter + Vec3d(0, 1, 0), 1);
+    const Image image = of_mesh(ring, settings, Bsdf::lambert(Rgb(0.5F)), &wall);
+    EXPECT_LE(testing::picture_error(image, [](int, int) { return 0.0; }).largest, 1e-6);
+}
+
 TEST(RenderEmitters, WithinOneAllDirectionsShine) {
     for (const int rays : {0, 16}) {
         RenderSettings settings = testing::analytic_settings();

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 
-#include "emitters/face_radiance.h"
 #include "environment/map_lookup.h"
 
 namespace shlight {
@@ -14,6 +13,11 @@ static_assert(kRaysAtOnce % kLightPointLanes == 0 && kRaysAtOnce % kLobeRayLanes
 
 /// Only a lobe of whose reflected directions more than this share could meet the light takes rays of its own.
 constexpr double kLeastShare = 0.1;
+
+/// Further points that are tried where the given ones find no face.
+constexpr int kMostDraws = 16;
+/// Steps that spread points evenly (the powers of the inverse of the plastic number, Roberts 2018).
+const glm::dvec2 kEvenSteps(0.7548776662466927, 0.5698402909980532);
 
 constexpr std::size_t kLookedUpAtOnce = 256;
 static_assert(kLookedUpAtOnce % kLookupLanes == 0);
@@ -76,12 +80,12 @@ double LightTarget::solid_angle() const {
 }
 
 void LightTarget::draw(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) {
+    if (has_faces_) {
+        draw_faces(u, v, count, rays);
+        return;
+    }
     if (rectangle_ == nullptr) {
         for (std::uint32_t i = 0; i < count; ++i) {
-            if (has_faces_) {
-                push(face_sampler_.sample({u[i], v[i]}), rays);
-                continue;
-            }
             const LightSample sample = sampler_.sample({u[i], v[i]});
             push(sample.direction, sample.distance, sample.weight, rays);
         }
@@ -92,6 +96,19 @@ void LightTarget::draw(const float* u, const float* v, std::uint32_t count, Draw
         const std::uint32_t some = std::min(count - first, kRaysAtOnce);
         place_points(*rectangle_, u + first, v + first, some, buffer.arrays());
         push(buffer.arrays(), some, rays);
+    }
+}
+
+/// If no point belongs to a face that shines on the hit, others are tried: a hit without any ray would count as one
+/// that sees the whole light.
+void LightTarget::draw_faces(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) const {
+    const std::size_t before = rays.size();
+    for (std::uint32_t i = 0; i < count; ++i) {
+        push(face_sampler_.sample({u[i], v[i]}), rays);
+    }
+    for (int i = 1; i <= kMostDraws && rays.size() == before; ++i) {
+        const glm::dvec2 point(u[0], v[0]);
+        push(face_sampler_.sample(glm::fract(point + static_cast<double>(i) * kEvenSteps)), rays);
     }
 }
 
