@@ -101,7 +101,7 @@ void LightTarget::draw(const float* u, const float* v, std::uint32_t count, Draw
 
 /// If no point belongs to a face that shines on the hit, others are tried: a hit without any ray would count as one
 /// that sees the whole light.
-void LightTarget::draw_faces(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) const {
+void LightTarget::draw_faces(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) {
     const std::size_t before = rays.size();
     for (std::uint32_t i = 0; i < count; ++i) {
         push(face_sampler_.sample({u[i], v[i]}), rays);

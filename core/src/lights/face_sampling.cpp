@@ -2,11 +2,18 @@
 #include "lights/face_sampling.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 namespace shlight {
+namespace {
+
+/// Distance of a face's middle ÷ the distance of its corners from there, below which the face is near.
+constexpr double kNearFace = 3;
+
+}  // namespace
 
 void FaceSampler::reset(const FaceRadiance& faces, const ShadingFrame& frame, double error) {
     faces_ = &faces;
@@ -37,7 +44,7 @@ double FaceSampler::share_of_first(std::uint32_t first_child) const {
     return first + second > 0 ? first / (first + second) : -1;
 }
 
-std::optional<FaceSample> FaceSampler::sample(const glm::dvec2& point) const {
+std::optional<FaceSample> FaceSampler::sample(const glm::dvec2& point) {
     double place = point.x;
     double probability = 1;
     std::uint32_t node = 0;
@@ -57,19 +64,17 @@ std::optional<FaceSample> FaceSampler::sample(const glm::dvec2& point) const {
         }
     }
     const FaceRadiance::Face& face = faces_->faces_[faces_->nodes_[node].face];
-    const double root = std::sqrt(place);
-    const Vec3d to = (1 - root) * face.a + root * (1 - point.y) * face.b + root * point.y * face.c;
-    const Vec3d way = to - frame_.origin;
-    const double density = probability * density_over(face, way);
+    const auto [way, over_face] = way_to(face, {place, point.y});
+    const double density = probability * over_face;
     const Vec3d direction = frame_.to_local(glm::normalize(way));
     if (!(density > 0) || !std::isfinite(density) || !(direction.z > 0)) {
         return std::nullopt;
     }
-    const bool hidden = faces_->face_at(start_, to - start_) != &face;
+    const bool hidden = faces_->face_at(start_, frame_.origin + way - start_) != &face;
     return FaceSample{direction, density, face.radiance, hidden};
 }
 
-std::optional<FaceSample> FaceSampler::meets(const Vec3d& direction) const {
+std::optional<FaceSample> FaceSampler::meets(const Vec3d& direction) {
     const Vec3d world = frame_.to_world(direction);
     const FaceRadiance::Face* face = faces_->face_at(start_, world);
     if (face == nullptr || !(direction.z > 0)) {
@@ -77,7 +82,11 @@ std::optional<FaceSample> FaceSampler::meets(const Vec3d& direction) const {
     }
     const Vec3d normal = glm::cross(face->b - face->a, face->c - face->a);
     const double along = glm::dot(normal, face->a - frame_.origin) / glm::dot(normal, world);
-    const double density = density_over(*face, along * world);
+    double density = density_over(*face, along * world);
+    if (density > 0 && is_near(*face)) {
+        look_at(*face);
+        density = 1 / polygon_.weight(direction);
+    }
     if (!(density > 0) || !std::isfinite(density)) {
         return std::nullopt;
     }
@@ -103,6 +112,34 @@ double FaceSampler::probability(std::uint32_t leaf) const {
         }
     }
     return probability;
+}
+
+bool FaceSampler::is_near(const FaceRadiance::Face& face) const {
+    const Vec3d middle = (face.a + face.b + face.c) / 3.0;
+    const Vec3d way = middle - frame_.origin;
+    double radius = 0;
+    for (const Vec3d& corner : {face.a, face.b, face.c}) {
+        radius = std::max(radius, glm::length(corner - middle));
+    }
+    return glm::length(way) < kNearFace * radius || glm::dot(frame_.z, way) < radius;
+}
+
+void FaceSampler::look_at(const FaceRadiance::Face& face) {
+    const std::array<Vec3d, 3> corners = {frame_.point_to_local(face.a), frame_.point_to_local(face.b),
+                                          frame_.point_to_local(face.c)};
+    polygon_.reset(corners, glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0])));
+}
+
+std::pair<Vec3d, double> FaceSampler::way_to(const FaceRadiance::Face& face, const glm::dvec2& point) {
+    if (is_near(face)) {
+        look_at(face);
+        const LightSample drawn = polygon_.sample(point);
+        const Vec3d way = drawn.distance * frame_.to_world(drawn.direction);
+        return {way, drawn.weight > 0 && density_over(face, way) > 0 ? 1 / drawn.weight : 0};
+    }
+    const double root = std::sqrt(point.x);
+    const Vec3d way = (1 - root) * face.a + root * (1 - point.y) * face.b + root * point.y * face.c - frame_.origin;
+    return {way, density_over(face, way)};
 }
 
 double FaceSampler::density_over(const FaceRadiance::Face& face, const Vec3d& way) const {

@@ -5,11 +5,13 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include <glm/vec2.hpp>
 
 #include "base/shading_frame.h"
 #include "emitters/face_radiance.h"
+#include "lights/polygon_sampling.h"
 #include "shlight/types.h"
 
 namespace shlight {
@@ -29,9 +31,9 @@ class FaceSampler {
     /// error: of the hit's position.
     void reset(const FaceRadiance& faces, const ShadingFrame& frame, double error);
     /// Nothing if the face that a point of the unit square belongs to is seen edge-on or from behind.
-    std::optional<FaceSample> sample(const glm::dvec2& point) const;
+    std::optional<FaceSample> sample(const glm::dvec2& point);
     /// The first face in a direction, if it shines on the hit.
-    std::optional<FaceSample> meets(const Vec3d& direction) const;
+    std::optional<FaceSample> meets(const Vec3d& direction);
     /// Solid angle of the faces, about.
     double solid_angle() const { return solid_angle_; }
 
@@ -42,7 +44,14 @@ class FaceSampler {
     double share_of_first(std::uint32_t first_child) const;
     /// The probability of the face at this place of the tree.
     double probability(std::uint32_t leaf) const;
-    /// Density of a point of a face per solid angle, if it is drawn evenly over the face; 0 where it does not shine.
+    /// Whether distances and angles differ over a face, so that it is drawn evenly over its solid angle above the
+    /// horizon; others are drawn evenly over their area.
+    bool is_near(const FaceRadiance::Face& face) const;
+    /// Lets polygon_ be a near face.
+    void look_at(const FaceRadiance::Face& face);
+    /// A way to a face from a point of the unit square, and its density per solid angle; 0 where it does not shine.
+    std::pair<Vec3d, double> way_to(const FaceRadiance::Face& face, const glm::dvec2& point);
+    /// Density of a way to a point of a face that is drawn evenly over its area; 0 where it does not shine.
     double density_over(const FaceRadiance::Face& face, const Vec3d& way) const;
 
     const FaceRadiance* faces_ = nullptr;
@@ -50,6 +59,7 @@ class FaceSampler {
     Vec3d start_{0};  // of rays that look for faces
     bool front_only_ = false;
     double solid_angle_ = 0;
+    PolygonSampler polygon_;
 };
 
 }  // namespace shlight

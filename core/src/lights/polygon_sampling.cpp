@@ -145,8 +145,22 @@ LightSample PolygonSampler::sample(const Piece& piece, const glm::dvec2& point) 
     const double root = std::sqrt(point.x);
     const Vec3d target = (1 - root) * piece.a + root * ((1 - point.y) * piece.b + point.y * piece.c);
     const double distance = glm::length(target);
+    return {target / distance, distance, weight(piece, distance)};
+}
+
+double PolygonSampler::weight(const Piece& piece, double distance) const {
     // dω = |cos at the light| dA / distance²
-    return {target / distance, distance, piece.area * std::abs(height_) / (distance * distance * distance)};
+    return piece.spherical ? piece.solid_angle : piece.area * std::abs(height_) / (distance * distance * distance);
+}
+
+double PolygonSampler::weight(const Vec3d& direction) const {
+    const double distance = height_ / glm::dot(normal_, direction);
+    for (const Piece& piece : pieces_) {
+        if (distance > 0 && line_meets(direction, piece.a, piece.b, piece.c)) {
+            return weight(piece, distance) * total_ / piece.solid_angle;
+        }
+    }
+    return 0;
 }
 
 }  // namespace shlight

@@ -50,6 +50,8 @@ class PolygonSampler {
     void reset(std::span<const Vec3d> corners, const Vec3d& normal);
     /// If nothing lies above the horizon, a sample with weight and distance 0.
     LightSample sample(glm::dvec2 point) const;
+    /// The weight with which sample() draws a direction; 0 if it does not.
+    double weight(const Vec3d& direction) const;
     /// Number of patches, which are smooth images of the unit square; sample_patch() samples one as if it were the
     /// light.
     std::size_t patch_count() const { return pieces_.size(); }
@@ -67,6 +69,7 @@ class PolygonSampler {
         std::optional<SphericalTriangle> spherical;  // set unless it is sampled by area
     };
     LightSample sample(const Piece& piece, const glm::dvec2& point) const;
+    double weight(const Piece& piece, double distance) const;
     void start(const Vec3d& normal, const Vec3d& corner);
     void add_clipped(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
