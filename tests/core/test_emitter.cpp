@@ -59,7 +59,7 @@ Row sum_of_faces(const EmitterLevel& level, const Vec3d& point, bool clip) {
     return sum;
 }
 
-Row of_outline(const EmitterLevels& emitter, const EmitterLevel& level, const Vec3d& point, bool clip) {
+Row of_outline(const EmitterLevel& level, const Vec3d& point, bool clip) {
     Row row{};
     Silhouette silhouette;
     FlatOutline flat;
@@ -78,7 +78,7 @@ void expect_outline_is_sum_of_faces(const EmitterLevels& emitter, const Vec3d& p
     const EmitterLevel& level = emitter.levels.front();
     const Row faces = sum_of_faces(level, point, clip);
     // Faces and outline each lose a few digits of the solid angle's.
-    EXPECT_LE(largest_difference(of_outline(emitter, level, point, clip), faces), 1e-11 * (1 + faces[0]));
+    EXPECT_LE(largest_difference(of_outline(level, point, clip), faces), 1e-11 * (1 + faces[0]));
 }
 
 TEST(Silhouette, OfAClosedSurfaceHoldsTheFacesThatAreSeen) {
@@ -244,7 +244,7 @@ TEST(EmitterLevels, OfASphereShowTheSphere) {
             const std::array radii = {1.0};
             sphere_coefficients<double>(centers, radii, kOrder, false, std::span<double>(cap));
             // Twice the error if it all lay on one side; the scale takes out its mean.
-            EXPECT_LE(largest_difference(of_outline(emitter, level, point, false), cap), 0.7 * level.error * cap[0])
+            EXPECT_LE(largest_difference(of_outline(level, point, false), cap), 0.7 * level.error * cap[0])
                 << level.faces.size();
         }
     }

@@ -120,9 +120,9 @@ bool is_convex(const IndexedMesh& mesh) {
     return pieces == 1;
 }
 
-/// Removes faces of a closed surface until about `count` are left, and adds to the error; returns false with the mesh
+/// Removes faces until about `count` are left, and adds to the error; returns false with the mesh
 /// unchanged if that would tear or deform it.
-bool simplify(IndexedMesh& mesh, std::size_t faces, double& error) {
+bool simplify(IndexedMesh& mesh, std::size_t faces, bool closed, double& error) {
     std::vector<float> positions;
     for (const Vec3d& v : mesh.vertices) {
         // Relative to the first vertex, because float has few digits for the shape far from the world's origin.
@@ -145,7 +145,7 @@ bool simplify(IndexedMesh& mesh, std::size_t faces, double& error) {
         triangles.emplace_back(kept[i], kept[i + 1], kept[i + 2]);
     }
     IndexedMesh simple = welded(mesh.vertices, triangles, kWelded);
-    if (2 * simple.faces.size() > mesh.faces.size() || simple.faces.empty() || has_border(edges_of(simple))) {
+    if (2 * simple.faces.size() > mesh.faces.size() || simple.faces.empty() || has_border(edges_of(simple)) == closed) {
         return false;
     }
     error += static_cast<double>(relative) *
@@ -322,8 +322,8 @@ EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<con
     emitter.convex = emitter.closed && is_convex(mesh);
     end_if(stopped);
     double error = 0;
-    if (emitter.convex && mesh.faces.size() > kMostFaces) {
-        simplify(mesh, kMostFaces, error);
+    if (mesh.faces.size() > kMostFaces) {
+        simplify(mesh, kMostFaces, whole, error);
     }
     do {
         end_if(stopped);
@@ -331,7 +331,7 @@ EmitterLevels make_emitter_levels(std::span<const Vec3d> vertices, std::span<con
         scale(level, emitter.center, std::sqrt(emitter.area / area(level)));
         emitter.levels.push_back(level_of(std::move(level), error));
     } while (emitter.convex && mesh.faces.size() / kReduction >= least_faces &&
-             simplify(mesh, mesh.faces.size() / kReduction, error));
+             simplify(mesh, mesh.faces.size() / kReduction, whole, error));
     return emitter;
 }
 

@@ -143,11 +143,16 @@ void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<
         return;
     }
     const bool is_even = std::ranges::all_of(radiance, [&](const Rgb& color) { return color == radiance.front(); });
-    if (!is_even || !levels.convex) {
+    if (!is_even) {
         const std::vector<Triangle> outwards = levels.turned ? turned(triangles) : std::vector<Triangle>();
         light.faces = std::make_shared<const FaceRadiance>(vertices, levels.turned ? outwards : triangles, radiance,
                                                            levels.closed, levels.one_sided, stopped);
         light.radiance = light.faces->mean();
+    } else if (!levels.convex) {
+        const EmitterLevel& finest = levels.levels.front();
+        const std::vector<Rgb> even(finest.faces.size(), radiance.front());
+        light.faces = std::make_shared<const FaceRadiance>(finest.vertices, finest.faces, even, levels.closed,
+                                                           levels.one_sided, stopped);
     }
     light.shape = std::make_shared<const EmitterLevels>(std::move(levels));
     lights.emplace_back(std::move(light));
