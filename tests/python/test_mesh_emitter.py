@@ -67,3 +67,25 @@ def test_a_closed_emitter_of_two_colours_may_be_wound_either_way() -> None:
     # Shadow rays go to other points of faces whose corners come in another order.
     assert rel_mse(*images) <= 1e-3
     assert abs(mean_ratio(*images) - 1) <= 3e-3
+
+
+def test_a_ring_of_negative_radiance_takes_light_away() -> None:
+    around, across = (np.linspace(0, 2 * np.pi, count, endpoint=False) for count in (24, 12))
+    x, y = (values.ravel() for values in np.meshgrid(around, across, indexing="ij"))
+    width = 0.6 + 0.2 * np.cos(y)
+    vertices = np.stack([width * np.cos(x), width * np.sin(x), 0.2 * np.sin(y)], axis=1) + CENTER
+    first = np.arange(24 * 12).reshape(24, 12)
+    right, up = np.roll(first, -1, axis=0), np.roll(first, -1, axis=1)
+    corner = np.roll(right, -1, axis=1)
+    faces = np.concatenate(
+        [np.stack(face, axis=-1).reshape(-1, 3) for face in ((first, right, corner), (first, corner, up))]
+    )
+    images = []
+    for radiance in (4.0, 0.0, -4.0):
+        scene = ball_on_floor(shlight.Bsdf.lambert(0.8))
+        scene.set_environment((2, 2, 2))
+        scene.add_mesh(vertices, faces, emission=(radiance,) * 3)
+        images.append(shlight.render(scene, 64, 48, shadow_rays=0)[20:, :, :3])
+    more, none, less = images
+    assert (more - none).mean() >= 0.01 * none.mean()
+    np.testing.assert_allclose(none - less, more - none, atol=3e-3 * none.mean())

@@ -41,7 +41,9 @@ FaceSum::Part FaceSum::weigh(std::uint32_t node, const PartView& seen) {
     const double square = std::max(seen.distance * seen.distance, part.radius * part.radius);
     const double area = seen.one_side ? shown : seen.unclear;
     const bool level = !(direction.z > seen.width);
-    const Vec3d light = seen.one_side ? glm::abs(seen.way * part.power) / seen.distance : shown * Vec3d(part.radiance);
+    // Radiance may be negative; power is that of the side which the area vector shows.
+    const double side = seen.facing > 0 ? -1 : 1;
+    const Vec3d light = seen.one_side ? side / seen.distance * (seen.way * part.power) : shown * Vec3d(part.radiance);
     Part weighed = {light / square, 0, 0, values_.size(), node};
     for (const SummedLobe& lobe : lobes_) {
         const double value = direction.z > 0 ? lobe_value(lobe.shape, direction, view_) : 0.0;

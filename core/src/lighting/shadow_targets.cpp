@@ -159,7 +159,7 @@ void LightTarget::push(const std::optional<FaceSample>& sample, DrawnRays& rays)
     if (sample) {
         rays.push({Vec3f(frame_->to_world(sample->direction)), static_cast<float>(sample->density), 1, sample->hidden},
                   start_->along(sample->direction));
-        rays.color.push_back(sample->radiance);
+        rays.color.push_back(glm::abs(sample->radiance));  // ShadowedLight sums up absolute values
     }
 }
 
