@@ -179,7 +179,7 @@ TEST(RenderParallel, BuildingEmittersAndEnvironmentsCanBeStopped) {
     }
     const std::vector<std::function<void(const Stopped&)>> builds = {
         [&](const Stopped& stopped) { make_emitter_levels(vertices, triangles, 64, stopped); },
-        [&](const Stopped& stopped) { FaceRadiance(vertices, triangles, radiance, false, stopped); },
+        [&](const Stopped& stopped) { FaceRadiance(vertices, triangles, radiance, false, false, stopped); },
         [&](const Stopped& stopped) { EnvironmentMap(picture, stopped); }};
     for (const auto& build : builds) {
         std::atomic<int> asked = 0;
