@@ -90,7 +90,7 @@ class FaceRadiance;
 struct MeshLight {
     std::shared_ptr<const EmitterLevels> shape;
     Rgb radiance;                               ///< mean over the area
-    std::shared_ptr<const FaceRadiance> faces;  ///< null: all have the same radiance
+    std::shared_ptr<const FaceRadiance> faces;  ///< null: its outline stands for it
     // shines_at() finds the light's faces among those that rays meet.
     std::uint32_t instance;  ///< RayHit::instance
     std::shared_ptr<const SceneMesh> mesh;

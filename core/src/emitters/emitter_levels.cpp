@@ -120,8 +120,8 @@ bool is_convex(const IndexedMesh& mesh) {
     return pieces == 1;
 }
 
-/// Removes faces until about `count` are left, and adds to the error; returns false with the mesh
-/// unchanged if that would tear or deform it.
+/// Removes faces until about that many are left, and adds to the error; returns false with the mesh unchanged if that
+/// would tear or deform it.
 bool simplify(IndexedMesh& mesh, std::size_t faces, bool closed, double& error) {
     std::vector<float> positions;
     for (const Vec3d& v : mesh.vertices) {

@@ -15,6 +15,7 @@ namespace {
 /// far from the lobe's peak, where lobes change as slowly.
 constexpr int kMostAcross = 64;
 constexpr double kAcrossWidth = 4;
+
 /// Fills the lanes of a vector; any direction serves for what has no irradiance.
 template <class Arrays>
 void pad(Arrays& spots) {

@@ -4,6 +4,7 @@
 #include "shlight/lobe_shape.h"
 
 namespace shlight {
+
 void FaceShading::shade(const FaceRadiance& faces, const ShadingPoints& points, std::span<const std::uint32_t> some,
                         MaterialViews& views, double tolerance, double unit_tolerance, std::span<Rgb> radiance) {
     near_.clear();
