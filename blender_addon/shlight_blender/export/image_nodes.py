@@ -48,7 +48,7 @@ def _textures(inputs: NodeInputs, image: Any) -> Any:
     space = image.colorspace_settings.name
     if not is_known(space):
         inputs.remark(f"colour space {space} is unknown; taken for sRGB")
-    use = TextureUse(holds_normals(inputs), INTERPOLATIONS[inputs.node.interpolation])
+    use = TextureUse(not bends_normals(inputs.node), INTERPOLATIONS[inputs.node.interpolation])
     if image.source == "TILED":
         found: Any = _tiles(image, use)
     elif image.source == "SEQUENCE":
@@ -68,15 +68,18 @@ def _textures(inputs: NodeInputs, image: Any) -> Any:
     return found
 
 
-def holds_normals(inputs: NodeInputs) -> bool:
-    """True if the picture is one of normals in the tangent space, and nothing else is made of it."""
-    node = inputs.node
-    links = [link for output in node.outputs for link in output.links]
-    is_read = bool(links) and all(
-        link.to_node.type == "NORMAL_MAP" and link.to_node.space == "TANGENT" and link.from_socket.name == "Color"
-        for link in links
-    )
-    return is_read and node.image.colorspace_settings.name == "Non-Color" and node.projection != "BOX"
+def bends_normals(node: Any) -> bool:
+    """True if a Normal Map node takes what this node gives, whatever lies between."""
+    seen = {node.name}
+    ahead = [node]
+    while ahead:
+        for link in (link for output in ahead.pop().outputs for link in output.links):
+            if link.to_node.type == "NORMAL_MAP":
+                return True
+            if link.to_node.name not in seen:
+                seen.add(link.to_node.name)
+                ahead.append(link.to_node)
+    return False
 
 
 def _tiles(image: Any, use: TextureUse) -> dict[tuple[int, int], Any]:
@@ -114,7 +117,6 @@ def _lookup(inputs: NodeInputs, textures: Any, place: Vector) -> Color:
         interpolation=INTERPOLATIONS[node.interpolation],
         extension=EXTENSIONS.get(node.extension, "repeat"),
         unassociate=alpha_is_used and associates_alpha(node.image),
-        encoding="normal" if holds_normals(inputs) else "linear",
     )
 
 

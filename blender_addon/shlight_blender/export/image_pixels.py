@@ -112,16 +112,15 @@ def space_of(image: Any) -> str:
 class TextureUse(NamedTuple):
     """The settings of a node that affect how its picture looks from afar."""
 
-    as_normals: bool
+    filtered: bool
     interpolation: str  # see shlight.nodes.image
 
 
 def _texture(pixels: NDArray[Any], space: str, use: TextureUse) -> _core.TexturePixels:
-    if use.as_normals:
-        return texture_pixels(pixels, "normal", use.interpolation)
+    encoding = "srgb" if space == SRGB else "linear"
     if needs_conversion(space):
-        return texture_pixels(linear_light(pixels, space), "linear", use.interpolation)
-    return texture_pixels(pixels, "srgb" if space == SRGB else "linear", use.interpolation)
+        pixels = linear_light(pixels, space)
+    return texture_pixels(pixels, encoding, use.interpolation, filtered=use.filtered)
 
 
 class FileSettings(NamedTuple):

@@ -103,14 +103,6 @@ void assign(float value, Half& to) {
     to.bits = static_cast<std::uint16_t>(rounded | (std::signbit(value) ? std::uint32_t{kSignOfHalf} : 0U));
 }
 
-/// Encodes a mean of unit vectors, given as (n + 1) / 2: its direction, and √(1 - its length) as the fourth channel.
-glm::vec4 unit_with_spread(const glm::vec4& mean) {
-    const glm::vec3 n = glm::vec3(mean) * 2.0F - 1.0F;
-    const float length = glm::length(n);
-    return length > 0 ? glm::vec4(n / length * 0.5F + 0.5F, std::sqrt(std::max(1 - length, 0.0F)))
-                      : glm::vec4(0.5F, 0.5F, 1, 1);
-}
-
 /// Weights of a uniform cubic B-spline.
 std::array<float, 4> cubic_weights(float t) {
     const float s = 1 - t;
@@ -148,26 +140,19 @@ glm::vec4 Texels::of_numbers(const Number* texel) const {
         return glm::vec4(glm::vec3(from_srgb_ ? linear_from_srgb(first) : first), 1);
     }
     const glm::vec4 color(first, to_float(texel[1]), to_float(texel[2]), channels_ == 4 ? to_float(texel[3]) : 1.0F);
-    return from_srgb_ ? decoded(color, TexelEncoding::srgb) : of_vectors_ ? vector(color) : color;
-}
-
-glm::vec4 Texels::vector(const glm::vec4& color) const {
-    const glm::vec3 n = glm::vec3(color) * 2.0F - 1.0F;
-    const float length = glm::length(n);
-    const float wanted = are_means_ ? 1 - color.w * color.w : 1.0F;
-    return length > 0 ? glm::vec4(n * (wanted / length) * 0.5F + 0.5F, wanted) : color;
+    return from_srgb_ ? decoded(color, TexelEncoding::srgb) : color;
 }
 
 TexturePixels::TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint32_t height, int channels,
-                             TexelEncoding encoding, TextureInterpolation interpolation)
-    : encoding_(encoding == TexelEncoding::normal && channels < 3 ? TexelEncoding::linear : encoding) {
+                             TexelEncoding encoding, TextureInterpolation interpolation, bool is_filtered)
+    : encoding_(encoding) {
     std::visit(
         [](auto& numbers) {
             std::transform(numbers.begin(), numbers.end(), numbers.begin(), [](auto x) { return finite(x); });
         },
         pixels);
     add({width, height, channels, std::move(pixels)});
-    while (levels_.back().width > 1 || levels_.back().height > 1) {
+    while (is_filtered && (levels_.back().width > 1 || levels_.back().height > 1)) {
         add(halved(levels_.size() - 1, interpolation));
     }
 }
@@ -201,17 +186,14 @@ void TexturePixels::add(Level level) {
     const bool srgb = is_srgb(levels_.size() - 1);
     Texels& linear = linear_.emplace_back(texels(levels_.back(), srgb ? bytes_from_srgb() : bytes_as_stored()));
     linear.from_srgb_ = srgb;
-    linear.of_vectors_ = encoding_ == TexelEncoding::normal;
-    linear.are_means_ = linear.of_vectors_ && levels_.size() > 1;
 }
 
 void TexturePixels::store(Level& level, std::size_t texel, const glm::vec4& linear) const {
-    const glm::vec4 value = encoding_ == TexelEncoding::normal ? unit_with_spread(linear) : linear;
     const auto channels = static_cast<std::size_t>(level.channels);
     std::visit(
         [&](auto& numbers) {
             for (std::size_t i = 0; i < channels; ++i) {
-                assign(value[static_cast<int>(i)], numbers[texel * channels + i]);
+                assign(linear[static_cast<int>(i)], numbers[texel * channels + i]);
             }
         },
         level.pixels);
@@ -220,10 +202,9 @@ void TexturePixels::store(Level& level, std::size_t texel, const glm::vec4& line
 /// The next level; each of its texels is the mean over an equal share of the area, also if a side is odd.
 TexturePixels::Level TexturePixels::halved(std::size_t level, TextureInterpolation interpolation) const {
     const Level& from = levels_[level];
-    Level to = {
-        (from.width + 1) / 2, (from.height + 1) / 2, encoding_ == TexelEncoding::normal ? 4 : from.channels, {}};
+    Level to = {(from.width + 1) / 2, (from.height + 1) / 2, from.channels, {}};
     const std::size_t count = std::size_t{to.width} * to.height * static_cast<std::size_t>(to.channels);
-    if (encoding_ != TexelEncoding::normal && std::holds_alternative<std::vector<std::uint8_t>>(from.pixels)) {
+    if (std::holds_alternative<std::vector<std::uint8_t>>(from.pixels)) {
         to.pixels = std::vector<Half>(count);
     } else {
         std::visit([&](const auto& numbers) { to.pixels = std::decay_t<decltype(numbers)>(count); }, from.pixels);
@@ -382,8 +363,7 @@ glm::vec4 ImageTexture::finished(const glm::vec4& stored, TexelEncoding encoding
     if (unassociate_ && color.w != 0 && color.w != 1) {
         color = {color.x / color.w, color.y / color.w, color.z / color.w, color.w};
     }
-    // Normals that are magnified have no spread, so their mean has length 1.
-    return encoding == TexelEncoding::normal ? glm::vec4(glm::vec3(color), 1) : decoded(color, encoding);
+    return decoded(color, encoding);
 }
 
 ImageTexture::Lookup ImageTexture::look(const glm::vec2& place, const TextureFootprint& footprint) const {
@@ -411,15 +391,16 @@ ImageTexture::Lookup ImageTexture::look(const glm::vec2& place, const TextureFoo
     if (glm::dot(along, along) < glm::dot(across, across)) {
         std::swap(along, across);
     }
-    Lookup lookup = {&pixels, inside, glm::length(along), 0, 0, glm::vec2(0)};
-    if (lookup.longest > 1) {
+    Lookup lookup = {&pixels, inside, 0, 0, glm::vec2(0)};
+    const float longest = glm::length(along);
+    if (longest > 1 && pixels.level_count() > 1) {
         // Width of the footprint: its area ÷ its longest side.
-        const float width = std::abs(along.x * across.y - along.y * across.x) / lookup.longest;
-        const float least = std::max({width, lookup.longest / kMostProbes, 1.0F});
+        const float width = std::abs(along.x * across.y - along.y * across.x) / longest;
+        const float least = std::max({width, longest / kMostProbes, 1.0F});
         const auto top = static_cast<float>(pixels.level_count() - 1);
         lookup.level = std::isfinite(least) ? std::clamp(std::log2(least), 0.0F, top) : top;
-        lookup.probes = std::isfinite(lookup.longest) ? static_cast<int>(std::ceil(lookup.longest / least)) : 1;
-        lookup.step = std::isfinite(lookup.longest) ? along / size / static_cast<float>(lookup.probes) : glm::vec2(0);
+        lookup.probes = std::isfinite(longest) ? static_cast<int>(std::ceil(longest / least)) : 1;
+        lookup.step = std::isfinite(longest) ? along / size / static_cast<float>(lookup.probes) : glm::vec2(0);
     }
     const auto low = static_cast<std::size_t>(lookup.level);
     pixels.linear(low).prefetch(inside);
@@ -445,10 +426,6 @@ glm::vec4 ImageTexture::read(const Lookup& lookup) const {
         sum += reader.trilinear(lookup.level, lookup.place + from_middle * lookup.step);
     }
     sum /= static_cast<float>(lookup.probes);
-    if (encoding == TexelEncoding::normal) {
-        const float mean_length = std::min(glm::length(glm::vec3(sum) * 2.0F - 1.0F), 1.0F);
-        sum.w = glm::mix(1.0F, mean_length, std::min(lookup.longest - 1, 1.0F));
-    }
     if (unassociate_ && sum.w > 0) {
         sum = glm::vec4(glm::vec3(sum) / sum.w, sum.w);
     }

@@ -29,8 +29,7 @@ enum class TextureExtension : std::uint8_t { repeat, extend, clip, mirror };
 /// Meaning of a picture's numbers.
 enum class TexelEncoding : std::uint8_t {
     linear,
-    srgb,   ///< red, green and blue are encoded as sRGB
-    normal  ///< (n + 1) / 2 of unit vectors of three channels or more; alpha is the length of their mean
+    srgb  ///< red, green and blue are encoded as sRGB
 };
 
 /// A float of 16 bits (IEEE 754).
@@ -42,8 +41,7 @@ struct Half {
 using TexelNumbers =
     std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<Half>, std::vector<float>>;
 
-/// Reads RGBA of the texels of one level, which must outlive this. Unit vectors of coarser levels have their mean's
-/// length.
+/// Reads RGBA of the texels of one level, which must outlive this.
 class Texels {
   public:
     std::int64_t width, height;
@@ -69,14 +67,11 @@ class Texels {
         if (channels_ == 1) {
             return glm::vec4(glm::vec3(table[texel[0]]), 1);
         }
-        const glm::vec4 color(table[texel[0]], table[texel[1]], table[texel[2]],
-                              channels_ == 4 ? static_cast<float>(texel[3]) / 255 : 1.0F);
-        return of_vectors_ ? vector(color) : color;
+        return {table[texel[0]], table[texel[1]], table[texel[2]],
+                channels_ == 4 ? static_cast<float>(texel[3]) / 255 : 1.0F};
     }
     template <class Number>
     glm::vec4 of_numbers(const Number* texel) const;
-    /// (n + 1) / 2 with the length of n restored from the fourth channel.
-    glm::vec4 vector(const glm::vec4& color) const;
 
     // One of these is not null.
     const std::uint8_t* bytes_;
@@ -85,7 +80,7 @@ class Texels {
     const float* floats_;
     const float* table_;  // value of each byte
     std::int64_t channels_;
-    bool from_srgb_, of_vectors_, are_means_;
+    bool from_srgb_;
 };
 
 /// A picture with all its levels. Immutable; shared by all its users.
@@ -93,9 +88,9 @@ class TexturePixels {
   public:
     /// pixels: rows from v = 0 on with 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. NaN becomes 0, and
     /// infinity the largest number of its type. interpolation: that of the textures; coarser levels are means of what
-    /// they show.
+    /// they show. is_filtered: or else there is the first level alone, which look-ups read wherever they are.
     TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint32_t height, int channels, TexelEncoding encoding,
-                  TextureInterpolation interpolation);
+                  TextureInterpolation interpolation, bool is_filtered = true);
     TexturePixels(const TexturePixels&) = delete;
     TexturePixels& operator=(const TexturePixels&) = delete;
     ~TexturePixels() = default;
@@ -115,8 +110,6 @@ class TexturePixels {
     /// halves where the picture has bytes: all texels of even parts of a picture would round in the same direction.
     struct Level {
         std::uint32_t width, height;
-        /// Means of unit vectors are stored as unit vectors, with √(1 - the mean's length) in a fourth channel, which
-        /// bytes resolve well for lengths near 1.
         int channels;
         TexelNumbers pixels;
     };
@@ -151,9 +144,8 @@ class ImageTexture {
     struct Lookup {
         const TexturePixels* pixels;  ///< null: the place is between tiles
         glm::vec2 place;              ///< 0 … 1 over the picture
-        float longest;                ///< longest side of the footprint [texels]
         float level;
-        int probes;      ///< look-ups along that side; 0: the footprint is smaller than a texel
+        int probes;      ///< look-ups along the footprint's longest side; 0: that is shorter than a texel
         glm::vec2 step;  ///< from probe to probe
     };
     Lookup look(const glm::vec2& place, const TextureFootprint& footprint) const;

@@ -13,8 +13,6 @@ from shlight.nodes.inputs import (
 )
 from shlight.nodes.mathematics import sign
 from shlight.nodes.values import (
-    Normal,
-    NormalColor,
     Number,
     Value,
     Varying,
@@ -39,11 +37,9 @@ def choose(condition: Number, if_true: Vector, if_false: Vector) -> Vector:
     return Vector(*(select(condition, a, b) for a, b in zip(if_true, if_false, strict=True)))
 
 
-def normal_map(color: Varying, strength: Number = 1.0, *, space: str = "tangent", tangents: str = "tangents") -> Normal:
-    """The normal that a picture holds as (n + 1) / 2.
+def normal_map(color: Varying, strength: Number = 1.0, *, space: str = "tangent", tangents: str = "tangents") -> Vector:
+    """The normal that a picture holds as (n + 1) / 2; an `image` of normals should not be filtered.
 
-    Of an `image` of normals their spread over the footprint, times the strength's square, widens glossy lobes and dims
-    others (Toksvig 2005, "Mipmapping Normal Maps").
     space: "tangent", "object" or "world".
     tangents: the mesh attribute of the tangent space: per corner the tangent and the bitangent's sign.
     """
@@ -64,9 +60,7 @@ def normal_map(color: Varying, strength: Number = 1.0, *, space: str = "tangent"
     else:
         bent = normalize(normal_to_world(n) if space == "object" else n) * flip
         bent = normalize(normal() + (bent - normal()) * maximum(s, 0.0)) if s.constant != 1.0 else bent
-    bent = choose(operation("equal", length(bent), 0.0), normal(), bent)
-    mean_length = 1.0 - (1.0 - color.alpha) * clamp(s * s) if isinstance(color, NormalColor) else number(1.0)
-    return Normal(bent.x, bent.y, bent.z, mean_length)
+    return choose(operation("equal", length(bent), 0.0), normal(), bent)
 
 
 def bump(

@@ -10,7 +10,6 @@ from shlight.nodes.inputs import geometric_normal, normal, towards_viewer
 from shlight.nodes.shader import Lobe, Shader, emission, lambert, transparent
 from shlight.nodes.values import (
     Color,
-    Normal,
     Number,
     Value,
     Varying,
@@ -65,8 +64,7 @@ def reflecting_normal(n: Vector) -> Vector:
     root = sqrt(b * b - 4.0 * a * c)
     height_squared = clamp(0.25 * (b + select(ix < 0.0, root, -root)) / a)
     turned = x * sqrt(1.0 - height_squared) + up * sqrt(height_squared)
-    bent = [select(reflected_height < least, t, own) for t, own in zip(turned, n, strict=True)]
-    return Normal(bent[0], bent[1], bent[2], n.mean_length if isinstance(n, Normal) else 1.0)
+    return Vector(*(select(reflected_height < least, t, own) for t, own in zip(turned, n, strict=True)))
 
 
 def head_on(ior: Number) -> Value:

@@ -15,7 +15,6 @@ from shlight.nodes.program import ProgramBuilder
 from shlight.nodes.rays import Ray, color_on_ray, on_ray
 from shlight.nodes.values import (
     Color,
-    Normal,
     Number,
     Value,
     Varying,
@@ -25,12 +24,10 @@ from shlight.nodes.values import (
     dot,
     normalize,
     number,
-    sqrt,
 )
 
 BLACK = (0.0, 0.0, 0.0)
 BUMP = math.radians(6.0)
-LEAST_MEAN = 0.5  # length of the mean of normals; less is as rough as can be
 
 
 @dataclass(frozen=True)
@@ -114,7 +111,7 @@ class Shader:
         """Lobes that show."""
         normals: dict[int, Vector] = {}
         found = []
-        for lobe in map(_spread, self.lobes):
+        for lobe in self.lobes:
             weight = color_on_ray(lobe.weight, Ray.CAMERA)
             if weight.constant == BLACK:
                 continue
@@ -188,23 +185,6 @@ def _identity(value: Value | None) -> Any:
     step = value.step
     known_by = tuple((id(a.step), a.output) for a in step.arguments) or id(step)
     return (step.name, id(step.data), known_by, value.output)
-
-
-def _spread(lobe: Lobe) -> Lobe:
-    """A lobe of a normal that stands for many.
-
-    Slopes of variance s² along each axis shorten the mean of the normals to about 1 - s², and give a microfacet lobe
-    alpha² + 2 s² (Toksvig 2005; Olano & Baker 2010, "LEAN Mapping"). What a diffuse lobe reflects is about linear in
-    the normal, so the shorter mean reflects less. A mirror stays one.
-    """
-    if not isinstance(lobe.normal, Normal) or lobe.normal.mean_length.constant == 1.0:
-        return lobe
-    mean_length = clamp(lobe.normal.mean_length, LEAST_MEAN, 1.0)
-    if lobe.alpha is None:
-        return replace(lobe, weight=color(lobe.weight * mean_length))
-    if lobe.alpha.constant == 0.0:
-        return lobe
-    return replace(lobe, alpha=sqrt(lobe.alpha * lobe.alpha + 2.0 * (1.0 - mean_length) / mean_length))
 
 
 def lambert(albedo: Varying, normal: Vector | None = None) -> Shader:

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from shlight import _core, images
 from shlight.nodes.inputs import uv
-from shlight.nodes.values import Color, NormalColor, Vector, below, right, steps
+from shlight.nodes.values import Color, Vector, below, right, steps
 
 INTERPOLATIONS = ("closest", "linear", "cubic")
 EXTENSIONS = ("repeat", "extend", "clip", "mirror")
-ENCODINGS = ("linear", "srgb", "normal")
+ENCODINGS = ("linear", "srgb")
 
 
 def _chosen(name: str, value: str, choices: tuple[str, ...]) -> int:
@@ -28,13 +28,17 @@ def _chosen(name: str, value: str, choices: tuple[str, ...]) -> int:
     return choices.index(value)
 
 
-def texture_pixels(pixels: Any, encoding: str = "linear", interpolation: str = "linear") -> _core.TexturePixels:
+def texture_pixels(
+    pixels: Any, encoding: str = "linear", interpolation: str = "linear", *, filtered: bool = True
+) -> _core.TexturePixels:
     """A picture made ready for lookups: with it, any number of `image` share its memory.
 
     pixels: (height, width) or (height, width, channels), of uint8 or uint16 for 0 … 1, of float16 or other numbers as
         they are, row 0 on top; 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. Or the path of a file.
-    encoding: "linear", "srgb", or "normal" for unit vectors n as (n + 1) / 2, which `normal_map` takes.
+    encoding: "linear" or "srgb".
     interpolation: as `image` will be told; a picture seen from afar has the mean brightness of what it shows.
+    filtered: False for normals, which `normal_map` takes: light is not linear in them, so that a lobe at their mean
+        is not the mean of their lobes. Each camera ray then sees the picture at one point.
     Raises ValueError naming the argument.
     """
     number = _chosen("encoding", encoding, ENCODINGS)
@@ -48,7 +52,7 @@ def texture_pixels(pixels: Any, encoding: str = "linear", interpolation: str = "
         raise ValueError(f"pixels must have shape (height, width) or (height, width, 1, 3 or 4), got {array.shape}")
     if array.dtype not in (np.uint8, np.uint16, np.float16):
         array = array.astype(np.float32)
-    return _core.texture_pixels(np.ascontiguousarray(array[::-1]), number, filtering)
+    return _core.texture_pixels(np.ascontiguousarray(array[::-1]), number, filtering, filtered)
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,12 +80,13 @@ def image(
     interpolation: str = "linear",
     extension: str = "repeat",
     unassociate: bool = False,
+    filtered: bool = True,
 ) -> Color:
     """The colour of a picture, filtered by how far texture coordinates move from camera ray to camera ray.
 
     pixels: as of `texture_pixels`, or what that returns, or a Future of it, or a dict {(u, v): pixels} of pictures
         that cover u … u + 1 and v … v + 1 each (UDIM tiles).
-    encoding: as of `texture_pixels`, also where that has made the pixels.
+    encoding, filtered: as of `texture_pixels`; unused where that has made the pixels.
     interpolation: "linear", "closest" or "cubic" (a B-spline) between texels.
     place: (u, v), (0, 0) at the lower left corner; None: `uv()`.
     unassociate: divide colours by alpha.
@@ -90,13 +95,13 @@ def image(
     filtering = _chosen("interpolation", interpolation, INTERPOLATIONS)
     beyond = _chosen("extension", extension, EXTENSIONS)
     tiled = isinstance(pixels, Mapping)
-    made = (_core.TexturePixels, Future)
-    tiles = [
-        (int(u), int(v), own if isinstance(own, made) else texture_pixels(own, encoding, interpolation))
-        for (u, v), own in (pixels if tiled else {(0, 0): pixels}).items()
-    ]
+
+    def prepared(own: Any) -> Any:
+        is_made = isinstance(own, _core.TexturePixels | Future)
+        return own if is_made else texture_pixels(own, encoding, interpolation, filtered=filtered)
+
+    tiles = [(int(u), int(v), prepared(own)) for (u, v), own in (pixels if tiled else {(0, 0): pixels}).items()]
     texture = ImageLookup(tiles, filtering, beyond, unassociate, tiled)
     where = uv() if place is None else place
     u, v = where.x, where.y
-    kind = NormalColor if encoding == "normal" else Color
-    return kind(*steps("image", u, v, right(u), right(v), below(u), below(v), data=texture))
+    return Color(*steps("image", u, v, right(u), right(v), below(u), below(v), data=texture))

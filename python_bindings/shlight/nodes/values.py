@@ -166,22 +166,6 @@ class Color(Vector):
         return self.x * r + self.y * g + self.z * b
 
 
-class NormalColor(Color):
-    """A filtered picture of unit vectors n as (n + 1) / 2; alpha is the length of their mean over the footprint."""
-
-    __slots__ = ()
-
-
-class Normal(Vector):
-    """A normal that stands for many: mean_length, 0 … 1, is the length of the mean of these."""
-
-    __slots__ = ("mean_length",)
-
-    def __init__(self, x: Number, y: Number, z: Number, mean_length: Number = 1.0) -> None:
-        super().__init__(x, y, z)
-        self.mean_length = number(mean_length)
-
-
 Number: TypeAlias = "Value | float | Vector"
 Varying: TypeAlias = "Value | Vector | float | Sequence[float]"
 
