@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "base/ray_rounding.h"
@@ -217,6 +218,31 @@ TEST(RenderShadows, LightsThatCannotReachCostNoRays) {
     const Image image = render_image(scene, camera_above(1), 8, 8, with_rays(4, 16));
     EXPECT_EQ(image.report.shadow_rays, 0U);
     EXPECT_EQ(image.red(4, 4), 0);
+}
+
+TEST(RenderShadows, ADimLightThatTheHorizonCutsIsNotTakenForHidden) {
+    // Half of what shadow rays are drawn to lies below the horizon; the sky, which is brighter, leaves each light less
+    // than one ray.
+    const std::vector<std::function<void(Scene&)>> lights = {
+        [](Scene& scene) {
+            scene.add_sun_light({1, 0, 0}, 0.2, Rgb(2));
+        },
+        [](Scene& scene) {
+            scene.add_sphere_light({4, 0, 0}, 0.5, Rgb(4));
+        },
+        [](Scene& scene) {
+            scene.add_disk_light({4, 0, 0}, {0, 0, 0.5}, {0, 0.5, 0}, Rgb(4));
+        }};
+    for (const auto& add : lights) {
+        Scene scene;
+        scene.add_mesh(floor_mesh(10));
+        scene.set_environment(Environment(Rgb(0.5F)));
+        add(scene);
+        const Image plain = render_image(scene, camera_above(1), kSize, kSize, with_rays(4, 0));
+        const Image shadowed = render_image(scene, camera_above(1), kSize, kSize, with_rays(4, 16));
+        EXPECT_GT(plain.red(0, 0), 0.2501);
+        EXPECT_EQ(plain.values, shadowed.values);
+    }
 }
 
 TEST(RenderShadows, ALargeMeshFarFromItsOriginKeepsItsPrecision) {

@@ -14,7 +14,8 @@ static_assert(kRaysAtOnce % kLightPointLanes == 0 && kRaysAtOnce % kLobeRayLanes
 /// Only a lobe of whose reflected directions more than this share could meet the light takes rays of its own.
 constexpr double kLeastShare = 0.1;
 
-/// Further points that are tried where the given ones find no face.
+/// Further points that are tried where none of the given ones shines on the hit, as one below its horizon does not: the
+/// hit would have no ray, from which nothing is known of what blocks the light.
 constexpr int kMostDraws = 16;
 /// Steps that spread points evenly (the powers of the inverse of the plastic number, Roberts 2018).
 const glm::dvec2 kEvenSteps(0.7548776662466927, 0.5698402909980532);
@@ -80,17 +81,20 @@ double LightTarget::solid_angle() const {
 }
 
 void LightTarget::draw(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) {
-    if (has_faces_) {
-        draw_faces(u, v, count, rays);
+    if (rectangle_ != nullptr) {
+        draw_rectangle(u, v, count, rays);
         return;
     }
-    if (rectangle_ == nullptr) {
-        for (std::uint32_t i = 0; i < count; ++i) {
-            const LightSample sample = sampler_.sample({u[i], v[i]});
-            push(sample.direction, sample.distance, sample.weight, rays);
-        }
-        return;
+    const std::size_t before = rays.size();
+    for (std::uint32_t i = 0; i < count; ++i) {
+        draw_point({u[i], v[i]}, rays);
     }
+    for (int i = 1; i <= kMostDraws && rays.size() == before; ++i) {
+        draw_point(glm::fract(glm::dvec2(u[0], v[0]) + static_cast<double>(i) * kEvenSteps), rays);
+    }
+}
+
+void LightTarget::draw_rectangle(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) {
     PointBuffer buffer;
     for (std::uint32_t first = 0; first < count; first += kRaysAtOnce) {
         const std::uint32_t some = std::min(count - first, kRaysAtOnce);
@@ -99,16 +103,12 @@ void LightTarget::draw(const float* u, const float* v, std::uint32_t count, Draw
     }
 }
 
-/// If no point belongs to a face that shines on the hit, others are tried: a hit without any ray would count as one
-/// that sees the whole light.
-void LightTarget::draw_faces(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) {
-    const std::size_t before = rays.size();
-    for (std::uint32_t i = 0; i < count; ++i) {
-        push(face_sampler_.sample({u[i], v[i]}), rays);
-    }
-    for (int i = 1; i <= kMostDraws && rays.size() == before; ++i) {
-        const glm::dvec2 point(u[0], v[0]);
-        push(face_sampler_.sample(glm::fract(point + static_cast<double>(i) * kEvenSteps)), rays);
+void LightTarget::draw_point(const glm::dvec2& point, DrawnRays& rays) {
+    if (has_faces_) {
+        push(face_sampler_.sample(point), rays);
+    } else {
+        const LightSample sample = sampler_.sample(point);
+        push(sample.direction, sample.distance, sample.weight, rays);
     }
 }
 

@@ -100,7 +100,8 @@ class LightTarget : public ShadowTarget {
 
   private:
     double solid_angle() const;
-    void draw_faces(const float* u, const float* v, std::uint32_t count, DrawnRays& rays);
+    void draw_rectangle(const float* u, const float* v, std::uint32_t count, DrawnRays& rays);
+    void draw_point(const glm::dvec2& point, DrawnRays& rays);
     void push(const Vec3d& direction, double distance, double weight, DrawnRays& rays) const;
     void push(const std::optional<FaceSample>& sample, DrawnRays& rays) const;
     void push(const LightPointArrays& points, std::uint32_t count, DrawnRays& rays) const;
