@@ -14,6 +14,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "shaders/shown_rows.h"
 #include "shaders/srgb.h"
@@ -366,6 +367,16 @@ glm::vec4 ImageTexture::finished(const glm::vec4& stored, TexelEncoding encoding
     return decoded(color, encoding);
 }
 
+/// Along which axes the picture is not constant over a footprint, as 1 or 0. Beyond an edge that is extended only the
+/// outermost texels are seen, which coarser levels have mixed with those further in.
+glm::vec2 ImageTexture::varies_along(const glm::vec2& place, const TextureFootprint& footprint) const {
+    if (extension_ != TextureExtension::extend) {
+        return glm::vec2(1);
+    }
+    const glm::vec2 half = 0.5F * (glm::abs(footprint.right) + glm::abs(footprint.below));
+    return glm::vec2(glm::lessThanEqual(glm::abs(place - 0.5F), 0.5F + half));
+}
+
 ImageTexture::Lookup ImageTexture::look(const glm::vec2& place, const TextureFootprint& footprint) const {
     const Tile* tile = &tiles_.front();
     glm::vec2 inside = place;
@@ -386,8 +397,9 @@ ImageTexture::Lookup ImageTexture::look(const glm::vec2& place, const TextureFoo
     if (!(std::abs(texels.x) < kFarthest && std::abs(texels.y) < kFarthest)) {
         inside = glm::vec2(0);
     }
-    glm::vec2 along = footprint.right * size;
-    glm::vec2 across = footprint.below * size;
+    const glm::vec2 varies = varies_along(inside, footprint);
+    glm::vec2 along = footprint.right * size * varies;
+    glm::vec2 across = footprint.below * size * varies;
     if (glm::dot(along, along) < glm::dot(across, across)) {
         std::swap(along, across);
     }

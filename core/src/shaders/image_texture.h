@@ -157,6 +157,7 @@ class ImageTexture {
 
   private:
     class Reader;
+    glm::vec2 varies_along(const glm::vec2& place, const TextureFootprint& footprint) const;
     glm::vec4 finished(const glm::vec4& stored, TexelEncoding encoding) const;
 
     std::vector<Tile> tiles_;
