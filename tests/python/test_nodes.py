@@ -112,6 +112,27 @@ def test_light_that_passes_through() -> None:
     )
 
 
+def test_a_cut_out_picture_is_as_bright_from_afar() -> None:
+    """Leaves whose picture is black where there is no leaf."""
+    is_leaf = np.random.default_rng(4).uniform(size=(64, 64, 1)) < 0.25
+    picture = nodes.image(np.repeat(is_leaf, 4, axis=2).astype(np.uint8) * 255, interpolation="closest")
+    leaves = nodes.mix(nodes.transparent(), nodes.lambert(picture), picture.alpha)
+
+    def mean_of(bsdf: Any) -> Any:
+        scene = shlight.Scene()
+        square = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]
+        uvs = [[0, 0], [4, 0], [4, 4], [0, 4]]
+        scene.add_mesh(square, [[0, 1, 2], [0, 2, 3]], uvs=uvs, bsdf=bsdf)
+        scene.add_sphere_light((0, 0, 9), 0.3, (5, 5, 5))
+        pose = np.eye(4)
+        pose[2, 3] = 2
+        scene.set_camera(pose, 0.8)
+        return shlight.render(scene, 16, 16, pixel_samples=16, max_samples=16, noise_threshold=0).mean(axis=(0, 1))
+
+    # A quarter of 4096 rays see a leaf: their number has a standard deviation of 2.7 %.
+    np.testing.assert_allclose(mean_of(leaves), 0.25 * mean_of(nodes.lambert(1.0)), rtol=0.08)
+
+
 @pytest.mark.parametrize("extension", ["repeat", "extend", "clip", "mirror"])
 def test_a_picture_far_away_is_its_mean(extension: str) -> None:
     pixels = np.random.default_rng(2).uniform(0, 1, (13, 21, 3)).astype(np.float32)
@@ -128,6 +149,17 @@ def test_a_picture_far_away_is_its_mean(extension: str) -> None:
     rows = pixels[::-1]
     expected = 0.25 * rows[6, 3] + 0.75 * rows[6, 4]
     np.testing.assert_allclose(found[:3], expected, rtol=1e-5)
+
+
+@pytest.mark.parametrize("texels", [2, 5, 11])
+def test_beyond_an_extended_edge_a_picture_is_that_edge_from_afar(texels: int) -> None:
+    size = 32
+    pixels = np.ones((size, size, 1), np.float32)
+    pixels[:, -1], pixels[-1] = 0.25, 0.5  # the edges u = 1 and v = 0
+    texture = nodes.image(pixels, extension="extend").x.step.data.core
+    footprint = (texels / size, 0.1 / size, 0.0, texels / size)
+    for place, edge in (((1.4, 0.5), 0.25), ((0.5, -0.4), 0.5), ((2.5, -1.4), 0.5)):
+        np.testing.assert_allclose(texture.sample(*place, footprint)[:3], edge, rtol=1e-5)
 
 
 @pytest.mark.parametrize("interpolation", ["closest", "linear", "cubic"])

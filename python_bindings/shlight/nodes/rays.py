@@ -29,18 +29,24 @@ def shadow_ray() -> Value:
     return _kind(Ray.SHADOW)
 
 
-def on_ray(values: Iterable[Value], kind: Ray) -> list[Value]:
-    """Expressions as a ray of this kind finds them."""
+def on_ray(values: Iterable[Value], kind: Ray, *, filtered: bool = True) -> list[Value]:
+    """Expressions as a ray of this kind finds them. filtered: as the pictures in them are."""
     wanted = list(values)
     found: dict[int, tuple[Value, ...] | None] = {}  # by id of a step: its results, None where nothing changes
     for step in in_order(value.step for value in wanted):
-        found[id(step)] = _rebuilt(step, found, kind)
+        own = _rebuilt(step, found, kind)
+        found[id(step)] = own if filtered or step.name != "image" else _at_the_place(step, own)
     return [_result(value, found) for value in wanted]
 
 
-def color_on_ray(color: Color, kind: Ray) -> Color:
-    """A colour as a ray of this kind finds it."""
-    return Color(*on_ray((*color, color.alpha), kind))
+def color_on_ray(color: Color, kind: Ray, *, filtered: bool = True) -> Color:
+    """A colour as a ray of this kind finds it; see on_ray."""
+    return Color(*on_ray((*color, color.alpha), kind, filtered=filtered))
+
+
+def shows_pictures(values: Iterable[Value]) -> bool:
+    """Whether a picture is part of expressions."""
+    return any(step.name == "image" for step in in_order(value.step for value in values))
 
 
 def _result(value: Value, found: dict[int, tuple[Value, ...] | None]) -> Value:
@@ -59,3 +65,9 @@ def _rebuilt(step: Step, found: dict[int, tuple[Value, ...] | None], kind: Ray) 
     if step.name in ("add", "subtract", "multiply"):
         return (arithmetic(step.name, *arguments),)
     return steps(step.name, *arguments, data=step.data)
+
+
+def _at_the_place(image: Step, rebuilt: tuple[Value, ...] | None) -> tuple[Value, ...]:
+    """A picture that is looked up with no footprint. rebuilt: the results of the step that takes its place, if any."""
+    u, v = (image if rebuilt is None else rebuilt[0].step).arguments[:2]
+    return steps("image", u, v, 0.0, 0.0, 0.0, 0.0, data=image.data)

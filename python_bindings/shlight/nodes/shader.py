@@ -12,7 +12,7 @@ from typing import Any, Literal, NamedTuple
 from shlight import _core
 from shlight.nodes.inputs import normal as smooth_normal
 from shlight.nodes.program import ProgramBuilder
-from shlight.nodes.rays import Ray, color_on_ray, on_ray
+from shlight.nodes.rays import Ray, color_on_ray, on_ray, shows_pictures
 from shlight.nodes.values import (
     Color,
     Number,
@@ -107,12 +107,19 @@ class Shader:
         """How many operations the core runs for each hit."""
         return self._program.operation_count
 
+    @cached_property
+    def _is_filtered(self) -> bool:
+        """Whether pictures are filtered. Where one decides what is seen at all they are not: the mean of its colours,
+        of which most may belong to what is not seen, says nothing of those that are.
+        """
+        return not shows_pictures(color_on_ray(self.transparency, Ray.CAMERA))
+
     def _lobes_for_camera(self) -> list[Lobe]:
         """Lobes that show."""
         normals: dict[int, Vector] = {}
         found = []
         for lobe in self.lobes:
-            weight = color_on_ray(lobe.weight, Ray.CAMERA)
+            weight = color_on_ray(lobe.weight, Ray.CAMERA, filtered=self._is_filtered)
             if weight.constant == BLACK:
                 continue
             normal = lobe.normal
@@ -134,15 +141,17 @@ class Shader:
                 normals[id(lobe.normal)] = builder.result(tuple(lobe.normal))
             normal = None if lobe.normal is None else normals[id(lobe.normal)]
             lobes.append((lobe.kind, lobe.ior, weight, alpha, normal, lobe.several_bounces))
-        glow = color_on_ray(self.emission, Ray.CAMERA)
-        seen, lit = (color_on_ray(self.transparency, kind) for kind in (Ray.CAMERA, Ray.SHADOW))
+        glow, seen = (
+            color_on_ray(own, Ray.CAMERA, filtered=self._is_filtered) for own in (self.emission, self.transparency)
+        )
+        lit = color_on_ray(self.transparency, Ray.SHADOW)
         glow_result = None if glow.constant == BLACK else builder.result(tuple(glow))
         is_opaque = seen.constant == lit.constant == BLACK
         through = None if is_opaque else builder.result(tuple(seen))
         aovs = []
         for name, value in self.aovs.items():
             parts = [value] if isinstance(value, Value) else list(value)
-            aovs.append((name, builder.result(list(on_ray(parts, Ray.CAMERA))), len(parts) == 3))
+            aovs.append((name, builder.result(on_ray(parts, Ray.CAMERA, filtered=self._is_filtered)), len(parts) == 3))
         shadows = ProgramBuilder(builder.attributes)
         shadows.result(tuple(lit))
         return _Listed(builder, shadows, lobes, glow_result, through, aovs)
