@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "emitters/emitter_levels.h"
-#include "emitters/face_radiance.h"
+#include "emitters/face_tree.h"
 #include "environment/environment_map.h"
 #include "render_scenes.h"
 #include "shlight/parallel.h"
@@ -179,7 +179,7 @@ TEST(RenderParallel, BuildingEmittersAndEnvironmentsCanBeStopped) {
     }
     const std::vector<std::function<void(const Stopped&)>> builds = {
         [&](const Stopped& stopped) { make_emitter_levels(vertices, triangles, 64, stopped); },
-        [&](const Stopped& stopped) { FaceRadiance(vertices, triangles, radiance, false, false, stopped); },
+        [&](const Stopped& stopped) { FaceTree(vertices, triangles, radiance, false, false, stopped); },
         [&](const Stopped& stopped) { EnvironmentMap(picture, stopped); }};
     for (const auto& build : builds) {
         std::atomic<int> asked = 0;

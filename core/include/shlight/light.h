@@ -84,13 +84,13 @@ struct ParallelSource {
 };
 
 struct EmitterLevels;
-class FaceRadiance;
+class FaceTree;
 
 /// The emissive faces of a mesh with many of them.
 struct MeshLight {
     std::shared_ptr<const EmitterLevels> shape;
-    Rgb radiance;                               ///< mean over the area
-    std::shared_ptr<const FaceRadiance> faces;  ///< null: its outline stands for it
+    Rgb radiance;                           ///< mean over the area
+    std::shared_ptr<const FaceTree> faces;  ///< null: its outline stands for it
     // shines_at() finds the light's faces among those that rays meet.
     std::uint32_t instance;  ///< RayHit::instance
     std::shared_ptr<const SceneMesh> mesh;

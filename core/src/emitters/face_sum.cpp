@@ -61,7 +61,7 @@ FaceSum::Part FaceSum::weigh(std::uint32_t node, const PartView& seen) {
 
 void FaceSum::open(std::uint32_t node) {
     const FacePart& part = faces_->nodes_[node].part;
-    const bool is_leaf = faces_->nodes_[node].first_child == FaceRadiance::kLeaf;
+    const bool is_leaf = faces_->nodes_[node].first_child == FaceTree::kLeaf;
     const PartView seen(part, *frame_, front_only_, is_leaf);
     if (seen.hidden) {
         return;
@@ -92,8 +92,8 @@ void FaceSum::refine(std::vector<NearFace>& near, double tolerance, double absol
         cut_.pop_back();
         light_ -= part.value * part.light;
         squares_ -= part.error * part.error;
-        const FaceRadiance::Node& node = faces_->nodes_[part.node];
-        if (node.first_child == FaceRadiance::kLeaf) {
+        const FaceTree::Node& node = faces_->nodes_[part.node];
+        if (node.first_child == FaceTree::kLeaf) {
             near_light += part.value * part.light;
             add_near(faces_->faces_[node.face], near);
         } else {
@@ -103,7 +103,7 @@ void FaceSum::refine(std::vector<NearFace>& near, double tolerance, double absol
     }
 }
 
-void FaceSum::add_near(const FaceRadiance::Face& face, std::vector<NearFace>& near) const {
+void FaceSum::add_near(const FaceTree::Face& face, std::vector<NearFace>& near) const {
     const double height = -glm::dot(glm::cross(face.b - face.a, face.c - face.a), face.a - frame_->origin);
     const std::array<Vec3d, 3> corners = {frame_->point_to_local(face.a), frame_->point_to_local(face.b),
                                           frame_->point_to_local(face.c)};
@@ -113,7 +113,7 @@ void FaceSum::add_near(const FaceRadiance::Face& face, std::vector<NearFace>& ne
     }
 }
 
-void FaceSum::add_up(const FaceRadiance& faces, const Vec3d& view, const ShadingFrame& frame, bool front_only,
+void FaceSum::add_up(const FaceTree& faces, const Vec3d& view, const ShadingFrame& frame, bool front_only,
                      double tolerance, double absolute, std::span<SummedLobe> lobes, std::vector<NearFace>& near) {
     faces_ = &faces;
     frame_ = &frame;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/shading_frame.h"
-#include "emitters/face_radiance.h"
+#include "emitters/face_tree.h"
 #include "shlight/lobe_shape.h"
 #include "shlight/types.h"
 
@@ -33,10 +33,10 @@ struct NearFace {
 class FaceSum {
   public:
     /// Sets the lobes' light. view: the viewer's direction in the frame. front_only: see
-    /// FaceRadiance::shows_front_only. tolerance: error of the weighted sum over the lobes ÷ that sum; absolute: of the
+    /// FaceTree::shows_front_only. tolerance: error of the weighted sum over the lobes ÷ that sum; absolute: of the
     /// sum, if that is more. Faces that are too near are appended to `near`, and are missing in the light.
-    void add_up(const FaceRadiance& faces, const Vec3d& view, const ShadingFrame& frame, bool front_only,
-                double tolerance, double absolute, std::span<SummedLobe> lobes, std::vector<NearFace>& near);
+    void add_up(const FaceTree& faces, const Vec3d& view, const ShadingFrame& frame, bool front_only, double tolerance,
+                double absolute, std::span<SummedLobe> lobes, std::vector<NearFace>& near);
 
   private:
     struct Part {
@@ -52,9 +52,9 @@ class FaceSum {
     /// The largest value of f·cos that a part may meet, about.
     double most_value(const SummedLobe& lobe, const Vec3d& direction, double width, double value) const;
     void refine(std::vector<NearFace>& near, double tolerance, double absolute);
-    void add_near(const FaceRadiance::Face& face, std::vector<NearFace>& near) const;
+    void add_near(const FaceTree::Face& face, std::vector<NearFace>& near) const;
 
-    const FaceRadiance* faces_ = nullptr;
+    const FaceTree* faces_ = nullptr;
     const ShadingFrame* frame_ = nullptr;
     std::span<SummedLobe> lobes_;
     Vec3d view_{0};

@@ -5,7 +5,7 @@
 
 namespace shlight {
 
-void FaceShading::shade(const FaceRadiance& faces, const ShadingPoints& points, std::span<const std::uint32_t> some,
+void FaceShading::shade(const FaceTree& faces, const ShadingPoints& points, std::span<const std::uint32_t> some,
                         MaterialViews& views, double tolerance, double unit_tolerance, std::span<Rgb> radiance) {
     near_.clear();
     near_view_.clear();
@@ -25,7 +25,7 @@ void FaceShading::shade(const FaceRadiance& faces, const ShadingPoints& points, 
     }
 }
 
-void FaceShading::shade(const FaceRadiance& faces, const ShadingPoints& points, std::uint32_t point, std::uint32_t view,
+void FaceShading::shade(const FaceTree& faces, const ShadingPoints& points, std::uint32_t point, std::uint32_t view,
                         MaterialViews& views, double tolerance, double scale, std::span<Rgb> radiance) {
     const ShadingFrame& frame = points.frame[point];
     const Vec3d start = faces.above(frame, points.error[point]);

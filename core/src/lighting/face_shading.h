@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "emitters/face_radiance.h"
 #include "emitters/face_sum.h"
+#include "emitters/face_tree.h"
 #include "lighting/lobe_integrator.h"
 #include "lighting/local_lights.h"
 #include "lighting/shading_points.h"
@@ -22,11 +22,11 @@ class FaceShading {
   public:
     /// Sets radiance[lobe · points + point], which lobes reflect if nothing blocks, at some[view] for each view.
     /// tolerance: relative to the sum over the lobes of a point; unit_tolerance: as of the views.
-    void shade(const FaceRadiance& faces, const ShadingPoints& points, std::span<const std::uint32_t> some,
+    void shade(const FaceTree& faces, const ShadingPoints& points, std::span<const std::uint32_t> some,
                MaterialViews& views, double tolerance, double unit_tolerance, std::span<Rgb> radiance);
 
   private:
-    void shade(const FaceRadiance& faces, const ShadingPoints& points, std::uint32_t point, std::uint32_t view,
+    void shade(const FaceTree& faces, const ShadingPoints& points, std::uint32_t point, std::uint32_t view,
                MaterialViews& views, double tolerance, double scale, std::span<Rgb> radiance);
     /// Adds near_ to the radiance of a lobe at some[view].
     void add_near(LobeViews& lobe, std::span<const std::uint32_t> some, double tolerance, std::span<Rgb> radiance);

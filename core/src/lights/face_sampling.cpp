@@ -15,7 +15,7 @@ constexpr double kNearFace = 3;
 
 }  // namespace
 
-void FaceSampler::reset(const FaceRadiance& faces, const ShadingFrame& frame, double error) {
+void FaceSampler::reset(const FaceTree& faces, const ShadingFrame& frame, double error) {
     faces_ = &faces;
     frame_ = frame;
     start_ = faces.above(frame, error);
@@ -26,9 +26,9 @@ void FaceSampler::reset(const FaceRadiance& faces, const ShadingFrame& frame, do
                                                             : 2 * std::numbers::pi;
 }
 
-double FaceSampler::importance(const FaceRadiance::Node& node) const {
+double FaceSampler::importance(const FaceTree::Node& node) const {
     const FacePart& part = node.part;
-    const PartView seen(part, frame_, front_only_, node.first_child == FaceRadiance::kLeaf);
+    const PartView seen(part, frame_, front_only_, node.first_child == FaceTree::kLeaf);
     if (seen.hidden) {
         return 0;
     }
@@ -48,7 +48,7 @@ std::optional<FaceSample> FaceSampler::sample(const glm::dvec2& point) {
     double place = point.x;
     double probability = 1;
     std::uint32_t node = 0;
-    while (faces_->nodes_[node].first_child != FaceRadiance::kLeaf) {
+    while (faces_->nodes_[node].first_child != FaceTree::kLeaf) {
         node = faces_->nodes_[node].first_child;
         const double share = share_of_first(node);
         if (share < 0) {
@@ -63,7 +63,7 @@ std::optional<FaceSample> FaceSampler::sample(const glm::dvec2& point) {
             ++node;
         }
     }
-    const FaceRadiance::Face& face = faces_->faces_[faces_->nodes_[node].face];
+    const FaceTree::Face& face = faces_->faces_[faces_->nodes_[node].face];
     const auto [way, over_face] = way_to(face, {place, point.y});
     const double density = probability * over_face;
     const Vec3d direction = frame_.to_local(glm::normalize(way));
@@ -76,7 +76,7 @@ std::optional<FaceSample> FaceSampler::sample(const glm::dvec2& point) {
 
 std::optional<FaceSample> FaceSampler::meets(const Vec3d& direction) {
     const Vec3d world = frame_.to_world(direction);
-    const FaceRadiance::Face* face = faces_->face_at(start_, world);
+    const FaceTree::Face* face = faces_->face_at(start_, world);
     if (face == nullptr || !(direction.z > 0)) {
         return std::nullopt;
     }
@@ -101,7 +101,7 @@ double FaceSampler::probability(std::uint32_t leaf) const {
     for (std::uint32_t first = 0; last - first > 1;) {
         node = faces_->nodes_[node].first_child;
         const double share = share_of_first(node);
-        const std::uint32_t middle = FaceRadiance::middle_of(first, last);
+        const std::uint32_t middle = FaceTree::middle_of(first, last);
         if (leaf < middle) {
             last = middle;
             probability *= std::max(share, 0.0);
@@ -114,7 +114,7 @@ double FaceSampler::probability(std::uint32_t leaf) const {
     return probability;
 }
 
-bool FaceSampler::is_near(const FaceRadiance::Face& face) const {
+bool FaceSampler::is_near(const FaceTree::Face& face) const {
     const Vec3d middle = (face.a + face.b + face.c) / 3.0;
     const Vec3d way = middle - frame_.origin;
     double radius = 0;
@@ -124,13 +124,13 @@ bool FaceSampler::is_near(const FaceRadiance::Face& face) const {
     return glm::length(way) < kNearFace * radius || glm::dot(frame_.z, way) < radius;
 }
 
-void FaceSampler::look_at(const FaceRadiance::Face& face) {
+void FaceSampler::look_at(const FaceTree::Face& face) {
     const std::array<Vec3d, 3> corners = {frame_.point_to_local(face.a), frame_.point_to_local(face.b),
                                           frame_.point_to_local(face.c)};
     polygon_.reset(corners, glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0])));
 }
 
-std::pair<Vec3d, double> FaceSampler::way_to(const FaceRadiance::Face& face, const glm::dvec2& point) {
+std::pair<Vec3d, double> FaceSampler::way_to(const FaceTree::Face& face, const glm::dvec2& point) {
     if (is_near(face)) {
         look_at(face);
         const LightSample drawn = polygon_.sample(point);
@@ -142,7 +142,7 @@ std::pair<Vec3d, double> FaceSampler::way_to(const FaceRadiance::Face& face, con
     return {way, density_over(face, way)};
 }
 
-double FaceSampler::density_over(const FaceRadiance::Face& face, const Vec3d& way) const {
+double FaceSampler::density_over(const FaceTree::Face& face, const Vec3d& way) const {
     // The area times the cosine at the face times the distance.
     const double facing = -0.5 * glm::dot(glm::cross(face.b - face.a, face.c - face.a), way);
     const double shown = front_only_ ? facing : std::abs(facing);

@@ -10,7 +10,7 @@
 #include <glm/vec2.hpp>
 
 #include "base/shading_frame.h"
-#include "emitters/face_radiance.h"
+#include "emitters/face_tree.h"
 #include "lights/polygon_sampling.h"
 #include "shlight/types.h"
 
@@ -29,7 +29,7 @@ struct FaceSample {
 class FaceSampler {
   public:
     /// error: of the hit's position.
-    void reset(const FaceRadiance& faces, const ShadingFrame& frame, double error);
+    void reset(const FaceTree& faces, const ShadingFrame& frame, double error);
     /// Nothing if the face that a point of the unit square belongs to is seen edge-on or from behind.
     std::optional<FaceSample> sample(const glm::dvec2& point);
     /// The first face in a direction, if it shines on the hit.
@@ -39,22 +39,22 @@ class FaceSampler {
 
   private:
     /// An estimate of what a node brings; it is 0 only if that is nothing.
-    double importance(const FaceRadiance::Node& node) const;
+    double importance(const FaceTree::Node& node) const;
     /// The share of the first of two children that are neighbours.
     double share_of_first(std::uint32_t first_child) const;
     /// The probability of the face at this place of the tree.
     double probability(std::uint32_t leaf) const;
     /// Whether distances and angles differ over a face, so that it is drawn evenly over its solid angle above the
     /// horizon; others are drawn evenly over their area.
-    bool is_near(const FaceRadiance::Face& face) const;
+    bool is_near(const FaceTree::Face& face) const;
     /// Lets polygon_ be a near face.
-    void look_at(const FaceRadiance::Face& face);
+    void look_at(const FaceTree::Face& face);
     /// A way to a face from a point of the unit square, and its density per solid angle; 0 where it does not shine.
-    std::pair<Vec3d, double> way_to(const FaceRadiance::Face& face, const glm::dvec2& point);
+    std::pair<Vec3d, double> way_to(const FaceTree::Face& face, const glm::dvec2& point);
     /// Density of a way to a point of a face that is drawn evenly over its area; 0 where it does not shine.
-    double density_over(const FaceRadiance::Face& face, const Vec3d& way) const;
+    double density_over(const FaceTree::Face& face, const Vec3d& way) const;
 
-    const FaceRadiance* faces_ = nullptr;
+    const FaceTree* faces_ = nullptr;
     ShadingFrame frame_{};
     Vec3d start_{0};  // of rays that look for faces
     bool front_only_ = false;

@@ -10,7 +10,7 @@
 #include "base/scene_range.h"
 #include "base/transforms.h"
 #include "emitters/emitter_levels.h"
-#include "emitters/face_radiance.h"
+#include "emitters/face_tree.h"
 #include "shlight/mesh_light.h"
 
 namespace shlight {
@@ -145,14 +145,14 @@ void add_mesh_light(MeshLight light, std::span<const Vec3d> vertices, std::span<
     const bool is_even = std::ranges::all_of(radiance, [&](const Rgb& color) { return color == radiance.front(); });
     if (!is_even) {
         const std::vector<Triangle> outwards = levels.turned ? turned(triangles) : std::vector<Triangle>();
-        light.faces = std::make_shared<const FaceRadiance>(vertices, levels.turned ? outwards : triangles, radiance,
-                                                           levels.closed, levels.one_sided, stopped);
+        light.faces = std::make_shared<const FaceTree>(vertices, levels.turned ? outwards : triangles, radiance,
+                                                       levels.closed, levels.one_sided, stopped);
         light.radiance = light.faces->mean();
     } else if (!levels.convex) {
         const EmitterLevel& finest = levels.levels.front();
         const std::vector<Rgb> even(finest.faces.size(), radiance.front());
-        light.faces = std::make_shared<const FaceRadiance>(finest.vertices, finest.faces, even, levels.closed,
-                                                           levels.one_sided, stopped);
+        light.faces = std::make_shared<const FaceTree>(finest.vertices, finest.faces, even, levels.closed,
+                                                       levels.one_sided, stopped);
     }
     light.shape = std::make_shared<const EmitterLevels>(std::move(levels));
     lights.emplace_back(std::move(light));

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "base/perpendicular.h"
-#include "emitters/face_radiance.h"
 #include "emitters/face_sum.h"
+#include "emitters/face_tree.h"
 #include "lights/face_sampling.h"
 #include "random_input.h"
 #include "shlight/lobe_shape.h"
@@ -29,7 +29,7 @@ struct Emitter {
     std::vector<Rgb> radiance;
     bool closed;
 
-    FaceRadiance faces() const { return {solid.vertices, solid.triangles, radiance, closed, false}; }
+    FaceTree faces() const { return {solid.vertices, solid.triangles, radiance, closed, false}; }
 };
 
 Emitter emitter(Solid solid, bool closed, RandomInput& random) {
@@ -119,7 +119,7 @@ TEST(FaceSum, IsTheSumOverAllFacesWithinItsTolerance) {
     FaceSum sum;
     const std::vector<Emitter> all = emitters();
     for (std::size_t e = 0; e < all.size(); ++e) {
-        const FaceRadiance faces = all[e].faces();
+        const FaceTree faces = all[e].faces();
         for (const double tolerance : {0.03, 0.003}) {
             double squares = 0;
             int count = 0;
@@ -152,7 +152,7 @@ TEST(FaceSampler, BringsTheSumOverAllFaces) {
     RandomInput random(6);
     const std::vector<Emitter> all = emitters();
     for (std::size_t e = 0; e < all.size(); ++e) {
-        const FaceRadiance faces = all[e].faces();
+        const FaceTree faces = all[e].faces();
         for (int i = 0; i < 8; ++i) {
             const View view = random_view(random);
             FaceSampler sampler;
@@ -187,13 +187,13 @@ TEST(FaceSampler, BringsTheSumOverAllFaces) {
     }
 }
 
-TEST(FaceRadiance, ShowsItsInnerSideWithinAClosedSurfaceUnlessThatIsDark) {
+TEST(FaceTree, ShowsItsInnerSideWithinAClosedSurfaceUnlessThatIsDark) {
     for (const Emitter& emitter : emitters()) {
-        const FaceRadiance faces = emitter.faces();
+        const FaceTree faces = emitter.faces();
         EXPECT_EQ(faces.shows_front_only({0.9, 0.02, 0.01}), false);
         EXPECT_EQ(faces.shows_front_only({1.5, 0.02, 0.01}), emitter.closed);
-        const FaceRadiance one_sided(emitter.solid.vertices, emitter.solid.triangles, emitter.radiance, emitter.closed,
-                                     true);
+        const FaceTree one_sided(emitter.solid.vertices, emitter.solid.triangles, emitter.radiance, emitter.closed,
+                                 true);
         EXPECT_EQ(one_sided.shows_front_only({0.9, 0.02, 0.01}), true);
     }
 }

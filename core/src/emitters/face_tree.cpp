@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "emitters/face_radiance.h"
+#include "emitters/face_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +30,8 @@ PartView::PartView(const FacePart& part, const ShadingFrame& frame, bool front_o
     unclear = std::min(1.0, turn) * length + part.unlike * part.area;
 }
 
-FaceRadiance::FaceRadiance(std::span<const Vec3d> vertices, std::span<const Triangle> triangles,
-                           std::span<const Rgb> radiance, bool closed, bool one_sided, const Stopped& stopped)
+FaceTree::FaceTree(std::span<const Vec3d> vertices, std::span<const Triangle> triangles, std::span<const Rgb> radiance,
+                   bool closed, bool one_sided, const Stopped& stopped)
     : closed_(closed), one_sided_(one_sided) {
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
         const Triangle& t = triangles[i];
@@ -50,7 +50,7 @@ FaceRadiance::FaceRadiance(std::span<const Vec3d> vertices, std::span<const Tria
 }
 
 /// Halves the faces along their longest extent.
-void FaceRadiance::build(std::uint32_t node, std::uint32_t first, std::uint32_t last, const Stopped& stopped) {
+void FaceTree::build(std::uint32_t node, std::uint32_t first, std::uint32_t last, const Stopped& stopped) {
     if (last - first >= kFacesBetweenStops) {
         end_if(stopped);
     }
@@ -94,7 +94,7 @@ void FaceRadiance::build(std::uint32_t node, std::uint32_t first, std::uint32_t 
     nodes_[node] = made;
 }
 
-void FaceRadiance::find_variation(std::uint32_t first, std::uint32_t last, FacePart& part) const {
+void FaceTree::find_variation(std::uint32_t first, std::uint32_t last, FacePart& part) const {
     if (!(part.area > 0)) {
         return;
     }
@@ -118,28 +118,28 @@ void FaceRadiance::find_variation(std::uint32_t first, std::uint32_t last, FaceP
     part.brightness = std::hypot(largest_channel(part.radiance), part.deviation);
 }
 
-bool FaceRadiance::is_front(const Face& face, const Vec3d& direction) {
+bool FaceTree::is_front(const Face& face, const Vec3d& direction) {
     return glm::dot(glm::cross(face.b - face.a, face.c - face.a), direction) < 0;
 }
 
-const FaceRadiance::Face* FaceRadiance::face_at(const Vec3d& point, const Vec3d& direction) const {
+const FaceTree::Face* FaceTree::face_at(const Vec3d& point, const Vec3d& direction) const {
     const Ray ray = {Vec3f(point), 0, Vec3f(direction)};
     RayHit met;
     rays_->intersect({&ray, 1}, {&met, 1});
     return met.missed() ? nullptr : &faces_[leaf_of_[met.triangle]];
 }
 
-Rgb FaceRadiance::from(const Vec3d& point, const Vec3d& direction) const {
+Rgb FaceTree::from(const Vec3d& point, const Vec3d& direction) const {
     const Face* face = face_at(point, direction);
     const bool shines = face != nullptr && (is_front(*face, direction) || !shows_front_only(point));
     return shines ? face->radiance : Rgb(0);
 }
 
-Vec3d FaceRadiance::above(const ShadingFrame& frame, double error) const {
+Vec3d FaceTree::above(const ShadingFrame& frame, double error) const {
     return frame.origin + (error + kAboveMesh * radius()) * frame.z;
 }
 
-bool FaceRadiance::shows_front_only(const Vec3d& point) const {
+bool FaceTree::shows_front_only(const Vec3d& point) const {
     if (one_sided_ || !closed_ || glm::length(point - center()) >= radius()) {
         return one_sided_ || closed_;
     }

@@ -57,12 +57,12 @@ struct PartView {
 };
 
 /// Immutable; any number of threads may read it.
-class FaceRadiance {
+class FaceTree {
   public:
     /// In the world frame; radiance: one for each triangle. closed, one_sided: see EmitterLevels.
     /// Throws what TriangleTree throws.
-    FaceRadiance(std::span<const Vec3d> vertices, std::span<const Triangle> triangles, std::span<const Rgb> radiance,
-                 bool closed, bool one_sided, const Stopped& stopped = {});
+    FaceTree(std::span<const Vec3d> vertices, std::span<const Triangle> triangles, std::span<const Rgb> radiance,
+             bool closed, bool one_sided, const Stopped& stopped = {});
 
     /// Mean radiance by area.
     const Rgb& mean() const { return nodes_.front().part.radiance; }
