@@ -32,9 +32,9 @@ struct NearFace {
 /// lobes of a hit share the cut. Memory is reused; one per thread.
 class FaceSum {
   public:
-    /// Sets the lobes' light. view: the viewer's direction in the frame. front_only: see
-    /// FaceTree::shows_front_only. tolerance: error of the weighted sum over the lobes ÷ that sum; absolute: of the
-    /// sum, if that is more. Faces that are too near are appended to `near`, and are missing in the light.
+    /// Sets the lobes' light. view: the viewer's direction in the frame. front_only: see FaceViewpoint. tolerance:
+    /// error of the weighted sum over the lobes ÷ that sum; absolute: of the sum, if that is more. Faces that are too
+    /// near are appended to `near`, and are missing in the light.
     void add_up(const FaceTree& faces, const Vec3d& view, const ShadingFrame& frame, bool front_only, double tolerance,
                 double absolute, std::span<SummedLobe> lobes, std::vector<NearFace>& near);
 

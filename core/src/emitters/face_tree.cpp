@@ -6,11 +6,11 @@
 #include <limits>
 #include <utility>
 
+#include "base/ray_rounding.h"
+
 namespace shlight {
 namespace {
 
-/// Distance of a hit on a mesh from where it is, ÷ the mesh's extent.
-constexpr double kAboveMesh = 1e-5;
 /// Faces of a node that are worth asking whether to stop.
 constexpr std::uint32_t kFacesBetweenStops = 1 << 12;
 
@@ -129,14 +129,15 @@ const FaceTree::Face* FaceTree::face_at(const Vec3d& point, const Vec3d& directi
     return met.missed() ? nullptr : &faces_[leaf_of_[met.triangle]];
 }
 
-Rgb FaceTree::from(const Vec3d& point, const Vec3d& direction) const {
-    const Face* face = face_at(point, direction);
-    const bool shines = face != nullptr && (is_front(*face, direction) || !shows_front_only(point));
+Rgb FaceTree::from(const FaceViewpoint& viewpoint, const Vec3d& direction) const {
+    const Face* face = face_at(viewpoint.start, direction);
+    const bool shines = face != nullptr && (is_front(*face, direction) || !viewpoint.front_only);
     return shines ? face->radiance : Rgb(0);
 }
 
-Vec3d FaceTree::above(const ShadingFrame& frame, double error) const {
-    return frame.origin + (error + kAboveMesh * radius()) * frame.z;
+FaceViewpoint FaceTree::viewpoint(const ShadingFrame& frame, double error) const {
+    const Vec3d start = frame.origin + (error + kMeshRounding * radius()) * frame.z;
+    return {start, shows_front_only(start)};
 }
 
 bool FaceTree::shows_front_only(const Vec3d& point) const {

@@ -41,6 +41,12 @@ struct FacePart {
     double brightness;  ///< root mean square of the faces' radiance
 };
 
+/// Where rays to faces start, and which faces shine there.
+struct FaceViewpoint {
+    Vec3d start;      ///< over a hit: rays from there do not meet the surface that was hit
+    bool front_only;  ///< only faces that turn their outer side to it: others are dark there, or hidden by them
+};
+
 /// A part as a hit sees it.
 struct PartView {
     /// front_only: the part's faces shine to their outer side only; is_face: there is one.
@@ -70,13 +76,10 @@ class FaceTree {
     /// No place is farther from the center.
     double radius() const { return nodes_.front().part.radius; }
     double area() const { return nodes_.front().part.area; }
-    /// A point over a hit with this error of its position, from where rays do not meet the surface that was hit.
-    Vec3d above(const ShadingFrame& frame, double error) const;
-    /// Whether only faces that turn their outer side to the point shine on it: others are dark there, or hidden by
-    /// them.
-    bool shows_front_only(const Vec3d& point) const;
+    /// error: of the hit's position.
+    FaceViewpoint viewpoint(const ShadingFrame& frame, double error) const;
     /// The radiance that comes from a direction, if nothing else is in the way.
-    Rgb from(const Vec3d& point, const Vec3d& direction) const;
+    Rgb from(const FaceViewpoint& viewpoint, const Vec3d& direction) const;
 
   private:
     friend class FaceSum;
@@ -95,6 +98,7 @@ class FaceTree {
         std::uint32_t triangle;
     };
 
+    bool shows_front_only(const Vec3d& point) const;
     /// Whether a ray meets the outer side of a face.
     static bool is_front(const Face& face, const Vec3d& direction);
     /// The faces first … last - 1 of a node are halved here.

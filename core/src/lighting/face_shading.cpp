@@ -28,7 +28,7 @@ void FaceShading::shade(const FaceTree& faces, const ShadingPoints& points, std:
 void FaceShading::shade(const FaceTree& faces, const ShadingPoints& points, std::uint32_t point, std::uint32_t view,
                         MaterialViews& views, double tolerance, double scale, std::span<Rgb> radiance) {
     const ShadingFrame& frame = points.frame[point];
-    const Vec3d start = faces.above(frame, points.error[point]);
+    const FaceViewpoint viewpoint = faces.viewpoint(frame, points.error[point]);
     const Vec3d towards_viewer = views.positions().direction(view);
     lobes_.clear();
     numbers_.clear();
@@ -40,7 +40,7 @@ void FaceShading::shade(const FaceTree& faces, const ShadingPoints& points, std:
         }
         if (is_mirror(lobe.shape(view))) {
             radiance[i * points.size() + point] =
-                static_cast<float>(lobe.albedo(view)) * faces.from(start, frame.to_world(mirrored(towards_viewer)));
+                static_cast<float>(lobe.albedo(view)) * faces.from(viewpoint, frame.to_world(mirrored(towards_viewer)));
             continue;
         }
         lobes_.push_back({lobe.shape(view), largest_channel(Vec3d(lobe.weight(view)))});
@@ -50,7 +50,7 @@ void FaceShading::shade(const FaceTree& faces, const ShadingPoints& points, std:
     if (lobes_.empty()) {
         return;
     }
-    sum_.add_up(faces, towards_viewer, frame, faces.shows_front_only(start), tolerance, absolute, lobes_, near_);
+    sum_.add_up(faces, towards_viewer, frame, viewpoint.front_only, tolerance, absolute, lobes_, near_);
     for (std::size_t k = 0; k < lobes_.size(); ++k) {
         radiance[numbers_[k] * points.size() + point] = Rgb(lobes_[k].light);
     }

@@ -18,8 +18,7 @@ constexpr double kNearFace = 3;
 void FaceSampler::reset(const FaceTree& faces, const ShadingFrame& frame, double error) {
     faces_ = &faces;
     frame_ = frame;
-    start_ = faces.above(frame, error);
-    front_only_ = faces.shows_front_only(start_);
+    viewpoint_ = faces.viewpoint(frame, error);
     const Vec3d way = faces.center() - frame.origin;
     const double square = glm::dot(way, way);
     solid_angle_ = square > faces.radius() * faces.radius() ? std::min(faces.area() / square, 2 * std::numbers::pi)
@@ -28,11 +27,11 @@ void FaceSampler::reset(const FaceTree& faces, const ShadingFrame& frame, double
 
 double FaceSampler::importance(const FaceTree::Node& node) const {
     const FacePart& part = node.part;
-    const PartView seen(part, frame_, front_only_, node.first_child == FaceTree::kLeaf);
+    const PartView seen(part, frame_, viewpoint_.front_only, node.first_child == FaceTree::kLeaf);
     if (seen.hidden) {
         return 0;
     }
-    const double area = front_only_ ? seen.facing : std::abs(seen.facing);
+    const double area = viewpoint_.front_only ? seen.facing : std::abs(seen.facing);
     const double shown = seen.one_side ? area : std::max(area, 0.5 * seen.unclear);
     const double square = std::max(seen.distance * seen.distance, part.radius * part.radius);
     return part.brightness * shown * std::min(1.0, seen.rise + seen.width) / square;
@@ -70,13 +69,13 @@ std::optional<FaceSample> FaceSampler::sample(const glm::dvec2& point) {
     if (!(density > 0) || !std::isfinite(density) || !(direction.z > 0)) {
         return std::nullopt;
     }
-    const bool hidden = faces_->face_at(start_, frame_.origin + way - start_) != &face;
+    const bool hidden = faces_->face_at(viewpoint_.start, frame_.origin + way - viewpoint_.start) != &face;
     return FaceSample{direction, density, face.radiance, hidden};
 }
 
 std::optional<FaceSample> FaceSampler::meets(const Vec3d& direction) {
     const Vec3d world = frame_.to_world(direction);
-    const FaceTree::Face* face = faces_->face_at(start_, world);
+    const FaceTree::Face* face = faces_->face_at(viewpoint_.start, world);
     if (face == nullptr || !(direction.z > 0)) {
         return std::nullopt;
     }
@@ -145,7 +144,7 @@ std::pair<Vec3d, double> FaceSampler::way_to(const FaceTree::Face& face, const g
 double FaceSampler::density_over(const FaceTree::Face& face, const Vec3d& way) const {
     // The area times the cosine at the face times the distance.
     const double facing = -0.5 * glm::dot(glm::cross(face.b - face.a, face.c - face.a), way);
-    const double shown = front_only_ ? facing : std::abs(facing);
+    const double shown = viewpoint_.front_only ? facing : std::abs(facing);
     const double distance = glm::length(way);
     return shown > 0 ? distance * distance * distance / shown : 0;
 }

@@ -56,8 +56,7 @@ class FaceSampler {
 
     const FaceTree* faces_ = nullptr;
     ShadingFrame frame_{};
-    Vec3d start_{0};  // of rays that look for faces
-    bool front_only_ = false;
+    FaceViewpoint viewpoint_{};
     double solid_angle_ = 0;
     PolygonSampler polygon_;
 };
