@@ -38,17 +38,19 @@ void UnshadowedRadiance::compute(const ShadingPoints& points, std::span<const Ma
     allowed_error_ = allowed_error;
     face_tolerance_ = face_tolerance;
     point_count_ = points.size();
-    values_.assign(lights.size() * lobe_stride_ * point_count_, 0.0F);
     strengths_.clear();
-    own_begin_.clear();
+    places_.clear();
+    std::size_t value_count = 0;
     std::size_t own_count = 0;
     for (const Light& light : lights) {
         const auto* mesh = std::get_if<MeshLight>(&light);
         const bool differs = mesh != nullptr && mesh->faces != nullptr;
         strengths_.push_back(strength_of(light));
-        own_begin_.push_back(differs ? own_count : kNone);
-        own_count += differs ? lobe_stride_ * point_count_ : 0;
+        std::size_t& count = differs ? own_count : value_count;
+        places_.push_back({differs, count});
+        count += lobe_stride_ * point_count_;
     }
+    values_.assign(value_count, 0.0F);
     own_strengths_.assign(own_count, Rgb(0));
     by_material_.resize(point_count_);
     std::iota(by_material_.begin(), by_material_.end(), 0U);
@@ -98,7 +100,7 @@ void UnshadowedRadiance::shade(const ShadingPoints& points, std::span<const std:
 
 void UnshadowedRadiance::integrate(const ShadingPoints& points, std::span<const std::uint32_t> some, const Light& light,
                                    std::size_t light_index, RenderReport& report) {
-    if (own_begin_[light_index] != kNone) {
+    if (places_[light_index].differs) {
         sum_faces(points, some, std::get<MeshLight>(light), light_index, report);
         return;
     }
@@ -120,7 +122,7 @@ void UnshadowedRadiance::sum_faces(const ShadingPoints& points, std::span<const 
                                    const MeshLight& light, std::size_t light_index, RenderReport& report) {
     const std::size_t size = lobe_stride_ * point_count_;
     face_shading_.shade(*light.faces, points, some, views_, std::max(face_tolerance_, tolerance_), tolerance_,
-                        std::span(own_strengths_).subspan(own_begin_[light_index], size));
+                        std::span(own_strengths_).subspan(places_[light_index].begin, size));
     for (const std::uint32_t point : some) {
         report.cubature_count += points.hit_count(point);
     }
@@ -128,16 +130,17 @@ void UnshadowedRadiance::sum_faces(const ShadingPoints& points, std::span<const 
 
 LightRadiance UnshadowedRadiance::light(std::size_t index) const {
     const std::size_t size = lobe_stride_ * point_count_;
-    if (own_begin_[index] != kNone) {
-        return {{}, Rgb(1), std::span(own_strengths_).subspan(own_begin_[index], size)};
+    const auto [differs, begin] = places_[index];
+    if (differs) {
+        return {{}, Rgb(1), std::span(own_strengths_).subspan(begin, size)};
     }
-    return {std::span(values_).subspan(index * size, size), strengths_[index], {}};
+    return {std::span(values_).subspan(begin, size), strengths_[index], {}};
 }
 
 void UnshadowedRadiance::add(const ShadingPoints& points, std::span<const std::uint32_t> some,
                              std::span<const std::uint32_t> numbers, const Light& light, std::size_t light_index,
                              std::size_t lobe, RenderReport& report) {
-    float* values = values_of(light_index, lobe);
+    float* values = &values_[places_[light_index].begin + lobe * point_count_];
     const bool even = std::holds_alternative<EvenProfile>(traits_of(light).profile);
     for (std::size_t k = 0; k < numbers.size(); ++k) {
         const std::uint32_t point = some[numbers[k]];

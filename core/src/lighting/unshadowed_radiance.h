@@ -59,17 +59,18 @@ class UnshadowedRadiance {
     /// Multiplies the value of a lobe at a view with the mean of the light's profile.
     void apply_profile(std::size_t lobe, std::size_t view, const ShadingPoints& points, std::uint32_t point,
                        const Light& light, float& value);
-    float* values_of(std::size_t light_index, std::size_t lobe) {
-        return &values_[(light_index * lobe_stride_ + lobe) * point_count_];
-    }
-
-    static constexpr std::size_t kNone = ~std::size_t{0};
+    /// Where the radiance of a light is kept.
+    struct Place {
+        bool differs;       // among the light's parts: in own_strengths_, or else in values_
+        std::size_t begin;  // of lobe_stride · points
+    };
 
     std::size_t lobe_stride_;
     std::size_t point_count_ = 0;
-    std::vector<float> values_;                   // (light · lobe_stride + lobe) · points + point
-    std::vector<Rgb> strengths_, own_strengths_;  // of lights; and of those whose parts differ, as values_
-    std::vector<std::size_t> own_begin_;          // where a light's are; kNone: it has one strength
+    std::vector<Place> places_;   // by light
+    std::vector<Rgb> strengths_;  // likewise
+    std::vector<float> values_;   // for unit strength
+    std::vector<Rgb> own_strengths_;
     double face_tolerance_ = 0;
 
     std::vector<std::uint32_t> by_material_;
