@@ -24,7 +24,7 @@ Rgb seen_part(const Rgb& unblocked, const RaySums& of_hit, const Vec3d& kept, do
 
 }  // namespace
 
-void ShadowedLight::find_lit(std::size_t index, std::size_t group, const Hits& hits) {
+void ShadowedLight::find_lit(std::size_t group, const Hits& hits) {
     const std::size_t begin = lit_.hit.size();
     for (std::size_t hit = hits.pixel_begin[group]; hit < hits.pixel_begin[group + 1]; ++hit) {
         const std::size_t first = lit_.shines.size();
@@ -42,8 +42,8 @@ void ShadowedLight::find_lit(std::size_t index, std::size_t group, const Hits& h
     }
     const LitRange range = {begin, lit_.hit.size()};
     if (range.size() > 0) {
-        const std::uint32_t seed = hash(seeds_[group], static_cast<std::uint32_t>(index));
-        groups_.push_back({range, group, index, budget_->samples_of(index, group, samples_), seed});
+        const std::uint32_t seed = hash(seeds_[group], static_cast<std::uint32_t>(index_));
+        groups_.push_back({range, group, budget_->samples_of(index_, group, samples_), seed});
     }
 }
 
@@ -60,7 +60,7 @@ void ShadowedLight::shade_lit(Hits& hits) {
         rays_.trace(light_.casts_shadows);
     }
     for (const LitGroup& group : groups_) {
-        const LightBits seen = shadows ? rays_.visibility(group.range, group.light) : LightBits{};
+        const LightBits seen = shadows ? rays_.visibility(group.range, index_) : LightBits{};
         hits.visibility[group.group] |= seen;
         if (seen.hidden != 0) {
             occluded_.push_back(group);

@@ -40,9 +40,10 @@ class ShadowedLight {
              Hits& hits) {
         target_ = &target;
         light_ = light;
+        index_ = index;
         for (std::size_t group = 0; group < hits.pixel_count(); ++group) {
             if (budget_->of_group(index, group) > 0 && !leaves_out(group)) {
-                find_lit(index, group, hits);
+                find_lit(group, hits);
             }
             if (lit_.hit.size() >= kHitsAtOnce) {
                 shade_lit(hits);
@@ -56,7 +57,6 @@ class ShadowedLight {
     struct LitGroup {
         LitRange range;
         std::size_t group;
-        std::size_t light;  // its number in the budget
         SampleRange samples;
         std::uint32_t seed;
     };
@@ -67,7 +67,7 @@ class ShadowedLight {
         Vec3d kept_smooth, kept_spots;  // see kept_share
     };
 
-    void find_lit(std::size_t index, std::size_t group, const Hits& hits);
+    void find_lit(std::size_t group, const Hits& hits);
     /// Adds the light to all that find_lit has found.
     void shade_lit(Hits& hits);
     void shade_unblocked(const LitRange& range, Hits& hits) const;
@@ -95,6 +95,7 @@ class ShadowedLight {
     std::span<const std::uint32_t> seeds_;
     ShadowTarget* target_ = nullptr;  // of the call of add()
     UnshadowedLight light_{};
+    std::size_t index_ = 0;                    // of it in the budget
     LitHits lit_;                              // of some groups
     std::vector<LitGroup> groups_;             // these
     std::vector<LitGroup> occluded_;           // those of them in whose way something is

@@ -43,7 +43,6 @@ class DeltaLights {
     /// See LightTraits.
     std::uint32_t group(std::size_t i) const { return group_[i]; }
     Rgb strength(std::size_t i) const { return {r_[i], g_[i], b_[i]}; }
-    ColorArrays strengths(std::size_t begin) const { return {&r_[begin], &g_[begin], &b_[begin]}; }
     /// Absolute values of the strengths.
     ColorArrays magnitudes(std::size_t begin) const { return {&abs_r_[begin], &abs_g_[begin], &abs_b_[begin]}; }
 
