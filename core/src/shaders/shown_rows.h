@@ -10,7 +10,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "shaders/image_texture.h"
+#include "shaders/texture_pixels.h"
 
 namespace shlight {
 
