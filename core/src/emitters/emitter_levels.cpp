@@ -38,6 +38,17 @@ double area(const IndexedMesh& mesh) {
     return sum;
 }
 
+/// The lowest and the highest corner.
+std::pair<Vec3d, Vec3d> bounding_box(const IndexedMesh& mesh) {
+    Vec3d low = mesh.vertices.front();
+    Vec3d high = low;
+    for (const Vec3d& v : mesh.vertices) {
+        low = glm::min(low, v);
+        high = glm::max(high, v);
+    }
+    return {low, high};
+}
+
 /// Each face's half edges, paired with those that run the other way.
 std::vector<EmitterEdge> edges_of(const IndexedMesh& mesh) {
     struct Half {
@@ -171,12 +182,7 @@ std::uint64_t spread_bits(std::uint64_t x) {
 
 /// Faces in the order of a space-filling curve (Morton 1966) through their middles, so that neighbours are close.
 void sort_along_curve(const IndexedMesh& mesh, std::vector<EmitterEdge>& edges) {
-    Vec3d low = mesh.vertices.front();
-    Vec3d high = low;
-    for (const Vec3d& v : mesh.vertices) {
-        low = glm::min(low, v);
-        high = glm::max(high, v);
-    }
+    const auto [low, high] = bounding_box(mesh);
     const Vec3d extent = high - low;
     const double scale = 0x1FFFFF / std::max({extent.x, extent.y, extent.z});
     const auto key = [&](const EmitterEdge& edge) {
@@ -268,12 +274,7 @@ EmitterLevel level_of(IndexedMesh mesh, double error) {
 }
 
 void find_extent(const IndexedMesh& mesh, EmitterLevels& emitter) {
-    Vec3d low = mesh.vertices.front();
-    Vec3d high = low;
-    for (const Vec3d& v : mesh.vertices) {
-        low = glm::min(low, v);
-        high = glm::max(high, v);
-    }
+    const auto [low, high] = bounding_box(mesh);
     emitter.center = 0.5 * (low + high);
     emitter.radius = 0;
     for (const Vec3d& v : mesh.vertices) {
