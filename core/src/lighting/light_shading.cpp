@@ -20,6 +20,11 @@ namespace {
 /// Lights that are prepared and sorted at a time: enough for long lists of each kind, few enough for the cache.
 constexpr std::size_t kLightsPerChunk = 1024;
 
+template <class T>
+using In = std::span<const T>;
+using Radiance = std::span<Rgb>;
+using Effort = std::span<std::int32_t>;
+
 void check_settings(const ShadeSettings& settings) {
     if (settings.order < 0 || settings.order > kMaxOrder) {
         reject("order must be 0 … " + std::to_string(kMaxOrder));
@@ -59,34 +64,37 @@ class LightShaderWork {
     LightShaderWork(const LightShaderWork&) = delete;
     LightShaderWork& operator=(const LightShaderWork&) = delete;
 
-    /// shade_chunk(first, count) for each chunk, after its views were found.
+    /// Checks what is given of `count` lights, and calls shade_chunk(first, radiance, effort) for each chunk, after its
+    /// views were found.
     template <class Shade>
-    void in_chunks(std::span<const double> cos_theta_o, std::size_t count, const Shade& shade_chunk) {
+    void in_chunks(std::size_t count, In<double> cos_theta_o, Radiance radiance, Effort effort,
+                   const Shade& shade_chunk) {
+        check_views(cos_theta_o, count);
+        check_size("radiance", radiance.size(), count);
+        check_size("effort", effort.size(), effort.empty() ? 0 : count);
         for (std::size_t first = 0; first < count; first += kLightsPerChunk) {
             const std::size_t size = std::min(kLightsPerChunk, count - first);
             find_views(cos_theta_o, first, size);
-            shade_chunk(first, size);
+            shade_chunk(first, radiance.subspan(first, size), effort.empty() ? effort : effort.subspan(first, size));
         }
     }
 
     template <class T>
-    void shade_spheres(std::span<const Vec3<T>> centers, std::span<const T> radii, std::span<Rgb> radiance,
-                       std::span<std::int32_t> effort) {
+    void shade_spheres(In<Vec3<T>> centers, In<T> radii, Radiance radiance, Effort effort) {
         check_spheres(centers, radii, std::numeric_limits<float>::epsilon());
         seen_.set_spheres(centers, radii.data());
         shade(radiance, effort);
     }
 
     template <class T>
-    void shade_polygons(std::span<const Vec3<T>> vertices, std::size_t vertex_count, std::span<Rgb> radiance,
-                        std::span<std::int32_t> effort) {
+    void shade_polygons(In<Vec3<T>> vertices, std::size_t vertex_count, Radiance radiance, Effort effort) {
         seen_.set_polygons(vertices, vertex_count);
         shade(radiance, effort);
     }
 
     /// disk(i): of those that find_views was called for.
     template <class Disk>
-    void shade_disks(const Disk& disk, std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+    void shade_disks(const Disk& disk, Radiance radiance, Effort effort) {
         seen_.clear();
         for (std::uint32_t i = 0; i < radiance.size(); ++i) {
             seen_.add_disk(disk(i), i);
@@ -96,7 +104,7 @@ class LightShaderWork {
 
   private:
     /// Each change from light to light is a new view.
-    void find_views(std::span<const double> cos_theta_o, std::size_t first, std::size_t count) {
+    void find_views(In<double> cos_theta_o, std::size_t first, std::size_t count) {
         cosines_.clear();
         view_of_.assign(count, 0);
         if (cos_theta_o.size() == 1) {
@@ -116,7 +124,7 @@ class LightShaderWork {
     }
 
     /// Shades the lights in seen_.
-    void shade(std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+    void shade(Radiance radiance, Effort effort) {
         std::fill(radiance.begin(), radiance.end(), Rgb(0));
         std::fill(effort.begin(), effort.end(), 0);
         for (std::size_t l = 0; l < views_.lobe_count(); ++l) {
@@ -136,7 +144,7 @@ class LightShaderWork {
 
     /// Adds what the batch found of a lobe. number(k): of the batch's light k.
     template <class Number>
-    void add(const LobeViews& lobe, const Number& number, std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+    void add(const LobeViews& lobe, const Number& number, Radiance radiance, Effort effort) {
         const std::span<const float> values = batch_.values();
         if (lobe.has_one_weight()) {
             const Rgb weight = lobe.weight(0);
@@ -169,64 +177,43 @@ LightShader::LightShader(LightShader&&) noexcept = default;
 LightShader& LightShader::operator=(LightShader&&) noexcept = default;
 
 template <class T>
-void LightShader::spheres(std::span<const Vec3<T>> centers, std::span<const T> radii,
-                          std::span<const double> cos_theta_o, std::span<Rgb> radiance,
-                          std::span<std::int32_t> effort) {
-    const std::size_t count = centers.size();
-    check_size("radii", radii.size(), count);
-    check_views(cos_theta_o, count);
-    check_size("radiance", radiance.size(), count);
-    check_size("effort", effort.size(), effort.empty() ? 0 : count);
-    work_->in_chunks(cos_theta_o, count, [&](std::size_t first, std::size_t size) {
-        work_->shade_spheres(centers.subspan(first, size), radii.subspan(first, size), radiance.subspan(first, size),
-                             effort.empty() ? effort : effort.subspan(first, size));
+void LightShader::spheres(In<Vec3<T>> centers, In<T> radii, In<double> cos_theta_o, Radiance radiance, Effort effort) {
+    check_size("radii", radii.size(), centers.size());
+    work_->in_chunks(centers.size(), cos_theta_o, radiance, effort, [&](std::size_t first, Radiance sums, Effort most) {
+        work_->shade_spheres(centers.subspan(first, sums.size()), radii.subspan(first, sums.size()), sums, most);
     });
 }
 
 template <class T>
-void LightShader::polygons(std::span<const Vec3<T>> vertices, int vertex_count, std::span<const double> cos_theta_o,
-                           std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+void LightShader::polygons(In<Vec3<T>> vertices, int vertex_count, In<double> cos_theta_o, Radiance radiance,
+                           Effort effort) {
     check_vertex_count(vertex_count);
     const auto k = static_cast<std::size_t>(vertex_count);
     const std::size_t count = vertices.size() / k;
     check_size("vertices", vertices.size(), count * k);
-    check_views(cos_theta_o, count);
-    check_size("radiance", radiance.size(), count);
-    check_size("effort", effort.size(), effort.empty() ? 0 : count);
-    work_->in_chunks(cos_theta_o, count, [&](std::size_t first, std::size_t size) {
-        work_->shade_polygons(vertices.subspan(first * k, size * k), k, radiance.subspan(first, size),
-                              effort.empty() ? effort : effort.subspan(first, size));
+    work_->in_chunks(count, cos_theta_o, radiance, effort, [&](std::size_t first, Radiance sums, Effort most) {
+        work_->shade_polygons(vertices.subspan(first * k, sums.size() * k), k, sums, most);
     });
 }
 
 template <class T>
-void LightShader::disks(std::span<const Vec3<T>> centers, std::span<const Vec3<T>> half_axes_u,
-                        std::span<const Vec3<T>> half_axes_v, std::span<const double> cos_theta_o,
-                        std::span<Rgb> radiance, std::span<std::int32_t> effort) {
+void LightShader::disks(In<Vec3<T>> centers, In<Vec3<T>> half_axes_u, In<Vec3<T>> half_axes_v, In<double> cos_theta_o,
+                        Radiance radiance, Effort effort) {
     const std::size_t count = centers.size();
     check_size("half_axes_u", half_axes_u.size(), count);
     check_size("half_axes_v", half_axes_v.size(), count);
-    check_views(cos_theta_o, count);
-    check_size("radiance", radiance.size(), count);
-    check_size("effort", effort.size(), effort.empty() ? 0 : count);
     for (std::size_t i = 0; i < count; ++i) {
         check_disk({Vec3d(centers[i]), Vec3d(half_axes_u[i]), Vec3d(half_axes_v[i])},
                    std::numeric_limits<T>::epsilon());
     }
-    work_->in_chunks(cos_theta_o, count, [&](std::size_t first, std::size_t size) {
+    work_->in_chunks(count, cos_theta_o, radiance, effort, [&](std::size_t first, Radiance sums, Effort most) {
         const auto disk = [&](std::size_t i) {
             return Ellipse{Vec3d(centers[first + i]), Vec3d(half_axes_u[first + i]), Vec3d(half_axes_v[first + i])};
         };
-        work_->shade_disks(disk, radiance.subspan(first, size), effort.empty() ? effort : effort.subspan(first, size));
+        work_->shade_disks(disk, sums, most);
     });
 }
 
-namespace {
-template <class T>
-using In = std::span<const T>;
-using Radiance = std::span<Rgb>;
-using Effort = std::span<std::int32_t>;
-}  // namespace
 template void LightShader::spheres(In<Vec3<float>>, In<float>, In<double>, Radiance, Effort);
 template void LightShader::spheres(In<Vec3<double>>, In<double>, In<double>, Radiance, Effort);
 template void LightShader::polygons(In<Vec3<float>>, int, In<double>, Radiance, Effort);
