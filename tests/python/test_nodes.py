@@ -180,6 +180,21 @@ def test_a_picture_is_as_bright_from_afar(kind: type[np.generic], encoding: str,
         np.testing.assert_allclose(np.mean(found), mean, rtol=tolerance)
 
 
+@pytest.mark.parametrize(
+    ("extension", "reaches_over"), [("repeat", True), ("extend", False), ("clip", False), ("mirror", False)]
+)
+@pytest.mark.parametrize("interpolation", ["linear", "cubic"])
+def test_a_border_from_afar_holds_the_other_border_only_where_the_picture_repeats(
+    interpolation: str, extension: str, reaches_over: bool
+) -> None:
+    pixels = np.zeros((8, 16, 3), dtype=np.uint8)
+    pixels[:, 8:] = 255
+    texture = nodes.image(pixels, encoding="srgb", interpolation=interpolation, extension=extension).x.step.data.core
+    dark, light = (texture.sample(u, 0.5, (2 / 16, 0.0, 0.0, 2 / 8))[0] for u in (1.5 / 16, 14.5 / 16))
+    assert (dark > 0.02) == reaches_over
+    assert (light < 0.98) == reaches_over
+
+
 @pytest.mark.parametrize("kind", [np.uint8, np.uint16, np.float16, np.float32])
 def test_numbers_of_a_picture_keep_their_type(kind: type[np.generic]) -> None:
     random = np.random.default_rng(5)

@@ -48,7 +48,8 @@ def _textures(inputs: NodeInputs, image: Any) -> Any:
     space = image.colorspace_settings.name
     if not is_known(space):
         inputs.remark(f"colour space {space} is unknown; taken for sRGB")
-    use = TextureUse(not bends_normals(inputs.node), INTERPOLATIONS[inputs.node.interpolation])
+    node = inputs.node
+    use = TextureUse(not bends_normals(node), INTERPOLATIONS[node.interpolation], _extension(node))
     if image.source == "TILED":
         found: Any = _tiles(image, use)
     elif image.source == "SEQUENCE":
@@ -66,6 +67,10 @@ def _textures(inputs: NodeInputs, image: Any) -> Any:
         inputs.remark(f"its picture '{image.filepath or name_of(image)}' is missing; magenta is used", Effect.THING)
         return None
     return found
+
+
+def _extension(node: Any) -> str:
+    return EXTENSIONS.get(node.extension, "repeat")
 
 
 def bends_normals(node: Any) -> bool:
@@ -115,7 +120,7 @@ def _lookup(inputs: NodeInputs, textures: Any, place: Vector) -> Color:
         textures,
         place,
         interpolation=INTERPOLATIONS[node.interpolation],
-        extension=EXTENSIONS.get(node.extension, "repeat"),
+        extension=_extension(node),
         unassociate=alpha_is_used and associates_alpha(node.image),
     )
 

@@ -114,13 +114,14 @@ class TextureUse(NamedTuple):
 
     filtered: bool
     interpolation: str  # see shlight.nodes.image
+    extension: str  # likewise
 
 
 def _texture(pixels: NDArray[Any], space: str, use: TextureUse) -> _core.TexturePixels:
     encoding = "srgb" if space == SRGB else "linear"
     if needs_conversion(space):
         pixels = linear_light(pixels, space)
-    return texture_pixels(pixels, encoding, use.interpolation, filtered=use.filtered)
+    return texture_pixels(pixels, encoding, use.interpolation, use.extension, filtered=use.filtered)
 
 
 class FileSettings(NamedTuple):

@@ -97,26 +97,7 @@ class ImageTexture::Reader {
                c.share.y * (rest.x * read(c.x, c.y + 1) + c.share.x * read(c.x + 1, c.y + 1));
     }
     glm::vec4 texel(const Texels& texels, std::int64_t column, std::int64_t row) const {
-        if (column < 0 || column >= texels.width || row < 0 || row >= texels.height) {
-            if (extension_ == TextureExtension::clip) {
-                return glm::vec4(0);
-            }
-            column = wrapped(column, texels.width);
-            row = wrapped(row, texels.height);
-        }
-        return texels(column, row);
-    }
-    std::int64_t wrapped(std::int64_t i, std::int64_t size) const {
-        if (extension_ == TextureExtension::repeat) {
-            const std::int64_t rest = i % size;
-            return rest < 0 ? rest + size : rest;
-        }
-        if (extension_ == TextureExtension::mirror) {
-            const std::int64_t rest = i % (2 * size);
-            const std::int64_t twice = rest < 0 ? rest + 2 * size : rest;
-            return std::min(twice, 2 * size - 1 - twice);
-        }
-        return std::clamp<std::int64_t>(i, 0, size - 1);
+        return texels.at(column, row, extension_);
     }
 
     const TexturePixels* pixels_;

@@ -35,10 +35,6 @@ glm::vec3 sum(const Taps& taps, std::int64_t texel, const Value& value) {
     return result;
 }
 
-std::int64_t repeated(std::int64_t i, std::int64_t size) {
-    return i >= 0 && i < size ? i : ((i % size) + size) % size;
-}
-
 }  // namespace
 
 const std::vector<glm::vec4>& ShownRows::row(std::int64_t y) {
@@ -71,9 +67,8 @@ ShownRows::Colors ShownRows::line(std::int64_t y, bool halfway) const {
     const Taps across = taps_at(interpolation_, halfway);
     Colors columns(static_cast<std::size_t>(stored_->width + 2 * kMargin + 1));
     for (std::size_t c = 0; c < columns.size(); ++c) {
-        const std::int64_t x = repeated(static_cast<std::int64_t>(c) - kMargin, stored_->width);
-        columns[c] =
-            sum(across, y, [&](std::int64_t row) { return glm::vec3((*stored_)(x, repeated(row, stored_->height))); });
+        const std::int64_t x = static_cast<std::int64_t>(c) - kMargin;
+        columns[c] = sum(across, y, [&](std::int64_t row) { return glm::vec3(stored_->at(x, row, extension_)); });
     }
     const auto column = [&](std::int64_t x) { return columns[static_cast<std::size_t>(x + kMargin)]; };
     const Taps middle = taps_at(interpolation_, false);

@@ -19,10 +19,12 @@ namespace shlight {
 class ShownRows {
   public:
     /// stored, linear: the picture's texels, which must outlive this. is_srgb: how they are stored.
-    ShownRows(const Texels& stored, const Texels& linear, bool is_srgb, TextureInterpolation interpolation)
+    ShownRows(const Texels& stored, const Texels& linear, bool is_srgb, TextureInterpolation interpolation,
+              TextureExtension extension)
         : stored_(&stored),
           linear_(&linear),
           interpolation_(interpolation),
+          extension_(extension == TextureExtension::clip ? TextureExtension::extend : extension),
           by_cells_(is_srgb && interpolation != TextureInterpolation::closest) {}
 
     /// Rows 0, 1, …, each as often as it is needed before the next.
@@ -40,6 +42,7 @@ class ShownRows {
     const Texels* stored_;
     const Texels* linear_;
     TextureInterpolation interpolation_;
+    TextureExtension extension_;  // what is clipped is cut off where levels are read
     bool by_cells_;
     std::int64_t y_ = -1;
     std::vector<glm::vec4> values_;  // of row y_

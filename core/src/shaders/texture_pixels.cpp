@@ -93,12 +93,32 @@ void assign(float value, Half& to) {
     to.bits = static_cast<std::uint16_t>(rounded | (std::signbit(value) ? std::uint32_t{kSignOfHalf} : 0U));
 }
 
+/// The number within a picture of this size that stands for any number of a texel.
+std::int64_t continued(std::int64_t i, std::int64_t size, TextureExtension extension) {
+    if (extension == TextureExtension::repeat) {
+        const std::int64_t rest = i % size;
+        return rest < 0 ? rest + size : rest;
+    }
+    if (extension == TextureExtension::mirror) {
+        const std::int64_t rest = i % (2 * size);
+        const std::int64_t twice = rest < 0 ? rest + 2 * size : rest;
+        return std::min(twice, 2 * size - 1 - twice);
+    }
+    return std::clamp<std::int64_t>(i, 0, size - 1);
+}
+
 }  // namespace
 
 glm::vec4 decoded(const glm::vec4& stored, TexelEncoding encoding) {
     return encoding != TexelEncoding::srgb ? stored
                                            : glm::vec4(linear_from_srgb(stored.x), linear_from_srgb(stored.y),
                                                        linear_from_srgb(stored.z), stored.w);
+}
+
+glm::vec4 Texels::beyond(std::int64_t column, std::int64_t row, TextureExtension extension) const {
+    return extension == TextureExtension::clip
+               ? glm::vec4(0)
+               : (*this)(continued(column, width, extension), continued(row, height, extension));
 }
 
 void Texels::prefetch(const glm::vec2& place) const {
@@ -128,7 +148,8 @@ glm::vec4 Texels::of_numbers(const Number* texel) const {
 }
 
 TexturePixels::TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint32_t height, int channels,
-                             TexelEncoding encoding, TextureInterpolation interpolation, bool is_filtered)
+                             TexelEncoding encoding, TextureInterpolation interpolation, TextureExtension extension,
+                             bool is_filtered)
     : encoding_(encoding) {
     std::visit(
         [](auto& numbers) {
@@ -137,7 +158,7 @@ TexturePixels::TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint
         pixels);
     add({width, height, channels, std::move(pixels)});
     while (is_filtered && (levels_.back().width > 1 || levels_.back().height > 1)) {
-        add(halved(levels_.size() - 1, interpolation));
+        add(halved(levels_.size() - 1, interpolation, extension));
     }
 }
 
@@ -184,7 +205,8 @@ void TexturePixels::store(Level& level, std::size_t texel, const glm::vec4& line
 }
 
 /// The next level; each of its texels is the mean over an equal share of the area, also if a side is odd.
-TexturePixels::Level TexturePixels::halved(std::size_t level, TextureInterpolation interpolation) const {
+TexturePixels::Level TexturePixels::halved(std::size_t level, TextureInterpolation interpolation,
+                                           TextureExtension extension) const {
     const Level& from = levels_[level];
     Level to = {(from.width + 1) / 2, (from.height + 1) / 2, from.channels, {}};
     const std::size_t count = std::size_t{to.width} * to.height * static_cast<std::size_t>(to.channels);
@@ -213,7 +235,7 @@ TexturePixels::Level TexturePixels::halved(std::size_t level, TextureInterpolati
     for (std::uint32_t x = 0; x < to.width; ++x) {
         columns.push_back(cover(x, to.width, from.width));
     }
-    ShownRows shown(stored(level), linear(level), is_srgb(level), interpolation);
+    ShownRows shown(stored(level), linear(level), is_srgb(level), interpolation, extension);
     std::vector<glm::vec4> sums(to.width);
     for (std::uint32_t y = 0; y < to.height; ++y) {
         const Cover rows = cover(y, to.height, from.height);

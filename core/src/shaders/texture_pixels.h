@@ -52,9 +52,16 @@ class Texels {
                                     : of_numbers(shorts_ + first);
     }
 
+    /// Any texel, as the picture continues beyond its edges.
+    glm::vec4 at(std::int64_t column, std::int64_t row, TextureExtension extension) const {
+        const bool inside = column >= 0 && column < width && row >= 0 && row < height;
+        return inside ? (*this)(column, row) : beyond(column, row, extension);
+    }
+
   private:
     friend class TexturePixels;
 
+    glm::vec4 beyond(std::int64_t column, std::int64_t row, TextureExtension extension) const;
     glm::vec4 of_bytes(const std::uint8_t* texel) const {
         const float* table = table_;
         if (channels_ == 1) {
@@ -80,10 +87,11 @@ class Texels {
 class TexturePixels {
   public:
     /// pixels: rows from v = 0 on with 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. NaN becomes 0, and
-    /// infinity the largest number of its type. interpolation: that of the textures; coarser levels are means of what
-    /// they show. is_filtered: or else there is the first level alone, which look-ups read wherever they are.
+    /// infinity the largest number of its type. interpolation, extension: those of the textures; coarser levels are
+    /// means of what they show. is_filtered: or else there is the first level alone, which look-ups read wherever they
+    /// are.
     TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint32_t height, int channels, TexelEncoding encoding,
-                  TextureInterpolation interpolation, bool is_filtered = true);
+                  TextureInterpolation interpolation, TextureExtension extension, bool is_filtered = true);
     TexturePixels(const TexturePixels&) = delete;
     TexturePixels& operator=(const TexturePixels&) = delete;
     ~TexturePixels() = default;
@@ -108,7 +116,7 @@ class TexturePixels {
     };
     void add(Level level);
     static Texels texels(const Level& level, const std::array<float, 256>& bytes);
-    Level halved(std::size_t level, TextureInterpolation interpolation) const;
+    Level halved(std::size_t level, TextureInterpolation interpolation, TextureExtension extension) const;
     /// Whether numbers of a level are encoded as sRGB.
     bool is_srgb(std::size_t level) const { return level == 0 && encoding_ == TexelEncoding::srgb; }
     void store(Level& level, std::size_t texel, const glm::vec4& linear) const;

@@ -29,20 +29,27 @@ def _chosen(name: str, value: str, choices: tuple[str, ...]) -> int:
 
 
 def texture_pixels(
-    pixels: Any, encoding: str = "linear", interpolation: str = "linear", *, filtered: bool = True
+    pixels: Any,
+    encoding: str = "linear",
+    interpolation: str = "linear",
+    extension: str = "repeat",
+    *,
+    filtered: bool = True,
 ) -> _core.TexturePixels:
     """A picture made ready for lookups: with it, any number of `image` share its memory.
 
     pixels: (height, width) or (height, width, channels), of uint8 or uint16 for 0 … 1, of float16 or other numbers as
         they are, row 0 on top; 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. Or the path of a file.
     encoding: "linear" or "srgb".
-    interpolation: as `image` will be told; a picture seen from afar has the mean brightness of what it shows.
+    interpolation, extension: as `image` will be told; a picture seen from afar has the mean brightness of what it
+        shows.
     filtered: False for normals, which `normal_map` takes: light is not linear in them, so that a lobe at their mean
         is not the mean of their lobes. Each camera ray then sees the picture at one point.
     Raises ValueError naming the argument.
     """
     number = _chosen("encoding", encoding, ENCODINGS)
     filtering = _chosen("interpolation", interpolation, INTERPOLATIONS)
+    beyond = _chosen("extension", extension, EXTENSIONS)
     if isinstance(pixels, str | os.PathLike):
         pixels = images.read_texture(pixels)
     array: NDArray[Any] = np.asarray(pixels)
@@ -52,7 +59,7 @@ def texture_pixels(
         raise ValueError(f"pixels must have shape (height, width) or (height, width, 1, 3 or 4), got {array.shape}")
     if array.dtype not in (np.uint8, np.uint16, np.float16):
         array = array.astype(np.float32)
-    return _core.texture_pixels(np.ascontiguousarray(array[::-1]), number, filtering, filtered)
+    return _core.texture_pixels(np.ascontiguousarray(array[::-1]), number, filtering, beyond, filtered)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +105,7 @@ def image(
 
     def prepared(own: Any) -> Any:
         is_made = isinstance(own, _core.TexturePixels | Future)
-        return own if is_made else texture_pixels(own, encoding, interpolation, filtered=filtered)
+        return own if is_made else texture_pixels(own, encoding, interpolation, extension, filtered=filtered)
 
     tiles = [(int(u), int(v), prepared(own)) for (u, v), own in (pixels if tiled else {(0, 0): pixels}).items()]
     texture = ImageLookup(tiles, filtering, beyond, unassociate, tiled)
