@@ -182,11 +182,11 @@ std::uint64_t spread_bits(std::uint64_t x) {
 
 /// Faces in the order of a space-filling curve (Morton 1966) through their middles, so that neighbours are close.
 void sort_along_curve(const IndexedMesh& mesh, std::vector<EmitterEdge>& edges) {
-    const auto [low, high] = bounding_box(mesh);
-    const Vec3d extent = high - low;
+    const std::pair<Vec3d, Vec3d> box = bounding_box(mesh);
+    const Vec3d extent = box.second - box.first;
     const double scale = 0x1FFFFF / std::max({extent.x, extent.y, extent.z});
     const auto key = [&](const EmitterEdge& edge) {
-        const Vec3d middle = (0.5 * (mesh.vertices[edge.from] + mesh.vertices[edge.to]) - low) * scale;
+        const Vec3d middle = (0.5 * (mesh.vertices[edge.from] + mesh.vertices[edge.to]) - box.first) * scale;
         return spread_bits(static_cast<std::uint64_t>(middle.x)) |
                spread_bits(static_cast<std::uint64_t>(middle.y)) << 1U |
                spread_bits(static_cast<std::uint64_t>(middle.z)) << 2U;

@@ -41,7 +41,7 @@ struct FacePart {
     double brightness;  ///< root mean square of the faces' radiance
 };
 
-/// Where rays to faces start, and which faces shine there.
+/// The start of rays to faces, and the side of those that shine there.
 struct FaceViewpoint {
     Vec3d start;      ///< over a hit: rays from there do not meet the surface that was hit
     bool front_only;  ///< only faces that turn their outer side to it: others are dark there, or hidden by them

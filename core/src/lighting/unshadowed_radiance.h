@@ -59,7 +59,7 @@ class UnshadowedRadiance {
     /// Multiplies the value of a lobe at a view with the mean of the light's profile.
     void apply_profile(std::size_t lobe, std::size_t view, const ShadingPoints& points, std::uint32_t point,
                        const Light& light, float& value);
-    /// Where the radiance of a light is kept.
+    /// The place at which the radiance of a light is kept.
     struct Place {
         bool differs;       // among the light's parts: in own_strengths_, or else in values_
         std::size_t begin;  // of lobe_stride · points
