@@ -294,6 +294,14 @@ def smooth_corner_normals(mesh: Any) -> NDArray[np.float32] | None:
     return values_of(mesh.loops, "normal", np.float32, 3)
 
 
+def keeps_a_normal_per_vertex(mesh: Any) -> bool:
+    """Whether Cycles has one normal for all corners of a vertex that no sharp edge splits, where they differ.
+
+    Known of versions from 4.1, which has normals_domain, to 4.5.
+    """
+    return VERSION < (5, 0, 0) and getattr(mesh, "normals_domain", "") == "CORNER"
+
+
 def write_pass(render_pass: Any, pixels: NDArray[np.float32]) -> None:
     """Copies (height * width, channels) float32 pixels, bottom row first, into a render pass."""
     pixels = np.ascontiguousarray(pixels, dtype=np.float32)

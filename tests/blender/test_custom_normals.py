@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import bpy
 import numpy as np
 import pytest
 
@@ -43,3 +44,24 @@ def test_normals_on_the_back_of_their_faces(
     else:
         image, reference = studio.render("SHLIGHT"), studio.render("CYCLES")
         assert np.abs(image - reference).mean() <= 5e-3
+
+
+@pytest.mark.skipif(bpy.app.version >= (5, 0, 0), reason="not known of these versions")
+def test_a_vertex_keeps_one_normal_at_an_edge_of_three_faces(studio: Any) -> None:
+    """A wall on a floor, all smooth. The floor's far edge is sharp, so that its corners have normals of their own.
+
+    With these the picture had more light than Cycles', whose floor is partly black.
+    """
+    vertices = [(-1, -1, 0), (0, -1, 0), (1, -1, 0), (-1, 1, 0), (0, 1, 0), (1, 1, 0), (0, -1, 1), (0, 1, 1)]
+    vertices += [(2, -1, 0), (2, 1, 0)]
+    faces = [(0, 1, 4, 3), (1, 2, 5, 4), (1, 6, 7, 4), (2, 8, 9, 5)]
+    mesh = studio.mesh("tee", vertices, faces, studio.material("ShaderNodeBsdfDiffuse")).data
+    mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
+    for edge in mesh.edges:
+        edge.use_edge_sharp = set(edge.vertices) == {2, 5}
+    sun = bpy.data.lights.new("sun", "SUN")
+    sun.energy, sun.angle = 3.0, 0.0
+    studio.link("sun", sun, rotation_euler=(0.0, 0.7, 0.0))
+    studio.camera((0.5, -7, 6), (0.5, 0, 0))
+    studio.scene.cycles.samples = 512
+    studio.compare(mean=5e-3, error=1e-3)

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..compat import mesh_triangles, smooth_corner_normals, smooth_vertex_normals
+from ..compat import keeps_a_normal_per_vertex, mesh_triangles, smooth_corner_normals, smooth_vertex_normals
 from ..names import name_of
 from ..report import Effect, ExportReport
+from .corner_normals import as_cycles_keeps_them
 from .mesh_attributes import COLOR, mesh_attributes
 
 FloatArray = NDArray[np.float32]
@@ -79,6 +80,8 @@ def _mesh_arrays(mesh: Any, attribute_names: Iterable[str]) -> MeshArrays | None
     if normals is None or not _good(normals).all():
         normals = smooth_corner_normals(mesh)
         if normals is not None:
+            if keeps_a_normal_per_vertex(mesh):
+                normals = as_cycles_keeps_them(mesh, normals, triangles.corners)
             normals = _repaired(normals[triangles.corners], vertices, corner_vertices)
     attributes = mesh_attributes(mesh, triangles, attribute_names)
     return MeshArrays(vertices, corner_vertices, normals, triangles.materials, attributes)
