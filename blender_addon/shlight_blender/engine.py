@@ -17,9 +17,9 @@ from .frame import Frame, frame_of, memory_problem
 from .names import is_utf8, name_of, printable
 from .native import native_problem
 from .passes import Arrays, LayerPass, layer_passes, pass_arguments, stamp_cryptomattes, write_passes
-from .report import ExportCancelled, ExportError
+from .report import Effect, ExportCancelled, ExportError
 from .running import ENGINE
-from .status import status_of
+from .status import inexact_light, status_of
 
 MOST_WARNINGS = 20
 # Times of updates with unfinished pictures [s].
@@ -165,6 +165,8 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             return None
         except shlight.RenderCancelled:
             return None if latest is None else {"combined": latest}  # what the user has seen stays
+        if inexact := inexact_light(record.last.statistics):
+            record.last.report.add("Light", inexact, Effect.SLIGHT)
         stamp_cryptomattes(self.get_result(), depsgraph.view_layer, exported.names)
         return result if isinstance(result, dict) else {"combined": result}
 

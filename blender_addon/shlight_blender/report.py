@@ -58,6 +58,7 @@ class ExportReport:
 
     def __init__(self) -> None:
         self._messages: dict[str, Message] = {}
+        self._known: set[tuple[str, str]] = set()  # places and texts: a scene may have thousands of places
         self._shares: dict[str, float] = {}
 
     def add(self, place: str, text: str, effect: Effect = Effect.LOOK) -> None:
@@ -65,7 +66,8 @@ class ExportReport:
         place, text = printable(place), printable(text)
         message = self._messages.setdefault(text, Message(text, effect))
         message.effect = min(message.effect, effect)
-        if place not in message.places:
+        if (place, text) not in self._known:
+            self._known.add((place, text))
             message.places.append(place)
 
     def extend(self, other: ExportReport) -> None:

@@ -10,7 +10,9 @@ import bpy
 import numpy as np
 import pytest
 
+from shlight_blender import record
 from shlight_blender.export.bake import BakeError
+from shlight_blender.report import Effect
 
 
 def balls(studio: Any) -> None:
@@ -188,3 +190,21 @@ def test_what_of_a_world_is_not_baked_is_named(studio: Any, monkeypatch: pytest.
     background = texture.outputs["Color"].links[0].to_node
     tree.links.new(tree.nodes.new("ShaderNodeTexSky").outputs["Color"], background.inputs["Color"])
     assert "node 'Sky Texture': varying values are not supported" in "\n".join(studio.messages())
+
+
+def test_light_that_misses_the_tolerance_is_told(studio: Any) -> None:
+    """Narrow reflections of a picture of noise; in the report's part for what is hardly seen."""
+    studio.ball(material=studio.material("ShaderNodeBsdfPrincipled", Roughness=0.3), rings=32)
+    studio.camera()
+    background = studio.world()
+    tree = background.id_data
+    node = tree.nodes.new("ShaderNodeTexEnvironment")
+    node.image = studio.picture(np.random.default_rng(1).gamma(0.1, size=(64, 128, 3)))
+    tree.links.new(node.outputs["Color"], background.inputs["Color"])
+    studio.render("SHLIGHT")
+    (message,) = record.last.report
+    assert "less exact than Tolerance" in message.text
+    assert message.effect == Effect.SLIGHT
+    studio.scene.shlight.tolerance = 0.5
+    studio.render("SHLIGHT")
+    assert studio.messages() == []
