@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from shlight.images import write_png
-from shlight_blender import frame
+from shlight_blender import frame, record
 
 
 def test_a_picture_larger_than_the_memory_is_an_error(studio: Any, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -36,6 +36,20 @@ def test_a_scene_without_objects_shows_the_world(studio: Any) -> None:
         bpy.data.objects.remove(shown)
     studio.world((0.2, 0.4, 0.6))
     studio.compare(mean=1e-5, error=1e-9)
+
+
+def test_faces_that_lie_on_others_are_named(studio: Any) -> None:
+    """Two turned squares in one place, and a box that has a face twice; a box like another, elsewhere, has none."""
+    studio.simple_scene()
+    for name in ("Square", "Square again"):
+        studio.plane(1.0, name=name, location=(2, 1, 0.7), rotation_euler=(0.3, 0.2, 0.1))
+    corners, faces = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]), [(0, 1, 2, 3)]
+    studio.mesh("Twice", [*corners, *corners], [*faces, (4, 5, 6, 7)], location=(-2, 1, 0.3))
+    studio.link("Copy", bpy.data.objects["Box"].data, (0.4, 2.1, 0.3))
+    studio.render("SHLIGHT")
+    (message,) = record.last.report
+    assert "lie on others" in message.text
+    assert sorted(message.places) == ["Object 'Square again'", "Object 'Square'", "Object 'Twice'"]
 
 
 @pytest.mark.parametrize("missing", ["library", "texture"])

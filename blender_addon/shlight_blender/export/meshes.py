@@ -18,9 +18,10 @@ from ..names import name_of
 from ..passes import SURFACES
 from ..report import Effect, ExportReport
 from .changes import Changes
+from .doubled_faces import MOST_TRIANGLES, doubled
 from .expressions import Surroundings
 from .materials import Surface, read_material
-from .mesh_arrays import complete, flattened, object_arrays
+from .mesh_arrays import MeshArrays, complete, flattened, object_arrays
 from .mesh_attributes import UV
 from .textured_meshes import with_even_emission
 
@@ -69,6 +70,7 @@ class KeptMesh:
     is_cut: bool  # its emission varies: it is cut into pieces for its first place
     group: str | None  # see PassWishes.light_part
     report: ExportReport
+    centers: NDArray[np.float64]  # of its triangles; none if there are too many to look for doubled ones
     transforms: list[Matrix] = field(default_factory=list)
     object_values: list[list[float]] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
@@ -92,6 +94,7 @@ class SceneMeshes:
         self._kept: dict[tuple[Any, ...], KeptMesh] = {}
         self._surfaces: dict[Any, KeptSurface] = {}
         self._override: Any = None
+        self._doubled: set[str] = set()
         self.report = ExportReport()
 
     def begin(self, changes: Changes, surroundings: Surroundings, material_override: Any = None) -> None:
@@ -181,7 +184,8 @@ class SceneMeshes:
             arrays, surfaces = with_even_emission(arrays, surfaces, at, values, partial(report.add, place))
         owner = _owner(instance, self._surroundings.depsgraph)
         none = np.zeros(len(surfaces), dtype=np.int64)
-        made = KeptMesh(None, owner, place, attributes, surfaces, none, is_cut, group, report)
+        centers = np.empty((0, 3)) if arrays is None else _centers(arrays)
+        made = KeptMesh(None, owner, place, attributes, surfaces, none, is_cut, group, report, centers)
         if arrays is not None:
             slots = np.clip(arrays.material_indices, 0, len(surfaces) - 1)
             made.faces = np.bincount(slots, minlength=len(surfaces))
@@ -242,7 +246,30 @@ class SceneMeshes:
                 text = f"its emissive faces are up to {lights} lights, which take long to render"
                 self.report.add(use.place, text, Effect.SLIGHT)
             _place(use)
+        if self._changes.all_shapes:
+            self._doubled = self._find_doubled()
+        for place in sorted(self._doubled):
+            self.report.add(place, "some of its faces lie on others, where Cycles' shadows have dark patches")
         return emits
+
+    def _find_doubled(self) -> set[str]:
+        """The objects with a face that lies on another one, as the report names them."""
+        count = sum(len(use.centers) * len(use.transforms) for use in self._seen.values())
+        if count > MOST_TRIANGLES:
+            return set()
+        names, centers = [], []
+        for use in self._seen.values():
+            for to_world, label in zip(use.transforms, use.labels, strict=True):
+                names.append(f"Object '{label.name}'")
+                centers.append(use.centers @ to_world[:3, :3].T + to_world[:3, 3])
+        return {name for name, is_doubled in zip(names, doubled(centers), strict=True) if is_doubled}
+
+
+def _centers(arrays: MeshArrays) -> NDArray[np.float64]:
+    if len(arrays.triangles) > MOST_TRIANGLES:
+        return np.empty((0, 3))
+    centers: NDArray[np.float64] = arrays.vertices[arrays.triangles].mean(axis=1, dtype=np.float64)
+    return centers
 
 
 def _place(use: KeptMesh) -> None:
