@@ -18,6 +18,6 @@ def status_of(report: Any) -> str:
 
 
 def inexact_light(report: Any) -> str:
-    """What to say of a picture whose light is often less exact than was asked for; empty where it is not."""
+    """A line about a picture whose light is often less exact than was asked for; empty where it is not."""
     share = report.over_tolerance
     return f"{share:.0%} of it may be less exact than Tolerance asks for" if share > SILENT_SHARE else ""
