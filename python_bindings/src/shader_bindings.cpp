@@ -156,8 +156,7 @@ std::vector<Number> numbers_of(const py::array& pixels) {
     return {first, first + pixels.size()};
 }
 
-std::shared_ptr<TexturePixels> pixels_from(const py::array& pixels, int encoding, int interpolation, int extension,
-                                           bool filtered) {
+std::shared_ptr<TexturePixels> pixels_from(const py::array& pixels, int encoding, int interpolation, int extension) {
     if (pixels.ndim() != 3 || pixels.size() == 0 ||
         (pixels.shape(2) != 1 && pixels.shape(2) != 3 && pixels.shape(2) != 4)) {
         throw std::invalid_argument("pixels must have shape (height, width, channels) with 1, 3 or 4 channels");
@@ -181,7 +180,7 @@ std::shared_ptr<TexturePixels> pixels_from(const py::array& pixels, int encoding
     const py::gil_scoped_release release;
     return std::make_shared<TexturePixels>(
         std::move(values), width, height, channels, static_cast<TexelEncoding>(encoding),
-        static_cast<TextureInterpolation>(interpolation), static_cast<TextureExtension>(extension), filtered);
+        static_cast<TextureInterpolation>(interpolation), static_cast<TextureExtension>(extension));
 }
 
 /// tiles: a list of (u, v, pixels).
@@ -220,7 +219,7 @@ void bind_shader(py::module_& m) {
         });
     py::class_<TexturePixels, std::shared_ptr<TexturePixels>>(m, "TexturePixels", without_constructor())
         .def_property_readonly("size_in_bytes", &TexturePixels::size_in_bytes);
-    m.def("texture_pixels", &pixels_from, "pixels"_a, "encoding"_a, "interpolation"_a, "extension"_a, "filtered"_a);
+    m.def("texture_pixels", &pixels_from, "pixels"_a, "encoding"_a, "interpolation"_a, "extension"_a);
     m.def("image_texture", &image_from, "tiles"_a, "interpolation"_a, "extension"_a, "unassociate"_a, "tiled"_a);
     py::class_<ShaderProgram>(m, "ShaderProgram", without_constructor())
         .def("evaluate", &evaluate, "inputs"_a, "count"_a)

@@ -49,7 +49,7 @@ def _textures(inputs: NodeInputs, image: Any) -> Any:
     if not is_known(space):
         inputs.remark(f"colour space {space} is unknown; taken for sRGB")
     node = inputs.node
-    use = TextureUse(not bends_normals(node), INTERPOLATIONS[node.interpolation], _extension(node))
+    use = TextureUse(INTERPOLATIONS[node.interpolation], _extension(node))
     if image.source == "TILED":
         found: Any = _tiles(image, use)
     elif image.source == "SEQUENCE":
@@ -71,20 +71,6 @@ def _textures(inputs: NodeInputs, image: Any) -> Any:
 
 def _extension(node: Any) -> str:
     return EXTENSIONS.get(node.extension, "repeat")
-
-
-def bends_normals(node: Any) -> bool:
-    """True if a Normal Map node takes what this node gives, whatever lies between."""
-    seen = {node.name}
-    ahead = [node]
-    while ahead:
-        for link in (link for output in ahead.pop().outputs for link in output.links):
-            if link.to_node.type == "NORMAL_MAP":
-                return True
-            if link.to_node.name not in seen:
-                seen.add(link.to_node.name)
-                ahead.append(link.to_node)
-    return False
 
 
 def _tiles(image: Any, use: TextureUse) -> dict[tuple[int, int], Any]:

@@ -112,7 +112,6 @@ def space_of(image: Any) -> str:
 class TextureUse(NamedTuple):
     """The settings of a node that affect how its picture looks from afar."""
 
-    filtered: bool
     interpolation: str  # see shlight.nodes.image
     extension: str  # likewise
 
@@ -121,7 +120,7 @@ def _texture(pixels: NDArray[Any], space: str, use: TextureUse) -> _core.Texture
     encoding = "srgb" if space == SRGB else "linear"
     if needs_conversion(space):
         pixels = linear_light(pixels, space)
-    return texture_pixels(pixels, encoding, use.interpolation, use.extension, filtered=use.filtered)
+    return texture_pixels(pixels, encoding, use.interpolation, use.extension)
 
 
 class FileSettings(NamedTuple):

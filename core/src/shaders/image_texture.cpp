@@ -159,7 +159,7 @@ ImageTexture::Lookup ImageTexture::look(const glm::vec2& place, const TextureFoo
     }
     Lookup lookup = {&pixels, inside, 0, 0, glm::vec2(0)};
     const float longest = glm::length(along);
-    if (longest > 1 && pixels.level_count() > 1) {
+    if (longest > 1) {
         // Width of the footprint: its area ÷ its longest side.
         const float width = std::abs(along.x * across.y - along.y * across.x) / longest;
         const float least = std::max({width, longest / kMostProbes, 1.0F});

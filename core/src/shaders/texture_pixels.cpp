@@ -148,8 +148,7 @@ glm::vec4 Texels::of_numbers(const Number* texel) const {
 }
 
 TexturePixels::TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint32_t height, int channels,
-                             TexelEncoding encoding, TextureInterpolation interpolation, TextureExtension extension,
-                             bool is_filtered)
+                             TexelEncoding encoding, TextureInterpolation interpolation, TextureExtension extension)
     : encoding_(encoding) {
     std::visit(
         [](auto& numbers) {
@@ -157,7 +156,7 @@ TexturePixels::TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint
         },
         pixels);
     add({width, height, channels, std::move(pixels)});
-    while (is_filtered && (levels_.back().width > 1 || levels_.back().height > 1)) {
+    while (levels_.back().width > 1 || levels_.back().height > 1) {
         add(halved(levels_.size() - 1, interpolation, extension));
     }
 }

@@ -88,10 +88,9 @@ class TexturePixels {
   public:
     /// pixels: rows from v = 0 on with 1, 3 or 4 channels: grey, RGB, or RGB times alpha and alpha. NaN becomes 0, and
     /// infinity the largest number of its type. interpolation, extension: those of the textures; coarser levels are
-    /// means of what they show. is_filtered: or else there is the first level alone, which look-ups read wherever they
-    /// are.
+    /// means of what they show.
     TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint32_t height, int channels, TexelEncoding encoding,
-                  TextureInterpolation interpolation, TextureExtension extension, bool is_filtered = true);
+                  TextureInterpolation interpolation, TextureExtension extension);
     TexturePixels(const TexturePixels&) = delete;
     TexturePixels& operator=(const TexturePixels&) = delete;
     ~TexturePixels() = default;

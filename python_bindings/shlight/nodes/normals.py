@@ -12,6 +12,7 @@ from shlight.nodes.inputs import (
     position,
 )
 from shlight.nodes.mathematics import sign
+from shlight.nodes.rays import on_ray
 from shlight.nodes.values import (
     Number,
     Value,
@@ -38,12 +39,15 @@ def choose(condition: Number, if_true: Vector, if_false: Vector) -> Vector:
 
 
 def normal_map(color: Varying, strength: Number = 1.0, *, space: str = "tangent", tangents: str = "tangents") -> Vector:
-    """The normal that a picture holds as (n + 1) / 2; an `image` of normals should not be filtered.
+    """The normal that a picture holds as (n + 1) / 2.
+
+    Light is not linear in normals: a lobe at their mean is not the mean of their lobes. So pictures in the colour are
+    not filtered; each camera ray sees them at one point.
 
     space: "tangent", "object" or "world".
     tangents: the mesh attribute of the tangent space: per corner the tangent and the bitangent's sign.
     """
-    n = vector(color) * 2.0 - 1.0
+    n = Vector(*on_ray(vector(color), None, filtered=False)) * 2.0 - 1.0
     s = number(strength)
     flip = 1.0 - 2.0 * backfacing()
     if space == "tangent":

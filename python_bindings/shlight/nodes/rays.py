@@ -29,8 +29,8 @@ def shadow_ray() -> Value:
     return _kind(Ray.SHADOW)
 
 
-def on_ray(values: Iterable[Value], kind: Ray, *, filtered: bool = True) -> list[Value]:
-    """Expressions as a ray of this kind finds them. filtered: as the pictures in them are."""
+def on_ray(values: Iterable[Value], kind: Ray | None, *, filtered: bool = True) -> list[Value]:
+    """Expressions as a ray of this kind, or of any, finds them. filtered: as the pictures in them are."""
     wanted = list(values)
     found: dict[int, tuple[Value, ...] | None] = {}  # by id of a step: its results, None where nothing changes
     for step in in_order(value.step for value in wanted):
@@ -54,8 +54,8 @@ def _result(value: Value, found: dict[int, tuple[Value, ...] | None]) -> Value:
     return value if results is None else results[value.output]
 
 
-def _rebuilt(step: Step, found: dict[int, tuple[Value, ...] | None], kind: Ray) -> tuple[Value, ...] | None:
-    if step.name == "ray":
+def _rebuilt(step: Step, found: dict[int, tuple[Value, ...] | None], kind: Ray | None) -> tuple[Value, ...] | None:
+    if step.name == "ray" and kind is not None:
         return (number(float(step.data == kind)),)
     if all(found[id(a.step)] is None for a in step.arguments):
         return None

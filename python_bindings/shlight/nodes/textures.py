@@ -33,8 +33,6 @@ def texture_pixels(
     encoding: str = "linear",
     interpolation: str = "linear",
     extension: str = "repeat",
-    *,
-    filtered: bool = True,
 ) -> _core.TexturePixels:
     """A picture made ready for lookups: with it, any number of `image` share its memory.
 
@@ -43,8 +41,6 @@ def texture_pixels(
     encoding: "linear" or "srgb".
     interpolation, extension: as `image` will be told; a picture seen from afar has the mean brightness of what it
         shows.
-    filtered: False for normals, which `normal_map` takes: light is not linear in them, so that a lobe at their mean
-        is not the mean of their lobes. Each camera ray then sees the picture at one point.
     Raises ValueError naming the argument.
     """
     number = _chosen("encoding", encoding, ENCODINGS)
@@ -59,7 +55,7 @@ def texture_pixels(
         raise ValueError(f"pixels must have shape (height, width) or (height, width, 1, 3 or 4), got {array.shape}")
     if array.dtype not in (np.uint8, np.uint16, np.float16):
         array = array.astype(np.float32)
-    return _core.texture_pixels(np.ascontiguousarray(array[::-1]), number, filtering, beyond, filtered)
+    return _core.texture_pixels(np.ascontiguousarray(array[::-1]), number, filtering, beyond)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,13 +83,12 @@ def image(
     interpolation: str = "linear",
     extension: str = "repeat",
     unassociate: bool = False,
-    filtered: bool = True,
 ) -> Color:
     """The colour of a picture, filtered by how far texture coordinates move from camera ray to camera ray.
 
     pixels: as of `texture_pixels`, or what that returns, or a Future of it, or a dict {(u, v): pixels} of pictures
         that cover u … u + 1 and v … v + 1 each (UDIM tiles).
-    encoding, filtered: as of `texture_pixels`; unused where that has made the pixels.
+    encoding: as of `texture_pixels`; unused where that has made the pixels.
     interpolation: "linear", "closest" or "cubic" (a B-spline) between texels.
     place: (u, v), (0, 0) at the lower left corner; None: `uv()`.
     unassociate: divide colours by alpha.
@@ -105,7 +100,7 @@ def image(
 
     def prepared(own: Any) -> Any:
         is_made = isinstance(own, _core.TexturePixels | Future)
-        return own if is_made else texture_pixels(own, encoding, interpolation, extension, filtered=filtered)
+        return own if is_made else texture_pixels(own, encoding, interpolation, extension)
 
     tiles = [(int(u), int(v), prepared(own)) for (u, v), own in (pixels if tiled else {(0, 0): pixels}).items()]
     texture = ImageLookup(tiles, filtering, beyond, unassociate, tiled)
