@@ -89,6 +89,7 @@ class SHLIGHT_RENDER_PT_light(EnginePanel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         """Draws the panel."""
         layout = with_names_aside(self.layout)
+        layout.prop(context.scene.shlight, "max_bounces")
         cycles = getattr(context.scene, "cycles", None)
         if cycles is not None:
             layout.prop(cycles, "transparent_max_bounces", text="Transparent Bounces")

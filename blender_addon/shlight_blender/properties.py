@@ -104,6 +104,13 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
         max=4096,
         soft_max=256,
     )
+    max_bounces: bpy.props.IntProperty(
+        name="Max Bounces",
+        description="Surfaces that light is reflected by before the one that the camera sees. At 0 light is direct",
+        default=0,
+        min=0,
+        max=1024,
+    )
     use_pass_lights: bpy.props.BoolProperty(
         name="Lights",
         description="A pass for what each lamp gives to the picture, one for surfaces that shine and one for the world",

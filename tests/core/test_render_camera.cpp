@@ -95,6 +95,8 @@ TEST(RenderCamera, BadArgumentsAreTurnedDown) {
     rejects([](RenderSettings& s) { s.sampling.noise_threshold = -0.1; });
     rejects([](RenderSettings& s) { s.sampling.time_limit = std::numeric_limits<double>::quiet_NaN(); });
     rejects([](RenderSettings& s) { s.shadow_rays = -1; });
+    rejects([](RenderSettings& s) { s.max_bounces = -1; });
+    rejects([](RenderSettings& s) { s.max_bounces = 1025; });
     rejects([](RenderSettings& s) { s.threads = -1; });
     rejects([](RenderSettings&) {}, 0, 4);
     rejects([](RenderSettings&) {}, 4, -1);

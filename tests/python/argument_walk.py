@@ -119,6 +119,7 @@ SETTINGS = {
     "shadows": True,
     "shadow_rays": 1,
     "transparent_bounces": 1,
+    "max_bounces": 1,
     "passes": ["depth"],
     "groups": True,
     "aovs": True,

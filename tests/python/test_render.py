@@ -204,6 +204,9 @@ RENDER_ERRORS: list[tuple[str, dict[str, Any]]] = [
     ("on_update", {"on_update": 5}),
     ("shadow_rays", {"shadow_rays": -1}),
     ("shadow_rays", {"shadow_rays": 10**10}),
+    ("max_bounces", {"max_bounces": -1}),
+    ("max_bounces", {"max_bounces": 1025}),
+    ("max_bounces", {"max_bounces": 0.5}),
     ("threads", {"threads": -1}),
     ("progress", {"progress": 5}),
 ]

@@ -34,6 +34,7 @@ class RenderSettings:
     filter_width: float
     shadow_rays: int
     transparent_bounces: int
+    max_bounces: int
     exposure: float
     threads: int
 
@@ -60,6 +61,7 @@ def render_settings(scene: Any) -> RenderSettings:
         filter_width=float(getattr(cycles, "filter_width", render.filter_size)),
         shadow_rays=int(settings.shadow_rays) if settings.use_shadows else 0,
         transparent_bounces=int(getattr(cycles, "transparent_max_bounces", 8)),
+        max_bounces=int(settings.max_bounces),
         exposure=float(getattr(cycles, "film_exposure", 1.0)),
         threads=int(render.threads) if render.threads_mode == "FIXED" else 0,
     )

@@ -67,6 +67,9 @@ struct RenderSettings {
     std::uint32_t seed = 0;  ///< another one draws other camera and shadow rays
     /// Surfaces that a shadow ray passes through as far as they are transparent, at most; a camera ray passes one more.
     int transparent_bounces = 8;
+    /// Surfaces that light is reflected by before the one that the camera sees, at most, as Cycles counts them; 0:
+    /// direct light.
+    int max_bounces = 0;
     PassSettings passes;
 };
 
@@ -83,8 +86,8 @@ struct RenderWatch {
 /// Throws std::invalid_argument naming the member or argument: order outside 0 … 64, tolerance ≤ 0 or not finite,
 /// first_samples, min_samples or max_samples outside 1 … 2^20 or not in this order, noise_threshold outside 0 … 1,
 /// time_limit not finite, filter_width outside 0.001 … 100, shadow_rays outside 0 … 2^14, more than 2^22 of both in the
-/// first pass, transparent_bounces outside 0 … 1024, threads < 0, width or height < 1, or more than 2^28 pixels; and as
-/// PassLayout's constructor.
+/// first pass, transparent_bounces or max_bounces outside 0 … 1024, threads < 0, width or height < 1, or more than 2^28
+/// pixels; and as PassLayout's constructor.
 void check_render(const RenderSettings& settings, int width, int height);
 
 /// image: height × width × RGBA, row 0 on top, linear, premultiplied, the mean of all camera rays of each pixel; alpha
