@@ -108,6 +108,7 @@ def test_figures_pictures_and_places_are_true(still_life: Any) -> None:
     assert figures["shlight"]["rel_mse_measured"] == pytest.approx(rel_mse(shlight, reference), rel=1e-4)
     assert figures["cycles_same_time"]["rel_mse_measured"] == pytest.approx(rel_mse(cycles, reference), rel=1e-4)
     assert abs(cycles[..., :3].mean() / reference[..., :3].mean() - 1) <= 0.1
+    assert panel.lines(figures)[0] == "All pictures: direct light"
     assert f"relMSE {rel_mse(cycles, reference):.2e}" in " ".join(panel.lines(figures))
 
     # The difference is that of the pictures, in the palette.
@@ -355,7 +356,7 @@ def test_the_panel_shows_progress_and_what_was_found(studio: Any, monkeypatch: p
     panel.SHLIGHT_RENDER_PT_compare.draw(drawn, context)
     assert said == ["Reference (3 s), 25%", "Cancel"]
     monkeypatch.setattr(session.session, "job", None)
-    part = {"seconds": 1.0, "samples": 7}
+    part = {"seconds": 1.0, "samples": 7, "settings": {"max_bounces": 4}}
     there = {"place": "Object 'Box'", "difference": -0.5, "messages": [], "of_light": []}
     figures = {"shlight": part, "cycles_same_time": part, "rel_mse_of_both": 0.5, "differences": [there]}
     black = np.zeros((2, 2, 4), np.float32)

@@ -20,7 +20,7 @@ import bpy
 import pytest
 
 from shlight import images, metrics
-from shlight_blender.comparison.scene import LIGHT_RAYS, SceneError, open_scene, prepare, without_shadows
+from shlight_blender.comparison.scene import LIGHT_RAYS, SceneError, open_scene, prepare, use_cycles, without_shadows
 from shlight_blender.preview import main, options
 from shlight_blender.preview.command import FIRST_RESULTS, RESULTS
 
@@ -284,6 +284,20 @@ def test_the_lamps_that_are_not_named_are_off(empty_scene: bpy.types.Scene) -> N
     assert [seen.name for seen in scene.objects if seen.type == "LIGHT" and not seen.hide_render] == ["quad", "small"]
     with pytest.raises(SceneError, match=r"^there is no lamp 'Sun' in it, but "):
         prepare(scene, options.parse(["--light", "Sun"]))
+
+
+@pytest.mark.parametrize(("given", "bounces"), [([], 3), (["--max-bounces", "0"], 0), (["--max-bounces", "2"], 2)])
+def test_cycles_has_as_many_bounces(empty_scene: bpy.types.Scene, given: list[str], bounces: int) -> None:
+    scene = open_scene(options.parse([]).scene_file)
+    scene.shlight.max_bounces = 3
+    scene.cycles.glossy_bounces, scene.cycles.sample_clamp_indirect, scene.cycles.caustics_reflective = 1, 10.0, False
+    prepare(scene, options.parse(given))
+    use_cycles(scene, 4, 0)
+    cycles = scene.cycles
+    kinds = (cycles.max_bounces, cycles.diffuse_bounces, cycles.glossy_bounces, cycles.transmission_bounces)
+    assert kinds == (bounces,) * 4
+    assert scene.shlight.max_bounces == bounces
+    assert (cycles.sample_clamp_indirect, cycles.blur_glossy, cycles.caustics_reflective) == (0.0, 0.0, True)
 
 
 def test_without_shadows_is_over_afterwards(empty_scene: bpy.types.Scene) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import bpy
 
 from .. import report_panel
+from ..comparison.pictures import light_name
 from ..compat import draw_progress
 from ..engine_panel import EnginePanel, with_names_aside
 from . import operators, results
@@ -58,11 +59,13 @@ def _draw_results(layout: Any, context: Any, found: Any) -> None:
 def lines(figures: dict[str, Any]) -> list[str]:
     """Times and errors in words."""
     ours, theirs = figures["shlight"], figures["cycles_same_time"]
+    light = f"All pictures: {light_name(ours['settings']['max_bounces'])}"
     times = [f"shlight: {ours['seconds']:.2f} s", f"Cycles: {theirs['seconds']:.2f} s, {theirs['samples']} samples"]
     if "reference" not in figures:
-        return [*times, f"No reference; relMSE between the two: {figures['rel_mse_of_both']:.2e}"]
+        return [light, *times, f"No reference; relMSE between the two: {figures['rel_mse_of_both']:.2e}"]
     reference = figures["reference"]
     return [
+        light,
         *(f"{line}, relMSE {part['rel_mse_measured']:.2e}" for line, part in zip(times, (ours, theirs), strict=True)),
         f"Reference: {reference['seconds']:.1f} s, {reference['samples']} samples; of each relMSE "
         f"{reference['noise_rel_mse']:.2e} is its noise",

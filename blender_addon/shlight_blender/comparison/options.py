@@ -23,6 +23,7 @@ class RenderOptions:
     tolerance: float | None = None
     pixel_samples: int | None = None
     shadow_rays: int | None = None
+    max_bounces: int | None = None  # of both
 
     def to_data(self) -> dict[str, Any]:
         """The options as plain data."""

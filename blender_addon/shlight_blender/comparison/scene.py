@@ -72,7 +72,7 @@ def _reason(error: RuntimeError) -> str:
 
 
 def prepare(scene: Any, options: RenderOptions) -> None:
-    """Settings that all renders share: the frame, the lamps, the size, the filter, and nothing after the renderer."""
+    """Settings that all renders share: frame, lamps, size, filter, bounces, and nothing after the renderer."""
     if options.frame is not None:
         scene.frame_set(options.frame)
     if options.lights is not None:
@@ -85,6 +85,8 @@ def prepare(scene: Any, options: RenderOptions) -> None:
     if options.threads:
         render.threads = options.threads
     scene.cycles.pixel_filter_type = "BOX"  # both engines read it
+    if options.max_bounces is not None:
+        scene.shlight.max_bounces = options.max_bounces
     leave_plain(render)
 
 
@@ -166,7 +168,7 @@ def _glows(seen: Any) -> bool:
 def use_cycles(
     scene: Any, samples: int, seed: int, *, first: int = 0, of: int | None = None, denoise: bool = False
 ) -> None:
-    """The next render is Cycles': direct light only, nothing that trades truth for calm.
+    """The next render is Cycles': as many bounces as shlight's, of every kind, and nothing that trades truth for calm.
 
     The samples are those from number `first` on of a sequence of `of` (by default of `samples`). SceneError where it is
     to be denoised and this Blender has no denoiser.
@@ -178,7 +180,9 @@ def use_cycles(
     cycles.seed = seed
     cycles.use_animated_seed = False
     cycles.time_limit = 0.0
-    cycles.max_bounces = 0
+    for kind in ("max", "diffuse", "glossy", "transmission"):
+        setattr(cycles, f"{kind}_bounces", scene.shlight.max_bounces)
+    cycles.caustics_reflective = cycles.caustics_refractive = True
     cycles.use_fast_gi = False
     cycles.sample_clamp_direct = 0.0
     cycles.sample_clamp_indirect = 0.0

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..comparison.measurements import error_text
+from ..comparison.pictures import light_name
 from .options import Options
 
 
@@ -61,6 +62,7 @@ def table(figures: dict[str, Any]) -> str:
         ),
     ]
     lines = [f"{row[0]:18}{row[1]:>9}{row[2]:>9}" + "".join(f"{cell:>17}" for cell in row[3:]) for row in rows]
+    lines.append(f"All have {light_name(shlight['settings']['max_bounces'])}.")
     lines.append("relMSE is without the noise of the reference, which its two halves tell; ± one standard error.")
     if reference["stopped_by"] == "seconds":
         lines.append("The reference ended when its time was over; --reference-seconds gives it more.")

@@ -88,6 +88,7 @@ def _parser() -> argparse.ArgumentParser:
         metavar="S",
         help="time for the reference, which then ends with the samples it has; 0: no limit (default: %(default)g)",
     )
+    add("--max-bounces", type=whole(0), metavar="N", help="bounces of light, 0: direct light (default: the scene's)")
     add("--threads", type=whole(0), default=0, metavar="N", help="threads of all renders (default: 0, all cores)")
     group = parser.add_argument_group("settings of shlight (default: the scene's)")
     add = group.add_argument

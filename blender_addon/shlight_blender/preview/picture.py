@@ -12,7 +12,7 @@ import numpy.typing as npt
 from shlight import images, metrics
 
 from ..comparison.measurements import error_text
-from ..comparison.pictures import PALETTE, common_exposure, difference_limit
+from ..comparison.pictures import PALETTE, common_exposure, difference_limit, light_name
 
 Image = npt.NDArray[np.float32]
 
@@ -44,16 +44,17 @@ def comparison(
 
     exposure = common_exposure(reference)
     ours, theirs, long = (figures[key] for key in ("shlight", "cycles_same_time", "reference"))
+    light = light_name(ours["settings"]["max_bounces"])
     panels = [
-        (shlight, f"{name}: shlight", f"{_seconds(ours)}, relMSE {error_text(ours)}"),
+        (shlight, f"{name}: shlight, {light}", f"{_seconds(ours)}, relMSE {error_text(ours)}"),
         (
             cycles,
-            "Cycles, same time",
+            f"Cycles, {light}, same time",
             f"{_seconds(theirs)}, {theirs['samples']} samples, relMSE {error_text(theirs)}",
         ),
         (
             reference,
-            "reference: Cycles",
+            f"reference: Cycles, {light}",
             f"{_seconds(long)}, {long['samples']} samples, own noise relMSE {long['noise_rel_mse']:.1e}",
         ),
     ]

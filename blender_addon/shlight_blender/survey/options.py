@@ -44,7 +44,8 @@ class Options:
 def parse(argv: list[str]) -> Options:
     """The options of a command line; prints the reason and raises SystemExit(2) where it is not understood."""
     values = vars(_parser().parse_args(argv))
-    render = {name: values.pop(name) for name in ("size", "threads", "pixel_samples", "samples", "reference_seconds")}
+    names = ("size", "threads", "max_bounces", "pixel_samples", "samples", "reference_seconds")
+    render = {name: values.pop(name) for name in names}
     folder = values.pop("folder")
     out = values.pop("out") or Path("out") / "survey" / (folder.name or folder.resolve().name)
     return Options(folder=folder, out=out, render=render, **values)
@@ -53,7 +54,7 @@ def parse(argv: list[str]) -> Options:
 def _parser() -> argparse.ArgumentParser:
     parser = Parser(
         prog="shlight survey",
-        description="Renders every Blender and glTF file of a folder with shlight and with Cycles, direct light only, "
+        description="Renders every Blender and glTF file of a folder with shlight and with Cycles, "
         "and says of each how far the two differ. A file without camera or light gets one.",
     )
     add = parser.add_argument
@@ -63,6 +64,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--resume", action="store_true", help="keep what the survey in --out has, and do the other files")
     add("--worst", type=whole(0), default=0, metavar="N", help="files on the contact sheet, at most; 0: all (default)")
     add("--jobs", type=whole(1), default=1, metavar="N", help="files at a time (default: %(default)s)")
+    add("--max-bounces", type=whole(0), metavar="N", help="bounces of light, 0: direct light (default: the file's)")
     add("--threads", type=whole(0), default=0, metavar="N", help="threads of each render (default: 0, all cores)")
     add(
         "--time-limit",

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from shlight import images, metrics
 
-from ..comparison.pictures import PALETTE, common_exposure
+from ..comparison.pictures import PALETTE, common_exposure, light_name
 from .records import Record, badness, is_measured
 
 Pixels = npt.NDArray[np.uint8]
@@ -79,6 +79,7 @@ def _caption(record: Record) -> str:
     lines = textwrap.wrap(record["file"], CHARACTERS)
     if is_measured(record):
         lines.append(f"relMSE {record['rel_mse']:.1e}, mean/ref. {record['mean_ratio']:.4f}")
+        lines.append(light_name(record["max_bounces"]))
     named = (message["text"] for message in record.get("report", []))
     for text in (record["problem"], *record.get("features", []), *named):
         lines += textwrap.wrap(text, CHARACTERS)

@@ -86,6 +86,7 @@ class SurveyWorker(Worker[FileOptions]):
         images.write_exr(self._folder / "cycles.exr", reference)
         images.write_png(self._folder / "strip.png", strip(image, reference))
         return {
+            "max_bounces": self._scene.shlight.max_bounces,
             "rel_mse": rel_mse,
             "rel_mse_standard_error": error,
             "rel_mse_measured": metrics.rel_mse(image, reference),
