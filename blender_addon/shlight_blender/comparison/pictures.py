@@ -31,7 +31,7 @@ def difference_limit(difference: npt.NDArray[np.float64]) -> float:
 
 
 def light_name(max_bounces: int) -> str:
-    """What pictures show, for their titles."""
+    """Names what pictures show, for their titles."""
     return "direct light" if max_bounces == 0 else f"{max_bounces} bounce{'s' if max_bounces > 1 else ''}"
 
 
