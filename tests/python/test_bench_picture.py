@@ -13,18 +13,20 @@ from shlight.bench import picture
 from shlight.bench.picture_renderers import Shlight
 
 
+@pytest.mark.parametrize(("chosen", "scene"), [("balls", "balls"), ("--bounces", "cornell")])
 def test_curves_reach_the_chart_and_the_table(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    chosen: str, scene: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    monkeypatch.setattr(picture, "QUICK_BOUNCED", ("cornell",))
     monkeypatch.setattr(picture, "QUICK", picture.Effort(32, 2, 0.5, 0.5))
     monkeypatch.setattr(picture, "_renderers", lambda: [Shlight])
-    assert picture.main(["balls", "--quick", "--out", str(tmp_path)]) == 0
+    assert picture.main([chosen, "--quick", "--out", str(tmp_path)]) == 0
     with (tmp_path / "picture.csv").open(encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     assert {row["renderer"] for row in rows} == {"shlight"}
     assert {row["round"] for row in rows} == {"1", "2"}
     assert (tmp_path / "picture.png").stat().st_size > 1000
-    assert "| scene | shlight |\n| --- | --- |\n| balls | " in capsys.readouterr().out
+    assert f"| scene | shlight |\n| --- | --- |\n| {scene} | " in capsys.readouterr().out
 
 
 def test_an_unknown_scene(capsys: pytest.CaptureFixture[str]) -> None:

@@ -22,12 +22,15 @@ from shlight.commands import CommandError, Parser, check_folder, run_command, wo
 from shlight.metrics import rel_mse, rel_mse_without_noise
 from shlight.progress import Progress
 
+from .bounced_scenes import BOUNCED_SCENES
 from .picture_renderers import Cycles, Image, Mitsuba, Renderer, Shlight
 from .picture_scenes import PICTURE_SCENES, PictureScene
 
 TIMES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 GOALS = (1e-2, 1e-3, 1e-4)
 OURS = "shlight"
+SCENES = PICTURE_SCENES | BOUNCED_SCENES
+DENOISED = "Cycles + OpenImageDenoise"
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,7 @@ class Effort:
 
 FULL = Effort(512, 3, 8.0, 40.0)
 QUICK = Effort(256, 1, 2.0, 8.0)
-QUICK_SCENES = ("balls", "fence")
+QUICK_SCENES, QUICK_BOUNCED = ("balls", "fence"), ("cornell", "product")
 
 
 @dataclass
@@ -82,15 +85,19 @@ def main(argv: list[str]) -> int:
 
 def _work(argv: list[str]) -> None:
     parser = Parser(prog="shlight bench picture", description=__doc__)
-    parser.add_argument("scenes", nargs="*", metavar="scene", help=f"of {', '.join(PICTURE_SCENES)}; default: all")
+    parser.add_argument("scenes", nargs="*", metavar="scene", help=f"of {', '.join(SCENES)}")
+    parser.add_argument(
+        "--bounces", action="store_true", help="by default scenes whose light bounces, not direct light"
+    )
     parser.add_argument("--quick", action="store_true", help="small pictures of two scenes, in three minutes")
     parser.add_argument("--out", type=Path, default=Path("out") / "bench" / "picture", metavar="DIR")
     options = parser.parse_args(argv)
-    unknown = [name for name in options.scenes if name not in PICTURE_SCENES]
+    unknown = [name for name in options.scenes if name not in SCENES]
     if unknown:
-        raise CommandError(f"there is no scene '{unknown[0]}', but {', '.join(PICTURE_SCENES)}", 2)
+        raise CommandError(f"there is no scene '{unknown[0]}', but {', '.join(SCENES)}", 2)
     check_folder(options.out)
-    names = list(options.scenes or (QUICK_SCENES if options.quick else PICTURE_SCENES))
+    whole, quick = (BOUNCED_SCENES, QUICK_BOUNCED) if options.bounces else (PICTURE_SCENES, QUICK_SCENES)
+    names = list(options.scenes or (quick if options.quick else whole))
     renderers = _renderers()
     curves = _measured(names, QUICK if options.quick else FULL, renderers)
     with work_folder(options.out) as folder:
@@ -137,7 +144,7 @@ def _measured(names: list[str], effort: Effort, makes: list[Make]) -> list[Curve
 
 
 def _measured_scene(name: str, effort: Effort, makes: list[Make], progress: Progress) -> list[Curve]:
-    renderers = [make(PICTURE_SCENES[name](), effort.size) for make in makes]
+    renderers = [make(SCENES[name](), effort.size) for make in makes]
     curves = [Curve(name, renderer.name) for renderer in renderers]
     references: dict[Any, tuple[Image, Image]] = {}
     steps = len(renderers) * (1 + effort.rounds)
@@ -173,7 +180,7 @@ def _write_csv(path: Path, curves: list[Curve]) -> None:
 def _draw(path: Path, curves: list[Curve]) -> None:
     from shlight.charts.style import BLUE, GREEN, GREY, ORANGE, canvas, look
 
-    colors = {OURS: BLUE, "Cycles": GREY, "Cycles + OpenImageDenoise": ORANGE, "Mitsuba direct": GREEN}
+    colors = {OURS: BLUE, "Cycles": GREY, DENOISED: ORANGE, "Mitsuba direct": GREEN, "Mitsuba path": GREEN}
     names = list(dict.fromkeys(curve.scene for curve in curves))
     columns = min(len(names), 3)
     rows = math.ceil(len(names) / columns)
@@ -218,22 +225,33 @@ def _ratio(curves: list[Curve], curve: Curve, seconds: float) -> float:
 
 
 def _bounds(curves: list[Curve]) -> list[str]:
+    direct = [curve for curve in curves if curve.scene in PICTURE_SCENES]
+    bounced = [curve for curve in curves if curve.scene in BOUNCED_SCENES]
     lines = []
-    for name, least in (("Cycles", 10.0), ("Cycles + OpenImageDenoise", 10.0), ("Mitsuba direct", 5.0)):
-        own = [curve for curve in curves if curve.renderer == name]
-        if own:
-            lowest = min(_ratio(curves, curve, t) for curve in own for t in TIMES)
-            median = statistics.median(_ratio(curves, curve, 1.0) for curve in own)
-            lines.append(
-                f"{name}: at least {_ratio_text(lowest)} everywhere (bound 1), "
-                f"{_ratio_text(median)} in the median at 1 s (bound {least:g})"
-            )
-            lines += [
-                f"{name}, fence: {_ratio_text(_ratio(curves, curve, 2.0))} at 2 s (bound 3)"
-                for curve in own
-                if (curve.scene, name) == ("fence", "Cycles")
-            ]
-    return lines
+    for name, least in (("Cycles", 10.0), (DENOISED, 10.0), ("Mitsuba direct", 5.0)):
+        lines += _bound(direct, name, TIMES, (1.0,), least)
+    lines += [
+        f"Cycles, fence: {_ratio_text(_ratio(curves, curve, 2.0))} at 2 s (bound 3)"
+        for curve in direct
+        if (curve.scene, curve.renderer) == ("fence", "Cycles")
+    ]
+    late = tuple(t for t in TIMES if t >= 1.0)
+    return [*lines, *_bound(bounced, DENOISED, late, late, 2.0)]
+
+
+def _bound(
+    curves: list[Curve], name: str, times: tuple[float, ...], median_times: tuple[float, ...], least: float
+) -> list[str]:
+    """A line of the lowest ratio of a renderer at some times, and of the median at others."""
+    own = [curve for curve in curves if curve.renderer == name]
+    if not own:
+        return []
+    lowest = min(_ratio(curves, curve, t) for curve in own for t in times)
+    median = statistics.median(_ratio(curves, curve, t) for curve in own for t in median_times)
+    return [
+        f"{name}: at least {_ratio_text(lowest)} from {times[0]:g} to {times[-1]:g} s (bound 1), "
+        f"{_ratio_text(median)} in the median from {median_times[0]:g} to {median_times[-1]:g} s (bound {least:g})"
+    ]
 
 
 def _row(*cells: str) -> str:

@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 
 import shlight
 from shlight import images
+from shlight.charts.scenes import look_at
 from shlight.quiet import quiet
 
-from .picture_scenes import PictureScene, Thing
+from .picture_scenes import BallLamp, Light, PictureScene, Sun, Thing
 
 Image = NDArray[np.float32]
 LLVM_PATH = "DRJIT_LIBLLVM_PATH"
@@ -49,7 +50,8 @@ class Shlight:
 
     def __init__(self, scene: PictureScene, size: int) -> None:
         self._scene, self._size = scene.for_shlight(), size
-        shlight.render(self._scene, 8, 8, threads=THREADS)  # what is built once
+        self._options: dict[str, Any] = {"threads": THREADS, "max_bounces": scene.max_bounces}
+        shlight.render(self._scene, 8, 8, **self._options)  # what is built once
 
     def pictures(self, seconds: float) -> Iterator[tuple[float, Image]]:
         shown: list[tuple[float, Image]] = []
@@ -59,11 +61,11 @@ class Shlight:
             shown.append((time.perf_counter() - start, image))
             return shown[-1][0] < seconds
 
-        last = shlight.render(self._scene, self._size, self._size, threads=THREADS, on_update=show)
+        last = shlight.render(self._scene, self._size, self._size, **self._options, on_update=show)
         yield from [*shown, (time.perf_counter() - start, last)]
 
     def halves(self, seconds: float) -> tuple[Image, Image]:
-        image = shlight.render(self._scene, self._size, self._size, threads=THREADS, **CONVERGED, time_limit=seconds)
+        image = shlight.render(self._scene, self._size, self._size, **self._options, **CONVERGED, time_limit=seconds)
         return image, image
 
 
@@ -95,7 +97,7 @@ class Cycles:
         self._bpy = bpy
         bpy.ops.wm.read_factory_settings(use_empty=True)
         scene = bpy.context.scene
-        _set_cycles(scene, self._size, self._denoised)
+        _set_cycles(scene, self._size, self._denoised, self._scene.max_bounces)
         for thing in self._scene.things:
             _add_blender_mesh(bpy, thing)
         for lamp in self._scene.lamps:
@@ -123,15 +125,18 @@ class Cycles:
             return taken, images.read_exr(path)
 
 
-def _set_cycles(scene: Any, size: int, denoised: bool) -> None:
+def _set_cycles(scene: Any, size: int, denoised: bool, max_bounces: int) -> None:
     render, cycles = scene.render, scene.cycles
     render.engine, render.threads_mode, render.threads = "CYCLES", "FIXED", THREADS
     render.resolution_x = render.resolution_y = size
     render.resolution_percentage = 100
     render.use_compositing = render.use_sequencer = False
     render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
-    cycles.max_bounces, cycles.use_adaptive_sampling = 0, False
-    cycles.light_sampling_threshold = cycles.sample_clamp_direct = 0.0
+    for kind in ("max", "diffuse", "glossy", "transmission"):
+        setattr(cycles, f"{kind}_bounces", max_bounces)
+    cycles.use_adaptive_sampling = False
+    cycles.light_sampling_threshold = cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
+    cycles.blur_glossy = 0.0
     cycles.pixel_filter_type = "BOX"
     cycles.use_denoising = denoised
     if denoised:
@@ -148,10 +153,7 @@ def _add_blender_mesh(bpy: Any, thing: Thing) -> None:
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.clear()
     output = nodes.new("ShaderNodeOutputMaterial")
-    shader = nodes.new("ShaderNodeBsdfDiffuse" if thing.roughness is None else "ShaderNodeBsdfAnisotropic")
-    if thing.roughness is not None:
-        shader.distribution, shader.inputs["Roughness"].default_value = "GGX", thing.roughness
-    shader.inputs["Color"].default_value = (*thing.color, 1.0)
+    shader = _add_blender_shader(nodes, thing)
     links.new(shader.outputs[0], output.inputs["Surface"])
     if thing.picture is not None:
         layer = mesh.uv_layers.new(name="UVMap")
@@ -161,6 +163,24 @@ def _add_blender_mesh(bpy: Any, thing: Thing) -> None:
         links.new(texture.outputs["Color"], shader.inputs["Color"])
     mesh.materials.append(material)
     bpy.context.scene.collection.objects.link(bpy.data.objects.new("Mesh", mesh))
+
+
+def _add_blender_shader(nodes: Any, thing: Thing) -> Any:
+    if thing.emission is not None:
+        shader = nodes.new("ShaderNodeEmission")
+        shader.inputs["Color"].default_value = (*thing.emission, 1.0)
+        return shader
+    if thing.principled is not None:
+        shader = nodes.new("ShaderNodeBsdfPrincipled")
+        shader.distribution, shader.inputs["Base Color"].default_value = "GGX", (*thing.color, 1.0)
+        for name, value in thing.principled.items():
+            shader.inputs[name.replace("_", " ").title().replace("Ior", "IOR")].default_value = value
+        return shader
+    shader = nodes.new("ShaderNodeBsdfDiffuse" if thing.roughness is None else "ShaderNodeBsdfAnisotropic")
+    if thing.roughness is not None:
+        shader.distribution, shader.inputs["Roughness"].default_value = "GGX", thing.roughness
+    shader.inputs["Color"].default_value = (*thing.color, 1.0)
+    return shader
 
 
 def _blender_image(bpy: Any, pixels: Any, *, is_float: bool) -> Any:
@@ -173,20 +193,31 @@ def _blender_image(bpy: Any, pixels: Any, *, is_float: bool) -> Any:
     return image
 
 
-def _add_blender_lamp(bpy: Any, lamp: Any) -> None:
-    a, b, _, d = np.asarray(lamp.corners)
-    light = bpy.data.lights.new("Lamp", "AREA")
-    width, height = np.linalg.norm(b - a), np.linalg.norm(d - a)
-    light.shape, light.size, light.size_y = "RECTANGLE", float(width), float(height)
-    brightest = max(lamp.radiance)
-    light.color, light.energy = [value / brightest for value in lamp.radiance], math.pi * width * height * brightest
-    placed = bpy.data.objects.new("Lamp", light)
+def _add_blender_lamp(bpy: Any, lamp: Light) -> None:
     pose = np.eye(4)
-    x, y = (b - a) / width, (d - a) / height
-    # It shines along -z, towards where the corners are seen counter-clockwise from.
-    pose[:3, 0], pose[:3, 1], pose[:3, 2] = x, -y, -np.cross(x, y)
-    pose[:3, 3] = np.mean(lamp.corners, axis=0)
-    placed.matrix_world = pose.T.tolist()
+    if isinstance(lamp, Sun):
+        light = bpy.data.lights.new("Lamp", "SUN")
+        strength, light.angle, unit = lamp.irradiance, lamp.angle, 1.0
+        pose = look_at((0, 0, 0), lamp.direction)
+    elif isinstance(lamp, BallLamp):
+        light = bpy.data.lights.new("Lamp", "POINT")
+        strength, light.shadow_soft_size = lamp.radiance, lamp.radius
+        light.use_soft_falloff, unit = False, 4 * (math.pi * lamp.radius) ** 2
+        pose[:3, 3] = lamp.center
+    else:
+        a, b, _, d = np.asarray(lamp.corners)
+        light = bpy.data.lights.new("Lamp", "AREA")
+        width, height = np.linalg.norm(b - a), np.linalg.norm(d - a)
+        light.shape, light.size, light.size_y = "RECTANGLE", float(width), float(height)
+        strength, unit = lamp.radiance, float(math.pi * width * height)
+        x, y = (b - a) / width, (d - a) / height
+        # It shines along -z, towards where the corners are seen counter-clockwise from.
+        pose[:3, 0], pose[:3, 1], pose[:3, 2] = x, -y, -np.cross(x, y)
+        pose[:3, 3] = np.mean(lamp.corners, axis=0)
+    brightest = max(strength)
+    light.color, light.energy = [value / brightest for value in strength], unit * brightest
+    placed = bpy.data.objects.new("Lamp", light)
+    placed.matrix_world, placed.visible_camera = pose.T.tolist(), False
     bpy.context.scene.collection.objects.link(placed)
 
 
@@ -204,9 +235,10 @@ def _set_blender_sky(bpy: Any, sky: Any) -> None:
 
 
 class Mitsuba:
-    """Mitsuba 3's integrator `direct`, compiled by LLVM; rendering only, without loading and compiling."""
+    """Mitsuba 3's integrator `path`, or `direct` for direct light, compiled by LLVM.
 
-    name = "Mitsuba direct"
+    Rendering only, without loading and compiling.
+    """
 
     @staticmethod
     def missing() -> str:
@@ -225,6 +257,7 @@ class Mitsuba:
     def __init__(self, scene: PictureScene, size: int) -> None:
         import mitsuba
 
+        self.name = "Mitsuba path" if scene.max_bounces else "Mitsuba direct"
         mitsuba.set_variant("llvm_ad_rgb")
         import drjit
 
@@ -283,33 +316,60 @@ def _mitsuba_scene(mi: Any, scene: PictureScene, size: int) -> dict[str, Any]:
             "sampler": {"type": "independent"},
         },
     }
+    if scene.max_bounces:
+        made["integrator"] |= {"type": "path", "max_depth": scene.max_bounces + 2}
     for i, thing in enumerate(scene.things):
         made[f"thing{i}"] = _mitsuba_mesh(mi, thing)
     for i, lamp in enumerate(scene.lamps):
-        a, b, _, d = np.asarray(lamp.corners)
-        pose = np.eye(4)
-        pose[:3, 0], pose[:3, 1] = (b - a) / 2, (d - a) / 2
-        pose[:3, 2] = np.cross(pose[:3, 0], pose[:3, 1])
-        pose[:3, 3] = np.mean(lamp.corners, axis=0)
-        emitter = {"type": "area", "radiance": {"type": "rgb", "value": list(lamp.radiance)}}
-        made[f"lamp{i}"] = {"type": "rectangle", "to_world": mi.ScalarTransform4f(pose), "emitter": emitter}
-    if scene.sky is not None:
+        made[f"lamp{i}"] = _mitsuba_lamp(mi, lamp)
+    if scene.sky is not None and np.ndim(scene.sky) == 1:
+        made["sky"] = {"type": "constant", "radiance": {"type": "rgb", "value": list(scene.sky)}}
+    elif scene.sky is not None:
         up = mi.ScalarTransform4f().rotate([1, 0, 0], 90)
         made["sky"] = {"type": "envmap", "bitmap": mi.Bitmap(np.asarray(scene.sky, dtype=np.float32)), "to_world": up}
     return made
 
 
-def _mitsuba_mesh(mi: Any, thing: Thing) -> Any:
-    if thing.roughness is not None:
-        bsdf = {"type": "roughconductor", "material": "none", "alpha": thing.roughness**2, "distribution": "ggx"}
-        bsdf["specular_reflectance"] = {"type": "rgb", "value": list(thing.color)}
+def _mitsuba_lamp(mi: Any, lamp: Light) -> dict[str, Any]:
+    if isinstance(lamp, Sun):  # whose angle is small
+        irradiance = {"type": "rgb", "value": list(lamp.irradiance)}
+        return {"type": "directional", "direction": list(lamp.direction), "irradiance": irradiance}
+    emitter = {"type": "area", "radiance": {"type": "rgb", "value": list(lamp.radiance)}}
+    if isinstance(lamp, BallLamp):
+        return {"type": "sphere", "center": list(lamp.center), "radius": lamp.radius, "emitter": emitter}
+    a, b, _, d = np.asarray(lamp.corners)
+    pose = np.eye(4)
+    pose[:3, 0], pose[:3, 1] = (b - a) / 2, (d - a) / 2
+    pose[:3, 2] = np.cross(pose[:3, 0], pose[:3, 1])
+    pose[:3, 3] = np.mean(lamp.corners, axis=0)
+    return {"type": "rectangle", "to_world": mi.ScalarTransform4f(pose), "emitter": emitter}
+
+
+def _mitsuba_bsdf(mi: Any, thing: Thing) -> dict[str, Any]:
+    color = {"type": "rgb", "value": list(thing.color)}
+    if thing.principled is not None:
+        given = thing.principled
+        bsdf = {"type": "principled", "base_color": color, "roughness": max(given.get("roughness", 0.5), 0.01)}
+        bsdf |= {"spec_trans": given.get("transmission_weight", 0.0), "eta": given.get("ior", 1.5)}
+        if bsdf["spec_trans"]:
+            return bsdf
+    elif thing.roughness is not None:
+        bsdf = {"type": "roughconductor", "material": "none", "alpha": max(thing.roughness**2, 1e-4)}
+        bsdf |= {"distribution": "ggx", "specular_reflectance": color}
     elif thing.picture is not None:
         bitmap = mi.Bitmap(np.ascontiguousarray(thing.picture))
         bsdf = {"type": "diffuse", "reflectance": {"type": "bitmap", "bitmap": bitmap}}
     else:
-        bsdf = {"type": "diffuse", "reflectance": {"type": "rgb", "value": list(thing.color)}}
+        bsdf = {"type": "diffuse", "reflectance": color}
+    return {"type": "twosided", "bsdf": bsdf}
+
+
+def _mitsuba_mesh(mi: Any, thing: Thing) -> Any:
     properties = mi.Properties()
-    properties["bsdf"] = mi.load_dict({"type": "twosided", "bsdf": bsdf})
+    properties["bsdf"] = mi.load_dict(_mitsuba_bsdf(mi, thing))
+    if thing.emission is not None:
+        radiance = {"type": "rgb", "value": list(thing.emission)}
+        properties["emitter"] = mi.load_dict({"type": "area", "radiance": radiance})
     faces = np.asarray(thing.mesh.triangles)
     vertices, normals = thing.mesh.vertices, thing.mesh.normals
     if thing.uvs is not None:  # vertices of each triangle apart

@@ -7,7 +7,8 @@ In metres, z upwards; radiance is linear RGB. Rectangles shine to the side that 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -22,11 +23,13 @@ GREY: Colour = (0.6, 0.6, 0.6)
 
 @dataclass(frozen=True)
 class Thing:
-    """A mesh of one material: paint of a colour or with a picture, or metal of a roughness α = roughness²."""
+    """A mesh of one material: paint, plain or with a picture, metal of a roughness α = roughness², or any other."""
 
     mesh: Mesh
     color: Colour = GREY
     roughness: float | None = None  # of metal
+    principled: dict[str, Any] | None = None  # arguments of nodes.principled beside the colour
+    emission: Colour | None = None  # of a surface that does nothing else
     picture: Any = None  # (height, width, 3) of uint8, encoded as sRGB, at …
     uvs: Any = None  # … (triangles, 3, 2)
 
@@ -40,12 +43,37 @@ class Lamp:
 
 
 @dataclass(frozen=True)
+class BallLamp:
+    """A sphere that shines."""
+
+    center: Point
+    radius: float
+    radiance: Colour
+
+
+@dataclass(frozen=True)
+class Sun:
+    """Light in one direction from a disk of an angle [rad]."""
+
+    direction: Point
+    angle: float
+    irradiance: Colour
+
+
+Light = Lamp | BallLamp | Sun
+
+
+@dataclass(frozen=True)
 class PictureScene:
-    """What is rendered: sky is a radiance, or a picture (height, width, 3) with +z on top and +x in its middle."""
+    """What is rendered: sky is a radiance, or a picture (height, width, 3) with +z on top and +x in its middle.
+
+    max_bounces: as `shlight.render` has it. The camera sees no lamps, and sees the sky.
+    """
 
     things: list[Thing]
-    lamps: list[Lamp] = field(default_factory=list)
+    lamps: Sequence[Light] = ()
     sky: Any = None
+    max_bounces: int = 0
     eye: Point = (0.0, -6.0, 2.2)
     target: Point = (0.0, 0.0, 0.7)
     fov: float = math.radians(46)
@@ -60,9 +88,15 @@ class PictureScene:
         scene = shlight.Scene()
         for thing in self.things:
             mesh = thing.mesh
-            scene.add_mesh(mesh.vertices, mesh.triangles, normals=mesh.normals, uvs=thing.uvs, bsdf=_bsdf(thing))
+            shape: dict[str, Any] = {"normals": mesh.normals, "uvs": thing.uvs}
+            scene.add_mesh(mesh.vertices, mesh.triangles, **shape, bsdf=_bsdf(thing), emission=thing.emission)
         for lamp in self.lamps:
-            scene.add_polygon_light(lamp.corners, lamp.radiance)
+            if isinstance(lamp, BallLamp):
+                scene.add_sphere_light(lamp.center, lamp.radius, lamp.radiance)
+            elif isinstance(lamp, Sun):
+                scene.add_sun_light(lamp.direction, lamp.angle, lamp.irradiance)
+            else:
+                scene.add_polygon_light(lamp.corners, lamp.radiance)
         if self.sky is not None:
             scene.set_environment(self.sky)
         scene.set_camera(self.camera, self.fov)
@@ -74,19 +108,30 @@ def _bsdf(thing: Thing) -> Any:
         return shlight.Bsdf.lambert(nodes.image(thing.picture, encoding="srgb"))
     if thing.roughness is not None:
         return shlight.Bsdf.ggx(thing.roughness, thing.color)
-    return shlight.Bsdf.lambert(thing.color)
+    if thing.principled is not None:
+        return nodes.principled(thing.color, **thing.principled)
+    return shlight.Bsdf.lambert((0, 0, 0) if thing.emission else thing.color)
 
 
-def _quad(corners: list[Point]) -> Mesh:
+def quad(corners: list[Point]) -> Mesh:
+    """A rectangle."""
     points = np.array(corners)
     normal = np.cross(points[1] - points[0], points[2] - points[0])
     normals = np.tile(normal / np.linalg.norm(normal), (4, 1))
     return Mesh(points, normals, np.array([[0, 1, 2], [0, 2, 3]]))
 
 
-def _floor(half: float = 8.0, color: Colour = GREY, **others: Any) -> Thing:
+def floor(half: float = 8.0, color: Colour = GREY, **others: Any) -> Thing:
+    """A square at z = 0."""
     corners: list[Point] = [(-half, -half, 0), (half, -half, 0), (half, half, 0), (-half, half, 0)]
-    return Thing(_quad(corners), color, **others)
+    return Thing(quad(corners), color, **others)
+
+
+def checked_floor() -> Thing:
+    """A floor with a picture."""
+    checks = np.kron(np.indices((8, 8)).sum(axis=0) % 2, np.ones((64, 64)))[..., None]
+    picture = np.where(checks > 0, (200, 190, 170), (60, 70, 90)).astype(np.uint8)
+    return floor(picture=picture, uvs=4.0 * np.array([[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]]))
 
 
 def lamp_at(place: Point, target: Point, width: float, height: float, radiance: Colour) -> Lamp:
@@ -107,7 +152,7 @@ THREE_LAMPS = [
 
 def balls() -> PictureScene:
     """Five balls, paint and metal, under three lamps."""
-    things = [_floor()]
+    things = [floor()]
     for i, roughness in enumerate((None, 0.3, None, 0.6, 0.45)):
         color = ((0.8, 0.3, 0.2), (0.9, 0.75, 0.4), (0.2, 0.4, 0.7), (0.85, 0.85, 0.85), (0.9, 0.6, 0.5))[i]
         things.append(Thing(ball((1.15 * (i - 2), 0.3 * (i % 2), 0.5), 0.5), color, roughness))
@@ -116,7 +161,7 @@ def balls() -> PictureScene:
 
 def fence() -> PictureScene:
     """Thin rods between lamps and floor: nearly all of the picture is penumbra."""
-    things = [_floor()]
+    things = [floor()]
     things += [Thing(box((0.12 * i, 0.6, 0.75), (0.02, 0.02, 1.5), 0.1 * i), (0.5, 0.4, 0.3)) for i in range(-25, 26)]
     things += [Thing(box((0, 0.6, z), (6.2, 0.03, 0.03), 0.0), (0.5, 0.4, 0.3)) for z in (0.3, 1.2)]
     lamps = [
@@ -135,7 +180,7 @@ def room() -> PictureScene:
         ([(2.6, 2, 0), (2.6, -5, 0), (2.6, -5, 3.2), (2.6, 2, 3.2)], (0.18, 0.36, 0.52)),
         ([(-2.6, -5, 3.2), (-2.6, 2, 3.2), (2.6, 2, 3.2), (2.6, -5, 3.2)], (0.7, 0.7, 0.7)),
     ]
-    things = [Thing(_quad(corners), color) for corners, color in walls]
+    things = [Thing(quad(corners), color) for corners, color in walls]
     things += [
         Thing(knot((0.2, 0.3, 0.85), 0.85, 0.15), (0.8, 0.6, 0.3), 0.4),
         Thing(vase((-1.4, 0.7, 0.0), 1.4), (0.2, 0.47, 0.43)),
@@ -153,14 +198,11 @@ def textured() -> PictureScene:
     random = np.random.default_rng(4)
     coarse = random.integers(40, 255, (32, 32, 3)).astype(np.uint8)
     fine = np.kron(coarse, np.ones((16, 16, 1), dtype=np.uint8))
-    checks = np.kron(np.indices((8, 8)).sum(axis=0) % 2, np.ones((64, 64)))[..., None]
-    floor_picture = np.where(checks > 0, (200, 190, 170), (60, 70, 90)).astype(np.uint8)
     made = ball((0.0, 0.2, 1.0), 1.0)
     at = made.normals[made.triangles].reshape(-1, 3)
     azimuth, elevation = np.arctan2(at[:, 1], at[:, 0]), np.arcsin(at[:, 2].clip(-1, 1))
     uvs = np.stack([azimuth / (2 * math.pi) + 0.5, elevation / math.pi + 0.5], axis=1).reshape(-1, 3, 2)
-    floor_uvs = 4.0 * np.array([[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]])
-    things = [_floor(picture=floor_picture, uvs=floor_uvs), Thing(made, picture=fine, uvs=uvs)]
+    things = [checked_floor(), Thing(made, picture=fine, uvs=uvs)]
     return PictureScene(things, THREE_LAMPS[:2], target=(0.0, 0.0, 0.8))
 
 
