@@ -55,10 +55,10 @@ def daylight() -> PictureScene:
     things = _shell((-2, -2.5, 0), (2, 2.5, 2.7), {**dict.fromkeys(sides, WHITE), "floor": (0.45, 0.3, 0.18)})
     # The wall of the window: below, above and beside it.
     wall: list[tuple[Point, Point]] = [
-        ((-2.125, 0, 0.4), (0.25, 5.5, 1.0)),
-        ((-2.125, 0, 2.5), (0.25, 5.5, 0.8)),
-        ((-2.125, -1.5, 1.5), (0.25, 2.4, 1.2)),
-        ((-2.125, 2.15, 1.5), (0.25, 1.1, 1.2)),
+        ((-2.125, 0, 0.4), (0.25, 5.5, 0.8)),
+        ((-2.125, 0, 2.55), (0.25, 5.5, 0.5)),
+        ((-2.125, -1.75, 1.55), (0.25, 2.0, 1.5)),
+        ((-2.125, 2.2, 1.55), (0.25, 1.1, 1.5)),
     ]
     things += [Thing(box(center, size, 0.0), WHITE) for center, size in wall]
     things += [
@@ -67,7 +67,7 @@ def daylight() -> PictureScene:
         Thing(ball((1.25, 1.15, 0.9), 0.18), (0.9, 0.7, 0.4), 0.4),
         Thing(box((-0.7, 1.6, 0.25), (0.5, 0.5, 0.5), 0.5), (0.7, 0.2, 0.15)),
     ]
-    sun = Sun((1.0, 0.15, -0.85), math.radians(0.53), (16.0, 14.5, 12.0))
+    sun = Sun((1.0, 0.15, -0.85), math.radians(0.53), (8.0, 7.2, 6.0))
     return PictureScene(
         things,
         [sun],

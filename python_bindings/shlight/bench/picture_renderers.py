@@ -237,7 +237,7 @@ def _set_blender_sky(bpy: Any, sky: Any) -> None:
 class Mitsuba:
     """Mitsuba 3's integrator `path`, or `direct` for direct light, compiled by LLVM.
 
-    Rendering only, without loading and compiling.
+    Rendering only, without loading and compiling. `path` shows lamps to the camera, which the others do not.
     """
 
     @staticmethod
