@@ -57,7 +57,8 @@ Refinement::Refinement(int width, int height, const PixelSampling& sampling, boo
       first_samples_(static_cast<std::uint32_t>(sampling.first_samples)),
       good_enough_(sampling.noise_threshold * sampling.noise_threshold / (kMargin * kMargin)),
       depth_of_field_(depth_of_field),
-      states_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+      states_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
+      noises_(states_.size()) {
     const auto most = static_cast<std::uint32_t>(sampling.max_samples);
     if (first_samples_ < most) {
         first_samples_ = std::bit_ceil(first_samples_);
@@ -69,8 +70,8 @@ Refinement::Refinement(int width, int height, const PixelSampling& sampling, boo
         }
     }
     rays_left_ = static_cast<double>(states_.size()) * samples(least_level_);
-    for (int more = -most_level_; more <= most_level_; ++more) {
-        noise_shares_.push_back(std::pow(std::ldexp(1.0, -2 * more), kNoiseDecay));
+    for (int level = 0; level <= most_level_; ++level) {
+        noise_shares_.push_back(std::pow(std::ldexp(1.0, -2 * level), kNoiseDecay));
     }
 }
 
@@ -101,30 +102,37 @@ void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std
     const double old_share = before / all;
     const Vec3d variance = old_share * Vec3d(state.variance) + (1 - old_share) * sums.variance() +
                            old_share * (1 - old_share) * difference * difference;
+    if (kept_samples(level) > 0) {
+        noises_[i] = merged_noise(i, level, sums, old, radiance);
+    }
+    LightBits visibility = state.visibility;
+    visibility |= sums.visibility;
+    state = {Rgb(variance), 0, static_cast<std::int16_t>(level), round_, visibility, false};
+}
+
+Refinement::ShadowNoise Refinement::merged_noise(std::size_t pixel, int level, const PixelSums& sums, const Vec3d& old,
+                                                 const Vec3d& radiance) const {
+    const double before = kept_samples(states_[pixel].level);
+    const double all = samples(level);
     const Vec3d scale = radiance * radiance + least_square_;
-    const double shared =
-        old_share * old_share * state.shared_noise + mean(quotient(sums.shared_noise / (all * all), scale));
-    double noise = 0;
-    double independent_noise = 0;
-    if (all > 1 && kept_samples(level) > 0) {
+    const double share = noise_share(level);
+    const auto at_first = [&](const Vec3d& squared_error) {
+        return static_cast<float>(mean(quotient(squared_error, scale)) / share);
+    };
+    ShadowNoise noise = {0, 0, at_first(sums.shared_noise / (all * all)), 1};
+    if (before > 0) {
+        const double factor = before * before / (all * all) * noise_share(states_[pixel].level) / share;
+        noise.shared += static_cast<float>(factor * noises_[pixel].shared);
+    }
+    if (all > 1) {
         const double half = std::floor(all / 2);
         const Vec3d early = (before * old + sums.early) / half;
         const Vec3d late = (all * radiance - half * early) / (all - half);
         const Vec3d independent = sums.noise / (all * static_cast<double>(sums.rays));
-        noise = mean(quotient(glm::min((early - late) * (early - late) / 4.0, kMostNoise * independent), scale));
-        independent_noise = mean(quotient(independent, scale));
+        noise.seen = at_first(glm::min((early - late) * (early - late) / 4.0, kMostNoise * independent));
+        noise.independent = at_first(independent);
     }
-    LightBits visibility = state.visibility;
-    visibility |= sums.visibility;
-    state = {Rgb(variance),
-             static_cast<float>(noise),
-             static_cast<float>(independent_noise),
-             static_cast<float>(shared),
-             0,
-             static_cast<std::int16_t>(level),
-             round_,
-             visibility,
-             false};
+    return noise;
 }
 
 void Refinement::set_mean(std::span<const float> image) {
@@ -202,29 +210,16 @@ double Refinement::squared_error(double variance, int level) const {
 
 /// The own rays tell how the light varies; by how much less they err because they are spread, only many pixels tell.
 double Refinement::shadow_error(int column, int row, int level) const {
-    const auto left = [&](const State& state) {
-        return noise_shares_[static_cast<std::size_t>(level - state.level + most_level_)];
-    };
-    double noise = 0;
-    double independent = 0;
-    double shared = 0;
-    int count = 0;
-    for_each_around(column, row, kNoiseReach, [&](std::size_t i) {
-        const State& state = states_[i];
-        if (kept_samples(state.level) > 0) {
-            noise += state.noise * left(state);
-            independent += state.independent_noise * left(state);
-            shared += state.shared_noise * left(state);
-            ++count;
-        }
-    });
-    if (count == 0) {
+    ShadowNoise sum;
+    for_each_around(column, row, kNoiseReach, [&](std::size_t i) { sum += noises_[i]; });
+    if (sum.pixels == 0) {
         return 0;
     }
-    const State& own = states_[index(column, row)];
-    const double own_noise = independent > 0 ? own.independent_noise * left(own) * noise / independent : 0.0;
-    const double own_share = kept_samples(own.level) / (kept_samples(own.level) + kOwnRays);
-    return own_share * own_noise + (1 - own_share) * noise / count + shared / count;
+    const std::size_t i = index(column, row);
+    const double own = sum.independent > 0 ? noises_[i].independent * sum.seen / sum.independent : 0.0F;
+    const double own_share = kept_samples(states_[i].level) / (kept_samples(states_[i].level) + kOwnRays);
+    const double of_first = own_share * own + ((1 - own_share) * sum.seen + sum.shared) / sum.pixels;
+    return of_first * noise_share(level);
 }
 
 int Refinement::sufficient_level(double variance) const {

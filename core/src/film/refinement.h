@@ -56,11 +56,24 @@ class Refinement {
     int most_level() const { return most_level_; }
 
   private:
+    /// Squared relative errors of a pixel's mean by shadow rays, scaled to what they would be at level 0, so that those
+    /// of pixels at any level add up; or such sums.
+    struct ShadowNoise {
+        float seen = 0;         // as the pixel's rays show them
+        float independent = 0;  // as they would be if each ray were drawn by itself
+        float shared = 0;       // the part that its camera rays have in common, which adds to the first
+        float pixels = 0;       // with rays that count
+
+        ShadowNoise& operator+=(const ShadowNoise& other) {
+            seen += other.seen;
+            independent += other.independent;
+            shared += other.shared;
+            pixels += other.pixels;
+            return *this;
+        }
+    };
     struct State {
         Rgb variance{0};  // of one ray, without the noise of its shadow rays
-        // Squared errors of the mean by shadow rays, relative: as the pixel's own rays show them, as they would be if
-        // each ray were drawn by itself, and the part that its camera rays have in common, which adds to the first.
-        float noise = 0, independent_noise = 0, shared_noise = 0;
         float error = 0;  // squared; as it was when a round looked at it
         std::int16_t level = -1;
         std::uint16_t merged = 0;  // the number of the round
@@ -89,6 +102,10 @@ class Refinement {
     /// Whether rays of the pixel or of those around it were merged since the last round.
     bool is_touched(int column, int row) const;
     void set_mean(std::span<const float> image);
+    /// What the pixel's noise becomes. old, radiance: its colour before and after.
+    ShadowNoise merged_noise(std::size_t pixel, int level, const PixelSums& sums, const Vec3d& old,
+                             const Vec3d& radiance) const;
+    double noise_share(int level) const { return noise_shares_[static_cast<std::size_t>(level)]; }
     Wanted wanted(int column, int row, std::span<const float> image) const;
     double variance_per_error(int level) const;
     double squared_error(double variance, int level) const;
@@ -110,8 +127,9 @@ class Refinement {
     double least_square_ = 0;  // 0.01 r̄²
     double noise_ = 0, rays_left_ = 0;
     std::uint16_t round_ = 0;           // which merges since the last call of next_round() belong to
-    std::vector<double> noise_shares_;  // of shadow rays' squared error: what so many levels more leave of it
+    std::vector<double> noise_shares_;  // what each level leaves of shadow rays' squared error at level 0
     std::vector<State> states_;
+    std::vector<ShadowNoise> noises_;  // of each pixel; apart, as most reads are of these alone
 };
 
 }  // namespace shlight
