@@ -141,7 +141,12 @@ void LightTarget::push(const LightPointArrays& points, std::uint32_t count, Draw
     for (std::uint32_t i = 0; i < count; ++i) {
         if (points.weight[i] > 0) {
             const Vec3f way(points.x[i], points.y[i], points.z[i]);
-            rays.drawn.extend(1)[0] = {way, 1 / points.weight[i], 1, false};
+            // Each number is written once, see ShadowRaySpawner::to_end_of().
+            DrawnRay& drawn = rays.drawn.extend(1)[0];
+            drawn.way = way;
+            drawn.light_density = 1 / points.weight[i];
+            drawn.radiance = 1;
+            drawn.hidden_layer = false;
             start_->to_end_of(way, rays.rays.extend(1)[0]);
         }
     }

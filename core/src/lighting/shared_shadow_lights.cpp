@@ -2,7 +2,6 @@
 #include "lighting/shared_shadow_lights.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <variant>
@@ -127,7 +126,6 @@ void SharedShadowLights::gather_points(std::size_t pixel, const UnshadowedLight&
 
 void SharedShadowLights::request_from(std::size_t hit, std::size_t light, const glm::dvec2& place, double density,
                                       const Hits& hits) {
-    const UnshadowedLight& unshadowed = unshadowed_[light];
     target_.set(lights_[light]);
     target_.clear();
     if (!target_.add(hits, hit)) {
@@ -135,28 +133,32 @@ void SharedShadowLights::request_from(std::size_t hit, std::size_t light, const 
     }
     target_.aim(hits, hit, 0, true);
     const std::size_t before = rays_.size();
-    std::array<float, kRaysAtOnce> u{}, v{};
-    u[0] = static_cast<float>(place.x);
-    v[0] = static_cast<float>(place.y);
-    target_.draw(u.data(), v.data(), 1, rays_);
+    u_[0] = static_cast<float>(place.x);
+    v_[0] = static_cast<float>(place.y);
+    target_.draw(u_.data(), v_.data(), 1, rays_);
     if (rays_.size() == before) {
         return;
     }
     terminator_.lift(hits, hit, target_, before, rays_);
-    const DrawnRay& drawn = rays_.drawn[before];
+    shadow_samples_.push_back(
+        {hit, light, density, static_cast<float>(hits.let_in(hit, Vec3d(rays_.drawn[before].way)))});
+}
+
+Rgb SharedShadowLights::value(std::size_t sample, const Hits& hits) const {
+    const auto& [hit, light, density, let_in] = shadow_samples_[sample];
+    const DrawnRay& drawn = rays_.drawn[sample];
     const Vec3d direction = hits.frame[hit].to_local(glm::normalize(Vec3d(drawn.way)));
     const double weight = double{drawn.radiance} / (drawn.light_density * density);
     const MaterialLobes& material = materials_[hits.material[hit]];
     // In double, as the density of a very dim light is too small to divide by in float.
-    Vec3d value(0);
+    Vec3d sum(0);
     for (std::size_t lobe = 0; lobe < material.lobes().size(); ++lobe) {
-        if (unshadowed[lobe * points_->size() + points_->of_hit[hit]] != Rgb(0)) {
+        if (unshadowed_[light][lobe * points_->size() + points_->of_hit[hit]] != Rgb(0)) {
             const LobeShape shape = material.shape(lobe, hits.widths(hit)[lobe]);
-            value += Vec3d(glm::abs(hits.weight(hit, lobe))) * (weight * lobe_value(shape, direction, hits.view(hit)));
+            sum += Vec3d(glm::abs(hits.weight(hit, lobe))) * (weight * lobe_value(shape, direction, hits.view(hit)));
         }
     }
-    shadow_samples_.push_back(
-        {Rgb(value * Vec3d(target_.strength())), light, static_cast<float>(hits.let_in(hit, Vec3d(drawn.way)))});
+    return Rgb(sum * Vec3d(strength_of(lights_[light])));
 }
 
 void SharedShadowLights::add_unblocked(std::size_t pixel) {
@@ -180,12 +182,13 @@ void SharedShadowLights::add_unblocked(std::size_t pixel) {
 
 void SharedShadowLights::finish(Hits& hits) {
     rays_.visible.resize(rays_.size());
+    values_.assign(rays_.size(), Rgb(0));
     tracer_->visibility(rays_.rays.all(), rays_.visible);
     for (std::size_t i = 0; i < rays_.visible.size(); ++i) {
         rays_.visible[i] *= shadow_samples_[i].let_in;
     }
     for (const PixelSamples& own : pixels_) {
-        const Share seen = share(own);
+        const Share seen = share(own, hits);
         Rgb sum(0);
         for (std::size_t hit = hits.pixel_begin[own.pixel]; hit < hits.pixel_begin[own.pixel + 1]; ++hit) {
             const Rgb& radiance = radiance_[points_->of_hit[hit]];
@@ -203,18 +206,25 @@ void SharedShadowLights::finish(Hits& hits) {
     rays_.clear();
 }
 
-SharedShadowLights::Share SharedShadowLights::share(const PixelSamples& own) const {
+SharedShadowLights::Share SharedShadowLights::share(const PixelSamples& own, const Hits& hits) {
     Share share;
+    for (std::size_t i = own.begin; i < own.end; ++i) {
+        share.lights.add(shadow_samples_[i].light, rays_.visible[i]);
+    }
+    if (share.lights.hidden == 0) {
+        share.seen = Rgb(1);
+        return share;
+    }
     Vec3d all(0);
     Vec3d seen(0);
     for (std::size_t i = own.begin; i < own.end; ++i) {
-        all += shadow_samples_[i].value;
-        seen += shadow_samples_[i].value * rays_.visible[i];
-        share.lights.add(shadow_samples_[i].light, rays_.visible[i]);
+        values_[i] = value(i, hits);
+        all += values_[i];
+        seen += values_[i] * rays_.visible[i];
     }
     share.seen = Rgb(quotient(seen, all));
-    for (std::size_t i = own.begin; i < own.end && share.lights.hidden != 0; ++i) {
-        const Vec3d off = quotient(Vec3d((rays_.visible[i] - share.seen) * shadow_samples_[i].value), all);
+    for (std::size_t i = own.begin; i < own.end; ++i) {
+        const Vec3d off = quotient(Vec3d((rays_.visible[i] - share.seen) * values_[i]), all);
         share.variance += Rgb(off * off);
     }
     return share;
@@ -226,10 +236,9 @@ void SharedShadowLights::keep_apart(const PixelSamples& own, const Share& share,
     group_seen_.assign(all.size(), Rgb(0));
     group_sampled_.assign(all.size(), Rgb(0));
     for (std::size_t i = own.begin; i < own.end; ++i) {
-        const ShadowSample& sample = shadow_samples_[i];
-        const std::uint32_t group = traits_of(lights_[sample.light]).group;
-        group_seen_[group] += sample.value * rays_.visible[i];
-        group_sampled_[group] += sample.value;
+        const std::uint32_t group = traits_of(lights_[shadow_samples_[i].light]).group;
+        group_seen_[group] += values_[i] * rays_.visible[i];
+        group_sampled_[group] += values_[i];
     }
     Rgb sum(0);
     for (std::size_t group = 0; group < all.size(); ++group) {

@@ -5,6 +5,7 @@
 // of the samples is taken to be that of all these lights. A scene may have thousands of them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -51,11 +52,11 @@ class SharedShadowLights {
         float up_to;
     };
 
-    /// A ray from a hit to a light, and what it stands for if nothing blocks it, ≥ 0.
+    /// A ray from a hit to a light.
     struct ShadowSample {
-        Rgb value;
-        std::size_t light;
-        float let_in;  // of what reaches the hit
+        std::size_t hit, light;
+        double density;  // samples that a unit of brightness gets
+        float let_in;    // of what reaches the hit
     };
     /// The samples of a pixel: those numbered begin … end - 1.
     struct PixelSamples {
@@ -77,7 +78,9 @@ class SharedShadowLights {
     void request_from(std::size_t hit, std::size_t light, const glm::dvec2& place, double density, const Hits& hits);
     /// Adds the lights to the pixels that have samples.
     void finish(Hits& hits);
-    Share share(const PixelSamples& own) const;
+    Share share(const PixelSamples& own, const Hits& hits);
+    /// What a sample stands for if nothing blocks it, ≥ 0.
+    Rgb value(std::size_t sample, const Hits& hits) const;
     /// Adds the visible share of `unblocked` to a pixel's parts: for each group according to its samples, scaled so
     /// that all groups add up to share.seen.
     void keep_apart(const PixelSamples& own, const Share& share, std::span<const Rgb> unblocked,
@@ -97,11 +100,13 @@ class SharedShadowLights {
     std::vector<PixelSamples> pixels_;
     std::vector<ShadowSample> shadow_samples_;
     DrawnRays rays_;                               // of each sample
+    std::vector<Rgb> values_;                      // likewise, where its pixel has rays that something blocks; or 0
     std::vector<Rgb> group_seen_, group_sampled_;  // of light groups
     std::vector<Rgb> radiance_;                    // by shading point, of the dim lights if nothing blocks
     LightGroupBuffer apart_;                       // of that, by pixel
     std::vector<Member> dim_;                      // lights of a pixel
     std::vector<Member> dim_points_;               // of a pixel, under one of them
+    std::array<float, kRaysAtOnce> u_{}, v_{};     // a sample's point of the unit square, the first
     LightTarget target_;
     TerminatorRays terminator_;
 };
