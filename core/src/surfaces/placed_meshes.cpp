@@ -36,6 +36,10 @@ Vec3d normalized_or(const Vec3d& v, const Vec3d& fallback) {
     return length > 0 && std::isfinite(length) ? v / length : fallback;
 }
 
+glm::dmat3 normals_to_world(const Placement& placement) {
+    return glm::transpose(glm::dmat3(placement.to_object));
+}
+
 std::array<double, 3> weights_of(const RayHit& hit) {
     return {1.0 - hit.u - hit.v, hit.u, hit.v};
 }
@@ -70,19 +74,17 @@ std::array<Vec3d, 3> PlacedMeshes::corners(const RayHit& hit) const {
 }
 
 std::optional<std::array<Vec3d, 3>> PlacedMeshes::corner_normals(const RayHit& hit) const {
-    const Placement& placement = placements_[hit.instance];
-    const MeshShape& mesh = *mesh_of(placement).shape;
+    const MeshShape& mesh = *mesh_of(placements_[hit.instance]).shape;
     if (mesh.vertex_normals.empty() && mesh.corner_normals.empty()) {
         return std::nullopt;
     }
     const Triangle& triangle = mesh.triangles[hit.triangle];
-    const glm::dmat3 to_world = glm::transpose(glm::dmat3(placement.to_object));
     std::array<Vec3d, 3> normals;
     for (int i = 0; i < 3; ++i) {
         const auto corner = static_cast<std::size_t>(i);
-        const Vec3f& own = mesh.corner_normals.empty() ? mesh.vertex_normals[triangle[i]]
-                                                       : mesh.corner_normals[3 * std::size_t{hit.triangle} + corner];
-        normals[corner] = to_world * Vec3d(own);
+        normals[corner] =
+            Vec3d(mesh.corner_normals.empty() ? mesh.vertex_normals[triangle[i]]
+                                              : mesh.corner_normals[3 * std::size_t{hit.triangle} + corner]);
     }
     return normals;
 }
@@ -96,8 +98,9 @@ Terminator PlacedMeshes::terminator(const RayHit& hit, const SurfacePoint& point
         return result;
     }
     const std::array<double, 3> weights = weights_of(hit);
+    const glm::dmat3 to_world = normals_to_world(placements_[hit.instance]);
     for (Vec3d& own : *normals) {
-        own = normalized_or(own, point.shading_normal);
+        own = normalized_or(to_world * own, point.shading_normal);
     }
     if (glm::dot(weighted(*normals, weights), point.geometric_normal) < 0) {
         for (Vec3d& own : *normals) {
@@ -129,7 +132,7 @@ SurfacePoint PlacedMeshes::surface(const RayHit& hit, const Vec3f& direction) co
     }
     Vec3d shading = geometric;
     if (const auto normals = corner_normals(hit)) {
-        shading = normalized_or(weighted(*normals, weights), geometric);
+        shading = normalized_or(normals_to_world(placement) * weighted(*normals, weights), geometric);
         const bool turned =
             mesh_of(placement).turns_normals ? glm::dot(shading, geometric) < 0 : clockwise != placement.mirrored;
         if (turned) {

@@ -105,7 +105,7 @@ class PlacedMeshes {
     /// place: see ShaderReader.
     void read(const ShaderInput& input, const Material& material, int place, std::span<const ShadedPlace> places,
               std::span<float> out) const;
-    /// The mesh's own at the corners of the hit triangle, in the world, of no particular length; none: it is flat.
+    /// The mesh's own at the corners of the hit triangle, in its frame, of no particular length; none: it is flat.
     std::optional<std::array<Vec3d, 3>> corner_normals(const RayHit& hit) const;
     /// Corners of the hit triangle in the world.
     std::array<Vec3d, 3> corners(const RayHit& hit) const;
