@@ -33,6 +33,8 @@ constexpr double kOwnRays = 64;
 constexpr double kMargin = 1.3;
 /// The squared error by shadow rays falls with this power of their number: 1 behind many thin things, 1.5 at one edge.
 constexpr double kNoiseDecay = 1.25;
+/// The squared error of a mean, expected by that, ÷ the squared difference between the means of its two halves.
+const double kErrorByHalves = std::exp2(-1 - kNoiseDecay);
 
 double mean(const Vec3d& v) {
     return (v.x + v.y + v.z) / 3;
@@ -129,7 +131,7 @@ Refinement::ShadowNoise Refinement::merged_noise(std::size_t pixel, int level, c
         const Vec3d early = (before * old + sums.early) / half;
         const Vec3d late = (all * radiance - half * early) / (all - half);
         const Vec3d independent = sums.noise / (all * static_cast<double>(sums.rays));
-        noise.seen = at_first(glm::min((early - late) * (early - late) / 4.0, kMostNoise * independent));
+        noise.seen = at_first(glm::min(kErrorByHalves * (early - late) * (early - late), kMostNoise * independent));
         noise.independent = at_first(independent);
     }
     return noise;

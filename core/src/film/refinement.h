@@ -102,7 +102,7 @@ class Refinement {
     /// Whether rays of the pixel or of those around it were merged since the last round.
     bool is_touched(int column, int row) const;
     void set_mean(std::span<const float> image);
-    /// What the pixel's noise becomes. old, radiance: its colour before and after.
+    /// Returns the pixel's noise with these rays. old, radiance: its colour before and with them.
     ShadowNoise merged_noise(std::size_t pixel, int level, const PixelSums& sums, const Vec3d& old,
                              const Vec3d& radiance) const;
     double noise_share(int level) const { return noise_shares_[static_cast<std::size_t>(level)]; }

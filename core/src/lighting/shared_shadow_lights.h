@@ -79,7 +79,7 @@ class SharedShadowLights {
     /// Adds the lights to the pixels that have samples.
     void finish(Hits& hits);
     Share share(const PixelSamples& own, const Hits& hits);
-    /// What a sample stands for if nothing blocks it, ≥ 0.
+    /// Returns the light that a sample stands for if nothing blocks it, ≥ 0.
     Rgb value(std::size_t sample, const Hits& hits) const;
     /// Adds the visible share of `unblocked` to a pixel's parts: for each group according to its samples, scaled so
     /// that all groups add up to share.seen.
