@@ -109,9 +109,9 @@ def glossy_balls() -> PictureScene:
     lamps: list[Light] = [
         BallLamp((-2.6, -2.4, 3.0), 0.6, (18.3, 15.7, 12.8)),
         lamp_at((2.6, -1.6, 2.8), (0, 0, 0.5), 1.8, 1.0, (33.1, 39.5, 46.0)),
-        BallLamp((0.4, -2.2, 4.0), 0.06, (422.0, 422.0, 422.0)),
+        BallLamp((0.4, -2.2, 4.0), 0.15, (68.0, 68.0, 68.0)),
     ]
-    return PictureScene(things, lamps, max_bounces=BOUNCES, eye=(0, -9.0, 3.2), target=(0, 0, 0.42), fov=0.6325)
+    return PictureScene(things, lamps, max_bounces=BOUNCES, eye=(0, -6.5, 4.6), target=(0, -0.2, 0.35), fov=0.75)
 
 
 def _sweep() -> Mesh:
