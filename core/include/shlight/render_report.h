@@ -31,6 +31,9 @@ struct RenderReport {
     double seconds = 0;
     double seconds_left = 0;                                   ///< of what is known to be left to do
     std::array<double, kRenderStages.size()> stage_seconds{};  ///< by RenderStage, summed over threads
+
+    /// Adds what is a sum over parts of the work.
+    RenderReport& operator+=(const RenderReport& part);
 };
 
 }  // namespace shlight

@@ -143,10 +143,26 @@ std::uint32_t Picture::batch_samples() const {
     return static_cast<std::uint32_t>(std::clamp(kValues / values, kLeastSamples, kMostBatchSamples));
 }
 
-PixelBatch::PixelBatch(const Picture& picture)
+Ray Picture::ray(double column, double row, const std::optional<glm::dvec2>& lens) const {
+    return camera.ray(window.left + column / width * (window.right - window.left),
+                      window.top + row / height * (window.bottom - window.top), lens);
+}
+
+double Picture::pixel_width(double distance) const {
+    const Ray one = ray(0.5 * width, 0.5 * height, {});
+    const Ray other = ray(0.5 * width + 1, 0.5 * height, {});
+    return glm::distance(Vec3d(one.origin) + distance * Vec3d(one.direction),
+                         Vec3d(other.origin) + distance * Vec3d(other.direction));
+}
+
+PathSettings Picture::paths(const LightRecords* records) const {
+    return {static_cast<std::uint32_t>(settings.transparent_bounces),
+            records != nullptr ? static_cast<std::uint32_t>(settings.max_bounces) : 0, records};
+}
+
+PixelBatch::PixelBatch(const Picture& picture, const PathSettings& paths)
     : picture_(&picture),
-      surfaces_(*picture.scene, picture.lighting.materials,
-                static_cast<std::uint32_t>(picture.settings.transparent_bounces)),
+      surfaces_(*picture.scene, picture.lighting.materials, paths),
       surface_passes_(*picture.scene, picture.camera, picture.settings.passes, picture.layout),
       hits_(picture.lighting.lobe_stride, picture.parts),
       lighting_(picture.lighting, picture.scene->rays(),
@@ -174,7 +190,7 @@ void PixelBatch::write_middles(std::span<const Pixel> pixels, std::span<float> v
     rays_.clear();
     neighbours_.clear();
     for (const Pixel& pixel : pixels) {
-        add_ray({pixel.column + 0.5, pixel.row + 0.5}, {}, 0, 1);
+        add_ray({pixel.column + 0.5, pixel.row + 0.5}, {}, 0, 0, 1);
     }
     surfaces_.trace(rays_, neighbours_, 1, hits_, ray_light_);
     surface_passes_.write_middles(surfaces_, rays_.size(), values);
@@ -189,12 +205,6 @@ double PixelBatch::reflected(std::span<const Pixel> pixels, std::uint32_t shadow
         sum += glm::dot(glm::abs(radiance), Rgb(1.0F / 3));
     }
     return sum;
-}
-
-Ray PixelBatch::camera_ray(double column, double row, const LensPoint& lens) const {
-    const Window& window = picture_->window;
-    return picture_->camera.ray(window.left + column / picture_->width * (window.right - window.left),
-                                window.top + row / picture_->height * (window.bottom - window.top), lens);
 }
 
 /// The pixel's point and this are one of four dimensions. A preview's is the one before the first, the sequence's last.
@@ -214,7 +224,7 @@ void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRa
     for (std::size_t p = 0; p < pixels.size(); ++p) {
         for (std::uint32_t i = samples.first; i < samples.first + samples.count; ++i) {
             const glm::dvec2 middle(pixels[p].column + 0.5, pixels[p].row + 0.5);
-            add_ray(middle + picture_->filter_places[i], lens_point(i, pixel_seeds_[p]), i, step);
+            add_ray(middle + picture_->filter_places[i], lens_point(i, pixel_seeds_[p]), i, pixel_seeds_[p], step);
         }
     }
     surfaces_.trace(rays_, neighbours_, samples.count, hits_, ray_light_);
@@ -222,12 +232,13 @@ void PixelBatch::trace_camera_rays(std::span<const Pixel> pixels, const SampleRa
     report_.mirror_count += surfaces_.mirror_count();
 }
 
-void PixelBatch::add_ray(const glm::dvec2& place, const LensPoint& lens, std::uint32_t sample, double step) {
-    const Ray ray = camera_ray(place.x, place.y, lens);
-    rays_.push_back({ray, sample});
+void PixelBatch::add_ray(const glm::dvec2& place, const LensPoint& lens, std::uint32_t sample, std::uint32_t seed,
+                         double step) {
+    const Ray ray = picture_->ray(place.x, place.y, lens);
+    rays_.push_back({ray, sample, seed});
     if (picture_->takes_differences) {
-        const Ray right = camera_ray(place.x + step, place.y, lens);
-        const Ray below = camera_ray(place.x, place.y + step, lens);
+        const Ray right = picture_->ray(place.x + step, place.y, lens);
+        const Ray below = picture_->ray(place.x, place.y + step, lens);
         neighbours_.push_back({right.empty() ? ray : right, below.empty() ? ray : below});
     }
 }

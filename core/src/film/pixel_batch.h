@@ -55,6 +55,12 @@ struct Picture {
 
     /// Camera rays that a batch should hold. Under many lights fewer: what each light adds is kept until all are known.
     std::uint32_t batch_samples() const;
+    /// Through a point of the window, in pixels, and one of the aperture; none: its middle.
+    Ray ray(double column, double row, const std::optional<glm::dvec2>& lens) const;
+    /// The width of a pixel in the picture's middle, at a distance [m].
+    double pixel_width(double distance) const;
+    /// Settings of paths that bounce; without records light is direct.
+    PathSettings paths(const LightRecords* records) const;
 
     const CompiledScene* scene;
     Camera camera;  ///< in the scene's frame
@@ -78,12 +84,15 @@ struct PartPlace {
 /// Renders one batch after another; one per thread.
 class PixelBatch {
   public:
-    explicit PixelBatch(const Picture& picture);
+    /// paths: see follow().
+    PixelBatch(const Picture& picture, const PathSettings& paths);
 
     /// Adds these rays of each pixel to its sums. second_half: the number of the first camera ray that PixelSums::early
     /// leaves out; pass_sums: pixels × layout.stride(), as PassImage::merge takes them.
     void add(std::span<const Pixel> pixels, const SampleRange& samples, std::uint32_t second_half,
              std::span<PixelSums> sums, std::span<double> pass_sums);
+    /// Lets light bounce from now on.
+    void follow(const PathSettings& paths) { surfaces_.follow(paths); }
     /// Passes of the ray through the middle of each pixel. values: pixels × layout.stride().
     void write_middles(std::span<const Pixel> pixels, std::span<float> values);
     /// Brightness of what surfaces reflect in these pixels, by their first camera ray, summed up.
@@ -97,13 +106,11 @@ class PixelBatch {
 
     void trace_camera_rays(std::span<const Pixel> pixels, const SampleRange& samples);
     /// place: in pixels; step: to its neighbours.
-    void add_ray(const glm::dvec2& place, const LensPoint& lens, std::uint32_t sample, double step);
+    void add_ray(const glm::dvec2& place, const LensPoint& lens, std::uint32_t sample, std::uint32_t seed, double step);
     void seed_pixels(std::span<const Pixel> pixels);
     void add_up(const SampleRange& samples, std::uint32_t second_half, std::span<PixelSums> sums) const;
     /// Parts of the light.
     void add_up_parts(std::span<double> pass_sums) const;
-    /// Through a point of the window, in pixels, and one of the aperture.
-    Ray camera_ray(double column, double row, const LensPoint& lens) const;
     LensPoint lens_point(std::uint32_t sample, std::uint32_t pixel_seed) const;
 
     const Picture* picture_;

@@ -2,14 +2,23 @@
 #include "film/progressive_renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
+
+#include "film/record_placement.h"
 
 namespace shlight {
 namespace {
 
 /// Each round takes some pixels to the next level, or follows something thin by one pixel more.
 constexpr int kMostRounds = 256;
+/// Steps of the grids of pixels whose surfaces have records.
+constexpr int kWidestRecordStep = 32;
+constexpr int kLeastRecordStep = 2;
+/// A grid takes about so many times as long as the one before. Bounces get this share of the time there is.
+constexpr double kNextGrid = 3;
+constexpr double kShareOfBounces = 0.4;
 /// Pixels of the first grid, at least.
 constexpr double kFirstPixels = 1024;
 /// Rays through middles of pixels that are traced together.
@@ -22,18 +31,6 @@ constexpr double kLeastUpdateInterval = 0.05;
 constexpr double kMostUpdateInterval = 0.25;
 constexpr double kShowTimes = 10;
 
-void add(RenderReport& sum, const RenderReport& part) {
-    std::transform(sum.order_counts.begin(), sum.order_counts.end(), part.order_counts.begin(),
-                   sum.order_counts.begin(), std::plus<>());
-    sum.cubature_count += part.cubature_count;
-    sum.mirror_count += part.mirror_count;
-    sum.hits += part.hits;
-    sum.over_tolerance += part.over_tolerance;
-    sum.shadow_rays += part.shadow_rays;
-    std::transform(sum.stage_seconds.begin(), sum.stage_seconds.end(), part.stage_seconds.begin(),
-                   sum.stage_seconds.begin(), std::plus<>());
-}
-
 }  // namespace
 
 ProgressiveRenderer::ProgressiveRenderer(const Picture& picture, Refinement refinement, std::span<float> image,
@@ -45,11 +42,17 @@ ProgressiveRenderer::ProgressiveRenderer(const Picture& picture, Refinement refi
       batch_samples_(picture.batch_samples()),
       start_(start),
       refinement_(std::move(refinement)),
-      batches_([&picture] { return PixelBatch(picture); }) {}
+      batches_([this] { return PixelBatch(*picture_, picture_->paths(bounce_seconds_ > 0 ? &records_ : nullptr)); }) {}
 
 void ProgressiveRenderer::run(const Watch& caller) {
     write_middles(caller.stopped);
-    bool goes_on = first_pass(caller);
+    const bool bounces = picture_->settings.max_bounces > 0;
+    const bool shows_direct = !bounces || refinement_.has_preview();
+    bool goes_on = !shows_direct || first_pass(caller);
+    if (bounces && goes_on) {
+        add_bounces(caller);
+        goes_on = first_pass(caller);
+    }
     for (int round = 0; goes_on && round < kMostRounds; ++round) {
         goes_on = refine(caller);
     }
@@ -58,6 +61,27 @@ void ProgressiveRenderer::run(const Watch& caller) {
     }
     fill_unrendered();
     pass_image_.finish(picture_->settings.threads);
+}
+
+void ProgressiveRenderer::add_bounces(const Watch& caller) {
+    const double start = seconds();
+    RecordPlacement placement(*picture_, image_, records_);
+    double took = 0;
+    for (int step = kWidestRecordStep; step >= kLeastRecordStep; step /= 2) {
+        const double begin = seconds();
+        if (begin - start + kNextGrid * took > kShareOfBounces * (time_limit() - start)) {
+            break;
+        }
+        const RenderReport report = placement.add_grid({step, step < kWidestRecordStep ? 2 * step : 0}, caller.stopped);
+        took = seconds() - begin;
+        const std::lock_guard lock(telling_);
+        told_ += report;
+    }
+    record_error_ = placement.error();
+    bounce_seconds_ = seconds() - start;
+    for (PixelBatch& batch : batches_) {
+        batch.follow(picture_->paths(&records_));
+    }
 }
 
 double ProgressiveRenderer::time_limit() const {
@@ -123,7 +147,7 @@ std::vector<RefinementGroup> ProgressiveRenderer::judge(const Stopped& stopped) 
     judge_seconds_ = seconds() - begin;
     rays_left_ = refinement_.rays_left();
     const std::lock_guard lock(telling_);
-    told_.noise = refinement_.noise();
+    told_.noise = std::hypot(refinement_.noise(), record_error_);
     return groups;
 }
 
@@ -204,7 +228,8 @@ void ProgressiveRenderer::fill_unrendered() {
 
 /// All that is known of rays to come is how long those before them took.
 double ProgressiveRenderer::seconds_left() const {
-    const double left = rays_done_ > 0 ? seconds() * std::max(rays_left_ / rays_done_, 0.0) : 0.0;
+    const double tracing = seconds() - bounce_seconds_;
+    const double left = rays_done_ > 0 ? tracing * std::max(rays_left_ / rays_done_, 0.0) : 0.0;
     return std::clamp(time_limit() - seconds(), 0.0, left);
 }
 
@@ -282,7 +307,7 @@ void ProgressiveRenderer::render(std::span<const Pixel> pixels, int from, int to
     }
     {
         const std::lock_guard lock(telling_);
-        add(told_, batch.take_report());
+        told_ += batch.take_report();
     }
     const std::shared_lock lock(merging_);
     for (std::size_t i = 0; i < pixels.size(); ++i) {

@@ -21,6 +21,7 @@
 #include "film/refinement.h"
 #include "shlight/parallel.h"
 #include "shlight/render.h"
+#include "surfaces/light_records.h"
 
 namespace shlight {
 
@@ -57,6 +58,8 @@ class ProgressiveRenderer {
     void write_middles(const Stopped& stopped);
     bool first_pass(const Watch& caller);
     int widest_step() const;
+    /// Makes records, and lets light bounce from now on.
+    void add_bounces(const Watch& caller);
     /// Finds the pixels that need more rays, and the picture's noise.
     std::vector<RefinementGroup> judge(const Stopped& stopped);
     /// Refines some pixels; false: there is nothing left to do, or no time.
@@ -88,6 +91,9 @@ class ProgressiveRenderer {
     int grid_step_ = 1;         // of the finest grid whose pixels all have rays
     Refinement refinement_;
     tbb::enumerable_thread_specific<PixelBatch> batches_;
+    LightRecords records_;
+    std::atomic<double> bounce_seconds_ = 0;  // that making them took; 0: light does not bounce, yet
+    double record_error_ = 0;                 // by records, as RenderReport::noise
 
     std::shared_mutex merging_;   // shared by those that write pixels
     mutable std::mutex telling_;  // guards told_

@@ -77,7 +77,8 @@ double light_error(const Picture& picture, std::uint32_t shadow_rays, const Stop
         end_if(stopped);
         const std::size_t first = i * kPilotBatch;
         const std::size_t size = std::min(kPilotBatch, grid.size() - first);
-        sums[i] = PixelBatch(picture).reflected(std::span(grid).subspan(first, size), shadow_rays);
+        sums[i] =
+            PixelBatch(picture, picture.paths(nullptr)).reflected(std::span(grid).subspan(first, size), shadow_rays);
     };
     parallel_for(sums.size(), picture.settings.threads, add_up);
     const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) / static_cast<double>(grid.size());

@@ -50,7 +50,7 @@ void SurfacePasses::add(const CameraSurfaces& surfaces, std::size_t rays, std::s
                         std::span<double> sums) {
     rays_.assign(rays, {});
     for (const Surface& surface : surfaces.surfaces()) {
-        if (surface.is_mirrored) {
+        if (surface.source != RaySource::camera) {
             continue;
         }
         double* pixel = &sums[surface.ray / rays_per_pixel * layout_->stride()];
@@ -201,7 +201,7 @@ double SurfacePasses::clearness(const Vec3d& position) const {
 void SurfacePasses::write_middles(const CameraSurfaces& surfaces, std::size_t rays, std::span<float> values) {
     rays_.assign(rays, {});
     for (const Surface& surface : surfaces.surfaces()) {
-        if (surface.is_mirrored) {
+        if (surface.source != RaySource::camera) {
             continue;
         }
         RayState& ray = rays_[surface.ray];

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include "shlight/sampling.h"
+
 namespace shlight {
 namespace {
 
@@ -19,25 +21,43 @@ bool is_bumped(const SurfaceLobe& lobe) {
 
 constexpr float kLeastWidth = kLeastRoughness * kLeastRoughness;
 
+/// Share of what a path meets that reaches the camera, below which it is not always followed.
+constexpr float kSurelyFollowed = 0.25F;
+
 }  // namespace
 
 void CameraSurfaces::trace(std::span<const CameraRay> rays, std::span<const NeighbourRays> neighbours,
                            std::size_t rays_per_pixel, Hits& hits, std::vector<RayLight>& light) {
+    rays_ = rays;
+    trace({0, RaySource::camera, 0, 0, Rgb(1), {}}, neighbours, {light, hits.apart, rays_per_pixel, 0, 1}, hits);
+}
+
+void CameraSurfaces::trace_scattered(std::span<const CameraRay> rays, std::size_t rays_per_group, Hits& hits,
+                                     std::vector<RayLight>& light) {
+    rays_ = rays;
+    const Sink sink = {light, hits.apart, rays_per_group, 1, settings_.max_bounces};
+    trace({0, RaySource::scattered, 1, 0, Rgb(1), {}}, {}, sink, hits);
+}
+
+void CameraSurfaces::trace(const Segment& beginning, std::span<const NeighbourRays> neighbours, const Sink& sink,
+                           Hits& hits) {
     surfaces_.clear();
     results_.clear();
     hit_count_ = 0;
     mirror_count_ = 0;
-    light.assign(rays.size(), {});
-    hits.apart.reset(rays.size() / rays_per_pixel);
-    const Sink sink = {light, hits.apart, rays_per_pixel};
+    sink.light.assign(rays_.size() * sink.parts, {});
+    hits.apart.reset(rays_.size() / sink.rays_per_pixel);
     segments_.clear();
     parts_.clear();
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (rays[i].ray.empty()) {
-            light[i].opacity = 1;  // outside a panorama's image, as Cycles has it
-        } else {
-            start({i, false, 0, Rgb(1), rays[i].ray}, rays[i].ray);
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+        if (rays_[i].ray.empty()) {
+            sink.light[i].opacity = 1;  // outside a panorama's image, as Cycles has it
+            continue;
         }
+        Segment segment = beginning;
+        segment.ray = i;
+        segment.whole = rays_[i].ray;
+        start(segment, rays_[i].ray);
     }
     while (!segments_.empty()) {
         const std::size_t first = surfaces_.size();
@@ -45,7 +65,7 @@ void CameraSurfaces::trace(std::span<const CameraRay> rays, std::span<const Neig
         run_programs(neighbours, first);
         pass_on(first, sink);
     }
-    add_hits(rays, rays_per_pixel, hits);
+    add_hits(sink, hits);
 }
 
 void CameraSurfaces::start(const Segment& segment, const Ray& part) {
@@ -59,16 +79,20 @@ void CameraSurfaces::meet(const Sink& sink) {
     scene_->rays().intersect(parts_, met_);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         const Segment& segment = segments_[i];
-        const LampViewer viewer = segment.is_mirrored ? LampViewer::mirror : LampViewer::camera;
+        const LampViewer viewer = segment.source == RaySource::camera ? LampViewer::camera : LampViewer::mirror;
         if (met_[i].missed()) {
-            add_lamps(viewer, segment, parts_[i], std::nullopt, sink);
-            leave_scene(segment, sink);
+            if (segment.sees_lights()) {
+                add_lamps(viewer, segment, parts_[i], std::nullopt, sink);
+                leave_scene(segment, sink);
+            }
             continue;
         }
         const SurfacePoint point = scene_->placed().surface(met_[i], segment.whole.direction);
         const Vec3d direction = glm::normalize(Vec3d(segment.whole.direction));
         const double distance = glm::dot(point.position - Vec3d(segment.whole.origin), direction);
-        add_lamps(viewer, segment, parts_[i], distance, sink);
+        if (segment.sees_lights()) {
+            add_lamps(viewer, segment, parts_[i], distance, sink);
+        }
         surfaces_.push_back({segment, met_[i], point, -direction, distance, 0, 0});
     }
     segments_.clear();
@@ -86,7 +110,8 @@ ShadedPlace CameraSurfaces::place_of(const Surface& surface, const NeighbourRays
 }
 
 void CameraSurfaces::leave_scene(const Segment& segment, const Sink& sink) {
-    const Environment* background = segment.is_mirrored ? &scene_->environment() : scene_->background();
+    const bool is_mirrored = segment.source == RaySource::mirror;
+    const Environment* background = is_mirrored ? &scene_->environment() : scene_->background();
     const Rgb& left = segment.throughput;
     const Vec3d direction = glm::normalize(Vec3d(segment.whole.direction));
     if (background != nullptr) {
@@ -96,7 +121,7 @@ void CameraSurfaces::leave_scene(const Segment& segment, const Sink& sink) {
         sink.apart.of(segment.ray / sink.rays_per_pixel)[LightParts::of_kind(LightKind::environment)] +=
             left * scene_->environment().radiance(direction);
     }
-    if (!segment.is_mirrored) {
+    if (!is_mirrored) {
         sink.light[segment.ray].opacity = background != nullptr ? 1.0F : 1.0F - (left.x + left.y + left.z) / 3;
     }
 }
@@ -107,21 +132,22 @@ void CameraSurfaces::add_lamps(LampViewer viewer, const Segment& segment, const 
     if (lamps.empty()) {
         return;
     }
+    const bool is_mirrored = segment.source == RaySource::mirror;
     by_group_.assign(sink.apart.empty() ? 0 : sink.apart.parts().count - kLightKinds, Rgb(0));
     const Rgb radiance = lamps.radiance(part, surface, by_group_);
-    sink.light[segment.ray].radiance += segment.throughput * radiance;
+    sink.of(segment, segment.bounces - (is_mirrored ? 1 : 0)).radiance += segment.throughput * radiance;
     for (std::size_t group = 0; group < by_group_.size(); ++group) {
-        sink.apart.add(segment.ray / sink.rays_per_pixel, segment.is_mirrored ? LightKind::glossy : LightKind::emission,
+        sink.apart.add(segment.ray / sink.rays_per_pixel, is_mirrored ? LightKind::glossy : LightKind::emission,
                        static_cast<std::uint32_t>(group), segment.throughput * by_group_[group]);
     }
 }
 
 void CameraSurfaces::add_light(const Segment& segment, LightKind kind, std::uint32_t group, const Rgb& radiance,
                                const Sink& sink) {
-    sink.light[segment.ray].radiance += radiance;
+    const bool is_mirrored = segment.source == RaySource::mirror;
+    sink.of(segment, segment.bounces - (is_mirrored ? 1 : 0)).radiance += radiance;
     if (!sink.apart.empty() && radiance != Rgb(0)) {  // groups without light have no part
-        sink.apart.add(segment.ray / sink.rays_per_pixel, segment.is_mirrored ? LightKind::glossy : kind, group,
-                       radiance);
+        sink.apart.add(segment.ray / sink.rays_per_pixel, is_mirrored ? LightKind::glossy : kind, group, radiance);
     }
 }
 
@@ -131,7 +157,7 @@ void CameraSurfaces::run_programs(std::span<const NeighbourRays> neighbours, std
     for (std::size_t i = first; i < surfaces_.size(); ++i) {
         material_of_[i] = surfaces_[i].point.material;
         const SurfaceShader* shader = scene_->materials()[material_of_[i]].shader.get();
-        if (shader != nullptr && (!surfaces_[i].is_mirrored || shader->transparency)) {
+        if (shader != nullptr && (is_shaded(surfaces_[i]) || shader->transparency)) {
             order_.push_back(static_cast<std::uint32_t>(i));
         }
     }
@@ -143,8 +169,9 @@ void CameraSurfaces::run_program(std::span<const NeighbourRays> neighbours, std:
     const ShaderProgram& program = material.shader->program;
     places_.clear();
     for (const std::uint32_t i : surfaces) {
-        // Neighbours of mirrored rays are unknown.
-        const bool differs = program.takes_differences() && !surfaces_[i].is_mirrored;
+        // Neighbours of other rays than the camera's are unknown.
+        const bool differs =
+            !neighbours.empty() && program.takes_differences() && surfaces_[i].source == RaySource::camera;
         places_.push_back(place_of(surfaces_[i], differs ? &neighbours[surfaces_[i].ray] : nullptr));
     }
     const std::size_t begin = results_.size();
@@ -175,8 +202,11 @@ float CameraSurfaces::width(const Surface& surface, std::uint32_t result) const 
 }
 
 void CameraSurfaces::add_emission(const Surface& surface, const Sink& sink) {
+    if (!surface.sees_lights()) {
+        return;
+    }
     const Material& material = scene_->materials()[surface.point.material];
-    const bool by_program = material.shader != nullptr && !surface.is_mirrored;
+    const bool by_program = material.shader != nullptr && surface.source == RaySource::camera;
     if (by_program && !material.shader->emission) {
         return;
     }
@@ -188,25 +218,26 @@ void CameraSurfaces::add_emission(const Surface& surface, const Sink& sink) {
 
 /// Emission of the surfaces met last, and the paths that go on from there.
 void CameraSurfaces::pass_on(std::size_t first, const Sink& sink) {
-    for (std::size_t i = first; i < surfaces_.size(); ++i) {
+    const std::size_t last = surfaces_.size();
+    for (std::size_t i = first; i < last; ++i) {
         const Surface& surface = surfaces_[i];
-        if (!surface.is_mirrored) {
+        if (surface.source == RaySource::camera) {
             hit_count_ += surface.depth == 0 ? 1 : 0;
             sink.light[surface.ray].opacity = 1;
         }
         add_emission(surface, sink);
-        if (surface.depth > transparent_bounces_) {
+        if (surface.depth > settings_.transparent_bounces) {
             continue;
         }
         const Material& material = scene_->materials()[surface.point.material];
         if (material.shader != nullptr && material.shader->transparency) {
             const Rgb throughput = surface.throughput * transparency(surface);
             if (throughput != Rgb(0)) {
-                start({surface.ray, surface.is_mirrored, surface.depth + 1, throughput, surface.whole},
+                start({surface.ray, surface.source, surface.bounces, surface.depth + 1, throughput, surface.whole},
                       behind(surface.whole, surface.hit));
             }
         }
-        if (!surface.is_mirrored) {
+        if (is_shaded(surface)) {
             reflect(surface, sink);
         }
     }
@@ -214,40 +245,117 @@ void CameraSurfaces::pass_on(std::size_t first, const Sink& sink) {
 
 void CameraSurfaces::reflect(const Surface& surface, const Sink& sink) {
     const auto lobes = materials_[surface.point.material].lobes();
-    if (std::none_of(lobes.begin(), lobes.end(), [](const Lobe& lobe) { return is_mirror(lobe.shape); })) {
+    const bool goes_on = surface.bounces < settings_.max_bounces;
+    if (!goes_on && std::none_of(lobes.begin(), lobes.end(), [](const Lobe& lobe) { return is_mirror(lobe.shape); })) {
         return;
     }
     find_lobes(surface, lobes_);
-    for (const SurfaceLobe& lobe : lobes_) {
-        if (!is_mirror(lobe.shape) || lobe.weight == Rgb(0)) {
+    taken_.assign(lobes_.size(), 0);
+    for (std::size_t i = 0; i < lobes_.size(); ++i) {
+        const SurfaceLobe& lobe = lobes_[i];
+        if (lobe.weight == Rgb(0) || taken_[i] != 0) {
             continue;
         }
-        const ShadingFrame frame = shading_frame(surface.point.position, lobe.normal, surface.towards_viewer);
-        const double cosine = view_cosine(frame.z, surface.towards_viewer);
-        const Vec3d direction = frame.to_world(mirrored({std::sqrt(1 - cosine * cosine), 0, cosine}));
-        const Ray ray = {Vec3f(surface.point.off_surface()), 0, Vec3f(direction)};
-        const double let_in = scene_->placed().terminator(surface.hit, surface.point).let_in(cosine);
-        const auto albedo = static_cast<float>(let_in * lobe_albedo(lobe.shape, cosine));
-        const Segment segment = {surface.ray, true, 0, surface.throughput * lobe.weight * albedo, ray};
-        add_lamps(LampViewer::unblocked_mirror, segment, ray, std::nullopt, sink);
-        start(segment, ray);
-        ++mirror_count_;
+        if (is_mirror(lobe.shape)) {
+            reflect_mirror(surface, lobe, sink);
+        } else if (goes_on && (is_glossy(lobe.shape) || !add_recorded(surface, lobe, sink))) {
+            scatter(surface, i);
+        }
     }
 }
 
-void CameraSurfaces::add_hits(std::span<const CameraRay> rays, std::size_t rays_per_pixel, Hits& hits) {
+void CameraSurfaces::reflect_mirror(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
+    const ShadingFrame frame = shading_frame(surface.point.position, lobe.normal, surface.towards_viewer);
+    const double cosine = view_cosine(frame.z, surface.towards_viewer);
+    const Vec3d direction = frame.to_world(mirrored({std::sqrt(1 - cosine * cosine), 0, cosine}));
+    const Ray ray = {Vec3f(surface.point.off_surface()), 0, Vec3f(direction)};
+    const double let_in = scene_->placed().terminator(surface.hit, surface.point).let_in(cosine);
+    const auto albedo = static_cast<float>(let_in * lobe_albedo(lobe.shape, cosine));
+    const Segment segment = {
+        surface.ray, RaySource::mirror, surface.bounces + 1, 0, surface.throughput * lobe.weight * albedo, ray};
+    add_lamps(LampViewer::unblocked_mirror, segment, ray, std::nullopt, sink);
+    start(segment, ray);
+    ++mirror_count_;
+}
+
+/// A path that brings little is drawn seldom, and counts the more.
+void CameraSurfaces::scatter(const Surface& surface, std::size_t first) {
+    const SurfaceLobe& own = lobes_[first];
+    const LobeShape sampled = sampled_shape(own.shape);
+    const ShadingFrame frame = frame_of(surface, own);
+    const double cosine = view_cosine(frame.z, is_bumped(own) ? surface.point.shading_normal : surface.towards_viewer);
+    const Vec3d view(std::sqrt(1 - cosine * cosine), 0, cosine);
+    const CameraRay& ray = rays_[surface.ray];
+    const std::uint32_t seed = hash(ray.seed, hash(surface.bounces, static_cast<std::uint32_t>(first)));
+    const Vec3d way = sample_lobe(sampled, view, SobolSequence(seed).point(ray.sample));
+    Rgb weight(0);
+    for (std::size_t i = first; i < lobes_.size(); ++i) {
+        const SurfaceLobe& lobe = lobes_[i];
+        if (lobe.normal == own.normal && !is_mirror(lobe.shape) && sampled_shape(lobe.shape) == sampled &&
+            is_bumped(lobe) == is_bumped(own)) {
+            taken_[i] = 1;
+            weight += lobe.weight * static_cast<float>(lobe_value(lobe.shape, way, view));
+        }
+    }
+    const Vec3d direction = frame.to_world(way);
+    const double density = lobe_density(sampled, view, way);
+    if (!(density > 0) || glm::dot(surface.point.geometric_normal, direction) <= 0) {
+        return;
+    }
+    const Terminator terminator = scene_->placed().terminator(surface.hit, surface.point);
+    weight *= surface.throughput * static_cast<float>(terminator.let_in(way.z) / density);
+    const float share = (std::abs(weight.x) + std::abs(weight.y) + std::abs(weight.z)) / 3;
+    const float probability = std::min(share / kSurelyFollowed, 1.0F);
+    if (sobol_beyond(ray.sample, seed).x >= double{probability}) {
+        return;
+    }
+    const Vec3d lift = terminator.lifts() ? terminator.share(direction) * terminator.lift : Vec3d(0);
+    const Ray scattered = {Vec3f(surface.point.off_surface() + lift), 0, Vec3f(direction)};
+    start({surface.ray, RaySource::scattered, surface.bounces + 1, 0, weight / probability, scattered}, scattered);
+}
+
+bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
+    if (settings_.records == nullptr) {
+        return false;
+    }
+    // Light that the camera sees is not told apart by bounces.
+    const std::uint32_t most = settings_.max_bounces - surface.bounces;
+    const std::uint32_t first = sink.parts > 1 ? 0 : most - 1;
+    recorded_.assign(most - first, Rgb(0));
+    if (!settings_.records->reflect(surface.point, lobe.normal, first, recorded_)) {
+        return false;
+    }
+    const Vec3d& view = is_bumped(lobe) ? surface.point.shading_normal : surface.towards_viewer;
+    const Rgb weight =
+        surface.throughput * lobe.weight * static_cast<float>(lobe_albedo(lobe.shape, view_cosine(lobe.normal, view)));
+    Rgb fewer(0);
+    for (std::uint32_t i = 0; i < recorded_.size(); ++i) {
+        sink.of(surface, surface.bounces + first + 1 + i).radiance += weight * (recorded_[i] - fewer);
+        fewer = recorded_[i];
+    }
+    return true;
+}
+
+ShadingFrame CameraSurfaces::frame_of(const Surface& surface, const SurfaceLobe& lobe) const {
+    const Vec3d& view = is_bumped(lobe) ? surface.point.shading_normal : surface.towards_viewer;
+    return shading_frame(surface.point.position, lobe.normal, view);
+}
+
+void CameraSurfaces::add_hits(const Sink& sink, Hits& hits) {
     hits.clear();
+    bounces_of_hits_.clear();
     order_.resize(surfaces_.size());
     std::iota(order_.begin(), order_.end(), 0U);
-    std::erase_if(order_, [&](std::uint32_t i) { return surfaces_[i].is_mirrored; });
-    if (!order_.empty() && surfaces_[order_.back()].depth > 0) {
-        std::stable_sort(order_.begin(), order_.end(),
-                         [&](std::uint32_t a, std::uint32_t b) { return surfaces_[a].ray < surfaces_[b].ray; });
+    std::erase_if(order_, [&](std::uint32_t i) { return !is_shaded(surfaces_[i]); });
+    const auto ray_of = [&](std::uint32_t i) { return surfaces_[i].ray; };
+    if (!std::ranges::is_sorted(order_, {}, ray_of)) {
+        std::ranges::stable_sort(order_, {}, ray_of);
     }
     auto next = order_.begin();
-    for (std::size_t end = rays_per_pixel; end <= rays.size(); end += rays_per_pixel) {
+    for (std::size_t end = sink.rays_per_pixel; end <= rays_.size(); end += sink.rays_per_pixel) {
         for (; next != order_.end() && surfaces_[*next].ray < end; ++next) {
-            add_hit(rays[surfaces_[*next].ray], surfaces_[*next], hits);
+            add_hit(surfaces_[*next], hits);
+            bounces_of_hits_.resize(hits.size(), surfaces_[*next].bounces);
         }
         hits.end_pixel();
     }
@@ -290,10 +398,7 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
 }
 
 /// One hit for each normal that lobes have, and another for the lobes of bumps, whose view is the smooth normal.
-void CameraSurfaces::add_hit(const CameraRay& ray, const Surface& surface, Hits& hits) {
-    if (surface.depth > transparent_bounces_) {
-        return;
-    }
+void CameraSurfaces::add_hit(const Surface& surface, Hits& hits) {
     find_lobes(surface, lobes_);
     taken_.assign(lobes_.size(), 0);
     const Terminator terminator = scene_->placed().terminator(surface.hit, surface.point);
@@ -316,8 +421,9 @@ void CameraSurfaces::add_hit(const CameraRay& ray, const Surface& surface, Hits&
         }
         if (std::ranges::any_of(weights_, [](const Rgb& weight) { return weight != Rgb(0); })) {
             const Vec3d& view = bumped ? surface.point.shading_normal : surface.towards_viewer;
-            const ShadingFrame frame = shading_frame(surface.point.position, own.normal, view);
-            hits.add(surface.point, terminator, frame, view_cosine(frame.z, view), weights_, widths_, ray.sample);
+            const ShadingFrame frame = frame_of(surface, own);
+            hits.add(surface.point, terminator, frame, view_cosine(frame.z, view), weights_, widths_,
+                     rays_[surface.ray].sample);
         }
     }
 }

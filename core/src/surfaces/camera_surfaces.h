@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
 // What the camera rays of a batch meet: surfaces, one behind the other as long as they let light through, and at last
-// the background. Where a surface is a mirror, a path goes on from there, and what lights it meets is light that the
-// surface reflects. Shader programs run here, over all surfaces of a material at once.
+// the background. Shader programs run here, over all surfaces of a material at once.
+//
+// Paths go on from surfaces, as many times as PathSettings allows: from a mirror into its direction, and from a glossy
+// lobe into a drawn one. What they meet is shaded like what the camera sees, with the share of its light that the path
+// brings to the camera in the weights of its lobes. Light that bounces and that a diffuse lobe reflects comes from
+// records near it (surfaces/light_records.h), or by a path where there are none.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +17,34 @@
 #include "lobes/material_lobes.h"
 #include "shlight/scene.h"
 #include "shlight/types.h"
+#include "surfaces/light_records.h"
 #include "surfaces/placed_meshes.h"
 #include "surfaces/visible_lamps.h"
 #include "tracing/hits.h"
 
 namespace shlight {
 
-/// A camera ray of a picture.
+/// A camera ray of a picture, or another that paths begin with.
 struct CameraRay {
     Ray ray;
     std::uint32_t sample;  ///< its number within its pixel
+    std::uint32_t seed;    ///< of the directions that are drawn on its path
+};
+
+/// The origin of a ray.
+enum class RaySource : std::uint8_t {
+    camera,
+    mirror,    ///< no other light of a mirror is counted: its ray sees lamps, the background, and surfaces shine
+    scattered  ///< by a lobe whose direct light counts apart: its ray sees what reflects light
+};
+
+struct PathSettings {
+    /// Surfaces that a ray passes through, as Cycles counts them: a camera ray passes through one more, and of the next
+    /// one it sees the emission alone.
+    std::uint32_t transparent_bounces;
+    /// Surfaces between the light and the one whose light reaches the camera; 0: direct light.
+    std::uint32_t max_bounces = 0;
+    const LightRecords* records = nullptr;  ///< outlive this; null: none
 };
 
 /// Camera rays beside another, as far away as its share of the pixel is wide.
@@ -49,23 +71,29 @@ class CameraSurfaces {
   public:
     /// transparent_bounces: as Cycles counts them, a camera ray passes through one surface more, and of the next one
     /// it sees the emission alone.
-    CameraSurfaces(const CompiledScene& scene, std::span<const MaterialLobes> materials,
-                   std::uint32_t transparent_bounces)
-        : scene_(&scene), materials_(materials), transparent_bounces_(transparent_bounces) {}
+    CameraSurfaces(const CompiledScene& scene, std::span<const MaterialLobes> materials, const PathSettings& settings)
+        : scene_(&scene), materials_(materials), settings_(settings) {}
 
+    void follow(const PathSettings& settings) { settings_ = settings; }
     /// rays: those of a pixel, rays_per_pixel, follow each other. neighbours: of each ray, or none if no program takes
     /// differences. light: one for each ray. Clears the hits first.
     void trace(std::span<const CameraRay> rays, std::span<const NeighbourRays> neighbours, std::size_t rays_per_pixel,
                Hits& hits, std::vector<RayLight>& light);
+    /// The same for rays that surfaces scatter. light: of each ray what has bounced once, twice … max_bounces times.
+    void trace_scattered(std::span<const CameraRay> rays, std::size_t rays_per_group, Hits& hits,
+                         std::vector<RayLight>& light);
 
-    /// The path of a camera ray from its beginning, a mirror, or a surface that lets light through, to the next
-    /// surface.
+    /// The path of a camera ray from its beginning, a surface that reflects, or one that lets light through, to the
+    /// next surface.
     struct Segment {
         std::size_t ray;
-        bool is_mirrored;     ///< in a mirror that the camera ray has met
-        std::uint32_t depth;  ///< surfaces that the path has passed through, since the mirror
-        Rgb throughput;       ///< share of its light that reaches the camera
-        Ray whole;            ///< from where the camera ray, or the mirror's, begins
+        RaySource source;
+        std::uint32_t bounces;  ///< surfaces that have reflected the path
+        std::uint32_t depth;    ///< surfaces that it has passed through since
+        Rgb throughput;         ///< share of its light that reaches the camera
+        Ray whole;              ///< from where the camera ray, or the reflecting surface's, begins
+
+        bool sees_lights() const { return source != RaySource::scattered; }
     };
     /// The surface at the end of a segment.
     struct Surface : Segment {
@@ -84,8 +112,10 @@ class CameraSurfaces {
     /// Numbers of camera rays that met a surface, and of paths into mirrors.
     std::uint64_t hit_count() const { return hit_count_; }
     std::uint64_t mirror_count() const { return mirror_count_; }
-    /// All surfaces; those of one camera ray that are not mirrored are ordered by distance.
+    /// All surfaces; those that one camera ray has met itself are ordered by distance.
     std::span<const Surface> surfaces() const { return surfaces_; }
+    /// Segment::bounces of each hit.
+    std::span<const std::uint32_t> bounces_of_hits() const { return bounces_of_hits_; }
     void find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const;
     /// The share of light that goes on straight through, not negative.
     Rgb transparency(const Surface& surface) const;
@@ -97,16 +127,23 @@ class CameraSurfaces {
   private:
     /// Destination of the light of a call's rays.
     struct Sink {
-        std::vector<RayLight>& light;  // of each ray
+        std::vector<RayLight>& light;  // of each ray: at all, or by the number of bounces
         LightGroupBuffer& apart;
         std::size_t rays_per_pixel;
+        std::uint32_t first_bounces, parts;  // light that has bounced so often, or oftener, is in the first part
+
+        RayLight& of(const Segment& segment, std::uint32_t bounces) const {
+            const std::uint32_t part = parts > 1 ? bounces - first_bounces : 0;
+            return light[segment.ray * parts + part];
+        }
     };
+    void trace(const Segment& beginning, std::span<const NeighbourRays> neighbours, const Sink& sink, Hits& hits);
     void start(const Segment& segment, const Ray& part);
     void meet(const Sink& sink);
     void leave_scene(const Segment& segment, const Sink& sink);
     void add_lamps(LampViewer viewer, const Segment& segment, const Ray& part, const std::optional<double>& surface,
                    const Sink& sink);
-    /// kind: of light that no mirror shows.
+    /// Light that a segment meets. kind: of what no mirror shows.
     static void add_light(const Segment& segment, LightKind kind, std::uint32_t group, const Rgb& radiance,
                           const Sink& sink);
     void run_programs(std::span<const NeighbourRays> neighbours, std::size_t first);
@@ -115,10 +152,19 @@ class CameraSurfaces {
     ShadedPlace place_of(const Surface& surface, const NeighbourRays* neighbours) const;
     void add_emission(const Surface& surface, const Sink& sink);
     void pass_on(std::size_t first, const Sink& sink);
-    /// The paths that go on from a surface in the directions of its mirrors.
+    bool is_shaded(const Segment& segment) const {
+        return segment.bounces <= settings_.max_bounces && segment.depth <= settings_.transparent_bounces;
+    }
+    /// The paths that go on from a surface by its lobes.
     void reflect(const Surface& surface, const Sink& sink);
-    void add_hits(std::span<const CameraRay> rays, std::size_t rays_per_pixel, Hits& hits);
-    void add_hit(const CameraRay& ray, const Surface& surface, Hits& hits);
+    void reflect_mirror(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink);
+    /// A path by the lobe with this number, and those of the same distribution.
+    void scatter(const Surface& surface, std::size_t first);
+    /// Adds what a diffuse lobe reflects of light that has bounced. Returns false where no records are near.
+    bool add_recorded(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink);
+    ShadingFrame frame_of(const Surface& surface, const SurfaceLobe& lobe) const;
+    void add_hits(const Sink& sink, Hits& hits);
+    void add_hit(const Surface& surface, Hits& hits);
     /// Unit.
     Vec3d normal(const Surface& surface, const ShadedLobe& lobe) const;
     Vec3d vector(const Surface& surface, std::uint32_t result) const;
@@ -128,7 +174,8 @@ class CameraSurfaces {
 
     const CompiledScene* scene_;
     std::span<const MaterialLobes> materials_;
-    std::uint32_t transparent_bounces_;
+    PathSettings settings_;
+    std::span<const CameraRay> rays_;  // of the last call
     std::uint64_t hit_count_ = 0, mirror_count_ = 0;
     std::vector<Segment> segments_;
     std::vector<Ray> parts_;     // of each segment's ray, what is left
@@ -136,13 +183,14 @@ class CameraSurfaces {
     std::vector<SurfaceLobe> lobes_;
     std::vector<RayHit> met_;
     std::vector<Surface> surfaces_;
-    std::vector<std::uint32_t> order_, material_of_;
+    std::vector<std::uint32_t> order_, material_of_, bounces_of_hits_;
     std::vector<ShadedPlace> places_;
     std::vector<float> results_;
     ShaderProgram::Registers registers_;
-    std::vector<std::uint8_t> taken_;  // by lobe: whether a hit has it
+    std::vector<std::uint8_t> taken_;  // by lobe: whether a hit or a path has it
     std::vector<Rgb> weights_;
     std::vector<float> widths_;
+    std::vector<Rgb> recorded_;  // by the number of bounces
 };
 
 }  // namespace shlight

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: MIT
+"""Light that bounces: energy, mirrors, walls that keep light out, and the same bits for any number of threads."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scene_cases import FACES, SQUARE
+
+import shlight
+from shlight.metrics import rel_mse
+
+# The sides of a box whose corners box() gives.
+SIDES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+BOX_FACES = np.array([triangle for a, b, c, d in SIDES for triangle in ((a, b, c), (a, c, d))])
+
+
+def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> NDArray[np.float64]:
+    x, y, z = zip(low, high, strict=True)
+    return np.array([(i, j, k) for i in x for j in y for k in z])
+
+
+def gray(albedo: float) -> shlight.Bsdf:
+    return shlight.Bsdf.lambert((albedo, albedo, albedo))
+
+
+def looking(place: tuple[float, float, float], forward: tuple[float, float, float]) -> NDArray[np.float64]:
+    """A camera whose picture's columns go along forward × z."""
+    frame = np.eye(4)
+    frame[:3, 2] = -np.array(forward)
+    frame[:3, 0] = np.cross(forward, (0, 0, 1))
+    frame[:3, 1] = np.cross(frame[:3, 2], frame[:3, 0])
+    frame[:3, 3] = place
+    return frame
+
+
+@pytest.mark.parametrize("bounces", [0, 1, 4])
+def test_a_closed_room_that_shines_everywhere_adds_up_its_reflections(bounces: int) -> None:
+    scene = shlight.Scene()
+    scene.add_mesh(box((-1, -1, -1), (1, 1.5, 2)), BOX_FACES, bsdf=gray(0.5), emission=(1, 2, 4))
+    scene.set_camera(looking((0.3, 0, 0.2), (0, 1, 0)), 1.2)
+    image = shlight.render(scene, 32, 32, max_bounces=bounces)[..., :3]
+    # The surface itself shines, direct light adds its reflection, and each bounce another.
+    expected = np.array([1, 2, 4]) * sum(0.5**k for k in range(bounces + 2))
+    # Radiance is the same everywhere: what is left is the noise of 256 rays that are not drawn as the cosine.
+    np.testing.assert_allclose(image, np.broadcast_to(expected, image.shape), rtol=0.02)
+    np.testing.assert_allclose(image.mean(axis=(0, 1)), expected, rtol=1e-3)
+
+
+def room() -> shlight.Scene:
+    """Open to the camera, with a lamp at the ceiling that lights the floor and a part of the walls."""
+    scene = shlight.Scene()
+    # Without the wall at the camera.
+    for face, albedo in zip((0, 2, 6, 8, 10), (0.2, 0.6, 0.5, 0.7, 0.6), strict=True):
+        scene.add_mesh(box((-1, -1, -1), (1, 1, 1)), BOX_FACES[face : face + 2], bsdf=gray(albedo))
+    scene.add_polygon_light(0.3 * SQUARE[::-1] + [0, 0, 0.9], (5, 4, 3), camera=True)
+    scene.set_camera(looking((0, -1.5, 0), (0, 1, 0)), 0.9)
+    return scene
+
+
+def test_threads_do_not_change_a_bit() -> None:
+    pictures = [shlight.render(room(), 24, 20, max_bounces=2, threads=n) for n in (1, 2, 5)]
+    for other in pictures[1:]:
+        np.testing.assert_array_equal(other, pictures[0])
+
+
+def test_a_mirror_shows_the_room_once_light_bounces() -> None:
+    scene = room()
+    scene.set_camera(looking((0.2, -4, 0.1), (0, 1, 0)), 0.7)
+    expected = shlight.render(scene, 64, 48)[:, ::-1]  # from where the camera is in the mirror
+    scene.add_mesh(3 * SQUARE[:, [0, 2, 1]] + [0, -3, 0], FACES, bsdf=shlight.Bsdf.ggx(0, (0.5, 0.5, 0.5)))
+    scene.set_camera(looking((0.2, -2, 0.1), (0, -1, 0)), 0.7)
+    lit = shlight.render(scene, 64, 48)[..., :3].any(axis=-1)
+    assert lit.mean() < 0.1  # the lamp alone
+    seen = shlight.render(scene, 64, 48, max_bounces=1)
+    assert rel_mse(2 * seen[..., :3], expected[..., :3]) <= 1e-3
+
+
+@pytest.mark.parametrize("size", [16, 48])
+def test_a_wall_keeps_light_on_its_side(size: int) -> None:
+    """A floor goes on below walls of 2 mm around a lamp, and the camera sees both sides of it from above."""
+    scene = shlight.Scene()
+    scene.add_mesh(4 * SQUARE, FACES, bsdf=gray(0.8))
+    for half in (0.5, 0.502):
+        scene.add_mesh(box((-half, -half, -0.01), (half, half, 1)), BOX_FACES[:8], bsdf=gray(0.8))
+    scene.add_sphere_light((0, 0, 0.3), 0.1, (5, 5, 5))
+    to_world = np.eye(4)
+    to_world[:3, 3] = (0.5, 0, 8)
+    scene.set_camera(to_world, 0.1)
+    image = shlight.render(scene, size, size, max_bounces=3)[..., :3]
+    wall = size // 2
+    assert image[:, wall + 2 :].max() <= 5e-3 * image[:, : wall - 2].mean()
