@@ -175,14 +175,12 @@ def chrome() -> PictureScene:
 def pavilion() -> PictureScene:
     """Columns and a roof in the open, under a photographed sky that comes with Blender's module."""
     stone: Colour = (0.6, 0.55, 0.47)
-    column = _rounded([(0.0, 0), (0.17, 0), (0.17, 0), (0.13, 0.2), (0.11, 1.9), (0.17, 2.05), (0.17, 2.1), (0, 2.1)])
+    plinth = np.array([(2.0, 0.0), (2.0, 0.15), (1.8, 0.15), (1.8, 0.3), (0.0, 0.3)])
+    column = _rounded([(0.17, 0), (0.17, 0.05), (0.13, 0.2), (0.11, 1.9), (0.17, 2.05), (0.17, 2.1)])
     roof = np.array([(0.0, 0.0), (1.75, 0.0), (1.75, 0.2), (1.6, 0.2), (1.2, 0.55), (0.65, 0.8), (0.0, 0.9)])
     things = [
         floor(20.0, (0.16, 0.2, 0.09)),
-        Thing(
-            revolved(np.array([(0.0, 0.0), (2.0, 0.0), (2.0, 0.15), (1.8, 0.15), (1.8, 0.3), (0, 0.3)]), (0, 0, 0)),
-            stone,
-        ),
+        Thing(revolved(plinth, (0.0, 0.0, 0.0)), stone),
         Thing(revolved(roof, (0.0, 0.0, 2.4)), (0.45, 0.2, 0.14)),
         Thing(knot((0.0, 0.0, 1.15), 0.6, 0.11), (0.55, 0.35, 0.2), 0.3),
     ]
