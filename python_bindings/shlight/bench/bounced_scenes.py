@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import importlib.util
 import math
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -135,14 +136,24 @@ def _rounded(points: list[tuple[float, float]], steps: int = 24) -> Floats:
     return np.concatenate([corners[:1], *bends, corners[-1:]])
 
 
+def _turned(profile: Floats, center: Point, segments: int = 128) -> Mesh:
+    """The curve turned about the vertical, open by a hair at the axis, where it would have no normals."""
+    return revolved(np.maximum(profile, (1e-4, 0.0)), center, segments)
+
+
+def _sharp(profile: list[tuple[float, float]], center: Point, color: Colour) -> list[Thing]:
+    """The same with an edge at each point."""
+    return [Thing(_turned(np.array(piece), center), color) for piece in pairwise(profile)]
+
+
 def product() -> PictureScene:
     """A bottle, its cap and its carton on a sweep under three area lamps."""
     bottle = _rounded([(0, 0), (0.42, 0), (0.42, 0), (0.42, 0.6), (0.42, 1.1), (0.14, 1.2), (0.14, 1.35), (0, 1.35)])
     cap = _rounded([(0, 0), (0.17, 0), (0.17, 0), (0.17, 0.25), (0.17, 0.3), (0.1, 0.3), (0, 0.3)])
     things = [
         Thing(_sweep(), (0.75, 0.74, 0.72)),
-        Thing(revolved(bottle, (0.0, 0.0, 0.0)), (0.05, 0.25, 0.45), principled={"roughness": 0.15}),
-        Thing(revolved(cap, (0.0, 0.0, 1.3)), (0.9, 0.75, 0.45), 0.25),
+        Thing(_turned(bottle, (0.0, 0.0, 0.0)), (0.05, 0.25, 0.45), principled={"roughness": 0.15}),
+        Thing(_turned(cap, (0.0, 0.0, 1.3)), (0.9, 0.75, 0.45), 0.25),
         Thing(box((0.95, 0.35, 0.6), (0.7, 0.5, 1.2), 0.35), (0.75, 0.3, 0.2)),
         Thing(ball((-0.75, -0.2, 0.22), 0.22), (0.85, 0.85, 0.85), principled={"roughness": 0.4}),
     ]
@@ -175,18 +186,18 @@ def chrome() -> PictureScene:
 def pavilion() -> PictureScene:
     """Columns and a roof in the open, under a photographed sky that comes with Blender's module."""
     stone: Colour = (0.6, 0.55, 0.47)
-    plinth = np.array([(2.0, 0.0), (2.0, 0.15), (1.8, 0.15), (1.8, 0.3), (0.0, 0.3)])
+    plinth = [(2.0, 0.0), (2.0, 0.15), (1.8, 0.15), (1.8, 0.3), (0.0, 0.3)]
     column = _rounded([(0.17, 0), (0.17, 0.05), (0.13, 0.2), (0.11, 1.9), (0.17, 2.05), (0.17, 2.1)])
-    roof = np.array([(0.0, 0.0), (1.75, 0.0), (1.75, 0.2), (1.6, 0.2), (1.2, 0.55), (0.65, 0.8), (0.0, 0.9)])
+    roof = [(0.0, 0.0), (1.75, 0.0), (1.75, 0.2), (1.6, 0.2), (1.2, 0.55), (0.65, 0.8), (0.0, 0.9)]
     things = [
         floor(20.0, (0.16, 0.2, 0.09)),
-        Thing(revolved(plinth, (0.0, 0.0, 0.0)), stone),
-        Thing(revolved(roof, (0.0, 0.0, 2.4)), (0.45, 0.2, 0.14)),
+        *_sharp(plinth, (0.0, 0.0, 0.0), stone),
+        *_sharp(roof, (0.0, 0.0, 2.4), (0.45, 0.2, 0.14)),
         Thing(knot((0.0, 0.0, 1.15), 0.6, 0.11), (0.55, 0.35, 0.2), 0.3),
     ]
     for i in range(8):
         turn = 2 * math.pi * (i + 0.5) / 8
-        things.append(Thing(revolved(column, (1.45 * math.cos(turn), 1.45 * math.sin(turn), 0.3), 64), stone))
+        things.append(Thing(_turned(column, (1.45 * math.cos(turn), 1.45 * math.sin(turn), 0.3), 64), stone))
     return PictureScene(
         things, sky=_photographed_sky("forest.exr"), max_bounces=BOUNCES, eye=(1.2, -6.2, 1.7), target=(0.0, 0.0, 1.45)
     )
