@@ -12,7 +12,10 @@ from .engine_panel import EnginePanel, with_names_aside
 
 DATA = ("z", "mist", "position", "normal", "uv")
 INDEXES = ("object_index", "material_index")
-LIGHT = {"Diffuse": ("diffuse_direct", "diffuse_color"), "Glossy": ("glossy_direct", "glossy_color")}
+LIGHT = {
+    heading: tuple(f"{heading.lower()}_{part}" for part in ("direct", "indirect", "color"))
+    for heading in ("Diffuse", "Glossy")
+}
 OTHER = ("emit", "environment")
 
 

@@ -38,8 +38,10 @@ _PASS_CHANNELS = {
 _PASS_NAMES = {
     "combined": "Combined",
     "diffuse_direct": "DiffDir",
+    "diffuse_indirect": "DiffInd",
     "diffuse_color": "DiffCol",
     "glossy_direct": "GlossDir",
+    "glossy_indirect": "GlossInd",
     "glossy_color": "GlossCol",
     "emission": "Emit",
     "environment": "Env",

@@ -26,8 +26,10 @@ constexpr std::array kNames = {
     std::pair("emission", Pass::emission),
     std::pair("environment", Pass::environment),
     std::pair("diffuse_direct", Pass::diffuse_direct),
+    std::pair("diffuse_indirect", Pass::diffuse_indirect),
     std::pair("diffuse_color", Pass::diffuse_color),
     std::pair("glossy_direct", Pass::glossy_direct),
+    std::pair("glossy_indirect", Pass::glossy_indirect),
     std::pair("glossy_color", Pass::glossy_color),
     std::pair("denoising_normal", Pass::denoising_normal),
     std::pair("denoising_albedo", Pass::denoising_albedo),
@@ -67,7 +69,8 @@ std::string name_of(const RenderPass& pass, const SceneObject& scene) {
 
 /// Whether a pass grows with the light of the scene.
 bool is_light(Pass kind) {
-    constexpr std::array kLight = {Pass::emission, Pass::environment, Pass::diffuse_direct, Pass::glossy_direct,
+    constexpr std::array kLight = {Pass::emission,         Pass::environment,   Pass::diffuse_direct,
+                                   Pass::diffuse_indirect, Pass::glossy_direct, Pass::glossy_indirect,
                                    Pass::light_group};
     return std::ranges::find(kLight, kind) != kLight.end();
 }

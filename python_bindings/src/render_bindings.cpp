@@ -55,10 +55,10 @@ max_bounces: surfaces that light is reflected by before the one that the camera 
 passes: names of what else is wanted of the picture, by the units and values of Blender's render engine Cycles.
     Of the ray through a pixel's middle: "depth" [m] along the view axis, 1e10 where nothing is; "position",
     "object_index", "material_index". Means over the filter: "normal", "uv", "mist", "emission", "environment",
-    "diffuse_direct" and "glossy_direct", which are divided by "diffuse_color" and "glossy_color"; "denoising_normal",
-    "denoising_albedo", "denoising_depth"; "cryptomatte_object", "cryptomatte_material", "cryptomatte_asset".
+    "diffuse_direct", "diffuse_indirect" (what has bounced before), "glossy_direct" and "glossy_indirect", which are
+    divided by "diffuse_color" and "glossy_color"; "denoising_normal", "denoising_albedo", "denoising_depth"; "cryptomatte_object", "cryptomatte_material", "cryptomatte_asset".
 groups: also the part of the picture that the lights of each group give, "combined_NAME"; those of lights without a group
-    are "combined_". They add up to the picture.
+    are "combined_". They add up to the picture but for bounced light that diffuse surfaces reflect, which has no group.
 aovs: also what materials have as `Shader.with_aovs`, "aov_NAME".
 alpha_threshold: 0 ... 1, a surface that lets more than 1 - this through is passed over by normals, places and indices.
 mist: start and depth [m] and the power of its falloff. cryptomatte_levels: 2 ... 16 identities of a pixel.

@@ -14,8 +14,9 @@ from shlight_blender import compat, pass_panels, passes
 
 oiio = pytest.importorskip("OpenImageIO")
 
-SWITCHES = ("z", "mist", "position", "normal", "uv", "object_index", "material_index", "diffuse_direct")
-SWITCHES += ("diffuse_color", "glossy_direct", "glossy_color", "emit", "environment")
+SWITCHES = ("z", "mist", "position", "normal", "uv", "object_index", "material_index", "emit", "environment")
+SWITCHES += ("diffuse_direct", "diffuse_indirect", "diffuse_color")
+SWITCHES += ("glossy_direct", "glossy_indirect", "glossy_color")
 MATTES = ("cryptomatte_object", "cryptomatte_material", "cryptomatte_asset")
 GROUPS = ("key", "fill", "sky")
 
@@ -120,6 +121,26 @@ def test_passes_are_those_of_cycles(studio: Any) -> None:
     keys = [key for key in notes if key.startswith("cryptomatte/") and not key.endswith("manifest")]
     assert keys
     assert {key: own_notes[key] for key in keys} == {key: notes[key] for key in keys}
+
+
+def test_light_that_bounces_has_the_passes_of_cycles(studio: Any) -> None:
+    scene_with_groups(studio)
+    mirror = studio.material("ShaderNodeBsdfGlossy", "Mirror", Color=(0.9, 0.9, 0.9), Roughness=0.0)
+    studio.box((0.2, 2, 1.5), mirror, "Wall", location=(-2, 1, 0.75))
+    white = studio.material("ShaderNodeBsdfDiffuse", "White", Color=(0.8, 0.8, 0.8))
+    studio.box((4, 0.2, 2), white, "Back", location=(0, 2.5, 1))
+    # The lamps' light that the mirror throws on the floor would be a patch that few of a record's rays meet.
+    for lamp in (shown for shown in studio.scene.objects if shown.type == "LIGHT"):
+        lamp.visible_glossy = False
+    cycles, scene = studio.scene.cycles, studio.scene
+    cycles.samples, scene.shlight.max_bounces = 1024, 2
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = 2
+    cycles.caustics_reflective = True
+    (own, _), (reference, _) = rendered(studio, "SHLIGHT"), rendered(studio, "CYCLES")
+    names = [compat.PASSES[f"use_pass_{switch}"][0] for switch in SWITCHES if switch.startswith(("diffuse", "glossy"))]
+    means = {name: [float(found[f"ViewLayer.{name}"].mean()) for found in (own, reference)] for name in names}
+    print({name: f"{mine:.5f} {theirs:.5f}" for name, (mine, theirs) in means.items()})
+    assert {name: both for name, both in means.items() if abs(both[0] - both[1]) > 0.02 * both[1]} == {}
 
 
 def test_places_are_exact_where_cycles_looks_through_the_middles_too(studio: Any) -> None:

@@ -115,12 +115,17 @@ def groups_of(passes: dict[str, Any]) -> dict[str, Array]:
     }
 
 
+@pytest.mark.parametrize("bounces", [0, 2])
 @pytest.mark.parametrize("far", [False, True])
-def test_parts_of_the_light_add_up_to_the_picture_and_do_not_change_it(far: bool) -> None:
+def test_parts_of_the_light_add_up_to_the_picture_and_do_not_change_it(far: bool, bounces: int) -> None:
     scene = all_kinds_of_light(far)
+    scene.add_mesh(
+        SQUARE @ rotation(-1.3).T + np.array([-0.5, 1.5, 1.0]), FACES, bsdf=shlight.Bsdf.ggx(0, (0.9, 0.8, 0.7))
+    )
     looking_down(scene)
-    names = ["diffuse_direct", "diffuse_color", "glossy_direct", "glossy_color", "emission", "environment"]
-    options: dict[str, Any] = {"max_samples": 16, "pixel_filter": "blackman_harris"}
+    names = [f"{kind}_{part}" for kind in ("diffuse", "glossy") for part in ("direct", "indirect", "color")]
+    names += ["emission", "environment"]
+    options: dict[str, Any] = {"max_samples": 16, "pixel_filter": "blackman_harris", "max_bounces": bounces}
     options["tolerance"] = 0.01
     passes = shlight.render(scene, WIDTH, HEIGHT, passes=names, groups=True, **options)
     picture = shlight.render(scene, WIDTH, HEIGHT, **options)
@@ -130,10 +135,39 @@ def test_parts_of_the_light_add_up_to_the_picture_and_do_not_change_it(far: bool
     assert set(groups) == (expected | {"far 0", "far 1", "far 2"} if far else expected)
     assert all(light.max() > 0 for light in groups.values())
     largest = float(picture[..., :3].max())
-    assert np.abs(sum(groups.values()) - picture[..., :3]).max() <= 2e-6 * largest
-    diffuse, glossy = (passes[f"{kind}_direct"] * passes[f"{kind}_color"] for kind in ("diffuse", "glossy"))
-    kinds = diffuse + glossy + passes["emission"] + passes["environment"]
+    direct, indirect = (
+        {kind: passes[f"{kind}_{part}"] * passes[f"{kind}_color"] for kind in ("diffuse", "glossy")}
+        for part in ("direct", "indirect")
+    )
+    kinds = sum([*direct.values(), *indirect.values(), passes["emission"], passes["environment"]])
     assert np.abs(kinds - picture[..., :3]).max() <= 2e-6 * largest
+    assert all((light.max() > 0) == (bounces > 0) for light in indirect.values())
+    # Light of records has no group.
+    missing = picture[..., :3] - sum(groups.values())
+    assert missing.min() >= -2e-6 * largest
+    assert (missing - sum(indirect.values())).max() <= 2e-6 * largest
+    assert bounces == 0 or missing.max() > 0.01 * largest
+
+
+def test_direct_passes_do_not_change_when_light_bounces() -> None:
+    """A room with a mirror, gloss and diffuse surfaces: what direct light gives there stays in its passes."""
+    scene = shlight.Scene()
+    scene.add_mesh(FLOOR / 4, FACES, bsdf=shlight.Bsdf.lambert((0.7, 0.6, 0.5)))
+    for side, alpha in ((-1.2, 0.0), (1.2, 0.3)):
+        wall = SQUARE @ rotation(-1.3).T + np.array([side, 1.0, 0.9])
+        scene.add_mesh(wall, FACES, bsdf=shlight.Bsdf.ggx(alpha, (0.9, 0.9, 0.9)))
+    vertices, faces, _ = ball([0.0, -0.5, 0.5], 0.5)
+    scene.add_mesh(vertices, faces, bsdf=shlight.Bsdf.lambert((0.2, 0.4, 0.8)))
+    scene.add_polygon_light(0.5 * SQUARE[::-1] + np.array([0.0, 0.0, 3.0]), (9, 9, 9), camera=True)
+    scene.set_environment((0.1, 0.2, 0.3))
+    looking_down(scene)
+    names = [f"{kind}_{part}" for kind in ("diffuse", "glossy") for part in ("direct", "indirect")]
+    options: dict[str, Any] = {"passes": names, "noise_threshold": 0, "max_samples": 256}
+    direct, bounced = (shlight.render(scene, WIDTH, HEIGHT, max_bounces=bounces, **options) for bounces in (0, 2))
+    for kind in ("diffuse", "glossy"):
+        assert rel_mse(bounced[f"{kind}_direct"], direct[f"{kind}_direct"]) <= 1e-3, kind
+        assert not direct[f"{kind}_indirect"].any()
+        assert bounced[f"{kind}_indirect"].max() > 0.05
 
 
 def test_a_group_is_the_picture_of_its_lights_alone() -> None:

@@ -26,8 +26,10 @@ enum class Pass : std::uint8_t {
     emission,            ///< radiance of surfaces and lamps that the camera sees
     environment,         ///< radiance of the environment, even if it is hidden from the camera
     diffuse_direct,      ///< light reflected by diffuse lobes ÷ diffuse_color
+    diffuse_indirect,    ///< light that has bounced before, by paths that a diffuse lobe reflected first, ÷ likewise
     diffuse_color,       ///< albedo of diffuse lobes
     glossy_direct,       ///< light reflected by glossy lobes ÷ glossy_color
+    glossy_indirect,     ///< likewise, a glossy lobe, ÷ glossy_color
     glossy_color,        ///< albedo of glossy lobes
     denoising_normal,    ///< in the camera's frame, z forward, without mirror-like surfaces
     denoising_albedo,    ///< albedo of all but mirror-like lobes, plus emission

@@ -124,9 +124,11 @@ void PassImage::finish(std::span<float> pixel) const {
                 first = std::clamp(1 - first, 0.0F, 1.0F);
                 break;
             case Pass::diffuse_direct:
+            case Pass::diffuse_indirect:
                 divide_by(place, Pass::diffuse_color);
                 break;
             case Pass::glossy_direct:
+            case Pass::glossy_indirect:
                 divide_by(place, Pass::glossy_color);
                 break;
             default:

@@ -26,8 +26,12 @@ constexpr std::uint32_t kLensSeed = 0xFFFFFFFCU;
 
 /// The kind of each pass that is one.
 constexpr std::array<std::pair<Pass, LightKind>, kLightKinds> kKindPasses = {
-    std::pair(Pass::diffuse_direct, LightKind::diffuse), std::pair(Pass::glossy_direct, LightKind::glossy),
-    std::pair(Pass::emission, LightKind::emission), std::pair(Pass::environment, LightKind::environment)};
+    std::pair(Pass::diffuse_direct, LightKind::diffuse),
+    std::pair(Pass::glossy_direct, LightKind::glossy),
+    std::pair(Pass::diffuse_indirect, LightKind::diffuse_indirect),
+    std::pair(Pass::glossy_indirect, LightKind::glossy_indirect),
+    std::pair(Pass::emission, LightKind::emission),
+    std::pair(Pass::environment, LightKind::environment)};
 
 bool needs_parts(const PassLayout& layout) {
     return std::any_of(layout.places().begin(), layout.places().end(), [](const PassLayout::Place& place) {

@@ -86,8 +86,12 @@ PassLayout::PassLayout(const PassSettings& settings) {
             add({divisor}, levels);
         }
     };
-    add_divisor(Pass::diffuse_direct, Pass::diffuse_color);
-    add_divisor(Pass::glossy_direct, Pass::glossy_color);
+    for (const Pass divided : {Pass::diffuse_direct, Pass::diffuse_indirect}) {
+        add_divisor(divided, Pass::diffuse_color);
+    }
+    for (const Pass divided : {Pass::glossy_direct, Pass::glossy_indirect}) {
+        add_divisor(divided, Pass::glossy_color);
+    }
 }
 
 void PassLayout::add(const RenderPass& pass, int levels) {

@@ -42,6 +42,7 @@ void ShadingPoints::clear() {
     cos_theta_o.clear();
     error.clear();
     material.clear();
+    path.clear();
     lobe_weight.clear();
     lobe_width.clear();
     of_hit.clear();
@@ -77,7 +78,7 @@ std::size_t ShadingPoints::next_near(const Vec3f& normal, std::size_t point) con
 }
 
 bool ShadingPoints::joins(const Hits& hits, std::size_t hit, std::size_t point) const {
-    if (material[point] != hits.material[hit]) {
+    if (material[point] != hits.material[hit] || path[point] != hits.path[hit]) {
         return false;
     }
     // The point's frame is that of its first hit until all are known.
@@ -95,6 +96,7 @@ void ShadingPoints::start(const Hits& hits, std::size_t hit, const MaterialLobes
     cos_theta_o.push_back(hits.cos_theta_o[hit]);
     error.push_back(hits.error[hit]);
     material.push_back(hits.material[hit]);
+    path.push_back(hits.path[hit]);
     lobe_weight.resize(lobe_weight.size() + lobe_stride_, Rgb(0));
     lobe_width.resize(lobe_width.size() + lobe_stride_, 0);
     const double narrowest = lobes.narrowest(hits.cos_theta_o[hit], hits.widths(hit));

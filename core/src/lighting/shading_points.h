@@ -19,10 +19,10 @@ namespace shlight {
 
 class ShadingPoints {
   public:
-    /// One point for hits of a pixel with the same material whose normal, direction to the viewer, directions to lights
-    /// and widths of lobes, in units of that distance, differ in sum by less than √(3 tolerance) times the least
-    /// distance over which the material's f·cos changes. The mean of a lobe over so small a spread is its value at the
-    /// mean up to a fraction of the tolerance: what is left is the second difference.
+    /// One point for hits of a pixel with the same material and kind of path whose normal, direction to the viewer,
+    /// directions to lights and widths of lobes, in units of that distance, differ in sum by less than √(3 tolerance)
+    /// times the least distance over which the material's f·cos changes. The mean of a lobe over so small a spread is
+    /// its value at the mean up to a fraction of the tolerance: what is left is the second difference.
     void assign(const Hits& hits, std::span<const MaterialLobes> materials, std::span<const Light> lights,
                 const DeltaLights& deltas, double tolerance);
 
@@ -44,6 +44,7 @@ class ShadingPoints {
     std::vector<float> cos_theta_o;
     std::vector<double> error;  ///< see SurfacePoint
     std::vector<std::uint32_t> material;
+    std::vector<PathKind> path;
     std::vector<Rgb> lobe_weight;       ///< the mean over the point's hits of Hits::lobe_weight, lobe_stride × points
     std::vector<float> lobe_width;      ///< likewise of Hits::lobe_width
     std::vector<std::uint32_t> of_hit;  ///< the point of each hit

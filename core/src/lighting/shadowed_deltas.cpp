@@ -198,7 +198,8 @@ void ShadowedDeltas::add_shares(const ShadingPoints& points, const PixelRange& p
             if (!hits.apart.empty()) {
                 const std::size_t point = pixel.first_point + p;
                 const Rgb weight = static_cast<float>(points.hit_count(point)) * points.weight(point, lobe);
-                add_parts(values(p, lobe, range), range, weight, hits.apart.parts().kind(points.material[point], lobe),
+                const LightKind kind = hits.apart.parts().kind(points.material[point], lobe, points.path[point]);
+                add_parts(values(p, lobe, range), range, weight, kind,
                           hits.apart.of(hits.of_pixel[points.hits_of(point).front()]));
             }
         }

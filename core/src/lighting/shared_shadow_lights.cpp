@@ -171,7 +171,7 @@ void SharedShadowLights::add_unblocked(std::size_t pixel) {
                 const Rgb own = points_->weight(point, lobe) * unshadowed[lobe * points_->size() + point];
                 sum += own;
                 if (!apart_.empty()) {
-                    apart_.add(pixel, apart_.parts().kind(points_->material[point], lobe), group,
+                    apart_.add(pixel, apart_.parts().kind(points_->material[point], lobe, points_->path[point]), group,
                                static_cast<float>(points_->hit_count(point)) * own);
                 }
             }

@@ -29,14 +29,15 @@ constexpr float kSurelyFollowed = 0.25F;
 void CameraSurfaces::trace(std::span<const CameraRay> rays, std::span<const NeighbourRays> neighbours,
                            std::size_t rays_per_pixel, Hits& hits, std::vector<RayLight>& light) {
     rays_ = rays;
-    trace({0, RaySource::camera, 0, 0, Rgb(1), {}}, neighbours, {light, hits.apart, rays_per_pixel, 0, 1}, hits);
+    trace({0, RaySource::camera, 0, 0, PathKind::direct, Rgb(1), {}}, neighbours,
+          {light, hits.apart, rays_per_pixel, 0, 1}, hits);
 }
 
 void CameraSurfaces::trace_scattered(std::span<const CameraRay> rays, std::size_t rays_per_group, Hits& hits,
                                      std::vector<RayLight>& light) {
     rays_ = rays;
     const Sink sink = {light, hits.apart, rays_per_group, 1, settings_.max_bounces};
-    trace({0, RaySource::scattered, 1, 0, Rgb(1), {}}, {}, sink, hits);
+    trace({0, RaySource::scattered, 1, 0, PathKind::diffuse, Rgb(1), {}}, {}, sink, hits);
 }
 
 void CameraSurfaces::trace(const Segment& beginning, std::span<const NeighbourRays> neighbours, const Sink& sink,
@@ -118,8 +119,8 @@ void CameraSurfaces::leave_scene(const Segment& segment, const Sink& sink) {
         add_light(segment, LightKind::environment, scene_->environment_group(), left * background->radiance(direction),
                   sink);
     } else if (!sink.apart.empty()) {
-        sink.apart.of(segment.ray / sink.rays_per_pixel)[LightParts::of_kind(LightKind::environment)] +=
-            left * scene_->environment().radiance(direction);
+        sink.apart.add(segment.ray / sink.rays_per_pixel, LightKind::environment,
+                       left * scene_->environment().radiance(direction));
     }
     if (!is_mirrored) {
         sink.light[segment.ray].opacity = background != nullptr ? 1.0F : 1.0F - (left.x + left.y + left.z) / 3;
@@ -137,7 +138,7 @@ void CameraSurfaces::add_lamps(LampViewer viewer, const Segment& segment, const 
     const Rgb radiance = lamps.radiance(part, surface, by_group_);
     sink.of(segment, segment.bounces - (is_mirrored ? 1 : 0)).radiance += segment.throughput * radiance;
     for (std::size_t group = 0; group < by_group_.size(); ++group) {
-        sink.apart.add(segment.ray / sink.rays_per_pixel, is_mirrored ? LightKind::glossy : LightKind::emission,
+        sink.apart.add(segment.ray / sink.rays_per_pixel, segment.met(LightKind::emission),
                        static_cast<std::uint32_t>(group), segment.throughput * by_group_[group]);
     }
 }
@@ -147,7 +148,7 @@ void CameraSurfaces::add_light(const Segment& segment, LightKind kind, std::uint
     const bool is_mirrored = segment.source == RaySource::mirror;
     sink.of(segment, segment.bounces - (is_mirrored ? 1 : 0)).radiance += radiance;
     if (!sink.apart.empty() && radiance != Rgb(0)) {  // groups without light have no part
-        sink.apart.add(segment.ray / sink.rays_per_pixel, is_mirrored ? LightKind::glossy : kind, group, radiance);
+        sink.apart.add(segment.ray / sink.rays_per_pixel, segment.met(kind), group, radiance);
     }
 }
 
@@ -233,8 +234,10 @@ void CameraSurfaces::pass_on(std::size_t first, const Sink& sink) {
         if (material.shader != nullptr && material.shader->transparency) {
             const Rgb throughput = surface.throughput * transparency(surface);
             if (throughput != Rgb(0)) {
-                start({surface.ray, surface.source, surface.bounces, surface.depth + 1, throughput, surface.whole},
-                      behind(surface.whole, surface.hit));
+                Segment beyond = static_cast<const Segment&>(surface);
+                ++beyond.depth;
+                beyond.throughput = throughput;
+                start(beyond, behind(surface.whole, surface.hit));
             }
         }
         if (is_shaded(surface)) {
@@ -271,8 +274,13 @@ void CameraSurfaces::reflect_mirror(const Surface& surface, const SurfaceLobe& l
     const Ray ray = {Vec3f(surface.point.off_surface()), 0, Vec3f(direction)};
     const double let_in = scene_->placed().terminator(surface.hit, surface.point).let_in(cosine);
     const auto albedo = static_cast<float>(let_in * lobe_albedo(lobe.shape, cosine));
-    const Segment segment = {
-        surface.ray, RaySource::mirror, surface.bounces + 1, 0, surface.throughput * lobe.weight * albedo, ray};
+    const Segment segment = {surface.ray,
+                             RaySource::mirror,
+                             surface.bounces + 1,
+                             0,
+                             surface.reflected(lobe.shape),
+                             surface.throughput * lobe.weight * albedo,
+                             ray};
     add_lamps(LampViewer::unblocked_mirror, segment, ray, std::nullopt, sink);
     start(segment, ray);
     ++mirror_count_;
@@ -311,7 +319,9 @@ void CameraSurfaces::scatter(const Surface& surface, std::size_t first) {
     }
     const Vec3d lift = terminator.lifts() ? terminator.share(direction) * terminator.lift : Vec3d(0);
     const Ray scattered = {Vec3f(surface.point.off_surface() + lift), 0, Vec3f(direction)};
-    start({surface.ray, RaySource::scattered, surface.bounces + 1, 0, weight / probability, scattered}, scattered);
+    start({surface.ray, RaySource::scattered, surface.bounces + 1, 0, surface.reflected(own.shape),
+           weight / probability, scattered},
+          scattered);
 }
 
 bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
@@ -332,6 +342,10 @@ bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lob
     for (std::uint32_t i = 0; i < recorded_.size(); ++i) {
         sink.of(surface, surface.bounces + first + 1 + i).radiance += weight * (recorded_[i] - fewer);
         fewer = recorded_[i];
+    }
+    if (!sink.apart.empty()) {
+        sink.apart.add(surface.ray / sink.rays_per_pixel, indirect_kind(surface.reflected(lobe.shape)),
+                       weight * recorded_.back());
     }
     return true;
 }
@@ -423,7 +437,7 @@ void CameraSurfaces::add_hit(const Surface& surface, Hits& hits) {
             const Vec3d& view = bumped ? surface.point.shading_normal : surface.towards_viewer;
             const ShadingFrame frame = frame_of(surface, own);
             hits.add(surface.point, terminator, frame, view_cosine(frame.z, view), weights_, widths_,
-                     rays_[surface.ray].sample);
+                     rays_[surface.ray].sample, surface.kind);
         }
     }
 }

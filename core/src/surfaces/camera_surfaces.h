@@ -90,10 +90,19 @@ class CameraSurfaces {
         RaySource source;
         std::uint32_t bounces;  ///< surfaces that have reflected the path
         std::uint32_t depth;    ///< surfaces that it has passed through since
-        Rgb throughput;         ///< share of its light that reaches the camera
-        Ray whole;              ///< from where the camera ray, or the reflecting surface's, begins
+        PathKind kind;
+        Rgb throughput;  ///< share of its light that reaches the camera
+        Ray whole;       ///< from where the camera ray, or the reflecting surface's, begins
 
         bool sees_lights() const { return source != RaySource::scattered; }
+        /// The kind of what it goes on by if a lobe reflects it at its end.
+        PathKind reflected(const LobeShape& lobe) const {
+            return bounces > 0 ? kind : is_glossy(lobe) ? PathKind::glossy : PathKind::diffuse;
+        }
+        /// The kind of light that it meets. camera: of what the camera itself sees.
+        LightKind met(LightKind camera) const {
+            return bounces == 0 ? camera : bounces == 1 ? LightKind::glossy : indirect_kind(kind);
+        }
     };
     /// The surface at the end of a segment.
     struct Surface : Segment {
@@ -143,7 +152,7 @@ class CameraSurfaces {
     void leave_scene(const Segment& segment, const Sink& sink);
     void add_lamps(LampViewer viewer, const Segment& segment, const Ray& part, const std::optional<double>& surface,
                    const Sink& sink);
-    /// Light that a segment meets. kind: of what no mirror shows.
+    /// Light that a segment meets. kind: see Segment::met.
     static void add_light(const Segment& segment, LightKind kind, std::uint32_t group, const Rgb& radiance,
                           const Sink& sink);
     void run_programs(std::span<const NeighbourRays> neighbours, std::size_t first);

@@ -10,6 +10,7 @@ void Hits::clear() {
     terminator.clear();
     error.clear();
     material.clear();
+    path.clear();
     lobe_weight.clear();
     lobe_width.clear();
     sample.clear();
@@ -23,13 +24,14 @@ void Hits::clear() {
 
 void Hits::add(const SurfacePoint& surface, const Terminator& terminator_there, const ShadingFrame& shading_frame,
                float view_cosine, std::span<const Rgb> weights, std::span<const float> widths,
-               std::uint32_t sample_index) {
+               std::uint32_t sample_index, PathKind path_kind) {
     frame.push_back(shading_frame);
     cos_theta_o.push_back(view_cosine);
     shadow_origin.push_back(surface.off_surface());
     terminator.push_back(terminator_there);
     error.push_back(surface.error);
     material.push_back(surface.material);
+    path.push_back(path_kind);
     lobe_weight.insert(lobe_weight.end(), weights.begin(), weights.end());
     lobe_weight.resize(size() * lobe_stride, Rgb(0));
     lobe_width.insert(lobe_width.end(), widths.begin(), widths.end());

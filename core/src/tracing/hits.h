@@ -30,6 +30,7 @@ struct Hits {
     std::vector<Terminator> terminator;
     std::vector<double> error;  ///< see SurfacePoint
     std::vector<std::uint32_t> material;
+    std::vector<PathKind> path;  ///< from the camera
     /// Weight of lobe i of hit h at h · lobe_stride + i: its colour as the viewer sees it. 0 for lobes that the
     /// material does not have.
     std::vector<Rgb> lobe_weight;
@@ -71,13 +72,13 @@ struct Hits {
     void reflect(std::size_t hit, std::size_t lobe, std::uint32_t group, const Rgb& light) {
         radiance[hit] += light;
         if (!apart.empty()) {
-            apart.add(of_pixel[hit], apart.parts().kind(material[hit], lobe), group, light);
+            apart.add(of_pixel[hit], apart.parts().kind(material[hit], lobe, path[hit]), group, light);
         }
     }
     /// weights, widths: of the material's lobes.
     void add(const SurfacePoint& surface, const Terminator& terminator_there, const ShadingFrame& shading_frame,
-             float view_cosine, std::span<const Rgb> weights, std::span<const float> widths,
-             std::uint32_t sample_index);
+             float view_cosine, std::span<const Rgb> weights, std::span<const float> widths, std::uint32_t sample_index,
+             PathKind path_kind);
     /// The hits added since the last call are those of one pixel.
     void end_pixel() {
         pixel_begin.push_back(size());

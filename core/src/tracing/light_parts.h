@@ -13,8 +13,16 @@
 namespace shlight {
 
 /// Light of a camera ray belongs to one kind and one group.
-enum class LightKind : std::uint8_t { diffuse, glossy, emission, environment };
-inline constexpr std::size_t kLightKinds = 4;
+enum class LightKind : std::uint8_t { diffuse, glossy, diffuse_indirect, glossy_indirect, emission, environment };
+inline constexpr std::size_t kLightKinds = 6;
+
+/// The lobe that reflected the path of a camera ray first.
+enum class PathKind : std::uint8_t { direct, diffuse, glossy };
+
+/// The kind of light that a path brings whose first lobe reflects it: a path that is direct has none.
+constexpr LightKind indirect_kind(PathKind path) {
+    return path == PathKind::glossy ? LightKind::glossy_indirect : LightKind::diffuse_indirect;
+}
 
 struct LightParts {
     /// Number of parts: one for each kind, then one for each group; 0: parts are not stored.
@@ -26,7 +34,10 @@ struct LightParts {
     static std::size_t of_kind(LightKind kind) { return static_cast<std::size_t>(kind); }
     /// See LightTraits::group.
     static std::size_t of_group(std::uint32_t group) { return kLightKinds + group; }
-    LightKind kind(std::size_t material, std::size_t lobe) const { return of_lobe[material * lobe_stride + lobe]; }
+    /// The kind of light that a lobe reflects at the end of a path.
+    LightKind kind(std::size_t material, std::size_t lobe, PathKind path) const {
+        return path == PathKind::direct ? of_lobe[material * lobe_stride + lobe] : indirect_kind(path);
+    }
 };
 
 /// No parts.
@@ -42,7 +53,8 @@ class LightGroupBuffer {
     bool empty() const { return parts_->empty(); }
     /// Forgets all light; pixels: how many.
     void reset(std::size_t pixels) { light_.assign(pixels * parts_->count, Rgb(0)); }
-    /// Precondition: not empty().
+    /// Light of no group. Precondition, also of the next: not empty().
+    void add(std::size_t pixel, LightKind kind, const Rgb& light) { of(pixel)[LightParts::of_kind(kind)] += light; }
     void add(std::size_t pixel, LightKind kind, std::uint32_t group, const Rgb& light) {
         const std::span<Rgb> own = of(pixel);
         own[LightParts::of_kind(kind)] += light;
