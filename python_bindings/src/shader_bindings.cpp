@@ -24,6 +24,7 @@ using ImagePointer = std::shared_ptr<const ImageTexture>;
 using StepTuple = std::tuple<int, double, std::uint32_t, std::uint32_t, std::vector<std::uint32_t>>;
 using TableTuple = std::tuple<AnyArray<float>, std::vector<std::uint32_t>>;
 /// Kind of lobe, ior, result indices of weight, alpha and normal, and ShadedLobe::several_bounces.
+using RefractionTuple = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::optional<std::uint32_t>>;
 using LobeTuple =
     std::tuple<std::string, double, std::uint32_t, std::optional<std::uint32_t>, std::optional<std::uint32_t>, bool>;
 /// name, number of the result, whether it is a colour
@@ -133,9 +134,9 @@ LobeShape shape_of(const std::string& kind, double ior) {
 ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTuple>& lobes,
                          std::optional<std::uint32_t> emission, std::optional<std::uint32_t> transparency,
                          const ShaderProgram& shadow_program, std::vector<std::string> attribute_names,
-                         const std::vector<AovTuple>& aovs) {
+                         const std::vector<AovTuple>& aovs, const std::vector<RefractionTuple>& refractions) {
     auto shader =
-        std::make_shared<SurfaceShader>(SurfaceShader{program, {}, emission, transparency, shadow_program, {}});
+        std::make_shared<SurfaceShader>(SurfaceShader{program, {}, emission, transparency, shadow_program, {}, {}});
     for (const auto& [kind, ior, weight, alpha, normal, several_bounces] : lobes) {
         shader->lobes.push_back({shape_of(kind, ior), weight, alpha, normal, several_bounces});
     }
@@ -143,6 +144,9 @@ ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTup
     for (const auto& [name, value, is_color] : aovs) {
         shader->aovs.push_back({value, is_color});
         aov_names.push_back(name);
+    }
+    for (const auto& [weight, alpha, ior, normal] : refractions) {
+        shader->refractions.push_back({weight, alpha, ior, normal});
     }
     check_surface_shader(*shader);
     return {std::move(shader), std::move(attribute_names), std::move(aov_names)};
@@ -233,7 +237,7 @@ void bind_shader(py::module_& m) {
         "steps"_a, "tables"_a, "images"_a, "results"_a);
     const py::class_<ShaderObject> shader(m, "SurfaceShader", without_constructor());
     m.def("surface_shader", &shader_from, "program"_a, "lobes"_a, "emission"_a, "transparency"_a, "shadow_program"_a,
-          "attribute_names"_a, "aovs"_a);
+          "attribute_names"_a, "aovs"_a, "refractions"_a);
 }
 
 }  // namespace shlight::python

@@ -138,7 +138,7 @@ def test_a_dark_frame_is_black(pictures: dict[str, Any]) -> None:
     assert 0.0 < image[..., 3].mean() < 1.0
     assert abs(image[..., 3] - reference[..., 3]).mean() <= 5e-3
     # Messages are ordered by their effect on the picture.
-    parts = ("no light that shlight can render", "Glass BSDF", "the diffuse part is drawn as Diffuse BSDF")
+    parts = ("no light that shlight can render", "Translucent BSDF", "the diffuse part is drawn as Diffuse BSDF")
     assert all(part in line for part, line in zip(parts, pictures["dark"]["messages"], strict=True))
 
 

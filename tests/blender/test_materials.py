@@ -227,11 +227,11 @@ def test_textures_are_named_and_the_sockets_value_used(studio: Any) -> None:
 @pytest.mark.parametrize(
     ("shader", "inputs", "named"),
     [
-        ("ShaderNodeBsdfGlass", {}, "Glass BSDF is not supported"),
+        ("ShaderNodeBsdfTranslucent", {}, "Translucent BSDF is not supported"),
         ("ShaderNodeSubsurfaceScattering", {}, "Subsurface Scattering is not supported"),
         ("ShaderNodeBsdfAnisotropic", {"Anisotropy": 0.3}, "'Anisotropy' is not supported"),
         ("ShaderNodeBsdfAnisotropic", {"distribution": "BECKMANN"}, "distribution BECKMANN is not supported"),
-        ("ShaderNodeBsdfPrincipled", {"Transmission_Weight": 1.0}, "'Transmission Weight' is drawn by its reflection"),
+        ("ShaderNodeBsdfPrincipled", {"Transmission_Weight": 1.0}, "'Transmission Weight' shows nothing behind it"),
         ("ShaderNodeBsdfPrincipled", {"Sheen_Weight": 0.5}, "'Sheen Weight' is not supported"),
         ("ShaderNodeBsdfPrincipled", {"Subsurface_Weight": 0.5}, "'Subsurface Weight' is not supported"),
         ("ShaderNodeEmission", {"Strength": -1.0}, "negative emission"),

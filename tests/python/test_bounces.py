@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scene_cases import FACES, SQUARE
 
 import shlight
+from shlight import nodes
 from shlight.metrics import rel_mse
 
 # The sides of a box whose corners box() gives.
@@ -91,3 +92,15 @@ def test_a_wall_keeps_light_on_its_side(size: int) -> None:
     image = shlight.render(scene, size, size, max_bounces=3)[..., :3]
     wall = size // 2
     assert image[:, wall + 2 :].max() <= 5e-3 * image[:, : wall - 2].mean()
+
+
+def test_a_glass_body_in_white_light_is_not_seen() -> None:
+    scene = shlight.Scene()
+    glass = nodes.glass((1, 1, 1), 0.0, 1.45)
+    turn = np.linalg.qr(np.array([[3, 1, 2], [-1, 4, 1], [1, -2, 5]]))[0]
+    scene.add_mesh(box((-1, -1, -1), (1, 1, 1)) @ turn.T * np.sign(np.linalg.det(turn)), BOX_FACES, bsdf=glass)
+    scene.set_environment((1, 1, 1))
+    scene.set_camera(looking((0, -5, 0), (0, 1, 0)), 0.6)
+    image = shlight.render(scene, 48, 48, max_bounces=32)[..., :3]
+    np.testing.assert_allclose(image.mean(), 1, rtol=1e-3)
+    assert image.max() <= 1.001

@@ -27,12 +27,13 @@ Expression = Value | Vector  # a Color is a Vector that counts with its luminanc
 
 @dataclass
 class Surroundings:
-    """Inputs of nodes other than the surface: the camera, the depsgraph, and numbers of objects."""
+    """Inputs of nodes other than the surface: the camera, the depsgraph, numbers of objects, and settings."""
 
     camera_view: View | None = None
     depsgraph: Any = None
     object_values: ObjectValues = field(default_factory=ObjectValues)
     passes: PassWishes = field(default_factory=PassWishes)
+    light_bounces: bool = False
     view_is_used: bool = field(default=False, init=False)
 
     @property

@@ -25,7 +25,7 @@ def read_principled(inputs: ShaderInputs) -> Shader:
 
 def _read_layered(inputs: ShaderInputs) -> Shader:
     if inputs.number("Transmission Weight").constant != 0.0:
-        inputs.remark("'Transmission Weight' is drawn by its reflection alone; light does not pass through")
+        inputs.remark_hidden_behind("'Transmission Weight'")
     if inputs.number("Subsurface Weight").constant != 0.0:
         inputs.remark("'Subsurface Weight' is not supported; drawn as diffuse reflection")
     return nodes.principled(

@@ -57,7 +57,7 @@ class _State(NamedTuple):
     """State that Blender does not list among the changes of a scene."""
 
     world: Any = None
-    material_override: Any = None
+    materials: Any = None  # the material in place of all others, and whether light bounces
     moving_frame: float = 0.0  # of pictures that change with the frame
     passes: PassWishes = PassWishes()
     shown: tuple[Any, ...] = ()  # whether meshes are, what is culled, and the objects of all instances that are seen
@@ -71,7 +71,7 @@ class _State(NamedTuple):
         seen = (own.object.as_pointer() for own in depsgraph.object_instances if _is_seen(own, viewport))
         return _State(
             (world and world.as_pointer(), scene.render.film_transparent, scene.shlight.world_width),
-            override and override.as_pointer(),
+            (override and override.as_pointer(), scene.shlight.max_bounces > 0),
             scene.frame_current_final if moving else 0.0,
             pass_wishes(scene, view_layer) if viewport is None else PassWishes(),
             (view_layer.use_solid, culling, *seen),
@@ -164,7 +164,9 @@ class ExportedScene:
             )
         if changes.materials:
             TEXTURES.begin_export()
-            self._surroundings = Surroundings(self._view, passes=self._state.passes)
+            self._surroundings = Surroundings(
+                self._view, passes=self._state.passes, light_bounces=blender_scene.shlight.max_bounces > 0
+            )
         self._surroundings.depsgraph = depsgraph
         if changes:
             self._walk(depsgraph, changes, viewport, _asking(waiting))
@@ -185,7 +187,7 @@ class ExportedScene:
         moved = state.moving_frame != old.moving_frame or state.passes != old.passes
         looks_elsewhere = self.is_of_one_camera and self._surroundings.camera_view != self._view
         changes.world |= moved or state.world != old.world
-        changes.materials |= moved or looks_elsewhere or state.material_override != old.material_override
+        changes.materials |= moved or looks_elsewhere or state.materials != old.materials
         changes.objects |= state.shown != old.shown
         changes.lamps |= moved or changes.world or changes.objects
 

@@ -34,6 +34,18 @@ def _glossy(inputs: ShaderInputs) -> Shader:
     )
 
 
+def _glass(inputs: ShaderInputs) -> Shader:
+    inputs.remark_hidden_behind(inputs.node.bl_label)
+    distribution = inputs.node.distribution
+    tint, ior, at = inputs.color("Color"), inputs.number("IOR"), inputs.linked_vector("Normal")
+    roughness = number(0.0) if distribution == "SHARP" else inputs.number("Roughness")
+    if distribution not in {"GGX", "MULTI_GGX", "SHARP"} and roughness.constant != 0.0:
+        inputs.remark(f"distribution {distribution} is not supported; GGX is used")
+    if inputs.node.type == "BSDF_REFRACTION":
+        return nodes.refraction(tint, roughness, ior, at=at)
+    return nodes.glass(tint, roughness, ior, several_bounces=distribution == "MULTI_GGX", at=at)
+
+
 def _emission(inputs: ShaderInputs) -> Shader:
     return nodes.emission(inputs.color("Color") * inputs.number("Strength"))
 
@@ -58,8 +70,10 @@ def _add(inputs: ShaderInputs) -> Shader:
 
 SHADERS: dict[str, ReadShader] = {
     "BSDF_DIFFUSE": _diffuse,
+    "BSDF_GLASS": _glass,
     "BSDF_GLOSSY": _glossy,
     "BSDF_PRINCIPLED": read_principled,
+    "BSDF_REFRACTION": _glass,
     "BSDF_TRANSPARENT": _transparent,
     "EMISSION": _emission,
     "MIX_SHADER": _mix,

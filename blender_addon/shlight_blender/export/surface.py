@@ -38,6 +38,11 @@ class ShaderInputs(NodeInputs):
         """The shader that an input receives."""
         return self.reader.shader(self.node.inputs[name], self.groups)
 
+    def remark_hidden_behind(self, what: str) -> None:
+        """Reports glass in a picture of direct light."""
+        if not self.reader.surroundings.light_bounces:
+            self.remark(f"{what} shows nothing behind it while Max Bounces is 0", Effect.THING)
+
     def ignore_unless(self, name: str, neutral: float) -> None:
         """Reports an input that is not supported, unless it has the value at which it does nothing."""
         if name in self.node.inputs and self.number(name).constant != neutral:

@@ -22,6 +22,15 @@ struct ShadedLobe {
     bool several_bounces = false;         ///< the weight compensates the energy lost between microfacets
 };
 
+/// An interface to a transparent body that the mesh's front side bounds: light that bounces goes on through it, and
+/// inside is reflected by it. What the front reflects is a matter of lobes. Members are as those of ShadedLobe.
+struct ShadedRefraction {
+    std::uint32_t weight;  ///< colour, of light from inside too
+    std::uint32_t alpha;
+    std::uint32_t ior;  ///< of the body, relative to what is around it; not positive: 1
+    std::optional<std::uint32_t> normal;
+};
+
 /// A number or colour that a program computes for an AOV.
 struct ShadedAov {
     std::uint32_t value;  ///< see ShadedLobe
@@ -35,6 +44,7 @@ struct SurfaceShader {
     std::optional<std::uint32_t> transparency;  ///< share of light that passes straight through; none: opaque
     ShaderProgram shadow_program;               ///< its three results are the transparency for shadow rays
     std::vector<ShadedAov> aovs;
+    std::vector<ShadedRefraction> refractions;
 };
 
 /// The lobes of a Bsdf with colour 1; their weights are computed at each hit.

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "lobes/boundary_integral.h"
+#include "lobes/refraction.h"
 #include "regions/boundary.h"
 #include "shlight/lobe_shape.h"
 
@@ -16,14 +17,6 @@ using std::numbers::pi;
 
 /// Absolute error of the albedo, which is integrated along the horizon.
 constexpr double kAlbedoTolerance = 1e-5;
-
-/// Unpolarised Fresnel reflectance of a dielectric of relative index ior ≥ 1, seen from outside.
-double fresnel_dielectric(double cosine, double ior) {
-    const double g = std::sqrt(ior * ior - 1 + cosine * cosine);
-    const double a = (g - cosine) / (g + cosine);
-    const double b = (cosine * (g + cosine) - 1) / (cosine * (g - cosine) + 1);
-    return 0.5 * a * a * (1 + b * b);
-}
 
 /// Fresnel factor at ω_i·h = cosine.
 double fresnel_factor(const GgxShape& shape, double cosine) {
@@ -39,8 +32,8 @@ double fresnel_factor(const GgxShape& shape, double cosine) {
             return cosine * edge * edge * edge * edge * edge * edge;
         }
         case Fresnel::dielectric: {
-            const double head_on = fresnel_dielectric(1, shape.ior);
-            return std::max(0.0, (fresnel_dielectric(cosine, shape.ior) - head_on) / (1 - head_on));
+            const double head_on = interface_reflectance(1, shape.ior);
+            return std::max(0.0, (interface_reflectance(cosine, shape.ior) - head_on) / (1 - head_on));
         }
     }
     return 0;

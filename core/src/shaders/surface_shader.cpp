@@ -29,6 +29,12 @@ void check_surface_shader(const SurfaceShader& shader) {
         check("alpha", lobe.alpha, 1);
         check("normal", lobe.normal, 3);
     }
+    for (const ShadedRefraction& refraction : shader.refractions) {
+        check("weight", refraction.weight, 3);
+        check("alpha", refraction.alpha, 1);
+        check("ior", refraction.ior, 1);
+        check("normal", refraction.normal, 3);
+    }
     for (const ShadedAov& aov : shader.aovs) {
         check("aov", aov.value, aov.is_color ? 3 : 1);
     }

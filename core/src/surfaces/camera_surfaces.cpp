@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "lobes/refraction.h"
 #include "shlight/sampling.h"
 
 namespace shlight {
@@ -23,6 +24,8 @@ constexpr float kLeastWidth = kLeastRoughness * kLeastRoughness;
 
 /// Share of what a path meets that reaches the camera, below which it is not always followed.
 constexpr float kSurelyFollowed = 0.25F;
+/// Seeds of directions through interfaces, beside those of lobes.
+constexpr std::uint32_t kRefractionSeed = 0x80000000U;
 
 }  // namespace
 
@@ -247,6 +250,12 @@ void CameraSurfaces::pass_on(std::size_t first, const Sink& sink) {
 }
 
 void CameraSurfaces::reflect(const Surface& surface, const Sink& sink) {
+    if (const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get();
+        shader != nullptr && settings_.max_bounces > 0) {
+        for (std::uint32_t i = 0; i < shader->refractions.size(); ++i) {
+            refract(surface, shader->refractions[i], i);
+        }
+    }
     const auto lobes = materials_[surface.point.material].lobes();
     const bool goes_on = surface.bounces < settings_.max_bounces;
     if (!goes_on && std::none_of(lobes.begin(), lobes.end(), [](const Lobe& lobe) { return is_mirror(lobe.shape); })) {
@@ -265,6 +274,38 @@ void CameraSurfaces::reflect(const Surface& surface, const Sink& sink) {
             scatter(surface, i);
         }
     }
+}
+
+/// A bend of the normal away from the viewer's side of the surface counts as none.
+void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t number) {
+    const Rgb weight = surface.throughput * color(surface, refraction.weight);
+    if (weight == Rgb(0)) {
+        return;
+    }
+    const Vec3d bent = normal(surface, refraction.normal);
+    const Vec3d& flat = surface.point.geometric_normal;
+    const ShadingFrame frame =
+        shading_frame(surface.point.position, glm::dot(bent, flat) > 0 ? bent : flat, surface.towards_viewer);
+    const double cosine = view_cosine(frame.z, surface.towards_viewer);
+    const Vec3d view(std::sqrt(1 - cosine * cosine), 0, cosine);
+    const bool inside = scene_->placed().is_back(surface.hit, surface.towards_viewer);
+    const float given = result(surface, refraction.ior);
+    const double ior = given > 0 && std::isfinite(given) ? double{given} : 1.0;
+    const CameraRay& ray = rays_[surface.ray];
+    const std::uint32_t seed = hash(ray.seed, hash(surface.bounces, kRefractionSeed + number));
+    const InterfaceRay sampled =
+        sample_interface(double{width(surface, refraction.alpha)}, inside ? 1 / ior : ior, view,
+                         SobolSequence(seed).point(ray.sample), inside, sobol_beyond(ray.sample, seed).x);
+    const Vec3d way = frame.to_world(sampled.way);
+    if (!(sampled.weight > 0) || (glm::dot(way, flat) > 0) != sampled.reflected) {
+        return;
+    }
+    const Vec3d origin =
+        sampled.reflected ? surface.point.off_surface() : surface.point.position - surface.point.error * flat;
+    const Ray next = {Vec3f(origin), 0, Vec3f(way)};
+    // No other light comes this way.
+    start({surface.ray, RaySource::mirror, surface.bounces + 1, 0, weight * static_cast<float>(sampled.weight), next},
+          next);
 }
 
 void CameraSurfaces::reflect_mirror(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
@@ -375,12 +416,12 @@ void CameraSurfaces::add_hits(const Sink& sink, Hits& hits) {
     }
 }
 
-Vec3d CameraSurfaces::normal(const Surface& surface, const ShadedLobe& lobe) const {
+Vec3d CameraSurfaces::normal(const Surface& surface, const std::optional<std::uint32_t>& result) const {
     const Vec3d& smooth = surface.point.shading_normal;
-    if (!lobe.normal) {
+    if (!result) {
         return smooth;
     }
-    const Vec3d own = vector(surface, *lobe.normal);
+    const Vec3d own = vector(surface, *result);
     const double length = glm::length(own);
     const bool differs = length > 0 && std::isfinite(length) && glm::distance(own / length, smooth) > kSameNormal;
     return differs ? own / length : smooth;
@@ -399,7 +440,7 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
             const LobeShape shape =
                 lobe.alpha ? with_width(lobe.shape, double{width(surface, *lobe.alpha)}) : lobe.shape;
             const bool known = !lobes.empty() && lobe.normal == (&lobe - 1)->normal;
-            const Vec3d own = known ? lobes.back().normal : normal(surface, lobe);
+            const Vec3d own = known ? lobes.back().normal : normal(surface, lobe.normal);
             lobes.push_back({shape, own, color(surface, lobe.weight), lobe.several_bounces});
         }
         return;

@@ -174,8 +174,10 @@ class CameraSurfaces {
     ShadingFrame frame_of(const Surface& surface, const SurfaceLobe& lobe) const;
     void add_hits(const Sink& sink, Hits& hits);
     void add_hit(const Surface& surface, Hits& hits);
-    /// Unit.
-    Vec3d normal(const Surface& surface, const ShadedLobe& lobe) const;
+    /// A path through an interface, or inside back from it.
+    void refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t number);
+    /// Unit. own: see ShadedLobe::normal.
+    Vec3d normal(const Surface& surface, const std::optional<std::uint32_t>& own) const;
     Vec3d vector(const Surface& surface, std::uint32_t result) const;
     /// A colour in which components that are not finite are 0.
     Rgb color(const Surface& surface, std::uint32_t result) const;

@@ -13,7 +13,7 @@ namespace shlight {
 namespace {
 
 /// A record counts as so many times as far away as it is above or below a surface.
-constexpr float kAcross = 4;
+constexpr float kAcross = 10;
 /// Cosine of the turn of the surface beyond which a record does not count.
 constexpr float kLeastCosine = 0.7F;
 /// Cosine of the angle of normals that count as the same.

@@ -90,6 +90,8 @@ class PlacedMeshes {
     /// The value of Pass::uv, whose last component is 1; 0 on meshes without texture coordinates.
     Vec3d uv(const RayHit& hit) const;
     const Label& label(const RayHit& hit) const;
+    /// Whether the viewer sees the mesh's back.
+    bool is_back(const RayHit& hit, const Vec3d& towards_viewer) const;
     /// The radiance that the material emits to the side of the viewer.
     const Rgb& emission(const Material& material, const RayHit& hit, const Vec3d& towards_viewer) const;
     /// The place where another ray meets the plane of a surface, which may lie outside its triangle. The ray is taken
@@ -115,7 +117,6 @@ class PlacedMeshes {
     /// A number of the matrix from the mesh's frame to the world, and of its inverse, row by row.
     double to_world_number(const Placement& placement, std::uint32_t component) const;
     double to_object_number(const Placement& placement, std::uint32_t component) const;
-    bool is_back(const RayHit& hit, const Vec3d& towards_viewer) const;
     float attribute(const MeshAttribute& attribute, std::uint32_t component, const RayHit& hit) const;
 
     const SceneMesh& mesh_of(const Placement& placement) const { return *meshes_[placement.mesh]->mesh; }

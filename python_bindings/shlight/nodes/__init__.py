@@ -19,7 +19,15 @@ from shlight.nodes.inputs import (
 )
 from shlight.nodes.mathematics import map_range, mapping
 from shlight.nodes.normals import bump, normal_map
-from shlight.nodes.principled import glossy, oren_nayar, principled, reflecting_normal, rising_lobes
+from shlight.nodes.principled import (
+    glass,
+    glossy,
+    oren_nayar,
+    principled,
+    reflecting_normal,
+    refraction,
+    rising_lobes,
+)
 from shlight.nodes.shader import Shader, emission, ggx, lambert, mix, transparent
 from shlight.nodes.textures import image
 from shlight.nodes.values import Color, Value, Vector
@@ -37,6 +45,7 @@ __all__ = [
     "emission",
     "geometric_normal",
     "ggx",
+    "glass",
     "glossy",
     "image",
     "inputs",
@@ -54,6 +63,7 @@ __all__ = [
     "principled",
     "rays",
     "reflecting_normal",
+    "refraction",
     "rising_lobes",
     "towards_viewer",
     "transparent",

@@ -6,8 +6,8 @@ from __future__ import annotations
 import math
 
 from shlight.nodes import energy
-from shlight.nodes.inputs import geometric_normal, normal, towards_viewer
-from shlight.nodes.shader import Lobe, Shader, emission, lambert, transparent
+from shlight.nodes.inputs import backfacing, geometric_normal, normal, towards_viewer
+from shlight.nodes.shader import Lobe, Refraction, Shader, emission, lambert, transparent
 from shlight.nodes.values import (
     Color,
     Number,
@@ -194,6 +194,32 @@ def oren_nayar(albedo: Varying, sigma: Number, *, at: Vector | None = None) -> S
     )
 
 
+def _interface(weight: Color, f0: Color, ior: Value, roughness: Value, at: Vector, *, several_bounces: bool) -> Shader:
+    """The reflection of a transparent body's front."""
+    front = color(weight * (1.0 - backfacing()))
+    lobes, _ = _dielectric(front, f0, maximum(ior, 1.0 / ior), roughness, at, several_bounces=several_bounces)
+    return Shader(lobes)
+
+
+def glass(
+    tint: Varying, roughness: Number, ior: Number = 1.5, *, several_bounces: bool = False, at: Vector | None = None
+) -> Shader:
+    """A transparent body: Blender's Glass BSDF. It shows what is behind where light bounces."""
+    c = _clamped(color(tint, "tint"))
+    r = clamp(number(roughness, "roughness"))
+    index = maximum(number(ior, "ior"), 1e-5)
+    n = reflecting_normal(normal() if at is None else at)
+    through = Shader(refractions=(Refraction(c, r * r, index, at),))
+    return _interface(c, color(head_on(index)), index, r, n, several_bounces=several_bounces) + through
+
+
+def refraction(tint: Varying, roughness: Number, ior: Number = 1.5, *, at: Vector | None = None) -> Shader:
+    """The light that goes through an interface alone: Blender's Refraction BSDF."""
+    r = clamp(number(roughness, "roughness"))
+    index = maximum(number(ior, "ior"), 1e-5)
+    return Shader(refractions=(Refraction(_clamped(color(tint, "tint")), r * r, index, at),))
+
+
 def principled(
     base_color: Varying = (0.8, 0.8, 0.8),
     *,
@@ -215,7 +241,7 @@ def principled(
     several_bounces: bool = False,
     at: Vector | None = None,
 ) -> Shader:
-    """Blender's Principled BSDF, without sheen, anisotropy, thin film and what goes through the surface.
+    """Blender's Principled BSDF, without sheen, anisotropy and thin film.
 
     Arguments are the node's inputs; several_bounces: its distribution Multiscatter GGX; at: its normal.
     """
@@ -254,8 +280,10 @@ def principled(
     through = clamp(number(transmission_weight, "transmission_weight"))
     if through.constant != 0.0:
         f0 = _clamped(tint * head_on(index))
-        lobes, _ = _dielectric(weight * through, f0, maximum(index, 1.0 / index), rough, glossy_normal, **several)
-        result += Shader(lobes)
+        own = color(weight * through)
+        result += _interface(own, f0, index, rough, glossy_normal, **several)
+        root = Color(*(sqrt(clamp(component)) for component in base))
+        result += Shader(refractions=(Refraction(color(own * root), rough * rough, index, at),))
         weight = color(weight * (1.0 - through))
     if weight.constant == (0.0, 0.0, 0.0):
         return result

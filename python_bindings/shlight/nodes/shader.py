@@ -43,6 +43,19 @@ class Lobe:
     several_bounces: bool = False  # the weight makes up for what microfacets of GGX lose to each other
 
 
+@dataclass(frozen=True)
+class Refraction:
+    """An interface to a transparent body that the mesh bounds, which light that bounces goes through.
+
+    Inside it reflects light, too; lobes are what its front reflects.
+    """
+
+    weight: Color
+    alpha: Value  # roughness²
+    ior: Value  # of the body
+    normal: Vector | None = None  # None: the smooth one
+
+
 class _Listed(NamedTuple):
     """The steps of a material, and which of their results are what."""
 
@@ -52,6 +65,7 @@ class _Listed(NamedTuple):
     emission: int | None
     transparency: int | None
     aovs: list[tuple[str, int, bool]]
+    refractions: list[tuple[int, int, int, int | None]]
 
 
 @dataclass(frozen=True)
@@ -62,6 +76,7 @@ class Shader:
     emission: Color = field(default_factory=lambda: color(BLACK))  # radiance towards the viewer
     transparency: Color = field(default_factory=lambda: color(BLACK))  # share of light that goes on straight through
     aovs: Mapping[str, Value | Color] = field(default_factory=dict)  # see with_aovs
+    refractions: tuple[Refraction, ...] = ()
 
     def __add__(self, other: Shader) -> Shader:
         return Shader(
@@ -69,6 +84,7 @@ class Shader:
             color(self.emission + other.emission),
             color(self.transparency + other.transparency),
             {**self.aovs, **other.aovs},
+            self.refractions + other.refractions,
         )
 
     def __radd__(self, start: Literal[0]) -> Shader:  # what sum() begins with
@@ -77,7 +93,8 @@ class Shader:
     def __mul__(self, factor: Varying) -> Shader:
         by = color(factor, "factor")
         lobes = tuple(replace(lobe, weight=color(lobe.weight * by)) for lobe in self.lobes)
-        return Shader(lobes, color(self.emission * by), color(self.transparency * by), self.aovs)
+        through = tuple(replace(own, weight=color(own.weight * by)) for own in self.refractions)
+        return Shader(lobes, color(self.emission * by), color(self.transparency * by), self.aovs, through)
 
     __rmul__ = __mul__
 
@@ -152,9 +169,15 @@ class Shader:
         for name, value in self.aovs.items():
             parts = [value] if isinstance(value, Value) else list(value)
             aovs.append((name, builder.result(on_ray(parts, Ray.CAMERA, filtered=self._is_filtered)), len(parts) == 3))
+        refractions = []
+        for own in self.refractions:
+            weight = builder.result(tuple(color_on_ray(own.weight, Ray.CAMERA, filtered=self._is_filtered)))
+            alpha, ior = (builder.result(on_ray([value], Ray.CAMERA)) for value in (own.alpha, own.ior))
+            bent = None if own.normal is None else builder.result(on_ray(own.normal, Ray.CAMERA))
+            refractions.append((weight, alpha, ior, bent))
         shadows = ProgramBuilder(builder.attributes)
         shadows.result(tuple(lit))
-        return _Listed(builder, shadows, lobes, glow_result, through, aovs)
+        return _Listed(builder, shadows, lobes, glow_result, through, aovs, refractions)
 
     @cached_property
     def _program(self) -> _core.ShaderProgram:
@@ -172,6 +195,7 @@ class Shader:
             shadow_program,
             listed.camera.attributes,
             listed.aovs,
+            listed.refractions,
         )
 
 

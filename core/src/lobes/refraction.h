@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+//
+// Light that goes on through a rough or smooth interface of two transparent bodies, by drawn directions (Walter et al.
+// 2007, "Microfacet Models for Refraction through Rough Surfaces").
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include "shlight/types.h"
+
+namespace shlight {
+
+/// Unpolarised Fresnel reflectance of an interface. ior: index on the other side ÷ that on the viewer's; 1 where all
+/// light is reflected.
+double interface_reflectance(double cosine, double ior);
+
+struct InterfaceRay {
+    Vec3d way{0};       ///< unit, in the shading frame
+    double weight = 0;  ///< light that the viewer gets ÷ light from there; 0: none
+    bool reflected = false;
+};
+
+/// A direction through the interface. alpha: of its GGX distribution, whose visible normals the point draws; view:
+/// unit, in the xz-plane, above the horizon; both: whether reflection takes its share `choice` of rays, or others bring
+/// it.
+InterfaceRay sample_interface(double alpha, double ior, const Vec3d& view, const glm::dvec2& point, bool both,
+                              double choice);
+
+}  // namespace shlight
