@@ -176,8 +176,8 @@ class CameraSurfaces {
     void add_hit(const Surface& surface, Hits& hits);
     /// A path through an interface, or inside back from it.
     void refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t number);
-    /// Unit. own: see ShadedLobe::normal.
-    Vec3d normal(const Surface& surface, const std::optional<std::uint32_t>& own) const;
+    /// Unit. result: see ShadedLobe::normal.
+    Vec3d normal(const Surface& surface, const std::optional<std::uint32_t>& result) const;
     Vec3d vector(const Surface& surface, std::uint32_t result) const;
     /// A colour in which components that are not finite are 0.
     Rgb color(const Surface& surface, std::uint32_t result) const;
