@@ -303,8 +303,10 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
     const Vec3d origin =
         sampled.reflected ? surface.point.off_surface() : surface.point.position - surface.point.error * flat;
     const Ray next = {Vec3f(origin), 0, Vec3f(way)};
-    // No other light comes this way.
-    start({surface.ray, RaySource::mirror, surface.bounces + 1, 0, weight * static_cast<float>(sampled.weight), next},
+    // No other light comes this way. Passes have no kind for what goes through.
+    const PathKind kind = surface.bounces > 0 ? surface.kind : PathKind::glossy;
+    start({surface.ray, RaySource::mirror, surface.bounces + 1, 0, kind, weight * static_cast<float>(sampled.weight),
+           next},
           next);
 }
 
