@@ -282,8 +282,8 @@ def principled(
         f0 = _clamped(tint * head_on(index))
         own = color(weight * through)
         result += _interface(own, f0, index, rough, glossy_normal, **several)
-        root = Color(*(sqrt(clamp(component)) for component in base))
-        result += Shader(refractions=(Refraction(color(own * root), rough * rough, index, at),))
+        through_tint = Color(*(sqrt(clamp(component)) for component in base))
+        result += Shader(refractions=(Refraction(color(own * through_tint), rough * rough, index, at),))
         weight = color(weight * (1.0 - through))
     if weight.constant == (0.0, 0.0, 0.0):
         return result
