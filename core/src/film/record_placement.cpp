@@ -25,6 +25,9 @@ constexpr double kLeastView = 0.1;
 constexpr float kEnough = 0.05F;
 /// On grids below this step, only surfaces that have not enough get a record.
 constexpr int kLeastRefined = 4;
+/// On grids of this step and above, all surfaces get one: a few records may agree because none has seen a small light,
+/// as a lamp in a mirror.
+constexpr int kLeastWhole = 16;
 /// Rays of a record along each side of the square of its directions, at the usual noise threshold; with less noise to
 /// be seen it takes more.
 constexpr double kRaysAcross = 16;
@@ -144,7 +147,7 @@ void RecordPlacement::look_at(const CameraSurfaces::Surface& surface, int step, 
     const Rgb scale = glm::sqrt(all * all + static_cast<float>(least_square_)) / glm::max(albedo, Rgb(1e-6F));
     const double error = mean(found.variance + found.noise, scale * scale);
     row.errors += found.weight > 0 ? error : 0.0;
-    const bool is_exact = step < kLeastRefined || error <= threshold_ * threshold_;
+    const bool is_exact = step < kLeastRefined || (step < kLeastWhole && error <= threshold_ * threshold_);
     if (found.weight >= kEnough && is_exact) {
         return;
     }
