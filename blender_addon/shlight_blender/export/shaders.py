@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from shlight import nodes
 from shlight.nodes import Shader
-from shlight.nodes.values import Color, color, maximum, number, vector
+from shlight.nodes.values import Color, Value, color, maximum, number, vector
 
 from .principled import read_principled
 from .surface import ReadShader, ShaderInputs
@@ -22,28 +22,30 @@ def _diffuse(inputs: ShaderInputs) -> Shader:
     )
 
 
-def _glossy(inputs: ShaderInputs) -> Shader:
-    inputs.ignore_unless("Anisotropy", 0.0)
+def _roughness(inputs: ShaderInputs) -> Value:
+    """The roughness of a node with a distribution of microfacets."""
     distribution = inputs.node.distribution
     roughness = number(0.0) if distribution == "SHARP" else inputs.number("Roughness")
     if distribution not in {"GGX", "MULTI_GGX", "SHARP"} and roughness.constant != 0.0:
         # All distributions end in the same mirror.
         inputs.remark(f"distribution {distribution} is not supported; GGX is used")
-    return nodes.glossy(
-        inputs.color("Color"), roughness, several_bounces=distribution == "MULTI_GGX", at=inputs.linked_vector("Normal")
-    )
+    return roughness
+
+
+def _glossy(inputs: ShaderInputs) -> Shader:
+    inputs.ignore_unless("Anisotropy", 0.0)
+    several = inputs.node.distribution == "MULTI_GGX"
+    at = inputs.linked_vector("Normal")
+    return nodes.glossy(inputs.color("Color"), _roughness(inputs), several_bounces=several, at=at)
 
 
 def _glass(inputs: ShaderInputs) -> Shader:
     inputs.remark_hidden_behind(inputs.node.bl_label)
-    distribution = inputs.node.distribution
     tint, ior, at = inputs.color("Color"), inputs.number("IOR"), inputs.linked_vector("Normal")
-    roughness = number(0.0) if distribution == "SHARP" else inputs.number("Roughness")
-    if distribution not in {"GGX", "MULTI_GGX", "SHARP"} and roughness.constant != 0.0:
-        inputs.remark(f"distribution {distribution} is not supported; GGX is used")
+    roughness = _roughness(inputs)
     if inputs.node.type == "BSDF_REFRACTION":
         return nodes.refraction(tint, roughness, ior, at=at)
-    return nodes.glass(tint, roughness, ior, several_bounces=distribution == "MULTI_GGX", at=at)
+    return nodes.glass(tint, roughness, ior, several_bounces=inputs.node.distribution == "MULTI_GGX", at=at)
 
 
 def _emission(inputs: ShaderInputs) -> Shader:

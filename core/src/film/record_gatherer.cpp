@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/perpendicular.h"
 #include "shlight/basis.h"
 #include "shlight/sampling.h"
 #include "tracing/light_bits.h"
@@ -40,8 +41,8 @@ void RecordGatherer::aim(const SurfacePoint& surface, std::size_t rays_across, s
     rays_.clear();
     directions_.clear();
     const Vec3d& z = surface.shading_normal;
-    const Vec3d x = x_ = glm::normalize(glm::cross(std::abs(z.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0), z));
-    const Vec3d y = y_ = glm::cross(z, x);
+    x_ = perpendicular(z);
+    y_ = glm::cross(z, x_);
     by_cell_.resize(rays_across * rays_across);
     const SobolSequence jitter(seed);
     const auto across = static_cast<double>(rays_across);
@@ -55,7 +56,7 @@ void RecordGatherer::aim(const SurfacePoint& surface, std::size_t rays_across, s
             const double cosine = cosine_of((static_cast<double>(row) + inside.x) / across);
             const double sine = std::sqrt(std::max(1 - cosine * cosine, 0.0));
             const double azimuth = 2 * std::numbers::pi * (static_cast<double>(column) + inside.y) / across;
-            const Vec3d way = sine * std::cos(azimuth) * x + sine * std::sin(azimuth) * y + cosine * z;
+            const Vec3d way = sine * std::cos(azimuth) * x_ + sine * std::sin(azimuth) * y_ + cosine * z;
             const double density = (kEven + 2 * (1 - kEven) * cosine) / (2 * std::numbers::pi);
             const bool leaves = glm::dot(way, surface.geometric_normal) > 0;
             const Ray ray = leaves ? Ray{Vec3f(surface.off_surface()), 0, Vec3f(way)} : Ray{};

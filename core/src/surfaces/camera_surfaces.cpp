@@ -20,6 +20,16 @@ bool is_bumped(const SurfaceLobe& lobe) {
     return diffuse != nullptr && diffuse->kind == Diffuse::bumped;
 }
 
+/// The view of a lobe; a bump's is the smooth normal.
+const Vec3d& view_of(const CameraSurfaces::Surface& surface, const SurfaceLobe& lobe) {
+    return is_bumped(lobe) ? surface.point.shading_normal : surface.towards_viewer;
+}
+
+/// A direction of the shading frame's xz-plane.
+Vec3d in_frame(double cosine) {
+    return {std::sqrt(1 - cosine * cosine), 0, cosine};
+}
+
 constexpr float kLeastWidth = kLeastRoughness * kLeastRoughness;
 
 /// Share of what a path meets that reaches the camera, below which it is not always followed.
@@ -286,8 +296,7 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
     const Vec3d& flat = surface.point.geometric_normal;
     const ShadingFrame frame =
         shading_frame(surface.point.position, glm::dot(bent, flat) > 0 ? bent : flat, surface.towards_viewer);
-    const double cosine = view_cosine(frame.z, surface.towards_viewer);
-    const Vec3d view(std::sqrt(1 - cosine * cosine), 0, cosine);
+    const Vec3d view = in_frame(view_cosine(frame.z, surface.towards_viewer));
     const bool inside = scene_->placed().is_back(surface.hit, surface.towards_viewer);
     const float given = result(surface, refraction.ior);
     const double ior = given > 0 && std::isfinite(given) ? double{given} : 1.0;
@@ -313,7 +322,7 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
 void CameraSurfaces::reflect_mirror(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
     const ShadingFrame frame = shading_frame(surface.point.position, lobe.normal, surface.towards_viewer);
     const double cosine = view_cosine(frame.z, surface.towards_viewer);
-    const Vec3d direction = frame.to_world(mirrored({std::sqrt(1 - cosine * cosine), 0, cosine}));
+    const Vec3d direction = frame.to_world(mirrored(in_frame(cosine)));
     const Ray ray = {Vec3f(surface.point.off_surface()), 0, Vec3f(direction)};
     const double let_in = scene_->placed().terminator(surface.hit, surface.point).let_in(cosine);
     const auto albedo = static_cast<float>(let_in * lobe_albedo(lobe.shape, cosine));
@@ -334,8 +343,7 @@ void CameraSurfaces::scatter(const Surface& surface, std::size_t first) {
     const SurfaceLobe& own = lobes_[first];
     const LobeShape sampled = sampled_shape(own.shape);
     const ShadingFrame frame = frame_of(surface, own);
-    const double cosine = view_cosine(frame.z, is_bumped(own) ? surface.point.shading_normal : surface.towards_viewer);
-    const Vec3d view(std::sqrt(1 - cosine * cosine), 0, cosine);
+    const Vec3d view = in_frame(view_cosine(frame.z, view_of(surface, own)));
     const CameraRay& ray = rays_[surface.ray];
     const std::uint32_t seed = hash(ray.seed, hash(surface.bounces, static_cast<std::uint32_t>(first)));
     const Vec3d way = sample_lobe(sampled, view, SobolSequence(seed).point(ray.sample));
@@ -378,9 +386,8 @@ bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lob
     if (!settings_.records->reflect(surface.point, lobe.normal, first, recorded_)) {
         return false;
     }
-    const Vec3d& view = is_bumped(lobe) ? surface.point.shading_normal : surface.towards_viewer;
-    const Rgb weight =
-        surface.throughput * lobe.weight * static_cast<float>(lobe_albedo(lobe.shape, view_cosine(lobe.normal, view)));
+    const float cosine = view_cosine(lobe.normal, view_of(surface, lobe));
+    const Rgb weight = surface.throughput * lobe.weight * static_cast<float>(lobe_albedo(lobe.shape, cosine));
     Rgb fewer(0);
     for (std::uint32_t i = 0; i < recorded_.size(); ++i) {
         sink.of(surface, surface.bounces + first + 1 + i).radiance += weight * (recorded_[i] - fewer);
@@ -394,8 +401,7 @@ bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lob
 }
 
 ShadingFrame CameraSurfaces::frame_of(const Surface& surface, const SurfaceLobe& lobe) const {
-    const Vec3d& view = is_bumped(lobe) ? surface.point.shading_normal : surface.towards_viewer;
-    return shading_frame(surface.point.position, lobe.normal, view);
+    return shading_frame(surface.point.position, lobe.normal, view_of(surface, lobe));
 }
 
 void CameraSurfaces::add_hits(const Sink& sink, Hits& hits) {
@@ -477,9 +483,8 @@ void CameraSurfaces::add_hit(const Surface& surface, Hits& hits) {
             }
         }
         if (std::ranges::any_of(weights_, [](const Rgb& weight) { return weight != Rgb(0); })) {
-            const Vec3d& view = bumped ? surface.point.shading_normal : surface.towards_viewer;
             const ShadingFrame frame = frame_of(surface, own);
-            hits.add(surface.point, terminator, frame, view_cosine(frame.z, view), weights_, widths_,
+            hits.add(surface.point, terminator, frame, view_cosine(frame.z, view_of(surface, own)), weights_, widths_,
                      rays_[surface.ray].sample, surface.kind);
         }
     }
