@@ -89,10 +89,13 @@ class SHLIGHT_RENDER_PT_light(EnginePanel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         """Draws the panel."""
         layout = with_names_aside(self.layout)
-        layout.prop(context.scene.shlight, "max_bounces")
+        column = layout.column(align=True)
+        for name in ("max_bounces", "glossy_bounces", "transmission_bounces"):
+            column.prop(context.scene.shlight, name)
         cycles = getattr(context.scene, "cycles", None)
         if cycles is not None:
-            layout.prop(cycles, "transparent_max_bounces", text="Transparent Bounces")
+            column.prop(cycles, "transparent_max_bounces", text="Transparent Bounces")
+        layout.prop(context.scene.shlight, "preview_max_bounces", text="Viewport")
 
 
 class SHLIGHT_RENDER_PT_light_advanced(EnginePanel, bpy.types.Panel):

@@ -51,6 +51,12 @@ def _time_limit(picture: str) -> Any:
     )
 
 
+def _bounces(which: str, default: int, description: str) -> Any:
+    return bpy.props.IntProperty(
+        name=f"{which} Bounces", description=description, default=default, min=0, max=1024, soft_max=32
+    )
+
+
 class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
     """Settings of a scene for final renders."""
 
@@ -104,13 +110,13 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
         max=4096,
         soft_max=256,
     )
-    max_bounces: bpy.props.IntProperty(
-        name="Max Bounces",
-        description="Surfaces that light is reflected by before the one that the camera sees. At 0 light is direct",
-        default=0,
-        min=0,
-        max=1024,
+    max_bounces: _bounces(
+        "Max", 0, "Surfaces that light is reflected by before the one that the camera sees. At 0 light is direct"
     )
+    preview_max_bounces: _bounces("Max", 0, "Max Bounces of a viewport")
+    # Cycles has the same defaults.
+    glossy_bounces: _bounces("Glossy", 4, "Bounces by glossy surfaces and mirrors, at most, within Max Bounces")
+    transmission_bounces: _bounces("Transmission", 12, "Bounces through glass, at most, within Max Bounces")
     use_pass_lights: bpy.props.BoolProperty(
         name="Lights",
         description="A pass for what each lamp gives to the picture, one for surfaces that shine and one for the world",

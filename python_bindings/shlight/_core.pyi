@@ -420,6 +420,8 @@ class _RenderOptions(TypedDict, total=False):
     shadow_rays: int  # 16 unless given
     transparent_bounces: int  # 8 unless given
     max_bounces: int  # 0 unless given
+    glossy_bounces: int | None
+    transmission_bounces: int | None
     alpha_threshold: float  # 0.5 unless given
     mist: tuple[float, float, float]
     cryptomatte_levels: int  # 6 unless given

@@ -52,6 +52,8 @@ transparent_bounces: surfaces that let light through which a shadow ray passes, 
     passes one more.
 max_bounces: surfaces that light is reflected by before the one that the camera sees, at most, as Blender's render engine
     Cycles counts them, 0 ... 1024. 0: direct light.
+glossy_bounces, transmission_bounces: at most so many of these are by glossy lobes or mirrors, and so many through
+    glass; None: as many. Light that bounces and that a diffuse surface reflects has a count of its own.
 passes: names of what else is wanted of the picture, by the units and values of Blender's render engine Cycles.
     Of the ray through a pixel's middle: "depth" [m] along the view axis, 1e10 where nothing is; "position",
     "object_index", "material_index". Means over the filter: "normal", "uv", "mist", "emission", "environment",
@@ -182,6 +184,11 @@ PixelSampling sampling_from(const py::object& noise_threshold, const py::object&
     return sampling;
 }
 
+/// None: no limit.
+int bounces_from(const char* name, const py::object& bounces) {
+    return bounces.is_none() ? kMostBounces : int_from(name, bounces);
+}
+
 PixelFilter filter_from(const py::object& pixel_filter, const py::object& filter_width) {
     const auto name = py::isinstance<py::str>(pixel_filter) ? pixel_filter.cast<std::string>() : std::string();
     const auto* known = std::find(kFilters.begin(), kFilters.end(), name);
@@ -224,7 +231,8 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
                         const py::object& min_samples, const py::object& max_samples, const py::object& pixel_samples,
                         const py::object& time_limit, const py::object& pixel_filter, const py::object& filter_width,
                         const py::object& shadows, const py::object& shadow_rays, const py::object& transparent_bounces,
-                        const py::object& max_bounces, const py::object& passes, const py::object& groups,
+                        const py::object& max_bounces, const py::object& glossy_bounces,
+                        const py::object& transmission_bounces, const py::object& passes, const py::object& groups,
                         const py::object& aovs, const py::object& alpha_threshold, const py::object& mist,
                         const py::object& cryptomatte_levels, const py::object& exposure, const py::object& threads,
                         const py::object& seed, const py::object& progress, const py::object& on_update,
@@ -241,6 +249,8 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
                                static_cast<std::uint32_t>(integer_from("seed", seed, 0, kMostSeed)),
                                int_from("transparent_bounces", transparent_bounces),
                                int_from("max_bounces", max_bounces),
+                               bounces_from("glossy_bounces", glossy_bounces),
+                               bounces_from("transmission_bounces", transmission_bounces),
                                pass_settings_from(pass_arguments)};
     const int columns = int_from("width", width);
     const int rows = int_from("height", height);
@@ -319,8 +329,9 @@ void bind_render(py::module_& m) {
           "min_samples"_a = py::none(), "max_samples"_a = py::none(), "pixel_samples"_a = py::none(),
           "time_limit"_a = py::none(), "pixel_filter"_a = "box", "filter_width"_a = PixelFilter().width,
           "shadows"_a = true, "shadow_rays"_a = RenderSettings().shadow_rays, "transparent_bounces"_a = 8,
-          "max_bounces"_a = RenderSettings().max_bounces, "passes"_a = py::tuple(), "groups"_a = false,
-          "aovs"_a = false, "alpha_threshold"_a = PassSettings().alpha_threshold,
+          "max_bounces"_a = RenderSettings().max_bounces, "glossy_bounces"_a = py::none(),
+          "transmission_bounces"_a = py::none(), "passes"_a = py::tuple(), "groups"_a = false, "aovs"_a = false,
+          "alpha_threshold"_a = PassSettings().alpha_threshold,
           "mist"_a = py::make_tuple(MistRange().start, MistRange().depth, MistRange().falloff),
           "cryptomatte_levels"_a = PassSettings().cryptomatte_levels, "exposure"_a = 1.0, "threads"_a = 0, "seed"_a = 0,
           "progress"_a = py::none(), "on_update"_a = py::none(), "return_report"_a = false);

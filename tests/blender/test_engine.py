@@ -195,7 +195,7 @@ def test_settings_reach_the_renderer(studio: Any, monkeypatch: pytest.MonkeyPatc
     scene.shlight.noise_threshold, scene.shlight.time_limit, scene.shlight.pixel_samples = 0.05, 100.0, 0
     scene.shlight.min_samples, scene.shlight.max_samples = 8, 64
     scene.cycles.pixel_filter_type, scene.cycles.filter_width = "GAUSSIAN", 2.5
-    scene.shlight.max_bounces = 4
+    scene.shlight.max_bounces, scene.shlight.glossy_bounces, scene.shlight.transmission_bounces = 4, 3, 2
     scene.cycles.transparent_max_bounces, scene.cycles.film_exposure = 5, 0.5
     scene.render.threads_mode, scene.render.threads = "FIXED", 1
     studio.render("SHLIGHT")
@@ -215,6 +215,8 @@ def test_settings_reach_the_renderer(studio: Any, monkeypatch: pytest.MonkeyPatc
         "shadow_rays": 3,
         "transparent_bounces": 5,
         "max_bounces": 4,
+        "glossy_bounces": 3,
+        "transmission_bounces": 2,
         "threads": 1,
     }
     scene.shlight.order, scene.shlight.use_shadows, scene.render.threads_mode = "AUTO", False, "AUTO"

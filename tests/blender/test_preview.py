@@ -289,13 +289,13 @@ def test_the_lamps_that_are_not_named_are_off(empty_scene: bpy.types.Scene) -> N
 @pytest.mark.parametrize(("given", "bounces"), [([], 3), (["--max-bounces", "0"], 0), (["--max-bounces", "2"], 2)])
 def test_cycles_has_as_many_bounces(empty_scene: bpy.types.Scene, given: list[str], bounces: int) -> None:
     scene = open_scene(options.parse([]).scene_file)
-    scene.shlight.max_bounces = 3
+    scene.shlight.max_bounces, scene.shlight.transmission_bounces = 3, 1
     scene.cycles.glossy_bounces, scene.cycles.sample_clamp_indirect, scene.cycles.caustics_reflective = 1, 10.0, False
     prepare(scene, options.parse(given))
     use_cycles(scene, 4, 0)
     cycles = scene.cycles
     kinds = (cycles.max_bounces, cycles.diffuse_bounces, cycles.glossy_bounces, cycles.transmission_bounces)
-    assert kinds == (bounces,) * 4
+    assert kinds == (*(bounces,) * 3, min(bounces, 1))
     assert scene.shlight.max_bounces == bounces
     assert (cycles.sample_clamp_indirect, cycles.blur_glossy, cycles.caustics_reflective) == (0.0, 0.0, True)
 

@@ -97,6 +97,8 @@ TEST(RenderCamera, BadArgumentsAreTurnedDown) {
     rejects([](RenderSettings& s) { s.shadow_rays = -1; });
     rejects([](RenderSettings& s) { s.max_bounces = -1; });
     rejects([](RenderSettings& s) { s.max_bounces = 1025; });
+    rejects([](RenderSettings& s) { s.glossy_bounces = 1025; });
+    rejects([](RenderSettings& s) { s.transmission_bounces = -1; });
     rejects([](RenderSettings& s) { s.threads = -1; });
     rejects([](RenderSettings&) {}, 0, 4);
     rejects([](RenderSettings&) {}, 4, -1);

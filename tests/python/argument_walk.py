@@ -120,6 +120,8 @@ SETTINGS = {
     "shadow_rays": 1,
     "transparent_bounces": 1,
     "max_bounces": 1,
+    "glossy_bounces": 1,
+    "transmission_bounces": None,
     "passes": ["depth"],
     "groups": True,
     "aovs": True,

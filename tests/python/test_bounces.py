@@ -104,3 +104,31 @@ def test_a_glass_body_in_white_light_is_not_seen() -> None:
     image = shlight.render(scene, 48, 48, max_bounces=32)[..., :3]
     np.testing.assert_allclose(image.mean(), 1, rtol=1e-3)
     assert image.max() <= 1.001
+
+
+@pytest.mark.parametrize("narrow", [False, True])
+@pytest.mark.parametrize(("most", "glossy"), [(4, 0), (4, 2), (1, 3), (3, None)])
+def test_a_closed_room_of_mirrors_adds_up_its_glossy_bounces(most: int, glossy: int | None, narrow: bool) -> None:
+    light, white = np.array([1, 2, 4]), (1, 1, 1)
+    mirror = nodes.glossy(white, 0.0) + nodes.emission(light) if narrow else shlight.Bsdf.ggx(0, white)
+    scene = shlight.Scene()
+    scene.add_mesh(box((-1, -1, -1), (1, 1.5, 2)), BOX_FACES, bsdf=mirror, emission=light)
+    scene.set_camera(looking((0.3, 0, 0.2), (0, 1, 0)), 1.2)
+    image = shlight.render(scene, 16, 16, max_bounces=most, glossy_bounces=glossy)[..., :3]
+    # Seen itself, in direct light, and by each bounce that is followed.
+    times = 2 + min(most, most if glossy is None else glossy)
+    np.testing.assert_allclose(image, np.broadcast_to(times * light, image.shape), rtol=1e-3)
+
+
+@pytest.mark.parametrize(("through", "seen"), [(None, 0.125), (2, 0.125), (1, 0)])
+def test_as_many_panes_are_seen_through_as_are_asked_for(through: int | None, seen: float) -> None:
+    scene = shlight.Scene()
+    for height in (0, 1, 2):
+        pane = 9 * SQUARE + [0, 0, height]
+        scene.add_mesh(pane, FACES, bsdf=nodes.refraction((0.5, 0.5, 0.5), 0.0, 1.0))
+    scene.set_environment((1, 1, 1))
+    to_world = np.eye(4)
+    to_world[:3, 3] = (0.3, 0, 5)
+    scene.set_camera(to_world, 0.5)
+    image = shlight.render(scene, 8, 8, max_bounces=4, glossy_bounces=0, transmission_bounces=through)[..., :3]
+    np.testing.assert_allclose(image, seen, rtol=1e-4)

@@ -207,6 +207,8 @@ RENDER_ERRORS: list[tuple[str, dict[str, Any]]] = [
     ("max_bounces", {"max_bounces": -1}),
     ("max_bounces", {"max_bounces": 1025}),
     ("max_bounces", {"max_bounces": 0.5}),
+    ("glossy_bounces", {"glossy_bounces": -1}),
+    ("transmission_bounces", {"transmission_bounces": 1025}),
     ("threads", {"threads": -1}),
     ("progress", {"progress": 5}),
 ]

@@ -168,7 +168,7 @@ def _glows(seen: Any) -> bool:
 def use_cycles(
     scene: Any, samples: int, seed: int, *, first: int = 0, of: int | None = None, denoise: bool = False
 ) -> None:
-    """The next render is Cycles': as many bounces as shlight's, of every kind, and nothing that trades truth for calm.
+    """The next render is Cycles': as many bounces as shlight's of each kind, and nothing that trades truth for calm.
 
     The samples are those from number `first` on of a sequence of `of` (by default of `samples`). SceneError where it is
     to be denoised and this Blender has no denoiser.
@@ -180,8 +180,10 @@ def use_cycles(
     cycles.seed = seed
     cycles.use_animated_seed = False
     cycles.time_limit = 0.0
-    for kind in ("max", "diffuse", "glossy", "transmission"):
-        setattr(cycles, f"{kind}_bounces", scene.shlight.max_bounces)
+    most = scene.shlight.max_bounces
+    cycles.max_bounces = cycles.diffuse_bounces = most
+    cycles.glossy_bounces = min(scene.shlight.glossy_bounces, most)
+    cycles.transmission_bounces = min(scene.shlight.transmission_bounces, most)
     cycles.caustics_reflective = cycles.caustics_refractive = True
     cycles.use_fast_gi = False
     cycles.sample_clamp_direct = 0.0

@@ -68,10 +68,11 @@ class _State(NamedTuple):
         world = world_of(scene, view_layer)
         moving = any(image.source in {"SEQUENCE", "MOVIE"} for image in bpy.data.images)
         override = view_layer.material_override
+        bounces = scene.shlight.max_bounces if viewport is None else scene.shlight.preview_max_bounces
         seen = (own.object.as_pointer() for own in depsgraph.object_instances if _is_seen(own, viewport))
         return _State(
             (world and world.as_pointer(), scene.render.film_transparent, scene.shlight.world_width),
-            (override and override.as_pointer(), scene.shlight.max_bounces > 0),
+            (override and override.as_pointer(), bounces > 0),
             scene.frame_current_final if moving else 0.0,
             pass_wishes(scene, view_layer) if viewport is None else PassWishes(),
             (view_layer.use_solid, culling, *seen),
@@ -164,9 +165,8 @@ class ExportedScene:
             )
         if changes.materials:
             TEXTURES.begin_export()
-            self._surroundings = Surroundings(
-                self._view, passes=self._state.passes, light_bounces=blender_scene.shlight.max_bounces > 0
-            )
+            bounces = self._state.materials[1]
+            self._surroundings = Surroundings(self._view, passes=self._state.passes, light_bounces=bounces)
         self._surroundings.depsgraph = depsgraph
         if changes:
             self._walk(depsgraph, changes, viewport, _asking(waiting))

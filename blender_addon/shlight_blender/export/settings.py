@@ -35,6 +35,8 @@ class RenderSettings:
     shadow_rays: int
     transparent_bounces: int
     max_bounces: int
+    glossy_bounces: int
+    transmission_bounces: int
     exposure: float
     threads: int
 
@@ -62,6 +64,8 @@ def render_settings(scene: Any) -> RenderSettings:
         shadow_rays=int(settings.shadow_rays) if settings.use_shadows else 0,
         transparent_bounces=int(getattr(cycles, "transparent_max_bounces", 8)),
         max_bounces=int(settings.max_bounces),
+        glossy_bounces=int(settings.glossy_bounces),
+        transmission_bounces=int(settings.transmission_bounces),
         exposure=float(getattr(cycles, "film_exposure", 1.0)),
         threads=int(render.threads) if render.threads_mode == "FIXED" else 0,
     )
@@ -77,6 +81,7 @@ def viewport_settings(scene: Any) -> RenderSettings:
         max_samples=int(own.preview_max_samples),
         pixel_samples=None,
         time_limit=float(own.preview_time_limit) or None,
+        max_bounces=int(own.preview_max_bounces),
     )
 
 

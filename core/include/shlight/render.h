@@ -17,6 +17,7 @@
 namespace shlight {
 
 inline constexpr int kMostPixelSamples = 1 << 20;
+inline constexpr int kMostBounces = 1024;
 
 /// Camera rays of a pixel. The first pass takes first_samples of each; later ones four times as many of all pixels that
 /// need them. Those of all passes are spread evenly over the pixel's square together; a first pass of one ray goes
@@ -70,6 +71,10 @@ struct RenderSettings {
     /// Surfaces that light is reflected by before the one that the camera sees, at most, as Cycles counts them; 0:
     /// direct light.
     int max_bounces = 0;
+    /// At most so many of these are by glossy lobes or mirrors, and so many through interfaces. Light that bounces and
+    /// that a diffuse surface reflects has a count of its own.
+    int glossy_bounces = kMostBounces;
+    int transmission_bounces = kMostBounces;
     PassSettings passes;
 };
 
@@ -86,8 +91,8 @@ struct RenderWatch {
 /// Throws std::invalid_argument naming the member or argument: order outside 0 … 64, tolerance ≤ 0 or not finite,
 /// first_samples, min_samples or max_samples outside 1 … 2^20 or not in this order, noise_threshold outside 0 … 1,
 /// time_limit not finite, filter_width outside 0.001 … 100, shadow_rays outside 0 … 2^14, more than 2^22 of both in the
-/// first pass, transparent_bounces or max_bounces outside 0 … 1024, threads < 0, width or height < 1, or more than 2^28
-/// pixels; and as PassLayout's constructor.
+/// first pass, bounces of any kind outside 0 … 1024, threads < 0, width or height < 1, or more than 2^28 pixels; and as
+/// PassLayout's constructor.
 void check_render(const RenderSettings& settings, int width, int height);
 
 /// image: height × width × RGBA, row 0 on top, linear, premultiplied, the mean of all camera rays of each pixel; alpha

@@ -161,7 +161,9 @@ double Picture::pixel_width(double distance) const {
 
 PathSettings Picture::paths(const LightRecords* records) const {
     return {static_cast<std::uint32_t>(settings.transparent_bounces),
-            records != nullptr ? static_cast<std::uint32_t>(settings.max_bounces) : 0, records};
+            records != nullptr ? static_cast<std::uint32_t>(settings.max_bounces) : 0,
+            static_cast<std::uint32_t>(settings.glossy_bounces),
+            static_cast<std::uint32_t>(settings.transmission_bounces), records};
 }
 
 PixelBatch::PixelBatch(const Picture& picture, const PathSettings& paths)

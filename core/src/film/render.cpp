@@ -27,8 +27,6 @@ constexpr std::int64_t kMostPixels = 1 << 28;
 /// Rays of a pixel: each takes up to 160 bytes in each of the 256 pixels that a thread shades at once.
 constexpr std::int64_t kMostShadowRays = 1 << 14;
 
-constexpr int kMostBounces = 1024;
-
 constexpr double kLeastFilter = 0.001;
 constexpr double kWidestFilter = 100;
 
@@ -126,6 +124,8 @@ void check_render(const RenderSettings& settings, int width, int height) {
                 std::min<std::int64_t>(kMostShadowRays, kMostRaysPerPixel / sampling.first_samples));
     check_range("transparent_bounces", settings.transparent_bounces, 0, kMostBounces);
     check_range("max_bounces", settings.max_bounces, 0, kMostBounces);
+    check_range("glossy_bounces", settings.glossy_bounces, 0, kMostBounces);
+    check_range("transmission_bounces", settings.transmission_bounces, 0, kMostBounces);
     check_range("threads", settings.threads, 0, std::numeric_limits<int>::max());
     const PassLayout layout(settings.passes);
 }

@@ -30,6 +30,10 @@ Vec3d in_frame(double cosine) {
     return {std::sqrt(1 - cosine * cosine), 0, cosine};
 }
 
+PathKind kind_of(const LobeShape& lobe) {
+    return is_glossy(lobe) ? PathKind::glossy : PathKind::diffuse;
+}
+
 constexpr float kLeastWidth = kLeastRoughness * kLeastRoughness;
 
 /// Share of what a path meets that reaches the camera, below which it is not always followed.
@@ -280,7 +284,8 @@ void CameraSurfaces::reflect(const Surface& surface, const Sink& sink) {
         }
         if (is_mirror(lobe.shape)) {
             reflect_mirror(surface, lobe, sink);
-        } else if (goes_on && (is_glossy(lobe.shape) || !add_recorded(surface, lobe, sink))) {
+        } else if (goes_on && (is_glossy(lobe.shape) ? surface.glossy < settings_.glossy_bounces
+                                                     : !add_recorded(surface, lobe, sink))) {
             scatter(surface, i);
         }
     }
@@ -312,11 +317,9 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
     const Vec3d origin =
         sampled.reflected ? surface.point.off_surface() : surface.point.position - surface.point.error * flat;
     const Ray next = {Vec3f(origin), 0, Vec3f(way)};
-    // No other light comes this way. Passes have no kind for what goes through.
-    const PathKind kind = surface.bounces > 0 ? surface.kind : PathKind::glossy;
-    start({surface.ray, RaySource::mirror, surface.bounces + 1, 0, kind, weight * static_cast<float>(sampled.weight),
-           next},
-          next);
+    const PathKind by = sampled.reflected ? PathKind::glossy : PathKind::transmission;
+    // No other light comes this way.
+    start(surface.next(RaySource::mirror, by, weight * static_cast<float>(sampled.weight), next), next);
 }
 
 void CameraSurfaces::reflect_mirror(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
@@ -326,13 +329,8 @@ void CameraSurfaces::reflect_mirror(const Surface& surface, const SurfaceLobe& l
     const Ray ray = {Vec3f(surface.point.off_surface()), 0, Vec3f(direction)};
     const double let_in = scene_->placed().terminator(surface.hit, surface.point).let_in(cosine);
     const auto albedo = static_cast<float>(let_in * lobe_albedo(lobe.shape, cosine));
-    const Segment segment = {surface.ray,
-                             RaySource::mirror,
-                             surface.bounces + 1,
-                             0,
-                             surface.reflected(lobe.shape),
-                             surface.throughput * lobe.weight * albedo,
-                             ray};
+    const Segment segment =
+        surface.next(RaySource::mirror, PathKind::glossy, surface.throughput * lobe.weight * albedo, ray);
     add_lamps(LampViewer::unblocked_mirror, segment, ray, std::nullopt, sink);
     start(segment, ray);
     ++mirror_count_;
@@ -370,9 +368,7 @@ void CameraSurfaces::scatter(const Surface& surface, std::size_t first) {
     }
     const Vec3d lift = terminator.lifts() ? terminator.share(direction) * terminator.lift : Vec3d(0);
     const Ray scattered = {Vec3f(surface.point.off_surface() + lift), 0, Vec3f(direction)};
-    start({surface.ray, RaySource::scattered, surface.bounces + 1, 0, surface.reflected(own.shape),
-           weight / probability, scattered},
-          scattered);
+    start(surface.next(RaySource::scattered, kind_of(own.shape), weight / probability, scattered), scattered);
 }
 
 bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
@@ -394,7 +390,7 @@ bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lob
         fewer = recorded_[i];
     }
     if (!sink.apart.empty()) {
-        sink.apart.add(surface.ray / sink.rays_per_pixel, indirect_kind(surface.reflected(lobe.shape)),
+        sink.apart.add(surface.ray / sink.rays_per_pixel, indirect_kind(surface.kind_after(PathKind::diffuse)),
                        weight * recorded_.back());
     }
     return true;

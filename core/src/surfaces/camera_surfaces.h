@@ -43,8 +43,9 @@ struct PathSettings {
     /// one it sees the emission alone.
     std::uint32_t transparent_bounces;
     /// Surfaces between the light and the one whose light reaches the camera; 0: direct light.
-    std::uint32_t max_bounces = 0;
-    const LightRecords* records = nullptr;  ///< outlive this; null: none
+    std::uint32_t max_bounces;
+    std::uint32_t glossy_bounces, transmission_bounces;  ///< of these, at most
+    const LightRecords* records = nullptr;               ///< outlive this; null: none
 };
 
 /// Camera rays beside another, as far away as its share of the pixel is wide.
@@ -93,12 +94,22 @@ class CameraSurfaces {
         PathKind kind;
         Rgb throughput;  ///< share of its light that reaches the camera
         Ray whole;       ///< from where the camera ray, or the reflecting surface's, begins
+        std::uint32_t glossy = 0, transmissions = 0;  ///< of the bounces
 
         bool sees_lights() const { return source != RaySource::scattered; }
-        /// The kind of what it goes on by if a lobe reflects it at its end.
-        PathKind reflected(const LobeShape& lobe) const {
-            return bounces > 0 ? kind : is_glossy(lobe) ? PathKind::glossy : PathKind::diffuse;
+        /// The path on from its end. by: what sends it there.
+        Segment next(RaySource origin, PathKind by, const Rgb& share, const Ray& way) const {
+            return {ray,
+                    origin,
+                    bounces + 1,
+                    0,
+                    kind_after(by),
+                    share,
+                    way,
+                    glossy + (by == PathKind::glossy ? 1 : 0),
+                    transmissions + (by == PathKind::transmission ? 1 : 0)};
         }
+        PathKind kind_after(PathKind by) const { return bounces > 0 ? kind : by; }
         /// The kind of light that it meets. camera: of what the camera itself sees.
         LightKind met(LightKind camera) const {
             return bounces == 0 ? camera : bounces == 1 ? LightKind::glossy : indirect_kind(kind);
@@ -162,7 +173,9 @@ class CameraSurfaces {
     void add_emission(const Surface& surface, const Sink& sink);
     void pass_on(std::size_t first, const Sink& sink);
     bool is_shaded(const Segment& segment) const {
-        return segment.bounces <= settings_.max_bounces && segment.depth <= settings_.transparent_bounces;
+        return segment.bounces <= settings_.max_bounces && segment.glossy <= settings_.glossy_bounces &&
+               segment.transmissions <= settings_.transmission_bounces &&
+               segment.depth <= settings_.transparent_bounces;
     }
     /// The paths that go on from a surface by its lobes.
     void reflect(const Surface& surface, const Sink& sink);

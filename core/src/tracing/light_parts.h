@@ -16,12 +16,12 @@ namespace shlight {
 enum class LightKind : std::uint8_t { diffuse, glossy, diffuse_indirect, glossy_indirect, emission, environment };
 inline constexpr std::size_t kLightKinds = 6;
 
-/// The lobe that reflected the path of a camera ray first.
-enum class PathKind : std::uint8_t { direct, diffuse, glossy };
+/// What a camera ray's path goes on by first: a lobe, or an interface that it goes through.
+enum class PathKind : std::uint8_t { direct, diffuse, glossy, transmission };
 
-/// The kind of light that a path brings whose first lobe reflects it: a path that is direct has none.
+/// The kind of light that a path brings that has bounced before: a path that is direct has none.
 constexpr LightKind indirect_kind(PathKind path) {
-    return path == PathKind::glossy ? LightKind::glossy_indirect : LightKind::diffuse_indirect;
+    return path == PathKind::diffuse ? LightKind::diffuse_indirect : LightKind::glossy_indirect;
 }
 
 struct LightParts {
