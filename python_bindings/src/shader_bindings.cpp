@@ -104,7 +104,7 @@ Array<float> evaluate(const ShaderProgram& program,
 }
 
 LobeShape shape_of(const std::string& kind, double ior) {
-    if (kind == "lambert") {
+    if (kind == "lambert" || kind == "translucent") {
         return LambertShape{};
     }
     if (kind == "oren_nayar") {
@@ -138,7 +138,7 @@ ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTup
     auto shader =
         std::make_shared<SurfaceShader>(SurfaceShader{program, {}, emission, transparency, shadow_program, {}, {}});
     for (const auto& [kind, ior, weight, alpha, normal, several_bounces] : lobes) {
-        shader->lobes.push_back({shape_of(kind, ior), weight, alpha, normal, several_bounces});
+        shader->lobes.push_back({shape_of(kind, ior), weight, alpha, normal, several_bounces, kind == "translucent"});
     }
     std::vector<std::string> aov_names;
     for (const auto& [name, value, is_color] : aovs) {

@@ -115,6 +115,16 @@ def principled(studio):
     shine_on(studio, "ShaderNodeBsdfPrincipled", Base_Color=(0.3, 0.6, 0.8), Specular=0.8)
 
 
+def translucent(studio):
+    """A ball and a sheet before lamps."""
+    paper = studio.material("ShaderNodeBsdfTranslucent", Color=(0.9, 0.6, 0.4))
+    studio.plane(material=studio.material())
+    studio.ball(1.0, paper, location=(0.4, 0, 1.1))
+    studio.box((0.02, 1.5, 2), paper, location=(-1.2, 0.3, 1))
+    for place in ((0.4, 0, 1.1), (-2.5, 1, 2)):
+        studio.lamp("POINT", 80, place, shadow_soft_size=0.4)
+
+
 def curves(studio):
     """Under a cube that glows by its temperature."""
     studio.plane(material=studio.material())
@@ -145,7 +155,7 @@ def sky(studio):
 def dark(studio):
     """Lit by a lamp that is not yet turned on, with nothing behind the plane's edge."""
     studio.plane(1.0, studio.material("ShaderNodeBsdfPrincipled"))
-    studio.box(material=studio.material("ShaderNodeBsdfTranslucent"))
+    studio.box(material=studio.material("ShaderNodeBsdfToon"))
     studio.lamp("POINT", 0, (0, 0, 2))
     studio.scene.render.film_transparent = True
 
@@ -197,7 +207,7 @@ def coarse(studio):
 
 SCENES = [
     point, area, spot, small_spot, small_point, sun, small_sun, spread, textured, textured_by_default, smooth, glossy,
-    metal, principled, curves, sky, dark, panoramic, orthographic, simplified, flat_camera,
+    metal, principled, translucent, curves, sky, dark, panoramic, orthographic, simplified, flat_camera,
     coarse,
 ]  # fmt: skip
 

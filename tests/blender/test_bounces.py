@@ -30,3 +30,28 @@ def test_depths_of_gloss_and_glass_are_those_of_cycles(studio: Any, glossy: int,
     settings = studio.scene.shlight
     settings.max_bounces, settings.glossy_bounces, settings.transmission_bounces = 4, glossy, transmission
     compare(studio)
+
+
+@pytest.mark.parametrize("bounces", [0, 2])
+def test_translucent_surfaces_take_light_from_behind(studio: Any, bounces: int) -> None:
+    """A sheet before a lamp and the sky, a smooth ball around another lamp, and a mix of both sides."""
+    paper = studio.material("ShaderNodeBsdfTranslucent", "Paper", Color=(0.9, 0.6, 0.4))
+    both = studio.material("ShaderNodeBsdfTranslucent", "Both", Color=(0.3, 0.8, 0.5))
+    tree = both.node_tree
+    add, white = tree.nodes.new("ShaderNodeAddShader"), tree.nodes.new("ShaderNodeBsdfDiffuse")
+    white.inputs["Color"].default_value = (0.2, 0.2, 0.2, 1)
+    output = tree.nodes["Material Output"].inputs["Surface"]
+    tree.links.new(output.links[0].from_socket, add.inputs[0])
+    tree.links.new(white.outputs[0], add.inputs[1])
+    tree.links.new(add.outputs[0], output)
+    studio.plane(8, studio.material("ShaderNodeBsdfDiffuse", "White", Color=(0.8, 0.8, 0.8)))
+    studio.box((0.02, 2, 2), paper, "Sheet", location=(-1, 0.5, 1), rotation_euler=(0, 0, 0.5))
+    studio.plane(1.2, both, "Leaf", location=(1.3, -1.3, 0.5), rotation_euler=(0.3, 0.2, 0))
+    studio.ball(0.7, paper, location=(0.9, 0.9, 0.9))
+    studio.lamp("POINT", 30, (0.9, 0.9, 0.9), shadow_soft_size=0.1)
+    studio.area(150, (-3, 2, 2), size=1, rotation_euler=(0.9, 0, -2.2))
+    studio.plain_world((0.2, 0.3, 0.4))
+    studio.camera()
+    studio.scene.shlight.max_bounces = bounces
+    compare(studio, mean=5e-3, error=2e-3)
+    assert studio.messages(most=99) == []

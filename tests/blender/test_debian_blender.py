@@ -93,7 +93,18 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 LAMPS = ["point", "area", "spot", "small_spot", "small_point", "sun", "small_sun", "spread", "textured"]
 
-OTHERS = ["smooth", "coarse", "glossy", "metal", "curves", "sky", "panoramic", "orthographic", "simplified"]
+OTHERS = [
+    "smooth",
+    "coarse",
+    "glossy",
+    "metal",
+    "translucent",
+    "curves",
+    "sky",
+    "panoramic",
+    "orthographic",
+    "simplified",
+]
 
 
 @pytest.mark.parametrize("scene", [*LAMPS, *OTHERS])
@@ -138,7 +149,7 @@ def test_a_dark_frame_is_black(pictures: dict[str, Any]) -> None:
     assert 0.0 < image[..., 3].mean() < 1.0
     assert abs(image[..., 3] - reference[..., 3]).mean() <= 5e-3
     # Messages are ordered by their effect on the picture.
-    parts = ("no light that shlight can render", "Translucent BSDF", "the diffuse part is drawn as Diffuse BSDF")
+    parts = ("no light that shlight can render", "Toon BSDF", "the diffuse part is drawn as Diffuse BSDF")
     assert all(part in line for part, line in zip(parts, pictures["dark"]["messages"], strict=True))
 
 

@@ -227,7 +227,7 @@ def test_textures_are_named_and_the_sockets_value_used(studio: Any) -> None:
 @pytest.mark.parametrize(
     ("shader", "inputs", "named"),
     [
-        ("ShaderNodeBsdfTranslucent", {}, "Translucent BSDF is not supported"),
+        ("ShaderNodeBsdfToon", {}, "Toon BSDF is not supported"),
         ("ShaderNodeSubsurfaceScattering", {}, "Subsurface Scattering is not supported"),
         ("ShaderNodeBsdfAnisotropic", {"Anisotropy": 0.3}, "'Anisotropy' is not supported"),
         ("ShaderNodeBsdfAnisotropic", {"distribution": "BECKMANN"}, "distribution BECKMANN is not supported"),

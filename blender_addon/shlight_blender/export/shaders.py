@@ -48,6 +48,10 @@ def _glass(inputs: ShaderInputs) -> Shader:
     return nodes.glass(tint, roughness, ior, several_bounces=inputs.node.distribution == "MULTI_GGX", at=at)
 
 
+def _translucent(inputs: ShaderInputs) -> Shader:
+    return nodes.translucent(positive(inputs.color("Color")), inputs.linked_vector("Normal"))
+
+
 def _emission(inputs: ShaderInputs) -> Shader:
     return nodes.emission(inputs.color("Color") * inputs.number("Strength"))
 
@@ -76,6 +80,7 @@ SHADERS: dict[str, ReadShader] = {
     "BSDF_GLOSSY": _glossy,
     "BSDF_PRINCIPLED": read_principled,
     "BSDF_REFRACTION": _glass,
+    "BSDF_TRANSLUCENT": _translucent,
     "BSDF_TRANSPARENT": _transparent,
     "EMISSION": _emission,
     "MIX_SHADER": _mix,

@@ -20,6 +20,7 @@ struct ShadedLobe {
     std::optional<std::uint32_t> alpha;   ///< replaces GgxShape::alpha; clamped to 0 … 1
     std::optional<std::uint32_t> normal;  ///< world vector of any length; none or 0: the interpolated normal
     bool several_bounces = false;         ///< the weight compensates the energy lost between microfacets
+    bool translucent = false;             ///< it reflects light from the other side than the viewer's, and is diffuse
 };
 
 /// An interface to a transparent body that the mesh's front side bounds: light that bounces goes on through it, and

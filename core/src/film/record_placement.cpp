@@ -137,7 +137,7 @@ void RecordPlacement::look_at(const CameraSurfaces::Surface& surface, int step, 
     finder.surfaces.find_lobes(surface, finder.lobes);
     Rgb albedo(0);
     for (const SurfaceLobe& lobe : finder.lobes) {
-        albedo += is_glossy(lobe.shape) ? Rgb(0) : glm::abs(lobe.weight * surface.throughput);
+        albedo += is_glossy(lobe.shape) || lobe.translucent ? Rgb(0) : glm::abs(lobe.weight * surface.throughput);
     }
     if (albedo == Rgb(0)) {
         return;

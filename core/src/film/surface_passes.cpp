@@ -81,7 +81,7 @@ void SurfacePasses::add_first(const Surface& surface, double share, double* pixe
     if (has(Pass::normal)) {
         Vec3d sum(0);
         for (const SurfaceLobe& lobe : lobes_) {
-            sum += std::abs(mean(lobe.weight)) * lobe.normal;
+            sum += std::abs(mean(lobe.weight)) * lobe.viewers_normal();
         }
         const double length = glm::length(sum);
         shlight::add(share * (length > 0 ? sum / length : surface.point.shading_normal), at(Pass::normal, pixel));
@@ -173,7 +173,7 @@ void SurfacePasses::add_denoising(const Surface& surface, double share, const Rg
         const Rgb reflected = color(lobe, surface);
         const double weight = std::abs(mean(reflected));
         const bool is_rough = !is_glossy(lobe.shape) || lobe_width(lobe.shape) > kMirrorLike;
-        normal += weight * lobe.normal;
+        normal += weight * lobe.viewers_normal();
         all += weight;
         mirrored += is_rough ? 0.0 : weight;
         albedo += is_rough ? reflected : Rgb(0);

@@ -20,9 +20,15 @@ bool is_bumped(const SurfaceLobe& lobe) {
     return diffuse != nullptr && diffuse->kind == Diffuse::bumped;
 }
 
-/// The view of a lobe; a bump's is the smooth normal.
+/// The view of a lobe; a bump's is the smooth normal. A translucent lobe has none, and looks the same from everywhere.
 const Vec3d& view_of(const CameraSurfaces::Surface& surface, const SurfaceLobe& lobe) {
-    return is_bumped(lobe) ? surface.point.shading_normal : surface.towards_viewer;
+    return lobe.translucent ? lobe.normal : is_bumped(lobe) ? surface.point.shading_normal : surface.towards_viewer;
+}
+
+/// The point as the side has it from which a lobe takes light.
+SurfacePoint lit_side(const SurfacePoint& point, const SurfaceLobe& lobe) {
+    const double sign = lobe.translucent ? -1 : 1;
+    return {point.position, sign * point.geometric_normal, sign * point.shading_normal, point.error, point.material};
 }
 
 /// A direction of the shading frame's xz-plane.
@@ -319,7 +325,8 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
     const Ray next = {Vec3f(origin), 0, Vec3f(way)};
     const PathKind by = sampled.reflected ? PathKind::glossy : PathKind::transmission;
     // No other light comes this way.
-    start(surface.next(RaySource::mirror, by, weight * static_cast<float>(sampled.weight), next), next);
+    start(surface.next(RaySource::mirror, by, !sampled.reflected, weight * static_cast<float>(sampled.weight), next),
+          next);
 }
 
 void CameraSurfaces::reflect_mirror(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
@@ -330,7 +337,7 @@ void CameraSurfaces::reflect_mirror(const Surface& surface, const SurfaceLobe& l
     const double let_in = scene_->placed().terminator(surface.hit, surface.point).let_in(cosine);
     const auto albedo = static_cast<float>(let_in * lobe_albedo(lobe.shape, cosine));
     const Segment segment =
-        surface.next(RaySource::mirror, PathKind::glossy, surface.throughput * lobe.weight * albedo, ray);
+        surface.next(RaySource::mirror, PathKind::glossy, false, surface.throughput * lobe.weight * albedo, ray);
     add_lamps(LampViewer::unblocked_mirror, segment, ray, std::nullopt, sink);
     start(segment, ray);
     ++mirror_count_;
@@ -356,10 +363,11 @@ void CameraSurfaces::scatter(const Surface& surface, std::size_t first) {
     }
     const Vec3d direction = frame.to_world(way);
     const double density = lobe_density(sampled, view, way);
-    if (!(density > 0) || glm::dot(surface.point.geometric_normal, direction) <= 0) {
+    const SurfacePoint point = lit_side(surface.point, own);
+    if (!(density > 0) || glm::dot(point.geometric_normal, direction) <= 0) {
         return;
     }
-    const Terminator terminator = scene_->placed().terminator(surface.hit, surface.point);
+    const Terminator terminator = scene_->placed().terminator(surface.hit, point);
     weight *= surface.throughput * static_cast<float>(terminator.let_in(way.z) / density);
     const float share = (std::abs(weight.x) + std::abs(weight.y) + std::abs(weight.z)) / 3;
     const float probability = std::min(share / kSurelyFollowed, 1.0F);
@@ -367,8 +375,9 @@ void CameraSurfaces::scatter(const Surface& surface, std::size_t first) {
         return;
     }
     const Vec3d lift = terminator.lifts() ? terminator.share(direction) * terminator.lift : Vec3d(0);
-    const Ray scattered = {Vec3f(surface.point.off_surface() + lift), 0, Vec3f(direction)};
-    start(surface.next(RaySource::scattered, kind_of(own.shape), weight / probability, scattered), scattered);
+    const Ray scattered = {Vec3f(point.off_surface() + lift), 0, Vec3f(direction)};
+    start(surface.next(RaySource::scattered, kind_of(own.shape), own.translucent, weight / probability, scattered),
+          scattered);
 }
 
 bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
@@ -379,7 +388,7 @@ bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lob
     const std::uint32_t most = settings_.max_bounces - surface.bounces;
     const std::uint32_t first = sink.parts > 1 ? 0 : most - 1;
     recorded_.assign(most - first, Rgb(0));
-    if (!settings_.records->reflect(surface.point, lobe.normal, first, recorded_)) {
+    if (!settings_.records->reflect(lit_side(surface.point, lobe), lobe.normal, first, recorded_)) {
         return false;
     }
     const float cosine = view_cosine(lobe.normal, view_of(surface, lobe));
@@ -444,8 +453,9 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
             const LobeShape shape =
                 lobe.alpha ? with_width(lobe.shape, double{width(surface, *lobe.alpha)}) : lobe.shape;
             const bool known = !lobes.empty() && lobe.normal == (&lobe - 1)->normal;
-            const Vec3d own = known ? lobes.back().normal : normal(surface, lobe.normal);
-            lobes.push_back({shape, own, color(surface, lobe.weight), lobe.several_bounces});
+            const Vec3d own = known ? lobes.back().viewers_normal() : normal(surface, lobe.normal);
+            lobes.push_back({shape, lobe.translucent ? -own : own, color(surface, lobe.weight), lobe.several_bounces,
+                             lobe.translucent});
         }
         return;
     }
@@ -460,7 +470,6 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
 void CameraSurfaces::add_hit(const Surface& surface, Hits& hits) {
     find_lobes(surface, lobes_);
     taken_.assign(lobes_.size(), 0);
-    const Terminator terminator = scene_->placed().terminator(surface.hit, surface.point);
     for (std::size_t first = 0; first < lobes_.size(); ++first) {
         if (taken_[first] != 0) {
             continue;
@@ -480,8 +489,10 @@ void CameraSurfaces::add_hit(const Surface& surface, Hits& hits) {
         }
         if (std::ranges::any_of(weights_, [](const Rgb& weight) { return weight != Rgb(0); })) {
             const ShadingFrame frame = frame_of(surface, own);
-            hits.add(surface.point, terminator, frame, view_cosine(frame.z, view_of(surface, own)), weights_, widths_,
-                     rays_[surface.ray].sample, surface.kind);
+            const SurfacePoint point = lit_side(surface.point, own);
+            hits.add(point, scene_->placed().terminator(surface.hit, point), frame,
+                     view_cosine(frame.z, view_of(surface, own)), weights_, widths_, rays_[surface.ray].sample,
+                     surface.kind);
         }
     }
 }

@@ -62,9 +62,12 @@ struct RayLight {
 /// A lobe as a camera ray meets it.
 struct SurfaceLobe {
     LobeShape shape;
-    Vec3d normal;                  ///< unit
+    Vec3d normal;                  ///< unit, on the side from which it takes light
     Rgb weight;                    ///< colour, as of a surface that nothing stands before
     bool several_bounces = false;  ///< see ShadedLobe
+    bool translucent = false;      ///< see ShadedLobe
+
+    Vec3d viewers_normal() const { return translucent ? -normal : normal; }
 };
 
 /// Keeps its memory from batch to batch; one per thread.
@@ -97,8 +100,8 @@ class CameraSurfaces {
         std::uint32_t glossy = 0, transmissions = 0;  ///< of the bounces
 
         bool sees_lights() const { return source != RaySource::scattered; }
-        /// The path on from its end. by: what sends it there.
-        Segment next(RaySource origin, PathKind by, const Rgb& share, const Ray& way) const {
+        /// The path on from its end. by: what sends it there; through: to the other side.
+        Segment next(RaySource origin, PathKind by, bool through, const Rgb& share, const Ray& way) const {
             return {ray,
                     origin,
                     bounces + 1,
@@ -107,7 +110,7 @@ class CameraSurfaces {
                     share,
                     way,
                     glossy + (by == PathKind::glossy ? 1 : 0),
-                    transmissions + (by == PathKind::transmission ? 1 : 0)};
+                    transmissions + (through ? 1 : 0)};
         }
         PathKind kind_after(PathKind by) const { return bounces > 0 ? kind : by; }
         /// The kind of light that it meets. camera: of what the camera itself sees.

@@ -16,7 +16,7 @@ namespace shlight {
 enum class LightKind : std::uint8_t { diffuse, glossy, diffuse_indirect, glossy_indirect, emission, environment };
 inline constexpr std::size_t kLightKinds = 6;
 
-/// What a camera ray's path goes on by first: a lobe, or an interface that it goes through.
+/// Tells what a camera ray's path goes on by first: a lobe, or an interface that it goes through.
 enum class PathKind : std::uint8_t { direct, diffuse, glossy, transmission };
 
 /// The kind of light that a path brings that has bounced before: a path that is direct has none.

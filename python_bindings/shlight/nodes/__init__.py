@@ -28,7 +28,7 @@ from shlight.nodes.principled import (
     refraction,
     rising_lobes,
 )
-from shlight.nodes.shader import Shader, emission, ggx, lambert, mix, transparent
+from shlight.nodes.shader import Shader, emission, ggx, lambert, mix, translucent, transparent
 from shlight.nodes.textures import image
 from shlight.nodes.values import Color, Value, Vector
 
@@ -66,6 +66,7 @@ __all__ = [
     "refraction",
     "rising_lobes",
     "towards_viewer",
+    "translucent",
     "transparent",
     "uv",
     "values",

@@ -35,7 +35,7 @@ class Lobe:
     """A part of a material: `weight` times a shape of the core."""
 
     kind: str  # "lambert", "ggx" with Fresnel factor 1, or the part of it that rises towards grazing angles:
-    # "ggx_schlick", "ggx_dielectric"; "ggx_dip", "bumped_lambert", "oren_nayar", "oren_nayar_loss"
+    # "ggx_schlick", "ggx_dielectric"; "ggx_dip", "bumped_lambert", "oren_nayar", "oren_nayar_loss", "translucent"
     weight: Color
     alpha: Value | None = None  # roughness², of GGX
     normal: Vector | None = None  # None: the smooth one
@@ -236,6 +236,11 @@ def lambert(albedo: Varying, normal: Vector | None = None) -> Shader:
             Lobe("bumped_lambert", color(rho * leans), normal=normal),
         )
     )
+
+
+def translucent(albedo: Varying, normal: Vector | None = None) -> Shader:
+    """Lambert's reflection of light from the other side: Blender's Translucent BSDF."""
+    return Shader((Lobe("translucent", color(albedo, "albedo"), normal=normal),))
 
 
 def ggx(roughness: Number, f0: Varying, *, ior: float | None = None, normal: Vector | None = None) -> Shader:
