@@ -156,6 +156,19 @@ PASSES: dict[str, tuple[str, str, str, str]] = {
     "use_pass_glossy_direct": (_pass_name("Glossy Direct", "GlossDir"), "RGB", "COLOR", "glossy_direct"),
     "use_pass_glossy_indirect": (_pass_name("Glossy Indirect", "GlossInd"), "RGB", "COLOR", "glossy_indirect"),
     "use_pass_glossy_color": (_pass_name("Glossy Color", "GlossCol"), "RGB", "COLOR", "glossy_color"),
+    "use_pass_transmission_direct": (
+        _pass_name("Transmission Direct", "TransDir"),
+        "RGB",
+        "COLOR",
+        "transmission_direct",
+    ),
+    "use_pass_transmission_indirect": (
+        _pass_name("Transmission Indirect", "TransInd"),
+        "RGB",
+        "COLOR",
+        "transmission_indirect",
+    ),
+    "use_pass_transmission_color": (_pass_name("Transmission Color", "TransCol"), "RGB", "COLOR", "transmission_color"),
     "use_pass_emit": (_pass_name("Emission", "Emit"), "RGB", "COLOR", "emission"),
     "use_pass_environment": (_pass_name("Environment", "Env"), "RGB", "COLOR", "environment"),
 }

@@ -14,7 +14,7 @@ DATA = ("z", "mist", "position", "normal", "uv")
 INDEXES = ("object_index", "material_index")
 LIGHT = {
     heading: tuple(f"{heading.lower()}_{part}" for part in ("direct", "indirect", "color"))
-    for heading in ("Diffuse", "Glossy")
+    for heading in ("Diffuse", "Glossy", "Transmission")
 }
 OTHER = ("emit", "environment")
 

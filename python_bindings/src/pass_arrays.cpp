@@ -31,6 +31,9 @@ constexpr std::array kNames = {
     std::pair("glossy_direct", Pass::glossy_direct),
     std::pair("glossy_indirect", Pass::glossy_indirect),
     std::pair("glossy_color", Pass::glossy_color),
+    std::pair("transmission_direct", Pass::transmission_direct),
+    std::pair("transmission_indirect", Pass::transmission_indirect),
+    std::pair("transmission_color", Pass::transmission_color),
     std::pair("denoising_normal", Pass::denoising_normal),
     std::pair("denoising_albedo", Pass::denoising_albedo),
     std::pair("denoising_depth", Pass::denoising_depth),
@@ -69,9 +72,10 @@ std::string name_of(const RenderPass& pass, const SceneObject& scene) {
 
 /// Whether a pass grows with the light of the scene.
 bool is_light(Pass kind) {
-    constexpr std::array kLight = {Pass::emission,         Pass::environment,   Pass::diffuse_direct,
-                                   Pass::diffuse_indirect, Pass::glossy_direct, Pass::glossy_indirect,
-                                   Pass::light_group};
+    constexpr std::array kLight = {
+        Pass::emission,      Pass::environment,     Pass::diffuse_direct,      Pass::diffuse_indirect,
+        Pass::glossy_direct, Pass::glossy_indirect, Pass::transmission_direct, Pass::transmission_indirect,
+        Pass::light_group};
     return std::ranges::find(kLight, kind) != kLight.end();
 }
 

@@ -58,7 +58,8 @@ passes: names of what else is wanted of the picture, by the units and values of 
     Of the ray through a pixel's middle: "depth" [m] along the view axis, 1e10 where nothing is; "position",
     "object_index", "material_index". Means over the filter: "normal", "uv", "mist", "emission", "environment",
     "diffuse_direct", "diffuse_indirect" (what has bounced before), "glossy_direct" and "glossy_indirect", which are
-    divided by "diffuse_color" and "glossy_color"; "denoising_normal", "denoising_albedo", "denoising_depth"; "cryptomatte_object", "cryptomatte_material", "cryptomatte_asset".
+    divided by "diffuse_color" and "glossy_color"; "transmission_direct" and "transmission_indirect", what is seen through
+    glass, divided by "transmission_color"; "denoising_normal", "denoising_albedo", "denoising_depth"; "cryptomatte_object", "cryptomatte_material", "cryptomatte_asset".
 groups: also the part of the picture that the lights of each group give, "combined_NAME"; those of lights without a group
     are "combined_". They add up to the picture but for bounced light that diffuse surfaces reflect, which has no group.
 aovs: also what materials have as `Shader.with_aovs`, "aov_NAME".

@@ -17,6 +17,7 @@ oiio = pytest.importorskip("OpenImageIO")
 SWITCHES = ("z", "mist", "position", "normal", "uv", "object_index", "material_index", "emit", "environment")
 SWITCHES += ("diffuse_direct", "diffuse_indirect", "diffuse_color")
 SWITCHES += ("glossy_direct", "glossy_indirect", "glossy_color")
+SWITCHES += ("transmission_direct", "transmission_indirect", "transmission_color")
 MATTES = ("cryptomatte_object", "cryptomatte_material", "cryptomatte_asset")
 GROUPS = ("key", "fill", "sky")
 
@@ -129,15 +130,26 @@ def test_light_that_bounces_has_the_passes_of_cycles(studio: Any) -> None:
     studio.box((0.2, 2, 1.5), mirror, "Wall", location=(-2, 1, 0.75))
     white = studio.material("ShaderNodeBsdfDiffuse", "White", Color=(0.8, 0.8, 0.8))
     studio.box((4, 0.2, 2), white, "Back", location=(0, 2.5, 1))
+    for at, roughness in (((0.5, -1.5, 0.4), 0.0), ((-0.6, -2.0, 0.4), 0.3)):
+        glass = studio.material("ShaderNodeBsdfGlass", "Glass", Color=(0.8, 0.9, 1.0), Roughness=roughness, IOR=1.3)
+        studio.box((0.6, 0.6, 0.6), glass, "Glass", location=at)
+    pane = studio.material("ShaderNodeBsdfRefraction", "Pane", Color=(0.9, 0.8, 0.8), Roughness=0.0, IOR=1.4)
+    studio.plane(0.8, pane, "Pane", location=(0.3, -3, 1.72), rotation_euler=(1.0, 0, 0.7))  # before the lantern
+    paper = studio.material("ShaderNodeBsdfTranslucent", "Paper", Color=(0.8, 0.6, 0.5))
+    studio.plane(1.0, paper, "Paper", location=(-2, -1, 0.6), rotation_euler=(1.2, 0, 0.4))
     # The lamps' light that the mirror throws on the floor would be a patch that few of a record's rays meet.
     for lamp in (shown for shown in studio.scene.objects if shown.type == "LIGHT"):
-        lamp.visible_glossy = False
+        lamp.visible_glossy = lamp.visible_transmission = False
     cycles, scene = studio.scene.cycles, studio.scene
     cycles.samples, scene.shlight.max_bounces = 1024, 2
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = 2
     cycles.caustics_reflective = True
     (own, _), (reference, _) = rendered(studio, "SHLIGHT"), rendered(studio, "CYCLES")
-    names = [compat.PASSES[f"use_pass_{switch}"][0] for switch in SWITCHES if switch.startswith(("diffuse", "glossy"))]
+    names = [
+        compat.PASSES[f"use_pass_{switch}"][0]
+        for switch in SWITCHES
+        if switch.startswith(("diffuse", "glossy", "transmission"))
+    ]
     means = {name: [float(found[f"ViewLayer.{name}"].mean()) for found in (own, reference)] for name in names}
     print({name: f"{mine:.5f} {theirs:.5f}" for name, (mine, theirs) in means.items()})
     assert {name: both for name, both in means.items() if abs(both[0] - both[1]) > 0.02 * both[1]} == {}

@@ -122,8 +122,13 @@ def test_parts_of_the_light_add_up_to_the_picture_and_do_not_change_it(far: bool
     scene.add_mesh(
         SQUARE @ rotation(-1.3).T + np.array([-0.5, 1.5, 1.0]), FACES, bsdf=shlight.Bsdf.ggx(0, (0.9, 0.8, 0.7))
     )
+    vertices, faces, normals = ball([0.3, -1.8, 0.5], 0.5)
+    scene.add_mesh(vertices, faces, normals=normals, bsdf=nodes.glass((0.9, 1.0, 0.8), 0.1, 1.4))
+    pane = nodes.mix(nodes.refraction(0.7, 0.0, 1.2), nodes.translucent(0.6), 0.5)
+    scene.add_mesh(0.5 * SQUARE @ rotation(0.6).T + np.array([1.6, 1.5, 1.5]), FACES, bsdf=pane)
     looking_down(scene)
-    names = [f"{kind}_{part}" for kind in ("diffuse", "glossy") for part in ("direct", "indirect", "color")]
+    kinds_of_light = ("diffuse", "glossy", "transmission")
+    names = [f"{kind}_{part}" for kind in kinds_of_light for part in ("direct", "indirect", "color")]
     names += ["emission", "environment"]
     options: dict[str, Any] = {"max_samples": 16, "pixel_filter": "blackman_harris", "max_bounces": bounces}
     options["tolerance"] = 0.01
@@ -136,12 +141,12 @@ def test_parts_of_the_light_add_up_to_the_picture_and_do_not_change_it(far: bool
     assert all(light.max() > 0 for light in groups.values())
     largest = float(picture[..., :3].max())
     direct, indirect = (
-        {kind: passes[f"{kind}_{part}"] * passes[f"{kind}_color"] for kind in ("diffuse", "glossy")}
+        {kind: passes[f"{kind}_{part}"] * passes[f"{kind}_color"] for kind in kinds_of_light}
         for part in ("direct", "indirect")
     )
     kinds = sum([*direct.values(), *indirect.values(), passes["emission"], passes["environment"]])
     assert np.abs(kinds - picture[..., :3]).max() <= 2e-6 * largest
-    assert all((light.max() > 0) == (bounces > 0) for light in indirect.values())
+    assert all((light.max() > 0) == (bounces > 0) for light in [*indirect.values(), direct["transmission"]])
     # Light of records has no group.
     missing = picture[..., :3] - sum(groups.values())
     assert missing.min() >= -2e-6 * largest

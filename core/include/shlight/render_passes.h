@@ -20,24 +20,27 @@ enum class Pass : std::uint8_t {
     object_index,    ///< Label::index of the object
     material_index,  ///< likewise, of the material
     // Means over the pixel filter; 0 where nothing is:
-    normal,              ///< unit vectors in the world, turned to the viewer
-    uv,                  ///< attribute Mesh::uv; the third channel is 1 where the mesh has one
-    mist,                ///< 0 … 1, 1 where nothing is; see MistRange
-    emission,            ///< radiance of surfaces and lamps that the camera sees
-    environment,         ///< radiance of the environment, even if it is hidden from the camera
-    diffuse_direct,      ///< light reflected by diffuse lobes ÷ diffuse_color
-    diffuse_indirect,    ///< light that has bounced before, by paths that a diffuse lobe reflected first, ÷ likewise
-    diffuse_color,       ///< albedo of diffuse lobes
-    glossy_direct,       ///< light reflected by glossy lobes ÷ glossy_color
-    glossy_indirect,     ///< likewise, a glossy lobe, ÷ glossy_color
-    glossy_color,        ///< albedo of glossy lobes
-    denoising_normal,    ///< in the camera's frame, z forward, without mirror-like surfaces
-    denoising_albedo,    ///< albedo of all but mirror-like lobes, plus emission
-    denoising_depth,     ///< along camera rays [m]
-    aov_value,           ///< numbers of shader programs
-    aov_color,           ///< RGBA
-    light_group,         ///< the part of the picture's RGB from lights of one group
-    cryptomatte_object,  ///< levels × (identity, share), by decreasing share
+    normal,               ///< unit vectors in the world, turned to the viewer
+    uv,                   ///< attribute Mesh::uv; the third channel is 1 where the mesh has one
+    mist,                 ///< 0 … 1, 1 where nothing is; see MistRange
+    emission,             ///< radiance of surfaces and lamps that the camera sees
+    environment,          ///< radiance of the environment, even if it is hidden from the camera
+    diffuse_direct,       ///< light reflected by diffuse lobes ÷ diffuse_color
+    diffuse_indirect,     ///< light that has bounced before, by paths that a diffuse lobe reflected first, ÷ likewise
+    diffuse_color,        ///< albedo of diffuse lobes
+    glossy_direct,        ///< light reflected by glossy lobes ÷ glossy_color
+    glossy_indirect,      ///< likewise, a glossy lobe, ÷ glossy_color
+    glossy_color,         ///< albedo of glossy lobes
+    transmission_direct,  ///< lamps and the background behind one interface ÷ transmission_color
+    transmission_indirect,  ///< other light that the first surface lets through an interface, ÷ likewise
+    transmission_color,     ///< share of light from behind that interfaces let through
+    denoising_normal,       ///< in the camera's frame, z forward, without mirror-like surfaces
+    denoising_albedo,       ///< albedo of all but mirror-like lobes, plus emission
+    denoising_depth,        ///< along camera rays [m]
+    aov_value,              ///< numbers of shader programs
+    aov_color,              ///< RGBA
+    light_group,            ///< the part of the picture's RGB from lights of one group
+    cryptomatte_object,     ///< levels × (identity, share), by decreasing share
     cryptomatte_material,
     cryptomatte_asset
 };

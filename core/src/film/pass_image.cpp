@@ -131,6 +131,10 @@ void PassImage::finish(std::span<float> pixel) const {
             case Pass::glossy_indirect:
                 divide_by(place, Pass::glossy_color);
                 break;
+            case Pass::transmission_direct:
+            case Pass::transmission_indirect:
+                divide_by(place, Pass::transmission_color);
+                break;
             default:
                 if (is_matte(place.pass.kind)) {
                     sort_matte(pixel.subspan(place.first, place.size));

@@ -28,8 +28,10 @@ constexpr std::uint32_t kLensSeed = 0xFFFFFFFCU;
 constexpr std::array<std::pair<Pass, LightKind>, kLightKinds> kKindPasses = {
     std::pair(Pass::diffuse_direct, LightKind::diffuse),
     std::pair(Pass::glossy_direct, LightKind::glossy),
+    std::pair(Pass::transmission_direct, LightKind::transmission),
     std::pair(Pass::diffuse_indirect, LightKind::diffuse_indirect),
     std::pair(Pass::glossy_indirect, LightKind::glossy_indirect),
+    std::pair(Pass::transmission_indirect, LightKind::transmission_indirect),
     std::pair(Pass::emission, LightKind::emission),
     std::pair(Pass::environment, LightKind::environment)};
 

@@ -92,6 +92,9 @@ PassLayout::PassLayout(const PassSettings& settings) {
     for (const Pass divided : {Pass::glossy_direct, Pass::glossy_indirect}) {
         add_divisor(divided, Pass::glossy_color);
     }
+    for (const Pass divided : {Pass::transmission_direct, Pass::transmission_indirect}) {
+        add_divisor(divided, Pass::transmission_color);
+    }
 }
 
 void PassLayout::add(const RenderPass& pass, int levels) {

@@ -36,8 +36,9 @@ SurfacePasses::SurfacePasses(const CompiledScene& scene, const Camera& camera, c
         const bool is_aov = kind == Pass::aov_value || kind == Pass::aov_color;
         any_aov_ = any_aov_ || is_aov;
         any_mean_ = any_mean_ || is_aov || kind == Pass::normal || kind == Pass::uv || kind == Pass::mist ||
-                    kind == Pass::diffuse_color || kind == Pass::glossy_color || kind == Pass::denoising_normal ||
-                    kind == Pass::denoising_albedo || kind == Pass::denoising_depth || is_matte(kind);
+                    kind == Pass::diffuse_color || kind == Pass::glossy_color || kind == Pass::transmission_color ||
+                    kind == Pass::denoising_normal || kind == Pass::denoising_albedo || kind == Pass::denoising_depth ||
+                    is_matte(kind);
         matte_size_ = is_matte(kind) ? place.size : matte_size_;
     }
 }
@@ -67,6 +68,9 @@ void SurfacePasses::add(const CameraSurfaces& surfaces, std::size_t rays, std::s
         }
         add_mattes(surface, share * (1 - mean(transparency)), pixel);
         add_colors(surface, pixel);
+        if (has(Pass::transmission_color)) {
+            shlight::add(Vec3d(surface.throughput * surfaces.refracted(surface)), at(Pass::transmission_color, pixel));
+        }
         if (!ray.featured) {
             add_denoising(surface, share, transparency, ray, pixel);
         }

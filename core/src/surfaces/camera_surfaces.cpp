@@ -309,12 +309,10 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
         shading_frame(surface.point.position, glm::dot(bent, flat) > 0 ? bent : flat, surface.towards_viewer);
     const Vec3d view = in_frame(view_cosine(frame.z, surface.towards_viewer));
     const bool inside = scene_->placed().is_back(surface.hit, surface.towards_viewer);
-    const float given = result(surface, refraction.ior);
-    const double ior = given > 0 && std::isfinite(given) ? double{given} : 1.0;
     const CameraRay& ray = rays_[surface.ray];
     const std::uint32_t seed = hash(ray.seed, hash(surface.bounces, kRefractionSeed + number));
     const InterfaceRay sampled =
-        sample_interface(double{width(surface, refraction.alpha)}, inside ? 1 / ior : ior, view,
+        sample_interface(double{width(surface, refraction.alpha)}, ior(surface, refraction), view,
                          SobolSequence(seed).point(ray.sample), inside, sobol_beyond(ray.sample, seed).x);
     const Vec3d way = frame.to_world(sampled.way);
     if (!(sampled.weight > 0) || (glm::dot(way, flat) > 0) != sampled.reflected) {
@@ -444,6 +442,25 @@ Rgb CameraSurfaces::transparency(const Surface& surface) const {
     const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get();
     const bool passes = shader != nullptr && shader->transparency;
     return passes ? glm::max(color(surface, *shader->transparency), Rgb(0)) : Rgb(0);
+}
+
+/// Returns the index of what is behind ÷ that of the viewer's side.
+double CameraSurfaces::ior(const Surface& surface, const ShadedRefraction& refraction) const {
+    const float given = result(surface, refraction.ior);
+    const double ior = given > 0 && std::isfinite(given) ? double{given} : 1.0;
+    return scene_->placed().is_back(surface.hit, surface.towards_viewer) ? 1 / ior : ior;
+}
+
+Rgb CameraSurfaces::refracted(const Surface& surface) const {
+    Rgb sum(0);
+    if (const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get()) {
+        for (const ShadedRefraction& own : shader->refractions) {
+            const double cosine = view_cosine(normal(surface, own.normal), surface.towards_viewer);
+            const double passed = 1 - interface_reflectance(cosine, ior(surface, own));
+            sum += static_cast<float>(passed) * color(surface, own.weight);
+        }
+    }
+    return sum;
 }
 
 void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const {

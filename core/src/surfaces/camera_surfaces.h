@@ -115,7 +115,7 @@ class CameraSurfaces {
         PathKind kind_after(PathKind by) const { return bounces > 0 ? kind : by; }
         /// The kind of light that it meets. camera: of what the camera itself sees.
         LightKind met(LightKind camera) const {
-            return bounces == 0 ? camera : bounces == 1 ? LightKind::glossy : indirect_kind(kind);
+            return bounces == 0 ? camera : bounces == 1 ? direct_kind(kind) : indirect_kind(kind);
         }
     };
     /// The surface at the end of a segment.
@@ -140,6 +140,8 @@ class CameraSurfaces {
     /// Segment::bounces of each hit.
     std::span<const std::uint32_t> bounces_of_hits() const { return bounces_of_hits_; }
     void find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const;
+    /// The share of light that the viewer gets of what is behind interfaces, by Fresnel's law at their smooth surface.
+    Rgb refracted(const Surface& surface) const;
     /// The share of light that goes on straight through, not negative.
     Rgb transparency(const Surface& surface) const;
     /// A result of its program.
@@ -192,6 +194,7 @@ class CameraSurfaces {
     void add_hit(const Surface& surface, Hits& hits);
     /// A path through an interface, or inside back from it.
     void refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t number);
+    double ior(const Surface& surface, const ShadedRefraction& refraction) const;
     /// Unit. result: see ShadedLobe::normal.
     Vec3d normal(const Surface& surface, const std::optional<std::uint32_t>& result) const;
     Vec3d vector(const Surface& surface, std::uint32_t result) const;

@@ -13,15 +13,32 @@
 namespace shlight {
 
 /// Light of a camera ray belongs to one kind and one group.
-enum class LightKind : std::uint8_t { diffuse, glossy, diffuse_indirect, glossy_indirect, emission, environment };
-inline constexpr std::size_t kLightKinds = 6;
+enum class LightKind : std::uint8_t {
+    diffuse,
+    glossy,
+    transmission,
+    diffuse_indirect,
+    glossy_indirect,
+    transmission_indirect,
+    emission,
+    environment
+};
+inline constexpr std::size_t kLightKinds = 8;
 
 /// Tells what a camera ray's path goes on by first: a lobe, or an interface that it goes through.
 enum class PathKind : std::uint8_t { direct, diffuse, glossy, transmission };
 
-/// The kind of light that a path brings that has bounced before: a path that is direct has none.
+/// The kind of light that a path brings whose first bounce is the only one: a path that is direct has none.
+constexpr LightKind direct_kind(PathKind path) {
+    return path == PathKind::diffuse  ? LightKind::diffuse
+           : path == PathKind::glossy ? LightKind::glossy
+                                      : LightKind::transmission;
+}
+/// The same of light that has bounced before.
 constexpr LightKind indirect_kind(PathKind path) {
-    return path == PathKind::diffuse ? LightKind::diffuse_indirect : LightKind::glossy_indirect;
+    return path == PathKind::diffuse  ? LightKind::diffuse_indirect
+           : path == PathKind::glossy ? LightKind::glossy_indirect
+                                      : LightKind::transmission_indirect;
 }
 
 struct LightParts {
