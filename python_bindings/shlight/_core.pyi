@@ -69,7 +69,7 @@ def surface_shader(
     shadow_program: ShaderProgram,
     attribute_names: Sequence[str],
     aovs: Sequence[tuple[str, int, bool]],
-    refractions: Sequence[tuple[int, int, int, int | None]],
+    refractions: Sequence[tuple[int, int, int, int | None, bool]],
 ) -> SurfaceShader: ...
 
 class Bsdf:

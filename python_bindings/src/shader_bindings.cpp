@@ -24,7 +24,7 @@ using ImagePointer = std::shared_ptr<const ImageTexture>;
 using StepTuple = std::tuple<int, double, std::uint32_t, std::uint32_t, std::vector<std::uint32_t>>;
 using TableTuple = std::tuple<AnyArray<float>, std::vector<std::uint32_t>>;
 /// Kind of lobe, ior, result indices of weight, alpha and normal, and ShadedLobe::several_bounces.
-using RefractionTuple = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::optional<std::uint32_t>>;
+using RefractionTuple = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::optional<std::uint32_t>, bool>;
 using LobeTuple =
     std::tuple<std::string, double, std::uint32_t, std::optional<std::uint32_t>, std::optional<std::uint32_t>, bool>;
 /// name, number of the result, whether it is a colour
@@ -145,8 +145,8 @@ ShaderObject shader_from(const ShaderProgram& program, const std::vector<LobeTup
         shader->aovs.push_back({value, is_color});
         aov_names.push_back(name);
     }
-    for (const auto& [weight, alpha, ior, normal] : refractions) {
-        shader->refractions.push_back({weight, alpha, ior, normal});
+    for (const auto& [weight, alpha, ior, normal, reflects] : refractions) {
+        shader->refractions.push_back({weight, alpha, ior, normal, reflects});
     }
     check_surface_shader(*shader);
     return {std::move(shader), std::move(attribute_names), std::move(aov_names)};

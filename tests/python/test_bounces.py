@@ -125,7 +125,7 @@ def test_as_many_panes_are_seen_through_as_are_asked_for(through: int | None, se
     scene = shlight.Scene()
     for height in (0, 1, 2):
         pane = 9 * SQUARE + [0, 0, height]
-        scene.add_mesh(pane, FACES, bsdf=nodes.refraction((0.5, 0.5, 0.5), 0.0, 1.0))
+        scene.add_mesh(pane, FACES, bsdf=nodes.refraction((0.5, 0.5, 0.5), 0.0, 1.5))
     scene.set_environment((1, 1, 1))
     to_world = np.eye(4)
     to_world[:3, 3] = (0.3, 0, 5)

@@ -30,6 +30,7 @@ struct ShadedRefraction {
     std::uint32_t alpha;
     std::uint32_t ior;  ///< of the body, relative to what is around it; not positive: 1
     std::optional<std::uint32_t> normal;
+    bool reflects = true;  ///< false: all light goes through that can, and no other is met
 };
 
 /// A number or colour that a program computes for an AOV.

@@ -30,13 +30,13 @@ double interface_reflectance(double cosine, double ior) {
     return 0.5 * a * a * (1 + b * b);
 }
 
-InterfaceRay sample_interface(double alpha, double ior, const Vec3d& view, const glm::dvec2& point, bool both,
-                              double choice) {
+InterfaceRay sample_interface(double alpha, double ior, const Vec3d& view, const glm::dvec2& point,
+                              InterfaceReflection reflection, double choice) {
     const Vec3d mirrored_way = sample_lobe(GgxShape{alpha}, view, point);
     const Vec3d normal = glm::normalize(view + mirrored_way);
     const double cosine = std::min(glm::dot(view, normal), 1.0);
     const double reflectance = interface_reflectance(cosine, ior);
-    if (both && choice < reflectance) {
+    if (reflection == InterfaceReflection::drawn && choice < reflectance) {
         const bool above = mirrored_way.z > 0;
         return {mirrored_way, above ? seen_share(alpha, mirrored_way.z) : 0.0, true};
     }
@@ -45,7 +45,7 @@ InterfaceRay sample_interface(double alpha, double ior, const Vec3d& view, const
         return {};
     }
     const Vec3d way = (cosine / ior - std::sqrt(inside)) * normal - view / ior;
-    const double passed = both ? 1.0 : 1 - reflectance;
+    const double passed = reflection == InterfaceReflection::apart ? 1 - reflectance : 1.0;
     return {way, way.z < 0 ? passed * seen_share(alpha, way.z) : 0.0, false};
 }
 

@@ -4,6 +4,8 @@
 // 2007, "Microfacet Models for Refraction through Rough Surfaces").
 #pragma once
 
+#include <cstdint>
+
 #include <glm/vec2.hpp>
 
 #include "shlight/types.h"
@@ -20,10 +22,12 @@ struct InterfaceRay {
     bool reflected = false;
 };
 
+/// Whether an interface's reflection takes its share of drawn rays, is brought by others, or there is none.
+enum class InterfaceReflection : std::uint8_t { drawn, apart, none };
+
 /// A direction through the interface. alpha: of its GGX distribution, whose visible normals the point draws; view:
-/// unit, in the xz-plane, above the horizon; both: whether reflection takes its share `choice` of rays, or others bring
-/// it.
-InterfaceRay sample_interface(double alpha, double ior, const Vec3d& view, const glm::dvec2& point, bool both,
-                              double choice);
+/// unit, in the xz-plane, above the horizon; choice: of reflection where it is drawn.
+InterfaceRay sample_interface(double alpha, double ior, const Vec3d& view, const glm::dvec2& point,
+                              InterfaceReflection reflection, double choice);
 
 }  // namespace shlight

@@ -308,12 +308,15 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
     const ShadingFrame frame =
         shading_frame(surface.point.position, glm::dot(bent, flat) > 0 ? bent : flat, surface.towards_viewer);
     const Vec3d view = in_frame(view_cosine(frame.z, surface.towards_viewer));
-    const bool inside = scene_->placed().is_back(surface.hit, surface.towards_viewer);
+    const InterfaceReflection reflection = !refraction.reflects ? InterfaceReflection::none
+                                           : scene_->placed().is_back(surface.hit, surface.towards_viewer)
+                                               ? InterfaceReflection::drawn
+                                               : InterfaceReflection::apart;
     const CameraRay& ray = rays_[surface.ray];
     const std::uint32_t seed = hash(ray.seed, hash(surface.bounces, kRefractionSeed + number));
     const InterfaceRay sampled =
         sample_interface(double{width(surface, refraction.alpha)}, ior(surface, refraction), view,
-                         SobolSequence(seed).point(ray.sample), inside, sobol_beyond(ray.sample, seed).x);
+                         SobolSequence(seed).point(ray.sample), reflection, sobol_beyond(ray.sample, seed).x);
     const Vec3d way = frame.to_world(sampled.way);
     if (!(sampled.weight > 0) || (glm::dot(way, flat) > 0) != sampled.reflected) {
         return;
@@ -456,7 +459,8 @@ Rgb CameraSurfaces::refracted(const Surface& surface) const {
     if (const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get()) {
         for (const ShadedRefraction& own : shader->refractions) {
             const double cosine = view_cosine(normal(surface, own.normal), surface.towards_viewer);
-            const double passed = 1 - interface_reflectance(cosine, ior(surface, own));
+            const double reflected = interface_reflectance(cosine, ior(surface, own));
+            const double passed = own.reflects || reflected >= 1 ? 1 - reflected : 1.0;
             sum += static_cast<float>(passed) * color(surface, own.weight);
         }
     }

@@ -217,7 +217,7 @@ def refraction(tint: Varying, roughness: Number, ior: Number = 1.5, *, at: Vecto
     """The light that goes through an interface alone: Blender's Refraction BSDF."""
     r = clamp(number(roughness, "roughness"))
     index = maximum(number(ior, "ior"), 1e-5)
-    return Shader(refractions=(Refraction(_clamped(color(tint, "tint")), r * r, index, at),))
+    return Shader(refractions=(Refraction(_clamped(color(tint, "tint")), r * r, index, at, reflects=False),))
 
 
 def principled(

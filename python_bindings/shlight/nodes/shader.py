@@ -54,6 +54,7 @@ class Refraction:
     alpha: Value  # roughness²
     ior: Value  # of the body
     normal: Vector | None = None  # None: the smooth one
+    reflects: bool = True  # False: all light goes through that can
 
 
 class _Listed(NamedTuple):
@@ -65,7 +66,7 @@ class _Listed(NamedTuple):
     emission: int | None
     transparency: int | None
     aovs: list[tuple[str, int, bool]]
-    refractions: list[tuple[int, int, int, int | None]]
+    refractions: list[tuple[int, int, int, int | None, bool]]
 
 
 @dataclass(frozen=True)
@@ -174,7 +175,7 @@ class Shader:
             weight = builder.result(tuple(color_on_ray(own.weight, Ray.CAMERA, filtered=self._is_filtered)))
             alpha, ior = (builder.result(on_ray([value], Ray.CAMERA)) for value in (own.alpha, own.ior))
             bent = None if own.normal is None else builder.result(on_ray(own.normal, Ray.CAMERA))
-            refractions.append((weight, alpha, ior, bent))
+            refractions.append((weight, alpha, ior, bent, own.reflects))
         shadows = ProgramBuilder(builder.attributes)
         shadows.result(tuple(lit))
         return _Listed(builder, shadows, lobes, glow_result, through, aovs, refractions)
