@@ -104,7 +104,6 @@ PRINCIPLED = (
         unsupported={
             "Subsurface": 0.0,
             "Anisotropic": 0.0,
-            "Transmission": 0.0,
             "Clearcoat": 0.0,
             "Sheen": 0.0,
         },

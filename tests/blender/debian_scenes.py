@@ -125,6 +125,19 @@ def translucent(studio):
         studio.lamp("POINT", 80, place, shadow_soft_size=0.4)
 
 
+def transmission(studio):
+    """Balls that light goes through, two rough ones and one of another shader."""
+    for place, roughness in ((-1.7, 0.0), (0, 0.3)):
+        inputs = {"Roughness": roughness, "Transmission_Roughness": roughness, "IOR": 1.3, "Specular_Tint": 0.5}
+        glass = studio.material("ShaderNodeBsdfPrincipled", Base_Color=(0.9, 0.7, 0.6), Transmission=1.0, **inputs)
+        studio.ball(0.8, glass, location=(place, 0, 0.9))
+    studio.ball(0.8, studio.material("ShaderNodeBsdfRefraction", IOR=1.3, Roughness=0.0), location=(1.7, 0, 0.9))
+    studio.plane(material=studio.material())
+    studio.plain_world((0.5, 0.6, 0.7))
+    cycles = studio.scene.cycles
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = studio.scene.shlight.max_bounces = 4
+
+
 def curves(studio):
     """Under a cube that glows by its temperature."""
     studio.plane(material=studio.material())
@@ -207,7 +220,7 @@ def coarse(studio):
 
 SCENES = [
     point, area, spot, small_spot, small_point, sun, small_sun, spread, textured, textured_by_default, smooth, glossy,
-    metal, principled, translucent, curves, sky, dark, panoramic, orthographic, simplified, flat_camera,
+    metal, principled, translucent, transmission, curves, sky, dark, panoramic, orthographic, simplified, flat_camera,
     coarse,
 ]  # fmt: skip
 

@@ -99,6 +99,7 @@ OTHERS = [
     "glossy",
     "metal",
     "translucent",
+    "transmission",
     "curves",
     "sky",
     "panoramic",

@@ -89,7 +89,7 @@ def _object_info(inputs: NodeInputs) -> Expression:
     return found.alpha if name == "Alpha" else found if name == "Color" else found.x
 
 
-def _fresnel_of(cosine: Value, ior: Value) -> Value:
+def fresnel_of(cosine: Value, ior: Value) -> Value:
     """The reflectance of a dielectric, 1 under total reflection."""
     c = abs(cosine)
     square = ior * ior - 1.0 + c * c
@@ -106,7 +106,7 @@ def _own_normal(inputs: NodeInputs) -> Vector:
 def _fresnel(inputs: NodeInputs) -> Value:
     ior = maximum(inputs.number("IOR"), 1e-5)
     ior = select(nodes.backfacing(), 1.0 / ior, ior)
-    return _fresnel_of(dot(nodes.towards_viewer(), _own_normal(inputs)), ior)
+    return fresnel_of(dot(nodes.towards_viewer(), _own_normal(inputs)), ior)
 
 
 def _layer_weight(inputs: NodeInputs) -> Value:
@@ -114,7 +114,7 @@ def _layer_weight(inputs: NodeInputs) -> Value:
     cosine = dot(nodes.towards_viewer(), _own_normal(inputs))
     if inputs.output.identifier == "Fresnel":
         ior = maximum(1.0 - blend, 1e-5)
-        return _fresnel_of(cosine, select(nodes.backfacing(), ior, 1.0 / ior))
+        return fresnel_of(cosine, select(nodes.backfacing(), ior, 1.0 / ior))
     share = clamp(blend, 0.0, 1.0 - 1e-5)
     exponent = select(share < 0.5, 2.0 * share, 0.5 / (1.0 - share))
     return 1.0 - operation("power", abs(cosine), exponent)

@@ -5,11 +5,12 @@ from __future__ import annotations
 
 from shlight import nodes
 from shlight.nodes import Shader
-from shlight.nodes.shader import Lobe
-from shlight.nodes.values import Color, clamp, maximum, number, sqrt
+from shlight.nodes.shader import Lobe, Refraction
+from shlight.nodes.values import Color, Value, clamp, color, dot, maximum, number, sqrt
 
 from ..compat import PRINCIPLED
 from ..report import Effect
+from .input_nodes import fresnel_of
 from .surface import ShaderInputs
 
 # Luminance with which Blender 3.4 takes the brightness out of the base colour for Specular Tint.
@@ -62,10 +63,14 @@ def _read_sum(inputs: ShaderInputs) -> Shader:
     alpha = clamp(inputs.number("Alpha"))
     at = inputs.linked_vector("Normal")
     glow = nodes.emission(inputs.color("Emission") * inputs.number("Emission Strength"))
-    if metallic.constant != 1.0 and base.constant != (0.0, 0.0, 0.0):
+    transmission = clamp(inputs.number("Transmission"))
+    if transmission.constant != 0.0:
+        inputs.remark_hidden_behind("'Transmission'")
+    through = transmission * (1.0 - metallic)
+    if metallic.constant != 1.0 and base.constant != (0.0, 0.0, 0.0) and transmission.constant != 1.0:
         text = "the diffuse part is drawn as Diffuse BSDF, without Principled BSDF's darker and brighter edges"
         inputs.remark(text, Effect.SLIGHT)
-    surface = nodes.lambert(base * (1.0 - metallic), normal=at)
+    surface = nodes.lambert(base * (1.0 - metallic) * (1.0 - transmission), normal=at)
     luminance = sum((c * w for c, w in zip(base, TINT_LUMINANCE, strict=True)), start=number(0.0))
     hue = Color(*(nodes.values.select(luminance > 0.0, c / luminance, 1.0) for c in base))
     f0 = (hue * tint + (1.0 - tint)) * (0.08 * specular) * (1.0 - metallic) + base * metallic
@@ -74,5 +79,23 @@ def _read_sum(inputs: ShaderInputs) -> Shader:
     n = nodes.reflecting_normal(nodes.normal() if at is None else at)
     width = roughness * roughness
     if not (specular.constant == 0.0 and metallic.constant == 0.0):
-        surface += Shader((Lobe("ggx", f0, width, n), *nodes.rising_lobes(1.0 - f0, ior, width, n)))
+        surface += Shader((Lobe("ggx", f0, width, n), *nodes.rising_lobes(1.0 - f0, ior, width, n))) * (1.0 - through)
+    if through.constant != 0.0:
+        surface += _glass(inputs, base, hue=color(base * tint + (1.0 - tint)), roughness=roughness) * through
     return nodes.transparent(1.0 - alpha) + (surface + glow) * alpha
+
+
+def _glass(inputs: ShaderInputs, base: Color, *, hue: Color, roughness: Value) -> Shader:
+    """The part of Blender 3.4's node that light goes through: its front reflects as Fresnel's law has it at the normal.
+
+    base, hue: the colours of what goes through, and of what is reflected at a right angle.
+    """
+    ior, at = maximum(inputs.number("IOR"), 1e-5), inputs.linked_vector("Normal")
+    n = nodes.reflecting_normal(nodes.normal() if at is None else at)
+    inner = roughness
+    if inputs.node.distribution == "GGX":
+        inner = 1.0 - (1.0 - roughness) * (1.0 - clamp(inputs.number("Transmission Roughness")))
+    front = fresnel_of(dot(nodes.towards_viewer(), n), ior) * (1.0 - nodes.backfacing())
+    width = roughness * roughness
+    lobes = (Lobe("ggx", hue, width, n), *nodes.rising_lobes(1.0 - hue, maximum(ior, 1.0 / ior), width, n))
+    return Shader(lobes) * front + Shader(refractions=(Refraction(color(base), inner * inner, ior, at),))
