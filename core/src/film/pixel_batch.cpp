@@ -110,14 +110,16 @@ Vec3d PixelSums::variance() const {
     return glm::max(squares / count - mean * mean - linear, Vec3d(0));
 }
 
-void PixelSums::add(const Rgb& ray_radiance, const Rgb& ray_noise, const glm::dvec2& from_center, float ray_opacity,
-                    bool is_early) {
-    const Vec3d shown = glm::clamp(Vec3d(ray_radiance), -kBrightestRay, kBrightestRay);
+void PixelSums::add(const Rgb& ray_radiance, const Rgb& too_much, const Rgb& ray_noise, const glm::dvec2& from_center,
+                    float ray_opacity, bool is_early) {
+    const Vec3d whole = glm::clamp(Vec3d(ray_radiance), -kBrightestRay, kBrightestRay);
+    const Vec3d shown = glm::clamp(Vec3d(ray_radiance - too_much), -kBrightestRay, kBrightestRay);
     opacity += double{ray_opacity};
     radiance += shown;
+    excess += whole - shown;
     early += is_early ? shown : Vec3d(0);
     const Vec3d shadow_noise = glm::min(Vec3d(ray_noise), kBrightestRay * kBrightestRay);
-    squares += shown * shown - shadow_noise;
+    squares += whole * whole - shadow_noise;
     noise += shadow_noise;
     along_x += from_center.x * shown;
     along_y += from_center.y * shown;
@@ -161,11 +163,11 @@ double Picture::pixel_width(double distance) const {
                          Vec3d(other.origin) + distance * Vec3d(other.direction));
 }
 
-PathSettings Picture::paths(const LightRecords* records) const {
+PathSettings Picture::paths(const StoredLight* stored) const {
     return {static_cast<std::uint32_t>(settings.transparent_bounces),
-            records != nullptr ? static_cast<std::uint32_t>(settings.max_bounces) : 0,
+            stored != nullptr ? static_cast<std::uint32_t>(settings.max_bounces) : 0,
             static_cast<std::uint32_t>(settings.glossy_bounces),
-            static_cast<std::uint32_t>(settings.transmission_bounces), records};
+            static_cast<std::uint32_t>(settings.transmission_bounces), stored};
 }
 
 PixelBatch::PixelBatch(const Picture& picture, const PathSettings& paths)
@@ -187,7 +189,7 @@ void PixelBatch::add(std::span<const Pixel> pixels, const SampleRange& samples, 
     clock.end(RenderStage::camera_rays);
     lighting_.add(pixel_seeds_, penumbrae_, samples, hits_, report_);
     StageClock last(report_);
-    add_up(samples, second_half, sums);
+    add_up(pixels, samples, second_half, sums);
     if (!picture_->parts.empty()) {
         add_up_parts(pass_sums);
     }
@@ -263,7 +265,10 @@ void PixelBatch::seed_pixels(std::span<const Pixel> pixels) {
     }
 }
 
-void PixelBatch::add_up(const SampleRange& samples, std::uint32_t second_half, std::span<PixelSums> sums) const {
+/// Paths that few rays find, and that bring much, would be bright dots: until the pixel has more rays they count for no
+/// more than the light around it.
+void PixelBatch::add_up(std::span<const Pixel> pixels, const SampleRange& samples, std::uint32_t second_half,
+                        std::span<PixelSums> sums) {
     const auto from_center = [&](std::uint32_t sample) { return picture_->pixel_points[sample] - 0.5; };
     std::size_t hit = 0;
     std::size_t ray = 0;
@@ -272,11 +277,19 @@ void PixelBatch::add_up(const SampleRange& samples, std::uint32_t second_half, s
         for (std::uint32_t i = 0; i < samples.count; ++i, ++ray) {
             Rgb radiance = ray_light_[ray].radiance;
             Rgb noise(0);
+            Rgb by_path = ray_light_[ray].drawn;
             for (; hit < end && hits_.sample[hit] == rays_[ray].sample; ++hit) {
                 radiance += hits_.radiance[hit];
                 noise += hits_.noise[hit];
+                by_path += surfaces_.drawn_hits()[hit] != 0 ? hits_.radiance[hit] : Rgb(0);
             }
-            sums[pixel].add(radiance, noise, from_center(rays_[ray].sample), ray_light_[ray].opacity,
+            const float brightness = glm::dot(glm::abs(by_path), Rgb(1.0F / 3));
+            const float kept = std::min(pixels[pixel].most_by_path / std::max(brightness, 1e-30F), 1.0F);
+            const Rgb excess = kept < 1 ? (1 - kept) * by_path : Rgb(0);
+            if (kept < 1 && !picture_->parts.empty()) {
+                hits_.apart.add(pixel, LightKind::glossy_indirect, -excess);
+            }
+            sums[pixel].add(radiance, excess, noise, from_center(rays_[ray].sample), ray_light_[ray].opacity,
                             rays_[ray].sample < second_half);
         }
         sums[pixel].rays += samples.count;

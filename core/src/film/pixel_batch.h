@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -24,6 +25,8 @@ struct Pixel {
     int column, row;
     /// Lights, as in LightBits, that rays near it have found partly hidden; all if nothing is known.
     std::uint32_t penumbrae = LightBits::kAll;
+    /// Radiance that surfaces reflect onto the path of a camera ray, at most, as one ray counts.
+    float most_by_path = std::numeric_limits<float>::infinity();
 };
 
 /// Sums over the camera rays of one pixel. A ray that met no surface is transparent, unless there is a
@@ -34,6 +37,7 @@ struct PixelSums {
     Vec3d radiance{0};
     Vec3d squares{0};              ///< of radiance, without the part that is noise of shadow rays
     Vec3d noise{0};                ///< that part
+    Vec3d excess{0};               ///< what paths bring above Pixel::most_by_path
     Vec3d shared_noise{0};         ///< the variance of `radiance` by shadow rays that camera rays have in common
     Vec3d early{0};                ///< radiance of the camera rays in the first half of all that the pixel then has
     LightBits visibility;          ///< of lights, by the shadow rays
@@ -42,9 +46,10 @@ struct PixelSums {
     /// Variance over the pixel of what is not linear in the place: rays in even number, spread evenly, average that
     /// out.
     Vec3d variance() const;
-    /// The part of one ray; from_center: its distance from the pixel's centre; is_early: it counts in `early`.
-    void add(const Rgb& ray_radiance, const Rgb& ray_noise, const glm::dvec2& from_center, float ray_opacity,
-             bool is_early);
+    /// The part of one ray; too_much: the part of its radiance that `excess` and the squares count; from_center: its
+    /// distance from the pixel's centre; is_early: it counts in `early`.
+    void add(const Rgb& ray_radiance, const Rgb& too_much, const Rgb& ray_noise, const glm::dvec2& from_center,
+             float ray_opacity, bool is_early);
 };
 
 /// Everything that the batches of one picture share and only read.
@@ -59,8 +64,8 @@ struct Picture {
     Ray ray(double column, double row, const std::optional<glm::dvec2>& lens) const;
     /// The width of a pixel in the picture's middle, at a distance [m].
     double pixel_width(double distance) const;
-    /// Settings of paths that bounce; without records light is direct.
-    PathSettings paths(const LightRecords* records) const;
+    /// Settings of paths that bounce; without stored light it is direct.
+    PathSettings paths(const StoredLight* stored) const;
 
     const CompiledScene* scene;
     Camera camera;  ///< in the scene's frame
@@ -108,7 +113,8 @@ class PixelBatch {
     /// place: in pixels; step: to its neighbours.
     void add_ray(const glm::dvec2& place, const LensPoint& lens, std::uint32_t sample, std::uint32_t seed, double step);
     void seed_pixels(std::span<const Pixel> pixels);
-    void add_up(const SampleRange& samples, std::uint32_t second_half, std::span<PixelSums> sums) const;
+    void add_up(std::span<const Pixel> pixels, const SampleRange& samples, std::uint32_t second_half,
+                std::span<PixelSums> sums);
     /// Parts of the light.
     void add_up_parts(std::span<double> pass_sums) const;
     LensPoint lens_point(std::uint32_t sample, std::uint32_t pixel_seed) const;

@@ -17,7 +17,7 @@ constexpr int kMostRounds = 256;
 constexpr int kWidestRecordStep = 32;
 constexpr int kLeastRecordStep = 2;
 /// A grid takes about so many times as long as the one before. Bounces get this share of the time there is.
-constexpr double kNextGrid = 3;
+constexpr double kNextGrid = 2;
 constexpr double kShareOfBounces = 0.4;
 /// Pixels of the first grid, at least.
 constexpr double kFirstPixels = 1024;
@@ -42,7 +42,10 @@ ProgressiveRenderer::ProgressiveRenderer(const Picture& picture, Refinement refi
       batch_samples_(picture.batch_samples()),
       start_(start),
       refinement_(std::move(refinement)),
-      batches_([this] { return PixelBatch(*picture_, picture_->paths(bounce_seconds_ > 0 ? &records_ : nullptr)); }) {}
+      stored_{{},
+              LightCells(*picture.scene, picture.lighting.materials,
+                         static_cast<std::size_t>(picture.settings.max_bounces))},
+      batches_([this] { return PixelBatch(*picture_, picture_->paths(bounce_seconds_ > 0 ? &stored_ : nullptr)); }) {}
 
 void ProgressiveRenderer::run(const Watch& caller) {
     write_middles(caller.stopped);
@@ -65,7 +68,7 @@ void ProgressiveRenderer::run(const Watch& caller) {
 
 void ProgressiveRenderer::add_bounces(const Watch& caller) {
     const double start = seconds();
-    RecordPlacement placement(*picture_, image_, records_);
+    RecordPlacement placement(*picture_, image_, stored_);
     double took = 0;
     for (int step = kWidestRecordStep; step >= kLeastRecordStep; step /= 2) {
         const double begin = seconds();
@@ -78,9 +81,10 @@ void ProgressiveRenderer::add_bounces(const Watch& caller) {
         told_ += report;
     }
     record_error_ = placement.error();
+    refinement_.limit_paths();
     bounce_seconds_ = seconds() - start;
     for (PixelBatch& batch : batches_) {
-        batch.follow(picture_->paths(&records_));
+        batch.follow(picture_->paths(&stored_));
     }
 }
 

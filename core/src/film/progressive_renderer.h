@@ -21,7 +21,7 @@
 #include "film/refinement.h"
 #include "shlight/parallel.h"
 #include "shlight/render.h"
-#include "surfaces/light_records.h"
+#include "surfaces/stored_light.h"
 
 namespace shlight {
 
@@ -90,8 +90,8 @@ class ProgressiveRenderer {
     double judge_seconds_ = 0;  // of the last round
     int grid_step_ = 1;         // of the finest grid whose pixels all have rays
     Refinement refinement_;
+    StoredLight stored_;
     tbb::enumerable_thread_specific<PixelBatch> batches_;
-    LightRecords records_;
     std::atomic<double> bounce_seconds_ = 0;  // that making them took; 0: light does not bounce, yet
     double record_error_ = 0;                 // by records, as RenderReport::noise
 

@@ -5,191 +5,190 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
+#include <utility>
 
-#include "base/perpendicular.h"
-#include "shlight/basis.h"
+#include <tbb/parallel_sort.h>
+#include <glm/common.hpp>
+
 #include "shlight/sampling.h"
 #include "tracing/light_bits.h"
 
 namespace shlight {
 namespace {
 
-constexpr std::size_t kGroupRays = kGroupAcross * kGroupAcross;
-/// Share of rays that are drawn evenly over the half space; the others are drawn as its cosine.
-constexpr double kEven = 0.25;
-/// Cosine below which rays go along the surface.
-constexpr double kAlongSurface = 0.3;
-
-/// The cosine below which a share u of the rays lies, which have the density kEven + 2 (1 - kEven) μ.
-double cosine_of(double u) {
-    return (std::sqrt(kEven * kEven + 4 * (1 - kEven) * u) - kEven) / (2 * (1 - kEven));
-}
+/// Records that are made at once: enough that their rays meet in cells.
+constexpr std::size_t kRecordsAtOnce = 1024;
+constexpr std::size_t kCellsAtOnce = 1024;
+/// Rays that share shadow rays, and those that are shaded at once.
+constexpr std::size_t kGroupRays = 16;
+constexpr std::size_t kShadedAtOnce = 16 * kGroupRays;
+/// Rays that are shaded of those that meet a cell, at most, and one more for each so many of them.
+constexpr std::size_t kShaded = 8;
+constexpr std::size_t kRaysPerShaded = 64;
 
 }  // namespace
 
+RecordGatherer::Shader::Shader(const RecordGatherer& gatherer)
+    : surfaces(*gatherer.scene_, gatherer.lighting_->materials, gatherer.paths_),
+      lighting(*gatherer.lighting_, gatherer.scene_->rays(), gatherer.paths_.transparent_bounces, kWholeLight),
+      hits(gatherer.lighting_->lobe_stride) {}
+
 RecordGatherer::RecordGatherer(const CompiledScene& scene, const LightingScene& lighting, const PathSettings& paths,
-                               bool shadows)
-    : max_bounces_(paths.max_bounces),
+                               bool shadows, LightCells& cells)
+    : scene_(&scene),
+      lighting_(&lighting),
+      paths_(paths),
+      known_(&cells),
       shadow_rays_(shadows ? 1 : 0),
-      surfaces_(scene, lighting.materials, paths),
-      lighting_(lighting, scene.rays(), paths.transparent_bounces, kWholeLight),
-      hits_(lighting.lobe_stride) {}
+      shaders_([this] { return Shader(*this); }) {}
 
-/// One ray in each cell of a grid over the square that directions are made of; groups of cells follow each other.
-void RecordGatherer::aim(const SurfacePoint& surface, std::size_t rays_across, std::uint32_t seed) {
-    rays_.clear();
-    directions_.clear();
-    const Vec3d& z = surface.shading_normal;
-    x_ = perpendicular(z);
-    y_ = glm::cross(z, x_);
-    by_cell_.resize(rays_across * rays_across);
-    const SobolSequence jitter(seed);
-    const auto across = static_cast<double>(rays_across);
-    for (std::size_t group = 0; group < rays_across * rays_across / kGroupRays; ++group) {
-        const std::size_t groups_across = rays_across / kGroupAcross;
-        for (std::size_t i = 0; i < kGroupRays; ++i) {
-            const std::size_t row = group / groups_across * kGroupAcross + i / kGroupAcross;
-            const std::size_t column = group % groups_across * kGroupAcross + i % kGroupAcross;
-            by_cell_[row * rays_across + column] = rays_.size();
-            const glm::dvec2 inside = jitter.point(static_cast<std::uint32_t>(rays_.size()));
-            const double cosine = cosine_of((static_cast<double>(row) + inside.x) / across);
-            const double sine = std::sqrt(std::max(1 - cosine * cosine, 0.0));
-            const double azimuth = 2 * std::numbers::pi * (static_cast<double>(column) + inside.y) / across;
-            const Vec3d way = sine * std::cos(azimuth) * x_ + sine * std::sin(azimuth) * y_ + cosine * z;
-            const double density = (kEven + 2 * (1 - kEven) * cosine) / (2 * std::numbers::pi);
-            const bool leaves = glm::dot(way, surface.geometric_normal) > 0;
-            const Ray ray = leaves ? Ray{Vec3f(surface.off_surface()), 0, Vec3f(way)} : Ray{};
-            rays_.push_back({ray, static_cast<std::uint32_t>(i), hash(seed, static_cast<std::uint32_t>(group))});
-            directions_.push_back({way, static_cast<float>(1 / (density * across * across))});
+std::vector<LightRecord> RecordGatherer::gather(std::span<const SurfacePoint> surfaces, std::size_t rays_across,
+                                                std::uint32_t seed, int threads, const Stopped& stopped,
+                                                RenderReport& report) {
+    std::vector<LightRecord> made(surfaces.size());
+    rays_per_record_ = rays_across * rays_across;
+    for (std::size_t first = 0; first < surfaces.size(); first += kRecordsAtOnce) {
+        const std::size_t count = std::min(kRecordsAtOnce, surfaces.size() - first);
+        records_.assign(count, {});
+        distances_.assign(count * rays_per_record_, std::numeric_limits<double>::infinity());
+        parallel_for(count, threads, [&](std::size_t i) {
+            end_if(stopped);
+            records_[i] =
+                RecordRays(surfaces[first + i], rays_across, hash(seed, static_cast<std::uint32_t>(first + i)));
+            meet(i, shaders_.local());
+        });
+        find_cells();
+        shaded_light_.resize(shaded_.size() * paths_.max_bounces);
+        parallel_for((shaded_.size() + kShadedAtOnce - 1) / kShadedAtOnce, threads, [&](std::size_t i) {
+            end_if(stopped);
+            shade(i * kShadedAtOnce, hash(seed, static_cast<std::uint32_t>(i)), shaders_.local());
+        });
+        for (const Cell& cell : cells_) {
+            add(cell);
         }
-    }
-}
-
-void RecordGatherer::shade(std::uint32_t seed, RenderReport& report) {
-    surfaces_.trace_scattered(rays_, kGroupRays, hits_, light_);
-    seeds_.clear();
-    for (std::size_t group = 0; group < hits_.pixel_count(); ++group) {
-        seeds_.push_back(hash(seed, static_cast<std::uint32_t>(group)));
-    }
-    penumbrae_.assign(seeds_.size(), LightBits::kAll);
-    lighting_.add(seeds_, penumbrae_, {0, kGroupRays, shadow_rays_, 0}, hits_, report);
-    std::size_t hit = 0;
-    for (std::size_t group = 0; group < hits_.pixel_count(); ++group) {
-        for (; hit < hits_.pixel_begin[group + 1]; ++hit) {
-            const std::size_t ray = group * kGroupRays + hits_.sample[hit];
-            light_[ray * max_bounces_ + surfaces_.bounces_of_hits()[hit] - 1].radiance += hits_.radiance[hit];
-        }
-    }
-}
-
-void RecordGatherer::find_distances() {
-    distances_.assign(rays_.size(), std::numeric_limits<double>::infinity());
-    for (const CameraSurfaces::Surface& surface : surfaces_.surfaces()) {
-        if (surface.bounces == 1 && surface.depth == 0) {
-            distances_[surface.ray] = std::max(surface.distance, 1e-12);
-        }
-    }
-}
-
-double RecordGatherer::mean_distance() const {
-    double nearness = 0;
-    for (std::size_t ray = 0; ray < rays_.size(); ++ray) {
-        nearness += directions_[ray].solid_angle / distances_[ray];
-    }
-    return 2 * std::numbers::pi / nearness;
-}
-
-/// Rays close to the horizon meet what stands on the surface.
-void RecordGatherer::find_free(LightRecord& record) const {
-    record.free.fill(std::numeric_limits<float>::infinity());
-    for (std::size_t ray = 0; ray < rays_.size(); ++ray) {
-        const Vec3d& way = directions_[ray].way;
-        const double cosine = glm::dot(way, record.normal);
-        if (cosine < kAlongSurface) {
-            float& free = record.free[record.sector(way)];
-            free = std::min(free, static_cast<float>(distances_[ray] * std::sqrt(1 - cosine * cosine)));
-        }
-    }
-}
-
-void RecordGatherer::find_gradients(std::size_t rays_across, LightRecord& record) const {
-    const auto across = static_cast<double>(rays_across);
-    record.gradient.assign(max_bounces_, {Rgb(0), Rgb(0), Rgb(0)});
-    const auto add = [&](std::size_t cell, std::size_t before, const Vec3d& way, double factor) {
-        const std::size_t one = by_cell_[cell];
-        const std::size_t other = by_cell_[before];
-        const double rate = factor / std::min(distances_[one], distances_[other]) / std::numbers::pi;
-        Rgb difference(0);
-        for (std::size_t k = 0; k < max_bounces_ && rate != 0; ++k) {
-            difference += light_[one * max_bounces_ + k].radiance - light_[other * max_bounces_ + k].radiance;
-            for (int axis = 0; axis < 3; ++axis) {
-                record.gradient[k][static_cast<std::size_t>(axis)] += static_cast<float>(rate * way[axis]) * difference;
+        light_.assign(distances_.size() * paths_.max_bounces, Rgb(0));
+        parallel_for((cells_.size() + kCellsAtOnce - 1) / kCellsAtOnce, threads, [&](std::size_t i) {
+            for (std::size_t c = i * kCellsAtOnce; c < std::min((i + 1) * kCellsAtOnce, cells_.size()); ++c) {
+                spread(cells_[c]);
             }
-        }
-    };
-    const auto direction = [&](double column) {
-        const double azimuth = 2 * std::numbers::pi * column / across;
-        return std::cos(azimuth) * x_ + std::sin(azimuth) * y_;
-    };
-    for (std::size_t row = 0; row < rays_across; ++row) {
-        const double low = cosine_of(static_cast<double>(row) / across);
-        const double high = cosine_of(static_cast<double>(row + 1) / across);
-        const double sine_low = std::sqrt(1 - low * low);
-        const double sine_high = std::sqrt(std::max(1 - high * high, 0.0));
-        for (std::size_t column = 0; column < rays_across; ++column) {
-            const std::size_t cell = row * rays_across + column;
-            const auto place = static_cast<double>(column);
-            if (row > 0) {
-                add(cell, cell - rays_across, direction(place + 0.5),
-                    -2 * std::numbers::pi / across * sine_low * low * low);
-            }
-            const std::size_t beside = row * rays_across + (column + rays_across - 1) % rays_across;
-            add(cell, beside, direction(place + across / 4), sine_low - sine_high);
+        });
+        parallel_for(count, threads, [&](std::size_t i) {
+            const std::size_t rays = i * rays_per_record_;
+            made[first + i] = records_[i].record(
+                std::span(distances_).subspan(rays, rays_per_record_),
+                std::span(light_).subspan(rays * paths_.max_bounces, rays_per_record_ * paths_.max_bounces),
+                paths_.max_bounces);
+        });
+    }
+    for (Shader& shader : shaders_) {
+        report += std::exchange(shader.report, {});
+    }
+    return made;
+}
+
+void RecordGatherer::meet(std::size_t record, Shader& shader) {
+    const std::span<const Ray> rays = records_[record].rays();
+    shader.met.resize(rays.size());
+    scene_->rays().intersect(rays, shader.met);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const RayHit& hit = shader.met[i];
+        if (!rays[i].empty() && !hit.missed()) {
+            const std::size_t number = record * rays_per_record_ + i;
+            distances_[number] = std::max(double{hit.distance}, 1e-12);
+            End end = {{}, static_cast<std::uint32_t>(number), false};
+            const SurfacePoint point = scene_->placed().surface(hit, rays[i].direction);
+            end.is_own = !known_->find(point, rays[i].direction, distances_[number], end.cell);
+            shader.ends.push_back(end);
         }
     }
 }
 
-void RecordGatherer::add_up(std::size_t rays_across, LightRecord& record) const {
-    record.light.assign(max_bounces_, {});
-    std::array<Rgb, 2> halves = {};  // of what a white diffuse surface reflects, by cells in turn
-    for (std::size_t cell = 0; cell < by_cell_.size(); ++cell) {
-        const std::size_t ray = by_cell_[cell];
-        RecordBasis basis;
-        const Vec3f way(directions_[ray].way);
-        sh_basis(std::span<const Vec3f>(&way, 1), kRecordOrder, std::span<float>(basis));
-        Rgb sum(0);
-        for (std::size_t k = 0; k < max_bounces_; ++k) {
-            sum += directions_[ray].solid_angle * light_[ray * max_bounces_ + k].radiance;
-            for (std::size_t i = 0; i < kRecordTerms; ++i) {
-                record.light[k][i] += glm::vec4(sum, 0) * basis[i];
-            }
-        }
-        const double cosine = std::max(glm::dot(directions_[ray].way, record.normal), 0.0);
-        halves[(cell / rays_across + cell) % 2] += sum * static_cast<float>(cosine / std::numbers::pi);
+void RecordGatherer::find_cells() {
+    ends_.clear();
+    for (Shader& shader : shaders_) {
+        ends_.insert(ends_.end(), shader.ends.begin(), shader.ends.end());
+        shader.ends.clear();
     }
-    record.noise = glm::abs(halves[0] - halves[1]);
-    const RecordBasis reflecting = reflected_basis(record.normal);
-    for (const RecordHarmonics& light : record.light) {
-        record.reflected.push_back(sum_of(light, reflecting));
+    tbb::parallel_sort(ends_.begin(), ends_.end(), [](const End& a, const End& b) { return a.order() < b.order(); });
+    cells_.clear();
+    shaded_.clear();
+    for (std::size_t first = 0; first < ends_.size();) {
+        std::size_t last = first + 1;
+        while (last < ends_.size() && ends_[last].cell == ends_[first].cell && !ends_[first].is_own) {
+            ++last;
+        }
+        const std::size_t wanted = kShaded + (last - first) / kRaysPerShaded;
+        const std::size_t known = ends_[first].is_own ? 0 : static_cast<std::size_t>(known_->weight(ends_[first].cell));
+        const std::size_t shaded = std::min(last - first, wanted - std::min(known, wanted));
+        cells_.push_back({first, last - first, shaded_.size(), shaded});
+        for (std::size_t i = 0; i < shaded; ++i) {
+            shaded_.push_back(ends_[first + (2 * i + 1) * (last - first) / (2 * shaded)].ray);
+        }
+        first = last;
     }
 }
 
-LightRecord RecordGatherer::gather(const SurfacePoint& surface, std::size_t rays_across, std::uint32_t seed,
-                                   RenderReport& report) {
-    aim(surface, rays_across, seed);
-    shade(seed, report);
-    find_distances();
-    LightRecord record;
-    record.position = surface.position;
-    record.normal = surface.shading_normal;
-    record.along = x_;
-    record.across = y_;
-    record.radius = mean_distance();
-    find_free(record);
-    add_up(rays_across, record);
-    find_gradients(rays_across, record);
-    return record;
+/// Shades some groups, from the ray `first` on.
+void RecordGatherer::shade(std::size_t first, std::uint32_t seed, Shader& shader) {
+    const std::size_t count = std::min(kShadedAtOnce, shaded_.size() - first);
+    const std::size_t groups = (count + kGroupRays - 1) / kGroupRays;
+    shader.rays.clear();
+    shader.seeds.clear();
+    for (std::size_t i = 0; i < groups * kGroupRays; ++i) {
+        if (i % kGroupRays == 0) {
+            shader.seeds.push_back(hash(seed, static_cast<std::uint32_t>(i)));
+        }
+        Ray ray = {Vec3f(0), 0, Vec3f(0), -1};
+        if (i < count) {
+            const std::uint32_t number = shaded_[first + i];
+            ray = records_[number / rays_per_record_].rays()[number % rays_per_record_];
+        }
+        shader.rays.push_back({ray, static_cast<std::uint32_t>(i % kGroupRays), shader.seeds.back()});
+    }
+    shader.surfaces.trace_scattered(shader.rays, kGroupRays, shader.hits, shader.light);
+    shader.penumbrae.assign(groups, LightBits::kAll);
+    shader.lighting.add(shader.seeds, shader.penumbrae, {0, kGroupRays, shadow_rays_, 0}, shader.hits, shader.report);
+    const std::size_t bounces = paths_.max_bounces;
+    for (std::size_t group = 0, hit = 0; group < groups; ++group) {
+        for (; hit < shader.hits.pixel_begin[group + 1]; ++hit) {
+            const std::size_t ray = group * kGroupRays + shader.hits.sample[hit];
+            shader.light[ray * bounces + shader.surfaces.bounces_of_hits()[hit] - 1].radiance +=
+                shader.hits.radiance[hit];
+        }
+    }
+    for (std::size_t i = 0; i < count * bounces; ++i) {
+        shaded_light_[first * bounces + i] = shader.light[i].radiance;
+    }
+}
+
+/// A cell's light is the mean of that of some of its rays.
+void RecordGatherer::add(const Cell& cell) {
+    const std::size_t bounces = paths_.max_bounces;
+    const End& end = ends_[cell.first];
+    if (end.is_own || cell.shaded == 0) {
+        return;
+    }
+    std::vector<Rgb> mean(bounces, Rgb(0));
+    for (std::size_t i = 0; i < cell.shaded * bounces; ++i) {
+        mean[i % bounces] += shaded_light_[cell.first_shaded * bounces + i] / static_cast<float>(cell.shaded);
+    }
+    known_->add(end.cell, mean, static_cast<float>(cell.shaded));
+}
+
+/// Gives all rays of a cell its light.
+void RecordGatherer::spread(const Cell& cell) {
+    const std::size_t bounces = paths_.max_bounces;
+    const auto light_of = [&](std::size_t end) { return std::span(light_).subspan(ends_[end].ray * bounces, bounces); };
+    const std::span<Rgb> light = light_of(cell.first);
+    if (ends_[cell.first].is_own) {
+        std::copy_n(shaded_light_.begin() + static_cast<std::ptrdiff_t>(cell.first_shaded * bounces), bounces,
+                    light.begin());
+        return;
+    }
+    known_->look_up(ends_[cell.first].cell, light);
+    for (std::size_t end = cell.first + 1; end < cell.first + cell.count; ++end) {
+        std::ranges::copy(light, light_of(end).begin());
+    }
 }
 
 }  // namespace shlight

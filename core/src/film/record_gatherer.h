@@ -1,63 +1,90 @@
 // SPDX-License-Identifier: MIT
 //
-// Makes records: sends rays into the half space above a surface, and shades what they meet. Light there comes from the
-// lamps by Eq. 5, and light that has bounced before from records that are there already, or by paths.
+// Makes records of light: many at once, whose rays meet the same surfaces again and again. What surfaces send to them
+// is kept by cells of the world, as large as the rays are apart there, and only a few of the rays that meet a cell are
+// shaded: light there comes from the lamps by Eq. 5, and light that has bounced before from records that are there
+// already, or by paths.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <tuple>
 #include <vector>
 
+#include <tbb/enumerable_thread_specific.h>
+
+#include "film/record_rays.h"
 #include "lighting/direct_lighting.h"
+#include "shlight/parallel.h"
 #include "shlight/render_report.h"
 #include "shlight/scene.h"
 #include "surfaces/camera_surfaces.h"
+#include "surfaces/light_cells.h"
 #include "surfaces/light_records.h"
 #include "tracing/hits.h"
 
 namespace shlight {
 
-/// Neighbouring rays share shadow rays; along each side of a square of directions.
-inline constexpr std::size_t kGroupAcross = 4;
-
-/// Keeps its memory from record to record; one per thread.
 class RecordGatherer {
   public:
-    RecordGatherer(const CompiledScene& scene, const LightingScene& lighting, const PathSettings& paths, bool shadows);
+    /// cells: to which light is added. All must outlive this.
+    RecordGatherer(const CompiledScene& scene, const LightingScene& lighting, const PathSettings& paths, bool shadows,
+                   LightCells& cells);
 
-    /// A record at a surface, by rays_across² rays, a multiple of kGroupAcross; seed: of their directions. The radius
-    /// is the harmonic mean of the distances that the rays go.
-    LightRecord gather(const SurfacePoint& surface, std::size_t rays_across, std::uint32_t seed, RenderReport& report);
+    /// A record at each surface by rays_across² rays; seed: of them all. Throws RenderCancelled once stopped.
+    std::vector<LightRecord> gather(std::span<const SurfacePoint> surfaces, std::size_t rays_across, std::uint32_t seed,
+                                    int threads, const Stopped& stopped, RenderReport& report);
 
   private:
-    /// A ray's direction, and what its radiance counts, by its solid angle.
-    struct Direction {
-        Vec3d way;
-        float solid_angle;
+    /// The end of a ray.
+    struct End {
+        LightCells::Key cell;
+        std::uint32_t ray;
+        bool is_own;  // no other ray ends in this cell
+
+        auto order() const { return std::tuple(cell.place, cell.kind, ray); }
+    };
+    /// Rays that end in the same cell, on surfaces of the same kind.
+    struct Cell {
+        std::size_t first, count;          // of the ends
+        std::size_t first_shaded, shaded;  // of the rays that are shaded
+    };
+    /// Shades rays; one per thread.
+    struct Shader {
+        explicit Shader(const RecordGatherer& gatherer);
+
+        CameraSurfaces surfaces;
+        DirectLighting lighting;
+        Hits hits;
+        std::vector<CameraRay> rays;
+        std::vector<RayLight> light;  // by ray and number of bounces
+        std::vector<std::uint32_t> seeds, penumbrae;
+        std::vector<RayHit> met;
+        std::vector<End> ends;
+        RenderReport report;
     };
 
-    void aim(const SurfacePoint& surface, std::size_t rays_across, std::uint32_t seed);
-    void shade(std::uint32_t seed, RenderReport& report);
-    double mean_distance() const;
-    void find_distances();
-    void find_free(LightRecord& record) const;
-    /// How what a white diffuse surface reflects changes along the axes of the world, by the light of cells of the
-    /// grid of directions that are side by side (Ward & Heckbert 1992, "Irradiance Gradients").
-    void find_gradients(std::size_t rays_across, LightRecord& record) const;
-    void add_up(std::size_t rays_across, LightRecord& record) const;
+    void meet(std::size_t record, Shader& shader);
+    void find_cells();
+    void shade(std::size_t first, std::uint32_t seed, Shader& shader);
+    void add(const Cell& cell);
+    void spread(const Cell& cell);
 
-    std::uint32_t max_bounces_;
+    const CompiledScene* scene_;
+    const LightingScene* lighting_;
+    PathSettings paths_;
+    LightCells* known_;
     std::uint32_t shadow_rays_;  // of each ray's hits, for each light
-    CameraSurfaces surfaces_;
-    DirectLighting lighting_;
-    Hits hits_;
-    std::vector<CameraRay> rays_;
-    std::vector<Direction> directions_;
-    std::vector<double> distances_;     // that the rays go
-    std::vector<std::size_t> by_cell_;  // the ray of each cell of the grid, row by row
-    Vec3d x_, y_;                       // of the frame of directions
-    std::vector<RayLight> light_;       // by ray and number of bounces
-    std::vector<std::uint32_t> seeds_;  // of groups of rays
-    std::vector<std::uint32_t> penumbrae_;
+    std::size_t rays_per_record_ = 0;
+    std::vector<RecordRays> records_;
+    std::vector<double> distances_;  // that rays go
+    std::vector<End> ends_;
+    std::vector<Cell> cells_;
+    std::vector<std::uint32_t> shaded_;  // rays
+    std::vector<Rgb> shaded_light_;      // of each, by number of bounces
+    std::vector<Rgb> light_;             // of all rays likewise
+    tbb::enumerable_thread_specific<Shader> shaders_;
 };
 
 }  // namespace shlight

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <glm/exponential.hpp>
@@ -30,7 +31,7 @@ constexpr int kLeastRefined = 4;
 constexpr int kLeastWhole = 16;
 /// Rays of a record along each side of the square of its directions, at the usual noise threshold; with less noise to
 /// be seen it takes more.
-constexpr double kRaysAcross = 16;
+constexpr double kRaysAcross = 20;
 constexpr double kUsualThreshold = 0.01;
 /// The threshold of a picture whose own is less.
 constexpr double kLeastThreshold = 1e-3;
@@ -47,7 +48,7 @@ Rgb color_of(std::span<const float> image, std::size_t pixel) {
 
 std::size_t rays_across(double threshold) {
     const double least = kRaysAcross * std::sqrt(std::max(kUsualThreshold / threshold, 1.0));
-    return kGroupAcross * static_cast<std::size_t>(std::ceil(least / kGroupAcross));
+    return static_cast<std::size_t>(std::ceil(least));
 }
 
 }  // namespace
@@ -55,16 +56,18 @@ std::size_t rays_across(double threshold) {
 RecordPlacement::Finder::Finder(const Picture& picture, const PathSettings& paths)
     : surfaces(*picture.scene, picture.lighting.materials, paths), hits(picture.lighting.lobe_stride) {}
 
-RecordPlacement::RecordPlacement(const Picture& picture, std::span<const float> image, LightRecords& records)
+RecordPlacement::RecordPlacement(const Picture& picture, std::span<const float> image, StoredLight& stored)
     : picture_(&picture),
       image_(image),
-      records_(&records),
-      paths_(picture.paths(&records)),
+      stored_(&stored),
+      paths_(picture.paths(&stored)),
       threshold_(std::max(picture.settings.sampling.noise_threshold, kLeastThreshold)),
-      finders_([this] { return Finder(*picture_, paths_); }),
-      gatherers_([this] {
-          return RecordGatherer(*picture_->scene, picture_->lighting, paths_, picture_->settings.shadow_rays > 0);
-      }) {
+      finders_([this] {
+          PathSettings seen = paths_;
+          seen.scatters = false;
+          return Finder(*picture_, seen);
+      }),
+      gatherer_(*picture.scene, picture.lighting, paths_, picture.settings.shadow_rays > 0, stored.cells) {
     double sum = 0;
     for (std::size_t i = 0; i < image.size() / 4; ++i) {
         sum += mean(color_of(image, i), Rgb(1));
@@ -89,21 +92,16 @@ RenderReport RecordPlacement::add_grid(const Grid& grid, const Stopped& stopped)
         pixels += row.pixels;
     }
     error_ = std::sqrt(errors / static_cast<double>(std::max<std::size_t>(pixels, 1)));
-    const std::size_t first = records_->all().size();
-    std::vector<LightRecord> made(wanted.size());
-    std::vector<RenderReport> reports(wanted.size());
-    parallel_for(wanted.size(), threads, [&](std::size_t i) {
-        end_if(stopped);
-        const auto seed = hash(picture_->settings.seed, static_cast<std::uint32_t>(first + i));
-        made[i] = gatherers_.local().gather(wanted[i].point, rays_across(threshold_), seed, reports[i]);
-        made[i].limit_radius(kReach * made[i].radius, kLeastSteps * wanted[i].to_next, kMostSteps * wanted[i].to_next);
-    });
+    std::vector<SurfacePoint> surfaces;
+    std::ranges::transform(wanted, std::back_inserter(surfaces), &Wanted::point);
+    const auto seed = hash(picture_->settings.seed, static_cast<std::uint32_t>(stored_->records.all().size()));
     RenderReport report;
+    auto made = gatherer_.gather(surfaces, rays_across(threshold_), seed, threads, stopped, report);
     for (std::size_t i = 0; i < made.size(); ++i) {
-        records_->add(std::move(made[i]));
-        report += reports[i];
+        made[i].limit_radius(kReach * made[i].radius, kLeastSteps * wanted[i].to_next, kMostSteps * wanted[i].to_next);
+        stored_->records.add(std::move(made[i]));
     }
-    records_->index();
+    stored_->records.index();
     shrink_wrong(wanted);
     return report;
 }
@@ -142,7 +140,7 @@ void RecordPlacement::look_at(const CameraSurfaces::Surface& surface, int step, 
     if (albedo == Rgb(0)) {
         return;
     }
-    const RecordedLight found = records_->look_up(surface.point, paths_.max_bounces - surface.bounces);
+    const RecordedLight found = stored_->records.look_up(surface.point, paths_.max_bounces - surface.bounces);
     const Rgb all = color_of(image_, finder.pixels[surface.ray]) + albedo * found.mean;
     const Rgb scale = glm::sqrt(all * all + static_cast<float>(least_square_)) / glm::max(albedo, Rgb(1e-6F));
     const double error = mean(found.variance + found.noise, scale * scale);
@@ -158,14 +156,14 @@ void RecordPlacement::look_at(const CameraSurfaces::Surface& surface, int step, 
 }
 
 void RecordPlacement::shrink_wrong(std::span<const Wanted> wanted) {
-    const std::span<const LightRecord> all = records_->all();
+    const std::span<const LightRecord> all = stored_->records.all();
     const std::size_t first = all.size() - wanted.size();
     std::vector<double> radius(all.size());
     std::transform(all.begin(), all.end(), radius.begin(), [](const LightRecord& record) { return record.radius; });
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         const LightRecord& own = all[first + i];
         const RecordBasis basis = reflected_basis(own.normal);
-        records_->for_each_near(wanted[i].point, [&](std::size_t number, const LightRecord& other, float) {
+        stored_->records.for_each_near(wanted[i].point, [&](std::size_t number, const LightRecord& other, float) {
             const Rgb difference = sum_of(other.light.back(), basis) - own.reflected.back();
             const Rgb noise = own.noise * own.noise + other.noise * other.noise;
             const Rgb allowed = wanted[i].allowed * wanted[i].allowed + kNoiseVariances * noise;
@@ -176,9 +174,9 @@ void RecordPlacement::shrink_wrong(std::span<const Wanted> wanted) {
         });
     }
     for (std::size_t i = 0; i < radius.size(); ++i) {
-        records_->shrink(i, radius[i]);
+        stored_->records.shrink(i, radius[i]);
     }
-    records_->index();
+    stored_->records.index();
 }
 
 }  // namespace shlight

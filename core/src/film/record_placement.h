@@ -17,14 +17,14 @@
 #include "film/record_gatherer.h"
 #include "shlight/parallel.h"
 #include "shlight/render_report.h"
-#include "surfaces/light_records.h"
+#include "surfaces/stored_light.h"
 
 namespace shlight {
 
 class RecordPlacement {
   public:
-    /// image: of direct light, RGBA, or black. picture, records: must outlive this.
-    RecordPlacement(const Picture& picture, std::span<const float> image, LightRecords& records);
+    /// image: of direct light, RGBA, or black. picture, stored: must outlive this.
+    RecordPlacement(const Picture& picture, std::span<const float> image, StoredLight& stored);
 
     /// Makes the records of a grid of pixels, after those of all wider ones. Returns what that took. Throws
     /// RenderCancelled once stopped.
@@ -64,13 +64,13 @@ class RecordPlacement {
 
     const Picture* picture_;
     std::span<const float> image_;
-    LightRecords* records_;
+    StoredLight* stored_;
     PathSettings paths_;
     double threshold_;
     double least_square_ = 0;  // 0.01 r̄², r̄ the mean of the image
     double error_ = 0;
     tbb::enumerable_thread_specific<Finder> finders_;
-    tbb::enumerable_thread_specific<RecordGatherer> gatherers_;
+    RecordGatherer gatherer_;
 };
 
 }  // namespace shlight

@@ -2,6 +2,7 @@
 #include "film/refinement.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -29,6 +30,8 @@ constexpr double kMostNoise = 4;
 constexpr int kNoiseReach = 2;
 /// The number of camera rays from which on a pixel's own rays tell more of its noise than those around it do.
 constexpr double kOwnRays = 64;
+/// An excess that is smaller counts as none.
+constexpr double kLeastExcess = 1e-30;
 /// Threshold ÷ estimated error of a pixel that has enough: few of the errors, which scatter, then exceed the threshold.
 constexpr double kMargin = 1.3;
 /// The squared error by shadow rays falls with this power of their number: 1 behind many thin things, 1.5 at one edge.
@@ -94,7 +97,12 @@ void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std
     const double all = samples(level);
     const Vec3d old = before > 0 ? color(image, i) : Vec3d(0);
     const Vec3d difference = before > 0 ? old - sums.radiance / static_cast<double>(sums.rays) : Vec3d(0);
-    const Vec3d radiance = (before * old + sums.radiance) / all;
+    // Three quarters of the limit have been added to it since the last level.
+    const Vec3d excess(state.excess);
+    const double more =
+        std::min(0.75 * double{pixel.most_by_path} / std::max(mean(glm::abs(excess)), kLeastExcess), 1.0);
+    const Vec3d added = excess != Vec3d(0) ? more * excess : Vec3d(0);
+    const Vec3d radiance = (before * old + sums.radiance + added) / all;
     const double alpha = before > 0 ? (before * image[4 * i + 3] + sums.opacity) / all : sums.opacity / all;
     for (int channel = 0; channel < 3; ++channel) {
         image[4 * i + static_cast<std::size_t>(channel)] = static_cast<float>(radiance[channel]);
@@ -109,7 +117,8 @@ void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std
     }
     LightBits visibility = state.visibility;
     visibility |= sums.visibility;
-    state = {Rgb(variance), 0, static_cast<std::int16_t>(level), round_, visibility, false};
+    const Rgb still_above(excess - added + sums.excess);
+    state = {Rgb(variance), still_above, 0, static_cast<std::int16_t>(level), round_, visibility, false};
 }
 
 Refinement::ShadowNoise Refinement::merged_noise(std::size_t pixel, int level, const PixelSums& sums, const Vec3d& old,
@@ -193,7 +202,7 @@ Refinement::Row Refinement::next_of(int row, std::span<const float> image) {
         found.rays_left += level.next > state ? samples(std::max(level.enough, level.next)) - kept_samples(from) : 0;
         if (level.next > state) {
             RefinementGroup& group = group_of(from, level.next, found.groups);
-            group.pixels.push_back({column, row, penumbrae(column, row)});
+            group.pixels.push_back({column, row, penumbrae(column, row), most_by_path(column, row, level.next, image)});
             group.gains.push_back(level.error + level.supposed_error);
         }
     }
@@ -263,6 +272,20 @@ Refinement::Wanted Refinement::wanted(int column, int row, std::span<const float
     }
     const int next = enough > level || supposed > good_enough_ ? std::min(level + 1, most_level_) : enough;
     return {enough, is_one_enough ? 0 : next, squared_error(variance, level), supposed};
+}
+
+float Refinement::most_by_path(int column, int row, int level, std::span<const float> image) const {
+    if (!limits_paths_) {
+        return std::numeric_limits<float>::infinity();
+    }
+    std::array<double, (2 * kNoiseReach + 1) * (2 * kNoiseReach + 1)> around = {};
+    std::size_t count = 0;
+    for_each_around(column, row, kNoiseReach,
+                    [&](std::size_t i) { around[count++] = mean(glm::abs(color(image, i))); });
+    const auto middle = around.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(around.begin(), middle, around.begin() + static_cast<std::ptrdiff_t>(count));
+    const double own = mean(glm::abs(color(image, index(column, row))));
+    return static_cast<float>(samples(level) * std::max(*middle, own));
 }
 
 bool Refinement::is_touched(int column, int row) const {

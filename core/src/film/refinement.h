@@ -42,6 +42,8 @@ class Refinement {
     double noise() const { return noise_; }
     /// Likewise: camera rays that are left until every pixel has enough, as far as that is known.
     double rays_left() const { return rays_left_; }
+    /// Pixels have a Pixel::most_by_path from now on.
+    void limit_paths() { limits_paths_ = true; }
     std::uint32_t samples(int level) const { return level < 0 ? 0 : first_samples_ << (2 * level); }
     /// Whether the first level is one ray through the middle, in whose place later ones come: of sets of four and more
     /// that are spread evenly none has a point in the middle, where one alone must be.
@@ -74,6 +76,7 @@ class Refinement {
     };
     struct State {
         Rgb variance{0};  // of one ray, without the noise of its shadow rays
+        Rgb excess{0};    // see PixelSums
         float error = 0;  // squared; as it was when a round looked at it
         std::int16_t level = -1;
         std::uint16_t merged = 0;  // the number of the round
@@ -117,6 +120,8 @@ class Refinement {
     double error_between(int column, int row, std::span<const float> image) const;
     /// Squared error that shadow rays leave at a level, by those of the pixel and of all around it.
     double shadow_error(int column, int row, int level) const;
+    /// So much that a ray brings its pixel, at this level, no more light than there is around it already.
+    float most_by_path(int column, int row, int level, std::span<const float> image) const;
     double neighbours_variance(int column, int row, const Vec3d& scale, std::span<const float> image) const;
 
     int width_, height_;
@@ -124,6 +129,7 @@ class Refinement {
     int least_level_ = 0, most_level_ = 0;
     double good_enough_;  // squared
     bool depth_of_field_;
+    bool limits_paths_ = false;
     double least_square_ = 0;  // 0.01 r̄²
     double noise_ = 0, rays_left_ = 0;
     std::uint16_t round_ = 0;           // which merges since the last call of next_round() belong to

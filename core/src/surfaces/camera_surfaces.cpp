@@ -15,37 +15,7 @@ namespace {
 /// Normals that differ by less are those of floats and doubles of the same surface.
 constexpr double kSameNormal = 1e-6;
 
-bool is_bumped(const SurfaceLobe& lobe) {
-    const auto* diffuse = std::get_if<DiffuseShape>(&lobe.shape);
-    return diffuse != nullptr && diffuse->kind == Diffuse::bumped;
-}
-
-/// The view of a lobe; a bump's is the smooth normal. A translucent lobe has none, and looks the same from everywhere.
-const Vec3d& view_of(const CameraSurfaces::Surface& surface, const SurfaceLobe& lobe) {
-    return lobe.translucent ? lobe.normal : is_bumped(lobe) ? surface.point.shading_normal : surface.towards_viewer;
-}
-
-/// The point as the side has it from which a lobe takes light.
-SurfacePoint lit_side(const SurfacePoint& point, const SurfaceLobe& lobe) {
-    const double sign = lobe.translucent ? -1 : 1;
-    return {point.position, sign * point.geometric_normal, sign * point.shading_normal, point.error, point.material};
-}
-
-/// A direction of the shading frame's xz-plane.
-Vec3d in_frame(double cosine) {
-    return {std::sqrt(1 - cosine * cosine), 0, cosine};
-}
-
-PathKind kind_of(const LobeShape& lobe) {
-    return is_glossy(lobe) ? PathKind::glossy : PathKind::diffuse;
-}
-
 constexpr float kLeastWidth = kLeastRoughness * kLeastRoughness;
-
-/// Share of what a path meets that reaches the camera, below which it is not always followed.
-constexpr float kSurelyFollowed = 0.25F;
-/// Seeds of directions through interfaces, beside those of lobes.
-constexpr std::uint32_t kRefractionSeed = 0x80000000U;
 
 }  // namespace
 
@@ -117,7 +87,14 @@ void CameraSurfaces::meet(const Sink& sink) {
         if (segment.sees_lights()) {
             add_lamps(viewer, segment, parts_[i], distance, sink);
         }
-        surfaces_.push_back({segment, met_[i], point, -direction, distance, 0, 0});
+        Surface end = {segment, met_[i], point, -direction, distance, 0, 0};
+        if (segment.is_broad && is_shaded(segment) && add_cell(end, sink)) {
+            add_emission(end, sink);
+        } else if (segment.if_exact > 0) {
+            end.throughput *= segment.if_exact;
+            end.if_exact = 1;
+            surfaces_.push_back(end);
+        }
     }
     segments_.clear();
     parts_.clear();
@@ -159,7 +136,7 @@ void CameraSurfaces::add_lamps(LampViewer viewer, const Segment& segment, const 
     const bool is_mirrored = segment.source == RaySource::mirror;
     by_group_.assign(sink.apart.empty() ? 0 : sink.apart.parts().count - kLightKinds, Rgb(0));
     const Rgb radiance = lamps.radiance(part, surface, by_group_);
-    sink.of(segment, segment.bounces - (is_mirrored ? 1 : 0)).radiance += segment.throughput * radiance;
+    sink.add(segment, segment.bounces - (is_mirrored ? 1 : 0), segment.throughput * radiance);
     for (std::size_t group = 0; group < by_group_.size(); ++group) {
         sink.apart.add(segment.ray / sink.rays_per_pixel, segment.met(LightKind::emission),
                        static_cast<std::uint32_t>(group), segment.throughput * by_group_[group]);
@@ -169,7 +146,7 @@ void CameraSurfaces::add_lamps(LampViewer viewer, const Segment& segment, const 
 void CameraSurfaces::add_light(const Segment& segment, LightKind kind, std::uint32_t group, const Rgb& radiance,
                                const Sink& sink) {
     const bool is_mirrored = segment.source == RaySource::mirror;
-    sink.of(segment, segment.bounces - (is_mirrored ? 1 : 0)).radiance += radiance;
+    sink.add(segment, segment.bounces - (is_mirrored ? 1 : 0), radiance);
     if (!sink.apart.empty() && radiance != Rgb(0)) {  // groups without light have no part
         sink.apart.add(segment.ray / sink.rays_per_pixel, segment.met(kind), group, radiance);
     }
@@ -269,143 +246,6 @@ void CameraSurfaces::pass_on(std::size_t first, const Sink& sink) {
     }
 }
 
-void CameraSurfaces::reflect(const Surface& surface, const Sink& sink) {
-    if (const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get();
-        shader != nullptr && settings_.max_bounces > 0) {
-        for (std::uint32_t i = 0; i < shader->refractions.size(); ++i) {
-            refract(surface, shader->refractions[i], i);
-        }
-    }
-    const auto lobes = materials_[surface.point.material].lobes();
-    const bool goes_on = surface.bounces < settings_.max_bounces;
-    if (!goes_on && std::none_of(lobes.begin(), lobes.end(), [](const Lobe& lobe) { return is_mirror(lobe.shape); })) {
-        return;
-    }
-    find_lobes(surface, lobes_);
-    taken_.assign(lobes_.size(), 0);
-    for (std::size_t i = 0; i < lobes_.size(); ++i) {
-        const SurfaceLobe& lobe = lobes_[i];
-        if (lobe.weight == Rgb(0) || taken_[i] != 0) {
-            continue;
-        }
-        if (is_mirror(lobe.shape)) {
-            reflect_mirror(surface, lobe, sink);
-        } else if (goes_on && (is_glossy(lobe.shape) ? surface.glossy < settings_.glossy_bounces
-                                                     : !add_recorded(surface, lobe, sink))) {
-            scatter(surface, i);
-        }
-    }
-}
-
-/// A bend of the normal away from the viewer's side of the surface counts as none.
-void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t number) {
-    const Rgb weight = surface.throughput * color(surface, refraction.weight);
-    if (weight == Rgb(0)) {
-        return;
-    }
-    const Vec3d bent = normal(surface, refraction.normal);
-    const Vec3d& flat = surface.point.geometric_normal;
-    const ShadingFrame frame =
-        shading_frame(surface.point.position, glm::dot(bent, flat) > 0 ? bent : flat, surface.towards_viewer);
-    const Vec3d view = in_frame(view_cosine(frame.z, surface.towards_viewer));
-    const InterfaceReflection reflection = !refraction.reflects ? InterfaceReflection::none
-                                           : scene_->placed().is_back(surface.hit, surface.towards_viewer)
-                                               ? InterfaceReflection::drawn
-                                               : InterfaceReflection::apart;
-    const CameraRay& ray = rays_[surface.ray];
-    const std::uint32_t seed = hash(ray.seed, hash(surface.bounces, kRefractionSeed + number));
-    const InterfaceRay sampled =
-        sample_interface(double{width(surface, refraction.alpha)}, ior(surface, refraction), view,
-                         SobolSequence(seed).point(ray.sample), reflection, sobol_beyond(ray.sample, seed).x);
-    const Vec3d way = frame.to_world(sampled.way);
-    if (!(sampled.weight > 0) || (glm::dot(way, flat) > 0) != sampled.reflected) {
-        return;
-    }
-    const Vec3d origin =
-        sampled.reflected ? surface.point.off_surface() : surface.point.position - surface.point.error * flat;
-    const Ray next = {Vec3f(origin), 0, Vec3f(way)};
-    const PathKind by = sampled.reflected ? PathKind::glossy : PathKind::transmission;
-    // No other light comes this way.
-    start(surface.next(RaySource::mirror, by, !sampled.reflected, weight * static_cast<float>(sampled.weight), next),
-          next);
-}
-
-void CameraSurfaces::reflect_mirror(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
-    const ShadingFrame frame = shading_frame(surface.point.position, lobe.normal, surface.towards_viewer);
-    const double cosine = view_cosine(frame.z, surface.towards_viewer);
-    const Vec3d direction = frame.to_world(mirrored(in_frame(cosine)));
-    const Ray ray = {Vec3f(surface.point.off_surface()), 0, Vec3f(direction)};
-    const double let_in = scene_->placed().terminator(surface.hit, surface.point).let_in(cosine);
-    const auto albedo = static_cast<float>(let_in * lobe_albedo(lobe.shape, cosine));
-    const Segment segment =
-        surface.next(RaySource::mirror, PathKind::glossy, false, surface.throughput * lobe.weight * albedo, ray);
-    add_lamps(LampViewer::unblocked_mirror, segment, ray, std::nullopt, sink);
-    start(segment, ray);
-    ++mirror_count_;
-}
-
-/// A path that brings little is drawn seldom, and counts the more.
-void CameraSurfaces::scatter(const Surface& surface, std::size_t first) {
-    const SurfaceLobe& own = lobes_[first];
-    const LobeShape sampled = sampled_shape(own.shape);
-    const ShadingFrame frame = frame_of(surface, own);
-    const Vec3d view = in_frame(view_cosine(frame.z, view_of(surface, own)));
-    const CameraRay& ray = rays_[surface.ray];
-    const std::uint32_t seed = hash(ray.seed, hash(surface.bounces, static_cast<std::uint32_t>(first)));
-    const Vec3d way = sample_lobe(sampled, view, SobolSequence(seed).point(ray.sample));
-    Rgb weight(0);
-    for (std::size_t i = first; i < lobes_.size(); ++i) {
-        const SurfaceLobe& lobe = lobes_[i];
-        if (lobe.normal == own.normal && !is_mirror(lobe.shape) && sampled_shape(lobe.shape) == sampled &&
-            is_bumped(lobe) == is_bumped(own)) {
-            taken_[i] = 1;
-            weight += lobe.weight * static_cast<float>(lobe_value(lobe.shape, way, view));
-        }
-    }
-    const Vec3d direction = frame.to_world(way);
-    const double density = lobe_density(sampled, view, way);
-    const SurfacePoint point = lit_side(surface.point, own);
-    if (!(density > 0) || glm::dot(point.geometric_normal, direction) <= 0) {
-        return;
-    }
-    const Terminator terminator = scene_->placed().terminator(surface.hit, point);
-    weight *= surface.throughput * static_cast<float>(terminator.let_in(way.z) / density);
-    const float share = (std::abs(weight.x) + std::abs(weight.y) + std::abs(weight.z)) / 3;
-    const float probability = std::min(share / kSurelyFollowed, 1.0F);
-    if (sobol_beyond(ray.sample, seed).x >= double{probability}) {
-        return;
-    }
-    const Vec3d lift = terminator.lifts() ? terminator.share(direction) * terminator.lift : Vec3d(0);
-    const Ray scattered = {Vec3f(point.off_surface() + lift), 0, Vec3f(direction)};
-    start(surface.next(RaySource::scattered, kind_of(own.shape), own.translucent, weight / probability, scattered),
-          scattered);
-}
-
-bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
-    if (settings_.records == nullptr) {
-        return false;
-    }
-    // Light that the camera sees is not told apart by bounces.
-    const std::uint32_t most = settings_.max_bounces - surface.bounces;
-    const std::uint32_t first = sink.parts > 1 ? 0 : most - 1;
-    recorded_.assign(most - first, Rgb(0));
-    if (!settings_.records->reflect(lit_side(surface.point, lobe), lobe.normal, first, recorded_)) {
-        return false;
-    }
-    const float cosine = view_cosine(lobe.normal, view_of(surface, lobe));
-    const Rgb weight = surface.throughput * lobe.weight * static_cast<float>(lobe_albedo(lobe.shape, cosine));
-    Rgb fewer(0);
-    for (std::uint32_t i = 0; i < recorded_.size(); ++i) {
-        sink.of(surface, surface.bounces + first + 1 + i).radiance += weight * (recorded_[i] - fewer);
-        fewer = recorded_[i];
-    }
-    if (!sink.apart.empty()) {
-        sink.apart.add(surface.ray / sink.rays_per_pixel, indirect_kind(surface.kind_after(PathKind::diffuse)),
-                       weight * recorded_.back());
-    }
-    return true;
-}
-
 ShadingFrame CameraSurfaces::frame_of(const Surface& surface, const SurfaceLobe& lobe) const {
     return shading_frame(surface.point.position, lobe.normal, view_of(surface, lobe));
 }
@@ -413,6 +253,7 @@ ShadingFrame CameraSurfaces::frame_of(const Surface& surface, const SurfaceLobe&
 void CameraSurfaces::add_hits(const Sink& sink, Hits& hits) {
     hits.clear();
     bounces_of_hits_.clear();
+    drawn_hits_.clear();
     order_.resize(surfaces_.size());
     std::iota(order_.begin(), order_.end(), 0U);
     std::erase_if(order_, [&](std::uint32_t i) { return !is_shaded(surfaces_[i]); });
@@ -425,6 +266,7 @@ void CameraSurfaces::add_hits(const Sink& sink, Hits& hits) {
         for (; next != order_.end() && surfaces_[*next].ray < end; ++next) {
             add_hit(surfaces_[*next], hits);
             bounces_of_hits_.resize(hits.size(), surfaces_[*next].bounces);
+            drawn_hits_.resize(hits.size(), surfaces_[*next].is_drawn ? 1 : 0);
         }
         hits.end_pixel();
     }
@@ -496,11 +338,11 @@ void CameraSurfaces::add_hit(const Surface& surface, Hits& hits) {
             continue;
         }
         const SurfaceLobe& own = lobes_[first];
-        const bool bumped = is_bumped(own);
+        const bool bumped = own.is_bumped();
         weights_.assign(lobes_.size(), Rgb(0));
         widths_.assign(lobes_.size(), 1);
         for (std::size_t i = first; i < lobes_.size(); ++i) {
-            if (lobes_[i].normal == own.normal && is_bumped(lobes_[i]) == bumped) {
+            if (lobes_[i].normal == own.normal && lobes_[i].is_bumped() == bumped) {
                 taken_[i] = 1;
                 if (!is_mirror(lobes_[i].shape)) {
                     weights_[i] = surface.throughput * lobes_[i].weight;
@@ -510,7 +352,7 @@ void CameraSurfaces::add_hit(const Surface& surface, Hits& hits) {
         }
         if (std::ranges::any_of(weights_, [](const Rgb& weight) { return weight != Rgb(0); })) {
             const ShadingFrame frame = frame_of(surface, own);
-            const SurfacePoint point = lit_side(surface.point, own);
+            const SurfacePoint point = own.lit_side(surface.point);
             hits.add(point, scene_->placed().terminator(surface.hit, point), frame,
                      view_cosine(frame.z, view_of(surface, own)), weights_, widths_, rays_[surface.ray].sample,
                      surface.kind);

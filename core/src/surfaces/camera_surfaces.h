@@ -17,8 +17,8 @@
 #include "lobes/material_lobes.h"
 #include "shlight/scene.h"
 #include "shlight/types.h"
-#include "surfaces/light_records.h"
 #include "surfaces/placed_meshes.h"
+#include "surfaces/stored_light.h"
 #include "surfaces/visible_lamps.h"
 #include "tracing/hits.h"
 
@@ -45,7 +45,8 @@ struct PathSettings {
     /// Surfaces between the light and the one whose light reaches the camera; 0: direct light.
     std::uint32_t max_bounces;
     std::uint32_t glossy_bounces, transmission_bounces;  ///< of these, at most
-    const LightRecords* records = nullptr;               ///< outlive this; null: none
+    const StoredLight* stored = nullptr;                 ///< outlives this; null: none
+    bool scatters = true;                                ///< false: paths end at lobes whose direct light counts apart
 };
 
 /// Camera rays beside another, as far away as its share of the pixel is wide.
@@ -56,6 +57,7 @@ struct NeighbourRays {
 /// Light of a camera ray that is met along its path: emission of surfaces, lamps, and the background, also in mirrors.
 struct RayLight {
     Rgb radiance{0};
+    Rgb drawn{0};  ///< the part that has come by directions that were drawn
     float opacity = 0;
 };
 
@@ -68,6 +70,16 @@ struct SurfaceLobe {
     bool translucent = false;      ///< see ShadedLobe
 
     Vec3d viewers_normal() const { return translucent ? -normal : normal; }
+    bool is_bumped() const {
+        const auto* diffuse = std::get_if<DiffuseShape>(&shape);
+        return diffuse != nullptr && diffuse->kind == Diffuse::bumped;
+    }
+    /// The point as the side has it from which it takes light.
+    SurfacePoint lit_side(const SurfacePoint& point) const {
+        const double sign = translucent ? -1 : 1;
+        return {point.position, sign * point.geometric_normal, sign * point.shading_normal, point.error,
+                point.material};
+    }
 };
 
 /// Keeps its memory from batch to batch; one per thread.
@@ -98,6 +110,9 @@ class CameraSurfaces {
         Rgb throughput;  ///< share of its light that reaches the camera
         Ray whole;       ///< from where the camera ray, or the reflecting surface's, begins
         std::uint32_t glossy = 0, transmissions = 0;  ///< of the bounces
+        bool is_drawn = false;                        ///< by a lobe, or one before, from which directions are drawn
+        bool is_broad = false;                        ///< its end need not be seen sharply
+        float if_exact = 1;  ///< factor of the throughput where the light of its end has to be found
 
         bool sees_lights() const { return source != RaySource::scattered; }
         /// The path on from its end. by: what sends it there; through: to the other side.
@@ -110,7 +125,15 @@ class CameraSurfaces {
                     share,
                     way,
                     glossy + (by == PathKind::glossy ? 1 : 0),
-                    transmissions + (through ? 1 : 0)};
+                    transmissions + (through ? 1 : 0),
+                    is_drawn};
+        }
+        Segment drawn(bool rough, bool broad, float exact) const {
+            Segment own = *this;
+            own.is_drawn = is_drawn || rough;
+            own.is_broad = broad;
+            own.if_exact = exact;
+            return own;
         }
         PathKind kind_after(PathKind by) const { return bounces > 0 ? kind : by; }
         /// The kind of light that it meets. camera: of what the camera itself sees.
@@ -139,6 +162,8 @@ class CameraSurfaces {
     std::span<const Surface> surfaces() const { return surfaces_; }
     /// Segment::bounces of each hit.
     std::span<const std::uint32_t> bounces_of_hits() const { return bounces_of_hits_; }
+    /// Likewise Segment::is_drawn.
+    std::span<const std::uint8_t> drawn_hits() const { return drawn_hits_; }
     void find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const;
     /// The share of light that the viewer gets of what is behind interfaces, by Fresnel's law at their smooth surface.
     Rgb refracted(const Surface& surface) const;
@@ -157,9 +182,23 @@ class CameraSurfaces {
         std::size_t rays_per_pixel;
         std::uint32_t first_bounces, parts;  // light that has bounced so often, or oftener, is in the first part
 
-        RayLight& of(const Segment& segment, std::uint32_t bounces) const {
-            const std::uint32_t part = parts > 1 ? bounces - first_bounces : 0;
-            return light[segment.ray * parts + part];
+        void add(const Segment& segment, std::uint32_t bounces, const Rgb& radiance) const {
+            RayLight& own = light[segment.ray * parts + (parts > 1 ? bounces - first_bounces : 0)];
+            own.radiance += radiance;
+            own.drawn += segment.is_drawn ? radiance : Rgb(0);
+        }
+    };
+    /// How many paths share what a lobe reflects.
+    struct Division {
+        static constexpr std::uint32_t kExactPaths = 4;
+
+        std::uint32_t paths, path;  // of them, this one
+        std::uint32_t exact;        // one of those that go on where light has to be found
+        bool is_broad;
+
+        float if_exact() const {
+            const std::uint32_t every = std::max(paths / kExactPaths, 1U);
+            return path % every == exact % every ? static_cast<float>(every) : 0.0F;
         }
     };
     void trace(const Segment& beginning, std::span<const NeighbourRays> neighbours, const Sink& sink, Hits& hits);
@@ -185,16 +224,29 @@ class CameraSurfaces {
     /// The paths that go on from a surface by its lobes.
     void reflect(const Surface& surface, const Sink& sink);
     void reflect_mirror(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink);
-    /// A path by the lobe with this number, and those of the same distribution.
+    /// Paths by the lobe with this number, and those of the same distribution.
     void scatter(const Surface& surface, std::size_t first);
+    void scatter(const Surface& surface, std::size_t first, std::uint32_t seed, const Division& division);
+    /// Adds the light of the cell that a segment ends in. Returns false where it is unknown.
+    bool add_cell(const Surface& end, const Sink& sink);
     /// Adds what a diffuse lobe reflects of light that has bounced. Returns false where no records are near.
     bool add_recorded(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink);
+    /// The view of a lobe; a bump's is the smooth normal. A translucent lobe has none, and looks the same from
+    /// everywhere.
+    static const Vec3d& view_of(const Surface& surface, const SurfaceLobe& lobe) {
+        return lobe.translucent   ? lobe.normal
+               : lobe.is_bumped() ? surface.point.shading_normal
+                                  : surface.towards_viewer;
+    }
     ShadingFrame frame_of(const Surface& surface, const SurfaceLobe& lobe) const;
     void add_hits(const Sink& sink, Hits& hits);
     void add_hit(const Surface& surface, Hits& hits);
     /// A path through an interface, or inside back from it.
     void refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t number);
     double ior(const Surface& surface, const ShadedRefraction& refraction) const;
+    void refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t seed,
+                 const Division& division);
+    Division division(const Surface& surface, double share, double width, std::uint32_t seed) const;
     /// Unit. result: see ShadedLobe::normal.
     Vec3d normal(const Surface& surface, const std::optional<std::uint32_t>& result) const;
     Vec3d vector(const Surface& surface, std::uint32_t result) const;
@@ -217,6 +269,7 @@ class CameraSurfaces {
     std::vector<ShadedPlace> places_;
     std::vector<float> results_;
     ShaderProgram::Registers registers_;
+    std::vector<std::uint8_t> drawn_hits_;
     std::vector<std::uint8_t> taken_;  // by lobe: whether a hit or a path has it
     std::vector<Rgb> weights_;
     std::vector<float> widths_;

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+//
+// Where the paths of CameraSurfaces go on.
+#include <algorithm>
+#include <cmath>
+
+#include "lobes/refraction.h"
+#include "shlight/sampling.h"
+#include "surfaces/camera_surfaces.h"
+
+namespace shlight {
+namespace {
+
+/// A direction of the shading frame's xz-plane.
+Vec3d in_frame(double cosine) {
+    return {std::sqrt(1 - cosine * cosine), 0, cosine};
+}
+
+PathKind kind_of(const LobeShape& lobe) {
+    return is_glossy(lobe) ? PathKind::glossy : PathKind::diffuse;
+}
+
+double average(const Rgb& color) {
+    return double{std::abs(color.x) + std::abs(color.y) + std::abs(color.z)} / 3;
+}
+
+/// Share of what a path meets that reaches the camera, below which it is not always followed.
+constexpr float kSurelyFollowed = 0.25F;
+constexpr float kSurelyFollowedToCells = 0.02F;
+/// Paths that share what a lobe reflects, at most, and what each then brings, at least.
+constexpr std::uint32_t kMostPaths = 8;
+constexpr double kShareOfPath = 0.04;
+/// Width of an interface whose rays differ by their side alone.
+constexpr double kSmooth = 1e-3;
+/// Seeds of directions through interfaces, beside those of lobes.
+constexpr std::uint32_t kRefractionSeed = 0x80000000U;
+
+}  // namespace
+
+void CameraSurfaces::reflect(const Surface& surface, const Sink& sink) {
+    if (const SurfaceShader* shader = scene_->materials()[surface.point.material].shader.get();
+        shader != nullptr && settings_.max_bounces > 0) {
+        for (std::uint32_t i = 0; i < shader->refractions.size(); ++i) {
+            refract(surface, shader->refractions[i], i);
+        }
+    }
+    const auto lobes = materials_[surface.point.material].lobes();
+    const bool goes_on = surface.bounces < settings_.max_bounces;
+    if (!goes_on && std::none_of(lobes.begin(), lobes.end(), [](const Lobe& lobe) { return is_mirror(lobe.shape); })) {
+        return;
+    }
+    find_lobes(surface, lobes_);
+    taken_.assign(lobes_.size(), 0);
+    for (std::size_t i = 0; i < lobes_.size(); ++i) {
+        const SurfaceLobe& lobe = lobes_[i];
+        if (lobe.weight == Rgb(0) || taken_[i] != 0) {
+            continue;
+        }
+        if (is_mirror(lobe.shape)) {
+            reflect_mirror(surface, lobe, sink);
+        } else if (goes_on && settings_.scatters &&
+                   (is_glossy(lobe.shape) ? surface.glossy < settings_.glossy_bounces
+                                          : !add_recorded(surface, lobe, sink))) {
+            scatter(surface, i);
+        }
+    }
+}
+
+void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t number) {
+    const double share = average(surface.throughput * color(surface, refraction.weight));
+    if (share > 0) {
+        const std::uint32_t seed = hash(rays_[surface.ray].seed, hash(surface.bounces, kRefractionSeed + number));
+        Division paths = division(surface, share, double{width(surface, refraction.alpha)}, seed);
+        for (; paths.path < paths.paths; ++paths.path) {
+            refract(surface, refraction, seed, paths);
+        }
+    }
+}
+
+/// A bend of the normal away from the viewer's side of the surface counts as none.
+void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t seed,
+                             const Division& division) {
+    const Vec3d bent = normal(surface, refraction.normal);
+    const Vec3d& flat = surface.point.geometric_normal;
+    const ShadingFrame frame =
+        shading_frame(surface.point.position, glm::dot(bent, flat) > 0 ? bent : flat, surface.towards_viewer);
+    const Vec3d view = in_frame(view_cosine(frame.z, surface.towards_viewer));
+    const InterfaceReflection reflection = !refraction.reflects ? InterfaceReflection::none
+                                           : scene_->placed().is_back(surface.hit, surface.towards_viewer)
+                                               ? InterfaceReflection::drawn
+                                               : InterfaceReflection::apart;
+    const double alpha = width(surface, refraction.alpha);
+    const std::uint32_t sample = rays_[surface.ray].sample * division.paths + division.path;
+    const InterfaceRay sampled =
+        sample_interface(alpha, ior(surface, refraction), view, SobolSequence(seed).point(sample), reflection,
+                         sobol_beyond(sample, seed).x);
+    const Vec3d way = frame.to_world(sampled.way);
+    if (!(sampled.weight > 0) || (glm::dot(way, flat) > 0) != sampled.reflected) {
+        return;
+    }
+    const Vec3d origin =
+        sampled.reflected ? surface.point.off_surface() : surface.point.position - surface.point.error * flat;
+    const Ray next = {Vec3f(origin), 0, Vec3f(way)};
+    const PathKind by = sampled.reflected ? PathKind::glossy : PathKind::transmission;
+    const Rgb weight = surface.throughput * color(surface, refraction.weight);
+    // No other light comes this way.
+    start(surface
+              .next(RaySource::mirror, by, !sampled.reflected,
+                    weight * static_cast<float>(sampled.weight / division.paths), next)
+              .drawn(alpha > kSmooth, division.is_broad, division.if_exact()),
+          next);
+}
+
+void CameraSurfaces::reflect_mirror(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
+    const ShadingFrame frame = shading_frame(surface.point.position, lobe.normal, surface.towards_viewer);
+    const double cosine = view_cosine(frame.z, surface.towards_viewer);
+    const Vec3d direction = frame.to_world(mirrored(in_frame(cosine)));
+    const Ray ray = {Vec3f(surface.point.off_surface()), 0, Vec3f(direction)};
+    const double let_in = scene_->placed().terminator(surface.hit, surface.point).let_in(cosine);
+    const auto albedo = static_cast<float>(let_in * lobe_albedo(lobe.shape, cosine));
+    const Segment segment =
+        surface.next(RaySource::mirror, PathKind::glossy, false, surface.throughput * lobe.weight * albedo, ray);
+    add_lamps(LampViewer::unblocked_mirror, segment, ray, std::nullopt, sink);
+    start(segment, ray);
+    ++mirror_count_;
+}
+
+/// A path is cheap where the light at its end is known: a broad lobe has several.
+CameraSurfaces::Division CameraSurfaces::division(const Surface& surface, double share, double width,
+                                                  std::uint32_t seed) const {
+    const bool is_broad = settings_.stored != nullptr && width >= LightCells::kLeastWidth;
+    std::uint32_t paths = 1;
+    while (is_broad && surface.bounces == 0 && paths < kMostPaths && paths * kShareOfPath < share) {
+        paths *= 2;
+    }
+    return {paths, 0, hash(seed, rays_[surface.ray].sample) % paths, is_broad};
+}
+
+void CameraSurfaces::scatter(const Surface& surface, std::size_t first) {
+    const SurfaceLobe& own = lobes_[first];
+    const double share = average(surface.throughput * own.weight) *
+                         lobe_albedo(own.shape, view_cosine(own.normal, view_of(surface, own)));
+    const std::uint32_t seed = hash(rays_[surface.ray].seed, hash(surface.bounces, static_cast<std::uint32_t>(first)));
+    Division paths = division(surface, share, is_glossy(own.shape) ? lobe_width(own.shape) : 1, seed);
+    for (; paths.path < paths.paths; ++paths.path) {
+        scatter(surface, first, seed, paths);
+    }
+}
+
+/// A path that brings little is drawn seldom, and counts the more.
+void CameraSurfaces::scatter(const Surface& surface, std::size_t first, std::uint32_t seed, const Division& division) {
+    const SurfaceLobe& own = lobes_[first];
+    const LobeShape sampled = sampled_shape(own.shape);
+    const ShadingFrame frame = frame_of(surface, own);
+    const Vec3d view = in_frame(view_cosine(frame.z, view_of(surface, own)));
+    const std::uint32_t number = rays_[surface.ray].sample * division.paths + division.path;
+    const Vec3d way = sample_lobe(sampled, view, SobolSequence(seed).point(number));
+    Rgb weight(0);
+    for (std::size_t i = first; i < lobes_.size(); ++i) {
+        const SurfaceLobe& lobe = lobes_[i];
+        if (lobe.normal == own.normal && !is_mirror(lobe.shape) && sampled_shape(lobe.shape) == sampled &&
+            lobe.is_bumped() == own.is_bumped()) {
+            taken_[i] = 1;
+            weight += lobe.weight * static_cast<float>(lobe_value(lobe.shape, way, view));
+        }
+    }
+    const Vec3d direction = frame.to_world(way);
+    const double density = lobe_density(sampled, view, way);
+    const SurfacePoint point = own.lit_side(surface.point);
+    if (!(density > 0) || glm::dot(point.geometric_normal, direction) <= 0) {
+        return;
+    }
+    const Terminator terminator = scene_->placed().terminator(surface.hit, point);
+    weight *= surface.throughput * static_cast<float>(terminator.let_in(way.z) / density / division.paths);
+    const auto share = static_cast<float>(average(weight));
+    const float probability = std::min(share / (division.is_broad ? kSurelyFollowedToCells : kSurelyFollowed), 1.0F);
+    if (sobol_beyond(number, seed).x >= double{probability}) {
+        return;
+    }
+    const Vec3d lift = terminator.lifts() ? terminator.share(direction) * terminator.lift : Vec3d(0);
+    const Ray scattered = {Vec3f(point.off_surface() + lift), 0, Vec3f(direction)};
+    start(surface.next(RaySource::scattered, kind_of(own.shape), own.translucent, weight / probability, scattered)
+              .drawn(true, division.is_broad, division.if_exact()),
+          scattered);
+}
+
+bool CameraSurfaces::add_cell(const Surface& end, const Sink& sink) {
+    LightCells::Key key;
+    if (!settings_.stored->cells.find(end.point, end.whole.direction, end.distance, key)) {
+        return false;
+    }
+    recorded_.resize(settings_.max_bounces - end.bounces + 1);
+    if (!settings_.stored->cells.look_up(key, recorded_)) {
+        return false;
+    }
+    Rgb sum(0);
+    for (std::uint32_t k = 0; k < recorded_.size(); ++k) {
+        sum += recorded_[k];
+        sink.add(end, end.bounces + k, end.throughput * recorded_[k]);
+    }
+    if (!sink.apart.empty()) {
+        sink.apart.add(end.ray / sink.rays_per_pixel, indirect_kind(end.kind), end.throughput * sum);
+    }
+    return true;
+}
+
+bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
+    if (settings_.stored == nullptr) {
+        return false;
+    }
+    // Light that the camera sees is not told apart by bounces.
+    const std::uint32_t most = settings_.max_bounces - surface.bounces;
+    const std::uint32_t first = sink.parts > 1 ? 0 : most - 1;
+    recorded_.assign(most - first, Rgb(0));
+    if (!settings_.stored->records.reflect(lobe.lit_side(surface.point), lobe.normal, first, recorded_)) {
+        return false;
+    }
+    const float cosine = view_cosine(lobe.normal, view_of(surface, lobe));
+    const Rgb weight = surface.throughput * lobe.weight * static_cast<float>(lobe_albedo(lobe.shape, cosine));
+    Rgb fewer(0);
+    for (std::uint32_t i = 0; i < recorded_.size(); ++i) {
+        sink.add(surface, surface.bounces + first + 1 + i, weight * (recorded_[i] - fewer));
+        fewer = recorded_[i];
+    }
+    if (!sink.apart.empty()) {
+        sink.apart.add(surface.ray / sink.rays_per_pixel, indirect_kind(surface.kind_after(PathKind::diffuse)),
+                       weight * recorded_.back());
+    }
+    return true;
+}
+
+}  // namespace shlight
