@@ -97,6 +97,52 @@ TEST(RenderShadows, NothingLeaksIntoAClosedRoom) {
     }
 }
 
+TEST(RenderShadows, TheSkyIsDrawnWhereAWindowShowsIt) {
+    // A room's floor under an even sky that one window shows: a polygon's form factor. Where rays do not know the
+    // window, 16 in each pixel are wrong by 163 % (one radiance) and 128 % (a picture).
+    const std::vector<Vec3d> window = {{-0.6, 2, 1}, {0.6, 2, 1}, {0.6, 2, 2}, {-0.6, 2, 2}};
+    Scene scene;
+    scene.add_mesh(cuboid({-2, -2, -0.1}, {2, 2, 0}));
+    scene.add_mesh(cuboid({-2, -2, 3}, {2, 2, 3.1}));
+    for (const double side : {-2.05, 2.05}) {
+        scene.add_mesh(cuboid({side - 0.05, -2, 0}, {side + 0.05, 2, 3}));
+    }
+    scene.add_mesh(cuboid({-2, -2.1, 0}, {2, -2, 3}));
+    // Walls without thickness about the window.
+    scene.add_mesh(cuboid({-2, 2, 0}, {2, 2, 1}));
+    scene.add_mesh(cuboid({-2, 2, 2}, {2, 2, 3}));
+    scene.add_mesh(cuboid({-2, 2, 1}, {-0.6, 2, 2}));
+    scene.add_mesh(cuboid({0.6, 2, 1}, {2, 2, 2}));
+    LatLong sky{std::vector<Rgb>(64 * 32, Rgb(1)), 64, 32};
+    std::fill(sky.pixels.begin() + 64 * 16, sky.pixels.end(), Rgb(0.5F));  // the window shows nothing of it
+    constexpr int kAcross = 64;
+    RenderSettings settings = with_rays(4, 4);
+    settings.sampling = PixelSampling::fixed(4);
+    for (const bool picture : {false, true}) {
+        scene.set_environment(picture ? Environment(sky) : Environment(Rgb(1)));
+        settings.threads = 1;
+        const Image image = render_image(scene, camera_above(1.5, 2.5), kAcross, kAcross, settings);
+        double all = 0;
+        double expected = 0;
+        double squares = 0;
+        for (int row = 0; row < kAcross; ++row) {
+            for (int column = 0; column < kAcross; ++column) {
+                const double truth = 0.5 * form_factor(floor_point(column, row, kAcross, 1.5), window);
+                const double off = image.red(column, row) / truth - 1;
+                all += image.red(column, row);
+                expected += truth;
+                squares += off * off / (kAcross * kAcross);
+            }
+        }
+        EXPECT_LT(std::sqrt(squares), 0.3) << "picture " << picture;
+        EXPECT_NEAR(all / expected, 1, 0.01) << "picture " << picture;
+        for (const int threads : {2, 5}) {
+            settings.threads = threads;
+            EXPECT_EQ(render_image(scene, camera_above(1.5, 2.5), kAcross, kAcross, settings).values, image.values);
+        }
+    }
+}
+
 /// A half plane x < 0 at height 1, one of two instances, between the floor and a rectangle light at height 2.
 struct HalfPlane {
     std::vector<Vec3d> light = {{-0.4, -0.5, 2}, {-0.4, 0.5, 2}, {0.6, 0.5, 2}, {0.6, -0.5, 2}};

@@ -173,10 +173,16 @@ Vec3d RadianceSampler::sample(const glm::dvec2& point) const {
     return {sine * std::cos(longitude), sine * std::sin(longitude), z};
 }
 
-double RadianceSampler::density(const Vec3d& direction) const {
+glm::ivec2 RadianceSampler::cell_of(const Vec3d& direction) const {
     const glm::dvec2 place = texel_of(direction, width_, height_);
-    const int row = std::clamp(static_cast<int>(std::floor(place.y + 0.5)), 0, height_);
-    const int column = (static_cast<int>(std::floor(place.x - 0.5)) + width_) % width_;
+    return {(static_cast<int>(std::floor(place.x - 0.5)) + width_) % width_,
+            std::clamp(static_cast<int>(std::floor(place.y + 0.5)), 0, height_)};
+}
+
+double RadianceSampler::density(const Vec3d& direction) const {
+    const glm::ivec2 found = cell_of(direction);
+    const int column = found.x;
+    const int row = found.y;
     const double in_cell = cells_[cell(column, row)] - (column > 0 ? cells_[cell(column - 1, row)] : 0.0F);
     return double{row_densities_[static_cast<std::size_t>(row)]} * in_cell;
 }

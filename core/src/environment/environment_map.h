@@ -68,11 +68,17 @@ class RadianceSampler {
     /// Precondition: a picture that is not black. Throws RenderCancelled once it is to end.
     explicit RadianceSampler(const LatLong& picture, const Stopped& stopped = {});
 
+    int width() const { return width_; }
+    int height() const { return height_; }
+    /// Column and row of a direction's cell.
+    glm::ivec2 cell_of(const Vec3d& direction) const;
     Vec3d sample(const glm::dvec2& point) const;
     /// Per solid angle.
     double density(const Vec3d& direction) const;
     /// height + 1 rows: how densely one draws if all of its cells have the same share.
     const float* row_densities() const { return row_densities_.data(); }
+    /// The share of all rows up to each one, it included.
+    const double* rows() const { return rows_.data(); }
     /// (height + 1) × width: the share of the cells of a row up to each one, it included.
     const float* cells() const { return cells_.data(); }
 

@@ -21,6 +21,10 @@ constexpr std::size_t kLeastSamples = 64;
 constexpr std::uint32_t kLeastForPlane = 8;
 /// Largest radiance of a camera ray; squares of brighter ones would overflow in float.
 constexpr double kBrightestRay = 1e18;
+/// Share of pixels without a ray that sees the environment, from which on rays to it are guided.
+constexpr double kLeastHidden = 1.0 / 8;
+/// Spacings of a guide's grid across the picture.
+constexpr double kGuideSteps = 16;
 /// Seed of points of the aperture.
 constexpr std::uint32_t kLensSeed = 0xFFFFFFFCU;
 
@@ -163,6 +167,16 @@ double Picture::pixel_width(double distance) const {
                          Vec3d(other.origin) + distance * Vec3d(other.direction));
 }
 
+void Picture::guide(const Pilot& pilot) {
+    const auto least = kLeastHidden * static_cast<double>(pilot.hidden + pilot.seen);
+    if (pilot.seen > 0 && static_cast<double>(pilot.hidden) >= least) {
+        lighting.sky_guide = std::make_unique<SkyGuide>(
+            *lighting.environment, scene->rays(), static_cast<std::uint32_t>(settings.transparent_bounces),
+            Vec3d(ray(0.5 * width, 0.5 * height, {}).origin),
+            [this](double distance) { return pixel_width(distance) * width / kGuideSteps; });
+    }
+}
+
 PathSettings Picture::paths(const StoredLight* stored) const {
     return {static_cast<std::uint32_t>(settings.transparent_bounces),
             stored != nullptr ? static_cast<std::uint32_t>(settings.max_bounces) : 0,
@@ -206,15 +220,20 @@ void PixelBatch::write_middles(std::span<const Pixel> pixels, std::span<float> v
     surface_passes_.write_middles(surfaces_, rays_.size(), values);
 }
 
-double PixelBatch::reflected(std::span<const Pixel> pixels, std::uint32_t shadow_rays) {
+Pilot PixelBatch::pilot(std::span<const Pixel> pixels, std::uint32_t shadow_rays) {
     const SampleRange first = {0, 1, shadow_rays, 0};
     trace_camera_rays(pixels, first);
     lighting_.add(pixel_seeds_, penumbrae_, first, hits_, report_);
-    double sum = 0;
+    Pilot pilot;
     for (const Rgb& radiance : hits_.radiance) {
-        sum += glm::dot(glm::abs(radiance), Rgb(1.0F / 3));
+        pilot.reflected += glm::dot(glm::abs(radiance), Rgb(1.0F / 3));
     }
-    return sum;
+    const std::uint32_t environment = LightBits::bit(picture_->lighting.extended.size());
+    for (const LightBits& visibility : hits_.visibility) {
+        pilot.hidden += (visibility.hidden & ~visibility.seen & environment) != 0 ? 1 : 0;
+        pilot.seen += (visibility.seen & environment) != 0 ? 1 : 0;
+    }
+    return pilot;
 }
 
 /// The pixel's point and this are one of four dimensions. A preview's is the one before the first, the sequence's last.

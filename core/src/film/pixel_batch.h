@@ -52,6 +52,12 @@ struct PixelSums {
              float ray_opacity, bool is_early);
 };
 
+/// This is known from the first camera rays of some pixels.
+struct Pilot {
+    double reflected = 0;              ///< brightness of what surfaces reflect
+    std::size_t hidden = 0, seen = 0;  ///< pixels from which the environment is hidden, or seen at all
+};
+
 /// Everything that the batches of one picture share and only read.
 struct Picture {
     /// Throws RenderCancelled once it is to end.
@@ -64,6 +70,8 @@ struct Picture {
     Ray ray(double column, double row, const std::optional<glm::dvec2>& lens) const;
     /// The width of a pixel in the picture's middle, at a distance [m].
     double pixel_width(double distance) const;
+    /// Finds where the environment is open if it is hidden from much of the picture.
+    void guide(const Pilot& pilot);
     /// Settings of paths that bounce; without stored light it is direct.
     PathSettings paths(const StoredLight* stored) const;
 
@@ -100,8 +108,7 @@ class PixelBatch {
     void follow(const PathSettings& paths) { surfaces_.follow(paths); }
     /// Passes of the ray through the middle of each pixel. values: pixels × layout.stride().
     void write_middles(std::span<const Pixel> pixels, std::span<float> values);
-    /// Brightness of what surfaces reflect in these pixels, by their first camera ray, summed up.
-    double reflected(std::span<const Pixel> pixels, std::uint32_t shadow_rays);
+    Pilot pilot(std::span<const Pixel> pixels, std::uint32_t shadow_rays);
     /// The report of the work since the last call.
     RenderReport take_report() { return std::exchange(report_, {}); }
 

@@ -60,9 +60,7 @@ std::vector<glm::dvec2> pixel_points(const Refinement& refinement, std::uint32_t
     return points;
 }
 
-/// How wrong a pixel may be by one light. The errors of many lights have no common sign, so that those of n add up to
-/// √n of them.
-double light_error(const Picture& picture, std::uint32_t shadow_rays, const Stopped& stopped) {
+Pilot pilot_of(const Picture& picture, std::uint32_t shadow_rays, const Stopped& stopped) {
     std::vector<Pixel> grid;
     const int step = std::max({kPilotStep, picture.width / kMostPilotPixels, picture.height / kMostPilotPixels});
     for (int row = std::min(step, picture.height) / 2; row < picture.height; row += step) {
@@ -70,16 +68,26 @@ double light_error(const Picture& picture, std::uint32_t shadow_rays, const Stop
             grid.push_back({column, row});
         }
     }
-    std::vector<double> sums((grid.size() + kPilotBatch - 1) / kPilotBatch);
+    std::vector<Pilot> sums((grid.size() + kPilotBatch - 1) / kPilotBatch);
     const auto add_up = [&](std::size_t i) {
         end_if(stopped);
         const std::size_t first = i * kPilotBatch;
         const std::size_t size = std::min(kPilotBatch, grid.size() - first);
-        sums[i] =
-            PixelBatch(picture, picture.paths(nullptr)).reflected(std::span(grid).subspan(first, size), shadow_rays);
+        sums[i] = PixelBatch(picture, picture.paths(nullptr)).pilot(std::span(grid).subspan(first, size), shadow_rays);
     };
     parallel_for(sums.size(), picture.settings.threads, add_up);
-    const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) / static_cast<double>(grid.size());
+    Pilot all;
+    for (const Pilot& part : sums) {
+        all.reflected += part.reflected / static_cast<double>(grid.size());
+        all.hidden += part.hidden;
+        all.seen += part.seen;
+    }
+    return all;
+}
+
+/// How wrong a pixel may be by one light. The errors of many lights have no common sign, so that those of n add up to
+/// √n of them.
+double light_error(const Picture& picture, double mean) {
     const double count = static_cast<double>(std::max<std::size_t>(picture.lighting.extended.size(), 1));
     return picture.settings.tolerance * kShareOfMean * mean / std::sqrt(count);
 }
@@ -147,7 +155,9 @@ RenderReport render(const CompiledScene& scene, const Camera& camera, int width,
                         refinement.has_preview() ? 1 : 0, caller.stopped);
         const auto shadow_rays = std::min(static_cast<std::uint32_t>(settings.shadow_rays), kLeastShadowRays);
         picture->lighting.face_tolerance = kFaceShare * settings.sampling.noise_threshold;
-        picture->lighting.light_error = light_error(*picture, shadow_rays, caller.stopped);
+        const Pilot pilot = pilot_of(*picture, shadow_rays, caller.stopped);
+        picture->lighting.light_error = light_error(*picture, pilot.reflected);
+        picture->guide(pilot);
         std::fill(image.begin(), image.end(), 0.0F);
         std::fill(passes.begin(), passes.end(), 0.0F);
         renderer.emplace(*picture, std::move(refinement), image, passes, watch, start);

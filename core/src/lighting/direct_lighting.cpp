@@ -42,7 +42,7 @@ DirectLighting::DirectLighting(const LightingScene& scene, const SceneRays& rays
       shadowed_deltas_(tracer_, scene.materials, scene.lobe_stride),
       shared_(tracer_, budget_, scene.materials, scene.lobe_stride, parts),
       shadowed_(tracer_, budget_, scene.materials, scene.lobe_stride),
-      environment_target_(*scene.environment) {}
+      environment_target_(*scene.environment, scene.sky_guide.get()) {}
 
 void DirectLighting::add(std::span<const std::uint32_t> seeds, std::span<const std::uint32_t> penumbrae,
                          const SampleRange& samples, Hits& hits, RenderReport& report) {

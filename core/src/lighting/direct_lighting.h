@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "lighting/shadowed_deltas.h"
 #include "lighting/shadowed_light.h"
 #include "lighting/shared_shadow_lights.h"
+#include "lighting/sky_guide.h"
 #include "lighting/unshadowed_light.h"
 #include "lighting/unshadowed_radiance.h"
 #include "lights/delta_lights.h"
@@ -48,6 +50,7 @@ struct LightingScene {
     double tolerance;
     double light_error = 0;                                 ///< see UnshadowedRadiance::compute
     double face_tolerance = 0;                              ///< likewise
+    std::unique_ptr<const SkyGuide> sky_guide;              ///< may be null
     std::optional<EnvironmentShading> environment_shading;  ///< none: the environment is black
 };
 

@@ -37,8 +37,8 @@ class PixelPoints {
         }
     }
 
-    /// The points of one of these camera rays. A set's are drawn where they are asked for first.
-    Square of(std::size_t set, std::uint32_t sample) {
+    /// The points of one of these camera rays, if each takes so many. A set's are drawn where they are asked for first.
+    Square of(std::size_t set, std::uint32_t sample, std::uint32_t rays) {
         Set& own = sets_[set];
         if (!own.drawn) {
             own.u.resize(count_ + kRaysAtOnce);
@@ -47,7 +47,7 @@ class PixelPoints {
                                count_, own.u.data(), own.v.data());
             own.drawn = true;
         }
-        const std::size_t before = std::size_t{sample - first_} * samples_.shadow_rays;
+        const std::size_t before = std::size_t{sample - first_} * rays;
         return {&own.u[before], &own.v[before]};
     }
 

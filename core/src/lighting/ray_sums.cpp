@@ -28,4 +28,8 @@ Rgb deviation(const Rgb& unblocked, const Vec3d& share, const RaySums& sums) {
     return unblocked * Rgb(glm::sqrt(glm::max(share * (1.0 - share), Vec3d(0)) * one_over_rays));
 }
 
+Rgb deviation(const RaySums& sums, double rays) {
+    return Rgb(glm::sqrt(glm::max(sums.seen_squares - sums.seen * sums.seen / rays, Vec3d(0))));
+}
+
 }  // namespace shlight

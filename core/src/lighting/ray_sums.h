@@ -50,4 +50,7 @@ Vec3d quotient(const Vec3d& a, const Vec3d& b);
 /// pixel see, since the few of one hit often agree by chance.
 Rgb deviation(const Rgb& unblocked, const Vec3d& share, const RaySums& sums);
 
+/// Standard deviation of the sum of what so many rays of a hit see, by themselves.
+Rgb deviation(const RaySums& sums, double rays);
+
 }  // namespace shlight

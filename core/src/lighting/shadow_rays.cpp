@@ -5,6 +5,12 @@
 #include <array>
 
 namespace shlight {
+namespace {
+
+/// A diffuse lobe has so many times fewer rays of its own than the guided light has.
+constexpr std::uint32_t kGuidedRays = 4;
+
+}  // namespace
 
 ShadowRays::ShadowRays(ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride)
     : tracer_(&tracer), lobe_stride_(lobe_stride), lobes_(materials), points_(0), terminator_(materials) {
@@ -29,7 +35,7 @@ void ShadowRays::start(ShadowTarget& target, const Hits& hits, const LitHits& li
     lit_ = &lit;
     rays_.clear();
     runs_.assign(lit.hit.size(), {});
-    takes_set_.assign(lit.hit.size() * set_stride_, 0);
+    set_share_.assign(lit.hit.size() * set_stride_, 0);
 }
 
 void ShadowRays::draw(const LitRange& pixel, const SampleRange& samples, std::uint32_t seed) {
@@ -73,15 +79,18 @@ void ShadowRays::draw_hit(std::size_t lit_index, std::uint32_t rays) {
     const std::size_t hit = lit_->hit[lit_index];
     const Material& material = materials_[hits_->material[hit]];
     runs_[lit_index].begin = rays_.size();
-    if (target_->draws()) {
-        const PixelPoints::Square square = points_.of(0, hits_->sample[hit]);
+    runs_[lit_index].guided = target_->is_guided();
+    if (target_->draws() || target_->is_guided()) {
+        const PixelPoints::Square square = points_.of(0, hits_->sample[hit], rays);
         target_->draw(square.u, square.v, rays, rays_);
     }
     for (std::size_t set = 0; set < material.lobes.size(); ++set) {
         const LobeShape shape = set_shape(hit, set);
         if (shines(lit_index, material, set) && target_->may_meet(shape, hits_->view(hit))) {
-            takes_set(lit_index, set) = 1;
-            draw_set(lit_index, set, shape, rays);
+            const std::uint32_t own =
+                target_->is_guided() && !is_glossy(shape) ? std::max(rays / kGuidedRays, 1U) : rays;
+            set_share(lit_index, set) = static_cast<float>(own) / static_cast<float>(rays);
+            draw_set(lit_index, set, shape, own);
         }
     }
     terminator_.lift(*hits_, hit, *target_, runs_[lit_index].begin, rays_);
@@ -90,7 +99,7 @@ void ShadowRays::draw_hit(std::size_t lit_index, std::uint32_t rays) {
 
 void ShadowRays::draw_set(std::size_t lit_index, std::size_t set, const LobeShape& shape, std::uint32_t rays) {
     const std::size_t hit = lit_->hit[lit_index];
-    const PixelPoints::Square square = points_.of(1 + set, hits_->sample[hit]);
+    const PixelPoints::Square square = points_.of(1 + set, hits_->sample[hit], rays);
     alignas(64) std::array<float, kRaysAtOnce> x, y, z;  // all are written before they are read
     const RayVectors directions = {x.data(), y.data(), z.data()};
     for (std::uint32_t first = 0; first < rays; first += kRaysAtOnce) {
@@ -106,6 +115,12 @@ LightBits ShadowRays::visibility(const LitRange& pixel, std::size_t light) const
         bits.add(light, rays_.visible[ray]);
     }
     return bits;
+}
+
+bool ShadowRays::is_guided(const LitRange& pixel) const {
+    const auto first = runs_.begin() + static_cast<std::ptrdiff_t>(pixel.begin);
+    return std::any_of(first, first + static_cast<std::ptrdiff_t>(pixel.size()),
+                       [](const Run& run) { return run.guided; });
 }
 
 void ShadowRays::gather(std::size_t lit_index) {
@@ -126,13 +141,15 @@ void ShadowRays::weigh(std::span<const LitRange> pixels) {
         }
     }
     target_->find_radiance(wanted_, rays_);
+    target_->guide(wanted_, rays_);
 }
 
 void ShadowRays::add_densities(std::size_t lit_index) {
     const std::size_t hit = lit_->hit[lit_index];
     bool gathered = false;
     for (std::size_t set = 0; set < materials_[hits_->material[hit]].lobes.size(); ++set) {
-        if (takes_set(lit_index, set) == 0) {
+        const float share = set_share(lit_index, set);
+        if (share == 0) {
             continue;
         }
         if (!gathered) {
@@ -142,19 +159,19 @@ void ShadowRays::add_densities(std::size_t lit_index) {
         weighed_.weigh(set_shape(hit, set), hits_->frame[hit], hits_->view(hit), true);
         for (std::size_t i = 0; i < weighed_.size(); ++i) {
             const std::size_t ray = weighed_.number(i);
-            lobe_density_[ray] += rays_.drawn[ray].hidden_layer ? 0.0F : weighed_.density(i);
+            lobe_density_[ray] += rays_.drawn[ray].hidden_layer ? 0.0F : share * weighed_.density(i);
         }
     }
 }
 
 ShadowRays::Sums ShadowRays::sum(std::size_t lit_index, std::size_t lobe, bool split) {
     const std::size_t hit = lit_->hit[lit_index];
+    const LobeShape shape = lobes_[hits_->material[hit]].shape(lobe, hits_->widths(hit)[lobe]);
     gather(lit_index);
-    weighed_.weigh(lobes_[hits_->material[hit]].shape(lobe, hits_->widths(hit)[lobe]), hits_->frame[hit],
-                   hits_->view(hit), false);
+    weighed_.weigh(shape, hits_->frame[hit], hits_->view(hit), false);
     const bool is_grey = rays_.color.empty() && tracer_->is_opaque() && !hits_->terminator[hit].dims();
     GreySums grey;
-    Sums sums;
+    Sums sums = {{}, {}, weighed_.size(), runs_[lit_index].guided && !is_glossy(shape)};
     for (std::size_t i = 0; i < weighed_.size(); ++i) {
         const std::size_t ray = weighed_.number(i);
         const DrawnRay& drawn = rays_.drawn[ray];

@@ -43,6 +43,10 @@ class ShadowRays {
     /// Sums for the light without its bright spots, and for the spots.
     struct Sums {
         RaySums smooth, spots;
+        std::size_t rays = 0;
+        /// Whether most rays go where the light is open and few are the lobe's own, so that the sums tell little of
+        /// what nothing would block.
+        bool guided = false;
     };
 
     ShadowRays(ShadowTracer& tracer, std::span<const MaterialLobes> materials, std::size_t lobe_stride);
@@ -56,6 +60,8 @@ class ShadowRays {
 
     /// Whether rays of a pixel see the light, which has this number, and whether any does not.
     LightBits visibility(const LitRange& pixel, std::size_t light) const;
+    /// Whether rays of a pixel's hits go where the light is open, as a guide knows.
+    bool is_guided(const LitRange& pixel) const;
     /// Weighs the rays of the pixels whose sums are asked for.
     void weigh(std::span<const LitRange> pixels);
     /// lit_index: of LitHits; split: or else all is in Sums::smooth.
@@ -70,6 +76,7 @@ class ShadowRays {
     /// The rays of a hit.
     struct Run {
         std::size_t begin = 0, end = 0;
+        bool guided = false;
     };
 
     void draw_hit(std::size_t lit_index, std::uint32_t rays);
@@ -80,9 +87,8 @@ class ShadowRays {
     /// A hit's rays, in weighed_.
     void gather(std::size_t lit_index);
     void add_densities(std::size_t lit_index);
-    std::uint8_t& takes_set(std::size_t lit_index, std::size_t set) {
-        return takes_set_[lit_index * set_stride_ + set];
-    }
+    /// Rays of a set ÷ those that the light draws.
+    float& set_share(std::size_t lit_index, std::size_t set) { return set_share_[lit_index * set_stride_ + set]; }
 
     ShadowTracer* tracer_;
     std::size_t lobe_stride_;
@@ -96,10 +102,10 @@ class ShadowRays {
     PixelPoints points_;
     DrawnRays rays_;
     TerminatorRays terminator_;
-    std::vector<Run> runs_;                // by lit hit
-    std::vector<std::uint8_t> takes_set_;  // lit hits × set_stride
-    std::vector<float> lobe_density_;      // of rays, summed up over the sets of lobes
-    std::vector<std::size_t> wanted_;      // rays to weigh
+    std::vector<Run> runs_;            // by lit hit
+    std::vector<float> set_share_;     // lit hits × set_stride
+    std::vector<float> lobe_density_;  // of rays, summed up over the sets of lobes
+    std::vector<std::size_t> wanted_;  // rays to weigh
     WeighedRays weighed_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 
 #include "environment/map_lookup.h"
 
@@ -23,6 +24,10 @@ const glm::dvec2 kEvenSteps(0.7548776662466927, 0.5698402909980532);
 constexpr std::size_t kLookedUpAtOnce = 256;
 static_assert(kLookedUpAtOnce % kLookupLanes == 0);
 
+/// Hits share a guided density within this part of its grid's spacing, if the cosine of their normals is larger.
+constexpr double kReach = 0.25;
+constexpr double kSameDensity = 0.95;
+
 const ProfileView kEven;
 
 /// Elements are written before they are read.
@@ -40,6 +45,7 @@ void DrawnRays::clear() {
     visible.clear();
     color.clear();
     spot_color.clear();
+    guided.clear();
 }
 
 bool LightTarget::add(const Hits& hits, std::size_t hit) {
@@ -207,6 +213,14 @@ void LightTarget::follow(const MeshLight& mesh, ShadowTracer& tracer, DrawnRays&
 
 void EnvironmentTarget::aim(const Hits& hits, std::size_t hit, std::size_t, bool) {
     const ShadingFrame& frame = hits.frame[hit];
+    frame_ = &frame;
+    const bool is_near = glm::distance(frame.origin, position_) < reach_ && glm::dot(frame.z, normal_) > kSameDensity;
+    if (guide_ != nullptr && !is_near) {
+        position_ = frame.origin;
+        normal_ = frame.z;
+        reach_ = kReach * guide_->spacing(position_);
+        is_guided_ = guide_->find(frame, hits.shadow_origin[hit], density_);
+    }
     start_.emplace(frame, hits.shadow_origin[hit], Vec3d(0));
     if (const EnvironmentMap* map = environment_->map()) {
         to_map_ = {map->to_map(frame.x), map->to_map(frame.y), map->to_map(frame.z)};
@@ -215,20 +229,29 @@ void EnvironmentTarget::aim(const Hits& hits, std::size_t hit, std::size_t, bool
 
 void EnvironmentTarget::draw(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) {
     for (std::uint32_t i = 0; i < count; ++i) {
-        push(environment_->map()->sampler.sample({u[i], v[i]}) * to_map_, rays);
+        if (is_guided_) {
+            const SkyGuide::Sample sample = guide_->sample(density_, u[i], v[i]);
+            push(frame_->to_local(sample.direction), sample.factor, rays);
+        } else {
+            push(environment_->map()->sampler.sample({u[i], v[i]}) * to_map_, 0, rays);
+        }
     }
 }
 
 void EnvironmentTarget::meet(const RayVectors& directions, std::uint32_t count, DrawnRays& rays) {
     for (std::uint32_t i = 0; i < count; ++i) {
-        push(Vec3d(directions.x[i], directions.y[i], directions.z[i]), rays);
+        const Vec3d direction(directions.x[i], directions.y[i], directions.z[i]);
+        push(direction, is_guided_ ? guide_->factor(density_, frame_->to_world(direction)) : 0.0F, rays);
     }
 }
 
-void EnvironmentTarget::push(const Vec3d& direction, DrawnRays& rays) const {
+void EnvironmentTarget::push(const Vec3d& direction, float factor, DrawnRays& rays) const {
     if (direction.z > 0) {
         const Ray ray = start_->along(direction);
         rays.push({ray.direction, 0, 1, false}, ray);
+        if (guide_ != nullptr) {
+            rays.guided.push_back(factor);
+        }
     }
 }
 
@@ -268,6 +291,17 @@ void EnvironmentTarget::find_radiance(std::span<const std::size_t> some, DrawnRa
             rays.color[ray] = {red[i], green[i], blue[i]};
             rays.spot_color[ray] = {spot_red[i], spot_green[i], spot_blue[i]};
         }
+    }
+}
+
+void EnvironmentTarget::guide(std::span<const std::size_t> some, DrawnRays& rays) const {
+    if (guide_ == nullptr) {
+        return;
+    }
+    for (const std::size_t ray : some) {
+        float& density = rays.drawn[ray].light_density;
+        const float unguided = environment_->map() != nullptr ? density : 0.25F * std::numbers::inv_pi_v<float>;
+        density = rays.guided[ray] > 0 ? rays.guided[ray] * unguided : density;
     }
 }
 

@@ -11,6 +11,7 @@
 
 #include "base/scratch.h"
 #include "lighting/shadow_ray_spawner.h"
+#include "lighting/sky_guide.h"
 #include "lights/face_sampling.h"
 #include "lights/light_sampling.h"
 #include "lights/local_light.h"
@@ -42,6 +43,7 @@ struct DrawnRays {
     std::vector<Rgb> visible;     ///< once traced
     std::vector<Rgb> color;       ///< factors of DrawnRay::radiance; empty: 1
     std::vector<Rgb> spot_color;  ///< likewise, of bright spots
+    std::vector<float> guided;    ///< if there is a guide: its factor of the light's density, or 0 where it has none
 
     void clear();
     std::size_t size() const { return drawn.size(); }
@@ -65,6 +67,8 @@ class ShadowTarget {
     virtual bool add(const Hits& hits, std::size_t hit) = 0;
     /// The rays pushed from now on are those of the hit that was added as number `index`. first: of a group.
     virtual void aim(const Hits& hits, std::size_t hit, std::size_t index, bool first) = 0;
+    /// Whether it draws points for the hit at hand where rays before have found it open, see SkyGuide.
+    virtual bool is_guided() const { return false; }
     /// Whether it draws points of its own.
     virtual bool draws() const = 0;
     /// Pushes the rays to its points that belong to points of the unit square, whose arrays go on to a multiple of
@@ -80,6 +84,8 @@ class ShadowTarget {
     virtual Rgb strength() const = 0;
     /// Completes the light's density and colour of some rays.
     virtual void find_radiance(std::span<const std::size_t> some, DrawnRays& rays) = 0;
+    /// To be called after find_radiance: makes the light's density that of a guided hit.
+    virtual void guide(std::span<const std::size_t> /*some*/, DrawnRays& /*rays*/) const {}
 };
 
 /// A light with extent.
@@ -126,11 +132,14 @@ class LightTarget : public ShadowTarget {
 /// The environment, which all hits see.
 class EnvironmentTarget : public ShadowTarget {
   public:
-    explicit EnvironmentTarget(const Environment& environment) : environment_(&environment) {}
+    /// guide: may be null.
+    EnvironmentTarget(const Environment& environment, const SkyGuide* guide)
+        : environment_(&environment), guide_(guide) {}
 
-    void clear() override {}
+    void clear() override { reach_ = 0; }
     bool add(const Hits&, std::size_t) override { return true; }
     void aim(const Hits& hits, std::size_t hit, std::size_t index, bool first) override;
+    bool is_guided() const override { return is_guided_; }
     bool draws() const override { return environment_->map() != nullptr; }
     void draw(const float* u, const float* v, std::uint32_t count, DrawnRays& rays) override;
     bool may_meet(const LobeShape&, const Vec3d&) const override { return true; }
@@ -138,13 +147,21 @@ class EnvironmentTarget : public ShadowTarget {
     void trace(ShadowTracer& tracer, DrawnRays& rays) override;
     Rgb strength() const override;
     void find_radiance(std::span<const std::size_t> some, DrawnRays& rays) override;
+    void guide(std::span<const std::size_t> some, DrawnRays& rays) const override;
 
   private:
-    void push(const Vec3d& direction, DrawnRays& rays) const;
+    void push(const Vec3d& direction, float factor, DrawnRays& rays) const;
 
     const Environment* environment_;
-    glm::dmat3 to_map_{1};  // from the shading frame of the hit that rays are drawn from
+    const SkyGuide* guide_;
+    glm::dmat3 to_map_{1};                 // from the shading frame of the hit that rays are drawn from
+    const ShadingFrame* frame_ = nullptr;  // of this hit
     std::optional<ShadowRaySpawner> start_;
+    // This is the same for hits nearby:
+    bool is_guided_ = false;
+    GuidedDensity density_{};
+    Vec3d position_{0}, normal_{0};
+    double reach_ = 0;
 };
 
 }  // namespace shlight

@@ -62,7 +62,7 @@ void ShadowedLight::shade_lit(Hits& hits) {
     for (const LitGroup& group : groups_) {
         const LightBits seen = shadows ? rays_.visibility(group.range, index_) : LightBits{};
         hits.visibility[group.group] |= seen;
-        if (seen.hidden != 0) {
+        if (seen.hidden != 0 || (shadows && rays_.is_guided(group.range))) {
             occluded_.push_back(group);
             ranges_.push_back(group.range);
         } else {
@@ -111,11 +111,12 @@ void ShadowedLight::shade_lobe(const LitGroup& group, std::size_t lobe, Hits& hi
         const Vec3d weight(glm::abs(hits.weight(hit, lobe)));
         hit_sums_[i].smooth *= weight;
         hit_sums_[i].spots *= weight;
-        ShadowRays::Sums& sums = sums_of(hits.material[hit]).sums;
+        ShadowRays::Sums& sums = sums_of(hits.material[hit], hit_sums_[i].guided).sums;
         sums.smooth += hit_sums_[i].smooth;
         sums.spots += hit_sums_[i].spots;
     }
     for (MaterialSums& material : material_sums_) {
+        if (material.sums.guided) continue;
         material.kept_smooth = kept_share(material.sums.smooth, Vec3d(1));
         // Spots that no ray has met are taken to be as hidden as the rest.
         material.kept_spots = kept_share(material.sums.spots, material.kept_smooth);
@@ -124,21 +125,24 @@ void ShadowedLight::shade_lobe(const LitGroup& group, std::size_t lobe, Hits& hi
         if (!shines(begin + i, lobe)) continue;
         const std::size_t hit = lit_.hit[begin + i];
         // The lobes of a hit share its rays.
-        deviation_[i] +=
-            shade_hit(hit, lobe, hit_sums_[i], sums_of(hits.material[hit]), group.samples.shadow_rays, hits);
+        deviation_[i] += shade_hit(hit, lobe, hit_sums_[i], sums_of(hits.material[hit], hit_sums_[i].guided),
+                                   group.samples.shadow_rays, hits);
     }
 }
 
-ShadowedLight::MaterialSums& ShadowedLight::sums_of(std::uint32_t material) {
-    const auto known = std::find_if(material_sums_.begin(), material_sums_.end(),
-                                    [&](const MaterialSums& sums) { return sums.material == material; });
-    return known != material_sums_.end() ? *known : material_sums_.emplace_back(MaterialSums{material, {}, {}, {}});
+ShadowedLight::MaterialSums& ShadowedLight::sums_of(std::uint32_t material, bool guided) {
+    const auto known = std::find_if(material_sums_.begin(), material_sums_.end(), [&](const MaterialSums& own) {
+        return own.material == material && own.sums.guided == guided;
+    });
+    const MaterialSums none = {material, {{}, {}, 0, guided}, Vec3d(0), Vec3d(0)};
+    return known != material_sums_.end() ? *known : material_sums_.emplace_back(none);
 }
 
 Rgb ShadowedLight::shade_hit(std::size_t hit, std::size_t lobe, const ShadowRays::Sums& of_hit,
                              const MaterialSums& of_material, double rays, Hits& hits) const {
     const auto part = [&](const Rgb& whole, const RaySums& own, const RaySums& all, const Vec3d& kept, Rgb& off) {
-        off += deviation(glm::abs(whole), quotient(all.seen, all.all), own);
+        off += of_hit.guided ? deviation(own, static_cast<double>(of_hit.rays)) / static_cast<float>(rays)
+                             : deviation(glm::abs(whole), quotient(all.seen, all.all), own);
         return seen_part(whole, own, kept, rays);
     };
     Rgb off(0);

@@ -73,7 +73,8 @@ class ShadowedLight {
     void shade_unblocked(const LitRange& range, Hits& hits) const;
     void shade(const LitGroup& group, Hits& hits);
     void shade_lobe(const LitGroup& group, std::size_t lobe, Hits& hits);
-    MaterialSums& sums_of(std::uint32_t material);
+    /// guided: see ShadowRays::Sums.
+    MaterialSums& sums_of(std::uint32_t material, bool guided);
     /// Returns how far it may be off. rays: of each set.
     Rgb shade_hit(std::size_t hit, std::size_t lobe, const ShadowRays::Sums& of_hit, const MaterialSums& of_material,
                   double rays, Hits& hits) const;
