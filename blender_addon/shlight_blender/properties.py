@@ -111,9 +111,9 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
         soft_max=256,
     )
     max_bounces: _bounces(
-        "Max", 0, "Surfaces that light is reflected by before the one that the camera sees. At 0 light is direct"
+        "Max", 4, "Surfaces that light is reflected by before the one that the camera sees. At 0 light is direct"
     )
-    preview_max_bounces: _bounces("Max", 0, "Max Bounces of a viewport")
+    preview_max_bounces: _bounces("Max", 4, "Max Bounces of a viewport")
     # Cycles has the same defaults.
     glossy_bounces: _bounces("Glossy", 4, "Bounces by glossy surfaces and mirrors, at most, within Max Bounces")
     transmission_bounces: _bounces("Transmission", 12, "Bounces through glass, at most, within Max Bounces")

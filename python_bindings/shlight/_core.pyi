@@ -419,7 +419,7 @@ class _RenderOptions(TypedDict, total=False):
     shadows: bool  # True unless given
     shadow_rays: int  # 16 unless given
     transparent_bounces: int  # 8 unless given
-    max_bounces: int  # 0 unless given
+    max_bounces: int  # 4 unless given
     glossy_bounces: int | None
     transmission_bounces: int | None
     alpha_threshold: float  # 0.5 unless given

@@ -28,7 +28,7 @@ using namespace pybind11::literals;
 namespace shlight::python {
 namespace {
 
-constexpr const char* kRenderDoc = R"(Render the direct light of a scene.
+constexpr const char* kRenderDoc = R"(Render a scene: its direct light, and light that bounces.
 
 scene: a Scene with a camera.
 width, height: pixels.
@@ -147,6 +147,9 @@ int order_from(const py::object& order) {
     }
     return static_cast<int>(integer_from("order", order, 1, kMaxOrder));
 }
+
+/// RenderSettings() is direct light; a picture has more.
+constexpr int kDefaultBounces = 4;
 
 constexpr std::int64_t kMostSeed = std::numeric_limits<std::uint32_t>::max();
 
@@ -330,8 +333,8 @@ void bind_render(py::module_& m) {
           "min_samples"_a = py::none(), "max_samples"_a = py::none(), "pixel_samples"_a = py::none(),
           "time_limit"_a = py::none(), "pixel_filter"_a = "box", "filter_width"_a = PixelFilter().width,
           "shadows"_a = true, "shadow_rays"_a = RenderSettings().shadow_rays, "transparent_bounces"_a = 8,
-          "max_bounces"_a = RenderSettings().max_bounces, "glossy_bounces"_a = py::none(),
-          "transmission_bounces"_a = py::none(), "passes"_a = py::tuple(), "groups"_a = false, "aovs"_a = false,
+          "max_bounces"_a = kDefaultBounces, "glossy_bounces"_a = py::none(), "transmission_bounces"_a = py::none(),
+          "passes"_a = py::tuple(), "groups"_a = false, "aovs"_a = false,
           "alpha_threshold"_a = PassSettings().alpha_threshold,
           "mist"_a = py::make_tuple(MistRange().start, MistRange().depth, MistRange().falloff),
           "cryptomatte_levels"_a = PassSettings().cryptomatte_levels, "exposure"_a = 1.0, "threads"_a = 0, "seed"_a = 0,

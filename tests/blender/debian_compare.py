@@ -54,7 +54,7 @@ def files():
 
 def build(scene):
     """Blender's own scene with a cube that shlight draws otherwise."""
-    scene.render.engine = "SHLIGHT"
+    scene.render.engine, scene.shlight.max_bounces = "SHLIGHT", 0
     scene.render.resolution_x, scene.render.resolution_y = 96, 64
     bpy.ops.mesh.primitive_plane_add(size=12, location=(0, 0, -1))
     material = bpy.data.objects["Cube"].active_material

@@ -70,6 +70,7 @@ def set_up():
     """The factory scene on a floor, in a view of its own, small and without overlays."""
     scene = bpy.context.scene
     scene.render.engine = "SHLIGHT"
+    scene.shlight.max_bounces = scene.shlight.preview_max_bounces = 0
     scene.view_settings.view_transform = "Raw"
     scene.render.preview_pixel_size = "2"
     bpy.ops.mesh.primitive_plane_add(size=8, location=(0, 0, -1))

@@ -37,6 +37,7 @@ def ready():
     scene.render.filepath = str(Path(FOLDER) / "frame_")
     scene.frame_end = 3
     scene.shlight.pixel_samples = chance.choice([1, 16, 1024])
+    scene.shlight.max_bounces = scene.shlight.preview_max_bounces = 0
     scene.render.use_persistent_data = chance.random() < 0.3
     return True
 

@@ -49,6 +49,7 @@ def steps():
     """The test's steps, with redraws between."""
     scene = bpy.context.window_manager.windows[0].scene
     scene.render.engine = "SHLIGHT"
+    scene.shlight.max_bounces = scene.shlight.preview_max_bounces = 0
     properties = area_of("PROPERTIES").spaces[0]
     for context in ("RENDER", "OUTPUT", "VIEW_LAYER", "WORLD", "MATERIAL"):
         properties.context = context

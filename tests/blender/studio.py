@@ -37,6 +37,8 @@ class Studio:
         cycles.samples = 256
         cycles.use_adaptive_sampling = cycles.use_denoising = False
         cycles.max_bounces = 0
+        if hasattr(scene, "shlight"):
+            scene.shlight.max_bounces = scene.shlight.preview_max_bounces = 0
         cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
         cycles.light_sampling_threshold = 0.0
         cycles.blur_glossy = 0.0

@@ -38,7 +38,7 @@ def test_render_from_python_shows_a_lit_ball(tmp_path: Path) -> None:
     assert spec.loader is not None
     example = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(example)
-    image = shlight.render(example.build(), 48, 32, pixel_samples=4)
+    image = shlight.render(example.build(), 48, 32, pixel_samples=4, max_bounces=0)
     red, green, blue = image[16, 24, :3]
     assert red > 2 * green > 0
     assert red > 2 * blue > 0

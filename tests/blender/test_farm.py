@@ -36,7 +36,7 @@ def build_scene():
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.render.engine = "SHLIGHT"
-    scene.shlight.noise_threshold = 0.01
+    scene.shlight.noise_threshold, scene.shlight.max_bounces = 0.01, 0
     scene.render.resolution_x, scene.render.resolution_y = 96, 64
     bpy.ops.mesh.primitive_plane_add(size=9)
     bpy.ops.mesh.primitive_cube_add(size=1, location=(0.4, 0, 0.5))

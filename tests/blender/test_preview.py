@@ -26,6 +26,7 @@ from shlight_blender.preview.command import FIRST_RESULTS, RESULTS
 
 COMMAND = [sys.executable, "-c", "import sys; from shlight_blender.preview import main; sys.exit(main(sys.argv[1:]))"]
 QUICK = ["--size", "24x16", "--samples", "8", "--shadow-rays", "4", "--pixel-samples", "2", "--tolerance", "0.01"]
+QUICK += ["--max-bounces", "0"]
 ENDLESS = ["--size", "24x16", "--samples", "10000000", "--reference-seconds", "0"]
 
 # All that the camera sees is in the shadow of the upper plane; what shlight does not support is behind the camera.
@@ -46,6 +47,7 @@ def build_scene():
     bpy.ops.object.light_add(type='POINT', location=(0, 0, 3))
     bpy.ops.object.camera_add(location=(0, 0, 0.9))
     bpy.context.scene.camera = bpy.context.object
+    bpy.context.scene.shlight.max_bounces = 0
     return bpy.context.scene
 """
 

@@ -35,7 +35,7 @@ def render(path):
     texture.image = image
     shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
     tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
-    scene.render.engine = "SHLIGHT"
+    scene.render.engine, scene.shlight.max_bounces = "SHLIGHT", 0
     scene.render.resolution_x, scene.render.resolution_y = 96, 64
     scene.render.image_settings.file_format, scene.render.image_settings.color_depth = "OPEN_EXR", "32"
     scene.render.filepath = path

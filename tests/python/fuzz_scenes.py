@@ -147,6 +147,6 @@ def random_scene(rng: Rng) -> list[Step]:
         call = "render"
         settings |= {"pixel_samples": int(one_of(rng, 1, 1, 2, 4)), "shadow_rays": int(one_of(rng, 0, 1, 4))}
         settings |= {"order": int(rng.integers(1, 17))} if chance(rng, 0.1) else {}
-        settings |= {"max_bounces": int(one_of(rng, 1, 2, 4))} if chance(rng, 0.3) else {}
+        settings |= {"max_bounces": int(one_of(rng, 1, 2, 4)) if chance(rng, 0.3) else 0}
     function = shlight.render if call == "render" else shlight.methods.render_monte_carlo
     return [*steps, Step(call, function, {"scene": scene, **settings}, accepted, picture_problem, names)]

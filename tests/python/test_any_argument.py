@@ -70,6 +70,6 @@ def test_only_materials_add_up(other: Any) -> None:
 def test_numbers_in_messages_are_those_that_were_given() -> None:
     scene = argument_walk.new_scene()
     with pytest.raises(ValueError, match=rf"^width .*\b{2**40}$"):
-        shlight.render(scene, 2**40, 2)
+        shlight.render(scene, 2**40, 2, max_bounces=0)
     with pytest.raises(ValueError, match=rf"^samples .* {-(2**40)}$"):
         methods.render_monte_carlo(scene, 2, 2, samples=-(2**40))

@@ -66,13 +66,19 @@ def test_threads_do_not_change_a_bit() -> None:
         np.testing.assert_array_equal(other, pictures[0])
 
 
+def test_light_bounces_four_times_unless_another_number_is_given() -> None:
+    pictures = [shlight.render(room(), 24, 20, **options) for options in ({}, {"max_bounces": 4}, {"max_bounces": 3})]
+    np.testing.assert_array_equal(pictures[0], pictures[1])
+    assert (pictures[0] != pictures[2]).any()
+
+
 def test_a_mirror_shows_the_room_once_light_bounces() -> None:
     scene = room()
     scene.set_camera(looking((0.2, -4, 0.1), (0, 1, 0)), 0.7)
-    expected = shlight.render(scene, 64, 48)[:, ::-1]  # from where the camera is in the mirror
+    expected = shlight.render(scene, 64, 48, max_bounces=0)[:, ::-1]  # from where the camera is in the mirror
     scene.add_mesh(3 * SQUARE[:, [0, 2, 1]] + [0, -3, 0], FACES, bsdf=shlight.Bsdf.ggx(0, (0.5, 0.5, 0.5)))
     scene.set_camera(looking((0.2, -2, 0.1), (0, -1, 0)), 0.7)
-    lit = shlight.render(scene, 64, 48)[..., :3].any(axis=-1)
+    lit = shlight.render(scene, 64, 48, max_bounces=0)[..., :3].any(axis=-1)
     assert lit.mean() < 0.1  # the lamp alone
     seen = shlight.render(scene, 64, 48, max_bounces=1)
     assert rel_mse(2 * seen[..., :3], expected[..., :3]) <= 1e-3

@@ -46,13 +46,15 @@ def test_errors_name_the_first_wrong_row(place: str) -> None:
 
 
 WRONG_CALLS: dict[str, Callable[[], Any]] = {
-    "unknown argument 'samples'; did you mean 'max_samples'?": lambda: shlight.render(lit_floor(), 4, 4, samples=3),
+    "unknown argument 'samples'; did you mean 'max_samples'?": lambda: shlight.render(
+        lit_floor(), 4, 4, samples=3, max_bounces=0
+    ),
     "unknown argument 'shadow'; did you mean 'shadows'?": lambda: shlight.Scene().add_sphere_light(
         [0, 0, 1], 0.1, (1, 1, 1), shadow=False
     ),
     "unknown argument 'iro'; did you mean 'ior'?": lambda: Bsdf.ggx(0.1, 0.2, iro=1.3),
-    "missing a required argument: 'width'": lambda: shlight.render(lit_floor()),
-    "too many positional arguments": lambda: shlight.render(lit_floor(), 4, 4, 5),
+    "missing a required argument: 'width'": lambda: shlight.render(lit_floor(), max_bounces=0),
+    "too many positional arguments": lambda: shlight.render(lit_floor(), 4, 4, 5, max_bounces=0),
     "a Bsdf can be added to Bsdfs alone": lambda: sum([MATTE], 1),
 }
 

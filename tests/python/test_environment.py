@@ -24,13 +24,13 @@ def open_floor() -> shlight.Scene:
 def test_constant(visible: bool) -> None:
     scene = open_floor()
     scene.set_environment((1, 2, 4), visible=visible)
-    image, report = shlight.render(scene, 8, 8, return_report=True)
+    image, report = shlight.render(scene, 8, 8, return_report=True, max_bounces=0)
     np.testing.assert_allclose(image[4, 4], [0.5, 1, 2, 1], rtol=1e-6)
     np.testing.assert_array_equal(image[0, 0], [1, 2, 4, 1] if visible else [0, 0, 0, 0])
     assert report.order_shares == {1: 1.0}
     assert report.over_tolerance == 0
     scene.set_environment((3, 3, 3))  # the last one counts
-    assert shlight.render(scene, 8, 8)[4, 4, 0] == pytest.approx(1.5, rel=1e-6)
+    assert shlight.render(scene, 8, 8, max_bounces=0)[4, 4, 0] == pytest.approx(1.5, rel=1e-6)
 
 
 def random_picture() -> NDArray[np.float32]:
@@ -49,7 +49,9 @@ def test_picture_is_seen_where_it_lies() -> None:
         to_world = np.eye(4)
         to_world[:3, :3] = np.stack([x, np.cross(z, x), z], 1)
         scene.set_camera(to_world, 1e-4)
-        np.testing.assert_allclose(shlight.render(scene, 1, 1)[0, 0], [*picture[row, column], 1], atol=5e-4)
+        np.testing.assert_allclose(
+            shlight.render(scene, 1, 1, max_bounces=0)[0, 0], [*picture[row, column], 1], atol=5e-4
+        )
 
 
 def test_a_turned_picture_is_its_columns_rolled() -> None:
@@ -58,9 +60,9 @@ def test_a_turned_picture_is_its_columns_rolled() -> None:
     turn = np.pi / 2
     to_world = [[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]]
     scene.set_environment(picture, to_world=to_world, visible=False)
-    turned = shlight.render(scene, 8, 8)
+    turned = shlight.render(scene, 8, 8, max_bounces=0)
     scene.set_environment(np.roll(picture, -8, axis=1), visible=False)  # columns go against the azimuth
-    np.testing.assert_allclose(turned, shlight.render(scene, 8, 8), rtol=1e-4)
+    np.testing.assert_allclose(turned, shlight.render(scene, 8, 8, max_bounces=0), rtol=1e-4)
 
 
 @pytest.mark.parametrize("to_world", [np.eye(4), 2 * np.eye(3), -np.eye(3), np.full((3, 3), np.nan), "north", 1.0])
@@ -91,4 +93,4 @@ def test_what_is_no_radiance_is_rejected(radiance: Any) -> None:
     scene.set_environment((1, 1, 1))
     with pytest.raises(ValueError, match=r"^radiance"):
         scene.set_environment(radiance)
-    assert shlight.render(scene, 8, 8)[0, 0, 0] == 1, "the scene is as it was"
+    assert shlight.render(scene, 8, 8, max_bounces=0)[0, 0, 0] == 1, "the scene is as it was"

@@ -27,7 +27,7 @@ to_world = np.eye(4)
 to_world[:3, 3] = 0.9, 0.0, 1.5
 to_world[:3, :3] = [[0.86, 0, 0.51], [0, 1, 0], [-0.51, 0, 0.86]]
 scene.set_camera(to_world, 1.2)
-image = shlight.render(scene, 32, 32, pixel_samples=4)
+image = shlight.render(scene, 32, 32, pixel_samples=4, max_bounces=0)
 lit = image[..., 3] == 1
 print(int(lit.sum()), float(image[lit, 0].max()), float(image[lit, 0].min()), image.tobytes().hex()[:4096])
 """

@@ -27,9 +27,11 @@ def of_equal_area(subdivisions: int) -> tuple[NDArray[np.float64], NDArray[np.in
 def test_icosphere_gives_the_picture_of_the_sphere(bsdf: shlight.Bsdf, shadow_rays: int) -> None:
     under_sphere = ball_on_floor(bsdf)
     under_sphere.add_sphere_light(CENTER, RADIUS, RADIANCE)
-    expected = shlight.render(under_sphere, 64, 48, shadow_rays=shadow_rays)[..., :3]
+    expected = shlight.render(under_sphere, 64, 48, shadow_rays=shadow_rays, max_bounces=0)[..., :3]
     for subdivisions in (1, 3, 7):  # 80, 1280 and 327680 faces
-        image = shlight.render(under_mesh(of_equal_area(subdivisions), bsdf), 64, 48, shadow_rays=shadow_rays)[..., :3]
+        image = shlight.render(
+            under_mesh(of_equal_area(subdivisions), bsdf), 64, 48, shadow_rays=shadow_rays, max_bounces=0
+        )[..., :3]
         below = slice(20, None)  # without the lamp, which the camera sees if it is a mesh
         assert rel_mse(image[below], expected[below]) <= 1e-3
         # Each picture draws shadow rays of its own, and 80 faces show more to some sides than to others.
@@ -42,13 +44,13 @@ def test_what_is_not_opaque_shines_through_itself(share: float) -> None:
     """A ray to a closed emitter sees the near side, and through it the far one."""
     bsdf = shlight.Bsdf.lambert(0.8)
     ball = icosphere(3)
-    expected = share * (2 - share) * shlight.render(under_mesh(ball, bsdf), 64, 48)[..., :3]
+    expected = share * (2 - share) * shlight.render(under_mesh(ball, bsdf), 64, 48, max_bounces=0)[..., :3]
     scene = ball_on_floor(bsdf)
     vertices, faces = ball
     radiance = share * np.asarray(RADIANCE)
     veil = nodes.mix(nodes.transparent(), nodes.emission(RADIANCE), share)
     scene.add_mesh(RADIUS * vertices + CENTER, faces, bsdf=veil, emission=radiance)
-    image = shlight.render(scene, 64, 48)[..., :3]
+    image = shlight.render(scene, 64, 48, max_bounces=0)[..., :3]
     below = slice(20, None)
     assert rel_mse(image[below], expected[below]) <= 1e-3
     assert abs(mean_ratio(image[below], expected[below]) - 1) <= 5e-3
@@ -63,7 +65,7 @@ def test_a_closed_emitter_of_two_colours_may_be_wound_either_way() -> None:
         scene.add_mesh(
             RADIUS * vertices + CENTER, wound, emission=[(4, 0.1, 0), (0.1, 4, 0)], material_indices=upper.astype(int)
         )
-        images.append(shlight.render(scene, 64, 48)[..., :3])
+        images.append(shlight.render(scene, 64, 48, max_bounces=0)[..., :3])
     # Shadow rays go to other points of faces whose corners come in another order.
     assert rel_mse(*images) <= 1e-3
     assert abs(mean_ratio(*images) - 1) <= 3e-3
@@ -85,7 +87,7 @@ def test_a_ring_of_negative_radiance_takes_light_away() -> None:
         scene = ball_on_floor(shlight.Bsdf.lambert(0.8))
         scene.set_environment((2, 2, 2))
         scene.add_mesh(vertices, faces, emission=(radiance,) * 3)
-        images.append(shlight.render(scene, 64, 48, shadow_rays=0)[20:, :, :3])
+        images.append(shlight.render(scene, 64, 48, shadow_rays=0, max_bounces=0)[20:, :, :3])
     more, none, less = images
     assert (more - none).mean() >= 0.01 * none.mean()
     np.testing.assert_allclose(none - less, more - none, atol=3e-3 * none.mean())

@@ -39,7 +39,7 @@ def floor(bsdf: Any, light: str, indices: Any = None) -> Any:
     pose[1:3, 1:3] = [[np.cos(1.0), -np.sin(1.0)], [np.sin(1.0), np.cos(1.0)]]
     pose[:3, 3] = 0, -5, 3.2
     scene.set_camera(pose, 0.8)
-    return shlight.render(scene, 48, 32, pixel_samples=4, max_samples=4, shadow_rays=0)
+    return shlight.render(scene, 48, 32, pixel_samples=4, max_samples=4, shadow_rays=0, max_bounces=0)
 
 
 @pytest.mark.parametrize(
@@ -105,7 +105,7 @@ def test_light_that_passes_through() -> None:
         pose = np.eye(4)
         pose[:3, 3] = 0, 0, 0.8
         scene.set_camera(pose, 1.0)
-        return shlight.render(scene, 8, 8, pixel_samples=1)
+        return shlight.render(scene, 8, 8, pixel_samples=1, max_bounces=0)
 
     np.testing.assert_allclose(
         lit(nodes.transparent((0.25, 1.0, 0.0)))[..., :3], lit(None)[..., :3] * (0.25, 1.0, 0.0), rtol=1e-4, atol=1e-7
@@ -127,7 +127,9 @@ def test_a_cut_out_picture_is_as_bright_from_afar() -> None:
         pose = np.eye(4)
         pose[2, 3] = 2
         scene.set_camera(pose, 0.8)
-        return shlight.render(scene, 16, 16, pixel_samples=16, max_samples=16, noise_threshold=0).mean(axis=(0, 1))
+        return shlight.render(scene, 16, 16, pixel_samples=16, max_samples=16, noise_threshold=0, max_bounces=0).mean(
+            axis=(0, 1)
+        )
 
     # A quarter of 4096 rays see a leaf: their number has a standard deviation of 2.7 %.
     np.testing.assert_allclose(mean_of(leaves), 0.25 * mean_of(nodes.lambert(1.0)), rtol=0.08)

@@ -58,7 +58,7 @@ def test_a_pickle_that_was_tampered_with_is_refused(state: Any) -> None:
 
 @every_way
 def test_reports_and_methods_keep_their_values(way: Callable[[Any], Any]) -> None:
-    _, report = shlight.render(lit_floor(), 8, 6, return_report=True)
+    _, report = shlight.render(lit_floor(), 8, 6, return_report=True, max_bounces=0)
     methods = (*shlight.methods.coefficient_methods().values(), *shlight.methods.shading_methods().values())
     for value in (report, *methods):
         again = way(value)
@@ -69,12 +69,12 @@ def test_reports_and_methods_keep_their_values(way: Callable[[Any], Any]) -> Non
 @pytest.mark.parametrize("way", [copy.copy, copy.deepcopy])
 def test_copies_of_a_scene_do_not_change_it(way: Callable[[Any], Any]) -> None:
     scene = lit_floor()
-    expected = shlight.render(scene, 8, 6)
+    expected = shlight.render(scene, 8, 6, max_bounces=0)
     again = way(scene)
-    np.testing.assert_array_equal(shlight.render(again, 8, 6), expected)
+    np.testing.assert_array_equal(shlight.render(again, 8, 6, max_bounces=0), expected)
     again.set_environment((1, 1, 1))
-    assert not np.array_equal(shlight.render(again, 8, 6), expected)
-    np.testing.assert_array_equal(shlight.render(scene, 8, 6), expected)
+    assert not np.array_equal(shlight.render(again, 8, 6, max_bounces=0), expected)
+    np.testing.assert_array_equal(shlight.render(scene, 8, 6, max_bounces=0), expected)
 
 
 @pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))

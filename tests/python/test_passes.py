@@ -53,7 +53,7 @@ def test_places_of_a_floor_are_those_of_rays_through_the_middles() -> None:
     scene = lit_floor(uvs=FLOOR[:, :2] / 18 + 0.5, object_indices=7, material_pass_indices=[5])
     directions = looking_down(scene)
     names = ["depth", "position", "normal", "uv", "object_index", "material_index", "mist"]
-    passes = shlight.render(scene, WIDTH, HEIGHT, max_samples=1, passes=names, mist=(4.0, 8.0, 2.0))
+    passes = shlight.render(scene, WIDTH, HEIGHT, max_samples=1, passes=names, mist=(4.0, 8.0, 2.0), max_bounces=0)
     along = -3.5 / directions[..., 2]
     position = np.array([0.0, -5.0, 3.5]) + along[..., None] * directions
     on_floor = (along > 0) & (np.abs(position[..., :2]) < 9).all(axis=-1)
@@ -192,9 +192,9 @@ def test_a_group_is_the_picture_of_its_lights_alone() -> None:
 
     names = ("key", "fill", "point", "sky")
     options: dict[str, Any] = {"max_samples": 64, "noise_threshold": 0.002, "shadow_rays": 64}
-    groups = groups_of(shlight.render(scene_of(names), 32, 32, groups=True, **options))
+    groups = groups_of(shlight.render(scene_of(names), 32, 32, groups=True, **options, max_bounces=0))
     for name in names:
-        alone = shlight.render(scene_of((name,)), 32, 32, **options)[..., :3]
+        alone = shlight.render(scene_of((name,)), 32, 32, **options, max_bounces=0)[..., :3]
         assert rel_mse(groups[name], alone) <= 1e-3, name
 
 
@@ -208,7 +208,7 @@ def test_far_lights_are_told_apart() -> None:
             scene.add_point_light(place, (100, 100, 100), group=str(side))
     scene.add_mesh(SQUARE @ [[0, 0, 1], [0, 1, 0], [1, 0, 0]] + [0.5, 0, 1], FACES)
     from_above(scene)
-    passes = shlight.render(scene, 16, 16, groups=True, max_samples=16, tolerance=0.05)
+    passes = shlight.render(scene, 16, 16, groups=True, max_samples=16, tolerance=0.05, max_bounces=0)
     groups = groups_of(passes)
     way = np.array([600.0, 0.0, 400.0])
     irradiance = 200 * 100 * way[2] / np.linalg.norm(way) ** 3 / np.pi * 0.8
@@ -231,7 +231,9 @@ def test_cryptomatte_names_things_and_shares_pixels() -> None:
     )
     from_above(scene, 4.0)
     names = [f"cryptomatte_{kind}" for kind in ("object", "material", "asset")]
-    passes = shlight.render(scene, 15, 15, passes=names, cryptomatte_levels=3, noise_threshold=0, max_samples=64)
+    passes = shlight.render(
+        scene, 15, 15, passes=names, cryptomatte_levels=3, noise_threshold=0, max_samples=64, max_bounces=0
+    )
     identity = {name: np.uint32(cryptomatte_hash(name)).view(np.float32) for name in ("left", "right", "pair", "matt")}
     mattes = {name: passes[name].reshape(15, 15, 4, 2) for name in names}
     middle = mattes["cryptomatte_object"][7, 7]  # half of each
@@ -253,7 +255,7 @@ def test_aovs_are_what_materials_say() -> None:
         FLOOR / 9, FACES, bsdf=nodes.lambert(0.5).with_aovs({"height": 3.0 + place.x, "tint": (1.0, 0.5, 0.25)})
     )
     from_above(scene, 1.0)
-    passes = shlight.render(scene, 4, 4, aovs=True, max_samples=1)
+    passes = shlight.render(scene, 4, 4, aovs=True, max_samples=1, max_bounces=0)
     x = np.broadcast_to([[-0.75, -0.25, 0.25, 0.75]], (4, 4))
     np.testing.assert_allclose(passes["aov_height"][..., 0], 3.0 + x, atol=1e-6)
     np.testing.assert_allclose(passes["aov_tint"], np.broadcast_to([1.0, 0.5, 0.25, 1.0], (4, 4, 4)))
@@ -264,8 +266,8 @@ def test_passes_see_through_what_lets_light_through() -> None:
     veil = nodes.mix(nodes.transparent(), nodes.lambert(0.5), 0.25)
     scene.add_mesh(SQUARE + np.array([0, 0, 1]), FACES, bsdf=veil, object_indices=2, object_names="veil")
     options: dict[str, Any] = {"passes": ["depth", "object_index", "cryptomatte_object"], "max_samples": 1}
-    through = shlight.render(scene, 8, 8, **options)
-    kept = shlight.render(scene, 8, 8, alpha_threshold=0.2, **options)
+    through = shlight.render(scene, 8, 8, **options, max_bounces=0)
+    kept = shlight.render(scene, 8, 8, alpha_threshold=0.2, **options, max_bounces=0)
     assert through["depth"][4, 4, 0] == pytest.approx(10.0, abs=1e-5)
     assert kept["depth"][4, 4, 0] == pytest.approx(9.0, abs=1e-5)
     assert (through["object_index"] == 1).all()
@@ -278,7 +280,9 @@ def test_passes_as_a_file_have_blenders_names(tmp_path: Path) -> None:
     scene = lit_floor(object_names="floor", bsdf=nodes.lambert(0.5).with_aovs({"half": 0.5}))
     scene.set_environment((1, 1, 1), group="sky")
     names = ["depth", "normal", "diffuse_direct", "cryptomatte_object"]
-    passes = shlight.render(scene, 8, 4, passes=names, groups=True, aovs=True, max_samples=1, cryptomatte_levels=4)
+    passes = shlight.render(
+        scene, 8, 4, passes=names, groups=True, aovs=True, max_samples=1, cryptomatte_levels=4, max_bounces=0
+    )
     write_layers(tmp_path / "layers.exr", passes)
     file = oiio.ImageInput.open(str(tmp_path / "layers.exr"))
     channels, pixels = list(file.spec().channelnames), file.read_image("float")
@@ -314,7 +318,7 @@ def test_passes_as_a_file_have_blenders_names(tmp_path: Path) -> None:
 )
 def test_wrong_arguments_are_named(argument: str, options: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match=f"^{argument}"):
-        shlight.render(lit_floor(), 4, 4, **options)
+        shlight.render(lit_floor(), 4, 4, **options, max_bounces=0)
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ def floor_points(size: int, half_size: float = 2.0) -> NDArray[np.float64]:
 
 
 def test_lambert_floor_under_a_sphere_light() -> None:
-    image = shlight.render(lit_floor(), 16, 16, pixel_samples=1)
+    image = shlight.render(lit_floor(), 16, 16, pixel_samples=1, max_bounces=0)
     way = np.array([0.5, 0.25, 1.5]) - floor_points(16)
     distance = np.linalg.norm(way, axis=-1)
     expected = 0.8 * (0.5 / distance) ** 2 * way[..., 2] / distance
@@ -42,7 +43,9 @@ def test_lambert_floor_under_a_sphere_light() -> None:
 
 
 def test_report_of_a_picture_that_is_not_square() -> None:
-    image, report = shlight.render(lit_floor(), 32, 16, pixel_samples=2, max_samples=2, threads=2, return_report=True)
+    image, report = shlight.render(
+        lit_floor(), 32, 16, pixel_samples=2, max_samples=2, threads=2, return_report=True, max_bounces=0
+    )
     assert image.shape == (16, 32, 4)
     assert report.hits == 32 * 16 * 2
     assert report.order_shares == {2: 1.0}
@@ -57,7 +60,7 @@ def test_pixels_that_have_enough_are_left_as_they_are() -> None:
     """A floor whose only edges are those of its shadow: three of four pixels end with their first ray."""
     scene = lit_floor()
     scene.add_mesh(FLOOR / 90 + np.array([0.2, 0.2, 0.5]), FACES)
-    _, report = shlight.render(scene, 64, 64, min_samples=1, max_samples=4, return_report=True)
+    _, report = shlight.render(scene, 64, 64, min_samples=1, max_samples=4, return_report=True, max_bounces=0)
     assert report.passes <= 8  # one for each level, and for what neighbours suppose
     assert report.hits <= 2 * 64 * 64
 
@@ -66,7 +69,7 @@ def test_no_lights_is_black_and_background_is_transparent() -> None:
     scene = shlight.Scene()
     scene.add_mesh(FLOOR[:, :] / 18, FACES)  # x and y from -0.5 to 0.5
     from_above(scene, 1.0)
-    image = shlight.render(scene, 8, 8, pixel_samples=1)
+    image = shlight.render(scene, 8, 8, pixel_samples=1, max_bounces=0)
     np.testing.assert_array_equal(image[..., :3], 0)
     expected = np.zeros((8, 8))
     expected[2:6, 2:6] = 1
@@ -77,7 +80,7 @@ def test_row_0_is_on_top() -> None:
     scene = shlight.Scene()
     scene.add_mesh(FLOOR + np.array([0, 9, 0]), FACES, emission=[1, 2, 3])  # y > 0
     from_above(scene)
-    image = shlight.render(scene, 4, 4, pixel_samples=1)
+    image = shlight.render(scene, 4, 4, pixel_samples=1, max_bounces=0)
     np.testing.assert_array_equal(image[:2], np.broadcast_to([1, 2, 3, 1], (2, 4, 4)))
     np.testing.assert_array_equal(image[2:], 0)
 
@@ -86,7 +89,7 @@ def test_field_of_view_is_horizontal() -> None:
     scene = shlight.Scene()
     scene.add_mesh(np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1]]) * [0.49, 0.24, 1], FACES)
     scene.set_camera(np.eye(4), 2 * np.arctan(0.5))
-    image = shlight.render(scene, 200, 100, pixel_samples=1, shadow_rays=0)
+    image = shlight.render(scene, 200, 100, pixel_samples=1, shadow_rays=0, max_bounces=0)
     assert image[..., 3].sum() == 196 * 96
 
 
@@ -106,7 +109,7 @@ def test_emission_per_material_and_instances() -> None:
         transforms=transforms,
     )
     from_above(scene)
-    image = shlight.render(scene, 64, 64, pixel_samples=1)
+    image = shlight.render(scene, 64, 64, pixel_samples=1, max_bounces=0)
     # Triangle 0 lies to the lower right of the diagonal, in the mirrored instance to the lower left.
     assert image[36, 64 // 4 + 4, 0] == 1
     assert image[27, 64 // 4 - 4, 1] == 1
@@ -118,7 +121,7 @@ def test_emission_per_material_and_instances() -> None:
 def test_a_light_too_dim_for_its_inverse_to_be_a_float_is_drawn(radiance: float) -> None:
     scene = lit_floor()
     scene.add_mesh(FLOOR / 18 + [0, 0, 0.5], FACES, emission=[radiance] * 3)
-    image = shlight.render(scene, 16, 16, pixel_samples=1, shadow_rays=1)
+    image = shlight.render(scene, 16, 16, pixel_samples=1, shadow_rays=1, max_bounces=0)
     assert np.isfinite(image).all()
 
 
@@ -137,7 +140,7 @@ def test_each_side_emits_as_a_lamp_that_shines_there(mirrored: bool) -> None:
     away = np.array([1e-6, 0, 0])
     lamps.add_polygon_light(square + away, front, camera=False)
     lamps.add_polygon_light(square[::-1] - away, back, camera=False)
-    images = [shlight.render(scene, 32, 32, pixel_samples=1) for scene in (glowing, lamps)]
+    images = [shlight.render(scene, 32, 32, pixel_samples=1, max_bounces=0) for scene in (glowing, lamps)]
     np.testing.assert_allclose(*images, rtol=1e-3, atol=1e-4)
 
 
@@ -149,25 +152,27 @@ def test_array_types_do_not_matter(dtype: Any, index: Any) -> None:
     scene.add_mesh(np.asfortranarray(FLOOR.astype(dtype)), np.repeat(FACES, 2, axis=1)[:, ::2].astype(index))
     scene.add_sphere_light((0.5, 0.25, 1.5), 0.5, np.array([4, 2, 1], dtype=dtype))
     from_above(scene)
-    np.testing.assert_array_equal(shlight.render(scene, 8, 8), shlight.render(lit_floor(), 8, 8))
+    np.testing.assert_array_equal(
+        shlight.render(scene, 8, 8, max_bounces=0), shlight.render(lit_floor(), 8, 8, max_bounces=0)
+    )
 
 
 def test_normals_per_vertex_and_per_corner_agree() -> None:
     normals = np.array([[1, 0, 2], [0, 1, 2], [-1, 0, 2], [0, -1, 2]], dtype=np.float32)
-    by_vertex = shlight.render(lit_floor(normals=normals), 8, 8)
-    by_corner = shlight.render(lit_floor(normals=normals[FACES]), 8, 8)
+    by_vertex = shlight.render(lit_floor(normals=normals), 8, 8, max_bounces=0)
+    by_corner = shlight.render(lit_floor(normals=normals[FACES]), 8, 8, max_bounces=0)
     np.testing.assert_array_equal(by_vertex, by_corner)
-    assert np.abs(by_vertex - shlight.render(lit_floor(), 8, 8)).max() > 1e-3
+    assert np.abs(by_vertex - shlight.render(lit_floor(), 8, 8, max_bounces=0)).max() > 1e-3
 
 
 def test_what_was_built_is_kept_until_something_is_added() -> None:
     scene = lit_floor()
-    _, first = shlight.render(scene, 4, 4, return_report=True)
-    image, second = shlight.render(scene, 4, 4, return_report=True)
+    _, first = shlight.render(scene, 4, 4, return_report=True, max_bounces=0)
+    image, second = shlight.render(scene, 4, 4, return_report=True, max_bounces=0)
     assert first.build_seconds > 0
     assert second.build_seconds == 0
     scene.add_sphere_light([0, 0, 2], 0.5, [1, 1, 1])
-    brighter, third = shlight.render(scene, 4, 4, return_report=True)
+    brighter, third = shlight.render(scene, 4, 4, return_report=True, max_bounces=0)
     assert third.build_seconds > 0
     assert (brighter[..., :3] > image[..., :3]).all()
 
@@ -224,7 +229,7 @@ def test_a_glossy_penumbra_is_that_of_plain_monte_carlo() -> None:
     lamp = lamp_at((0.5, -1.5, 4), (0, 0, 0), 1.5, 1.5, (12, 8, 4))
     scene.add_polygon_light(lamp.corners, lamp.radiance)
     scene.set_camera(look_at((0, -3, 1.5), (-0.144, -0.134, 0.602)), 0.03)
-    image = shlight.render(scene, 8, 8, min_samples=256, max_samples=256, noise_threshold=0.0)
+    image = shlight.render(scene, 8, 8, min_samples=256, max_samples=256, noise_threshold=0.0, max_bounces=0)
     expected = methods.render_monte_carlo(scene, 8, 8, samples=16384)
     # A million rays whose values vary by about their mean: 1e-3; and the renderer's tolerance of 1e-3.
     np.testing.assert_allclose(image.mean(axis=(0, 1)), expected.mean(axis=(0, 1)), rtol=5e-3)
@@ -232,13 +237,13 @@ def test_a_glossy_penumbra_is_that_of_plain_monte_carlo() -> None:
 
 @pytest.mark.parametrize(("name", "change"), RENDER_ERRORS)
 def test_bad_render_arguments(name: str, change: dict[str, Any]) -> None:
-    arguments: dict[str, Any] = {"width": 4, "height": 4, **change}
+    arguments: dict[str, Any] = {"width": 4, "height": 4, "max_bounces": 0, **change}
     scene = lit_floor()
     expect_value_error(name, lambda: shlight.render(scene, **arguments))
 
 
 def test_a_camera_is_needed() -> None:
-    expect_value_error("camera", lambda: shlight.render(shlight.Scene(), 4, 4))
+    expect_value_error("camera", lambda: shlight.render(shlight.Scene(), 4, 4, max_bounces=0))
 
 
 def test_the_picture_as_it_stands() -> None:
@@ -248,16 +253,16 @@ def test_the_picture_as_it_stands() -> None:
         shown.append((image, report))
         return report.passes < 2
 
-    image, report = shlight.render(lit_floor(), 48, 32, on_update=end_after_two, return_report=True)
+    image, report = shlight.render(lit_floor(), 48, 32, on_update=end_after_two, return_report=True, max_bounces=0)
     assert report.passes == 2
     np.testing.assert_array_equal(image, shown[-1][0])
     assert not np.array_equal(image, shown[0][0])
     assert 0 < shown[-1][1].noise < 1
     assert shown[-1][1].seconds_left >= 0
-    again = shlight.render(lit_floor(), 48, 32, threads=1, on_update=lambda _, seen: seen.passes < 2)
+    again = shlight.render(lit_floor(), 48, 32, threads=1, on_update=lambda _, seen: seen.passes < 2, max_bounces=0)
     np.testing.assert_array_equal(image, again)
     with pytest.raises(ZeroDivisionError):
-        shlight.render(lit_floor(), 48, 32, on_update=lambda image, report: 1 / 0)
+        shlight.render(lit_floor(), 48, 32, on_update=lambda image, report: 1 / 0, max_bounces=0)
 
 
 def test_no_time_is_left_in_the_end() -> None:
@@ -267,7 +272,7 @@ def test_no_time_is_left_in_the_end() -> None:
         left.append(report.seconds_left)
         return True
 
-    shlight.render(lit_floor(), 48, 32, on_update=keep)
+    shlight.render(lit_floor(), 48, 32, on_update=keep, max_bounces=0)
     assert max(left) > left[-1] == 0
 
 
@@ -303,10 +308,10 @@ MESH_ERRORS: list[tuple[str, dict[str, Any]]] = [
 @pytest.mark.parametrize(("name", "change"), MESH_ERRORS)
 def test_bad_meshes_leave_the_scene_as_it_was(name: str, change: dict[str, Any]) -> None:
     scene = lit_floor()
-    before = shlight.render(scene, 4, 4)
+    before = shlight.render(scene, 4, 4, max_bounces=0)
     arguments: dict[str, Any] = {"vertices": FLOOR + np.array([0, 0, 1]), "triangles": FACES, **change}
     expect_value_error(name, lambda: scene.add_mesh(**arguments))
-    after, report = shlight.render(scene, 4, 4, return_report=True)
+    after, report = shlight.render(scene, 4, 4, return_report=True, max_bounces=0)
     np.testing.assert_array_equal(after, before)
     assert report.build_seconds == 0
 
@@ -353,7 +358,7 @@ def monte_carlo(scene: shlight.Scene, width: int, height: int, pixel_samples: in
     return methods.render_monte_carlo(scene, width, height, samples=pixel_samples, **options)
 
 
-both_renderers = pytest.mark.parametrize("render", [shlight.render, monte_carlo])
+both_renderers = pytest.mark.parametrize("render", [partial(shlight.render, max_bounces=0), monte_carlo])
 SLOW: dict[str, Any] = {"width": 2000, "height": 2000, "pixel_samples": 256}
 
 
@@ -394,12 +399,12 @@ def test_false_cancels(render: Callable[..., Any], answer: Any) -> None:
 
 
 def test_a_build_that_was_cancelled_is_done_again() -> None:
-    scene, picture = lit_floor(), shlight.render(lit_floor(), 8, 8)
+    scene, picture = lit_floor(), shlight.render(lit_floor(), 8, 8, max_bounces=0)
     asked: list[float] = []
     with pytest.raises(shlight.RenderCancelled):
-        shlight.render(scene, 8, 8, progress=lambda share: asked.append(share) is not None)
+        shlight.render(scene, 8, 8, progress=lambda share: asked.append(share) is not None, max_bounces=0)
     assert asked == [0.0]
-    image, report = shlight.render(scene, 8, 8, return_report=True)
+    image, report = shlight.render(scene, 8, 8, return_report=True, max_bounces=0)
     assert report.build_seconds > 0
     np.testing.assert_array_equal(image, picture)
 
@@ -418,7 +423,7 @@ def test_control_c_ends_the_render() -> None:
     timer.start()
     start = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
-        shlight.render(lit_floor(), **SLOW)
+        shlight.render(lit_floor(), **SLOW, max_bounces=0)
     assert time.monotonic() - start < 10
     timer.join()
 
@@ -437,7 +442,9 @@ def test_other_threads_run_meanwhile() -> None:
     start = time.monotonic()
     try:
         with pytest.raises(shlight.RenderCancelled):
-            shlight.render(lit_floor(), **SLOW, threads=1, progress=lambda share: time.monotonic() - start < 0.3)
+            shlight.render(
+                lit_floor(), **SLOW, threads=1, progress=lambda share: time.monotonic() - start < 0.3, max_bounces=0
+            )
     finally:
         done.set()
         thread.join()
@@ -446,9 +453,9 @@ def test_other_threads_run_meanwhile() -> None:
 
 def test_negative_light_takes_light_away() -> None:
     scene = lit_floor()
-    bright = shlight.render(scene, 4, 4)
+    bright = shlight.render(scene, 4, 4, max_bounces=0)
     scene.add_sphere_light([0.5, 0.25, 1.5], 0.5, [-4, -2, -1])
-    dark = shlight.render(scene, 4, 4)
+    dark = shlight.render(scene, 4, 4, max_bounces=0)
     assert bright[..., :3].min() > 0
     np.testing.assert_allclose(dark[..., :3], 0, atol=1e-7)
 
@@ -459,7 +466,7 @@ def test_the_report_says_why_a_picture_is_black() -> None:
         scene.add_mesh(FLOOR, FACES)
         if vertices:
             scene.add_polygon_light(vertices, radiance)
-        return str(shlight.render(from_above(scene), 4, 4, return_report=True)[1].dark)
+        return str(shlight.render(from_above(scene), 4, 4, return_report=True, max_bounces=0)[1].dark)
 
     above = [[-1, -1, 3], [1, -1, 3], [1, 1, 3]]
     assert dark() == "the scene has no light"

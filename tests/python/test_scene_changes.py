@@ -36,7 +36,7 @@ def add_lamp(scene: shlight.Scene, x: float) -> None:
 
 
 def picture(scene: shlight.Scene) -> NDArray[np.float32]:
-    return shlight.render(scene, 24, 24, max_samples=4)
+    return shlight.render(scene, 24, 24, max_samples=4, max_bounces=0)
 
 
 Change = Callable[[shlight.SceneMesh], None]

@@ -22,7 +22,7 @@ def radiance_at_origin(add: Callable[[shlight.Scene], None]) -> Any:
     to_world = np.eye(4)
     to_world[2, 3] = 20
     scene.set_camera(to_world, 1e-4)
-    return shlight.render(scene, 1, 1, pixel_samples=1)[0, 0, :3]
+    return shlight.render(scene, 1, 1, pixel_samples=1, max_bounces=0)[0, 0, :3]
 
 
 def test_point_light() -> None:

@@ -41,7 +41,7 @@ def scaled_picture(lamp: str, s: float) -> Any:
     scene.add_mesh(FLOOR / 30 * s, FACES, transforms=instances)
     LAMPS[lamp](scene, s)
     scene.set_camera_window(placed(0, 0, 10 * s), -2 * s, 2 * s, -2 * s, 2 * s, orthographic=True)
-    return shlight.render(scene, 16, 16, pixel_samples=4)
+    return shlight.render(scene, 16, 16, pixel_samples=4, max_bounces=0)
 
 
 @pytest.mark.parametrize("lamp", LAMPS)
@@ -97,7 +97,7 @@ def test_the_brightest_lights_give_finite_pictures(bsdf: Bsdf, order: Any) -> No
     scene.add_point_light([0.1, 0, 1e-6], [1e30, 0, 0])
     scene.add_sphere_light([0, 0, 2], 1, [1e15, 0, 1])
     scene.add_sun_light([0, 0, -1], 0.0, [1e15, 0, 1])
-    assert np.isfinite(shlight.render(scene, 16, 16, order=order)).all()
+    assert np.isfinite(shlight.render(scene, 16, 16, order=order, max_bounces=0)).all()
     for name, add in {
         "radiance": lambda: scene.add_sphere_light([0, 0, 2], 1, [1.1e15, 0, 0]),
         "intensity": lambda: scene.add_point_light([0, 0, 2], [0, 0, 1.1e30]),
@@ -125,6 +125,6 @@ def test_a_flat_light_shines_alike_far_from_the_origin(kind: str) -> None:
         camera = np.eye(4)
         camera[:3, 3] = at + 0.8 * up
         scene.set_camera(camera, 1.0)
-        return shlight.render(scene, 16, 16, passes=["position"])["combined"]
+        return shlight.render(scene, 16, 16, passes=["position"], max_bounces=0)["combined"]
 
     np.testing.assert_allclose(picture(2.0**17), picture(0.0), rtol=2e-2)

@@ -26,7 +26,7 @@ def picture(add: Callable[[shlight.Scene], None], floor: bool = False) -> Any:
         scene.add_mesh(FLOOR - [0, 0, 3], FACES)
     add(scene)
     scene.set_camera(np.eye(4), 1.0)
-    return shlight.render(scene, 64, 64, pixel_samples=16)
+    return shlight.render(scene, 64, 64, pixel_samples=16, max_bounces=0)
 
 
 def filled(add: Callable[[shlight.Scene], None], **options: Any) -> float:

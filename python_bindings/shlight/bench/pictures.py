@@ -79,4 +79,4 @@ def measure_stages(run: Run) -> list[Row]:
 
 
 def _rendered(scene: shlight.Scene, size: Size, **options: object) -> Work:
-    return Work(partial(shlight.render, scene, *size, threads=1, **options), 1)
+    return Work(partial(shlight.render, scene, *size, threads=1, **options, max_bounces=0), 1)

@@ -208,7 +208,7 @@ def _harmonics(
     scene: shlight.Scene, effort: Effort, rays: tuple[int, int], order: int | Literal["auto"], **options: Any
 ) -> Image:
     settings = {"pixel_samples": rays[0], "max_samples": rays[0], "shadow_rays": rays[1]} | options
-    image: Image = shlight.render(scene, effort.width, effort.height, order=order, **settings)
+    image: Image = shlight.render(scene, effort.width, effort.height, order=order, **settings, max_bounces=0)
     return image
 
 
