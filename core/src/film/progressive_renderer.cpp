@@ -16,9 +16,8 @@ constexpr int kMostRounds = 256;
 /// Steps of the grids of pixels whose surfaces have records.
 constexpr int kWidestRecordStep = 32;
 constexpr int kLeastRecordStep = 2;
-/// A grid takes about so many times as long as the one before. Bounces get this share of the time there is.
-constexpr double kNextGrid = 2;
-constexpr double kShareOfBounces = 0.4;
+/// Bounces get this share of the time there is.
+constexpr double kShareOfBounces = 0.3;
 /// Pixels of the first grid, at least.
 constexpr double kFirstPixels = 1024;
 /// Rays through middles of pixels that are traced together.
@@ -69,14 +68,11 @@ void ProgressiveRenderer::run(const Watch& caller) {
 void ProgressiveRenderer::add_bounces(const Watch& caller) {
     const double start = seconds();
     RecordPlacement placement(*picture_, image_, stored_);
-    double took = 0;
-    for (int step = kWidestRecordStep; step >= kLeastRecordStep; step /= 2) {
-        const double begin = seconds();
-        if (begin - start + kNextGrid * took > kShareOfBounces * (time_limit() - start)) {
-            break;
-        }
-        const RenderReport report = placement.add_grid({step, step < kWidestRecordStep ? 2 * step : 0}, caller.stopped);
-        took = seconds() - begin;
+    const double until = start + kShareOfBounces * (time_limit() - start);
+    const auto has_time = [&] { return seconds() < until; };
+    for (int step = kWidestRecordStep; step >= kLeastRecordStep && has_time(); step /= 2) {
+        const Grid grid = {step, step < kWidestRecordStep ? 2 * step : 0};
+        const RenderReport report = placement.add_grid(grid, caller.stopped, has_time);
         const std::lock_guard lock(telling_);
         told_ += report;
     }

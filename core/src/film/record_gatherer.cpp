@@ -16,8 +16,6 @@
 namespace shlight {
 namespace {
 
-/// Records that are made at once: enough that their rays meet in cells.
-constexpr std::size_t kRecordsAtOnce = 1024;
 constexpr std::size_t kCellsAtOnce = 1024;
 /// Rays that share shadow rays, and those that are shaded at once.
 constexpr std::size_t kGroupRays = 16;
@@ -44,11 +42,12 @@ RecordGatherer::RecordGatherer(const CompiledScene& scene, const LightingScene& 
 
 std::vector<LightRecord> RecordGatherer::gather(std::span<const SurfacePoint> surfaces, std::size_t rays_across,
                                                 std::uint32_t seed, int threads, const Stopped& stopped,
-                                                RenderReport& report) {
-    std::vector<LightRecord> made(surfaces.size());
+                                                const std::function<bool()>& has_time, RenderReport& report) {
+    std::vector<LightRecord> made;
     rays_per_record_ = rays_across * rays_across;
-    for (std::size_t first = 0; first < surfaces.size(); first += kRecordsAtOnce) {
+    for (std::size_t first = 0; first < surfaces.size() && has_time(); first += kRecordsAtOnce) {
         const std::size_t count = std::min(kRecordsAtOnce, surfaces.size() - first);
+        made.resize(first + count);
         records_.assign(count, {});
         distances_.assign(count * rays_per_record_, std::numeric_limits<double>::infinity());
         parallel_for(count, threads, [&](std::size_t i) {

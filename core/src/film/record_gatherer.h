@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -26,15 +27,20 @@
 
 namespace shlight {
 
+/// Records that are made at once: enough that their rays meet in cells.
+inline constexpr std::size_t kRecordsAtOnce = 1024;
+
 class RecordGatherer {
   public:
     /// cells: to which light is added. All must outlive this.
     RecordGatherer(const CompiledScene& scene, const LightingScene& lighting, const PathSettings& paths, bool shadows,
                    LightCells& cells);
 
-    /// A record at each surface by rays_across² rays; seed: of them all. Throws RenderCancelled once stopped.
+    /// A record at each surface by rays_across² rays, or at as many of the first as there is time for; seed: of them
+    /// all. Throws RenderCancelled once stopped.
     std::vector<LightRecord> gather(std::span<const SurfacePoint> surfaces, std::size_t rays_across, std::uint32_t seed,
-                                    int threads, const Stopped& stopped, RenderReport& report);
+                                    int threads, const Stopped& stopped, const std::function<bool()>& has_time,
+                                    RenderReport& report);
 
   private:
     /// The end of a ray.

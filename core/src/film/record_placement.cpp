@@ -51,6 +51,20 @@ std::size_t rays_across(double threshold) {
     return static_cast<std::size_t>(std::ceil(least));
 }
 
+/// Any part of the picture then has some of those that are made at once.
+template <class Wanted>
+std::vector<Wanted> spread_over_picture(std::vector<Wanted> wanted) {
+    const std::size_t step = (wanted.size() + kRecordsAtOnce - 1) / kRecordsAtOnce;
+    std::vector<Wanted> spread;
+    spread.reserve(wanted.size());
+    for (std::size_t first = 0; first < step; ++first) {
+        for (std::size_t i = first; i < wanted.size(); i += step) {
+            spread.push_back(wanted[i]);
+        }
+    }
+    return spread;
+}
+
 }  // namespace
 
 RecordPlacement::Finder::Finder(const Picture& picture, const PathSettings& paths)
@@ -76,7 +90,8 @@ RecordPlacement::RecordPlacement(const Picture& picture, std::span<const float> 
     least_square_ = 0.01 * average * average;
 }
 
-RenderReport RecordPlacement::add_grid(const Grid& grid, const Stopped& stopped) {
+RenderReport RecordPlacement::add_grid(const Grid& grid, const Stopped& stopped,
+                                       const std::function<bool()>& has_time) {
     const int threads = picture_->settings.threads;
     std::vector<Row> rows(static_cast<std::size_t>((picture_->height + grid.step - 1) / grid.step));
     parallel_for(rows.size(), threads, [&](std::size_t row) {
@@ -92,11 +107,13 @@ RenderReport RecordPlacement::add_grid(const Grid& grid, const Stopped& stopped)
         pixels += row.pixels;
     }
     error_ = std::sqrt(errors / static_cast<double>(std::max<std::size_t>(pixels, 1)));
+    wanted = spread_over_picture(std::move(wanted));
     std::vector<SurfacePoint> surfaces;
     std::ranges::transform(wanted, std::back_inserter(surfaces), &Wanted::point);
     const auto seed = hash(picture_->settings.seed, static_cast<std::uint32_t>(stored_->records.all().size()));
     RenderReport report;
-    auto made = gatherer_.gather(surfaces, rays_across(threshold_), seed, threads, stopped, report);
+    auto made = gatherer_.gather(surfaces, rays_across(threshold_), seed, threads, stopped, has_time, report);
+    wanted.resize(made.size());
     for (std::size_t i = 0; i < made.size(); ++i) {
         made[i].limit_radius(kReach * made[i].radius, kLeastSteps * wanted[i].to_next, kMostSteps * wanted[i].to_next);
         stored_->records.add(std::move(made[i]));

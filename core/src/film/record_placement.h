@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -26,9 +27,9 @@ class RecordPlacement {
     /// image: of direct light, RGBA, or black. picture, stored: must outlive this.
     RecordPlacement(const Picture& picture, std::span<const float> image, StoredLight& stored);
 
-    /// Makes the records of a grid of pixels, after those of all wider ones. Returns what that took. Throws
-    /// RenderCancelled once stopped.
-    RenderReport add_grid(const Grid& grid, const Stopped& stopped);
+    /// Makes the records of a grid of pixels, after those of all wider ones, or some of them if there is no time for
+    /// all. Returns what that took. Throws RenderCancelled once stopped.
+    RenderReport add_grid(const Grid& grid, const Stopped& stopped, const std::function<bool()>& has_time);
     /// Root mean square over the last grid's pixels of the errors by the records before, see RenderReport::noise.
     double error() const { return error_; }
 
