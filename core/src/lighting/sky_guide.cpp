@@ -159,8 +159,9 @@ bool SkyGuide::find(const ShadingFrame& frame, const Vec3d& origin, GuidedDensit
 SkyGuide::Sample SkyGuide::sample(const GuidedDensity& density, float u, float v) const {
     // Returns the part of a line in which a place in 0 … 1 lies, and makes the place that within it.
     const auto part = [](std::span<const float> up_to, float& place) {
-        const float at = place * up_to.back();
-        const auto found = std::upper_bound(up_to.begin(), up_to.end() - 1, at);
+        // The last parts may be empty.
+        const float at = std::min(place * up_to.back(), std::nextafter(up_to.back(), 0.0F));
+        const auto found = std::upper_bound(up_to.begin(), up_to.end(), at);
         const float before = found == up_to.begin() ? 0.0F : *(found - 1);
         place = std::clamp((at - before) / (*found - before), 0.0F, 1.0F);
         return static_cast<std::size_t>(found - up_to.begin());
