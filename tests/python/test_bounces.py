@@ -10,6 +10,7 @@ from scene_cases import FACES, SQUARE
 
 import shlight
 from shlight import nodes
+from shlight.bench import bounced_scenes
 from shlight.metrics import rel_mse
 
 # The sides of a box whose corners box() gives.
@@ -138,3 +139,14 @@ def test_as_many_panes_are_seen_through_as_are_asked_for(through: int | None, se
     scene.set_camera(to_world, 0.5)
     image = shlight.render(scene, 8, 8, max_bounces=4, glossy_bounces=0, transmission_bounces=through)[..., :3]
     np.testing.assert_allclose(image, seen, rtol=1e-4)
+
+
+def test_paths_that_few_rays_find_leave_no_bright_dots() -> None:
+    """Balls that show lamps' reflections in each other: without a limit dots are 190 times as bright as around them."""
+    scene = bounced_scenes.glossy_balls().for_shlight()
+    whole, direct = (
+        shlight.render(scene, 64, 64, max_bounces=bounces, min_samples=4, max_samples=4)[..., :3].mean(axis=-1)
+        for bounces in (4, 0)
+    )
+    around = np.median(np.lib.stride_tricks.sliding_window_view(np.pad(whole, 2, mode="edge"), (5, 5)), axis=(2, 3))
+    assert ((whole - direct) / (around + 0.02 * whole.mean())).max() <= 8

@@ -284,7 +284,9 @@ float Refinement::most_by_path(int column, int row, int level, std::span<const f
                     [&](std::size_t i) { around[count++] = mean(glm::abs(color(image, i))); });
     const auto middle = around.begin() + static_cast<std::ptrdiff_t>(count / 2);
     std::nth_element(around.begin(), middle, around.begin() + static_cast<std::ptrdiff_t>(count));
-    const double own = mean(glm::abs(color(image, index(column, row))));
+    // One ray that others replace may be a bright dot itself.
+    const std::size_t pixel = index(column, row);
+    const double own = kept_samples(states_[pixel].level) > 0 ? mean(glm::abs(color(image, pixel))) : 0.0;
     return static_cast<float>(samples(level) * std::max(*middle, own));
 }
 
