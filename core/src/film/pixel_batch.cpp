@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "base/stage_clock.h"
@@ -120,7 +121,6 @@ void PixelSums::add(const Rgb& ray_radiance, const Rgb& too_much, const Rgb& ray
     const Vec3d shown = glm::clamp(Vec3d(ray_radiance - too_much), -kBrightestRay, kBrightestRay);
     opacity += double{ray_opacity};
     radiance += shown;
-    excess += whole - shown;
     early += is_early ? shown : Vec3d(0);
     const Vec3d shadow_noise = glm::min(Vec3d(ray_noise), kBrightestRay * kBrightestRay);
     squares += whole * whole - shadow_noise;
@@ -306,7 +306,7 @@ void PixelBatch::add_up(std::span<const Pixel> pixels, const SampleRange& sample
             const float kept = std::min(pixels[pixel].most_by_path / std::max(brightness, 1e-30F), 1.0F);
             const Rgb excess = kept < 1 ? (1 - kept) * by_path : Rgb(0);
             if (kept < 1 && !picture_->parts.empty()) {
-                hits_.apart.add(pixel, LightKind::glossy_indirect, -excess);
+                take_from_parts(pixel, excess);
             }
             sums[pixel].add(radiance, excess, noise, from_center(rays_[ray].sample), ray_light_[ray].opacity,
                             rays_[ray].sample < second_half);
@@ -314,6 +314,16 @@ void PixelBatch::add_up(std::span<const Pixel> pixels, const SampleRange& sample
         sums[pixel].rays += samples.count;
         sums[pixel].visibility |= hits_.visibility[pixel];
         sums[pixel].shared_noise += glm::min(Vec3d(hits_.shared_noise[pixel]), kBrightestRay * kBrightestRay);
+    }
+}
+
+void PixelBatch::take_from_parts(std::size_t pixel, const Rgb& light) {
+    const std::span<Rgb> parts = hits_.apart.of(pixel);
+    const std::size_t first = LightParts::of_kind(LightKind::glossy);
+    const std::size_t last = LightParts::of_kind(LightKind::transmission_indirect);
+    for (const std::span<Rgb> some : {parts.subspan(first, last + 1 - first), parts.subspan(LightParts::of_group(0))}) {
+        const Rgb sum = std::accumulate(some.begin(), some.end(), Rgb(0));
+        complete(some, glm::max(sum - light, glm::min(sum, Rgb(0))), 0);
     }
 }
 

@@ -37,7 +37,6 @@ struct PixelSums {
     Vec3d radiance{0};
     Vec3d squares{0};              ///< of radiance, without the part that is noise of shadow rays
     Vec3d noise{0};                ///< that part
-    Vec3d excess{0};               ///< what paths bring above Pixel::most_by_path
     Vec3d shared_noise{0};         ///< the variance of `radiance` by shadow rays that camera rays have in common
     Vec3d early{0};                ///< radiance of the camera rays in the first half of all that the pixel then has
     LightBits visibility;          ///< of lights, by the shadow rays
@@ -46,8 +45,8 @@ struct PixelSums {
     /// Variance over the pixel of what is not linear in the place: rays in even number, spread evenly, average that
     /// out.
     Vec3d variance() const;
-    /// The part of one ray; too_much: the part of its radiance that `excess` and the squares count; from_center: its
-    /// distance from the pixel's centre; is_early: it counts in `early`.
+    /// The part of one ray; too_much: the part of its radiance that the squares alone count; from_center: its distance
+    /// from the pixel's centre; is_early: it counts in `early`.
     void add(const Rgb& ray_radiance, const Rgb& too_much, const Rgb& ray_noise, const glm::dvec2& from_center,
              float ray_opacity, bool is_early);
 };
@@ -122,6 +121,8 @@ class PixelBatch {
     void seed_pixels(std::span<const Pixel> pixels);
     void add_up(std::span<const Pixel> pixels, const SampleRange& samples, std::uint32_t second_half,
                 std::span<PixelSums> sums);
+    /// Takes light that paths have brought from the parts of a pixel.
+    void take_from_parts(std::size_t pixel, const Rgb& light);
     /// Parts of the light.
     void add_up_parts(std::span<double> pass_sums) const;
     LensPoint lens_point(std::uint32_t sample, std::uint32_t pixel_seed) const;

@@ -30,8 +30,6 @@ constexpr double kMostNoise = 4;
 constexpr int kNoiseReach = 2;
 /// The number of camera rays from which on a pixel's own rays tell more of its noise than those around it do.
 constexpr double kOwnRays = 64;
-/// An excess that is smaller counts as none.
-constexpr double kLeastExcess = 1e-30;
 /// Threshold ÷ estimated error of a pixel that has enough: few of the errors, which scatter, then exceed the threshold.
 constexpr double kMargin = 1.3;
 /// The squared error by shadow rays falls with this power of their number: 1 behind many thin things, 1.5 at one edge.
@@ -97,12 +95,7 @@ void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std
     const double all = samples(level);
     const Vec3d old = before > 0 ? color(image, i) : Vec3d(0);
     const Vec3d difference = before > 0 ? old - sums.radiance / static_cast<double>(sums.rays) : Vec3d(0);
-    // Three quarters of the limit have been added to it since the last level.
-    const Vec3d excess(state.excess);
-    const double more =
-        std::min(0.75 * double{pixel.most_by_path} / std::max(mean(glm::abs(excess)), kLeastExcess), 1.0);
-    const Vec3d added = excess != Vec3d(0) ? more * excess : Vec3d(0);
-    const Vec3d radiance = (before * old + sums.radiance + added) / all;
+    const Vec3d radiance = (before * old + sums.radiance) / all;
     const double alpha = before > 0 ? (before * image[4 * i + 3] + sums.opacity) / all : sums.opacity / all;
     for (int channel = 0; channel < 3; ++channel) {
         image[4 * i + static_cast<std::size_t>(channel)] = static_cast<float>(radiance[channel]);
@@ -117,8 +110,7 @@ void Refinement::merge(const Pixel& pixel, int level, const PixelSums& sums, std
     }
     LightBits visibility = state.visibility;
     visibility |= sums.visibility;
-    const Rgb still_above(excess - added + sums.excess);
-    state = {Rgb(variance), still_above, 0, static_cast<std::int16_t>(level), round_, visibility, false};
+    state = {Rgb(variance), 0, static_cast<std::int16_t>(level), round_, visibility, false};
 }
 
 Refinement::ShadowNoise Refinement::merged_noise(std::size_t pixel, int level, const PixelSums& sums, const Vec3d& old,

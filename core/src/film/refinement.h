@@ -76,7 +76,6 @@ class Refinement {
     };
     struct State {
         Rgb variance{0};  // of one ray, without the noise of its shadow rays
-        Rgb excess{0};    // see PixelSums
         float error = 0;  // squared; as it was when a round looked at it
         std::int16_t level = -1;
         std::uint16_t merged = 0;  // the number of the round
