@@ -145,17 +145,14 @@ def test_paths_that_few_rays_find_leave_no_bright_dots() -> None:
     """Balls that show lamps' reflections in each other: without a limit dots are 190 times as bright as around them."""
     scene = bounced_scenes.glossy_balls().for_shlight()
     kinds = ("diffuse", "glossy")
-    names = [f"{kind}_{part}" for kind in kinds for part in ("direct", "indirect", "color")] + [
-        "emission",
-        "environment",
-    ]
-    options = {"min_samples": 4, "max_samples": 4}
-    parts = shlight.render(scene, 64, 64, passes=names, **options)
+    names = ["emission", "environment"]
+    names += [f"{kind}_{part}" for kind in kinds for part in ("direct", "indirect", "color")]
+    parts = shlight.render(scene, 64, 64, passes=names, min_samples=4, max_samples=4)
     picture = parts["combined"][..., :3]
     surfaces = [parts[f"{kind}_{part}"] * parts[f"{kind}_color"] for kind in kinds for part in ("direct", "indirect")]
     assert parts["glossy_indirect"].min() >= -1e-6
     np.testing.assert_allclose(sum(surfaces) + parts["emission"] + parts["environment"], picture, atol=1e-5)
     whole = picture.mean(axis=-1)
-    direct = shlight.render(scene, 64, 64, max_bounces=0, **options)[..., :3].mean(axis=-1)
+    direct = shlight.render(scene, 64, 64, max_bounces=0, min_samples=4, max_samples=4)[..., :3].mean(axis=-1)
     around = np.median(np.lib.stride_tricks.sliding_window_view(np.pad(whole, 2, mode="edge"), (5, 5)), axis=(2, 3))
     assert ((whole - direct) / (around + 0.02 * whole.mean())).max() <= 8
