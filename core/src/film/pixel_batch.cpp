@@ -40,6 +40,10 @@ constexpr std::array<std::pair<Pass, LightKind>, kLightKinds> kKindPasses = {
     std::pair(Pass::emission, LightKind::emission),
     std::pair(Pass::environment, LightKind::environment)};
 
+float brightness(const Rgb& radiance) {
+    return glm::dot(glm::abs(radiance), Rgb(1.0F / 3));
+}
+
 bool needs_parts(const PassLayout& layout) {
     return std::any_of(layout.places().begin(), layout.places().end(), [](const PassLayout::Place& place) {
         const Pass kind = place.pass.kind;
@@ -226,7 +230,7 @@ Pilot PixelBatch::pilot(std::span<const Pixel> pixels, std::uint32_t shadow_rays
     lighting_.add(pixel_seeds_, penumbrae_, first, hits_, report_);
     Pilot pilot;
     for (const Rgb& radiance : hits_.radiance) {
-        pilot.reflected += glm::dot(glm::abs(radiance), Rgb(1.0F / 3));
+        pilot.reflected += brightness(radiance);
     }
     const std::uint32_t environment = LightBits::bit(picture_->lighting.extended.size());
     for (const LightBits& visibility : hits_.visibility) {
@@ -302,8 +306,7 @@ void PixelBatch::add_up(std::span<const Pixel> pixels, const SampleRange& sample
                 noise += hits_.noise[hit];
                 by_path += surfaces_.drawn_hits()[hit] != 0 ? hits_.radiance[hit] : Rgb(0);
             }
-            const float brightness = glm::dot(glm::abs(by_path), Rgb(1.0F / 3));
-            const float kept = std::min(pixels[pixel].most_by_path / std::max(brightness, 1e-30F), 1.0F);
+            const float kept = std::min(pixels[pixel].most_by_path / std::max(brightness(by_path), 1e-30F), 1.0F);
             const Rgb excess = kept < 1 ? (1 - kept) * by_path : Rgb(0);
             if (kept < 1 && !picture_->parts.empty()) {
                 take_from_parts(pixel, excess);

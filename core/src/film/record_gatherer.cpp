@@ -2,13 +2,10 @@
 #include "film/record_gatherer.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 #include <utility>
 
 #include <tbb/parallel_sort.h>
-#include <glm/common.hpp>
 
 #include "shlight/sampling.h"
 #include "tracing/light_bits.h"

@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "lobes/refraction.h"
-#include "shlight/sampling.h"
 
 namespace shlight {
 namespace {
