@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from . import record, running
 from .compat import write_pass
+from .denoising import denoised, with_features
 from .frame import Frame, frame_of, memory_problem
 from .names import is_utf8, name_of, printable
 from .native import native_problem
@@ -127,6 +128,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             exported = self._export(depsgraph, frame, view)
             settings = render_settings(depsgraph.scene).arguments()
             passes = pass_arguments(depsgraph.scene, depsgraph.view_layer)
+            denoises = depsgraph.scene.shlight.use_denoising and shlight.has_denoiser()
             record.last.export_seconds = time.perf_counter() - start
             record.last.report.extend(exported.report)
             record.last.dark = exported.dark or record.last.dark
@@ -158,7 +160,7 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
                 progress=self._progress,
                 on_update=show,
                 return_report=True,
-                **passes,
+                **(with_features(passes) if denoises else passes),
                 **settings,
             )
         except ExportCancelled:
@@ -168,7 +170,11 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
         if inexact := inexact_light(record.last.statistics):
             record.last.report.add("Light", inexact, Effect.SLIGHT)
         stamp_cryptomattes(self.get_result(), depsgraph.view_layer, exported.names)
-        return result if isinstance(result, dict) else {"combined": result}
+        arrays: Arrays = result if isinstance(result, dict) else {"combined": result}
+        return denoised(arrays, "high", settings["threads"], self._denoises) if denoises else arrays
+
+    def _denoises(self, share: float) -> bool:
+        return self._wait("Denoising")
 
     def _export(self, depsgraph: Any, frame: Frame, view: str) -> Any:
         """The scene as one view sees it. With Persistent Data, what has not changed since the last render is kept."""

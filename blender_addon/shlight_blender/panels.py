@@ -59,6 +59,7 @@ class SHLIGHT_RENDER_PT_sampling(EnginePanel, bpy.types.Panel):
             column.prop(settings, "max_samples")
             column.prop(settings, "min_samples")
         layout.prop(settings, "time_limit")
+        layout.prop(settings, "use_denoising")
 
 
 class SHLIGHT_RENDER_PT_sampling_viewport(EnginePanel, bpy.types.Panel):
@@ -77,6 +78,7 @@ class SHLIGHT_RENDER_PT_sampling_viewport(EnginePanel, bpy.types.Panel):
         column.prop(settings, "preview_max_samples")
         column.prop(settings, "preview_min_samples")
         layout.prop(settings, "preview_time_limit")
+        layout.prop(settings, "preview_use_denoising")
         layout.prop(context.scene.render, "preview_pixel_size")
 
 

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .denoising import denoised, with_features
 from .frame import Frame
 from .status import status_of
 
@@ -37,6 +38,7 @@ class Job:
     scene: Any  # shlight.Scene
     frame: Frame
     settings: dict[str, Any]
+    denoises: bool = False
 
 
 class PictureMaker:
@@ -90,27 +92,32 @@ class PictureMaker:
     def _make(self, job: Job, number: int) -> None:
         import shlight
 
-        def show(image: NDArray[np.float32], report: Any, *, done: bool = False) -> bool:
+        def show(image: NDArray[np.float32], status: str) -> bool:
             pixels = np.minimum(image[::-1], np.float32(LARGEST))
             with self._changed:
                 if number != self._number:
                     return False
-                self.picture = Picture(pixels, job.frame, "" if done else status_of(report))
+                self.picture = Picture(pixels, job.frame, status)
                 self.error = ""
             self._redraw()
             return True
 
+        def goes_on(share: float) -> bool:
+            return number == self._number
+
         try:
-            image, report = shlight.render(
+            result = shlight.render(
                 job.scene,
                 job.frame.width,
                 job.frame.height,
-                progress=lambda share: number == self._number,
-                on_update=show,
-                return_report=True,
+                progress=goes_on,
+                on_update=lambda image, report: show(image, status_of(report)),
+                **(with_features({}) if job.denoises else {}),
                 **job.settings,
             )
-            show(image, report, done=True)
+            if job.denoises and show(result["combined"], "Denoising"):
+                result = denoised(result, "fast", job.settings["threads"], goes_on)
+            show(result["combined"] if job.denoises else result, "")
         except shlight.RenderCancelled:
             pass
         except Exception as error:

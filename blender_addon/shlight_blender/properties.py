@@ -57,6 +57,14 @@ def _bounces(which: str, default: int, description: str) -> Any:
     )
 
 
+def _denoising(picture: str) -> Any:
+    return bpy.props.BoolProperty(
+        name="Denoise",
+        description=f"Take the noise that is left out of {picture} by Open Image Denoise, once it is rendered",
+        default=False,
+    )
+
+
 class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
     """Settings of a scene for final renders."""
 
@@ -82,12 +90,14 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
     min_samples: _samples("Min", 4, "Least number of camera rays per pixel")
     max_samples: _samples("Max", 256, "Largest number of camera rays per pixel, rounded down to a power of four")
     time_limit: _time_limit("the picture")
+    use_denoising: _denoising("the picture")
     preview_noise_threshold: _noise_threshold(0.02, "a pixel of a viewport")
     preview_min_samples: _samples("Min", 1, "Least number of camera rays per pixel of a viewport")
     preview_max_samples: _samples(
         "Max", 64, "Largest number of camera rays per pixel of a viewport, rounded down to a power of four"
     )
     preview_time_limit: _time_limit("a viewport's picture")
+    preview_use_denoising: _denoising("a viewport's picture")
     pixel_samples: bpy.props.IntProperty(
         name="Pixel Samples",
         description="Camera rays of every pixel in the first pass, as files of older versions have them: in place of "

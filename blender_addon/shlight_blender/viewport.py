@@ -61,15 +61,19 @@ class RenderedViewport:
         self._say(self._error or self._maker.error or (picture.status if picture else ""))
 
     def _needed(self, context: Any, depsgraph: Any) -> tuple[Any, ...]:
+        from shlight import has_denoiser
+
         from .export import viewport_settings
 
-        return ViewportView.of(context, depsgraph), viewport_settings(depsgraph.scene)
+        scene = depsgraph.scene
+        denoises = bool(scene.shlight.preview_use_denoising) and has_denoiser()
+        return ViewportView.of(context, depsgraph), viewport_settings(scene), denoises
 
     def _follow(self, context: Any, depsgraph: Any, scene_may_change: bool) -> None:
         """Brings the scene up to date and has its picture made."""
         from .export import Changes, ExportedScene, everything
 
-        needed = view, settings = self._needed(context, depsgraph)
+        needed = view, settings, denoises = self._needed(context, depsgraph)
         start = time.perf_counter()
         try:
             self._exported.look_through(view)
@@ -89,7 +93,7 @@ class RenderedViewport:
             self._updated = f"{changes.parts()} in {1e3 * (time.perf_counter() - start):.0f} ms"
             record.show_viewport(depsgraph.scene, self._exported)
         if (changed or needed != self._shown) and view.frame.width > 0 and view.frame.height > 0:
-            self._maker.start(Job(self._exported.scene, view.frame, settings.arguments()))
+            self._maker.start(Job(self._exported.scene, view.frame, settings.arguments(), denoises))
         self._shown = needed
 
     def _bake(self, world: Any, scene: Any) -> Any:

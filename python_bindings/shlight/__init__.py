@@ -29,6 +29,7 @@ from shlight.coefficients import (  # noqa: E402
     shade,
     sphere_coefficients,
 )
+from shlight.denoising import denoise, has_denoiser  # noqa: E402
 from shlight.shading import shade_disks, shade_polygons, shade_spheres  # noqa: E402
 
 render = explained(_core.render)
@@ -45,8 +46,10 @@ __all__ = [
     "Scene",
     "SceneMesh",
     "cap_coefficients",
+    "denoise",
     "disk_coefficients",
     "evaluate",
+    "has_denoiser",
     "images",
     "methods",
     "polygon_coefficients",

@@ -8,6 +8,8 @@ from typing import Any
 
 import bpy
 
+from shlight import has_denoiser
+
 from ..compat import DENOISING_LEFT_OUT, PASSES, REC709, working_space
 from ..names import name_of
 from ..passes import CRYPTOMATTES, pass_wishes, stores_denoising_data
@@ -103,6 +105,8 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
     """Notes settings of the scene and its view layer that change Cycles' picture and not shlight's."""
     place = f"Scene '{name_of(scene)}'"
     render = scene.render
+    if (scene.shlight.use_denoising or scene.shlight.preview_use_denoising) and not has_denoiser():
+        report.add(place, "this Blender comes without Open Image Denoise; noise stays", Effect.SLIGHT)
     if render.use_motion_blur:
         report.add(place, "motion blur is not supported; everything stands still")
     if getattr(render, "use_freestyle", False):
