@@ -199,6 +199,14 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "shade_polygons": (shlight.shade_polygons, {**POLYGON, **AUTO}),
     "shade_polygons/random": (shlight.shade_polygons, {**POLYGON, **SAMPLED}),
     "shade_disks": (shlight.shade_disks, {**DISK, **SHADED, "order": "auto", "method": "auto"}),
+    "denoise": (
+        shlight.denoise,
+        {
+            **{name: picture(3, np.float32) for name in ("image", "albedo", "normal")},
+            **{"quality": "fast", "threads": 1, "progress": None},
+        },
+    ),
+    "has_denoiser": (shlight.has_denoiser, {}),
     "render": (shlight.render, {"scene": new_scene(), **RENDER, **SETTINGS, "return_report": True}),
     "images.write_exr": (images.write_exr, {"path": "a.exr", "image": picture(4, np.float32)}),
     "images.write_layers": (
@@ -231,6 +239,7 @@ for name, way in methods.shading_methods().items():
 
 # Arguments on which the range of another argument may depend.
 RELATED = {
+    "albedo": ("normal",),
     "aperture_ratio": ("aperture_size", "focus_distance"),
     "aperture_size": ("focus_distance",),
     "bsdf_coefficients": ("light_coefficients",),
@@ -240,6 +249,7 @@ RELATED = {
     "half_axes_u": ("half_axes_v", "centers"),
     "half_axes_v": ("centers",),
     "half_axis_u": ("half_axis_v",),
+    "image": ("albedo", "normal"),
     "left": ("right",),
     "bottom": ("top",),
     "light_coefficients": ("bsdf_coefficients",),
