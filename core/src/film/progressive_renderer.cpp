@@ -17,7 +17,9 @@ constexpr int kMostRounds = 256;
 constexpr int kWidestRecordStep = 32;
 constexpr int kLeastRecordStep = 2;
 /// Bounces get this share of the time there is.
-constexpr double kShareOfBounces = 0.3;
+constexpr double kShareOfBounces = 0.25;
+/// Direct light alone, which is shown before, gets this one.
+constexpr double kShareOfPreview = 0.03;
 /// Pixels of the first grid, at least.
 constexpr double kFirstPixels = 1024;
 /// Rays through middles of pixels that are traced together.
@@ -50,10 +52,11 @@ void ProgressiveRenderer::run(const Watch& caller) {
     write_middles(caller.stopped);
     const bool bounces = picture_->settings.max_bounces > 0;
     const bool shows_direct = !bounces || refinement_.has_preview();
-    bool goes_on = !shows_direct || first_pass(caller);
-    if (bounces && goes_on) {
+    const double share = bounces ? kShareOfPreview : 1;
+    bool goes_on = !shows_direct || first_pass(caller, share * time_limit());
+    if (bounces && !is_left_) {
         add_bounces(caller);
-        goes_on = first_pass(caller);
+        goes_on = first_pass(caller, time_limit());
     }
     for (int round = 0; goes_on && round < kMostRounds; ++round) {
         goes_on = refine(caller);
@@ -117,14 +120,14 @@ int ProgressiveRenderer::widest_step() const {
     return step;
 }
 
-bool ProgressiveRenderer::first_pass(const Watch& caller) {
+bool ProgressiveRenderer::first_pass(const Watch& caller, double latest) {
     const int last = refinement_.first_step();
     const double begin = seconds();
     double until = std::numeric_limits<double>::infinity();  // the first grid is always made
     bool goes_on = true;
     for (Grid grid = {widest_step(), 0}; goes_on && grid.step >= last; grid = {grid.step / 2, grid.step}) {
         goes_on = run_job(job_of(grid), until, caller.stopped);
-        until = time_limit();
+        until = latest;
         if (goes_on && grid.step > 1) {
             const std::unique_lock lock(merging_);
             fill_between(grid.step, picture_->width, picture_->height, picture_->settings.threads, image_);

@@ -56,7 +56,7 @@ class ProgressiveRenderer {
     };
 
     void write_middles(const Stopped& stopped);
-    bool first_pass(const Watch& caller);
+    bool first_pass(const Watch& caller, double latest);
     int widest_step() const;
     /// Makes records, and lets light bounce from now on.
     void add_bounces(const Watch& caller);

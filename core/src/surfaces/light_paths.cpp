@@ -24,6 +24,14 @@ double average(const Rgb& color) {
     return double{std::abs(color.x) + std::abs(color.y) + std::abs(color.z)} / 3;
 }
 
+/// Share of light from the mirrored direction that a lobe reflects: about its albedo, without an integral.
+double mirrored_share(const LobeShape& shape, double cosine) {
+    const Vec3d view = in_frame(cosine);
+    const Vec3d way = mirrored(view);
+    const double density = lobe_density(sampled_shape(shape), view, way);
+    return density > 0 ? lobe_value(shape, way, view) / density : 0.0;
+}
+
 /// Share of what a path meets that reaches the camera, below which it is not always followed.
 constexpr float kSurelyFollowed = 0.25F;
 constexpr float kSurelyFollowedToCells = 0.02F;
@@ -139,7 +147,7 @@ CameraSurfaces::Division CameraSurfaces::division(const Surface& surface, double
 void CameraSurfaces::scatter(const Surface& surface, std::size_t first) {
     const SurfaceLobe& own = lobes_[first];
     const double share = average(surface.throughput * own.weight) *
-                         lobe_albedo(own.shape, view_cosine(own.normal, view_of(surface, own)));
+                         mirrored_share(own.shape, view_cosine(own.normal, view_of(surface, own)));
     const std::uint32_t seed = hash(rays_[surface.ray].seed, hash(surface.bounces, static_cast<std::uint32_t>(first)));
     Division paths = division(surface, share, is_glossy(own.shape) ? lobe_width(own.shape) : 1, seed);
     for (; paths.path < paths.paths; ++paths.path) {
