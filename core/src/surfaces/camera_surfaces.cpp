@@ -88,9 +88,7 @@ void CameraSurfaces::meet(const Sink& sink) {
         Surface end = {segment, met_[i], point, -direction, distance, 0, 0};
         if (segment.is_broad && is_shaded(segment) && add_cell(end, sink)) {
             add_emission(end, sink);
-        } else if (segment.if_exact > 0) {
-            end.throughput *= segment.if_exact;
-            end.if_exact = 1;
+        } else {
             surfaces_.push_back(end);
         }
     }

@@ -112,7 +112,6 @@ class CameraSurfaces {
         std::uint32_t glossy = 0, transmissions = 0;  ///< of the bounces
         bool is_drawn = false;                        ///< by a lobe, or one before, from which directions are drawn
         bool is_broad = false;                        ///< its end need not be seen sharply
-        float if_exact = 1;  ///< factor of the throughput where the light of its end has to be found
 
         bool sees_lights() const { return source != RaySource::scattered; }
         /// The path on from its end. by: what sends it there; through: to the other side.
@@ -128,11 +127,10 @@ class CameraSurfaces {
                     transmissions + (through ? 1 : 0),
                     is_drawn};
         }
-        Segment drawn(bool rough, bool broad, float exact) const {
+        Segment drawn(bool rough, bool broad) const {
             Segment own = *this;
             own.is_drawn = is_drawn || rough;
             own.is_broad = broad;
-            own.if_exact = exact;
             return own;
         }
         PathKind kind_after(PathKind by) const { return bounces > 0 ? kind : by; }
@@ -188,18 +186,10 @@ class CameraSurfaces {
             own.drawn += segment.is_drawn ? radiance : Rgb(0);
         }
     };
-    /// How many paths share what a lobe reflects.
+    /// One of the paths that share what a lobe reflects.
     struct Division {
-        static constexpr std::uint32_t kExactPaths = 4;
-
-        std::uint32_t paths, path;  // of them, this one
-        std::uint32_t exact;        // one of those that go on where light has to be found
+        std::uint32_t paths, path;
         bool is_broad;
-
-        float if_exact() const {
-            const std::uint32_t every = std::max(paths / kExactPaths, 1U);
-            return path % every == exact % every ? static_cast<float>(every) : 0.0F;
-        }
     };
     void trace(const Segment& beginning, std::span<const NeighbourRays> neighbours, const Sink& sink, Hits& hits);
     void start(const Segment& segment, const Ray& part);
@@ -246,7 +236,7 @@ class CameraSurfaces {
     double ior(const Surface& surface, const ShadedRefraction& refraction) const;
     void refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t seed,
                  const Division& division);
-    Division division(const Surface& surface, double share, double width, std::uint32_t seed) const;
+    Division division(const Surface& surface, double share, double width) const;
     /// Unit. result: see ShadedLobe::normal.
     Vec3d normal(const Surface& surface, const std::optional<std::uint32_t>& result) const;
     Vec3d vector(const Surface& surface, std::uint32_t result) const;

@@ -35,9 +35,8 @@ double mirrored_share(const LobeShape& shape, double cosine) {
 /// Share of what a path meets that reaches the camera, below which it is not always followed.
 constexpr float kSurelyFollowed = 0.25F;
 constexpr float kSurelyFollowedToCells = 0.02F;
-/// Paths that share what a lobe reflects, at most, and what each then brings, at least.
-constexpr std::uint32_t kMostPaths = 8;
-constexpr double kShareOfPath = 0.04;
+/// What a broad lobe brings at least if two paths share it.
+constexpr double kShared = 0.04;
 /// Width of an interface whose rays differ by their side alone.
 constexpr double kSmooth = 1e-3;
 /// Seeds of directions through interfaces, beside those of lobes.
@@ -78,7 +77,7 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
     const double share = average(surface.throughput * color(surface, refraction.weight));
     if (share > 0) {
         const std::uint32_t seed = hash(rays_[surface.ray].seed, hash(surface.bounces, kRefractionSeed + number));
-        Division paths = division(surface, share, double{width(surface, refraction.alpha)}, seed);
+        Division paths = division(surface, share, double{width(surface, refraction.alpha)});
         for (; paths.path < paths.paths; ++paths.path) {
             refract(surface, refraction, seed, paths);
         }
@@ -115,7 +114,7 @@ void CameraSurfaces::refract(const Surface& surface, const ShadedRefraction& ref
     start(surface
               .next(RaySource::mirror, by, !sampled.reflected,
                     weight * static_cast<float>(sampled.weight / division.paths), next)
-              .drawn(alpha > kSmooth, division.is_broad, division.if_exact()),
+              .drawn(alpha > kSmooth, division.is_broad),
           next);
 }
 
@@ -133,15 +132,10 @@ void CameraSurfaces::reflect_mirror(const Surface& surface, const SurfaceLobe& l
     ++mirror_count_;
 }
 
-/// A path is cheap where the light at its end is known: a broad lobe has several.
-CameraSurfaces::Division CameraSurfaces::division(const Surface& surface, double share, double width,
-                                                  std::uint32_t seed) const {
+/// A path is cheap where the light at its end is known: a broad lobe has two.
+CameraSurfaces::Division CameraSurfaces::division(const Surface& surface, double share, double width) const {
     const bool is_broad = settings_.stored != nullptr && width >= LightCells::kLeastWidth;
-    std::uint32_t paths = 1;
-    while (is_broad && surface.bounces == 0 && paths < kMostPaths && paths * kShareOfPath < share) {
-        paths *= 2;
-    }
-    return {paths, 0, hash(seed, rays_[surface.ray].sample) % paths, is_broad};
+    return {is_broad && surface.bounces == 0 && share > kShared ? 2U : 1U, 0, is_broad};
 }
 
 void CameraSurfaces::scatter(const Surface& surface, std::size_t first) {
@@ -149,7 +143,7 @@ void CameraSurfaces::scatter(const Surface& surface, std::size_t first) {
     const double share = average(surface.throughput * own.weight) *
                          mirrored_share(own.shape, view_cosine(own.normal, view_of(surface, own)));
     const std::uint32_t seed = hash(rays_[surface.ray].seed, hash(surface.bounces, static_cast<std::uint32_t>(first)));
-    Division paths = division(surface, share, is_glossy(own.shape) ? lobe_width(own.shape) : 1, seed);
+    Division paths = division(surface, share, is_glossy(own.shape) ? lobe_width(own.shape) : 1);
     for (; paths.path < paths.paths; ++paths.path) {
         scatter(surface, first, seed, paths);
     }
@@ -188,7 +182,7 @@ void CameraSurfaces::scatter(const Surface& surface, std::size_t first, std::uin
     const Vec3d lift = terminator.lifts() ? terminator.share(direction) * terminator.lift : Vec3d(0);
     const Ray scattered = {Vec3f(point.off_surface() + lift), 0, Vec3f(direction)};
     start(surface.next(RaySource::scattered, kind_of(own.shape), own.translucent, weight / probability, scattered)
-              .drawn(true, division.is_broad, division.if_exact()),
+              .drawn(true, division.is_broad),
           scattered);
 }
 
