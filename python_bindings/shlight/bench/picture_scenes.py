@@ -107,7 +107,7 @@ def _bsdf(thing: Thing) -> Any:
     if thing.picture is not None:
         return shlight.Bsdf.lambert(nodes.image(thing.picture, encoding="srgb"))
     if thing.roughness is not None:
-        return shlight.Bsdf.ggx(thing.roughness, thing.color)
+        return nodes.glossy(thing.color, thing.roughness)
     if thing.principled is not None:
         return nodes.principled(thing.color, **thing.principled)
     return shlight.Bsdf.lambert((0, 0, 0) if thing.emission else thing.color)
