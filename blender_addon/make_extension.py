@@ -7,6 +7,7 @@ builds the wheels and calls it.
 
 from __future__ import annotations
 
+import re
 import sys
 import tomllib
 import zipfile
@@ -28,12 +29,14 @@ def make_extension(wheels: Path, dist: Path) -> Path:
     names = sorted(path.name for path in wheels.glob("*.whl"))
     if not names:
         raise SystemExit(f"make_extension: there are no wheels in {wheels}")
+    version = next(name for name in names if name.startswith("shlight-")).split("-")[1]
+    manifest = re.sub("^version = .*", f'version = "{version}"', manifest, count=1, flags=re.MULTILINE)
     listed = "".join(f'  "./wheels/{name}",\n' for name in names)
     # Before the first table, where keys of the whole file belong.
     head, table, rest = manifest.partition("\n[")
     manifest = f"{head}wheels = [\n{listed}]\n{table}{rest}"
     dist.mkdir(parents=True, exist_ok=True)
-    path = dist / f"shlight-{fields['version']}-{fields['platforms'][0]}.zip"
+    path = dist / f"shlight-{version}-{fields['platforms'][0]}.zip"
     unfinished = path.with_suffix(".part")
     with zipfile.ZipFile(unfinished, "w", zipfile.ZIP_DEFLATED) as archive:
         _write(archive, "blender_manifest.toml", manifest.encode())

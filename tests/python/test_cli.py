@@ -19,6 +19,8 @@ class Commands(dict):
 
 
 class Command:
+    module = "no_such_package.command"
+
     def __init__(self, run: object) -> None:
         self.run = run
 
@@ -40,6 +42,14 @@ def test_lists_commands(commands: Commands, capsys: pytest.CaptureFixture[str]) 
     assert cli.main([]) == 0
     assert "  paint\n" in capsys.readouterr().out
     assert cli.main(["--help"]) == 0
+
+
+def test_every_command_is_explained(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["--help"]) == 0
+    listed = capsys.readouterr().out.split("commands:\n")[1].split("\n\n")[0].splitlines()
+    explained = dict(line.strip().partition("  ")[::2] for line in listed)
+    assert explained.keys() == metadata.entry_points(group=cli.GROUP).names
+    assert all(text.strip().endswith(".") for text in explained.values()), explained
 
 
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,13 +8,14 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import shlight
 from shlight import images
-from shlight.farm import Picture, Rendered, files, parse_frames
+from shlight.farm import Outcome, Picture, Rendered, command, files, parse_frames
 from shlight.farm.frames import file_of
 from shlight.farm.pictures import boxes_of
 
@@ -76,6 +77,26 @@ def test_a_full_disk_leaves_nothing(tmp_path: Path) -> None:
     run = subprocess.run([sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True, check=True)
     assert run.stdout == "File too large\n"
     assert not list(tmp_path.iterdir())
+
+
+def test_a_large_scale_is_no_forgotten_percent_sign(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scales: list[float] = []
+
+    def render_frames(*_: Any, scale: float, **__: Any) -> Outcome:
+        scales.append(scale)
+        return Outcome()
+
+    monkeypatch.setattr(command, "render_frames", render_frames)
+    options = ["x.blend", "--frames", "1", "--out", "x.exr", "--scale"]
+    assert command.main([*options, "25"]) == 2
+    assert "for percent write 25%, or --force" in capsys.readouterr().err
+    assert command.main([*options, "wide"]) == 2
+    assert "'wide' is no factor such as 0.5 or 50%" in capsys.readouterr().err
+    for given in (["25%"], ["4"], ["400%"], ["25", "--force"]):
+        assert command.main([*options, *given]) == 0
+    assert scales == [0.25, 4, 4, 25]
 
 
 def test_the_farm_without_dask() -> None:

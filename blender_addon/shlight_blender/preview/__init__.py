@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The command `shlight preview`: a scene rendered by shlight, by Cycles in the same time, and by Cycles for long.
+"""Renders a scene with shlight, with Cycles in the same time and with Cycles for long, and compares.
 
 `command` is the program that the user starts; it starts `worker`, which renders.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The command `shlight survey`: all scenes of a folder rendered by shlight and by Cycles, and how far they differ.
+"""Renders all scenes of a folder with shlight and with Cycles, and tells how far they differ.
 
 `command` is the program that the user starts; it starts a `worker` for each file, so that what befalls one file is
 that file's line.

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""`shlight bench`: checks the request, has the sections measured, and tells and keeps the results."""
+"""Measures the times of calls, as ratios within one run.
+
+It checks the request, has the sections measured, and tells and keeps the results.
+"""
 
 from __future__ import annotations
 

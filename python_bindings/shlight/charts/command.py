@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""`shlight charts`: checks the request, has the figures drawn, and puts each in place when it is complete."""
+"""Measures the methods and draws the figures.
+
+It checks the request, has the figures drawn, and puts each in place when it is complete.
+"""
 
 from __future__ import annotations
 

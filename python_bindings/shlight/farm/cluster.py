@@ -97,7 +97,8 @@ class Workers:
 
     def submit(self, task: Task) -> None:
         """Gives a task to the cluster, which begins those first that came first."""
-        future = self._client.submit(perform_on_worker, self._source, task, self._threads, pure=False)
+        own = self._client.cluster is not None
+        future = self._client.submit(perform_on_worker, self._source, task, self._threads, own, pure=False)
         self._tasks[future] = task
 
     def ended(self) -> list[tuple[Task, Callable[[], Result]]]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The command line of `shlight render`."""
+"""Renders frames of a scene to OpenEXR files, in processes on this machine or on a farm."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from shlight.commands import CommandError, Parser, run_command
 from shlight.farm.frames import parse_frames
 from shlight.farm.render import render_frames
 from shlight.farm.tls import Tls
+
+LARGEST_FACTOR = 4.0  # a larger one is taken for a percentage whose sign was forgotten
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -31,6 +33,7 @@ def _work(arguments: list[str]) -> None:
             values.pop("out"),
             views=[name for names in values.pop("views") for name in names.split(",")],
             settings=dict(values.pop("settings")),
+            scale=_scale(values.pop("scale"), values["force"]),
             tls=Tls(*tls) if all(tls) else None,
             **values,
         )
@@ -54,11 +57,17 @@ def _setting(text: str) -> tuple[str, str]:
     return name, value
 
 
-def _scale(text: str) -> float:
+def _scale(text: str, force: bool) -> float:
+    percent = text.endswith("%")
     try:
-        return float(text.removesuffix("%")) / (100.0 if text.endswith("%") else 1.0)
+        factor = float(text.removesuffix("%")) / (100.0 if percent else 1.0)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}' is no factor such as 0.5 or 50%") from None
+        raise CommandError(f"--scale: '{text}' is no factor such as 0.5 or 50%", 2) from None
+    if factor > LARGEST_FACTOR and not percent and not force:
+        raise CommandError(
+            f"--scale {text} is {text} times the width and height; for percent write {text}%, or --force", 2
+        )
+    return factor
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -75,12 +84,12 @@ def _parser() -> argparse.ArgumentParser:
     add("--out", required=True, metavar="FILE", help="files such as shot_####.exr; #### becomes the frame")
     add("--views", action="append", default=[], metavar="NAME,…", help="views of the scene, or cameras (default: all "
         "views, or the scene's camera)")  # fmt: skip
-    add("--scale", type=_scale, default=1.0, metavar="X", help="of width and height, such as 0.5 or 50%%")
+    add("--scale", default="1", metavar="X", help="of width and height, such as 0.5 or 50%%; above 4 as percent only")
     add("--set", type=_setting, action="append", default=[], dest="settings", metavar="NAME=VALUE",
         help="a property of the scene, such as shlight.noise_threshold=0.005")  # fmt: skip
     add("--tile", type=int, metavar="N", help="side of the tiles of a picture, 0: none (default: 1024 for more than "
         "2^24 pixels)")  # fmt: skip
-    add("--force", action="store_true", help="render frames whose files are whole too")
+    add("--force", action="store_true", help="render frames whose files are whole too, at any --scale")
     add("--retries", type=int, default=1, metavar="N", help="of a frame that has failed (default: %(default)s)")
     add(
         "--threads",

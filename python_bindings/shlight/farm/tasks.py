@@ -35,8 +35,11 @@ class Result:
     messages: Sequence[str]
 
 
-def perform_on_worker(source: Source, task: Task, threads: int) -> Result:
-    """Runs `perform` in one fixed thread of a worker's process: Blender must stay in the thread it started in."""
+def perform_on_worker(source: Source, task: Task, threads: int, own: bool) -> Result:
+    """Runs `perform` in one fixed thread of a worker's process: Blender must stay in the thread it started in.
+
+    own: the process was started for these tasks, and has nothing to keep when they are done.
+    """
     from distributed import get_worker
 
     global received_files
@@ -45,7 +48,8 @@ def perform_on_worker(source: Source, task: Task, threads: int) -> Result:
         return _render_thread().submit(perform, source, task, threads).result()
     finally:
         _give_memory_back()
-        _end_at_once()
+        if own:
+            _end_at_once()
 
 
 def perform(source: Source, task: Task, threads: int) -> Result:
@@ -65,7 +69,7 @@ def _give_memory_back() -> None:
 
 @cache
 def _end_at_once() -> None:
-    """A worker has nothing to keep, and Blender's own end may hang. What is registered last is called first."""
+    """Ends the process without Blender's own end, which may hang. What is registered last is called first."""
     atexit.register(os._exit, 0)
 
 
