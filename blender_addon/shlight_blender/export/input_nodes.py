@@ -74,7 +74,7 @@ def _geometry(inputs: NodeInputs) -> Expression:
         return Vector(1.0 - nodes.barycentric().x - nodes.barycentric().y, nodes.barycentric().x, 0.0)
     if name == "Tangent":
         return around("Z")
-    return nodes.attribute(f"{name.lower()}:").x
+    return nodes.attribute(f"\0{name.lower()}:").x
 
 
 def _object_info(inputs: NodeInputs) -> Expression:

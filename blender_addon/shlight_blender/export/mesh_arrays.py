@@ -55,7 +55,8 @@ def complete(arrays: MeshArrays, mesh_object: Any, names: Sequence[str], report:
     """Reports attributes that the mesh has not; a colour is then transparent black, others are 0 with an alpha of 1."""
     missing = [name for name in names if name not in arrays.attributes]
     for name in missing:
-        what = f"attribute or UV map '{name}'" if name else "UV map"
+        shown = name.removeprefix("\0")
+        what = f"attribute or UV map '{shown}'" if name else "UV map"
         text = f"it has no {what}, which its material reads; 0 is used, as in Cycles"
         report.add(f"Object '{name_of(mesh_object)}'", text, Effect.SLIGHT)
     black = np.zeros((len(arrays.triangles), 3, 4), dtype=np.float32)

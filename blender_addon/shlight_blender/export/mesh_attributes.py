@@ -17,17 +17,18 @@ Array = NDArray[np.float32]
 
 # The UV map for rendering.
 UV = ""
+# Names of what is no attribute of the mesh begin with what no name in Blender holds.
 # Prefix of the tangents of a UV map: xyz and the sign of the bitangent, per corner.
-TANGENT = "tangent:"
+TANGENT = "\0tangent:"
 # Prefix of a colour attribute; without a name, the one for rendering.
-COLOR = "color:"
+COLOR = "\0color:"
 # Prefix of a vertex's position in the mesh's texture space.
-GENERATED = "generated:"
+GENERATED = "\0generated:"
 
 # Numbers that the mesh's shape gives.
 SHAPES: dict[str, Callable[[Any], NDArray[np.float64]]] = {
-    "pointiness:": pointiness,
-    "random per island:": random_per_island,
+    "\0pointiness:": pointiness,
+    "\0random per island:": random_per_island,
 }
 
 COMPONENTS = {
