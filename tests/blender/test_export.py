@@ -268,7 +268,7 @@ def test_what_is_left_out_of_a_dark_scene_is_named_first(studio: Any) -> None:
 
 def test_cornell_box(shared_scene: Any) -> None:
     studio = shared_scene("cornell_box.blend")
-    studio.scene.render.resolution_x = studio.scene.render.resolution_y = 96
+    studio.scene.render.resolution_x = studio.scene.render.resolution_y = 64
     # The emitter is 300 times as bright as the walls: what its edges cover counts.
     studio.scene.shlight.pixel_samples = 256
     studio.scene.shlight.shadow_rays = 2

@@ -35,7 +35,7 @@ def deep_values(tree: Any, shader: Any) -> None:
 def deep_shaders(tree: Any, shader: Any) -> None:
     """A chain of mixtures."""
     last = shader.outputs[0]
-    for _ in range(DEPTH):
+    for _ in range(DEPTH // 2):
         node = value_node(tree, "ShaderNodeMixShader", _0=0.01)
         tree.links.new(last, node.inputs[1])
         tree.links.new(tree.nodes.new("ShaderNodeBsdfDiffuse").outputs[0], node.inputs[2])
