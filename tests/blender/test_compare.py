@@ -157,6 +157,21 @@ def test_cycles_is_denoised_where_it_can(studio: Any) -> None:
     bpy.ops.shlight.remove_comparison()
 
 
+@pytest.mark.parametrize("runs", [True, False])
+def test_texts_of_the_file_run_where_the_preferences_let_them(studio: Any, tmp_path: Path, runs: bool) -> None:
+    studio.simple_scene()
+    text = bpy.data.texts.new("start.py")
+    text.use_module = True
+    text.write(f"open({str(tmp_path / 'ran')!r}, 'w').close()")
+    files = bpy.context.preferences.filepaths
+    files.use_scripts_auto_execute, before = runs, files.use_scripts_auto_execute
+    try:
+        assert bpy.ops.shlight.compare() == {"FINISHED"}
+    finally:
+        files.use_scripts_auto_execute = before
+    assert (tmp_path / "ran").exists() == runs
+
+
 def test_the_palette_is_matplotlibs() -> None:
     colormaps = pytest.importorskip("matplotlib").colormaps
     values = np.linspace(-1, 1, 256)

@@ -47,7 +47,7 @@ class Job:
                 scene=str(self.folder / "scene.blend"),
                 scene_name=context.scene.name,
                 view_layer=context.view_layer.name,
-                use_scripts=not bpy.app.autoexec_fail,
+                use_scripts=context.preferences.filepaths.use_scripts_auto_execute and not bpy.app.autoexec_fail,
                 denoise=denoise,
                 reference_seconds=reference_seconds,
                 images=_save_copy(context.scene, self.folder),
