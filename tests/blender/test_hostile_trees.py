@@ -185,7 +185,7 @@ def shader_as_value(tree: Any, shader: Any) -> None:
     )
 
 
-# What the report says, if anything, and whether Cycles draws a picture that can be told from one without light.
+# The words of the report, if it says any, and whether Cycles draws a picture that can be told from one without light.
 TREES: list[tuple[Callable[[Any, Any], None], str, bool]] = [
     (deep_values, "", False),
     (deep_shaders, "", False),

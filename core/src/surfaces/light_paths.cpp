@@ -35,7 +35,7 @@ double mirrored_share(const LobeShape& shape, double cosine) {
 /// Share of what a path meets that reaches the camera, below which it is not always followed.
 constexpr float kSurelyFollowed = 0.25F;
 constexpr float kSurelyFollowedToCells = 0.02F;
-/// What a broad lobe brings at least if two paths share it.
+/// The least share of light for which two paths share a broad lobe.
 constexpr double kShared = 0.04;
 /// Width of an interface whose rays differ by their side alone.
 constexpr double kSmooth = 1e-3;
