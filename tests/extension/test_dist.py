@@ -201,7 +201,10 @@ def test_another_version_of_the_package_is_named(tmp_path: Path, monkeypatch: py
     import shlight
 
     assert native.native_problem() == ""
+    # As in the zip, whose manifest has the package's version.
     monkeypatch.setattr(native, "WHEELS", tmp_path)
+    monkeypatch.setattr(native, "RUNNING", shlight.__version__)
+    monkeypatch.setattr(native, "_version", lambda: native.RUNNING)
     assert native.native_problem() == ""
     monkeypatch.setattr(shlight, "__version__", "0.0.9")
     assert "is version 0.0.9: restart Blender" in native.native_problem()
