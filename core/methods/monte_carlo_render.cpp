@@ -202,7 +202,7 @@ void Worker::trace_camera_rays(std::size_t first, std::size_t samples) {
                 Vec3d(p.scene.placed().emission(p.scene.materials()[surface.material], ray_hits_[i], -direction));
             radiance_[pixel] += Vec3d(p.scene.visible_lamps(LampViewer::camera).radiance(rays_[i], distance));
             const ShadingFrame frame = shading_frame(surface.position, surface.shading_normal, -direction);
-            hits_.add(surface, {}, frame, view_cosine(frame.z, -direction), {}, {}, 0, PathKind::direct);
+            hits_.add(surface, {}, frame, view_cosine(frame.z, -direction), {}, {}, 0, PathKind::direct, 0);
             pixel_of_hit_.push_back(pixel);
             continue;
         }

@@ -201,12 +201,9 @@ def test_scene_settings_and_objects_that_are_not_supported_are_named(studio: Any
     hairy.modifiers.new("Hair", "PARTICLE_SYSTEM").particle_system.settings.type = "HAIR"
     linked = studio.box(name="Linked")
     linked.light_linking.receiver_collection = bpy.data.collections.new("Receivers")
-    view_layer.lightgroups.add(name="key")
-    scene.shlight.max_bounces = 2
     text = "\n".join(messages())
     for part in (
         "motion blur is not supported",
-        "passes of light groups and lamps lack most bounced light",
         "passes that are not supported: shadow_catcher, vector",
         "World 'Sky': hiding it from diffuse rays",
         "Object 'Hidden': objects hidden from the camera",

@@ -150,6 +150,7 @@ def test_light_that_bounces_has_the_passes_of_cycles(studio: Any) -> None:
         for switch in SWITCHES
         if switch.startswith(("diffuse", "glossy", "transmission"))
     ]
+    names += [f"Combined_{group}" for group in GROUPS]
     means = {name: [float(found[f"ViewLayer.{name}"].mean()) for found in (own, reference)] for name in names}
     print({name: f"{mine:.5f} {theirs:.5f}" for name, (mine, theirs) in means.items()})
     assert {name: both for name, both in means.items() if abs(both[0] - both[1]) > 0.02 * both[1]} == {}

@@ -12,7 +12,7 @@ from shlight import has_denoiser
 
 from ..compat import DENOISING_LEFT_OUT, PASSES, REC709, working_space
 from ..names import name_of
-from ..passes import CRYPTOMATTES, pass_wishes, stores_denoising_data
+from ..passes import CRYPTOMATTES, stores_denoising_data
 from ..report import Effect, ExportReport
 from .nodes import all_nodes
 
@@ -123,10 +123,6 @@ def report_unsupported_settings(scene: Any, view_layer: Any, report: ExportRepor
     passes = ", ".join(_passes_not_written(view_layer))
     if passes:
         report.add(place, f"passes that are not supported: {passes}", Effect.SLIGHT)
-    wishes = pass_wishes(scene, view_layer)
-    if scene.shlight.max_bounces > 0 and (wishes.lamps or wishes.groups):
-        text = "passes of light groups and lamps lack most bounced light that diffuse surfaces reflect"
-        report.add(place, text, Effect.SLIGHT)
     _report_layer_collections(view_layer.layer_collection, report)
 
 

@@ -159,6 +159,12 @@ std::uint32_t Picture::batch_samples() const {
     return static_cast<std::uint32_t>(std::clamp(kValues / values, kLeastSamples, kMostBatchSamples));
 }
 
+std::size_t Picture::stored_parts() const {
+    const bool has_groups = std::ranges::any_of(
+        layout.places(), [](const PassLayout::Place& place) { return place.pass.kind == Pass::light_group; });
+    return has_groups ? 1 + parts.count - kLightKinds : 1;
+}
+
 Ray Picture::ray(double column, double row, const std::optional<glm::dvec2>& lens) const {
     return camera.ray(window.left + column / width * (window.right - window.left),
                       window.top + row / height * (window.bottom - window.top), lens);

@@ -65,6 +65,8 @@ struct Picture {
 
     /// Camera rays that a batch should hold. Under many lights fewer: what each light adds is kept until all are known.
     std::uint32_t batch_samples() const;
+    /// See StoredLight::parts.
+    std::size_t stored_parts() const;
     /// Through a point of the window, in pixels, and one of the aperture; none: its middle.
     Ray ray(double column, double row, const std::optional<glm::dvec2>& lens) const;
     /// The width of a pixel in the picture's middle, at a distance [m].

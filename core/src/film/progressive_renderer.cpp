@@ -43,9 +43,10 @@ ProgressiveRenderer::ProgressiveRenderer(const Picture& picture, Refinement refi
       batch_samples_(picture.batch_samples()),
       start_(start),
       refinement_(std::move(refinement)),
-      stored_{{},
+      stored_{picture.stored_parts(),
+              {},
               LightCells(*picture.scene, picture.lighting.materials,
-                         static_cast<std::size_t>(picture.settings.max_bounces))},
+                         static_cast<std::size_t>(picture.settings.max_bounces) * picture.stored_parts())},
       batches_([this] { return PixelBatch(*picture_, picture_->paths(bounce_seconds_ > 0 ? &stored_ : nullptr)); }) {}
 
 void ProgressiveRenderer::run(const Watch& caller) {

@@ -25,16 +25,19 @@ constexpr std::size_t kRaysPerShaded = 64;
 
 RecordGatherer::Shader::Shader(const RecordGatherer& gatherer)
     : surfaces(*gatherer.scene_, gatherer.lighting_->materials, gatherer.paths_),
-      lighting(*gatherer.lighting_, gatherer.scene_->rays(), gatherer.paths_.transparent_bounces, kWholeLight),
-      hits(gatherer.lighting_->lobe_stride) {}
+      lighting(*gatherer.lighting_, gatherer.scene_->rays(), gatherer.paths_.transparent_bounces, *gatherer.parts_),
+      hits(gatherer.lighting_->lobe_stride, *gatherer.parts_) {}
 
 RecordGatherer::RecordGatherer(const CompiledScene& scene, const LightingScene& lighting, const PathSettings& paths,
-                               bool shadows, LightCells& cells)
+                               bool shadows, LightCells& cells, const LightParts& parts)
     : scene_(&scene),
       lighting_(&lighting),
       paths_(paths),
       known_(&cells),
+      parts_(&parts),
+      light_count_(paths.max_bounces * paths.stored->parts),
       shadow_rays_(shadows ? 1 : 0),
+      darkness_(light_count_, Rgb(0)),
       shaders_([this] { return Shader(*this); }) {}
 
 std::vector<LightRecord> RecordGatherer::gather(std::span<const SurfacePoint> surfaces, std::size_t rays_across,
@@ -54,7 +57,7 @@ std::vector<LightRecord> RecordGatherer::gather(std::span<const SurfacePoint> su
             meet(i, shaders_.local());
         });
         find_cells();
-        shaded_light_.resize(shaded_.size() * paths_.max_bounces);
+        shaded_light_.resize(shaded_.size() * light_count_);
         parallel_for((shaded_.size() + kShadedAtOnce - 1) / kShadedAtOnce, threads, [&](std::size_t i) {
             end_if(stopped);
             shade(i * kShadedAtOnce, hash(seed, static_cast<std::uint32_t>(i)), shaders_.local());
@@ -62,7 +65,7 @@ std::vector<LightRecord> RecordGatherer::gather(std::span<const SurfacePoint> su
         for (const Cell& cell : cells_) {
             add(cell);
         }
-        light_.assign(distances_.size() * paths_.max_bounces, Rgb(0));
+        light_.assign(distances_.size(), darkness_.data());
         parallel_for((cells_.size() + kCellsAtOnce - 1) / kCellsAtOnce, threads, [&](std::size_t i) {
             for (std::size_t c = i * kCellsAtOnce; c < std::min((i + 1) * kCellsAtOnce, cells_.size()); ++c) {
                 spread(cells_[c]);
@@ -70,10 +73,9 @@ std::vector<LightRecord> RecordGatherer::gather(std::span<const SurfacePoint> su
         });
         parallel_for(count, threads, [&](std::size_t i) {
             const std::size_t rays = i * rays_per_record_;
-            made[first + i] = records_[i].record(
-                std::span(distances_).subspan(rays, rays_per_record_),
-                std::span(light_).subspan(rays * paths_.max_bounces, rays_per_record_ * paths_.max_bounces),
-                paths_.max_bounces);
+            made[first + i] = records_[i].record(std::span(distances_).subspan(rays, rays_per_record_),
+                                                 std::span(light_).subspan(rays, rays_per_record_), light_count_,
+                                                 paths_.stored->parts);
         });
     }
     for (Shader& shader : shaders_) {
@@ -144,46 +146,42 @@ void RecordGatherer::shade(std::size_t first, std::uint32_t seed, Shader& shader
     shader.surfaces.trace_scattered(shader.rays, kGroupRays, shader.hits, shader.light);
     shader.penumbrae.assign(groups, LightBits::kAll);
     shader.lighting.add(shader.seeds, shader.penumbrae, {0, kGroupRays, shadow_rays_, 0}, shader.hits, shader.report);
-    const std::size_t bounces = paths_.max_bounces;
-    for (std::size_t group = 0, hit = 0; group < groups; ++group) {
-        for (; hit < shader.hits.pixel_begin[group + 1]; ++hit) {
-            const std::size_t ray = group * kGroupRays + shader.hits.sample[hit];
-            shader.light[ray * bounces + shader.surfaces.bounces_of_hits()[hit] - 1].radiance +=
-                shader.hits.radiance[hit];
-        }
+    for (std::size_t hit = 0; hit < shader.hits.size(); ++hit) {
+        shader.light[shader.hits.in_apart[hit]].radiance += shader.hits.radiance[hit];
     }
-    for (std::size_t i = 0; i < count * bounces; ++i) {
-        shaded_light_[first * bounces + i] = shader.light[i].radiance;
+    const std::size_t parts = paths_.stored->parts;
+    Rgb* light = &shaded_light_[first * light_count_];
+    for (std::size_t i = 0; i < count * paths_.max_bounces; ++i, light += parts) {
+        light[0] = shader.light[i].radiance;
+        for (std::uint32_t group = 0; group + 1 < parts; ++group) {
+            light[1 + group] = shader.hits.apart.of(i)[LightParts::of_group(group)];
+        }
+        if (parts > 1) {  // lights that share shadow rays tell their groups apart only for all of these rays
+            complete({light + 1, parts - 1}, light[0], parts - 2);
+        }
     }
 }
 
 /// A cell's light is the mean of that of some of its rays.
 void RecordGatherer::add(const Cell& cell) {
-    const std::size_t bounces = paths_.max_bounces;
     const End& end = ends_[cell.first];
     if (end.is_own || cell.shaded == 0) {
         return;
     }
-    std::vector<Rgb> mean(bounces, Rgb(0));
-    for (std::size_t i = 0; i < cell.shaded * bounces; ++i) {
-        mean[i % bounces] += shaded_light_[cell.first_shaded * bounces + i] / static_cast<float>(cell.shaded);
+    std::vector<Rgb> mean(light_count_, Rgb(0));
+    for (std::size_t i = 0; i < cell.shaded * light_count_; ++i) {
+        mean[i % light_count_] += shaded_light_[cell.first_shaded * light_count_ + i] / static_cast<float>(cell.shaded);
     }
     known_->add(end.cell, mean, static_cast<float>(cell.shaded));
 }
 
 /// Gives all rays of a cell its light.
 void RecordGatherer::spread(const Cell& cell) {
-    const std::size_t bounces = paths_.max_bounces;
-    const auto light_of = [&](std::size_t end) { return std::span(light_).subspan(ends_[end].ray * bounces, bounces); };
-    const std::span<Rgb> light = light_of(cell.first);
-    if (ends_[cell.first].is_own) {
-        std::copy_n(shaded_light_.begin() + static_cast<std::ptrdiff_t>(cell.first_shaded * bounces), bounces,
-                    light.begin());
-        return;
-    }
-    known_->look_up(ends_[cell.first].cell, light);
-    for (std::size_t end = cell.first + 1; end < cell.first + cell.count; ++end) {
-        std::ranges::copy(light, light_of(end).begin());
+    const End& first = ends_[cell.first];
+    const Rgb* light =
+        first.is_own ? &shaded_light_[cell.first_shaded * light_count_] : known_->look_up(first.cell).data();
+    for (std::size_t end = cell.first; end < cell.first + cell.count; ++end) {
+        light_[ends_[end].ray] = light;
     }
 }
 

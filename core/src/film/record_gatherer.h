@@ -32,9 +32,9 @@ inline constexpr std::size_t kRecordsAtOnce = 1024;
 
 class RecordGatherer {
   public:
-    /// cells: to which light is added. All must outlive this.
+    /// cells: to which light is added; parts: that records tell apart. All must outlive this.
     RecordGatherer(const CompiledScene& scene, const LightingScene& lighting, const PathSettings& paths, bool shadows,
-                   LightCells& cells);
+                   LightCells& cells, const LightParts& parts);
 
     /// A record at each surface by rays_across² rays, or at as many of the first as there is time for; seed: of them
     /// all. Throws RenderCancelled once stopped.
@@ -81,6 +81,8 @@ class RecordGatherer {
     const LightingScene* lighting_;
     PathSettings paths_;
     LightCells* known_;
+    const LightParts* parts_;
+    std::size_t light_count_;    // numbers by which the light of a ray is told apart, see StoredLight
     std::uint32_t shadow_rays_;  // of each ray's hits, for each light
     std::size_t rays_per_record_ = 0;
     std::vector<RecordRays> records_;
@@ -88,8 +90,9 @@ class RecordGatherer {
     std::vector<End> ends_;
     std::vector<Cell> cells_;
     std::vector<std::uint32_t> shaded_;  // rays
-    std::vector<Rgb> shaded_light_;      // of each, by number of bounces
-    std::vector<Rgb> light_;             // of all rays likewise
+    std::vector<Rgb> shaded_light_;      // of each
+    std::vector<Rgb> darkness_;          // of a ray
+    std::vector<const Rgb*> light_;      // of all rays
     tbb::enumerable_thread_specific<Shader> shaders_;
 };
 

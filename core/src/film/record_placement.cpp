@@ -81,7 +81,8 @@ RecordPlacement::RecordPlacement(const Picture& picture, std::span<const float> 
           seen.scatters = false;
           return Finder(*picture_, seen);
       }),
-      gatherer_(*picture.scene, picture.lighting, paths_, picture.settings.shadow_rays > 0, stored.cells) {
+      gatherer_(*picture.scene, picture.lighting, paths_, picture.settings.shadow_rays > 0, stored.cells,
+                stored.parts > 1 ? picture.parts : kWholeLight) {
     double sum = 0;
     for (std::size_t i = 0; i < image.size() / 4; ++i) {
         sum += mean(color_of(image, i), Rgb(1));
@@ -157,7 +158,8 @@ void RecordPlacement::look_at(const CameraSurfaces::Surface& surface, int step, 
     if (albedo == Rgb(0)) {
         return;
     }
-    const RecordedLight found = stored_->records.look_up(surface.point, paths_.max_bounces - surface.bounces);
+    const RecordedLight found =
+        stored_->records.look_up(surface.point, (paths_.max_bounces - surface.bounces - 1) * stored_->parts);
     const Rgb all = color_of(image_, finder.pixels[surface.ray]) + albedo * found.mean;
     const Rgb scale = glm::sqrt(all * all + static_cast<float>(least_square_)) / glm::max(albedo, Rgb(1e-6F));
     const double error = mean(found.variance + found.noise, scale * scale);
@@ -175,13 +177,14 @@ void RecordPlacement::look_at(const CameraSurfaces::Surface& surface, int step, 
 void RecordPlacement::shrink_wrong(std::span<const Wanted> wanted) {
     const std::span<const LightRecord> all = stored_->records.all();
     const std::size_t first = all.size() - wanted.size();
+    const std::size_t whole = (paths_.max_bounces - 1) * stored_->parts;
     std::vector<double> radius(all.size());
     std::transform(all.begin(), all.end(), radius.begin(), [](const LightRecord& record) { return record.radius; });
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         const LightRecord& own = all[first + i];
         const RecordBasis basis = reflected_basis(own.normal);
         stored_->records.for_each_near(wanted[i].point, [&](std::size_t number, const LightRecord& other, float) {
-            const Rgb difference = sum_of(other.light.back(), basis) - own.reflected.back();
+            const Rgb difference = sum_of(other.light[whole], basis) - own.reflected[whole];
             const Rgb noise = own.noise * own.noise + other.noise * other.noise;
             const Rgb allowed = wanted[i].allowed * wanted[i].allowed + kNoiseVariances * noise;
             if (number != first + i && mean(difference * difference, allowed) > 1) {

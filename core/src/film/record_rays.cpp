@@ -57,19 +57,19 @@ RecordRays::RecordRays(const SurfacePoint& surface, std::size_t across, std::uin
     }
 }
 
-LightRecord RecordRays::record(std::span<const double> distances, std::span<const Rgb> light,
-                               std::size_t bounces) const {
+LightRecord RecordRays::record(std::span<const double> distances, std::span<const Rgb* const> light, std::size_t count,
+                               std::size_t parts) const {
     LightRecord record;
     record.position = position_;
     record.normal = z_;
     record.along = x_;
     record.across = y_;
     record.radius = mean_distance(distances, solid_angles_);
-    record.light.assign(bounces, {});
-    record.gradient.assign(bounces, {Rgb(0), Rgb(0), Rgb(0)});
+    record.light.assign(count, {});
+    record.gradient.assign(count, {Rgb(0), Rgb(0), Rgb(0)});
     find_free(distances, record);
-    add_up(light, record);
-    find_gradients(distances, light, record);
+    add_up(light, parts, record);
+    find_gradients(distances, light, parts, record);
     return record;
 }
 
@@ -85,17 +85,19 @@ void RecordRays::find_free(std::span<const double> distances, LightRecord& recor
     }
 }
 
-void RecordRays::find_gradients(std::span<const double> distances, std::span<const Rgb> light,
+void RecordRays::find_gradients(std::span<const double> distances, std::span<const Rgb* const> light, std::size_t parts,
                                 LightRecord& record) const {
     const auto across = static_cast<double>(across_);
-    const std::size_t bounces = record.gradient.size();
+    const std::size_t count = record.gradient.size();
     const auto add = [&](std::size_t one, std::size_t other, const Vec3d& way, double factor) {
         const double rate = factor / std::min(distances[one], distances[other]) / std::numbers::pi;
-        Rgb difference(0);
-        for (std::size_t k = 0; k < bounces && rate != 0; ++k) {
-            difference += light[one * bounces + k] - light[other * bounces + k];
-            for (int axis = 0; axis < 3; ++axis) {
-                record.gradient[k][static_cast<std::size_t>(axis)] += static_cast<float>(rate * way[axis]) * difference;
+        for (std::size_t part = 0; part < parts && rate != 0; ++part) {
+            Rgb difference(0);
+            for (std::size_t k = part; k < count; k += parts) {
+                difference += light[one][k] - light[other][k];
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    record.gradient[k][axis] += static_cast<float>(rate * way[static_cast<int>(axis)]) * difference;
+                }
             }
         }
     };
@@ -121,22 +123,24 @@ void RecordRays::find_gradients(std::span<const double> distances, std::span<con
     }
 }
 
-void RecordRays::add_up(std::span<const Rgb> light, LightRecord& record) const {
-    const std::size_t bounces = record.light.size();
+void RecordRays::add_up(std::span<const Rgb* const> light, std::size_t parts, LightRecord& record) const {
+    const std::size_t count = record.light.size();
+    std::vector<Rgb> sums;           // of parts
     std::array<Rgb, 2> halves = {};  // of what a white diffuse surface reflects, by cells in turn
     for (std::size_t ray = 0; ray < ways_.size(); ++ray) {
         RecordBasis basis;
         const Vec3f way(ways_[ray]);
         sh_basis(std::span<const Vec3f>(&way, 1), kRecordOrder, std::span<float>(basis));
-        Rgb sum(0);
-        for (std::size_t k = 0; k < bounces; ++k) {
-            sum += solid_angles_[ray] * light[ray * bounces + k];
+        sums.assign(parts, Rgb(0));
+        for (std::size_t k = 0; k < count; ++k) {
+            Rgb& sum = sums[k % parts];
+            sum += solid_angles_[ray] * light[ray][k];
             for (std::size_t i = 0; i < kRecordTerms; ++i) {
                 record.light[k][i] += glm::vec4(sum, 0) * basis[i];
             }
         }
         const double cosine = std::max(glm::dot(ways_[ray], z_), 0.0);
-        halves[(ray / across_ + ray) % 2] += sum * static_cast<float>(cosine / std::numbers::pi);
+        halves[(ray / across_ + ray) % 2] += sums[0] * static_cast<float>(cosine / std::numbers::pi);
     }
     record.noise = glm::abs(halves[0] - halves[1]);
     const RecordBasis reflecting = reflected_basis(z_);

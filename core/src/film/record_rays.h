@@ -23,16 +23,18 @@ class RecordRays {
 
     /// Row by row of the grid; a ray that would begin inside the surface is empty.
     std::span<const Ray> rays() const { return rays_; }
-    /// distances: that the rays go; light: of each ray what has bounced once, twice … `bounces` times. The record's
-    /// radius is the harmonic mean of the distances.
-    LightRecord record(std::span<const double> distances, std::span<const Rgb> light, std::size_t bounces) const;
+    /// distances: that the rays go; light: of each ray, as StoredLight has it: `count` numbers. The record's radius is
+    /// the harmonic mean of the distances.
+    LightRecord record(std::span<const double> distances, std::span<const Rgb* const> light, std::size_t count,
+                       std::size_t parts) const;
 
   private:
     void find_free(std::span<const double> distances, LightRecord& record) const;
     /// How what a white diffuse surface reflects changes along the axes of the world, by the light of cells of the
     /// grid that are side by side (Ward & Heckbert 1992, "Irradiance Gradients").
-    void find_gradients(std::span<const double> distances, std::span<const Rgb> light, LightRecord& record) const;
-    void add_up(std::span<const Rgb> light, LightRecord& record) const;
+    void find_gradients(std::span<const double> distances, std::span<const Rgb* const> light, std::size_t parts,
+                        LightRecord& record) const;
+    void add_up(std::span<const Rgb* const> light, std::size_t parts, LightRecord& record) const;
 
     std::size_t across_ = 0;
     Vec3d position_{0}, x_{0}, y_{0}, z_{0};  // of the frame of directions

@@ -196,12 +196,22 @@ void ShadowedDeltas::add_shares(const ShadingPoints& points, const PixelRange& p
                 hits.radiance[hit] += hits.weight(hit, lobe) * sum;
             }
             if (!hits.apart.empty()) {
-                const std::size_t point = pixel.first_point + p;
-                const Rgb weight = static_cast<float>(points.hit_count(point)) * points.weight(point, lobe);
-                const LightKind kind = hits.apart.parts().kind(points.material[point], lobe, points.path[point]);
-                add_parts(values(p, lobe, range), range, weight, kind,
-                          hits.apart.of(hits.of_pixel[points.hits_of(point).front()]));
+                keep_apart(values(p, lobe, range), range, points.hits_of(pixel.first_point + p), lobe, hits);
             }
+        }
+    }
+}
+
+void ShadowedDeltas::keep_apart(const float* values, const DeltaRange& range, std::span<const std::size_t> own_hits,
+                                std::size_t lobe, Hits& hits) const {
+    Rgb weight(0);
+    for (std::size_t i = 0; i < own_hits.size(); ++i) {
+        const std::size_t hit = own_hits[i];
+        weight += hits.weight(hit, lobe);
+        if (i + 1 == own_hits.size() || hits.in_apart[own_hits[i + 1]] != hits.in_apart[hit]) {
+            add_parts(values, range, weight, hits.apart.parts().kind(hits.material[hit], lobe, hits.path[hit]),
+                      hits.apart.of(hits.in_apart[hit]));
+            weight = Rgb(0);
         }
     }
 }

@@ -71,8 +71,10 @@ class ShadowedDeltas {
     /// Finds the visible share of each source that all hits of the pixel receive equally; adds the others.
     void find_shares(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, Hits& hits);
     void add_shares(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range, Hits& hits);
-    /// Adds to Hits::apart the light of the sources that a lobe of a kind reflects at hits of one point with this sum
-    /// of weights.
+    /// Adds to Hits::apart the light of the sources that a lobe of hits of one point reflects.
+    void keep_apart(const float* values, const DeltaRange& range, std::span<const std::size_t> own_hits,
+                    std::size_t lobe, Hits& hits) const;
+    /// The same of some of them with this sum of weights.
     void add_parts(const float* values, const DeltaRange& range, const Rgb& weight, LightKind kind,
                    std::span<Rgb> apart) const;
     std::uint64_t count_values(const ShadingPoints& points, const PixelRange& pixel, const DeltaRange& range) const;

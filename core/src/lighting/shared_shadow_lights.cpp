@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 #include <variant>
 
@@ -15,6 +16,8 @@ namespace {
 constexpr std::size_t kRaysTogether = 512;
 /// Seed that separates shared rays from those of one light.
 constexpr std::uint32_t kSharedSeed = 0;
+/// Share of what is seen of all groups that is seen of each, at least: hits may have light of no other.
+constexpr float kLeastOfGroup = 1e-6F;
 
 struct FoundMember {
     std::size_t number;  ///< of the member
@@ -56,7 +59,7 @@ bool SharedShadowLights::is_dim(std::size_t light, std::size_t pixel) const {
 void SharedShadowLights::add(const ShadingPoints& points, std::span<const std::uint32_t> seeds, Hits& hits) {
     points_ = &points;
     radiance_.assign(points.size(), Rgb(0));
-    apart_.reset(hits.pixel_count());
+    apart_.reset(points.size());
     for (std::size_t pixel = 0; pixel < hits.pixel_count(); ++pixel) {
         const double rays = gather(pixel);
         if (dim_.empty()) {
@@ -171,8 +174,8 @@ void SharedShadowLights::add_unblocked(std::size_t pixel) {
                 const Rgb own = points_->weight(point, lobe) * unshadowed[lobe * points_->size() + point];
                 sum += own;
                 if (!apart_.empty()) {
-                    apart_.add(pixel, apart_.parts().kind(points_->material[point], lobe, points_->path[point]), group,
-                               static_cast<float>(points_->hit_count(point)) * own);
+                    apart_.add(point, apart_.parts().kind(points_->material[point], lobe, points_->path[point]), group,
+                               own);
                 }
             }
             radiance_[point] += sum;
@@ -196,7 +199,7 @@ void SharedShadowLights::finish(Hits& hits) {
             sum += radiance;
         }
         if (!apart_.empty()) {
-            keep_apart(own, seen, apart_.of(own.pixel), hits.apart);
+            keep_apart(own, seen, hits);
         }
         hits.shared_noise[own.pixel] += seen.variance * sum * sum;
         hits.visibility[own.pixel] |= seen.lights;
@@ -230,27 +233,38 @@ SharedShadowLights::Share SharedShadowLights::share(const PixelSamples& own, con
     return share;
 }
 
-void SharedShadowLights::keep_apart(const PixelSamples& own, const Share& share, std::span<const Rgb> unblocked,
-                                    LightGroupBuffer& apart) {
-    const std::span<const Rgb> all = unblocked.subspan(kLightKinds);
-    group_seen_.assign(all.size(), Rgb(0));
-    group_sampled_.assign(all.size(), Rgb(0));
+void SharedShadowLights::keep_apart(const PixelSamples& own, const Share& share, Hits& hits) {
+    const std::size_t groups = apart_.parts().count - kLightKinds;
+    const std::size_t end = hits.pixel_begin[own.pixel + 1];
+    std::vector<Rgb> all(groups, Rgb(0));
+    for (std::size_t hit = hits.pixel_begin[own.pixel]; hit < end; ++hit) {
+        const std::span<const Rgb> unblocked = apart_.of(points_->of_hit[hit]).subspan(kLightKinds);
+        std::ranges::transform(all, unblocked, all.begin(), std::plus());
+    }
+    group_seen_.assign(groups, Rgb(0));
+    group_sampled_.assign(groups, Rgb(0));
     for (std::size_t i = own.begin; i < own.end; ++i) {
         const std::uint32_t group = traits_of(lights_[shadow_samples_[i].light]).group;
         group_seen_[group] += values_[i] * rays_.visible[i];
         group_sampled_[group] += values_[i];
     }
     Rgb sum(0);
-    for (std::size_t group = 0; group < all.size(); ++group) {
+    for (std::size_t group = 0; group < groups; ++group) {
         const Rgb known(glm::greaterThan(group_sampled_[group], Rgb(0)));
         const Rgb seen(quotient(group_seen_[group], group_sampled_[group]));
-        group_seen_[group] = all[group] * glm::mix(share.seen, seen, known);
+        group_seen_[group] = all[group] * glm::max(glm::mix(share.seen, seen, known), kLeastOfGroup * share.seen);
         sum += share.seen * all[group];
     }
     complete(group_seen_, sum, 0);
-    const std::span<Rgb> parts = apart.of(own.pixel);
-    for (std::size_t part = 0; part < parts.size(); ++part) {
-        parts[part] += part < kLightKinds ? share.seen * unblocked[part] : group_seen_[part - kLightKinds];
+    for (std::size_t group = 0; group < groups; ++group) {
+        group_seen_[group] /= glm::mix(Rgb(1), all[group], Rgb(glm::notEqual(all[group], Rgb(0))));
+    }
+    for (std::size_t hit = hits.pixel_begin[own.pixel]; hit < end; ++hit) {
+        const std::span<const Rgb> unblocked = apart_.of(points_->of_hit[hit]);
+        const std::span<Rgb> parts = hits.apart.of(hits.in_apart[hit]);
+        for (std::size_t part = 0; part < parts.size(); ++part) {
+            parts[part] += unblocked[part] * (part < kLightKinds ? share.seen : group_seen_[part - kLightKinds]);
+        }
     }
 }
 

@@ -81,10 +81,9 @@ class SharedShadowLights {
     Share share(const PixelSamples& own, const Hits& hits);
     /// Returns the light that a sample stands for if nothing blocks it, ≥ 0.
     Rgb value(std::size_t sample, const Hits& hits) const;
-    /// Adds the visible share of `unblocked` to a pixel's parts: for each group according to its samples, scaled so
+    /// Adds what hits of a pixel see of the lights to their parts: of each group according to its samples, scaled so
     /// that all groups add up to share.seen.
-    void keep_apart(const PixelSamples& own, const Share& share, std::span<const Rgb> unblocked,
-                    LightGroupBuffer& apart);
+    void keep_apart(const PixelSamples& own, const Share& share, Hits& hits);
     /// To what points of the pixel get if nothing blocks.
     void add_unblocked(std::size_t pixel);
 
@@ -103,7 +102,7 @@ class SharedShadowLights {
     std::vector<Rgb> values_;                      // likewise, where its pixel has rays that something blocks; or 0
     std::vector<Rgb> group_seen_, group_sampled_;  // of light groups
     std::vector<Rgb> radiance_;                    // by shading point, of the dim lights if nothing blocks
-    LightGroupBuffer apart_;                       // of that, by pixel
+    LightGroupBuffer apart_;                       // of that, likewise
     std::vector<Member> dim_;                      // lights of a pixel
     std::vector<Member> dim_points_;               // of a pixel, under one of them
     std::array<float, kRaysAtOnce> u_{}, v_{};     // a sample's point of the unit square, the first

@@ -37,8 +37,8 @@ void CameraSurfaces::trace(const Segment& beginning, std::span<const NeighbourRa
     results_.clear();
     hit_count_ = 0;
     mirror_count_ = 0;
-    sink.light.assign(rays_.size() * sink.parts, {});
-    hits.apart.reset(rays_.size() / sink.rays_per_pixel);
+    sink.light.assign(rays_.size() * sink.counts, {});
+    hits.apart.reset(sink.first_bounces > 0 ? sink.light.size() : rays_.size() / sink.rays_per_pixel);
     segments_.clear();
     parts_.clear();
     for (std::size_t i = 0; i < rays_.size(); ++i) {
@@ -115,7 +115,7 @@ void CameraSurfaces::leave_scene(const Segment& segment, const Sink& sink) {
         add_light(segment, LightKind::environment, scene_->environment_group(), left * background->radiance(direction),
                   sink);
     } else if (!sink.apart.empty()) {
-        sink.apart.add(segment.ray / sink.rays_per_pixel, LightKind::environment,
+        sink.apart.add(sink.in_apart(segment, segment.bounces), LightKind::environment,
                        left * scene_->environment().radiance(direction));
     }
     if (!is_mirrored) {
@@ -129,22 +129,21 @@ void CameraSurfaces::add_lamps(LampViewer viewer, const Segment& segment, const 
     if (lamps.empty()) {
         return;
     }
-    const bool is_mirrored = segment.source == RaySource::mirror;
     by_group_.assign(sink.apart.empty() ? 0 : sink.apart.parts().count - kLightKinds, Rgb(0));
     const Rgb radiance = lamps.radiance(part, surface, by_group_);
-    sink.add(segment, segment.bounces - (is_mirrored ? 1 : 0), segment.throughput * radiance);
+    sink.add(segment, segment.emitted_bounces(), segment.throughput * radiance);
     for (std::size_t group = 0; group < by_group_.size(); ++group) {
-        sink.apart.add(segment.ray / sink.rays_per_pixel, segment.met(LightKind::emission),
+        sink.apart.add(sink.in_apart(segment, segment.emitted_bounces()), segment.met(LightKind::emission),
                        static_cast<std::uint32_t>(group), segment.throughput * by_group_[group]);
     }
 }
 
 void CameraSurfaces::add_light(const Segment& segment, LightKind kind, std::uint32_t group, const Rgb& radiance,
                                const Sink& sink) {
-    const bool is_mirrored = segment.source == RaySource::mirror;
-    sink.add(segment, segment.bounces - (is_mirrored ? 1 : 0), radiance);
+    const std::uint32_t bounces = segment.emitted_bounces();
+    sink.add(segment, bounces, radiance);
     if (!sink.apart.empty() && radiance != Rgb(0)) {  // groups without light have no part
-        sink.apart.add(segment.ray / sink.rays_per_pixel, segment.met(kind), group, radiance);
+        sink.apart.add(sink.in_apart(segment, bounces), segment.met(kind), group, radiance);
     }
 }
 
@@ -248,7 +247,6 @@ ShadingFrame CameraSurfaces::frame_of(const Surface& surface, const SurfaceLobe&
 
 void CameraSurfaces::add_hits(const Sink& sink, Hits& hits) {
     hits.clear();
-    bounces_of_hits_.clear();
     drawn_hits_.clear();
     order_.resize(surfaces_.size());
     std::iota(order_.begin(), order_.end(), 0U);
@@ -260,8 +258,7 @@ void CameraSurfaces::add_hits(const Sink& sink, Hits& hits) {
     auto next = order_.begin();
     for (std::size_t end = sink.rays_per_pixel; end <= rays_.size(); end += sink.rays_per_pixel) {
         for (; next != order_.end() && surfaces_[*next].ray < end; ++next) {
-            add_hit(surfaces_[*next], hits);
-            bounces_of_hits_.resize(hits.size(), surfaces_[*next].bounces);
+            add_hit(surfaces_[*next], sink, hits);
             drawn_hits_.resize(hits.size(), surfaces_[*next].is_drawn ? 1 : 0);
         }
         hits.end_pixel();
@@ -326,7 +323,7 @@ void CameraSurfaces::find_lobes(const Surface& surface, std::vector<SurfaceLobe>
 }
 
 /// One hit for each normal that lobes have, and another for the lobes of bumps, whose view is the smooth normal.
-void CameraSurfaces::add_hit(const Surface& surface, Hits& hits) {
+void CameraSurfaces::add_hit(const Surface& surface, const Sink& sink, Hits& hits) {
     find_lobes(surface, lobes_);
     taken_.assign(lobes_.size(), 0);
     for (std::size_t first = 0; first < lobes_.size(); ++first) {
@@ -351,7 +348,7 @@ void CameraSurfaces::add_hit(const Surface& surface, Hits& hits) {
             const SurfacePoint point = own.lit_side(surface.point);
             hits.add(point, scene_->placed().terminator(surface.hit, point), frame,
                      view_cosine(frame.z, view_of(surface, own)), weights_, widths_, rays_[surface.ray].sample,
-                     surface.kind);
+                     surface.kind, static_cast<std::uint32_t>(sink.in_apart(surface, surface.bounces)));
         }
     }
 }

@@ -96,6 +96,7 @@ class CameraSurfaces {
     void trace(std::span<const CameraRay> rays, std::span<const NeighbourRays> neighbours, std::size_t rays_per_pixel,
                Hits& hits, std::vector<RayLight>& light);
     /// The same for rays that surfaces scatter. light: of each ray what has bounced once, twice … max_bounces times.
+    /// Each of these has parts of its own, by the same numbers.
     void trace_scattered(std::span<const CameraRay> rays, std::size_t rays_per_group, Hits& hits,
                          std::vector<RayLight>& light);
 
@@ -134,6 +135,8 @@ class CameraSurfaces {
             return own;
         }
         PathKind kind_after(PathKind by) const { return bounces > 0 ? kind : by; }
+        /// Bounces of light that is emitted where it ends.
+        std::uint32_t emitted_bounces() const { return bounces - (source == RaySource::mirror ? 1 : 0); }
         /// The kind of light that it meets. camera: of what the camera itself sees.
         LightKind met(LightKind camera) const {
             return bounces == 0 ? camera : bounces == 1 ? direct_kind(kind) : indirect_kind(kind);
@@ -158,9 +161,7 @@ class CameraSurfaces {
     std::uint64_t mirror_count() const { return mirror_count_; }
     /// All surfaces; those that one camera ray has met itself are ordered by distance.
     std::span<const Surface> surfaces() const { return surfaces_; }
-    /// Segment::bounces of each hit.
-    std::span<const std::uint32_t> bounces_of_hits() const { return bounces_of_hits_; }
-    /// Likewise Segment::is_drawn.
+    /// Segment::is_drawn of each hit.
     std::span<const std::uint8_t> drawn_hits() const { return drawn_hits_; }
     void find_lobes(const Surface& surface, std::vector<SurfaceLobe>& lobes) const;
     /// The share of light that the viewer gets of what is behind interfaces, by Fresnel's law at their smooth surface.
@@ -178,10 +179,17 @@ class CameraSurfaces {
         std::vector<RayLight>& light;  // of each ray: at all, or by the number of bounces
         LightGroupBuffer& apart;
         std::size_t rays_per_pixel;
-        std::uint32_t first_bounces, parts;  // light that has bounced so often, or oftener, is in the first part
+        std::uint32_t first_bounces;  // light that has bounced so often is a ray's first; 0: it is not told apart
+        std::uint32_t counts;         // numbers of bounces that are told apart
 
+        std::size_t number(const Segment& segment, std::uint32_t bounces) const {
+            return segment.ray * counts + (first_bounces > 0 ? bounces - first_bounces : 0);
+        }
+        std::size_t in_apart(const Segment& segment, std::uint32_t bounces) const {
+            return first_bounces > 0 ? number(segment, bounces) : segment.ray / rays_per_pixel;
+        }
         void add(const Segment& segment, std::uint32_t bounces, const Rgb& radiance) const {
-            RayLight& own = light[segment.ray * parts + (parts > 1 ? bounces - first_bounces : 0)];
+            RayLight& own = light[number(segment, bounces)];
             own.radiance += radiance;
             own.drawn += segment.is_drawn ? radiance : Rgb(0);
         }
@@ -219,6 +227,9 @@ class CameraSurfaces {
     void scatter(const Surface& surface, std::size_t first, std::uint32_t seed, const Division& division);
     /// Adds the light of the cell that a segment ends in. Returns false where it is unknown.
     bool add_cell(const Surface& end, const Sink& sink);
+    /// Adds light (StoredLight) the first of which has bounced so often. kind: of the path that it comes by.
+    void add_stored(const Segment& segment, std::uint32_t bounces, PathKind kind, const Rgb& weight,
+                    std::span<const Rgb> light, const Sink& sink) const;
     /// Adds what a diffuse lobe reflects of light that has bounced. Returns false where no records are near.
     bool add_recorded(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink);
     /// The view of a lobe; a bump's is the smooth normal. A translucent lobe has none, and looks the same from
@@ -230,7 +241,7 @@ class CameraSurfaces {
     }
     ShadingFrame frame_of(const Surface& surface, const SurfaceLobe& lobe) const;
     void add_hits(const Sink& sink, Hits& hits);
-    void add_hit(const Surface& surface, Hits& hits);
+    void add_hit(const Surface& surface, const Sink& sink, Hits& hits);
     /// A path through an interface, or inside back from it.
     void refract(const Surface& surface, const ShadedRefraction& refraction, std::uint32_t number);
     double ior(const Surface& surface, const ShadedRefraction& refraction) const;
@@ -255,7 +266,7 @@ class CameraSurfaces {
     std::vector<SurfaceLobe> lobes_;
     std::vector<RayHit> met_;
     std::vector<Surface> surfaces_;
-    std::vector<std::uint32_t> order_, material_of_, bounces_of_hits_;
+    std::vector<std::uint32_t> order_, material_of_;
     std::vector<ShadedPlace> places_;
     std::vector<float> results_;
     ShaderProgram::Registers registers_;
@@ -263,7 +274,7 @@ class CameraSurfaces {
     std::vector<std::uint8_t> taken_;  // by lobe: whether a hit or a path has it
     std::vector<Rgb> weights_;
     std::vector<float> widths_;
-    std::vector<Rgb> recorded_;  // by the number of bounces
+    std::vector<Rgb> recorded_;  // see StoredLight
 };
 
 }  // namespace shlight

@@ -42,8 +42,8 @@ bool is_sharp(const SurfaceShader* shader, std::span<const Lobe> lobes) {
 
 }  // namespace
 
-LightCells::LightCells(const CompiledScene& scene, std::span<const MaterialLobes> materials, std::size_t bounces)
-    : bounces_(bounces) {
+LightCells::LightCells(const CompiledScene& scene, std::span<const MaterialLobes> materials, std::size_t parts)
+    : parts_(parts) {
     for (std::size_t i = 0; i < materials.size(); ++i) {
         const std::span<const Lobe> lobes = materials[i].lobes();
         const bool is_diffuse =
@@ -77,12 +77,12 @@ void LightCells::add(const Key& key, std::span<const Rgb> light, float weight) {
     const auto [found, is_first] = cells_.try_emplace(key, Cell{light_.size(), 0});
     Cell& cell = found->second;
     if (is_first) {
-        light_.resize(light_.size() + bounces_, Rgb(0));
+        light_.resize(light_.size() + parts_, Rgb(0));
     }
     cell.weight += weight;
-    for (std::size_t k = 0; k < bounces_; ++k) {
-        Rgb& mean = light_[cell.first + k];
-        mean += (weight / cell.weight) * (light[k] - mean);
+    for (std::size_t i = 0; i < parts_; ++i) {
+        Rgb& mean = light_[cell.first + i];
+        mean += (weight / cell.weight) * (light[i] - mean);
     }
 }
 
@@ -91,13 +91,9 @@ float LightCells::weight(const Key& key) const {
     return found == cells_.end() ? 0 : found->second.weight;
 }
 
-bool LightCells::look_up(const Key& key, std::span<Rgb> light) const {
+std::span<const Rgb> LightCells::look_up(const Key& key) const {
     const auto found = cells_.find(key);
-    if (found == cells_.end()) {
-        return false;
-    }
-    std::copy_n(light_.begin() + static_cast<std::ptrdiff_t>(found->second.first), light.size(), light.begin());
-    return true;
+    return found == cells_.end() ? std::span<const Rgb>() : std::span(light_).subspan(found->second.first, parts_);
 }
 
 }  // namespace shlight

@@ -29,18 +29,18 @@ class LightCells {
     /// Lobes this wide, or wider, need no sharper picture of what they reflect.
     static constexpr double kLeastWidth = 0.05;
 
-    /// bounces: numbers of them that light is told apart by.
-    LightCells(const CompiledScene& scene, std::span<const MaterialLobes> materials, std::size_t bounces);
+    /// parts: that light is told apart by, see StoredLight.
+    LightCells(const CompiledScene& scene, std::span<const MaterialLobes> materials, std::size_t parts);
 
     /// The cell that a ray of some length ends in. Mirrors and what light passes through look different from
     /// everywhere: false.
     bool find(const SurfacePoint& end, const Vec3f& direction, double length, Key& key) const;
-    /// light: of `weight` rays on average, of what has bounced once, twice, …
+    /// light: of `weight` rays on average, by parts.
     void add(const Key& key, std::span<const Rgb> light, float weight);
     /// The sum of the weights that were added.
     float weight(const Key& key) const;
-    /// Sets the light of each number of bounces; false: none is known.
-    bool look_up(const Key& key, std::span<Rgb> light) const;
+    /// The light, until some is added; empty if none is known.
+    std::span<const Rgb> look_up(const Key& key) const;
 
   private:
     enum class Look : std::uint8_t { everywhere_alike, by_view, sharp };
@@ -52,7 +52,7 @@ class LightCells {
         float weight;
     };
 
-    std::size_t bounces_;
+    std::size_t parts_;
     std::vector<Look> looks_;  // of materials
     std::unordered_map<Key, Cell, Hash> cells_;
     std::vector<Rgb> light_;

@@ -191,19 +191,28 @@ bool CameraSurfaces::add_cell(const Surface& end, const Sink& sink) {
     if (!settings_.stored->cells.find(end.point, end.whole.direction, end.distance, key)) {
         return false;
     }
-    recorded_.resize(settings_.max_bounces - end.bounces + 1);
-    if (!settings_.stored->cells.look_up(key, recorded_)) {
+    const std::span<const Rgb> light = settings_.stored->cells.look_up(key);
+    if (light.empty()) {
         return false;
     }
-    Rgb sum(0);
-    for (std::uint32_t k = 0; k < recorded_.size(); ++k) {
-        sum += recorded_[k];
-        sink.add(end, end.bounces + k, end.throughput * recorded_[k]);
-    }
-    if (!sink.apart.empty()) {
-        sink.apart.add(end.ray / sink.rays_per_pixel, indirect_kind(end.kind), end.throughput * sum);
-    }
+    const std::size_t count = (settings_.max_bounces - end.bounces + 1) * settings_.stored->parts;
+    add_stored(end, end.bounces, end.kind, end.throughput, light.first(count), sink);
     return true;
+}
+
+void CameraSurfaces::add_stored(const Segment& segment, std::uint32_t bounces, PathKind kind, const Rgb& weight,
+                                std::span<const Rgb> light, const Sink& sink) const {
+    const std::size_t parts = settings_.stored->parts;
+    for (std::size_t first = 0; first < light.size(); first += parts, ++bounces) {
+        sink.add(segment, bounces, weight * light[first]);
+        if (!sink.apart.empty()) {
+            const std::size_t number = sink.in_apart(segment, bounces);
+            sink.apart.add(number, indirect_kind(kind), weight * light[first]);
+            for (std::uint32_t group = 0; group + 1 < parts; ++group) {
+                sink.apart.of(number)[LightParts::of_group(group)] += weight * light[first + 1 + group];
+            }
+        }
+    }
 }
 
 bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lobe, const Sink& sink) {
@@ -212,22 +221,22 @@ bool CameraSurfaces::add_recorded(const Surface& surface, const SurfaceLobe& lob
     }
     // Light that the camera sees is not told apart by bounces.
     const std::uint32_t most = settings_.max_bounces - surface.bounces;
-    const std::uint32_t first = sink.parts > 1 ? 0 : most - 1;
-    recorded_.assign(most - first, Rgb(0));
-    if (!settings_.stored->records.reflect(lobe.lit_side(surface.point), lobe.normal, first, recorded_)) {
+    const std::uint32_t first = sink.first_bounces > 0 ? 0 : most - 1;
+    const std::size_t parts = settings_.stored->parts;
+    recorded_.assign((most - first) * parts, Rgb(0));
+    if (!settings_.stored->records.reflect(lobe.lit_side(surface.point), lobe.normal, first * parts, recorded_)) {
         return false;
     }
     const float cosine = view_cosine(lobe.normal, view_of(surface, lobe));
     const Rgb weight = surface.throughput * lobe.weight * static_cast<float>(lobe_albedo(lobe.shape, cosine));
-    Rgb fewer(0);
-    for (std::uint32_t i = 0; i < recorded_.size(); ++i) {
-        sink.add(surface, surface.bounces + first + 1 + i, weight * (recorded_[i] - fewer));
-        fewer = recorded_[i];
+    // Light of a record is nowhere negative, which may leave too much of some parts.
+    for (std::size_t i = 0; parts > 1 && i < recorded_.size(); i += parts) {
+        complete(std::span(recorded_).subspan(i + 1, parts - 1), recorded_[i], parts - 2);
     }
-    if (!sink.apart.empty()) {
-        sink.apart.add(surface.ray / sink.rays_per_pixel, indirect_kind(surface.kind_after(PathKind::diffuse)),
-                       weight * recorded_.back());
+    for (std::size_t i = recorded_.size(); i-- > parts;) {
+        recorded_[i] -= recorded_[i - parts];
     }
+    add_stored(surface, surface.bounces + first + 1, surface.kind_after(PathKind::diffuse), weight, recorded_, sink);
     return true;
 }
 

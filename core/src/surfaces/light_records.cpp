@@ -64,18 +64,18 @@ class LightRecords::Diffuse {
   public:
     Diffuse(const Vec3d& position, const Vec3d& normal) : position_(position), normal_(normal) {}
 
-    Rgb reflected(const LightRecord& record, std::size_t bounces) {
+    Rgb reflected(const LightRecord& record, std::size_t number) {
         const Vec3f way(position_ - record.position);
-        const auto& [x, y, z] = record.gradient[bounces];
+        const auto& [x, y, z] = record.gradient[number];
         const Rgb change = way.x * x + way.y * y + way.z * z;
         if (glm::dot(record.normal, normal_) > kEqualNormals) {
-            return glm::max(record.reflected[bounces] + change, Rgb(0));
+            return glm::max(record.reflected[number] + change, Rgb(0));
         }
         if (!has_basis_) {
             basis_ = reflected_basis(normal_);
             has_basis_ = true;
         }
-        return glm::max(sum_of(record.light[bounces], basis_) + change, Rgb(0));
+        return glm::max(sum_of(record.light[number], basis_) + change, Rgb(0));
     }
 
   private:
@@ -181,7 +181,7 @@ bool LightRecords::reflect(const SurfacePoint& point, const Vec3d& normal, std::
     return weights > 0;
 }
 
-RecordedLight LightRecords::look_up(const SurfacePoint& point, std::size_t bounces) const {
+RecordedLight LightRecords::look_up(const SurfacePoint& point, std::size_t number) const {
     Diffuse surface(point.position, point.shading_normal);
     RecordedLight found;
     Rgb square(0);
@@ -189,7 +189,7 @@ RecordedLight LightRecords::look_up(const SurfacePoint& point, std::size_t bounc
     float weights = 0;
     for_each_near(point, [&](std::size_t, const LightRecord& record, float nearness) {
         const float weight = nearness * density(record);
-        const Rgb light = surface.reflected(record, bounces - 1);
+        const Rgb light = surface.reflected(record, number);
         found.weight += nearness;
         weights += weight;
         found.mean += weight * light;

@@ -40,7 +40,7 @@ struct LightRecord {
     /// How far the surface is free of others that stand on it, by sector [m].
     std::array<float, kSectors> free;
     double radius = 0;
-    /// Element k: of light that has bounced at most k + 1 times.
+    /// Parts (StoredLight) of what has bounced at most once, twice ….
     std::vector<RecordHarmonics> light;
     /// Radiance that a white diffuse surface with the record's normal reflects of it, and its change along each axis
     /// of the world [1/m].
@@ -74,11 +74,11 @@ class LightRecords {
     /// To be called once records were added or shrunk, before any of the functions below.
     void index();
 
-    /// reflected[i]: what a white diffuse surface with this normal reflects of light that has bounced at most
-    /// first + i + 1 times. Returns false if no record is near.
+    /// reflected[i]: what a white diffuse surface with this normal reflects of the records' light number first + i.
+    /// Returns false if no record is near.
     bool reflect(const SurfacePoint& point, const Vec3d& normal, std::size_t first, std::span<Rgb> reflected) const;
-    /// The same for the light that has bounced at most `bounces` times, with its errors.
-    RecordedLight look_up(const SurfacePoint& point, std::size_t bounces) const;
+    /// The same for one, with its errors.
+    RecordedLight look_up(const SurfacePoint& point, std::size_t number) const;
     /// Calls f(number, record, weight) for each record near a point.
     template <class Function>
     void for_each_near(const SurfacePoint& point, const Function& f) const {

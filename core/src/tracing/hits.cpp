@@ -15,7 +15,7 @@ void Hits::clear() {
     lobe_width.clear();
     sample.clear();
     radiance.clear();
-    of_pixel.clear();
+    in_apart.clear();
     noise.clear();
     shared_noise.clear();
     visibility.clear();
@@ -24,7 +24,7 @@ void Hits::clear() {
 
 void Hits::add(const SurfacePoint& surface, const Terminator& terminator_there, const ShadingFrame& shading_frame,
                float view_cosine, std::span<const Rgb> weights, std::span<const float> widths,
-               std::uint32_t sample_index, PathKind path_kind) {
+               std::uint32_t sample_index, PathKind path_kind, std::uint32_t number_in_apart) {
     frame.push_back(shading_frame);
     cos_theta_o.push_back(view_cosine);
     shadow_origin.push_back(surface.off_surface());
@@ -38,7 +38,7 @@ void Hits::add(const SurfacePoint& surface, const Terminator& terminator_there, 
     lobe_width.resize(size() * lobe_stride, 1);
     sample.push_back(sample_index);
     radiance.emplace_back(0);
-    of_pixel.push_back(static_cast<std::uint32_t>(pixel_count()));
+    in_apart.push_back(number_in_apart);
     noise.emplace_back(0);
 }
 

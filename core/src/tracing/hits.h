@@ -37,8 +37,8 @@ struct Hits {
     std::vector<float> lobe_width;        ///< likewise, of lobes whose width varies
     std::vector<std::uint32_t> sample;    ///< number of the camera ray within its pixel
     std::vector<Rgb> radiance;            ///< reflected to the camera, summed up
-    LightGroupBuffer apart;               ///< by pixel: parts of that, and of what camera rays bring besides
-    std::vector<std::uint32_t> of_pixel;  ///< number of the pixel
+    LightGroupBuffer apart;               ///< parts of that, and of what rays bring besides
+    std::vector<std::uint32_t> in_apart;  ///< number of the hit's parts: one for all hits of a pixel, or for some
     std::vector<Rgb> noise;               ///< the part of its variance that comes from shadow rays
     /// For each pixel the variance of its sum of radiance from shadow rays that its hits share.
     std::vector<Rgb> shared_noise;
@@ -72,13 +72,13 @@ struct Hits {
     void reflect(std::size_t hit, std::size_t lobe, std::uint32_t group, const Rgb& light) {
         radiance[hit] += light;
         if (!apart.empty()) {
-            apart.add(of_pixel[hit], apart.parts().kind(material[hit], lobe, path[hit]), group, light);
+            apart.add(in_apart[hit], apart.parts().kind(material[hit], lobe, path[hit]), group, light);
         }
     }
     /// weights, widths: of the material's lobes.
     void add(const SurfacePoint& surface, const Terminator& terminator_there, const ShadingFrame& shading_frame,
              float view_cosine, std::span<const Rgb> weights, std::span<const float> widths, std::uint32_t sample_index,
-             PathKind path_kind);
+             PathKind path_kind, std::uint32_t number_in_apart);
     /// The hits added since the last call are those of one pixel.
     void end_pixel() {
         pixel_begin.push_back(size());

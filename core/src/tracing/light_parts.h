@@ -60,7 +60,7 @@ struct LightParts {
 /// No parts.
 inline const LightParts kWholeLight;
 
-/// The parts of the light of pixels.
+/// The parts of the light of pixels, or of other sums of light.
 class LightGroupBuffer {
   public:
     /// parts: outlive this.
@@ -68,19 +68,19 @@ class LightGroupBuffer {
 
     const LightParts& parts() const { return *parts_; }
     bool empty() const { return parts_->empty(); }
-    /// Forgets all light; pixels: how many.
-    void reset(std::size_t pixels) { light_.assign(pixels * parts_->count, Rgb(0)); }
+    /// Forgets all light; sums: how many.
+    void reset(std::size_t sums) { light_.assign(sums * parts_->count, Rgb(0)); }
     /// Light of no group. Precondition, also of the next: not empty().
-    void add(std::size_t pixel, LightKind kind, const Rgb& light) { of(pixel)[LightParts::of_kind(kind)] += light; }
-    void add(std::size_t pixel, LightKind kind, std::uint32_t group, const Rgb& light) {
-        const std::span<Rgb> own = of(pixel);
+    void add(std::size_t number, LightKind kind, const Rgb& light) { of(number)[LightParts::of_kind(kind)] += light; }
+    void add(std::size_t number, LightKind kind, std::uint32_t group, const Rgb& light) {
+        const std::span<Rgb> own = of(number);
         own[LightParts::of_kind(kind)] += light;
         own[LightParts::of_group(group)] += light;
     }
-    /// The parts of a pixel, by kind and group.
-    std::span<Rgb> of(std::size_t pixel) { return std::span(light_).subspan(pixel * parts_->count, parts_->count); }
-    std::span<const Rgb> of(std::size_t pixel) const {
-        return std::span(light_).subspan(pixel * parts_->count, parts_->count);
+    /// The parts of one, by kind and group.
+    std::span<Rgb> of(std::size_t number) { return std::span(light_).subspan(number * parts_->count, parts_->count); }
+    std::span<const Rgb> of(std::size_t number) const {
+        return std::span(light_).subspan(number * parts_->count, parts_->count);
     }
 
   private:
