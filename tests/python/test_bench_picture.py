@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from shlight.bench import picture
-from shlight.bench.picture_renderers import Shlight
+from shlight.bench.picture_renderers import Cycles, Image, Shlight
 
 
 @pytest.mark.parametrize(("chosen", "scene"), [("balls", "balls"), ("--bounces", "cornell")])
@@ -27,6 +29,28 @@ def test_curves_reach_the_chart_and_the_table(
     assert {row["round"] for row in rows} == {"1", "2"}
     assert (tmp_path / "picture.png").stat().st_size > 1000
     assert f"| scene | shlight |\n| --- | --- |\n| {scene} | " in capsys.readouterr().out
+
+
+def test_a_sheet_beside_cycles_whose_converged_picture_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = []
+
+    class Grey(Cycles):
+        def pictures(self, seconds: float) -> Iterator[tuple[float, Image]]:
+            yield seconds, np.full((16, 16, 4), 0.4, dtype=np.float32)
+
+        def halves(self, seconds: float) -> tuple[Image, Image]:
+            made.append(seconds)
+            return next(self.pictures(seconds))[1], next(self.pictures(seconds))[1]
+
+    renderers = [Shlight, *(lambda scene, size, d=d: Grey(scene, size, denoised=d) for d in (False, True))]
+    monkeypatch.setattr(picture, "Cycles", Grey)
+    monkeypatch.setattr(picture, "FULL_BOUNCED", picture.Effort(16, 1, 0.5, 0.5))
+    monkeypatch.setattr(picture, "_renderers", lambda: renderers)
+    for _ in range(2):
+        assert picture.main(["--bounces", "product", "--out", str(tmp_path)]) == 0
+        assert made == [0.5]
+        assert (tmp_path / "sheet.jpg").stat().st_size > 1000
+        (tmp_path / "sheet.jpg").unlink()
 
 
 def test_an_unknown_scene(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,20 +1,23 @@
 # SPDX-License-Identifier: MIT
 """`shlight bench picture`: error against time of shlight and of other renderers, each beside its own converged picture.
 
-Whole renders of small scenes on two threads, in turns; a point is the median of the rounds. shlight's pictures are
-those that one render shows meanwhile; the others render anew with twice as many samples each time.
+Whole renders of small scenes on two threads, in turns; a point is the median of the rounds. shlight's pictures of
+direct light are those that one render shows meanwhile; those of light that bounces have time limits, and are compared
+with Cycles' converged picture. The others render anew with twice as many samples each time. Their converged pictures
+are kept in the folder of the results. Scenes whose light bounces have a sheet of pictures too.
 """
 
 from __future__ import annotations
 
 import csv
+import hashlib
 import importlib.util
 import math
+import pickle
 import statistics
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -25,10 +28,12 @@ from shlight.progress import Progress
 from .bounced_scenes import BOUNCED_SCENES
 from .picture_renderers import Cycles, Image, Mitsuba, Renderer, Shlight
 from .picture_scenes import PICTURE_SCENES, PictureScene
+from .picture_sheet import Panel, draw, panels
 
 TIMES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 GOALS = (1e-2, 1e-3, 1e-4)
 OURS = "shlight"
+REFERENCES = "references"  # folder
 SCENES = PICTURE_SCENES | BOUNCED_SCENES
 DENOISED = "Cycles + OpenImageDenoise"
 
@@ -44,6 +49,7 @@ class Effort:
 
 
 FULL = Effort(512, 3, 8.0, 40.0)
+FULL_BOUNCED = Effort(256, 1, 8.0, 120.0)
 QUICK = Effort(256, 1, 2.0, 8.0)
 QUICK_SCENES, QUICK_BOUNCED = ("balls", "fence"), ("cornell", "product")
 
@@ -58,7 +64,8 @@ class Curve:
 
     def error_at(self, seconds: float) -> float:
         """The median over the rounds of the error after so many seconds; infinite before the first picture."""
-        return statistics.median(_error_at(points, seconds, steps=self.renderer == OURS) for points in self.rounds)
+        steps = self.renderer == OURS and self.scene not in BOUNCED_SCENES
+        return statistics.median(_error_at(points, seconds, steps=steps) for points in self.rounds)
 
     def seconds_to(self, error: float) -> float:
         """The median time to the first picture with at most this error; infinite if none has."""
@@ -98,16 +105,19 @@ def _work(argv: list[str]) -> None:
     check_folder(options.out)
     whole, quick = (BOUNCED_SCENES, QUICK_BOUNCED) if options.bounces else (PICTURE_SCENES, QUICK_SCENES)
     names = list(options.scenes or (quick if options.quick else whole))
-    renderers = _renderers()
-    curves = _measured(names, QUICK if options.quick else FULL, renderers)
+    full = FULL_BOUNCED if options.bounces else FULL
+    curves, sheet = _measured(names, QUICK if options.quick else full, _renderers(), options.out / REFERENCES)
     with work_folder(options.out) as folder:
         _write_csv(folder / "picture.csv", curves)
         _draw(folder / "picture.png", curves)
+        if sheet:
+            draw(folder / "sheet.jpg", sheet)
         options.out.mkdir(parents=True, exist_ok=True)
-        for name in ("picture.csv", "picture.png"):
+        written = [path.name for path in folder.iterdir() if path.is_file()]
+        for name in written:
             (folder / name).replace(options.out / name)
     print(_tables(curves))
-    print(f"results: {options.out}/picture.{{csv,png}}")
+    print(f"results: {', '.join(str(options.out / name) for name in sorted(written))}")
 
 
 Make = Callable[[PictureScene, int], Renderer]
@@ -129,29 +139,63 @@ def _renderers() -> list[Make]:
     return made
 
 
-def _measured(names: list[str], effort: Effort, makes: list[Make]) -> list[Curve]:
+Sheet = dict[str, list[Panel]]
+
+
+def _measured(names: list[str], effort: Effort, makes: list[Make], kept: Path) -> tuple[list[Curve], Sheet]:
     progress = Progress(len(names))
-    curves = []
+    curves: list[Curve] = []
+    sheet: Sheet = {}
     try:
         for name in names:
             progress.begin(name)
-            curves += _measured_scene(name, effort, makes, progress)
+            renderers = [make(SCENES[name](), effort.size) for make in makes]
+            references = _references(name, effort, renderers, progress, kept)
+            curves += _measured_scene(name, effort, renderers, references, progress)
+            if name in BOUNCED_SCENES and Cycles in references:
+                progress.step(0.9, "sheet")
+                sheet[name] = panels(renderers, references[Cycles])
             progress.end()
     except BaseException:
         progress.interrupt()
         raise
-    return curves
+    return curves, sheet
 
 
-def _measured_scene(name: str, effort: Effort, makes: list[Make], progress: Progress) -> list[Curve]:
-    renderers = [make(SCENES[name](), effort.size) for make in makes]
+References = dict[type[Renderer], tuple[Image, Image]]
+
+
+def _references(name: str, effort: Effort, renderers: list[Renderer], progress: Progress, kept: Path) -> References:
+    """Converged pictures by kinds of renderers."""
+    found: References = {}
+    for renderer in reversed(renderers):
+        progress.step(0.0, f"{renderer.name}: converged picture")
+        if type(renderer) not in found:  # it is not denoised
+            if renderer.name == OURS and name in BOUNCED_SCENES and Cycles in found:
+                found[Shlight] = found[Cycles]
+            else:
+                found[type(renderer)] = _halves(name, effort, renderer, kept)
+    return found
+
+
+def _halves(name: str, effort: Effort, renderer: Renderer, kept: Path) -> tuple[Image, Image]:
+    if renderer.name == OURS:
+        return renderer.halves(effort.reference_seconds)
+    content = hashlib.sha256(pickle.dumps(SCENES[name]())).hexdigest()[:12]
+    path = kept / f"{name}_{type(renderer).__name__}_{effort.size}_{effort.reference_seconds:g}_{content}.npy"
+    if not path.exists():
+        halves = renderer.halves(effort.reference_seconds)
+        kept.mkdir(parents=True, exist_ok=True)
+        np.save(path, np.stack(halves))
+    first, second = np.load(path)
+    return first, second
+
+
+def _measured_scene(
+    name: str, effort: Effort, renderers: list[Renderer], references: References, progress: Progress
+) -> list[Curve]:
     curves = [Curve(name, renderer.name) for renderer in renderers]
-    references: dict[Any, tuple[Image, Image]] = {}
     steps = len(renderers) * (1 + effort.rounds)
-    for i, renderer in enumerate(renderers):
-        progress.step(i / steps, f"{renderer.name}: converged picture")
-        if type(renderer) not in references:  # it is not denoised
-            references[type(renderer)] = renderer.halves(effort.reference_seconds)
     for number in range(effort.rounds):
         for i, (renderer, curve) in enumerate(zip(renderers, curves, strict=True)):
             progress.step((len(renderers) * (1 + number) + i) / steps, f"{renderer.name}: round {number + 1}")

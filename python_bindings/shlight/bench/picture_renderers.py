@@ -27,6 +27,7 @@ Image = NDArray[np.float32]
 LLVM_PATH = "DRJIT_LIBLLVM_PATH"
 LEAST_LLVM = 17  # older ones fail where there is AVX-512
 THREADS = 2
+FIRST_LIMIT = 0.25  # seconds
 # Settings of shlight's references, whose error is far below those of the compared pictures.
 CONVERGED: dict[str, Any] = {"noise_threshold": 1e-3, "min_samples": 64, "max_samples": 1024}
 
@@ -44,16 +45,23 @@ class Renderer(Protocol):
 
 
 class Shlight:
-    """One render, whose pictures are those that it shows meanwhile."""
+    """Direct light: one render, whose pictures are those that it shows meanwhile.
+
+    Light that bounces takes its share of a time limit: a render for each limit.
+    """
 
     name = "shlight"
 
     def __init__(self, scene: PictureScene, size: int) -> None:
         self._scene, self._size = scene.for_shlight(), size
+        self._bounces = scene.max_bounces > 0
         self._options: dict[str, Any] = {"threads": THREADS, "max_bounces": scene.max_bounces}
         shlight.render(self._scene, 8, 8, **self._options)  # what is built once
 
     def pictures(self, seconds: float) -> Iterator[tuple[float, Image]]:
+        if self._bounces:
+            yield from self._limited(seconds)
+            return
         shown: list[tuple[float, Image]] = []
         start = time.perf_counter()
 
@@ -63,6 +71,19 @@ class Shlight:
 
         last = shlight.render(self._scene, self._size, self._size, **self._options, on_update=show)
         yield from [*shown, (time.perf_counter() - start, last)]
+
+    def _limited(self, seconds: float) -> Iterator[tuple[float, Image]]:
+        limit, taken = FIRST_LIMIT, math.inf
+        while limit <= seconds and taken > limit / 4:  # or else the one before was whole
+            taken, image = self.picture(limit)
+            yield taken, image
+            limit *= 2
+
+    def picture(self, seconds: float) -> tuple[float, Image]:
+        """The picture that there is time for, and what it took."""
+        start = time.perf_counter()
+        image = shlight.render(self._scene, self._size, self._size, **self._options, time_limit=seconds)
+        return time.perf_counter() - start, image
 
     def halves(self, seconds: float) -> tuple[Image, Image]:
         image = shlight.render(self._scene, self._size, self._size, **self._options, **CONVERGED, time_limit=seconds)
@@ -74,7 +95,7 @@ class Cycles:
 
     def __init__(self, scene: PictureScene, size: int, *, denoised: bool) -> None:
         self.name = "Cycles + OpenImageDenoise" if denoised else "Cycles"
-        self._scene, self._size, self._denoised = scene, size, denoised
+        self._scene, self._size, self.denoised = scene, size, denoised
 
     def pictures(self, seconds: float) -> Iterator[tuple[float, Image]]:
         taken, samples = 0.0, 1
@@ -97,7 +118,7 @@ class Cycles:
         self._bpy = bpy
         bpy.ops.wm.read_factory_settings(use_empty=True)
         scene = bpy.context.scene
-        _set_cycles(scene, self._size, self._denoised, self._scene.max_bounces)
+        _set_cycles(scene, self._size, self.denoised, self._scene.max_bounces)
         for thing in self._scene.things:
             _add_blender_mesh(bpy, thing)
         for lamp in self._scene.lamps:
