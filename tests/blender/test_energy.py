@@ -13,7 +13,7 @@ DISTRIBUTIONS = ("GGX", "MULTI_GGX")
 
 @pytest.mark.parametrize("distribution", DISTRIBUTIONS)
 def test_white_furnace(studio: Any, distribution: str) -> None:
-    """White balls of all kinds in a white world reflect no more than they get, each seen alone."""
+    """White balls of all kinds in a white world reflect what they get; GGX loses what is reflected twice."""
     kinds: list[dict[str, Any]] = [{"Metallic": 1.0}, {}, {"IOR": 2.5}, {"Coat_Weight": 1.0}]
     if "Diffuse Roughness" in studio.material("ShaderNodeBsdfPrincipled").node_tree.nodes["Principled BSDF"].inputs:
         kinds.append({"Diffuse_Roughness": 1.0})
@@ -31,7 +31,7 @@ def test_white_furnace(studio: Any, distribution: str) -> None:
     studio.scene.shlight.pixel_samples = 16  # which averages what single rays are off by
     image = studio.render("SHLIGHT")[..., :3]
     assert image.max() <= 1.0 + 1e-3
-    assert image.min() >= 0.3
+    assert image.min() >= (1.0 - 5e-3 if distribution == "MULTI_GGX" else 0.85)
 
 
 def _inputs(studio: Any) -> Any:

@@ -24,12 +24,13 @@ from shlight_blender import compat, record
 from shlight_blender.engine import ShlightRenderEngine
 
 
-def test_errors_are_reported_and_something_is_saved(studio: Any) -> None:
+def test_an_error_is_reported_and_nothing_is_saved(studio: Any) -> None:
     studio.simple_scene()
     studio.scene.camera.scale = (1, 0, 1)
     studio.scene.render.filepath = str(studio.folder / "dark.exr")
     with pytest.raises(RuntimeError, match="scale 0"):
         bpy.ops.render.render(write_still=True)
+    assert not (studio.folder / "dark.exr").exists()
 
 
 def test_an_animation_goes_on_after_a_dark_frame(studio: Any) -> None:

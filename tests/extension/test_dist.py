@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from shlight.images import read_exr, write_png
+from shlight.images import read_exr, read_texture, write_png
 from shlight_blender import native
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -162,7 +162,12 @@ def test_the_wheel_is_a_package(tmp_path: Path, profile: Path) -> None:
     subprocess.run([python, "-m", "pip", "install", "-q", wheel], check=True)
     picture = tmp_path / "ball.png"
     run([python, str(ROOT / "examples/render_from_python.py"), str(picture)], profile)
-    assert picture.stat().st_size > 10_000
+    image = read_texture(picture)[..., :3].astype(float)
+    ball, floor = image[image.shape[0] // 2, image.shape[1] // 2], image[-image.shape[0] // 8, image.shape[1] // 12]
+    assert ball[0] > 1.3 * max(ball[1:])  # as the screen shows them
+    assert floor.max() < 1.3 * floor.min()
+    with zipfile.ZipFile(wheel) as files:
+        assert "shlight/py.typed" in files.namelist()
 
 
 class Wheels:
