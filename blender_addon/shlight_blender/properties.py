@@ -88,13 +88,13 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
     )
     noise_threshold: _noise_threshold(0.01, "a pixel")
     min_samples: _samples("Min", 4, "Least number of camera rays per pixel")
-    max_samples: _samples("Max", 256, "Largest number of camera rays per pixel, rounded down to a power of four")
+    max_samples: _samples("Max", 256, "Largest number of camera rays per pixel, rounded down to 1 or 4, 8, 16 …")
     time_limit: _time_limit("the picture")
     use_denoising: _denoising("the picture")
     preview_noise_threshold: _noise_threshold(0.02, "a pixel of a viewport")
     preview_min_samples: _samples("Min", 1, "Least number of camera rays per pixel of a viewport")
     preview_max_samples: _samples(
-        "Max", 64, "Largest number of camera rays per pixel of a viewport, rounded down to a power of four"
+        "Max", 64, "Largest number of camera rays per pixel of a viewport, rounded down to 1 or 4, 8, 16 …"
     )
     preview_time_limit: _time_limit("a viewport's picture")
     preview_use_denoising: _denoising("a viewport's picture")

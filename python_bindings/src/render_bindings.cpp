@@ -37,8 +37,8 @@ order: 1 ... 64: harmonics of this order for every light, or "auto": for each lo
 tolerance: error of what a point reflects / that, or / a tenth of the picture's mean where that is larger; > 0.
 noise_threshold: a pixel has enough camera rays where the estimated error of its mean, relative to sqrt(r^2 + 0.01 m^2),
     r its value and m the picture's mean, is not above this; 0 ... 1, 0: all pixels get max_samples.
-min_samples, max_samples: camera rays of a pixel, over the filter. The first pass takes one of each pixel, later ones
-    four times as many where they are needed. max_samples is rounded down to a power of four.
+min_samples, max_samples: camera rays of a pixel, over the filter. The first pass takes one of each pixel, the second
+    four times as many where they are needed, later ones twice as many. max_samples is rounded down to 1 or 4, 8, 16 ...
 pixel_samples: camera rays of each pixel in the first pass, in place of one; then also min_samples, and max_samples is
     16 times as many unless it is given. Rounded up to a power of two, unless it is max_samples: then it is one pass.
 pixel_filter, filter_width: "box" of one pixel, or "gaussian" or "blackman_harris" of a width in pixels, 0.001 ... 100,

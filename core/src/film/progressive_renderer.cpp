@@ -281,7 +281,7 @@ std::uint32_t ProgressiveRenderer::shadow_rays_at(int level) const {
         return std::min(most, kLeastShadowRays);
     }
     // A pixel's many rays share the work of resolving its penumbrae.
-    return std::max(std::min(most, kLeastShadowRays), most >> (2 * level));
+    return std::max(std::min(most, kLeastShadowRays), most * refinement_.samples(0) / refinement_.samples(level));
 }
 
 /// Points of the lights that rays at lower levels take: so the points of all levels are one sequence.

@@ -74,7 +74,7 @@ Refinement::Refinement(int width, int height, const PixelSampling& sampling, boo
     }
     rays_left_ = static_cast<double>(states_.size()) * samples(least_level_);
     for (int level = 0; level <= most_level_; ++level) {
-        noise_shares_.push_back(std::pow(std::ldexp(1.0, -2 * level), kNoiseDecay));
+        noise_shares_.push_back(std::pow(1.0 * samples(0) / samples(level), kNoiseDecay));
     }
 }
 

@@ -19,7 +19,8 @@
 
 namespace shlight {
 
-/// Pixels that go from one level to a higher one; one of level l has first_samples · 4^l rays, one of -1 none.
+/// Pixels that go from one level to a higher one; one of level -1 has no rays, one of level 0 first_samples, and one of
+/// level l > 0 first_samples · 2^(l+1).
 struct RefinementGroup {
     int from, to;
     double rays;  // of each
@@ -44,7 +45,7 @@ class Refinement {
     double rays_left() const { return rays_left_; }
     /// Pixels have a Pixel::most_by_path from now on.
     void limit_paths() { limits_paths_ = true; }
-    std::uint32_t samples(int level) const { return level < 0 ? 0 : first_samples_ << (2 * level); }
+    std::uint32_t samples(int level) const { return level < 0 ? 0 : first_samples_ << (level + (level > 0 ? 1 : 0)); }
     /// Whether the first level is one ray through the middle, in whose place later ones come: of sets of four and more
     /// that are spread evenly none has a point in the middle, where one alone must be.
     bool has_preview() const { return first_samples_ == 1 && most_level_ > 0; }
