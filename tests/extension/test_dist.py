@@ -206,7 +206,7 @@ def test_another_version_of_the_package_is_named(tmp_path: Path, monkeypatch: py
     import shlight
 
     assert native.native_problem() == ""
-    # As in the zip, whose manifest has the package's version.
+    # The zip gives its manifest the version of the package, too.
     monkeypatch.setattr(native, "WHEELS", tmp_path)
     monkeypatch.setattr(native, "RUNNING", shlight.__version__)
     monkeypatch.setattr(native, "_version", lambda: native.RUNNING)
