@@ -31,7 +31,7 @@ COMMAND = [
     "import sys; from shlight_blender.survey import command; command.WORKER = 'faulty_worker'; "
     "sys.exit(command.main(sys.argv[1:]))",
 ]
-TIME_LIMIT = 15  # s: several times what a file takes
+TIME_LIMIT = 30  # s: several times what a file takes beside other tests
 
 # A worker that crashes or hangs where shlight renders a file of such a name.
 FAULTY_WORKER = """
@@ -76,7 +76,7 @@ def fill(folder: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> SimpleNamespace:
+def run(_addon: None, tmp_path_factory: pytest.TempPathFactory) -> SimpleNamespace:
     """A survey of a folder with every kind of file."""
     folder, out = tmp_path_factory.mktemp("scenes"), tmp_path_factory.mktemp("results") / "new"
     fill(folder)
