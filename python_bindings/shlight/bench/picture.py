@@ -21,6 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
+import shlight
 from shlight.commands import CommandError, Parser, check_folder, run_command, work_folder
 from shlight.metrics import rel_mse, rel_mse_without_noise
 from shlight.progress import Progress
@@ -32,7 +33,7 @@ from .picture_sheet import Panel, draw, panels
 
 TIMES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 GOALS = (1e-2, 1e-3, 1e-4)
-OURS = "shlight"
+OURS, OURS_DENOISED = "shlight", "shlight + OpenImageDenoise"
 REFERENCES = "references"  # folder
 SCENES = PICTURE_SCENES | BOUNCED_SCENES
 DENOISED = "Cycles + OpenImageDenoise"
@@ -126,6 +127,8 @@ Make = Callable[[PictureScene, int], Renderer]
 def _renderers() -> list[Make]:
     """All that can be used here; a line says why another cannot."""
     made: list[Make] = [Shlight]
+    if shlight.has_denoiser():
+        made.append(lambda scene, size: Shlight(scene, size, denoised=True))
     if importlib.util.find_spec("bpy") is None:
         print("Cycles is left out: there is no module bpy")
     else:
@@ -171,7 +174,7 @@ def _references(name: str, effort: Effort, renderers: list[Renderer], progress: 
     for renderer in reversed(renderers):
         progress.step(0.0, f"{renderer.name}: converged picture")
         if type(renderer) not in found:  # it is not denoised
-            if renderer.name == OURS and name in BOUNCED_SCENES and Cycles in found:
+            if isinstance(renderer, Shlight) and name in BOUNCED_SCENES and Cycles in found:
                 found[Shlight] = found[Cycles]
             else:
                 found[type(renderer)] = _halves(name, effort, renderer, kept)
@@ -179,7 +182,7 @@ def _references(name: str, effort: Effort, renderers: list[Renderer], progress: 
 
 
 def _halves(name: str, effort: Effort, renderer: Renderer, kept: Path) -> tuple[Image, Image]:
-    if renderer.name == OURS:
+    if isinstance(renderer, Shlight):
         return renderer.halves(effort.reference_seconds)
     content = hashlib.sha256(pickle.dumps(SCENES[name]())).hexdigest()[:12]
     path = kept / f"{name}_{type(renderer).__name__}_{effort.size}_{effort.reference_seconds:g}_{content}.npy"
@@ -222,9 +225,16 @@ def _write_csv(path: Path, curves: list[Curve]) -> None:
 
 
 def _draw(path: Path, curves: list[Curve]) -> None:
-    from shlight.charts.style import BLUE, GREEN, GREY, ORANGE, canvas, look
+    from shlight.charts.style import BLUE, GREEN, GREY, ORANGE, PINK, canvas, look
 
-    colors = {OURS: BLUE, "Cycles": GREY, DENOISED: ORANGE, "Mitsuba direct": GREEN, "Mitsuba path": GREEN}
+    colors = {
+        OURS: BLUE,
+        OURS_DENOISED: PINK,
+        "Cycles": GREY,
+        DENOISED: ORANGE,
+        "Mitsuba direct": GREEN,
+        "Mitsuba path": GREEN,
+    }
     names = list(dict.fromkeys(curve.scene for curve in curves))
     columns = min(len(names), 3)
     rows = math.ceil(len(names) / columns)
@@ -262,8 +272,8 @@ def _tables(curves: list[Curve]) -> str:
     return "\n".join([*lines, "", *_bounds(curves)])
 
 
-def _ratio(curves: list[Curve], curve: Curve, seconds: float) -> float:
-    ours = next(own for own in curves if own.scene == curve.scene and own.renderer == OURS)
+def _ratio(curves: list[Curve], curve: Curve, seconds: float, renderer: str = OURS) -> float:
+    ours = next(own for own in curves if own.scene == curve.scene and own.renderer == renderer)
     theirs, mine = curve.error_at(seconds), ours.error_at(seconds)
     return math.inf if math.isinf(theirs) else theirs / mine
 
@@ -280,20 +290,27 @@ def _bounds(curves: list[Curve]) -> list[str]:
         if (curve.scene, curve.renderer) == ("fence", "Cycles")
     ]
     late = tuple(t for t in TIMES if t >= 1.0)
-    return [*lines, *_bound(bounced, DENOISED, late, late, 2.0)]
+    for ours in dict.fromkeys(curve.renderer for curve in bounced if curve.renderer in (OURS, OURS_DENOISED)):
+        lines += _bound(bounced, DENOISED, late, late, 2.0, ours)
+    return lines
 
 
 def _bound(
-    curves: list[Curve], name: str, times: tuple[float, ...], median_times: tuple[float, ...], least: float
+    curves: list[Curve],
+    name: str,
+    times: tuple[float, ...],
+    median_times: tuple[float, ...],
+    least: float,
+    ours: str = OURS,
 ) -> list[str]:
-    """A line of the lowest ratio of a renderer at some times, and of the median at others."""
+    """A line of the lowest ratio of a renderer to ours at some times, and of the median at others."""
     own = [curve for curve in curves if curve.renderer == name]
     if not own:
         return []
-    lowest = min(_ratio(curves, curve, t) for curve in own for t in times)
-    median = statistics.median(_ratio(curves, curve, t) for curve in own for t in median_times)
+    lowest = min(_ratio(curves, curve, t, ours) for curve in own for t in times)
+    median = statistics.median(_ratio(curves, curve, t, ours) for curve in own for t in median_times)
     return [
-        f"{name}: at least {_ratio_text(lowest)} from {times[0]:g} to {times[-1]:g} s (bound 1), "
+        f"{name} ÷ {ours}: at least {_ratio_text(lowest)} from {times[0]:g} to {times[-1]:g} s (bound 1), "
         f"{_ratio_text(median)} in the median from {median_times[0]:g} to {median_times[-1]:g} s (bound {least:g})"
     ]
 

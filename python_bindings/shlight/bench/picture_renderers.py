@@ -47,19 +47,19 @@ class Renderer(Protocol):
 class Shlight:
     """Direct light: one render, whose pictures are those that it shows meanwhile.
 
-    Light that bounces takes its share of a time limit: a render for each limit.
+    Light that bounces takes its share of a time limit: a render for each limit. `denoised` guides OpenImageDenoise by
+    albedo and normals; there is a render for each limit, too.
     """
 
-    name = "shlight"
-
-    def __init__(self, scene: PictureScene, size: int) -> None:
-        self._scene, self._size = scene.for_shlight(), size
-        self._bounces = scene.max_bounces > 0
+    def __init__(self, scene: PictureScene, size: int, *, denoised: bool = False) -> None:
+        self.name = "shlight + OpenImageDenoise" if denoised else "shlight"
+        self._scene, self._size, self.denoised = scene.for_shlight(), size, denoised
+        self._has_limits = denoised or scene.max_bounces > 0
         self._options: dict[str, Any] = {"threads": THREADS, "max_bounces": scene.max_bounces}
         shlight.render(self._scene, 8, 8, **self._options)  # what is built once
 
     def pictures(self, seconds: float) -> Iterator[tuple[float, Image]]:
-        if self._bounces:
+        if self._has_limits:
             yield from self._limited(seconds)
             return
         shown: list[tuple[float, Image]] = []
@@ -82,8 +82,11 @@ class Shlight:
     def picture(self, seconds: float) -> tuple[float, Image]:
         """The picture that there is time for, and what it took."""
         start = time.perf_counter()
-        image = shlight.render(self._scene, self._size, self._size, **self._options, time_limit=seconds)
-        return time.perf_counter() - start, image
+        features = ("denoising_albedo", "denoising_normal") if self.denoised else ()
+        made = shlight.render(self._scene, self._size, self._size, **self._options, time_limit=seconds, passes=features)
+        if self.denoised:
+            made = shlight.denoise(made["combined"], *(made[name] for name in features), quality="balanced")
+        return time.perf_counter() - start, made
 
     def halves(self, seconds: float) -> tuple[Image, Image]:
         image = shlight.render(self._scene, self._size, self._size, **self._options, **CONVERGED, time_limit=seconds)

@@ -46,6 +46,8 @@ def panels(renderers: Sequence[Renderer], halves: tuple[Image, Image]) -> list[P
     for renderer in renderers:
         if isinstance(renderer, Shlight):
             add(renderer.name, *renderer.picture(SOON))
+            if renderer.denoised:
+                continue
             seconds, image = renderer.picture(LATEST)
             add(f"{renderer.name}, whole" if seconds < LATEST else renderer.name, seconds, image)
         elif isinstance(renderer, Cycles) and renderer.denoised:
