@@ -19,10 +19,10 @@ namespace shlight {
 inline constexpr int kMostPixelSamples = 1 << 20;
 inline constexpr int kMostBounces = 1024;
 
-/// Camera rays of a pixel. The first pass takes first_samples of each; the second four times as
-/// many of all pixels that need them, and later ones twice as many. Those of all passes are spread evenly over the
-/// pixel's square together; a first pass of one ray goes through its middle, and those of the next take its place.
-/// Where every pixel gets more than that, it takes one pixel of four.
+/// Camera rays of a pixel. The first pass takes first_samples of each; the second four times as many of all pixels that
+/// need them, and later ones twice as many. Those of all passes are spread evenly over the pixel's square together; a
+/// first pass of one ray goes through its middle, and those of the next take its place. Where every pixel gets more
+/// than that, it takes one pixel of four.
 struct PixelSampling {
     int first_samples = 1;  ///< rounded up to a power of two, unless it is max_samples
     int min_samples = 4;

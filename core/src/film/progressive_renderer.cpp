@@ -281,8 +281,8 @@ std::uint32_t ProgressiveRenderer::shadow_rays_at(int level) const {
         return std::min(most, kLeastShadowRays);
     }
     // A pixel's many rays share the work of resolving its penumbrae.
-    return std::max(std::min(most, kLeastShadowRays),
-                    most * refinement_.samples(0) / std::max(refinement_.samples(level), 1U));
+    const std::uint32_t times = std::max(refinement_.samples(level) / std::max(refinement_.samples(0), 1U), 1U);
+    return std::max(std::min(most, kLeastShadowRays), most / times);
 }
 
 /// Points of the lights that rays at lower levels take: so the points of all levels are one sequence.
