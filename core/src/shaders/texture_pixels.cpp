@@ -147,6 +147,11 @@ glm::vec4 Texels::of_numbers(const Number* texel) const {
     return from_srgb_ ? decoded(color, TexelEncoding::srgb) : color;
 }
 
+// Other sources read texels through the header.
+template glm::vec4 Texels::of_numbers(const float*) const;
+template glm::vec4 Texels::of_numbers(const Half*) const;
+template glm::vec4 Texels::of_numbers(const std::uint16_t*) const;
+
 TexturePixels::TexturePixels(TexelNumbers pixels, std::uint32_t width, std::uint32_t height, int channels,
                              TexelEncoding encoding, TextureInterpolation interpolation, TextureExtension extension)
     : encoding_(encoding) {
