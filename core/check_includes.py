@@ -27,6 +27,7 @@ ORDER = [
     "surfaces",
     "lighting",
     "film",
+    "queries",
 ]
 # Public headers that no source of the same name implements.
 WITHOUT_SOURCE = {"surface_point": "tracing", "render_report": "base"}

@@ -30,6 +30,7 @@ from shlight.coefficients import (  # noqa: E402
     sphere_coefficients,
 )
 from shlight.denoising import denoise, has_denoiser  # noqa: E402
+from shlight.queries import Hits  # noqa: E402
 from shlight.shading import shade_disks, shade_polygons, shade_spheres  # noqa: E402
 
 render = explained(_core.render)
@@ -41,6 +42,7 @@ __version__ = "0.1.0"
 __all__ = [
     "DEFAULT_TOLERANCE",
     "Bsdf",
+    "Hits",
     "RenderCancelled",
     "RenderReport",
     "Scene",

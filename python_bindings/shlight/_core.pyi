@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from shlight.nodes.shader import Shader
 from shlight.nodes.values import Value, Vector
+from shlight.queries import Hits
 
 _Floats = NDArray[Any]
 DEFAULT_TOLERANCE: float
@@ -270,6 +271,8 @@ class SceneMesh:
         object_indices: ArrayLike | None = None,
     ) -> None: ...
     def remove(self) -> None: ...
+    @property
+    def index(self) -> int: ...
 
 class Scene:
     def __init__(self) -> None: ...
@@ -363,6 +366,27 @@ class Scene:
         visible: bool = True,
         group: str | None = None,
     ) -> None: ...
+    def intersect(self, origins: ArrayLike, directions: ArrayLike, *, threads: int = 0) -> Hits: ...
+    def radiance(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        *,
+        order: Literal["auto"] | int = "auto",
+        tolerance: float = ...,
+        noise_threshold: float = 0.01,
+        min_samples: int = 1,
+        max_samples: int = 256,
+        lights: bool = True,
+        shadows: bool = True,
+        shadow_rays: int = 16,
+        transparent_bounces: int = 8,
+        max_bounces: int = 0,
+        glossy_bounces: int | None = None,
+        transmission_bounces: int | None = None,
+        threads: int = 0,
+        seed: int = 0,
+    ) -> _Floats: ...
     def set_camera(self, to_world: ArrayLike, fov_x: float, **lens: Unpack[_Lens]) -> None: ...
     def set_camera_window(
         self,

@@ -141,23 +141,10 @@ Report report_from(const ReportState& state) {
             dark};
 }
 
-int order_from(const py::object& order) {
-    if (py::isinstance<py::str>(order) && order.cast<std::string>() == "auto") {
-        return 0;
-    }
-    return static_cast<int>(integer_from("order", order, 1, kMaxOrder));
-}
-
 /// RenderSettings() is direct light; a picture has more.
 constexpr int kDefaultBounces = 4;
 
-constexpr std::int64_t kMostSeed = std::numeric_limits<std::uint32_t>::max();
-
 constexpr std::array<std::string_view, 3> kFilters = {"box", "gaussian", "blackman_harris"};  // by PixelFilter::Kind
-
-int samples_from(const char* name, const py::object& value) {
-    return static_cast<int>(integer_from(name, value, 1, kMostPixelSamples));
-}
 
 /// Sampling settings from arguments with the same names; None keeps the default.
 PixelSampling sampling_from(const py::object& noise_threshold, const py::object& min_samples,
@@ -186,11 +173,6 @@ PixelSampling sampling_from(const py::object& noise_threshold, const py::object&
         }
     }
     return sampling;
-}
-
-/// None: no limit.
-int bounces_from(const char* name, const py::object& bounces) {
-    return bounces.is_none() ? kMostBounces : int_from(name, bounces);
 }
 
 PixelFilter filter_from(const py::object& pixel_filter, const py::object& filter_width) {
@@ -250,7 +232,7 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
                                filter_from(pixel_filter, filter_width),
                                flag_from("shadows", shadows) ? most_shadow_rays : 0,
                                int_from("threads", threads),
-                               static_cast<std::uint32_t>(integer_from("seed", seed, 0, kMostSeed)),
+                               seed_from(seed),
                                int_from("transparent_bounces", transparent_bounces),
                                int_from("max_bounces", max_bounces),
                                bounces_from("glossy_bounces", glossy_bounces),

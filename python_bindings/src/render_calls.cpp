@@ -2,10 +2,13 @@
 #include "render_calls.h"
 
 #include <chrono>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
+#include "arguments.h"
 #include "chunks.h"
+#include "shlight/render.h"
 
 namespace shlight::python {
 
@@ -29,6 +32,25 @@ Progress progress_from(const py::object& callback) {
         check_signals();
         return callback.is_none() || !is_false(callback(share));
     };
+}
+
+int order_from(const py::object& order) {
+    if (py::isinstance<py::str>(order) && order.cast<std::string>() == "auto") {
+        return 0;
+    }
+    return static_cast<int>(integer_from("order", order, 1, kMaxOrder));
+}
+
+int samples_from(const char* name, const py::object& samples) {
+    return static_cast<int>(integer_from(name, samples, 1, kMostPixelSamples));
+}
+
+int bounces_from(const char* name, const py::object& bounces) {
+    return bounces.is_none() ? kMostBounces : int_from(name, bounces);
+}
+
+std::uint32_t seed_from(const py::object& seed) {
+    return static_cast<std::uint32_t>(integer_from("seed", seed, 0, std::numeric_limits<std::uint32_t>::max()));
 }
 
 const Camera& camera_of(const SceneObject& scene) {

@@ -5,6 +5,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -21,6 +22,15 @@ bool is_false(const pybind11::object& value);
 /// callback.
 /// Throws std::invalid_argument naming `progress` unless it is callable or None; keeps a reference to the argument.
 Progress progress_from(const pybind11::object& callback);
+
+// Arguments of all renders. The functions throw std::invalid_argument naming the argument.
+
+/// An order, or 0 for "auto".
+int order_from(const pybind11::object& order);
+int samples_from(const char* name, const pybind11::object& samples);
+/// None: no limit.
+int bounces_from(const char* name, const pybind11::object& bounces);
+std::uint32_t seed_from(const pybind11::object& seed);
 
 /// Throws std::invalid_argument naming `scene` if it has no camera.
 const Camera& camera_of(const SceneObject& scene);

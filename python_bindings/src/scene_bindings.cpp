@@ -187,7 +187,11 @@ void bind_scene(py::module_& m) {
         .def("set_transforms", &set_transforms, kSetTransformsDoc, "transforms"_a, py::kw_only(),
              "object_values"_a = py::none(), "object_names"_a = py::none(), "asset_names"_a = py::none(),
              "object_indices"_a = py::none())
-        .def("remove", &remove_mesh, "Take the mesh out of its scene.");
+        .def("remove", &remove_mesh, "Take the mesh out of its scene.")
+        .def_property_readonly(
+            "index", [](const MeshHandle& self) { return self.number; },
+            "Hits.mesh of rays that meet it: the number of meshes that were added to the scene before, removed ones\n"
+            "among them.");
     py::class_<SceneObject> scene(m, "Scene", kSceneDoc, constructed_when_new());
     scene.def(py::init<>())
         .def("__copy__", [](const SceneObject& self) { return self; })
@@ -212,6 +216,7 @@ void bind_scene(py::module_& m) {
              "to_world"_a = py::none(), "visible"_a = true, "group"_a = py::none());
     bind_cameras(scene);
     bind_lights(scene);
+    bind_queries(scene);
 }
 
 }  // namespace shlight::python

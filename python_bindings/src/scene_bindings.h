@@ -42,5 +42,7 @@ std::uint32_t aov_number(SceneObject& scene, const std::string& name, bool is_co
 /// Scene.add_sphere_light and its like.
 void bind_cameras(pybind11::class_<SceneObject>& scene);
 void bind_lights(pybind11::class_<SceneObject>& scene);
+/// Scene.intersect and its like.
+void bind_queries(pybind11::class_<SceneObject>& scene);
 
 }  // namespace shlight::python

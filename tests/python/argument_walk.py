@@ -132,6 +132,11 @@ SETTINGS = {
     "seed": 3,
     "on_update": None,
 }
+RAYS = {"origins": [[0.0, 0.0, 3.0], [0.0, 0.0, 4.0]], "directions": [0.0, 0.0, -1.0]}
+OF_RADIANCE = (
+    *("order", "tolerance", "noise_threshold", "max_samples", "shadows", "shadow_rays", "transparent_bounces"),
+    *("max_bounces", "glossy_bounces", "transmission_bounces", "seed"),
+)
 
 
 def new_scene() -> shlight.Scene:
@@ -168,6 +173,11 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     **{f"Scene.{name}": (of_scene(name), {**light, **SEEN_BY}) for name, light in LIGHTS.items()},
     "Scene.add_mesh": (of_scene("add_mesh"), MESH),
     "Scene.remove_lights": (of_scene("remove_lights"), {}),
+    "Scene.intersect": (of_scene("intersect"), {**RAYS, "threads": 1}),
+    "Scene.radiance": (
+        of_scene("radiance"),
+        {**RAYS, **{name: SETTINGS[name] for name in OF_RADIANCE}, "min_samples": 1, "lights": False, "threads": 1},
+    ),
     "SceneMesh.set_bsdf": (of_mesh("set_bsdf"), {name: MESH[name] for name in OF_MATERIALS}),
     "SceneMesh.set_transforms": (of_mesh("set_transforms"), {name: MESH[name] for name in OF_PLACES}),
     "SceneMesh.remove": (of_mesh("remove"), {}),
@@ -254,6 +264,8 @@ RELATED = {
     "bottom": ("top",),
     "light_coefficients": ("bsdf_coefficients",),
     "method": ("order", "tolerance", "samples", "seed", "sampling"),
+    "max_samples": ("min_samples",),
+    "origins": ("directions",),
     "radius": ("intensity",),
     "triangles": ("material_indices",),
     "vertices": ("normals", "triangles"),

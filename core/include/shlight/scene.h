@@ -52,13 +52,16 @@ class CompiledScene : public SurfaceTransparency {
     const Environment* background() const { return environment_visible_ ? &environment_ : nullptr; }
     const VisibleLamps& visible_lamps(LampViewer viewer) const;
     const PlacedMeshes& placed() const { return *placed_; }
+    /// Scene::MeshNumber of each mesh of placed().
+    std::span<const std::uint64_t> mesh_numbers() const { return mesh_numbers_; }
     const SceneRays& rays() const { return *rays_; }
 
   private:
     friend class Scene;
     CompiledScene(const Vec3d& origin, std::span<const Light> lamps, Environment environment, bool environment_visible,
                   std::uint32_t group);
-    /// before: whose meshes and rays are shared as far as they are the same; null: nothing.
+    /// before: whose meshes and rays are shared as far as they are the same; null: nothing. Those of `meshes` are
+    /// numbered in mesh_numbers_.
     void build(std::span<const std::shared_ptr<const SceneMesh>> meshes, const CompiledScene* before,
                const Stopped& stopped);
     void build_rays(const CompiledScene* before, const Stopped& stopped);
@@ -68,6 +71,7 @@ class CompiledScene : public SurfaceTransparency {
 
     Vec3d origin_;
     std::unique_ptr<PlacedMeshes> placed_;
+    std::vector<std::uint64_t> mesh_numbers_;
     std::vector<Material> materials_;
     std::vector<Light> lights_;
     std::size_t extended_light_count_ = 0;
@@ -81,7 +85,8 @@ class CompiledScene : public SurfaceTransparency {
 
 class Scene {
   public:
-    /// Number of a mesh, valid as long as the scene or a copy of it holds the mesh.
+    /// Number of a mesh: of those that were added before, also of ones that have been removed. It is the same in copies
+    /// of the scene.
     using MeshNumber = std::uint64_t;
 
     /// Throws as check_shape and check_use do. Emissive faces become polygon lights, many of them one mesh light; as

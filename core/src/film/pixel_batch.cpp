@@ -92,18 +92,6 @@ std::vector<PartPlace> part_places(const Picture& picture) {
     return places;
 }
 
-std::vector<MaterialLobes> lobes_of_materials(const CompiledScene& scene, const RenderSettings& settings,
-                                              const Stopped& stopped) {
-    std::vector<MaterialLobes> lobes;
-    for (const Material& material : scene.materials()) {
-        end_if(stopped);
-        lobes.emplace_back(material.shader == nullptr ? material.bsdf.lobes() : lobes_of(*material.shader),
-                           settings.order, settings.tolerance);
-    }
-    end_if(stopped);
-    return lobes;
-}
-
 bool takes_differences(const Material& material) {
     return material.shader != nullptr && material.shader->program.takes_differences();
 }
@@ -147,7 +135,7 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
       filter_places(pixel_points.size()),
       takes_differences(std::any_of(s.materials().begin(), s.materials().end(), shlight::takes_differences)),
       lighting(s.lights(), s.extended_light_count(), s.environment(), s.environment_group(),
-               lobes_of_materials(s, r, stopped), r.order, r.tolerance) {
+               lobes_of_materials(s.materials(), r.order, r.tolerance, stopped), r.order, r.tolerance) {
     std::transform(pixel_points.begin(), pixel_points.end(), filter_places.begin(), [&](const glm::dvec2& point) {
         return glm::dvec2(r.filter.place(point.x), r.filter.place(point.y));
     });

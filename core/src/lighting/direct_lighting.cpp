@@ -16,6 +16,18 @@ constexpr std::uint32_t kDeltaSeed = 0xFFFFFFFEU;
 
 }  // namespace
 
+std::vector<MaterialLobes> lobes_of_materials(std::span<const Material> materials, int order, double tolerance,
+                                              const Stopped& stopped) {
+    std::vector<MaterialLobes> lobes;
+    for (const Material& material : materials) {
+        end_if(stopped);
+        lobes.emplace_back(material.shader == nullptr ? material.bsdf.lobes() : lobes_of(*material.shader), order,
+                           tolerance);
+    }
+    end_if(stopped);
+    return lobes;
+}
+
 LightingScene::LightingScene(std::span<const Light> all, std::size_t extended_count, const Environment& sky,
                              std::uint32_t sky_group, std::vector<MaterialLobes> lobes, int order,
                              double error_tolerance)

@@ -28,11 +28,17 @@
 #include "lobes/material_lobes.h"
 #include "shlight/environment.h"
 #include "shlight/light.h"
+#include "shlight/mesh.h"
+#include "shlight/parallel.h"
 #include "shlight/render_report.h"
 #include "tracing/hits.h"
 #include "tracing/shadow_tracer.h"
 
 namespace shlight {
+
+/// order, tolerance: of RenderSettings. Throws RenderCancelled once stopped.
+std::vector<MaterialLobes> lobes_of_materials(std::span<const Material> materials, int order, double tolerance,
+                                              const Stopped& stopped);
 
 /// The lights and materials of a scene, prepared for DirectLighting. Any number of threads may read it.
 struct LightingScene {

@@ -268,6 +268,7 @@ std::shared_ptr<const CompiledScene> Scene::compile(int threads, const Progress&
     for (const auto& [number, mesh] : meshes_) {
         if (!mesh->shape->triangles.empty() && !mesh->transforms.empty()) {
             meshes.push_back(mesh);
+            compiled->mesh_numbers_.push_back(number);
         }
     }
     const auto build = [&](const Watch& caller) { compiled->build(meshes, before, caller.stopped); };
