@@ -119,13 +119,12 @@ std::vector<RefinementGroup> most_urgent(std::span<const RefinementGroup> groups
     return urgent;
 }
 
-void fill_between(int step, int width, int height, int threads, std::span<float> image) {
+void fill_between(int step, int width, int height, int threads, std::span<const float> base, std::span<float> image) {
     const auto on_grid = [step](int i, int size) { return std::min(i, (size - 1) / step * step); };
-    const auto pixel = [&](int column, int row) {
-        return image.subspan(
-            4 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)),
-            4);
+    const auto index = [&](int column, int row) {
+        return 4 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column));
     };
+    const auto at = [](std::span<const float> pixels, std::size_t i) { return pixels.empty() ? 0.0F : pixels[i]; };
     parallel_for(static_cast<std::size_t>(height), threads, [&](std::size_t line) {
         const auto row = static_cast<int>(line);
         const int top = row / step * step;
@@ -137,9 +136,13 @@ void fill_between(int step, int width, int height, int threads, std::span<float>
             const auto across = static_cast<float>(column - left) / static_cast<float>(step);
             if (row == top && column == left) continue;
             for (std::size_t i = 0; i < 4; ++i) {
-                const float above = std::lerp(pixel(left, top)[i], pixel(right, top)[i], across);
-                const float below = std::lerp(pixel(left, bottom)[i], pixel(right, bottom)[i], across);
-                pixel(column, row)[i] = std::lerp(above, below, down);
+                const auto beyond_base = [&](int x, int y) {
+                    return image[index(x, y) + i] - at(base, index(x, y) + i);
+                };
+                const float above = std::lerp(beyond_base(left, top), beyond_base(right, top), across);
+                const float below = std::lerp(beyond_base(left, bottom), beyond_base(right, bottom), across);
+                const std::size_t own = index(column, row) + i;
+                image[own] = std::max(at(base, own) + std::lerp(above, below, down), 0.0F);
             }
         }
     });

@@ -30,7 +30,8 @@ std::vector<Pixel> pixels_of(const Tile& tile, const Grid& grid);
 /// Selects the pixels to render next, in blocks, so that pixels rendered together see the same objects: those with the
 /// largest gain per ray, in this order. The result has no gains.
 std::vector<RefinementGroup> most_urgent(std::span<const RefinementGroup> groups);
-/// Makes every pixel beside a grid of the four pixels of the grid about it, the nearer the more. image: RGBA.
-void fill_between(int step, int width, int height, int threads, std::span<float> image);
+/// Interpolates between the pixels of a grid what these show beyond `base`, and adds it to base everywhere else.
+/// image: RGBA; base: the same, or empty for black.
+void fill_between(int step, int width, int height, int threads, std::span<const float> base, std::span<float> image);
 
 }  // namespace shlight

@@ -16,6 +16,8 @@ constexpr int kMostRounds = 256;
 /// Steps of the grids of pixels whose surfaces have records.
 constexpr int kWidestRecordStep = 32;
 constexpr int kLeastRecordStep = 2;
+/// Step of the finest grid whose pixels are shown before the next one has records; those of finer ones take longer.
+constexpr int kLeastShownStep = 4;
 /// Bounces get this share of the time there is.
 constexpr double kShareOfBounces = 0.25;
 /// Direct light alone, which is shown before, gets this one.
@@ -71,20 +73,44 @@ void ProgressiveRenderer::run(const Watch& caller) {
 
 void ProgressiveRenderer::add_bounces(const Watch& caller) {
     const double start = seconds();
-    RecordPlacement placement(*picture_, image_, stored_);
+    direct_.assign(image_.begin(), image_.end());
+    RecordPlacement placement(*picture_, direct_, stored_);
     const double until = start + kShareOfBounces * (time_limit() - start);
     const auto has_time = [&] { return seconds() < until; };
-    for (int step = kWidestRecordStep; step >= kLeastRecordStep && has_time(); step /= 2) {
+    for (int step = kWidestRecordStep; step >= kLeastRecordStep && has_time() && !is_left_; step /= 2) {
         const Grid grid = {step, step < kWidestRecordStep ? 2 * step : 0};
         const RenderReport report = placement.add_grid(grid, caller.stopped, has_time);
-        const std::lock_guard lock(telling_);
-        told_ += report;
+        {
+            const std::lock_guard lock(telling_);
+            told_ += report;
+        }
+        follow_records(start);
+        if (watch_->on_update && refinement_.has_preview() && step >= kLeastShownStep) {
+            is_complete_ = false;  // pixels with bounces are not shown among others without
+            run_job(job_of(Grid{step, 0}), std::numeric_limits<double>::infinity(), caller.stopped);
+            show_grid(step, caller);
+        }
     }
     record_error_ = placement.error();
     refinement_.limit_paths();
+    follow_records(start);
+}
+
+void ProgressiveRenderer::follow_records(double start) {
     bounce_seconds_ = seconds() - start;
     for (PixelBatch& batch : batches_) {
         batch.follow(picture_->paths(&stored_));
+    }
+}
+
+void ProgressiveRenderer::show_grid(int step, const Watch& caller) {
+    if (step > 1) {
+        const std::unique_lock lock(merging_);
+        fill_between(step, picture_->width, picture_->height, picture_->settings.threads, direct_, image_);
+    }
+    const bool was_complete = is_complete_.exchange(true);
+    if (!was_complete || seconds() - shown_at_ >= kLeastBetweenGrids) {
+        show_now(caller);
     }
 }
 
@@ -129,14 +155,9 @@ bool ProgressiveRenderer::first_pass(const Watch& caller, double latest) {
     for (Grid grid = {widest_step(), 0}; goes_on && grid.step >= last; grid = {grid.step / 2, grid.step}) {
         goes_on = run_job(job_of(grid), until, caller.stopped);
         until = latest;
-        if (goes_on && grid.step > 1) {
-            const std::unique_lock lock(merging_);
-            fill_between(grid.step, picture_->width, picture_->height, picture_->settings.threads, image_);
-        }
-        grid_step_ = goes_on ? grid.step : grid_step_;
-        const bool was_complete = is_complete_.exchange(true);
-        if (goes_on && grid.step > last && (!was_complete || seconds() - shown_at_ >= kLeastBetweenGrids)) {
-            show_now(caller);
+        if (goes_on) {
+            grid_step_ = grid.step;
+            show_grid(grid.step, caller);
         }
     }
     seconds_per_first_ray_ = (seconds() - begin) / std::max(rays_done_.load(), 1.0);

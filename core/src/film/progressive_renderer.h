@@ -60,6 +60,9 @@ class ProgressiveRenderer {
     int widest_step() const;
     /// Makes records, and lets light bounce from now on.
     void add_bounces(const Watch& caller);
+    void follow_records(double start);
+    /// Interpolates between the pixels of a grid, and has the caller show the picture.
+    void show_grid(int step, const Watch& caller);
     /// Finds the pixels that need more rays, and the picture's noise.
     std::vector<RefinementGroup> judge(const Stopped& stopped);
     /// Refines some pixels; false: there is nothing left to do, or no time.
@@ -91,6 +94,7 @@ class ProgressiveRenderer {
     int grid_step_ = 1;         // of the finest grid whose pixels all have rays
     Refinement refinement_;
     StoredLight stored_;
+    std::vector<float> direct_;  // the image before light bounced, whose detail wide grids of pixels with bounces keep
     tbb::enumerable_thread_specific<PixelBatch> batches_;
     std::atomic<double> bounce_seconds_ = 0;  // that making them took; 0: light does not bounce, yet
     double record_error_ = 0;                 // by records, as RenderReport::noise
