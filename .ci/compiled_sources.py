@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Prints what the compiler was given to make the module, each name followed by a zero byte.
+"""Prints what the compiler was given to make the modules, each name followed by a zero byte.
 
 Only what has changed since a commit: a source, something that it includes, or how sources are compiled and read.
 """

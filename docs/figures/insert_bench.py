@@ -13,8 +13,8 @@ import re
 import sys
 from pathlib import Path
 
-from shlight.bench import table
-from shlight.bench.row import Bench, read
+from shlight_tools.bench import table
+from shlight_tools.bench.row import Bench, read
 
 PAGE = Path(__file__).resolve().parents[1] / "performance.md"
 BLOCK = re.compile(r"(<!-- bench (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)

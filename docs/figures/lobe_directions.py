@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Finds the directions of core/methods/lobe_directions.cpp; prints them and the condition number of each band.
+"""Finds the directions of tools/methods/lobe_directions.cpp; prints them and the condition number of each band.
 
 Band l of the zonal factorization takes the first 2l + 1 directions ω_d. The squares of the singular values of its
 matrix Y_lm(ω_d) are, but for a factor, the eigenvalues of the matrix of all P_l(ω_d·ω_e). What is made small is the

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import shlight
-from shlight.charts import lobes
-from shlight.charts.lobes import view_direction
+from shlight_tools.charts import lobes
+from shlight_tools.charts.lobes import view_direction
 
 Array = NDArray[Any]
 

@@ -6,11 +6,11 @@ bands l = 0 … n-1. Lights and materials are given in the shading frame: the sh
 normal. Scenes are given in the world frame, in metres; radiance is linear RGB [W m⁻² sr⁻¹].
 """
 
-from shlight._load import load_core
+from shlight._load import load_native
 
-load_core()
+load_native("shlight._core")
 
-from shlight import _core, images, methods  # noqa: E402
+from shlight import _core, images  # noqa: E402
 from shlight._calls import explain_methods, explained  # noqa: E402
 from shlight._core import (  # noqa: E402
     DEFAULT_TOLERANCE,
@@ -53,7 +53,6 @@ __all__ = [
     "evaluate",
     "has_denoiser",
     "images",
-    "methods",
     "polygon_coefficients",
     "render",
     "sh_basis",

@@ -9,33 +9,20 @@ from __future__ import annotations
 
 import ast
 import importlib.util
-import os
 import sys
 from collections.abc import Callable, Sequence
 from importlib import metadata
 from pathlib import Path
 
-from shlight.commands import INTERRUPTED
+from shlight.commands import run_to_exit
 
 GROUP = "shlight.commands"
-PIPE_CLOSED = 141  # what a shell reports of a process that the signal ended
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs `shlight argv...` and returns its exit code; 2 for a command line that is not understood."""
     arguments = list(sys.argv[1:] if argv is None else argv)
-    try:
-        code = _run(arguments)
-        sys.stdout.flush()
-        return code
-    except KeyboardInterrupt:
-        _complain("interrupted")
-        return INTERRUPTED
-    except BrokenPipeError:
-        # Python flushes stdout once more when it exits; that must not fail a second time.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        _complain("standard output was closed before all was written")
-        return PIPE_CLOSED
+    return run_to_exit("shlight", lambda: _run(arguments))
 
 
 def _run(arguments: list[str]) -> int:

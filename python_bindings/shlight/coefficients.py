@@ -6,7 +6,7 @@ it), takes arrays of the right type without a copy, and raises ValueError naming
 `dtype` (float32 or float64) is the precision of inputs, arithmetic and result.
 
 `method` "exact" is the library's own; `tolerance`, `samples`, `seed` and `sampling` are options of some of the other
-methods that there are to compare with (shlight.methods).
+methods, which shlight_tools.methods lists where it is built.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from shlight._arrays import (
     shaped,
 )
 from shlight._calls import names_rows
-from shlight.methods import PARTS_OF_EXACT, coefficient_options
+from shlight._methods import coefficient_function
 
 
 @names_rows
@@ -88,17 +88,15 @@ def sphere_coefficients(
     clip: keep only what lies above the horizon z ≥ 0. Returns (..., order²).
     Zhou & Wei 2020, Eq. 4 with unit radiance; docs/theory.md, 3, derives the recurrences.
     """
-    options = coefficient_options(method, tolerance=tolerance, samples=samples, seed=seed, sampling=sampling)
+    options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
+    compute = coefficient_function("sphere_coefficients", method, **options)
     c = checked_array("centers", centers, dtype, core_axes=1)
     r = checked_array("radii", radii, dtype)
     check_last("centers", c, 3)
     shape = broadcast(centers=c.shape[:-1], radii=r.shape)
     n, above = checked_order(order), checked_flag("clip", clip)
     lights = (rows(c, shape, 3), rows(r, shape))
-    if method == "exact":
-        flat = _core.sphere_coefficients(*lights, n, above, checked_threads(threads))
-    else:
-        flat = _core.method_sphere_coefficients(method, *lights, n, above, options, checked_threads(threads))
+    flat = compute(*lights, n, above, checked_threads(threads))
     return flat.reshape(*shape, n * n)
 
 
@@ -122,17 +120,15 @@ def cap_coefficients(
     axes: (..., 3), of any length > 0; half_angles: (...), radians in (0, π].
     clip: keep only what lies above the horizon z ≥ 0. Returns (..., order²).
     """
-    options = coefficient_options(method, tolerance=tolerance, samples=samples, seed=seed, sampling=sampling)
+    options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
+    compute = coefficient_function("cap_coefficients", method, **options)
     a = checked_array("axes", axes, dtype, core_axes=1)
     h = checked_array("half_angles", half_angles, dtype)
     check_last("axes", a, 3)
     shape = broadcast(axes=a.shape[:-1], half_angles=h.shape)
     n, above = checked_order(order), checked_flag("clip", clip)
     lights = (rows(a, shape, 3), rows(h, shape))
-    if method == "exact":
-        flat = _core.cap_coefficients(*lights, n, above, checked_threads(threads))
-    else:
-        flat = _core.method_cap_coefficients(method, *lights, n, above, options, checked_threads(threads))
+    flat = compute(*lights, n, above, checked_threads(threads))
     return flat.reshape(*shape, n * n)
 
 
@@ -156,18 +152,15 @@ def polygon_coefficients(
     A polygon without area or seen edge-on gives zeros. clip: keep only what lies above the horizon z ≥ 0.
     Returns (..., order²). ValueError for vertices that are not planar and for a shading point in the polygon.
     """
-    method = "exact" if isinstance(method, str) and method in PARTS_OF_EXACT else method
-    options = coefficient_options(method, tolerance=tolerance, samples=samples, seed=seed, sampling=sampling)
+    options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
+    compute = coefficient_function("polygon_coefficients", method, **options)
     v = checked_array("vertices", vertices, dtype, core_axes=2)
     check_last("vertices", v, 3)
     if v.shape[-2] < 3:
         raise ValueError(f"vertices: a polygon needs at least 3, got {v.shape[-2]}")
     n, above = checked_order(order), checked_flag("clip", clip)
     lights = (v.reshape(-1, *v.shape[-2:]),)
-    if method == "exact":
-        flat = _core.polygon_coefficients(*lights, n, above, checked_threads(threads))
-    else:
-        flat = _core.method_polygon_coefficients(method, *lights, n, above, options, checked_threads(threads))
+    flat = compute(*lights, n, above, checked_threads(threads))
     return flat.reshape(*v.shape[:-2], n * n)
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import signal
 import sys
 import tempfile
@@ -14,8 +15,8 @@ from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import NoReturn
 
-# Exit codes that shells report for processes ended by SIGINT and SIGTERM.
-INTERRUPTED, TERMINATED = 130, 143
+# Exit codes that shells report for processes ended by SIGINT, SIGPIPE and SIGTERM.
+INTERRUPTED, PIPE_CLOSED, TERMINATED = 130, 141, 143
 
 
 class CommandError(Exception):
@@ -33,11 +34,14 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {message}\n")
 
 
-def run_command(name: str, work: Callable[[], None], *, when_interrupted: str) -> int:
-    """Does the work and returns the exit code of the command; what ends it early is said in one line."""
+def run_command(command: str, work: Callable[[], None], *, when_interrupted: str) -> int:
+    """Does the work and returns the exit code of the command; what ends it early is said in one line.
+
+    command: as the user called it, such as "shlight render".
+    """
 
     def complain(text: str, exit_code: int) -> int:
-        print(f"shlight {name}: {text}", file=sys.stderr)
+        print(f"{command}: {text}", file=sys.stderr)
         return exit_code
 
     try:
@@ -50,10 +54,26 @@ def run_command(name: str, work: Callable[[], None], *, when_interrupted: str) -
     except CommandError as error:
         return complain(str(error), error.exit_code)
     except BrokenPipeError:
-        raise  # standard output was closed; the command line that called this says so
+        raise  # standard output was closed; run_to_exit says so
     except OSError as error:
         return complain(f"{error.filename}: {error.strerror}" if error.filename else str(error), 2)
     return 0
+
+
+def run_to_exit(program: str, work: Callable[[], int]) -> int:
+    """Does all that a program does and returns its exit code; an interrupt and a closed output are said in one line."""
+    try:
+        code = work()
+        sys.stdout.flush()
+        return code
+    except KeyboardInterrupt:
+        print(f"{program}: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError:
+        # Python flushes stdout once more when it exits; that must not fail a second time.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        print(f"{program}: standard output was closed before all was written", file=sys.stderr)
+        return PIPE_CLOSED
 
 
 def check_folder(out: Path) -> None:

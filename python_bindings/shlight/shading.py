@@ -22,6 +22,7 @@ from shlight._arrays import (
     checked_disks,
     checked_flag,
     checked_material,
+    checked_name,
     checked_order,
     checked_threads,
     checked_tolerance,
@@ -29,7 +30,7 @@ from shlight._arrays import (
 )
 from shlight._calls import names_rows
 from shlight._core import DEFAULT_TOLERANCE
-from shlight.methods import checked_shading_method, shading_options
+from shlight._methods import is_own, refuse_options, shading_function
 
 Radiance = NDArray[np.float32]
 Effort = NDArray[np.int32]
@@ -95,28 +96,29 @@ def shade_spheres(
     cos_theta_o: (...), in [0, 1]. Leading axes broadcast; lights that share a view should be neighbours along the last.
     order: "auto" for whatever meets the tolerance, or 1 … 64 for harmonics of that order.
     tolerance: of the radiance ÷ the material's albedo at that view, in each colour channel.
-    method: "auto", or one of shlight.methods.shading_methods(), with its options; those of a fixed size ignore the
-    tolerance.
+    method: "auto", or where shlight_tools is built one of its methods.shading_methods(), with its options; those of a
+    fixed size ignore the tolerance.
 
     Returns (..., 3), float32. With return_effort also (...), int32: per light the largest order, or number of values
     of f·cos, that a lobe of the material took; 0 where a light is hidden or mirrored.
     """
     bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
-    dtype = _given_type(centers, radii) if checked_shading_method(method) == "auto" else np.float64
+    own = is_own("auto", method)
+    dtype = _given_type(centers, radii) if own else np.float64
     c = checked_array("centers", centers, dtype, core_axes=1)
     r = checked_array("radii", radii, dtype)
     cosines = _checked_views(cos_theta_o)
     check_last("centers", c, 3)
     shape = broadcast(centers=c.shape[:-1], radii=r.shape, cos_theta_o=cosines.shape)
-    if method == "auto":
-        settings = _settings(order, tolerance, threads, samples, seed, sampling)
+    if own:
+        refuse_options(method, {"samples": samples, "seed": seed, "sampling": sampling})
+        settings = (_order(order), checked_tolerance(tolerance), checked_threads(threads))
         flat = _core.shade_spheres(rows(c, shape, 3), rows(r, shape), bsdf, _views(cosines, shape), *settings, wanted)
     else:
         lights = (rows(c, shape, 3), rows(r, shape), bsdf, rows(cosines.astype(np.float64), shape))
-        options = shading_options(
-            method, _order(order), tolerance=tolerance, samples=samples, seed=seed, sampling=sampling
-        )
-        flat = _core.method_shade_spheres(method, *lights, options, checked_threads(threads))
+        options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
+        shade = shading_function("shade_spheres", method, _order(order), **options)
+        flat = shade(*lights, checked_threads(threads))
     return _result(*flat, shape, wanted)
 
 
@@ -159,7 +161,8 @@ def shade_polygons(
     or seen edge-on gives zeros. ValueError for vertices that are not planar and for a shading point in the polygon.
     """
     bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
-    dtype = _given_type(vertices) if checked_shading_method(method) == "auto" else np.float64
+    own = is_own("auto", method)
+    dtype = _given_type(vertices) if own else np.float64
     v = checked_array("vertices", vertices, dtype, core_axes=2)
     check_last("vertices", v, 3)
     if v.shape[-2] < 3:
@@ -167,15 +170,15 @@ def shade_polygons(
     cosines = _checked_views(cos_theta_o)
     shape = broadcast(vertices=v.shape[:-2], cos_theta_o=cosines.shape)
     polygons = rows(v, shape, *v.shape[-2:])
-    if method == "auto":
-        settings = _settings(order, tolerance, threads, samples, seed, sampling)
+    if own:
+        refuse_options(method, {"samples": samples, "seed": seed, "sampling": sampling})
+        settings = (_order(order), checked_tolerance(tolerance), checked_threads(threads))
         flat = _core.shade_polygons(polygons, bsdf, _views(cosines, shape), *settings, wanted)
     else:
         lights = (polygons, bsdf, rows(cosines.astype(np.float64), shape))
-        options = shading_options(
-            method, _order(order), tolerance=tolerance, samples=samples, seed=seed, sampling=sampling
-        )
-        flat = _core.method_shade_polygons(method, *lights, options, checked_threads(threads))
+        options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
+        shade = shading_function("shade_polygons", method, _order(order), **options)
+        flat = shade(*lights, checked_threads(threads))
     return _result(*flat, shape, wanted)
 
 
@@ -221,11 +224,10 @@ def shade_disks(
     centre + a u + b v with a² + b² ≤ 1, seen from either side. A disk seen edge-on gives zeros.
     What a lobe reflects is that of a polygon of as many sides as it takes to keep a coefficient within about 1e-4 of
     L_00, or the tolerance if that is less (docs/theory.md, 5.5).
-    method: "auto" only; those of shlight.methods.shading_methods() know no disks.
+    method: "auto" only; the others know no disks.
     """
     bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
-    if checked_shading_method(method) != "auto":
-        raise ValueError(f"method must be 'auto' for disks, got {method!r}")
+    checked_name("method", method, ("auto",))
     dtype = _given_type(centers, half_axes_u, half_axes_v)
     c, u, v = checked_disks(centers, half_axes_u, half_axes_v, dtype)
     cosines = _checked_views(cos_theta_o)
@@ -255,15 +257,6 @@ def _views(cosines: Floats, shape: tuple[int, ...]) -> Floats:
 
 def _order(order: int | Literal["auto"]) -> int:
     return 0 if isinstance(order, str) and order == "auto" else checked_order(order)
-
-
-def _settings(
-    order: int | Literal["auto"], tolerance: float, threads: int, *of_other_methods: Any
-) -> tuple[int, float, int]:
-    for name, value in zip(("samples", "seed", "sampling"), of_other_methods, strict=True):
-        if value is not None:
-            raise ValueError(f"{name} does not apply to method 'auto'")
-    return _order(order), checked_tolerance(tolerance), checked_threads(threads)
 
 
 def _result(radiance: Floats, effort: Any, shape: tuple[int, ...], return_effort: bool) -> Any:

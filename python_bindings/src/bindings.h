@@ -11,9 +11,7 @@ void bind_kernels(pybind11::module_& m);
 void bind_bsdf(pybind11::module_& m);
 void bind_shader(pybind11::module_& m);
 void bind_shading(pybind11::module_& m);
-void bind_methods(pybind11::module_& m);
 void bind_scene(pybind11::module_& m);
 void bind_render(pybind11::module_& m);
-void bind_monte_carlo_render(pybind11::module_& m);
 
 }  // namespace shlight::python

@@ -30,9 +30,6 @@ inline Output output_of(std::size_t bytes) {
     return bytes > (std::size_t{2} << 20) ? Output::streamed : Output::cached;
 }
 
-/// Lights per task of methods for comparison, which take long.
-inline constexpr std::size_t kSmallChunk = 16;
-
 /// An argument's wrong row of a batch, counted in the flat arrays; in Python a ValueError of the text and the row,
 /// which shlight/_arrays.py turns into one with the index.
 class WrongRow : public std::invalid_argument {

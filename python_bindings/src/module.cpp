@@ -11,8 +11,6 @@ PYBIND11_MODULE(_core, m) {
     shlight::python::bind_bsdf(m);
     shlight::python::bind_shader(m);
     shlight::python::bind_shading(m);
-    shlight::python::bind_methods(m);
     shlight::python::bind_scene(m);
     shlight::python::bind_render(m);
-    shlight::python::bind_monte_carlo_render(m);
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The scenes of `shlight bench picture` are the same in shlight and in Cycles."""
+"""The scenes of `./dev bench picture` are the same in shlight and in Cycles."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import pytest
 
-from shlight.bench.picture import SCENES
-from shlight.bench.picture_renderers import Cycles, Image, Shlight
 from shlight.metrics import rel_mse_without_noise
+from shlight_tools.bench.picture import SCENES
+from shlight_tools.bench.picture_renderers import Cycles, Image, Shlight
 
 
 @pytest.mark.slow

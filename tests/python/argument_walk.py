@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 
 import shlight
-from shlight import Bsdf, images, methods
+from shlight import Bsdf, images
+from shlight_tools import methods
 
 TRIANGLE = [[1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [-1.0, -1.0, 1.0]]
 FACES = [[0, 1, 2]]

@@ -15,7 +15,8 @@ import numpy as np
 from fuzz_values import Array, Rng, cap, chance, disguised, disk, material, numbers, one_of, polygon, sphere
 
 import shlight
-from shlight import Bsdf, methods
+from shlight import Bsdf
+from shlight_tools import methods
 
 NOTHING = 1e-12  # what rounding leaves of light that is zero
 SHAPES: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {

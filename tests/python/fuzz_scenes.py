@@ -12,6 +12,7 @@ from fuzz_calls import Step
 from fuzz_values import SPECIAL, Array, Rng, chance, direction, material, numbers, one_of, outline, plane
 
 import shlight
+from shlight_tools import methods
 
 SCALES = [1e15, 1e-15, 1e19, 1e-19, 1e20, 1e-30, 1e30, 1e-38, 1e38, 1e-45, 1e200]
 SQUARE = np.array([[-4.0, -4, 0], [4, -4, 0], [4, 4, 0], [-4, 4, 0]])
@@ -148,5 +149,5 @@ def random_scene(rng: Rng) -> list[Step]:
         settings |= {"pixel_samples": int(one_of(rng, 1, 1, 2, 4)), "shadow_rays": int(one_of(rng, 0, 1, 4))}
         settings |= {"order": int(rng.integers(1, 17))} if chance(rng, 0.1) else {}
         settings |= {"max_bounces": int(one_of(rng, 1, 2, 4)) if chance(rng, 0.3) else 0}
-    function = shlight.render if call == "render" else shlight.methods.render_monte_carlo
+    function = shlight.render if call == "render" else methods.render_monte_carlo
     return [*steps, Step(call, function, {"scene": scene, **settings}, accepted, picture_problem, names)]

@@ -15,7 +15,8 @@ import argument_walk
 import pytest
 
 import shlight
-from shlight import images, methods
+from shlight import images
+from shlight_tools import methods
 
 PROCESSES = 8
 
@@ -32,7 +33,7 @@ def public_functions() -> Iterator[tuple[str, Any]]:
             yield name, value
     for module in (images, methods):
         for name in module.__all__:
-            yield f"{module.__name__.removeprefix('shlight.')}.{name}", getattr(module, name)
+            yield f"{module.__name__.rpartition('.')[2]}.{name}", getattr(module, name)
 
 
 def argument_names(function: Any) -> set[str]:

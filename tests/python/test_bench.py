@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `shlight bench` measures, and its statistics; no test depends on how fast anything is."""
+"""What `./dev bench` measures, and its statistics; no test depends on how fast anything is."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import shlight
-from shlight.bench import builds, calls, compare, inputs, peer, sections
-from shlight.bench.rounds import Spread, Work, alternate
-from shlight.bench.row import Bench, Row
-from shlight.bench.run import Run
+from shlight_tools.bench import builds, calls, compare, inputs, peer, sections
+from shlight_tools.bench.rounds import Spread, Work, alternate
+from shlight_tools.bench.row import Bench, Row
+from shlight_tools.bench.run import Run
 
 
 class Clock:

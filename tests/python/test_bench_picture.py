@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`shlight bench picture`, with small pictures of shlight alone."""
+"""`./dev bench picture`, with small pictures of shlight alone."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from shlight.bench import picture
-from shlight.bench.picture_renderers import Cycles, Image, Shlight
+from shlight_tools.bench import picture
+from shlight_tools.bench.picture_renderers import Cycles, Image, Shlight
 
 
 @pytest.mark.parametrize(("chosen", "scene"), [("balls", "balls"), ("--bounces", "cornell")])

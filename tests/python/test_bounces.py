@@ -10,8 +10,8 @@ from scene_cases import FACES, SQUARE
 
 import shlight
 from shlight import nodes
-from shlight.bench import bounced_scenes
 from shlight.metrics import rel_mse
+from shlight_tools.bench import bounced_scenes
 
 # The sides of a box whose corners box() gives.
 SIDES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]

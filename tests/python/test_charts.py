@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A small drawing of each figure of `shlight charts`."""
+"""A small drawing of each figure of `./dev charts`."""
 
 from __future__ import annotations
 
@@ -9,9 +9,19 @@ from pathlib import Path
 
 import pytest
 
-from shlight.charts import figures, growth, measure, order_error, pictures, speed_error, stability, style, which_method
-from shlight.charts.figure import Figure, Run
-from shlight.charts.lights import CLASSES
+from shlight_tools.charts import (
+    figures,
+    growth,
+    measure,
+    order_error,
+    pictures,
+    speed_error,
+    stability,
+    style,
+    which_method,
+)
+from shlight_tools.charts.figure import Figure, Run
+from shlight_tools.charts.lights import CLASSES
 
 
 @pytest.fixture

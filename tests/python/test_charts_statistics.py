@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the numbers of `shlight charts` rest on: their lights, truths and errors, and what is chosen by them."""
+"""What the numbers of `./dev charts` rest on: their lights, truths and errors, and what is chosen by them."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 import shlight
-from shlight import methods
-from shlight.charts import fused, lobes, measure, order_error, picture_measure, pictures, stability, which_method
-from shlight.charts.lights import CLASSES, LightClass
-from shlight.charts.lobe_lights import Clock, about_lobe
+from shlight_tools import methods
+from shlight_tools.charts import fused, lobes, measure, order_error, picture_measure, pictures, stability, which_method
+from shlight_tools.charts.lights import CLASSES, LightClass
+from shlight_tools.charts.lobe_lights import Clock, about_lobe
 
 # --- coefficients -------------------------------------------------------------------------------------------------
 
@@ -26,14 +26,15 @@ def test_lights_of_a_class(light_class: LightClass) -> None:
     for array, again in zip(lights.arrays, light_class.lights(3, 40).arrays, strict=True):
         np.testing.assert_array_equal(array, again)
         np.testing.assert_array_equal(array, array.astype(np.float32))  # both precisions hold them
-    kept = lights.coefficients("exact", 1, np.float64)[:, 0]
-    whole = lights.coefficients("exact", 1, np.float64, clip=False)[:, 0]
+    kept = measure.coefficients(lights, "exact", 1, np.float64)[:, 0]
+    whole = measure.coefficients(lights, "exact", 1, np.float64, clip=False)[:, 0]
     assert (kept > 0).all()
     cut = kept < whole * (1 - 1e-9)
     assert cut.mean() >= 0.6 if "clipped" in light_class.name else not cut.any()
     assert (whole.max() < 0.01) == ("small" in light_class.name)
-    true = measure.truth(lights.take(slice(0, 4)), 2)  # takes only what is planar
-    np.testing.assert_allclose(true, lights.take(slice(0, 4)).coefficients("exact", 2, np.float64), atol=1e-12)
+    some = lights.take(slice(0, 4))
+    true = measure.truth(some, 2)  # takes only what is planar
+    np.testing.assert_allclose(true, measure.coefficients(some, "exact", 2, np.float64), atol=1e-12)
 
 
 def test_new_methods_appear_by_themselves(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The commands that measure, `shlight charts` and `shlight bench`: what they print, write and refuse."""
+"""The commands that measure, `./dev charts` and `./dev bench`: what they print, write and refuse."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from pathlib import Path
 import pytest
 
 from shlight import _core
-from shlight.bench import command as bench
-from shlight.bench.row import Bench, Row, read
-from shlight.bench.run import QUICK_LIGHTS, QUICK_ROUNDS, Section
-from shlight.bench.run import Run as BenchRun
-from shlight.bench.sections import SECTIONS
-from shlight.charts import command as charts
-from shlight.charts import style
-from shlight.charts.figure import Drawn, Figure, Run, Table
-from shlight.charts.figures import FIGURES
-from shlight.charts.page import PAGE
 from shlight.commands import CommandError
 from shlight.progress import Progress
+from shlight_tools.bench import command as bench
+from shlight_tools.bench.row import Bench, Row, read
+from shlight_tools.bench.run import QUICK_LIGHTS, QUICK_ROUNDS, Section
+from shlight_tools.bench.run import Run as BenchRun
+from shlight_tools.bench.sections import SECTIONS
+from shlight_tools.charts import command as charts
+from shlight_tools.charts import style
+from shlight_tools.charts.figure import Drawn, Figure, Run, Table
+from shlight_tools.charts.figures import FIGURES
+from shlight_tools.charts.page import PAGE
 
 Use = Callable[..., Callable[[list[str]], int]]
 
@@ -42,7 +42,7 @@ def use(monkeypatch: pytest.MonkeyPatch) -> Use:
 
     def put(package: str, *parts: Figure | Section) -> Callable[[list[str]], int]:
         for module in ("command", "options"):
-            monkeypatch.setattr(f"shlight.{package}.{module}.{PARTS[package]}", list(parts))
+            monkeypatch.setattr(f"shlight_tools.{package}.{module}.{PARTS[package]}", list(parts))
         return MAIN[package]
 
     return put
@@ -128,12 +128,12 @@ def test_an_interrupt_leaves_what_is_whole(tmp_path: Path, use: Use, capsys: pyt
     for draw, code in ((in_vain, 130), (terminated, 143)):
         assert use("charts", DOTS, Figure("vain", "In vain", draw))(["--out", str(tmp_path)]) == code
         assert names(tmp_path) == ["dots.csv", "dots.json", "dots_full.png", PAGE]
-    assert capsys.readouterr().err == "shlight charts: interrupted; the figure that was being drawn left nothing\n"
+    assert capsys.readouterr().err == "./dev charts: interrupted; the figure that was being drawn left nothing\n"
     assert signal.getsignal(signal.SIGTERM) is before
     out = tmp_path / "dots.csv"
     assert use("bench", TWO, Section("vain", "In vain", in_vain))(["--out", str(out)]) == 130
     assert (len(names(tmp_path)), out.read_text()) == (4, "x,y\n1,3\n2,4\n")
-    assert capsys.readouterr().err == "shlight bench: interrupted; nothing was written\n"
+    assert capsys.readouterr().err == "./dev bench: interrupted; nothing was written\n"
 
 
 @pytest.mark.parametrize(
@@ -155,7 +155,7 @@ def test_bad_requests_are_named(
     assert MAIN[command](arguments) == 2
     said = capsys.readouterr()
     assert said.out == ""
-    assert said.err.startswith(f"shlight {command}: {complaint}")
+    assert said.err.startswith(f"./dev {command}: {complaint}")
     assert said.err.count("\n") == 1
 
 
@@ -165,10 +165,10 @@ def test_a_missing_module_is_named_and_the_list_needs_none(
 ) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     assert MAIN[command]([]) == 1
-    expected = f"shlight {command}: the Python module {module} is missing: pip install 'shlight[{command}]'\n"
+    expected = f"./dev {command}: the Python module {module} is missing: pip install {module}\n"
     assert capsys.readouterr().err == expected
-    work = f"from shlight.{command}.command import main; main(['--list'])"
-    code = f"import sys; sys.modules['{module}'] = None; {work}"
+    work = f"sys.argv[1:] = ['--list']; runpy.run_module('shlight_tools.{command}', run_name='__main__')"
+    code = f"import runpy, sys; sys.modules['{module}'] = None; {work}"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     parts = FIGURES if command == "charts" else SECTIONS
     assert [line.split()[0] for line in done.stdout.splitlines()] == [part.name for part in parts]
@@ -181,7 +181,7 @@ NOT_A_NUMBER = Bench({}, {}, [Row("basis", "a", 1.0, 1.0, 1.0, "×")]).to_json()
 def test_what_is_no_bench_is_refused(content: str, tmp_path: Path) -> None:
     file = tmp_path / "other.json"
     file.write_text(content)
-    with pytest.raises(CommandError, match=r"other\.json is not a file that shlight bench wrote"):
+    with pytest.raises(CommandError, match=r"other\.json is not a file that \./dev bench wrote"):
         read(file)
 
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 import shlight
 from shlight import nodes
-from shlight.bench.lamps import CENTER, RADIANCE, RADIUS, ball_on_floor, icosphere, under_mesh
 from shlight.metrics import mean_ratio, rel_mse
+from shlight_tools.bench.lamps import CENTER, RADIANCE, RADIUS, ball_on_floor, icosphere, under_mesh
 
 
 def of_equal_area(subdivisions: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -12,7 +13,8 @@ from numpy.typing import NDArray
 from scene_cases import FACES, FLOOR, lit_floor
 
 import shlight
-from shlight import Bsdf, methods
+from shlight import Bsdf
+from shlight_tools import methods
 
 AXES = np.array([[0.3, 0.2, 0.9], [-0.6, 0.1, 0.5], [0.2, -0.7, 0.3]])
 AXES /= np.linalg.norm(AXES, axis=1, keepdims=True)
@@ -142,6 +144,16 @@ def test_bad_lights() -> None:
         "half_angles",
         lambda: shlight.cap_coefficients(AXES, 1.7, 3, method="monte_carlo", sampling="area"),
     )
+
+
+@pytest.mark.parametrize("call", ["caps", "polygons", "shaded"])
+def test_without_the_tools_the_error_says_what_is_missing(call: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    compute = globals()[call]
+    own = compute()
+    monkeypatch.setitem(sys.modules, "shlight_tools", None)
+    np.testing.assert_array_equal(compute(), own)
+    with pytest.raises(ValueError, match=r"^method must be '\w+': others need .*shlight_tools"):
+        compute(method="quadrature")
 
 
 # --- shading ------------------------------------------------------------------------------------------------------

@@ -17,6 +17,8 @@ from shading_cases import MATERIALS
 
 import shlight
 from shlight import Bsdf, _core
+from shlight_tools import _methods
+from shlight_tools.methods import coefficient_methods, shading_methods
 
 WAYS: dict[str, Callable[[Any], Any]] = {
     "copy": copy.copy,
@@ -59,7 +61,7 @@ def test_a_pickle_that_was_tampered_with_is_refused(state: Any) -> None:
 @every_way
 def test_reports_and_methods_keep_their_values(way: Callable[[Any], Any]) -> None:
     _, report = shlight.render(lit_floor(), 8, 6, return_report=True, max_bounces=0)
-    methods = (*shlight.methods.coefficient_methods().values(), *shlight.methods.shading_methods().values())
+    methods = (*coefficient_methods().values(), *shading_methods().values())
     for value in (report, *methods):
         again = way(value)
         for name in (name for name in dir(value) if not name.startswith("_")):
@@ -83,16 +85,20 @@ def test_a_scene_says_that_it_cannot_be_pickled(protocol: int) -> None:
         pickle.dumps(shlight.Scene(), protocol)
 
 
-BOUND = [name for name, kind in vars(_core).items() if isinstance(kind, type) and not issubclass(kind, Exception)]
+BOUND = [
+    (module.__name__, name)
+    for module in (_core, _methods)
+    for name, kind in vars(module).items()
+    if isinstance(kind, type) and not issubclass(kind, Exception)
+]
 
 
-@pytest.mark.parametrize("name", BOUND)
-def test_no_object_is_without_a_value(name: str) -> None:
+@pytest.mark.parametrize(("module", "name"), BOUND)
+def test_no_object_is_without_a_value(module: str, name: str) -> None:
     """In a process of its own, which such an object would end."""
     script = f"""
 import shlight
-from shlight import _core
-bound = _core.{name}
+from {module} import {name} as bound
 class Derived(bound):
     def __init__(self): pass
 class Newer(bound):

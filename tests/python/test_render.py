@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from scene_cases import FACES, FLOOR, from_above, lit_floor
 
 import shlight
-from shlight import methods
-from shlight.bench.picture_scenes import lamp_at
-from shlight.charts.scenes import ball, look_at
+from shlight_tools import methods
+from shlight_tools.bench.picture_scenes import lamp_at
+from shlight_tools.charts.scenes import ball, look_at
 
 
 def floor_points(size: int, half_size: float = 2.0) -> NDArray[np.float64]:

@@ -27,7 +27,7 @@ RESULTS = (*FIRST_RESULTS, "cycles_same_time.exr", "reference.exr", "preview.png
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; its exit code: 2 for a request that cannot be met, 1 for a failure on the way."""
     arguments = sys.argv[1:] if argv is None else argv
-    return run_command("preview", lambda: _work(arguments), when_interrupted="nothing was written")
+    return run_command("shlight preview", lambda: _work(arguments), when_interrupted="nothing was written")
 
 
 def _work(arguments: list[str]) -> None:

@@ -32,7 +32,7 @@ LOG_LINES = 20  # that are kept of a file that failed
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; its exit code: 2 for a request that cannot be met, 1 for a failure on the way."""
     arguments = sys.argv[1:] if argv is None else argv
-    return run_command("survey", lambda: _work(arguments), when_interrupted="nothing was written")
+    return run_command("shlight survey", lambda: _work(arguments), when_interrupted="nothing was written")
 
 
 def _work(arguments: list[str]) -> None:

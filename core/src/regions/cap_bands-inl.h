@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The integrals of the basis over caps, band by band, one light in each lane (docs/theory.md, 2 and 3;
-// core/methods/clipped_cap.h is the same in scalars).
+// tools/methods/clipped_cap.h is the same in scalars).
 // Included once per instruction set.
 #if defined(SHLIGHT_KERNELS_CAP_BANDS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SHLIGHT_KERNELS_CAP_BANDS_INL_H_

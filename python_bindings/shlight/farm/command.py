@@ -18,7 +18,9 @@ LARGEST_FACTOR = 4.0  # a larger one is taken for a percentage whose sign was fo
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; its exit code: 2 for a request that cannot be met, 1 where frames failed."""
     arguments = sys.argv[1:] if argv is None else argv
-    return run_command("render", lambda: _work(arguments), when_interrupted="the files that are there are whole")
+    return run_command(
+        "shlight render", lambda: _work(arguments), when_interrupted="the files that are there are whole"
+    )
 
 
 def _work(arguments: list[str]) -> None:

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: MIT
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shlight import Bsdf, Scene
+
+_Floats = NDArray[Any]
+_Shaded = tuple[NDArray[np.float32], NDArray[np.int32]]  # radiance and effort
+
+class MethodOptions: ...
+
+def method_options(*, tolerance: float, order: int, samples: int, seed: int, sampling: str) -> MethodOptions: ...
+
+class Method:
+    @property
+    def name(self) -> str: ...
+    @property
+    def source(self) -> str: ...
+    @property
+    def largest_order(self) -> int: ...
+    @property
+    def adaptive(self) -> bool: ...
+    @property
+    def random(self) -> bool: ...
+    @property
+    def knows_caps(self) -> bool: ...
+    @property
+    def knows_polygons(self) -> bool: ...
+
+class ShadingMethod:
+    @property
+    def name(self) -> str: ...
+    @property
+    def source(self) -> str: ...
+    @property
+    def harmonic(self) -> bool: ...
+    @property
+    def adaptive(self) -> bool: ...
+    @property
+    def sampled(self) -> bool: ...
+    @property
+    def random(self) -> bool: ...
+
+def lobe_condition(band: int) -> float: ...
+def all_methods() -> list[Method]: ...
+def all_shading_methods() -> list[ShadingMethod]: ...
+def sphere_coefficients(
+    method: str, options: MethodOptions, centers: _Floats, radii: _Floats, order: int, clip: bool, threads: int
+) -> _Floats: ...
+def cap_coefficients(
+    method: str, options: MethodOptions, axes: _Floats, half_angles: _Floats, order: int, clip: bool, threads: int
+) -> _Floats: ...
+def polygon_coefficients(
+    method: str, options: MethodOptions, vertices: _Floats, order: int, clip: bool, threads: int
+) -> _Floats: ...
+def shade_spheres(
+    method: str,
+    options: MethodOptions,
+    centers: _Floats,
+    radii: _Floats,
+    bsdf: Bsdf,
+    cos_theta_o: _Floats,
+    threads: int,
+) -> _Shaded: ...
+def shade_polygons(
+    method: str, options: MethodOptions, vertices: _Floats, bsdf: Bsdf, cos_theta_o: _Floats, threads: int
+) -> _Shaded: ...
+def render_monte_carlo(
+    scene: Scene,
+    width: int,
+    height: int,
+    samples: int,
+    seed: int,
+    threads: int,
+    progress: Callable[[float], object] | None,
+) -> NDArray[np.float32]: ...
