@@ -81,22 +81,14 @@ class Reference:
     def image(self) -> Image:
         return (self.halves[0] + self.halves[1]) / 2
 
-    def scale(self) -> Floats:
-        """The divisor of squared differences in relMSE."""
-        r = self.image[..., :3].astype(np.float64)
-        return r**2 + 0.01 * r.mean() ** 2
-
     @property
     def noise(self) -> float:
         """relMSE of the image."""
         return metrics.reference_rel_mse(*self.halves)
 
     def error(self, image: Image) -> Error:
-        """relMSE without the reference's own noise: (x - a)(x - b) is (x - r)² in the mean if a and b are two
-        independent estimates of r."""
-        x, a, b = (np.asarray(part[..., :3], dtype=np.float64) for part in (image, *self.halves))
-        products = ((x - a) * (x - b) / self.scale()).mean(axis=-1)
-        return Error(float(products.mean()), float(products.std() / np.sqrt(products.size)))
+        """relMSE without the reference's own noise."""
+        return Error(*metrics.rel_mse_without_noise(image, *self.halves))
 
 
 @dataclass
@@ -240,8 +232,8 @@ def _take_turns(calls: list[Call], reference: Reference, effort: Effort, step: C
 def _bias(harmonics: Callable[..., Image], order: int, reference: Reference) -> float:
     """relMSE between this order and a small tolerance, with the same rays, so that only the shading differs."""
     rays = (1, 4)
-    difference = (harmonics(rays, order) - harmonics(rays, "auto", tolerance=BIAS_TOLERANCE))[..., :3]
-    return float(np.mean(difference.astype(np.float64) ** 2 / reference.scale()))
+    difference: Image = harmonics(rays, order) - harmonics(rays, "auto", tolerance=BIAS_TOLERANCE).astype(np.float64)
+    return metrics.rel_mse(reference.image + difference, reference.image)
 
 
 def _samples(count: int) -> str:
