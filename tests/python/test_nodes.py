@@ -12,6 +12,7 @@ import pytest
 import shlight
 from shlight import nodes
 from shlight.nodes import energy
+from shlight.nodes.values import number
 
 STRIPS = np.linspace(0.05, 1.0, 6)
 
@@ -244,3 +245,50 @@ def test_bad_arguments_are_named(call: Any, named: str) -> None:
 def test_kept_energies_are_what_computing_them_gives() -> None:
     for name, compute in energy.TABLES.items():
         np.testing.assert_allclose(energy.tables()[name].values, compute(), rtol=1e-6, atol=1e-7)
+
+
+def test_operators_give_what_python_gives() -> None:
+    numbers = (-1.5, 0.0, 0.25, 2.0)
+    for a, b in itertools.product(numbers, numbers):
+        u, v = number(a), number(b)
+        for made, expected in (
+            (u < v, a < b),
+            (u <= b, a <= b),
+            (a > v, a > b),
+            (u >= v, a >= b),
+            (nodes.equal(u, b), a == b),
+        ):
+            assert made.constant == float(expected)
+        if b in (0.0, 2.0) or a > 0:
+            assert (u**b).constant == pytest.approx(a**b, rel=1e-6)
+            assert (a**v).constant == pytest.approx(a**b, rel=1e-6)
+    assert (nodes.Vector(1, 2, 3) ** 2).constant == (1.0, 4.0, 9.0)
+    assert (np.array([1.0, 2.0, 3.0]) * nodes.Vector(1, 2, 3)).constant == (1.0, 4.0, 9.0)
+    assert (np.float64(2.0) - number(0.5)).constant == (np.array(2.0) - number(0.5)).constant == 1.5
+
+
+U = nodes.uv().x
+REFUSED: dict[str, Any] = {
+    "bool": lambda: bool(U > 0.5),
+    "bool of a vector": lambda: bool(nodes.position()),
+    "if": lambda: 1.0 if U > 0.5 else 0.0,
+    "max": lambda: max(U, 0.5),
+    "min": lambda: min(0.5, U),
+    "chained": lambda: 0.2 < U < 0.5,
+    "not": lambda: not U,
+    "in": lambda: U in (0.5, 1.0),
+    "==": lambda: U == 0.5,
+    "!=": lambda: U != 0.5,
+    "== of a vector": lambda: nodes.position() == 0,
+    "array": lambda: np.ones(3) * U,
+    "ufunc": lambda: np.sin(U),
+    "vector < vector": lambda: nodes.position() > U,
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_expressions_refuse_what_python_cannot_say(what: str) -> None:
+    with pytest.raises(TypeError) as caught:
+        REFUSED[what]()
+    text = str(caught.value)
+    assert "nodes." in text or what in ("array", "ufunc", "vector < vector")

@@ -75,6 +75,10 @@ class NodeInputs:
         """An input as a vector if another node makes it, else None: what the node itself takes in its place."""
         return self.vector(name) if self.is_linked(name) else None
 
+    def vector_or(self, name: str | int, default: Vector) -> Vector:
+        """An input as a vector if another node makes it, else the default."""
+        return self.vector(name) if self.is_linked(name) else default
+
     def number(self, name: str | int) -> Value:
         """An input as a number."""
         return number(self.expression(name))

@@ -12,7 +12,7 @@ import bpy
 
 from shlight import nodes
 from shlight.nodes import Color, Value, Vector
-from shlight.nodes.values import Number, clamp, dot, operation, select, sqrt
+from shlight.nodes.values import Number, clamp, dot, equal, operation, select, sqrt
 
 from ..names import name_of
 from ..report import Effect
@@ -38,7 +38,7 @@ def image_texture(inputs: NodeInputs) -> Color | Value:
     if textures is None:
         found: Color = Color(*MISSING)
     else:
-        place = inputs.linked_vector("Vector") or nodes.uv("")
+        place = inputs.vector_or("Vector", nodes.uv(""))
         found = _projected(inputs, textures, place)
     return found.alpha if inputs.output.identifier == "Alpha" else found
 
@@ -113,7 +113,7 @@ def _lookup(inputs: NodeInputs, textures: Any, place: Vector) -> Color:
 
 def _on_sphere(p: Vector) -> Vector:
     square = dot(p, p)
-    pole = operation("equal", p.x * p.x + p.y * p.y, 0.0)
+    pole = equal(p.x * p.x + p.y * p.y, 0.0)
     u = select(pole, 0.0, 0.5 - operation("arctangent2", p.x, p.y) / (2.0 * math.pi))
     v = 1.0 - operation("arccosine", p.z / sqrt(square)) / math.pi
     return Vector(select(square, u, 0.0), select(square, v, 0.0), 0.0)

@@ -7,7 +7,7 @@ import math
 
 from shlight import nodes
 from shlight.nodes import Color, Value, Vector
-from shlight.nodes.values import clamp, dot, maximum, number, operation, select, sqrt
+from shlight.nodes.values import clamp, dot, equal, maximum, number, operation, select, sqrt
 
 from ..names import name_of
 from .blackbody import blackbody_rgb
@@ -100,7 +100,7 @@ def fresnel_of(cosine: Value, ior: Value) -> Value:
 
 
 def _own_normal(inputs: NodeInputs) -> Vector:
-    return inputs.linked_vector("Normal") or nodes.normal()
+    return inputs.vector_or("Normal", nodes.normal())
 
 
 def _fresnel(inputs: NodeInputs) -> Value:
@@ -167,11 +167,11 @@ def _blackbody(inputs: NodeInputs) -> Expression:
 
 
 def _checker(inputs: NodeInputs) -> Expression:
-    place = inputs.linked_vector("Vector") or nodes.attribute(GENERATED)
+    place = inputs.vector_or("Vector", nodes.attribute(GENERATED))
     floors = [
         operation("modulo", abs(operation("floor", (c * inputs.number("Scale") + 1e-6) * 0.999999)), 2.0) for c in place
     ]
-    same = operation("equal", operation("equal", floors[0], floors[1]), floors[2])
+    same = equal(equal(floors[0], floors[1]), floors[2])
     if inputs.output.identifier == "Fac":
         return same
     first, second = inputs.color("Color1"), inputs.color("Color2")
@@ -179,7 +179,7 @@ def _checker(inputs: NodeInputs) -> Expression:
 
 
 def _gradient(inputs: NodeInputs) -> Expression:
-    place = inputs.linked_vector("Vector") or nodes.attribute(GENERATED)
+    place = inputs.vector_or("Vector", nodes.attribute(GENERATED))
     x, y, _ = place
     kind = inputs.node.gradient_type
     if kind == "RADIAL":

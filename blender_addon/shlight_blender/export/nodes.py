@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from shlight.photometry import LUMINANCE
+
 from ..names import name_of
 from ..report import ExportReport
 from .blackbody import blackbody_rgb
 
 RGB = NDArray[np.float64]
-REC709_LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # how Cycles turns a colour into a number
 
 
 def rgb(values: RGB) -> tuple[float, float, float]:
@@ -125,7 +126,7 @@ class ConstantReader:
     def number(self, node: Any, name: str, groups: tuple[Any, ...] = ()) -> float:
         """Value of the input `name` as a number; colours count with their luminance, as in Cycles."""
         value = self._value(node, node.inputs[name], groups)
-        return value if isinstance(value, float) else float(value @ REC709_LUMINANCE)
+        return value if isinstance(value, float) else float(value @ LUMINANCE)
 
     def share(self, node: Any, name: str, groups: tuple[Any, ...] = ()) -> float:
         """Value of the input `name` as a number, clamped to 0 … 1 as Cycles does."""

@@ -189,7 +189,7 @@ def _vector_rotate(inputs: NodeInputs) -> Vector:
     if node.rotation_type == "EULER_XYZ":
         return rotate_euler(v - center, inputs.vector("Rotation"), invert=node.invert) + center
     axes = {"X_AXIS": Vector(1.0, 0.0, 0.0), "Y_AXIS": Vector(0.0, 1.0, 0.0), "Z_AXIS": Vector(0.0, 0.0, 1.0)}
-    axis = axes.get(node.rotation_type) or inputs.vector("Axis")
+    axis = axes[node.rotation_type] if node.rotation_type in axes else inputs.vector("Axis")
     angle = inputs.number("Angle")
     return rotate(v - center, axis, -angle if node.invert else angle) + center
 

@@ -28,8 +28,9 @@
 
 namespace shlight {
 
-/// Weights of linear Rec. 709 RGB in a texel's luminance.
-inline constexpr Vec3d kLuminance(0.2126, 0.7152, 0.0722);
+/// Weights of linear Rec. 709 RGB in luminance, which are rounded there to four digits: the row of Y in the matrix from
+/// primaries with a white point of D65 to CIE XYZ, as Cycles has it.
+inline constexpr Vec3d kLuminance(0.2126729, 0.7151522, 0.0721750);
 
 /// A direction's longitude and latitude in units of texels: texel (column, row) has its centre at (column + ½, row +
 /// ½).

@@ -30,7 +30,7 @@ from shlight.nodes.principled import (
 )
 from shlight.nodes.shader import Shader, emission, ggx, lambert, mix, translucent, transparent
 from shlight.nodes.textures import image
-from shlight.nodes.values import Color, Value, Vector
+from shlight.nodes.values import Color, Value, Vector, clamp, equal, maximum, minimum, select, sqrt
 
 __all__ = [
     "Color",
@@ -41,8 +41,10 @@ __all__ = [
     "backfacing",
     "barycentric",
     "bump",
+    "clamp",
     "colors",
     "emission",
+    "equal",
     "geometric_normal",
     "ggx",
     "glass",
@@ -53,6 +55,8 @@ __all__ = [
     "map_range",
     "mapping",
     "mathematics",
+    "maximum",
+    "minimum",
     "mix",
     "mix_color",
     "normal",
@@ -65,6 +69,8 @@ __all__ = [
     "reflecting_normal",
     "refraction",
     "rising_lobes",
+    "select",
+    "sqrt",
     "towards_viewer",
     "translucent",
     "transparent",

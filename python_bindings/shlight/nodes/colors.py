@@ -18,6 +18,7 @@ from shlight.nodes.values import (
     Vector,
     clamp,
     color,
+    equal,
     maximum,
     minimum,
     number,
@@ -39,22 +40,22 @@ def hsv_from_rgb(c: Vector) -> Vector:
     r, g, b = c
     high, low = maximum(r, maximum(g, b)), minimum(r, minimum(g, b))
     span = high - low
-    saturation = select(operation("equal", high, 0.0), 0.0, span / high)
+    saturation = select(equal(high, 0.0), 0.0, span / high)
     x, y, z = ((high - component) / span for component in (r, g, b))
     hue = select(
-        operation("equal", r, high),
+        equal(r, high),
         z - y,
-        select(operation("equal", g, high), 2.0 + x - z, 4.0 + y - x),
+        select(equal(g, high), 2.0 + x - z, 4.0 + y - x),
     )
     hue = hue / 6.0
     hue = select(hue < 0.0, hue + 1.0, hue)
-    return Vector(select(operation("equal", saturation, 0.0), 0.0, hue), saturation, high)
+    return Vector(select(equal(saturation, 0.0), 0.0, hue), saturation, high)
 
 
 def rgb_from_hsv(c: Vector) -> Color:
     """The colour of a hue, saturation and value."""
     hue, s, v = c
-    h = select(operation("equal", hue, 1.0), 0.0, hue) * 6.0
+    h = select(equal(hue, 1.0), 0.0, hue) * 6.0
     sector = floor(h)
     f = h - sector
     p, q, t = v * (1.0 - s), v * (1.0 - s * f), v * (1.0 - s * (1.0 - f))
@@ -62,8 +63,8 @@ def rgb_from_hsv(c: Vector) -> Color:
     def chosen(*by_sector: Value) -> Value:
         result = by_sector[-1]
         for i, value in reversed(list(enumerate(by_sector[:-1]))):
-            result = select(operation("equal", sector, float(i)), value, result)
-        return select(operation("equal", s, 0.0), v, result)
+            result = select(equal(sector, float(i)), value, result)
+        return select(equal(s, 0.0), v, result)
 
     return Color(chosen(v, q, p, p, t, v), chosen(t, v, v, q, p, p), chosen(p, p, t, v, v, q))
 
@@ -73,12 +74,12 @@ def hsl_from_rgb(c: Vector) -> Vector:
     r, g, b = (clamp(component) for component in c)
     high, low = maximum(r, maximum(g, b)), minimum(r, minimum(g, b))
     span, light = high - low, minimum(1.0, (high + low) / 2.0)
-    grey = operation("equal", high, low)
+    grey = equal(high, low)
     saturation = select(light > 0.5, span / (2.0 - high - low), span / (high + low))
     hue = select(
-        operation("equal", high, r),
+        equal(high, r),
         (g - b) / span + select(g < b, 6.0, 0.0),
-        select(operation("equal", high, g), (b - r) / span + 2.0, (r - g) / span + 4.0),
+        select(equal(high, g), (b - r) / span + 2.0, (r - g) / span + 4.0),
     )
     return Vector(select(grey, 0.0, hue / 6.0), select(grey, 0.0, saturation), light)
 
@@ -102,7 +103,7 @@ def _dodge(t: Value) -> Callable[[Value, Value], Value]:
     def blended(a: Value, b: Value) -> Value:
         below = 1.0 - t * b
         lit = select(below > 0.0, minimum(a / below, 1.0), 1.0)
-        return select(operation("equal", a, 0.0), a, lit)
+        return select(equal(a, 0.0), a, lit)
 
     return blended
 
@@ -124,19 +125,19 @@ def _soft(t: Value) -> Callable[[Value, Value], Value]:
 
 
 def _divided(t: Value) -> Callable[[Value, Value], Value]:
-    return lambda a, b: select(operation("equal", b, 0.0), a, (1.0 - t) * a + t * a / b)
+    return lambda a, b: select(equal(b, 0.0), a, (1.0 - t) * a + t * a / b)
 
 
 def _hue(a: Vector, b: Vector, t: Value) -> Color:
     of_a, of_b = hsv_from_rgb(a), hsv_from_rgb(b)
     changed = _lerp(a, rgb_from_hsv(Vector(of_b.x, of_a.y, of_a.z)), t)
-    return _map(lambda new, old: select(operation("equal", of_b.y, 0.0), old, new), changed, a)
+    return _map(lambda new, old: select(equal(of_b.y, 0.0), old, new), changed, a)
 
 
 def _saturation(a: Vector, b: Vector, t: Value) -> Color:
     of_a, of_b = hsv_from_rgb(a), hsv_from_rgb(b)
     changed = rgb_from_hsv(Vector(of_a.x, (1.0 - t) * of_a.y + t * of_b.y, of_a.z))
-    return _map(lambda new, old: select(operation("equal", of_a.y, 0.0), old, new), changed, a)
+    return _map(lambda new, old: select(equal(of_a.y, 0.0), old, new), changed, a)
 
 
 def _value(a: Vector, b: Vector, t: Value) -> Color:
@@ -147,7 +148,7 @@ def _value(a: Vector, b: Vector, t: Value) -> Color:
 def _color(a: Vector, b: Vector, t: Value) -> Color:
     of_a, of_b = hsv_from_rgb(a), hsv_from_rgb(b)
     changed = _lerp(a, rgb_from_hsv(Vector(of_b.x, of_b.y, of_a.z)), t)
-    return _map(lambda new, old: select(operation("equal", of_b.y, 0.0), old, new), changed, a)
+    return _map(lambda new, old: select(equal(of_b.y, 0.0), old, new), changed, a)
 
 
 Blend = Callable[[Vector, Vector, Value], Color]
@@ -204,7 +205,7 @@ def brightness_contrast(c: Varying, brightness: Number, contrast: Number) -> Col
 def gamma(c: Varying, exponent: Number) -> Color:
     """Blender's Gamma node; what is not positive stays."""
     e = number(exponent)
-    return _map(lambda x: select(operation("equal", e, 0.0), 1.0, select(x > 0.0, power(x, e), x)), color(c))
+    return _map(lambda x: select(equal(e, 0.0), 1.0, select(x > 0.0, power(x, e), x)), color(c))
 
 
 def invert(c: Varying, factor: Number = 1.0) -> Color:

@@ -13,6 +13,7 @@ from shlight.nodes.values import (
     clamp,
     cross,
     dot,
+    equal,
     length,
     maximum,
     minimum,
@@ -54,25 +55,25 @@ def power(a: Number, b: Number) -> Value:
 def wrap(a: Number, high: Number, low: Number) -> Value:
     """The number, moved by multiples of high - low to between them."""
     span = number(high) - number(low)
-    return select(operation("equal", span, 0.0), low, number(a) - span * floor((number(a) - low) / span))
+    return select(equal(span, 0.0), low, number(a) - span * floor((number(a) - low) / span))
 
 
 def ping_pong(a: Number, scale: Number) -> Value:
     """A zigzag between 0 and the scale."""
     s = number(scale)
-    return select(operation("equal", s, 0.0), 0.0, abs(fraction((number(a) - s) / (s * 2.0)) * s * 2.0 - s))
+    return select(equal(s, 0.0), 0.0, abs(fraction((number(a) - s) / (s * 2.0)) * s * 2.0 - s))
 
 
 def smooth_minimum(a: Number, b: Number, distance: Number) -> Value:
     """The smaller number, rounded off where both are nearer than the distance."""
     d, least = number(distance), minimum(a, b)
     h = maximum(d - abs(number(a) - number(b)), 0.0) / d
-    return select(operation("equal", d, 0.0), least, least - h * h * h * d * (1.0 / 6.0))
+    return select(equal(d, 0.0), least, least - h * h * h * d * (1.0 / 6.0))
 
 
 def _compare(a: Value, b: Value, within: Value) -> Value:
     near = 1.0 - (abs(a - b) > maximum(within, LEAST_DIFFERENCE))
-    return maximum(operation("equal", a, b), near)
+    return maximum(equal(a, b), near)
 
 
 def _logarithm(a: Value, base: Value) -> Value:
@@ -81,7 +82,7 @@ def _logarithm(a: Value, base: Value) -> Value:
 
 
 def _floored_modulo(a: Value, b: Value) -> Value:
-    return select(operation("equal", b, 0.0), 0.0, a - floor(a / b) * b)
+    return select(equal(b, 0.0), 0.0, a - floor(a / b) * b)
 
 
 # Operations of the Math node by Blender's names; b and c are the second and third input.
@@ -205,7 +206,7 @@ def map_range(
     elif interpolation in ("smoothstep", "smootherstep"):
         curve = _smooth if interpolation == "smoothstep" else _smoother
         share = select(a > b, 1.0 - curve(b, a, x), curve(a, b, x))
-    result = select(operation("equal", a, b), 0.0, c + share * (d - c))
+    result = select(equal(a, b), 0.0, c + share * (d - c))
     if clamped and interpolation in ("linear", "stepped"):
         result = clamp_range(result, c, d)
     return result

@@ -22,11 +22,11 @@ from shlight.nodes.values import (
     clamp,
     cross,
     dot,
+    equal,
     length,
     maximum,
     normalize,
     number,
-    operation,
     right,
     select,
     vector,
@@ -59,12 +59,12 @@ def normal_map(color: Varying, strength: Number = 1.0, *, space: str = "tangent"
         height = 1.0 + clamp(s) * (n.z - 1.0)
         bent = along * (n.x * s) + across * (n.y * s) + up * height
         bent = normalize(normal_to_world(bent)) * flip
-        missing = operation("equal", dot(along, along), 0.0)
+        missing = equal(dot(along, along), 0.0)
         bent = choose(missing, normal(), bent)
     else:
         bent = normalize(normal_to_world(n) if space == "object" else n) * flip
         bent = normalize(normal() + (bent - normal()) * maximum(s, 0.0)) if s.constant != 1.0 else bent
-    return choose(operation("equal", length(bent), 0.0), normal(), bent)
+    return choose(equal(length(bent), 0.0), normal(), bent)
 
 
 def bump(
@@ -82,5 +82,5 @@ def bump(
     scale = -number(distance) if invert else number(distance)
     s: Value = maximum(strength, 0.0)
     raised = normalize(before * abs(determinant) - slope * (scale * sign(determinant)))
-    flat = operation("equal", length(raised), 0.0)
+    flat = equal(length(raised), 0.0)
     return choose(flat, before, normalize(raised * s + before * (1.0 - s)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 
+from shlight._arrays import checked_flag
 from shlight.nodes import energy
 from shlight.nodes.inputs import backfacing, geometric_normal, normal, towards_viewer
 from shlight.nodes.shader import Lobe, Refraction, Shader, emission, lambert, transparent
@@ -24,6 +25,7 @@ from shlight.nodes.values import (
     operation,
     select,
     sqrt,
+    vector,
 )
 
 # Indices of refraction between which a varying one is interpolated.
@@ -117,7 +119,7 @@ def _dielectric(
         brighter = _bounces(roughness, cosine, mean_fresnel)
         own = color(own * brighter)
         dimmed = color(brighter * energy.albedo(roughness, cosine))
-    several = {"several_bounces": several_bounces}
+    several = {"several_bounces": checked_flag("several_bounces", several_bounces)}
     lobes = (
         Lobe("ggx", color(own * f0), alpha, at, **several),
         *rising_lobes(own * (1.0 - f0), ior, alpha, at, **several),
@@ -252,6 +254,9 @@ def principled(
     index = maximum(number(ior, "ior"), 1e-5)
     tint = Color(*(maximum(component, 0.0) for component in color(specular_tint, "specular_tint")))
     opaque = clamp(number(alpha, "alpha"))
+    diffuse_width = number(diffuse_roughness, "diffuse_roughness")
+    coat_width, coat_color = number(coat_roughness, "coat_roughness"), color(coat_tint, "coat_tint")
+    at = None if at is None else vector(at, "at")
     n = normal() if at is None else at
     glossy_normal = reflecting_normal(n)
 
@@ -260,14 +265,14 @@ def principled(
     coat = maximum(number(coat_weight, "coat_weight"), 0.0)
     if coat.constant != 0.0:
         coat_index = maximum(number(coat_ior, "coat_ior"), 1.0)
-        coat_at = reflecting_normal(normal() if coat_normal is None else coat_normal)
+        coat_at = reflecting_normal(normal() if coat_normal is None else vector(coat_normal, "coat_normal"))
         lobes, passed = _dielectric(
-            weight * coat, color(head_on(coat_index)), coat_index, clamp(coat_roughness), coat_at, several_bounces=True
+            weight * coat, color(head_on(coat_index)), coat_index, clamp(coat_width), coat_at, several_bounces=True
         )
         result += Shader(lobes)
         # Weights of several lobes above 1 hide all that is below, as the sum of their shares does.
         weight = color(weight * clamp(1.0 - coat * (1.0 - passed.x)))
-        weight = color(weight * _coat_color(color(coat_tint, "coat_tint"), coat, coat_index, coat_at))
+        weight = color(weight * _coat_color(coat_color, coat, coat_index, coat_at))
     result += (
         emission(color(emission_color, "emission_color") * number(emission_strength, "emission_strength")) * weight
     )
@@ -299,7 +304,7 @@ def principled(
         lobes, passed = _dielectric(weight, f0, index, rough, glossy_normal, **several)
         result += Shader(lobes)
         weight = color(weight * passed)
-    return result + oren_nayar(base, diffuse_roughness, at=at) * weight
+    return result + oren_nayar(base, diffuse_width, at=at) * weight
 
 
 def _coat_color(tint: Color, coat: Value, index: Value, at: Vector) -> Color:

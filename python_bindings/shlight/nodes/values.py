@@ -11,15 +11,12 @@ import math
 from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, TypeAlias
+from typing import Any, NoReturn, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shlight import _core
-
-# How a colour counts as a number: its luminance in Rec. 709.
-LUMINANCE = (0.2126729, 0.7151522, 0.0721750)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -38,8 +35,30 @@ def operations() -> dict[str, tuple[int, int, int]]:
     return {name: (number, count, results) for number, (name, count, results) in enumerate(_core.shader_operations())}
 
 
-class Value:
-    """A number at each hit."""
+class Expression:
+    """The base of numbers and vectors that vary: it refuses the words of Python that need one value."""
+
+    __slots__ = ()
+    __array_ufunc__ = None  # an array of numpy leaves operators to the expression, which knows what it takes
+
+    def __bool__(self) -> NoReturn:
+        raise TypeError(
+            "an expression of shlight.nodes is neither true nor false before a surface is shaded. In place of if, and, "
+            "or: nodes.select(condition, a, b), and nodes.mix_color(b, a, condition) of colours; in place of min and "
+            "max: nodes.minimum, nodes.maximum, nodes.clamp; in place of a < b < c: (a < b) * (b < c)"
+        )
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the other is this very expression; nodes.equal(a, b) compares what they give."""
+        if _floats(other) is not None:
+            raise TypeError("== says nothing of what an expression gives; nodes.equal(a, b) is 1 where a equals b")
+        return self is other
+
+    __hash__ = object.__hash__
+
+
+class Value(Expression):
+    """A number at each hit. Comparisons give 1 where they hold, else 0; `==` is `nodes.equal`."""
 
     __slots__ = ("output", "step")
 
@@ -76,6 +95,12 @@ class Value:
     def __rtruediv__(self, other: float) -> Value:
         return operation("divide", other, self) if _is_number(other) else NotImplemented
 
+    def __pow__(self, other: Number) -> Value:
+        return operation("power", self, other) if _is_number(other) else NotImplemented
+
+    def __rpow__(self, other: float) -> Value:
+        return operation("power", other, self) if _is_number(other) else NotImplemented
+
     def __neg__(self) -> Value:
         return subtract(0.0, self)
 
@@ -83,10 +108,16 @@ class Value:
         return operation("absolute", self)
 
     def __lt__(self, other: Number) -> Value:
-        return operation("less", self, other)
+        return operation("less", self, other) if _is_number(other) else NotImplemented
 
     def __gt__(self, other: Number) -> Value:
-        return operation("less", other, self)
+        return operation("less", other, self) if _is_number(other) else NotImplemented
+
+    def __le__(self, other: Number) -> Value:
+        return maximum(self < other, equal(self, other)) if _is_number(other) else NotImplemented
+
+    def __ge__(self, other: Number) -> Value:
+        return maximum(self > other, equal(self, other)) if _is_number(other) else NotImplemented
 
     def __repr__(self) -> str:
         return f"{self.constant:g}" if self.constant is not None else f"<{self.step.name}>"
@@ -94,10 +125,10 @@ class Value:
 
 def _is_number(value: Any) -> bool:
     """Whether an operator of a number takes it; vectors and shaders have operators of their own."""
-    return isinstance(value, Value | float | int | np.number)
+    return isinstance(value, Value | float | int | np.number) or (isinstance(value, np.ndarray) and value.ndim == 0)
 
 
-class Vector:
+class Vector(Expression):
     """Three numbers at each hit; operators go by component, and a number stands for three equal ones."""
 
     __slots__ = ("x", "y", "z")
@@ -134,6 +165,12 @@ class Vector:
     def __rtruediv__(self, other: Varying) -> Vector:
         return self._each("divide", other, swapped=True)
 
+    def __pow__(self, other: Varying) -> Vector:
+        return self._each("power", other)
+
+    def __rpow__(self, other: Varying) -> Vector:
+        return self._each("power", other, swapped=True)
+
     def __neg__(self) -> Vector:
         return 0.0 - self
 
@@ -161,8 +198,8 @@ class Color(Vector):
         self.alpha = number(alpha)
 
     def as_number(self) -> Value:
-        """The conversion to a number: the luminance."""
-        r, g, b = LUMINANCE
+        """The conversion to a number: the luminance, as Rec. 709 weighs linear RGB."""
+        r, g, b = _core.LUMINANCE
         return self.x * r + self.y * g + self.z * b
 
 
@@ -281,6 +318,11 @@ def minimum(a: Number, b: Number) -> Value:
 def maximum(a: Number, b: Number) -> Value:
     """The larger of two numbers."""
     return operation("maximum", a, b)
+
+
+def equal(a: Number, b: Number) -> Value:
+    """1 where two numbers are the same, else 0."""
+    return operation("equal", a, b)
 
 
 def clamp(value: Number, low: Number = 0.0, high: Number = 1.0) -> Value:
