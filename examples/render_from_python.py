@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 import shlight
-from shlight import images
 
 Array = npt.NDArray[np.float64]
 
@@ -43,19 +42,15 @@ def build() -> shlight.Scene:
     # Counter-clockwise as the ball sees it: a polygon shines to one side.
     window = np.array([[-2.5, -1.0, 1.2], [-2.5, -1.0, 2.6], [-1.7, -2.4, 2.6], [-1.7, -2.4, 1.2]])
     scene.add_polygon_light(window, (5.0, 4.5, 4.0))
-    # The camera looks along its own -z, from 5 m away and slightly downwards.
-    tilt = np.deg2rad(78.0)
-    to_world = np.eye(4)
-    to_world[1:3, 1:3] = [[np.cos(tilt), -np.sin(tilt)], [np.sin(tilt), np.cos(tilt)]]
-    to_world[:3, 3] = (0.0, -5.0, 1.8)
-    scene.set_camera(to_world, np.deg2rad(40.0))
+    scene.set_camera(shlight.look_at((0.0, -5.0, 1.8), (0.0, 0.0, 0.74)), np.deg2rad(40.0))
     return scene
 
 
 def main() -> None:
     """Renders the scene into a file."""
-    image, report = shlight.render(build(), 480, 320, return_report=True)
-    images.write_png(sys.argv[1] if len(sys.argv) > 1 else "ball.png", images.linear_to_srgb8(image))
+    result = shlight.render(build(), 480, 320)
+    result.save(sys.argv[1] if len(sys.argv) > 1 else "ball.png")
+    report = result.report
     print(f"{report.render_seconds:.2f} s, {report.hits} camera hits, {report.shadow_rays} shadow rays")
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 import shlight
-from shlight import images, nodes
+from shlight import nodes
 
 
 def read_obj(path: str) -> dict[str, np.ndarray]:
@@ -41,8 +41,8 @@ def build(model: dict[str, np.ndarray], texture: str) -> shlight.Scene:
 
 def main() -> None:
     """Renders the model into a file."""
-    image = shlight.render(build(read_obj(sys.argv[1]), sys.argv[2]), 400, 400)
-    images.write_png(sys.argv[3] if len(sys.argv) > 3 else "model.png", images.linear_to_srgb8(image))
+    result = shlight.render(build(read_obj(sys.argv[1]), sys.argv[2]), 400, 400)
+    result.save(sys.argv[3] if len(sys.argv) > 3 else "model.png")
 
 
 if __name__ == "__main__":

@@ -153,13 +153,12 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
                 return self._wait(self._status)
 
             self._status = "Rendering"
-            result, record.last.statistics = shlight.render(
+            result = shlight.render(
                 exported.scene,
                 frame.width,
                 frame.height,
                 progress=self._progress,
                 on_update=show,
-                return_report=True,
                 **(with_features(passes) if denoises else passes),
                 **settings,
             )
@@ -167,11 +166,11 @@ class ShlightRenderEngine(bpy.types.RenderEngine):
             return None
         except shlight.RenderCancelled:
             return None if latest is None else {"combined": latest}  # what the user has seen stays
+        record.last.statistics = result.report
         if inexact := inexact_light(record.last.statistics):
             record.last.report.add("Light", inexact, Effect.SLIGHT)
         stamp_cryptomattes(self.get_result(), depsgraph.view_layer, exported.names)
-        arrays: Arrays = result if isinstance(result, dict) else {"combined": result}
-        return denoised(arrays, "high", settings["threads"], self._denoises) if denoises else arrays
+        return denoised(result.layers, "high", settings["threads"], self._denoises) if denoises else result.layers
 
     def _denoises(self, share: float) -> bool:
         return self._wait("Denoising")

@@ -115,9 +115,10 @@ class PictureMaker:
                 **(with_features({}) if job.denoises else {}),
                 **job.settings,
             )
-            if job.denoises and show(result["combined"], "Denoising"):
-                result = denoised(result, "fast", job.settings["threads"], goes_on)
-            show(result["combined"] if job.denoises else result, "")
+            layers = result.layers
+            if job.denoises and show(layers["combined"], "Denoising"):
+                layers = denoised(layers, "fast", job.settings["threads"], goes_on)
+            show(layers["combined"], "")
         except shlight.RenderCancelled:
             pass
         except Exception as error:

@@ -128,7 +128,7 @@ def errors(ax: Axes) -> None:
         for order in orders:
             light = shlight.cap_coefficients(axes, half, order=int(order))
             coefficients = bsdf.coefficients(COS_O, int(order))
-            plain.append(np.sqrt(np.mean((shlight.shade(light, coefficients) - truth) ** 2)) / truth.max())
+            plain.append(np.sqrt(np.mean((shlight.contract(light, coefficients) - truth) ** 2)) / truth.max())
             if order <= 24:
                 shaded = shlight.shade_spheres(axes, np.sin(half), bsdf, COS_O, order=int(order))[:, 0]
                 warped.append(np.sqrt(np.mean((shaded - truth) ** 2)) / truth.max())

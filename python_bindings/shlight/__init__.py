@@ -6,12 +6,17 @@ bands l = 0 … n-1. Lights and materials are given in the shading frame: the sh
 normal. Scenes are given in the world frame, in metres; radiance is linear RGB [W m⁻² sr⁻¹].
 """
 
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
 from shlight._load import load_native
 
 load_native("shlight._core")
 
-from shlight import _core, images  # noqa: E402
-from shlight._calls import explain_methods, explained  # noqa: E402
+from shlight import images, metrics  # noqa: E402
+from shlight._calls import explain_methods  # noqa: E402
 from shlight._core import (  # noqa: E402
     DEFAULT_TOLERANCE,
     Bsdf,
@@ -20,22 +25,36 @@ from shlight._core import (  # noqa: E402
     Scene,
     SceneMesh,
 )
+from shlight.cameras import look_at  # noqa: E402
 from shlight.coefficients import (  # noqa: E402
     cap_coefficients,
+    contract,
     disk_coefficients,
     evaluate,
     polygon_coefficients,
     sh_basis,
-    shade,
     sphere_coefficients,
 )
+from shlight.coefficients import shade as shade  # noqa: E402  the deprecated name of contract
 from shlight.denoising import denoise, has_denoiser  # noqa: E402
+from shlight.photometry import luminous  # noqa: E402
 from shlight.queries import Hits  # noqa: E402
+from shlight.rendering import RenderResult, render  # noqa: E402
 from shlight.shading import shade_disks, shade_polygons, shade_spheres  # noqa: E402
 
-render = explained(_core.render)
 for _kind in (Bsdf, Scene, SceneMesh):
     explain_methods(_kind)
+
+if TYPE_CHECKING:
+    from shlight import nodes
+
+
+def __getattr__(name: str) -> Any:
+    """Modules that take long to import, and that not every user of the package wants."""
+    if name == "nodes":
+        return importlib.import_module("shlight.nodes")
+    raise AttributeError(f"module 'shlight' has no attribute {name!r}")
+
 
 __version__ = "0.1.0"
 
@@ -45,18 +64,23 @@ __all__ = [
     "Hits",
     "RenderCancelled",
     "RenderReport",
+    "RenderResult",
     "Scene",
     "SceneMesh",
     "cap_coefficients",
+    "contract",
     "denoise",
     "disk_coefficients",
     "evaluate",
     "has_denoiser",
     "images",
+    "look_at",
+    "luminous",
+    "metrics",
+    "nodes",
     "polygon_coefficients",
     "render",
     "sh_basis",
-    "shade",
     "shade_disks",
     "shade_polygons",
     "shade_spheres",

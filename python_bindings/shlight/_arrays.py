@@ -60,6 +60,12 @@ def common_type(*arrays: ArrayLike) -> DTypeLike:
     return np.float64 if any(getattr(a, "dtype", None) == np.float64 for a in arrays) else np.float32
 
 
+def given_type(*arrays: ArrayLike) -> type[np.floating[Any]]:
+    """The type of results: float32 for arrays that are, float64 for all else."""
+    single = all(isinstance(a, np.ndarray | np.generic) and a.dtype == np.float32 for a in arrays)
+    return np.float32 if single else np.float64
+
+
 def checked_array(name: str, value: ArrayLike, dtype: DTypeLike, *, core_axes: int = 0) -> Floats:
     wanted = _checked_type(dtype)
     if type(value) is np.ndarray and value.dtype == wanted and value.flags.c_contiguous:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ast
 import difflib
 import functools
 import inspect
@@ -25,9 +26,13 @@ _CORE_AXES = {
     "vertices": 2,
     "half_axes_u": 1,
     "half_axes_v": 1,
-    "light_coefficients": 1,
-    "bsdf_coefficients": 1,
+    "light": 1,
+    "material": 1,
     "cos_theta_o": 0,
+    "irradiance": 1,
+    "eye": 1,
+    "target": 1,
+    "up": 1,
 }
 
 
@@ -82,11 +87,16 @@ def explained(function: Function) -> Function:
         raise TypeError(text)
 
     call.__signature__ = signature  # type: ignore[attr-defined]
+    call.__doc__ = (function.__doc__ or "").partition("\n")[2].strip()
     return cast("Function", call)
 
 
 def explain_methods(kind: type) -> None:
     """Makes `explained` of all public methods of a class of the native module."""
+    constructor: Any = vars(kind)["__init__"]
+    if (constructor.__doc__ or "").startswith("__init__("):
+        own = list(_signature(constructor).parameters.values())[1:]
+        kind.__signature__ = inspect.Signature(own)  # type: ignore[attr-defined]
     for name, method in list(vars(kind).items()):
         if not name.startswith("_") and callable(method):
             made = explained(getattr(kind, name))
@@ -94,18 +104,25 @@ def explain_methods(kind: type) -> None:
 
 
 def _signature(function: Callable[..., Any]) -> inspect.Signature:
-    """The signature that pybind11 writes into a docstring, without types."""
-    kind: Any = inspect.Parameter.POSITIONAL_OR_KEYWORD
-    parameters = []
-    for name, default in re.findall(
-        r"(\*(?=,)|\w+(?=: ))(?:: [\w.\[\]]+( =)?)?", (function.__doc__ or "").partition("\n")[0]
-    ):
-        if name == "*":
-            kind = inspect.Parameter.KEYWORD_ONLY
-        else:
-            value = None if default else inspect.Parameter.empty
-            parameters.append(inspect.Parameter(name, kind, default=value))
+    """The signature that pybind11 writes into the first line of a docstring, without its types."""
+    head = (function.__doc__ or "").partition("\n")[0]
+    call: Any = ast.parse(f"def call{head[head.index('(') :]}: ...").body[0]
+    listed, kinds = call.args, inspect.Parameter
+    no_default = [None] * (len(listed.args) - len(listed.defaults))
+    parameters = [
+        kinds(own.arg, kind, default=kinds.empty if default is None else _constant(default))
+        for kind, arguments, defaults in (
+            (kinds.POSITIONAL_OR_KEYWORD, listed.args, [*no_default, *listed.defaults]),
+            (kinds.KEYWORD_ONLY, listed.kwonlyargs, listed.kw_defaults),
+        )
+        for own, default in zip(arguments, defaults, strict=True)
+    ]
     return inspect.Signature(parameters)
+
+
+def _constant(written: ast.expr) -> Any:
+    text = ast.unparse(written)
+    return float(text) if text in ("inf", "-inf") else ast.literal_eval(written)
 
 
 def _why(signature: inspect.Signature, given: tuple[Any, ...], named: Mapping[str, Any]) -> str:

@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from shlight.nodes.shader import Shader
-from shlight.nodes.values import Value, Vector
+from shlight.nodes.values import Number, Value, Varying, Vector
 from shlight.queries import Hits
 
 _Floats = NDArray[Any]
 DEFAULT_TOLERANCE: float
+LUMINANCE: tuple[float, float, float]
 
 _Shaded = tuple[NDArray[np.float32], NDArray[np.int32]]  # radiance and effort
 
@@ -29,7 +30,7 @@ def polygon_coefficients(vertices: _Floats, order: int, clip: bool, threads: int
 def disk_coefficients(
     centers: _Floats, half_axes_u: _Floats, half_axes_v: _Floats, order: int, clip: bool, threads: int
 ) -> _Floats: ...
-def shade(light: _Floats, bsdf: _Floats, order: int, threads: int) -> _Floats: ...
+def contract(light: _Floats, material: _Floats, order: int, threads: int) -> _Floats: ...
 
 _Step = tuple[int, float, int, int, list[int]]
 
@@ -74,6 +75,7 @@ def surface_shader(
 ) -> SurfaceShader: ...
 
 class Bsdf:
+    __array_ufunc__: None
     @overload
     @staticmethod
     def lambert(albedo: ArrayLike) -> Bsdf: ...
@@ -89,7 +91,27 @@ class Bsdf:
     @staticmethod
     def oren_nayar(albedo: Value | Vector | ArrayLike, sigma: Value | float) -> Shader: ...
     @staticmethod
-    def principled(*positional: Any, **named: Any) -> Shader: ...
+    def principled(
+        base_color: Varying = (0.8, 0.8, 0.8),
+        *,
+        metallic: Number = 0.0,
+        roughness: Number = 0.5,
+        ior: Number = 1.5,
+        alpha: Number = 1.0,
+        diffuse_roughness: Number = 0.0,
+        specular_ior_level: Number = 0.5,
+        specular_tint: Varying = (1.0, 1.0, 1.0),
+        coat_weight: Number = 0.0,
+        coat_roughness: Number = 0.03,
+        coat_ior: Number = 1.5,
+        coat_tint: Varying = (1.0, 1.0, 1.0),
+        coat_normal: Vector | None = None,
+        transmission_weight: Number = 0.0,
+        emission_color: Varying = (1.0, 1.0, 1.0),
+        emission_strength: Number = 0.0,
+        several_bounces: bool = False,
+        at: Vector | None = None,
+    ) -> Shader: ...
     @staticmethod
     def layer(top: Bsdf, base: Bsdf) -> Bsdf: ...
     def coefficients(self, cos_theta_o: ArrayLike, order: int) -> NDArray[np.float32]: ...
@@ -356,77 +378,7 @@ class Scene:
         **lens: Unpack[_Lens],
     ) -> None: ...
 
-class _RenderOptions(TypedDict, total=False):
-    order: Literal["auto"] | int  # "auto" unless given
-    tolerance: float  # DEFAULT_TOLERANCE unless given
-    noise_threshold: float  # 0.01 unless given
-    min_samples: int | None
-    max_samples: int | None
-    pixel_samples: int | None
-    time_limit: float | None
-    pixel_filter: Literal["box", "gaussian", "blackman_harris"]  # "box" unless given
-    filter_width: float  # 1.5 unless given
-    shadows: bool  # True unless given
-    shadow_rays: int  # 16 unless given
-    transparent_bounces: int  # 8 unless given
-    max_bounces: int  # 4 unless given
-    glossy_bounces: int | None
-    transmission_bounces: int | None
-    alpha_threshold: float  # 0.5 unless given
-    mist: tuple[float, float, float]
-    cryptomatte_levels: int  # 6 unless given
-    exposure: float  # 1 unless given
-    threads: int  # 0, all, unless given
-    seed: int  # 0 unless given
-    progress: Callable[[float], object] | None
-    on_update: Callable[[NDArray[np.float32], RenderReport], object] | None
-
-@overload
 def render(
-    scene: Scene,
-    width: int,
-    height: int,
-    *,
-    passes: tuple[()] = (),
-    groups: Literal[False] = False,
-    aovs: Literal[False] = False,
-    return_report: Literal[False] = False,
-    **options: Unpack[_RenderOptions],
-) -> NDArray[np.float32]: ...
-@overload
-def render(
-    scene: Scene,
-    width: int,
-    height: int,
-    *,
-    passes: tuple[()] = (),
-    groups: Literal[False] = False,
-    aovs: Literal[False] = False,
-    return_report: Literal[True],
-    **options: Unpack[_RenderOptions],
-) -> tuple[NDArray[np.float32], RenderReport]: ...
-@overload
-def render(
-    scene: Scene,
-    width: int,
-    height: int,
-    *,
-    passes: Sequence[str] = (),
-    groups: bool = False,
-    aovs: bool = False,
-    return_report: Literal[False] = False,
-    **options: Unpack[_RenderOptions],
-) -> dict[str, NDArray[np.float32]] | Any: ...
-@overload
-def render(
-    scene: Scene,
-    width: int,
-    height: int,
-    *,
-    passes: Sequence[str] = (),
-    groups: bool = False,
-    aovs: bool = False,
-    return_report: Literal[True],
-    **options: Unpack[_RenderOptions],
-) -> tuple[dict[str, NDArray[np.float32]] | Any, RenderReport]: ...
+    scene: Scene, width: int, height: int, **options: Any
+) -> tuple[dict[str, NDArray[np.float32]], RenderReport]: ...
 def cryptomatte_hash(name: str) -> int: ...

@@ -193,26 +193,36 @@ def disk_coefficients(
 
 
 @names_rows
-def shade(light_coefficients: ArrayLike, bsdf_coefficients: ArrayLike, *, threads: int = 0) -> Floats:
-    """Outgoing radiance, Σ light · material (Zhou & Wei 2020, Eq. 5).
+def contract(light: ArrayLike, material: ArrayLike, *, threads: int = 0) -> Floats:
+    """Outgoing radiance, Σ light · material over the coefficients (Zhou & Wei 2020, Eq. 5).
 
-    light_coefficients, bsdf_coefficients: (..., order²) of the same order; their leading axes broadcast.
-    Returns (...), float64 if either input is, else float32. A coloured material has coefficients (..., 3, order²):
-    pass light_coefficients[..., None, :].
+    light: (..., order²), the coefficients of lights, whose radiance they are proportional to.
+    material: (..., order²), those of f·cos at a view, as `Bsdf.coefficients` returns them, of the same order.
+    Leading axes broadcast. Returns (...), float64 if either input is, else float32.
+
+    RGB is an axis like others, before the last: a coloured material has coefficients (..., 3, order²), for which light
+    is light[..., None, :], and the result is (..., 3). The radiance of lights is a factor of it: multiply it by their
+    RGB. Three lights that meet the three rows of a coloured material one by one give a UserWarning.
     """
-    dtype = common_type(light_coefficients, bsdf_coefficients)
-    light = checked_array("light_coefficients", light_coefficients, dtype, core_axes=1)
-    bsdf = checked_array("bsdf_coefficients", bsdf_coefficients, dtype, core_axes=1)
-    order = _order_of("light_coefficients", light)
-    if bsdf.shape[-1] != order * order:
-        raise ValueError(f"bsdf_coefficients has {bsdf.shape[-1]} coefficients, light_coefficients has {order * order}")
-    shape = broadcast(light_coefficients=light.shape[:-1], bsdf_coefficients=bsdf.shape[:-1])
-    if light.ndim > 1 and light.shape[-2:-1] == bsdf.shape[-2:-1] == (3,):
-        text = "3 lights and 3 rows of bsdf_coefficients are paired; for RGB pass light_coefficients[..., None, :]"
-        warnings.warn(text, stacklevel=3)
+    dtype = common_type(light, material)
+    lights = checked_array("light", light, dtype, core_axes=1)
+    materials = checked_array("material", material, dtype, core_axes=1)
+    order = _order_of("light", lights)
     size = order * order
-    flat = _core.shade(rows(light, shape, size), rows(bsdf, shape, size), order, checked_threads(threads))
+    if materials.shape[-1] != size:
+        raise ValueError(f"material has {materials.shape[-1]} coefficients, light has {size}")
+    shape = broadcast(light=lights.shape[:-1], material=materials.shape[:-1])
+    if lights.ndim > 1 and lights.shape[-2:-1] == materials.shape[-2:-1] == (3,):
+        text = "3 lights and 3 rows of material are paired; for RGB pass light[..., None, :]"
+        warnings.warn(text, stacklevel=3)
+    flat = _core.contract(rows(lights, shape, size), rows(materials, shape, size), order, checked_threads(threads))
     return shaped(flat, shape)
+
+
+def shade(light_coefficients: ArrayLike, bsdf_coefficients: ArrayLike, *, threads: int = 0) -> Floats:
+    """Deprecated name of `contract`."""
+    warnings.warn("shlight.shade is deprecated; its name is shlight.contract", DeprecationWarning, stacklevel=2)
+    return contract(light_coefficients, bsdf_coefficients, threads=threads)
 
 
 def _order_of(name: str, coefficients: Floats) -> int:

@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from shlight._arrays import checked_array, checked_flag, checked_number
 
-__all__ = ["linear_to_srgb8", "read_exr", "read_texture", "write_exr", "write_layers", "write_png"]
+__all__ = ["linear_to_srgb8", "read_exr", "read_layers", "read_texture", "write_exr", "write_layers", "write_png"]
 
 _TEXTURE_NUMBERS = ("uint8", "uint16", "half", "float")
 _CHANNEL_NAMES = {1: ("Y",), 3: ("R", "G", "B"), 4: ("R", "G", "B", "A")}
@@ -61,7 +61,7 @@ def write_exr(path: str | os.PathLike[str], image: npt.ArrayLike) -> None:
     the file cannot be written.
     """
     pixels = _checked_image("image", checked_array("image", image, np.float32))
-    _write(_checked_path(path), pixels, "openexr", "float", {"compression": "zip"})
+    _write(checked_path(path), pixels, "openexr", "float", {"compression": "zip"})
 
 
 def write_layers(
@@ -76,14 +76,18 @@ def write_layers(
     """
     if not isinstance(view_layer, str) or not view_layer or "\0" in view_layer:
         raise ValueError("view_layer must be a string that is not empty")
-    if not isinstance(passes, Mapping) or not all(isinstance(name, str) for name in passes):
-        raise ValueError("passes must be a mapping of names to images")
-    images = {name: _checked_layer(name, checked_array(name, image, np.float32)) for name, image in passes.items()}
+    try:
+        given = dict(passes)
+    except (TypeError, ValueError):
+        given = {}
+    if not given or not all(isinstance(name, str) for name in given):
+        raise ValueError("passes must be a mapping of names to images, one at least")
+    images = {name: _checked_layer(name, checked_array(name, image, np.float32)) for name, image in given.items()}
     if len({image.shape[:2] for image in images.values()}) != 1:
-        raise ValueError("passes must be at least one, and of the same height and width")
+        raise ValueError("passes must be of the same height and width")
     names = [f"{view_layer}.{channel}" for name, image in images.items() for channel in _channels(name, image.shape[2])]
     pixels = np.concatenate(list(images.values()), axis=2)
-    _write(_checked_path(path), pixels, "openexr", "float", {"compression": "zip"}, tuple(names))
+    _write(checked_path(path), pixels, "openexr", "float", {"compression": "zip"}, tuple(names))
 
 
 def _channels(name: str, count: int) -> list[str]:
@@ -96,6 +100,65 @@ def _channels(name: str, count: int) -> list[str]:
     if len(channels) != count:
         channels = "X" if count == 1 else "RGBA"[:count]
     return [f"{layer}.{channel}" for channel in channels]
+
+
+def read_layers(path: str | os.PathLike[str], *, view_layer: str | None = None) -> dict[str, npt.NDArray[np.float32]]:
+    """Reads the passes of an OpenEXR file of `write_layers`, `RenderResult.save` or Blender, by name.
+
+    view_layer: whose passes; None: of the only one. Returns arrays (height, width, channels) float32 under the names of
+    `shlight.render`: "combined", "depth", "combined_NAME" of light groups. AOVs and what else a file may hold have the
+    names that they have there. A file of plain RGBA has "combined" alone.
+    Raises ValueError naming view_layer, OSError when the file is missing or cannot be read.
+    """
+    if view_layer is not None and not isinstance(view_layer, str):
+        raise ValueError(f"view_layer must be a string or None, got {type(view_layer).__name__}")
+    found: dict[str, dict[str, dict[tuple[int, str], npt.NDArray[np.float32]]]] = {}
+    for full_name, values in _exr_channels(path):
+        before, _, channel = full_name.rpartition(".")
+        owner, dot, layer = before.partition(".")
+        if not dot:
+            owner, layer = "", before or "Combined"
+        name, number = _pass_of(layer)
+        found.setdefault(owner, {}).setdefault(name, {})[number, channel] = values
+    if view_layer is None and len(found) == 1:
+        view_layer = next(iter(found))
+    if view_layer not in found:
+        raise ValueError(f"view_layer must be one of {', '.join(map(repr, found))}, got {view_layer!r}")
+    return {
+        name: np.stack([parts[key] for key in sorted(parts, key=_channel_place)], axis=2)
+        for name, parts in found[view_layer].items()
+    }
+
+
+def _exr_channels(path: str | os.PathLike[str]) -> Iterator[tuple[str, npt.NDArray[np.float32]]]:
+    """The channels (height, width) of all parts of an OpenEXR file, with their names."""
+    source = _opened(path)
+    try:
+        part = 0
+        while source.seek_subimage(part, 0):
+            pixels = source.read_image(part, 0, 0, 10**4, "float") if source.format_name() == "openexr" else None
+            if pixels is None:
+                raise OSError(f"{path}: {source.geterror().strip() or 'not an OpenEXR image'}")
+            yield from zip(source.spec().channelnames, np.moveaxis(np.atleast_3d(pixels), 2, 0), strict=True)
+            part += 1
+    finally:
+        source.close()
+
+
+def _pass_of(layer: str) -> tuple[str, int]:
+    """The name that `shlight.render` gives what a file has under a name, and which of a Cryptomatte's layers it is."""
+    for name, in_file in _CRYPTOMATTES.items():
+        if (number := layer.removeprefix(in_file)).isdigit():
+            return name, int(number)
+    if layer.startswith("Combined_"):
+        return f"combined_{layer.removeprefix('Combined_')}", 0
+    names = {own: name for name, own in _PASS_NAMES.items()} | {own: name for name, (own, _) in _PASS_CHANNELS.items()}
+    return names.get(layer, layer), 0
+
+
+def _channel_place(key: tuple[int, str]) -> tuple[int, int, str]:
+    """Sorts RGBA, XYZ and UVA by their place in a pixel."""
+    return key[0], "RGBXYZUVA".find(key[1].upper()), key[1]
 
 
 def read_exr(path: str | os.PathLike[str]) -> npt.NDArray[np.float32]:
@@ -124,7 +187,7 @@ def check_texture(path: str | os.PathLike[str]) -> None:
 def _opened(path: str | os.PathLike[str], *, associate: bool = True) -> Any:
     import OpenImageIO as oiio
 
-    path = _checked_path(path)
+    path = checked_path(path)
     with path.open("rb"):  # the usual FileNotFoundError, PermissionError or IsADirectoryError
         pass
     wishes = oiio.ImageSpec()
@@ -159,7 +222,7 @@ def write_png(path: str | os.PathLike[str], image_srgb_uint8: npt.ArrayLike) -> 
     if getattr(image_srgb_uint8, "dtype", None) != np.uint8:
         raise ValueError("image_srgb_uint8 must be of dtype uint8; linear_to_srgb8 makes it from linear light")
     pixels = _checked_image("image_srgb_uint8", np.ascontiguousarray(image_srgb_uint8))
-    _write(_checked_path(path), pixels, "png", "uint8", {"oiio:ColorSpace": "sRGB", "oiio:UnassociatedAlpha": 1})
+    _write(checked_path(path), pixels, "png", "uint8", {"oiio:ColorSpace": "sRGB", "oiio:UnassociatedAlpha": 1})
 
 
 def linear_to_srgb8(image: npt.ArrayLike, exposure: float = 0.0) -> npt.NDArray[np.uint8]:
@@ -196,7 +259,8 @@ def _checked_layer(name: str, pixels: npt.NDArray[Any]) -> npt.NDArray[Any]:
     return pixels
 
 
-def _checked_path(path: str | os.PathLike[str]) -> Path:
+def checked_path(path: str | os.PathLike[str]) -> Path:
+    """The path, if it may name a file."""
     try:
         checked = Path(path)
     except TypeError:

@@ -26,6 +26,7 @@ from shlight._arrays import (
     checked_order,
     checked_threads,
     checked_tolerance,
+    given_type,
     rows,
 )
 from shlight._calls import names_rows
@@ -104,7 +105,7 @@ def shade_spheres(
     """
     bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
     own = is_own("auto", method)
-    dtype = _given_type(centers, radii) if own else np.float64
+    dtype = given_type(centers, radii) if own else np.float64
     c = checked_array("centers", centers, dtype, core_axes=1)
     r = checked_array("radii", radii, dtype)
     cosines = _checked_views(cos_theta_o)
@@ -162,7 +163,7 @@ def shade_polygons(
     """
     bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
     own = is_own("auto", method)
-    dtype = _given_type(vertices) if own else np.float64
+    dtype = given_type(vertices) if own else np.float64
     v = checked_array("vertices", vertices, dtype, core_axes=2)
     check_last("vertices", v, 3)
     if v.shape[-2] < 3:
@@ -228,7 +229,7 @@ def shade_disks(
     """
     bsdf, wanted = checked_material(bsdf), checked_flag("return_effort", return_effort)
     checked_name("method", method, ("auto",))
-    dtype = _given_type(centers, half_axes_u, half_axes_v)
+    dtype = given_type(centers, half_axes_u, half_axes_v)
     c, u, v = checked_disks(centers, half_axes_u, half_axes_v, dtype)
     cosines = _checked_views(cos_theta_o)
     shape = broadcast(
@@ -238,12 +239,6 @@ def shade_disks(
     settings = (_order(order), checked_tolerance(tolerance), checked_threads(threads))
     flat = _core.shade_disks(*lights, bsdf, _views(cosines, shape), *settings, wanted)
     return _result(*flat, shape, wanted)
-
-
-def _given_type(*arrays: ArrayLike) -> type[np.floating[Any]]:
-    """float32 for arrays that are, float64 for all else."""
-    single = all(isinstance(a, np.ndarray | np.generic) and a.dtype == np.float32 for a in arrays)
-    return np.float32 if single else np.float64
 
 
 def _checked_views(cos_theta_o: ArrayLike) -> Floats:

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <variant>
@@ -192,6 +194,32 @@ Bsdf layer(const py::object& top, const py::object& base) {
     return Bsdf::layer(object_from<Bsdf>("top", top, "Bsdf"), object_from<Bsdf>("base", base, "Bsdf"));
 }
 
+std::string described(const LobeShape& shape) {
+    const auto* const ggx = std::get_if<GgxShape>(&shape);
+    if (ggx == nullptr) {
+        return std::holds_alternative<LambertShape>(shape) ? "lambert" : "lobe";
+    }
+    constexpr std::array kCurves = {"", ", fresnel='schlick'", ", fresnel='dielectric'", ", fresnel='dip'"};
+    std::ostringstream text;
+    text.precision(3);
+    text << "ggx(roughness=" << std::sqrt(ggx->alpha) << kCurves.at(static_cast<std::size_t>(ggx->fresnel)) << ")";
+    return text.str();
+}
+
+/// The lobes, each times its colour; a lobe under another is dimmed by what that reflects at the view.
+std::string repr(const Bsdf& bsdf) {
+    std::ostringstream text;
+    text.precision(3);
+    const char* before = "Bsdf(";
+    for (const Lobe& lobe : bsdf.lobes()) {
+        const Rgb& c = lobe.color;
+        text << before << described(lobe.shape) << " * (" << c.x << ", " << c.y << ", " << c.z << ")"
+             << (lobe.weight ? " under a layer" : "");
+        before = " + ";
+    }
+    return bsdf.lobes().empty() ? "Bsdf(black)" : text.str() + ")";
+}
+
 using GgxState = std::tuple<double, int, double>;  // alpha, Fresnel, ior
 using LobeState = std::tuple<std::optional<GgxState>, std::array<float, 3>, std::optional<std::vector<float>>>;
 
@@ -235,11 +263,30 @@ constexpr const char* kDoc =
 
 Bsdfs can be added and multiplied by a number or an RGB colour. They are immutable. Colours are 0 … 1e10.)";
 
+/// The first line is the signature, as pybind11 writes those of other functions: that of shlight.nodes.principled.
+constexpr const char* kPrincipledDoc =
+    R"(principled(base_color=(0.8, 0.8, 0.8), *, metallic=0.0, roughness=0.5, ior=1.5, alpha=1.0, diffuse_roughness=0.0, )"
+    R"(specular_ior_level=0.5, specular_tint=(1.0, 1.0, 1.0), coat_weight=0.0, coat_roughness=0.03, coat_ior=1.5, )"
+    R"(coat_tint=(1.0, 1.0, 1.0), coat_normal=None, transmission_weight=0.0, emission_color=(1.0, 1.0, 1.0), )"
+    R"(emission_strength=0.0, several_bounces=False, at=None)
+
+A Shader: Blender's Principled BSDF, see shlight.nodes.principled.)";
+
 }  // namespace
 
 void bind_bsdf(py::module_& m) {
     py::class_<Bsdf> type(m, "Bsdf", kDoc, without_constructor());
     define_pickling(type, &state_of, &bsdf_from);
+    {
+        py::options options;
+        options.disable_function_signatures();
+        type.def_static(
+            "principled",
+            [](const py::args& positional, const py::kwargs& named) {
+                return shader_function("principled")(*positional, **named);
+            },
+            kPrincipledDoc);
+    }
     type.def_static(
             "lambert", &lambert, py::arg("albedo"),
             "Diffuse: f·cos = albedo · cosθ_i / π. albedo: a number or RGB, ≥ 0. Order 2 is exact.\n\n"
@@ -251,12 +298,6 @@ void bind_bsdf(py::module_& m) {
             },
             py::arg("albedo"), py::arg("sigma"),
             "A Shader: diffuse of roughness sigma, 0 … 1; albedo: a number, RGB or an expression of shlight.nodes.")
-        .def_static(
-            "principled",
-            [](const py::args& positional, const py::kwargs& named) {
-                return shader_function("principled")(*positional, **named);
-            },
-            "A Shader: Blender's Principled BSDF, see shlight.nodes.principled.")
         .def_static("ggx", &ggx, py::arg("roughness"), py::arg("f0"), py::kw_only(), py::arg("ior") = py::none(),
                     R"(GGX microfacets with height-correlated Smith masking; alpha = roughness², 0 ≤ roughness ≤ 1.
 Below a roughness of 0.003 a perfect mirror: lights reflect in it, but it has no coefficients and evaluates to 0.
@@ -277,6 +318,7 @@ Raises ValueError for cos_theta_o outside [0, 1] or an order outside 1 … 64.)"
         .def("evaluate", &evaluate, py::arg("wi"), py::arg("wo"),
              R"(f·cos for directions (..., 3) in the shading frame, which broadcast against each other:
 shape (...), or (..., 3) if the material has colour. Zero where either direction lies below the horizon.)")
+        .def("__repr__", &repr)
         .def(py::self + py::self)
         .def(
             "__radd__",

@@ -134,15 +134,15 @@ Array<T> disks(const Array<T>& centers, const Array<T>& half_axes_u, const Array
 }
 
 template <class T>
-Array<T> shaded(const Array<T>& light, const Array<T>& bsdf, int order, int threads) {
+Array<T> contracted(const Array<T>& light, const Array<T>& material, int order, int threads) {
     const auto total = static_cast<std::size_t>(light.shape(0));
     Array<T> out(static_cast<py::ssize_t>(total));
     T* data = out.mutable_data();
     in_chunks(total, threads, [&](std::size_t first, std::size_t count) {
-        shade(slice(light.data(), order, first, count), slice(bsdf.data(), order, first, count), order,
+        shade(slice(light.data(), order, first, count), slice(material.data(), order, first, count), order,
               std::span<T>(data + first, count));
     });
-    check_sums<T>({data, total}, {{"light_coefficients", values(light)}, {"bsdf_coefficients", values(bsdf)}});
+    check_sums<T>({data, total}, {{"light", values(light)}, {"material", values(material)}});
     return out;
 }
 
@@ -159,7 +159,7 @@ void bind_coefficients_for(py::module_& m) {
           py::arg("threads"));
     m.def("disk_coefficients", &disks<T>, py::arg("centers").noconvert(), py::arg("half_axes_u").noconvert(),
           py::arg("half_axes_v").noconvert(), py::arg("order"), py::arg("clip"), py::arg("threads"));
-    m.def("shade", &shaded<T>, py::arg("light").noconvert(), py::arg("bsdf").noconvert(), py::arg("order"),
+    m.def("contract", &contracted<T>, py::arg("light").noconvert(), py::arg("material").noconvert(), py::arg("order"),
           py::arg("threads"));
 }
 

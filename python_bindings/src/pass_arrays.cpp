@@ -81,10 +81,6 @@ bool is_light(Pass kind) {
 
 }  // namespace
 
-bool PassArguments::any() const {
-    return flag_from("groups", groups) || flag_from("aovs", aovs) || py::len(py::list(passes)) > 0;
-}
-
 PassSettings pass_settings_from(const PassArguments& arguments) {
     PassSettings settings;
     if (py::isinstance<py::str>(arguments.passes) || !py::isinstance<py::iterable>(arguments.passes)) {

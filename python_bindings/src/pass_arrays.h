@@ -17,9 +17,6 @@ namespace shlight::python {
 /// Arguments of shlight.render about passes.
 struct PassArguments {
     pybind11::object passes, groups, aovs, alpha_threshold, mist, cryptomatte_levels;
-
-    /// Whether any pass is requested.
-    bool any() const;
 };
 
 /// The passes with fixed names. Throws as arguments.h does.

@@ -13,6 +13,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -72,11 +73,10 @@ progress: is called with the finished share, 0 ... 1, about every 10 ms; returni
 on_update: is called as on_update(image, report) once the image has pixels all over, after each pass, and a few times a
     second during long ones, with the picture as it stands; returning False ends the render, which returns the picture as it is. What progress and
     on_update raise ends the render and is raised here.
-return_report: return (image, RenderReport).
+return_report: return (result, report), whose report the result has, too.
 
-Returns (height, width, 4) float32, linear, row 0 on top, RGB premultiplied; alpha is the share of
-what is not empty: a surface, or an environment that the camera sees. Where passes, groups or aovs are asked for: a dict
-of arrays (height, width, channels), "combined" among them.
+Returns a RenderResult, an array (height, width, 4) float32, linear, row 0 on top, RGB premultiplied; alpha is the share
+of what is not empty: a surface, or an environment that the camera sees. Its .passes, .groups and .report hold the rest.
 Raises ValueError naming the argument, RenderCancelled.)";
 
 /// A report with what only Python's side knows.
@@ -111,10 +111,12 @@ struct Report {
         return seconds;
     }
     std::string repr() const {
-        return "RenderReport(hits=" + std::to_string(core.hits) + ", shadow_rays=" + std::to_string(core.shadow_rays) +
-               ", over_tolerance=" + std::to_string(over_tolerance()) +
-               ", build_seconds=" + std::to_string(build_seconds) + ", render_seconds=" + std::to_string(core.seconds) +
-               ")";
+        std::ostringstream text;
+        text.precision(3);
+        text << "RenderReport(passes=" << core.passes << ", noise=" << core.noise << ", hits=" << core.hits
+             << ", shadow_rays=" << core.shadow_rays << ", over_tolerance=" << over_tolerance()
+             << ", build_seconds=" << build_seconds << ", render_seconds=" << core.seconds;
+        return text.str() + (dark.empty() ? ")" : ", dark='" + dark + "')");
     }
 };
 
@@ -212,17 +214,16 @@ std::string darkness(const CompiledScene& scene, std::span<const float> pixels, 
                        "vertices counter-clockwise, disk lights along half_axis_u x half_axis_v";
 }
 
-py::object render_scene(const py::object& scene_object, const py::object& width, const py::object& height,
-                        const py::object& order, const py::object& tolerance, const py::object& noise_threshold,
-                        const py::object& min_samples, const py::object& max_samples, const py::object& pixel_samples,
-                        const py::object& time_limit, const py::object& pixel_filter, const py::object& filter_width,
-                        const py::object& shadows, const py::object& shadow_rays, const py::object& transparent_bounces,
-                        const py::object& max_bounces, const py::object& glossy_bounces,
-                        const py::object& transmission_bounces, const py::object& passes, const py::object& groups,
-                        const py::object& aovs, const py::object& alpha_threshold, const py::object& mist,
-                        const py::object& cryptomatte_levels, const py::object& exposure, const py::object& threads,
-                        const py::object& seed, const py::object& progress, const py::object& on_update,
-                        const py::object& return_report) {
+py::tuple render_scene(const py::object& scene_object, const py::object& width, const py::object& height,
+                       const py::object& order, const py::object& tolerance, const py::object& noise_threshold,
+                       const py::object& min_samples, const py::object& max_samples, const py::object& pixel_samples,
+                       const py::object& time_limit, const py::object& pixel_filter, const py::object& filter_width,
+                       const py::object& shadows, const py::object& shadow_rays, const py::object& transparent_bounces,
+                       const py::object& max_bounces, const py::object& glossy_bounces,
+                       const py::object& transmission_bounces, const py::object& passes, const py::object& groups,
+                       const py::object& aovs, const py::object& alpha_threshold, const py::object& mist,
+                       const py::object& cryptomatte_levels, const py::object& exposure, const py::object& threads,
+                       const py::object& seed, const py::object& progress, const py::object& on_update) {
     auto& scene = object_from<SceneObject>("scene", scene_object, "Scene");
     const int most_shadow_rays = int_from("shadow_rays", shadow_rays);
     const PassArguments pass_arguments = {passes, groups, aovs, alpha_threshold, mist, cryptomatte_levels};
@@ -244,7 +245,6 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
     if (!(light_factor >= 0 && std::isfinite(light_factor))) {
         throw std::invalid_argument("exposure must be 0 or more, got " + std::to_string(light_factor));
     }
-    const bool with_report = flag_from("return_report", return_report);
     check_render(settings, columns, rows);
     check_callable("on_update", on_update);
     const Progress report_progress = progress_from(progress);
@@ -264,12 +264,7 @@ py::object render_scene(const py::object& scene_object, const py::object& width,
     const std::string dark = darkness(*compiled_scene, pixels, report.hits);
     expose(image, 0, 3, light_factor);
     expose_light(settings.passes, values, light_factor);
-    py::object result =
-        pass_arguments.any() ? py::object(pass_dict(settings.passes, scene, image, values)) : py::object(image);
-    if (with_report) {
-        return py::make_tuple(result, Report{report, build_seconds, dark});
-    }
-    return result;
+    return py::make_tuple(pass_dict(settings.passes, scene, image, values), Report{report, build_seconds, dark});
 }
 
 }  // namespace
@@ -320,7 +315,7 @@ void bind_render(py::module_& m) {
           "alpha_threshold"_a = PassSettings().alpha_threshold,
           "mist"_a = py::make_tuple(MistRange().start, MistRange().depth, MistRange().falloff),
           "cryptomatte_levels"_a = PassSettings().cryptomatte_levels, "exposure"_a = 1.0, "threads"_a = 0, "seed"_a = 0,
-          "progress"_a = py::none(), "on_update"_a = py::none(), "return_report"_a = false);
+          "progress"_a = py::none(), "on_update"_a = py::none());
 }
 
 }  // namespace shlight::python

@@ -7,6 +7,7 @@ Run as a script with the names of calls: one that ends the process is seen by wh
 from __future__ import annotations
 
 import contextlib
+import inspect
 import itertools
 import reprlib
 import sys
@@ -164,7 +165,10 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Bsdf.lambert": (Bsdf.lambert, {"albedo": 0.5}),
     "Bsdf.ggx": (Bsdf.ggx, {"roughness": 0.5, "f0": 0.04, "ior": 1.5}),
     "Bsdf.oren_nayar": (Bsdf.oren_nayar, {"albedo": 0.5, "sigma": 0.5}),
-    "Bsdf.principled": (Bsdf.principled, {}),
+    "Bsdf.principled": (
+        Bsdf.principled,
+        {**dict.fromkeys(inspect.signature(Bsdf.principled).parameters, 0.5), "several_bounces": False},
+    ),
     "Bsdf.layer": (Bsdf.layer, {"top": GGX, "base": Bsdf.lambert(1.0)}),
     "Bsdf.coefficients": (GGX.coefficients, {"cos_theta_o": 0.5, "order": 3}),
     "Bsdf.residual": (GGX.residual, {"cos_theta_o": 0.5, "order": 3}),
@@ -201,15 +205,14 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "sphere_coefficients/random": (shlight.sphere_coefficients, {**SPHERE, **RANDOM}),
     "evaluate": (shlight.evaluate, {"coefficients": [1.0, 0, 0, 0], "directions": [0.0, 0, 1], "threads": 0}),
     "sh_basis": (shlight.sh_basis, {"directions": [0.0, 0, 1], "order": 3, "dtype": np.float32, "threads": 0}),
-    "shade": (
-        shlight.shade,
-        {"light_coefficients": [1.0, 0, 0, 0], "bsdf_coefficients": [1.0, 0, 0, 0], "threads": 0},
-    ),
+    "contract": (shlight.contract, {"light": [1.0, 0, 0, 0], "material": [1.0, 0, 0, 0], "threads": 0}),
     "shade_spheres": (shlight.shade_spheres, {**SPHERE, **AUTO}),
     "shade_spheres/random": (shlight.shade_spheres, {**SPHERE, **SAMPLED}),
     "shade_polygons": (shlight.shade_polygons, {**POLYGON, **AUTO}),
     "shade_polygons/random": (shlight.shade_polygons, {**POLYGON, **SAMPLED}),
     "shade_disks": (shlight.shade_disks, {**DISK, **SHADED, "order": "auto", "method": "auto"}),
+    "look_at": (shlight.look_at, {"eye": [3.0, 0, 1], "target": [0.0, 0, 0], "up": [0, 0, 1]}),
+    "luminous": (shlight.luminous, {"irradiance": RGB}),
     "denoise": (
         shlight.denoise,
         {
@@ -219,12 +222,16 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     ),
     "has_denoiser": (shlight.has_denoiser, {}),
     "render": (shlight.render, {"scene": new_scene(), **RENDER, **SETTINGS, "return_report": True}),
+    "RenderResult.save": (shlight.RenderResult({"combined": picture(4, np.float32)}).save, {"path": "a.png"}),
+    "RenderResult.keys": (shlight.RenderResult({"combined": picture(4, np.float32)}).keys, {}),
+    "RenderResult.items": (shlight.RenderResult({"combined": picture(4, np.float32)}).items, {}),
     "images.write_exr": (images.write_exr, {"path": "a.exr", "image": picture(4, np.float32)}),
     "images.write_layers": (
         images.write_layers,
         {"path": "a.exr", "passes": {"depth": picture(1, np.float32)}, "view_layer": "ViewLayer"},
     ),
     "images.read_exr": (images.read_exr, {"path": "missing.exr"}),
+    "images.read_layers": (images.read_layers, {"path": "missing.exr", "view_layer": None}),
     "images.read_texture": (images.read_texture, {"path": PICTURE, "associate": False}),
     "images.write_png": (images.write_png, {"path": "a.png", "image_srgb_uint8": picture(3, np.uint8)}),
     "images.linear_to_srgb8": (images.linear_to_srgb8, {"image": picture(3, np.float32), "exposure": 1.0}),
@@ -253,9 +260,9 @@ RELATED = {
     "albedo": ("normal",),
     "aperture_ratio": ("aperture_size", "focus_distance"),
     "aperture_size": ("focus_distance",),
-    "bsdf_coefficients": ("light_coefficients",),
     "centers": ("radii",),
     "emission": ("material_names",),
+    "eye": ("target", "up"),
     "clip_start": ("clip_end",),
     "half_axes_u": ("half_axes_v", "centers"),
     "half_axes_v": ("centers",),
@@ -263,11 +270,13 @@ RELATED = {
     "image": ("albedo", "normal"),
     "left": ("right",),
     "bottom": ("top",),
-    "light_coefficients": ("bsdf_coefficients",),
+    "light": ("material",),
+    "material": ("light",),
     "method": ("order", "tolerance", "samples", "seed", "sampling"),
     "max_samples": ("min_samples",),
     "origins": ("directions",),
     "radius": ("intensity",),
+    "target": ("up",),
     "triangles": ("material_indices",),
     "vertices": ("normals", "triangles"),
 }

@@ -193,7 +193,7 @@ def any_arguments(rng: Rng) -> Step:
             changed[name] = argument_walk.WRONG[rng.integers(len(argument_walk.WRONG))]
     names = {other for name in changed for other in (name, *argument_walk.RELATED.get(name, ()))}
     # Nothing is promised of sums of products that leave a type's range, and a file may hold anything.
-    is_free = call.split("/")[0] in ("evaluate", "shade", "images.read_exr")
+    is_free = call.split("/")[0] in ("evaluate", "contract", "images.read_exr")
     return Step(call, function, {**arguments, **changed}, None, (lambda _: None) if is_free else finite, names)
 
 

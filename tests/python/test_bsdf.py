@@ -81,10 +81,10 @@ def test_shapes() -> None:
     assert grey.evaluate(np.ones((5, 1, 3)), np.ones((4, 3))).shape == (5, 4)
 
 
-def test_shade_broadcasts_over_colors() -> None:
+def test_contract_broadcasts_over_colors() -> None:
     light = shlight.sphere_coefficients(np.ones((7, 3)), 0.5, 4)
     bsdf = Bsdf.lambert([0.1, 0.2, 0.3]).coefficients(np.full(7, 0.5), 4)
-    radiance = shlight.shade(light[..., None, :], bsdf)
+    radiance = shlight.contract(light[..., None, :], bsdf)
     assert radiance.shape == (7, 3)
     assert radiance.dtype == np.float32
     np.testing.assert_allclose(radiance, np.einsum("ak,ack->ac", light, bsdf), rtol=1e-5)
@@ -133,9 +133,9 @@ def test_other_bad_arguments_are_named() -> None:
             bsdf.evaluate(direction, [0, 0, 1])
         with pytest.raises(ValueError, match="wo"):
             bsdf.evaluate([0, 0, 1], direction)
-    with pytest.raises(ValueError, match=r"bsdf_coefficients.*light_coefficients"):
-        shlight.shade(np.zeros(16), np.zeros(25))
-    with pytest.raises(ValueError, match="light_coefficients"):
-        shlight.shade(np.zeros(15), np.zeros(15))
-    with pytest.raises(ValueError, match=r"light_coefficients.*bsdf_coefficients"):
-        shlight.shade(np.zeros((2, 16)), np.zeros((3, 16)))
+    with pytest.raises(ValueError, match=r"^material.*light"):
+        shlight.contract(np.zeros(16), np.zeros(25))
+    with pytest.raises(ValueError, match=r"^light"):
+        shlight.contract(np.zeros(15), np.zeros(15))
+    with pytest.raises(ValueError, match=r"^light.*material"):
+        shlight.contract(np.zeros((2, 16)), np.zeros((3, 16)))

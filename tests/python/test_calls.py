@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import inspect
 import signal
 import time
 from collections.abc import Callable, Iterator
@@ -14,7 +15,7 @@ import pytest
 from scene_cases import lit_floor
 
 import shlight
-from shlight import Bsdf, images, metrics
+from shlight import Bsdf, images, metrics, nodes
 
 MATTE = Bsdf.lambert(0.5)
 CENTERS = np.tile([0.5, 0.0, 2.0], (2000, 1))
@@ -33,9 +34,7 @@ WRONG_ROWS: dict[str, Callable[[], Any]] = {
     "radii must": lambda: shlight.shade_spheres(CENTERS, -1.0, MATTE, 0.5),
     "half_angles[1999]": lambda: shlight.cap_coefficients(CENTERS, one_wrong(9, 1999), 3, method="quadrature"),
     "directions[7]": lambda: shlight.sh_basis(CENTERS * (np.arange(2000) != 7)[:, None], 3),
-    "light_coefficients[4]": lambda: shlight.shade(
-        np.where(np.arange(6)[:, None] == 4, np.nan, np.ones(9)), np.ones(9)
-    ),
+    "light[4]": lambda: shlight.contract(np.where(np.arange(6)[:, None] == 4, np.nan, np.ones(9)), np.ones(9)),
 }
 
 
@@ -80,9 +79,14 @@ def test_metrics_name_what_is_no_picture(odd: Any) -> None:
 
 def test_lights_that_meet_colours_one_by_one_are_named() -> None:
     light, color = np.ones((3, 9)), np.arange(27.0).reshape(3, 9)
-    with pytest.warns(UserWarning, match="pass light_coefficients"):
-        shlight.shade(light, color)
-    assert shlight.shade(light[:, None], color).shape == (3, 3)
+    with pytest.warns(UserWarning, match="pass light"):
+        shlight.contract(light, color)
+    assert shlight.contract(light[:, None], color).shape == (3, 3)
+
+
+def test_shade_is_the_deprecated_name_of_contract() -> None:
+    with pytest.warns(DeprecationWarning, match="contract"):
+        assert shlight.shade(np.ones(4), np.arange(4.0)) == 6.0
 
 
 def test_files_are_of_the_format_that_their_name_says(tmp_path: Path) -> None:
@@ -136,3 +140,28 @@ def test_an_interrupt_while_an_argument_is_read_is_an_interrupt() -> None:
 
     with pytest.raises(KeyboardInterrupt):
         shlight.sphere_coefficients(Interrupted(), 0.5, 2)
+
+
+def test_signatures_are_real_ones() -> None:
+    functions = [getattr(shlight, name) for name in shlight.__all__]
+    functions += [getattr(module, name) for module in (images, metrics, shlight.methods) for name in module.__all__]
+    functions += [
+        getattr(kind, name)
+        for kind in functions
+        if isinstance(kind, type) and kind.__module__ == "shlight._core"
+        for name, method in vars(kind).items()
+        if not name.startswith("_") and not isinstance(method, property)
+    ]
+    for function in functions:
+        if callable(function) and not isinstance(function, type):
+            parameters = inspect.signature(function).parameters.values()
+            assert all(own.kind not in (own.VAR_POSITIONAL, own.VAR_KEYWORD) for own in parameters), function
+    assert not inspect.signature(shlight.Scene).parameters
+    assert inspect.signature(Bsdf.ggx).parameters["ior"].default is None
+    tolerance = inspect.signature(shlight.render).parameters["tolerance"].default
+    assert tolerance == shlight.DEFAULT_TOLERANCE
+
+
+def test_principled_has_the_arguments_of_its_node() -> None:
+    own, node = (inspect.signature(function).parameters for function in (Bsdf.principled, nodes.principled))
+    assert [(p.name, p.kind, p.default) for p in own.values()] == [(p.name, p.kind, p.default) for p in node.values()]

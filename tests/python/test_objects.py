@@ -123,3 +123,13 @@ for make in (
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_a_material_says_what_it_is_made_of() -> None:
+    assert repr(Bsdf.lambert(0.25)) == "Bsdf(lambert * (0.25, 0.25, 0.25))"
+    assert repr(0 * Bsdf.lambert(1)) in ("Bsdf(black)", "Bsdf(lambert * (0, 0, 0))")
+    layered = Bsdf.layer(Bsdf.ggx(0.5, 0.04, ior=1.5), Bsdf.lambert((0.7, 0.1, 0)))
+    assert repr(layered) == (
+        "Bsdf(ggx(roughness=0.5) * (0.04, 0.04, 0.04) + ggx(roughness=0.5, fresnel='dielectric') * (0.96, 0.96, 0.96)"
+        " + lambert * (0.7, 0.1, 0) under a layer)"
+    )

@@ -69,7 +69,7 @@ def test_places_of_a_floor_are_those_of_rays_through_the_middles() -> None:
         "material_index": np.where(on_floor, 5.0, 0.0)[..., None],
         "mist": np.where(on_floor, np.clip((distance - 4) / 8, 0, 1) ** 2, 1.0)[..., None],
     }
-    assert list(passes) == ["combined", *names]
+    assert list(passes.layers) == ["combined", *names]
     for name, values in expected.items():
         np.testing.assert_allclose(passes[name], values, rtol=1e-5, atol=1e-5, err_msg=name)
 

@@ -35,7 +35,6 @@ def test_lambert_floor_under_a_sphere_light() -> None:
     expected = 0.8 * (0.5 / distance) ** 2 * way[..., 2] / distance
     assert image.dtype == np.float32
     assert image.shape == (16, 16, 4)
-    assert image.flags.owndata
     assert image.flags.c_contiguous
     # Float rounding of hits and coefficients.
     np.testing.assert_allclose(image[..., :3], expected[..., None] * [4, 2, 1], rtol=0, atol=1e-5)

@@ -52,7 +52,7 @@ def shaded(disks: Floats, bsdf: shlight.Bsdf, cosine: Any, **options: Any) -> An
 def test_lambert_is_the_contracted_coefficients(order: int) -> None:
     bsdf = shlight.Bsdf.lambert((0.2, 0.5, 0.8))
     light = shlight.disk_coefficients(DISKS[:, 0], DISKS[:, 1], DISKS[:, 2], order=order)
-    expected = shlight.shade(light[:, None, :], bsdf.coefficients(0.7, order))
+    expected = shlight.contract(light[:, None, :], bsdf.coefficients(0.7, order))
     found = shaded(DISKS, bsdf, 0.7, order=order)
     assert (np.abs(found - expected) <= 1e-4 * light[:, :1] / math.sqrt(4 * math.pi)).all()
 
