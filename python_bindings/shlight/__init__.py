@@ -47,12 +47,15 @@ for _kind in (Bsdf, Scene, SceneMesh):
 
 if TYPE_CHECKING:
     from shlight import nodes
+    from shlight.models import load
 
 
 def __getattr__(name: str) -> Any:
     """Modules that take long to import, and that not every user of the package wants."""
     if name == "nodes":
         return importlib.import_module("shlight.nodes")
+    if name == "load":
+        return importlib.import_module("shlight.models").load
     raise AttributeError(f"module 'shlight' has no attribute {name!r}")
 
 
@@ -74,6 +77,7 @@ __all__ = [
     "evaluate",
     "has_denoiser",
     "images",
+    "load",
     "look_at",
     "luminous",
     "metrics",

@@ -160,6 +160,14 @@ def picture(channels: int, dtype: Any) -> Any:
     return np.ones((2, 2, channels), dtype)
 
 
+FILES = tempfile.TemporaryDirectory()
+LAYERS, MODEL = (Path(FILES.name, name) for name in ("layers.exr", "model.ply"))
+images.write_layers(LAYERS, {"depth": picture(1, np.float32)})
+MODEL.write_text(
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+)
+
 # For each way to call a function its arguments by name; "/" and what follows it tells ways of one function apart.
 CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Bsdf.lambert": (Bsdf.lambert, {"albedo": 0.5}),
@@ -211,6 +219,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "shade_polygons": (shlight.shade_polygons, {**POLYGON, **AUTO}),
     "shade_polygons/random": (shlight.shade_polygons, {**POLYGON, **SAMPLED}),
     "shade_disks": (shlight.shade_disks, {**DISK, **SHADED, "order": "auto", "method": "auto"}),
+    "load": (shlight.load, {"path": MODEL, "up": "z", "scale": 1.0}),
     "look_at": (shlight.look_at, {"eye": [3.0, 0, 1], "target": [0.0, 0, 0], "up": [0, 0, 1]}),
     "luminous": (shlight.luminous, {"irradiance": RGB}),
     "denoise": (
@@ -231,7 +240,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         {"path": "a.exr", "passes": {"depth": picture(1, np.float32)}, "view_layer": "ViewLayer"},
     ),
     "images.read_exr": (images.read_exr, {"path": "missing.exr"}),
-    "images.read_layers": (images.read_layers, {"path": "missing.exr", "view_layer": None}),
+    "images.read_layers": (images.read_layers, {"path": LAYERS, "view_layer": "ViewLayer"}),
     "images.read_texture": (images.read_texture, {"path": PICTURE, "associate": False}),
     "images.write_png": (images.write_png, {"path": "a.png", "image_srgb_uint8": picture(3, np.uint8)}),
     "images.linear_to_srgb8": (images.linear_to_srgb8, {"image": picture(3, np.float32), "exposure": 1.0}),

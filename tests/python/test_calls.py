@@ -144,7 +144,7 @@ def test_an_interrupt_while_an_argument_is_read_is_an_interrupt() -> None:
 
 def test_signatures_are_real_ones() -> None:
     functions = [getattr(shlight, name) for name in shlight.__all__]
-    functions += [getattr(module, name) for module in (images, metrics, shlight.methods) for name in module.__all__]
+    functions += [getattr(module, name) for module in (images, metrics) for name in module.__all__]
     functions += [
         getattr(kind, name)
         for kind in functions

@@ -119,7 +119,7 @@ def _dielectric(
         brighter = _bounces(roughness, cosine, mean_fresnel)
         own = color(own * brighter)
         dimmed = color(brighter * energy.albedo(roughness, cosine))
-    several = {"several_bounces": checked_flag("several_bounces", several_bounces)}
+    several = {"several_bounces": several_bounces}
     lobes = (
         Lobe("ggx", color(own * f0), alpha, at, **several),
         *rising_lobes(own * (1.0 - f0), ior, alpha, at, **several),
@@ -254,6 +254,7 @@ def principled(
     index = maximum(number(ior, "ior"), 1e-5)
     tint = Color(*(maximum(component, 0.0) for component in color(specular_tint, "specular_tint")))
     opaque = clamp(number(alpha, "alpha"))
+    several = {"several_bounces": checked_flag("several_bounces", several_bounces)}
     diffuse_width = number(diffuse_roughness, "diffuse_roughness")
     coat_width, coat_color = number(coat_roughness, "coat_roughness"), color(coat_tint, "coat_tint")
     at = None if at is None else vector(at, "at")
@@ -277,7 +278,6 @@ def principled(
         emission(color(emission_color, "emission_color") * number(emission_strength, "emission_strength")) * weight
     )
 
-    several = {"several_bounces": several_bounces}
     if metal.constant != 0.0:
         edge = Color(*(minimum(component, 1.0) for component in tint))
         result += Shader(_metal(weight * metal, f0_of_metal, edge, rough, glossy_normal, **several))

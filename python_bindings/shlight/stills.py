@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: MIT
+"""Pictures of models and of scenes that scripts build with shlight, for the command `shlight render`."""
+
+from __future__ import annotations
+
+import ast
+import runpy
+import sys
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from shlight._core import Scene
+from shlight.commands import CommandError
+from shlight.images import read_texture
+from shlight.models import SUFFIXES, load
+from shlight.rendering import render
+
+BUILDERS = ("build_scene", "build")  # functions of scripts that return a Scene
+SIZE = (1280, 720)
+
+
+def is_still(path: Path) -> bool:
+    """Whether a file is a model, or a script that uses shlight without Blender."""
+    if path.suffix.lower() in SUFFIXES:
+        return True
+    if path.suffix.lower() != ".py":
+        return False
+    try:
+        script = ast.parse(path.read_bytes(), str(path))
+    except SyntaxError:
+        return False
+    imported = set()
+    for node in ast.walk(script):
+        if isinstance(node, ast.Import):
+            imported |= {name.name.partition(".")[0] for name in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            imported.add(node.module.partition(".")[0])
+    return "shlight" in imported and "bpy" not in imported
+
+
+def render_still(
+    path: Path,
+    out: Path,
+    *,
+    size: tuple[int, int],
+    environment: Path | None,
+    settings: Mapping[str, Any],
+    threads: int,
+) -> None:
+    """Renders a model or a script's scene to a .png or .exr file.
+
+    environment: a picture of all directions, as Scene.set_environment takes it. settings: keywords of `render`.
+    Raises CommandError, ValueError or OSError where that cannot be.
+    """
+    if out.suffix.lower() not in (".png", ".exr"):
+        raise ValueError(f"out must end in .png or .exr, got '{out}'")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        scene = load(path) if path.suffix.lower() in SUFFIXES else _built(path)
+    for warning in caught:
+        print(f"shlight render: {warning.message}", file=sys.stderr)
+    if environment is not None:
+        scene.set_environment(_environment(environment))
+    try:
+        result = render(scene, *size, threads=threads, **{name: _value(text) for name, text in settings.items()})
+    except TypeError as error:
+        raise ValueError(f"--set: {error}") from None
+    result.save(out)
+    report = result.report
+    assert report is not None
+    if report.dark:
+        raise CommandError(f"{out} is black: {report.dark}; --environment FILE gives it a sky", 1)
+    print(f"{out}: {report.build_seconds + report.render_seconds:.1f} s, noise {report.noise:.2g}")
+
+
+def _built(path: Path) -> Scene:
+    sys.path.insert(0, str(path.parent))
+    try:
+        names = runpy.run_path(str(path))
+        build = next((names[name] for name in BUILDERS if name in names), None)
+        if build is None:
+            raise CommandError(f"{path}: there is no function {' or '.join(BUILDERS)}() in it", 2)
+        scene = build()
+    except CommandError:
+        raise
+    except Exception as error:
+        raise CommandError(f"{path}: {type(error).__name__}: {error}", 1) from error
+    finally:
+        sys.path.remove(str(path.parent))
+    if not isinstance(scene, Scene):
+        raise CommandError(f"{path}: {build.__name__}() must return a shlight.Scene, got {type(scene).__name__}", 2)
+    return scene
+
+
+def _environment(path: Path) -> Any:
+    """Linear radiance (height, width, 3) of a picture; one of integers is sRGB."""
+    pixels = read_texture(path)
+    rgb = np.broadcast_to(pixels[..., :3], (*pixels.shape[:2], 3))
+    if rgb.dtype.kind != "u":
+        return rgb
+    encoded = rgb / np.iinfo(rgb.dtype).max
+    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+
+
+def _value(text: Any) -> Any:
+    """A setting as Python writes it; what is not Python is a string."""
+    try:
+        return ast.literal_eval(text)
+    except (SyntaxError, ValueError):
+        return text
