@@ -38,7 +38,7 @@ from shlight.coefficients import (  # noqa: E402
 from shlight.coefficients import shade as shade  # noqa: E402  the deprecated name of contract
 from shlight.denoising import denoise, has_denoiser  # noqa: E402
 from shlight.photometry import luminous  # noqa: E402
-from shlight.queries import Hits  # noqa: E402
+from shlight.queries import Hits, shading_frames  # noqa: E402
 from shlight.rendering import RenderResult, render  # noqa: E402
 from shlight.shading import shade_disks, shade_polygons, shade_spheres  # noqa: E402
 
@@ -88,5 +88,6 @@ __all__ = [
     "shade_disks",
     "shade_polygons",
     "shade_spheres",
+    "shading_frames",
     "sphere_coefficients",
 ]

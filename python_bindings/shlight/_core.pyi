@@ -315,6 +315,43 @@ class Scene:
         group: str | None = None,
     ) -> None: ...
     def intersect(self, origins: ArrayLike, directions: ArrayLike, *, threads: int = 0) -> Hits: ...
+    @overload
+    def irradiance(
+        self,
+        points: ArrayLike,
+        normals: ArrayLike,
+        *,
+        rays: int = 64,
+        return_error: Literal[False] = False,
+        transparent_bounces: int = 8,
+        threads: int = 0,
+        seed: int = 0,
+    ) -> _Floats: ...
+    @overload
+    def irradiance(
+        self,
+        points: ArrayLike,
+        normals: ArrayLike,
+        *,
+        rays: int = 64,
+        return_error: Literal[True],
+        transparent_bounces: int = 8,
+        threads: int = 0,
+        seed: int = 0,
+    ) -> tuple[_Floats, _Floats]: ...
+    def light_coefficients(
+        self,
+        points: ArrayLike,
+        normals: ArrayLike,
+        order: int,
+        *,
+        tangents: ArrayLike | None = None,
+        shadows: bool = True,
+        rays: int = 64,
+        transparent_bounces: int = 8,
+        threads: int = 0,
+        seed: int = 0,
+    ) -> _Floats: ...
     def radiance(
         self,
         origins: ArrayLike,

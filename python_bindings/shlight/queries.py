@@ -7,14 +7,19 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+
+from shlight._arrays import broadcast, check_last, checked_array
+
+# A tangent whose part at right angles to the normal is shorter than this, of length 1, has no direction.
+_LEAST_TANGENT = 1e-6
 
 Floats = NDArray[Any]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Hits:
-    """What n rays meet, as Scene.intersect returns it; each array has a row of each ray.
+    """The surfaces that n rays meet, as Scene.intersect returns them; each array has a row of each ray.
 
     Rows of rays that meet nothing hold the distance inf, -1 as mesh, instance and triangle, and zeros otherwise.
     """
@@ -46,3 +51,59 @@ class Hits:
 
     def __repr__(self) -> str:
         return f"Hits({len(self)} rays, {np.count_nonzero(self.valid)} of which meet a surface)"
+
+
+def shading_frames(normals: ArrayLike, tangents: ArrayLike | None = None) -> Floats:
+    """The frames of surface points, as Scene.light_coefficients uses them.
+
+    normals, tangents: (..., 3), of any length > 0; leading axes broadcast. The x axis is the part of the tangent at
+        right angles to the normal. None: the frame is the world's, turned by the shortest way that takes its z axis to
+        the normal, which is continuous but for the normal -z.
+
+    Returns (..., 3, 3): the columns are the axes x, y and z, the normal, in the world: orthonormal and right-handed.
+    `frames @ v` takes a vector to the world, `np.swapaxes(frames, -1, -2) @ w` back. float32 if all arrays are,
+    otherwise float64.
+    Raises ValueError naming the argument and its row.
+    """
+    given = [normals] if tangents is None else [normals, tangents]
+    single = all(getattr(value, "dtype", None) == np.float32 for value in given)
+    z = _units("normals", normals)
+    if tangents is None:
+        x = _turned_x(z)
+    else:
+        tangent = _units("tangents", tangents)
+        broadcast(normals=z.shape[:-1], tangents=tangent.shape[:-1])
+        x = tangent - np.sum(tangent * z, axis=-1, keepdims=True) * z
+        length = np.linalg.norm(x, axis=-1, keepdims=True)
+        _check_rows("tangents", length[..., 0] > _LEAST_TANGENT, "is parallel to its normal")
+        x /= length
+    x, z = np.broadcast_arrays(x, z)
+    frames = np.stack([x, np.cross(z, x), z], axis=-1)
+    return frames.astype(np.float32) if single else frames
+
+
+def _turned_x(z: Floats) -> Floats:
+    """The x axis turned by the shortest way from the world's z axis to z (Frisvad 2012)."""
+    # 1 + z is a difference below the horizon, where x² + y² = (1 + z) (1 - z) has all digits.
+    square = z[..., 0] ** 2 + z[..., 1] ** 2
+    above = z[..., 2] >= 0
+    length = np.where(above, 1 + z[..., 2], square / np.where(above, 1, 1 - z[..., 2]))
+    share = np.divide(z[..., 0], length, out=np.zeros_like(length), where=length > 0)
+    x = np.stack([1 - z[..., 0] * share, -z[..., 1] * share, -z[..., 0]], axis=-1)
+    return np.where((length > 0)[..., None], x, [-1.0, 0, 0])
+
+
+def _units(name: str, value: ArrayLike) -> Floats:
+    vectors = checked_array(name, value, np.float64, core_axes=1)
+    check_last(name, vectors, 3)
+    _check_rows(name, np.isfinite(vectors).all(axis=-1), "contains a number that is not finite")
+    largest = np.abs(vectors).max(axis=-1, keepdims=True, initial=0)
+    _check_rows(name, largest[..., 0] > 0, "has length 0")
+    scaled = vectors / largest
+    return scaled / np.linalg.norm(scaled, axis=-1, keepdims=True)
+
+
+def _check_rows(name: str, good: NDArray[np.bool_], wrong: str) -> None:
+    if not good.all():
+        row = np.unravel_index(int(np.argmin(good)), good.shape)
+        raise ValueError(f"{name}{list(map(int, row)) if row else ''} {wrong}")

@@ -50,6 +50,36 @@ Returns (n, 3), RGB [W m^-2 sr^-1]; 0 where a ray meets nothing and the environm
 arrays are, otherwise float64; its precision is that of float32.
 Raises ValueError naming the argument and its row.)";
 
+constexpr const char* kIrradianceDoc = R"(Find the direct light that falls on a surface at each point, with shadows.
+
+points, normals: (n, 3), or (3,), which goes with all of the other; normals of any length > 0. Light counts from the side
+    of the normal, as a diffuse surface there gets it; lights with diffuse=False do not count, the environment does.
+rays: shadow rays of a point for each light, 0 ... 16384; brighter ones get up to twice as many, dim ones fewer, and a
+    light one where rays from points nearby agree about it. 0: no shadows.
+return_error: return (irradiance, error), error (n, 3) being the standard deviation that shadow rays leave. It is
+    estimated from the rays as if the edge of one shadow crossed each light.
+transparent_bounces, seed: see shlight.render. threads: at most; 0: all cores. The result does not depend on it.
+
+Returns (n, 3), RGB [W m^-2]; shlight.luminous makes illuminance of it. float32 if both arrays are, otherwise float64;
+its precision is that of float32.
+Raises ValueError naming the argument and its row.)";
+
+constexpr const char* kCoefficientsDoc =
+    R"(Find the light that comes to each point from the lights themselves, as coefficients.
+
+points, normals: (n, 3), or (3,), which goes with all of the other; normals of any length > 0.
+order: 1 ... 64.
+tangents: (n, 3) or (3,), as of shlight.shading_frames, or None. Coefficients are in the frames that it makes of normals
+    and tangents, clipped by the horizon.
+shadows: False: as if nothing were in the way. Then they are exact for an environment of one radiance and for lights of
+    even radiance: spheres, polygons, disks, suns, points and convex meshes. Others are summed over 4096 points of them.
+rays: shadow rays of a point for each light, 0 ... 16384; 0: as shadows=False. They estimate the integral of visibility
+    times each harmonic, without noise where all of them agree.
+transparent_bounces, seed: see shlight.render. threads: at most; 0: all cores. The result does not depend on it.
+
+Returns (n, order^2, 3), RGB; float32 if points and normals are, otherwise float64.
+Raises ValueError naming the argument and its row.)";
+
 /// An array of vectors, of shape (n, 3) or (3,).
 struct Vectors {
     Vectors(const char* argument, const py::object& value)
@@ -223,6 +253,77 @@ py::array radiance_of_rays(SceneObject& self, const py::object& origins, const p
     return rays.typed(result);
 }
 
+PointSettings point_settings(const py::object& shadows, const py::object& rays, const py::object& transparent_bounces,
+                             const py::object& threads, const py::object& seed) {
+    const int most = int_from("rays", rays);
+    const PointSettings settings = {flag_from("shadows", shadows) ? most : 0,
+                                    int_from("transparent_bounces", transparent_bounces), threads_from(threads),
+                                    seed_from(seed)};
+    check_settings(settings);
+    return settings;
+}
+
+py::object irradiance_at(SceneObject& self, const py::object& points, const py::object& normals, const py::object& rays,
+                         const py::object& return_error, const py::object& transparent_bounces,
+                         const py::object& threads, const py::object& seed) {
+    const PointSettings settings = point_settings(py::bool_(true), rays, transparent_bounces, threads, seed);
+    const bool with_error = flag_from("return_error", return_error);
+    const Pairs pairs({"points", points}, {"normals", normals}, &check_points, settings.threads);
+    const auto scene = compiled(self, settings.threads, progress_from(py::none())).first;
+    const auto rows = static_cast<py::ssize_t>(pairs.size());
+    py::array_t<double> result({rows, py::ssize_t{3}});
+    py::array_t<double> error({with_error ? rows : 0, py::ssize_t{3}});
+    {
+        const std::span<Vec3d> all = vectors_of(result);
+        const std::span<Vec3d> errors = vectors_of(error);
+        const py::gil_scoped_release release;
+        SignalWatch watch;
+        irradiance(*scene, pairs.first(), pairs.second(), settings, all, errors, signals_of(watch));
+    }
+    return with_error ? py::object(py::make_tuple(pairs.typed(result), pairs.typed(error)))
+                      : py::object(pairs.typed(result));
+}
+
+/// The frames that shlight.shading_frames makes.
+std::vector<glm::dmat3> frames_from(const py::object& normals, const py::object& tangents, std::size_t count) {
+    const py::object made = py::module_::import("shlight.queries").attr("shading_frames")(normals, tangents);
+    const AnyArray<double> array(made);
+    const auto given = static_cast<std::size_t>(array.size()) / 9;
+    if (array.ndim() > 3 || (given != count && array.ndim() == 3)) {
+        throw std::invalid_argument("tangents must have as many rows as points, or shape (3,)");
+    }
+    std::vector<glm::dmat3> frames(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double* rows = array.data() + 9 * (array.ndim() == 3 ? i : 0);
+        for (int row = 0; row < 3; ++row) {
+            for (int column = 0; column < 3; ++column) {
+                frames[i][column][row] = rows[3 * row + column];
+            }
+        }
+    }
+    return frames;
+}
+
+py::array light_coefficients_at(SceneObject& self, const py::object& points, const py::object& normals,
+                                const py::object& order, const py::object& tangents, const py::object& shadows,
+                                const py::object& rays, const py::object& transparent_bounces,
+                                const py::object& threads, const py::object& seed) {
+    const int n = static_cast<int>(integer_from("order", order, 1, kMaxOrder));
+    const PointSettings settings = point_settings(shadows, rays, transparent_bounces, threads, seed);
+    const Pairs pairs({"points", points}, {"normals", normals}, &check_points, settings.threads);
+    const std::vector<glm::dmat3> frames = frames_from(normals, tangents, pairs.size());
+    const auto scene = compiled(self, settings.threads, progress_from(py::none())).first;
+    py::array_t<double> result(
+        {static_cast<py::ssize_t>(pairs.size()), py::ssize_t{coefficient_count(n)}, py::ssize_t{3}});
+    {
+        const std::span<double> all(result.mutable_data(), static_cast<std::size_t>(result.size()));
+        const py::gil_scoped_release release;
+        SignalWatch watch;
+        light_coefficients(*scene, pairs.first(), frames, n, settings, all, signals_of(watch));
+    }
+    return pairs.typed(result);
+}
+
 }  // namespace
 
 void bind_queries(py::class_<SceneObject>& scene) {
@@ -234,6 +335,12 @@ void bind_queries(py::class_<SceneObject>& scene) {
               "max_samples"_a = PixelSampling().max_samples, "lights"_a = true, "shadows"_a = true,
               "shadow_rays"_a = RenderSettings().shadow_rays, "transparent_bounces"_a = 8, "max_bounces"_a = 0,
               "glossy_bounces"_a = py::none(), "transmission_bounces"_a = py::none(), "threads"_a = 0, "seed"_a = 0);
+    scene.def("irradiance", &irradiance_at, kIrradianceDoc, "points"_a, "normals"_a, py::kw_only(),
+              "rays"_a = PointSettings().rays, "return_error"_a = false, "transparent_bounces"_a = 8, "threads"_a = 0,
+              "seed"_a = 0);
+    scene.def("light_coefficients", &light_coefficients_at, kCoefficientsDoc, "points"_a, "normals"_a, "order"_a,
+              py::kw_only(), "tangents"_a = py::none(), "shadows"_a = true, "rays"_a = PointSettings().rays,
+              "transparent_bounces"_a = 8, "threads"_a = 0, "seed"_a = 0);
 }
 
 }  // namespace shlight::python

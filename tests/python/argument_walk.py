@@ -135,6 +135,8 @@ SETTINGS = {
     "on_update": None,
 }
 RAYS = {"origins": [[0.0, 0.0, 3.0], [0.0, 0.0, 4.0]], "directions": [0.0, 0.0, -1.0]}
+POINTS = {"points": [[0.0, 0.0, 3.0], [0.0, 0.0, 4.0]], "normals": [0.0, 0.0, 1.0]}
+SHADOWED = {"rays": 2, "transparent_bounces": 1, "threads": 1, "seed": 3}
 OF_RADIANCE = (
     *("order", "tolerance", "noise_threshold", "max_samples", "shadows", "shadow_rays", "transparent_bounces"),
     *("max_bounces", "glossy_bounces", "transmission_bounces", "seed"),
@@ -187,6 +189,11 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "Scene.add_mesh": (of_scene("add_mesh"), MESH),
     "Scene.remove_lights": (of_scene("remove_lights"), {}),
     "Scene.intersect": (of_scene("intersect"), {**RAYS, "threads": 1}),
+    "Scene.irradiance": (of_scene("irradiance"), {**POINTS, **SHADOWED, "return_error": True}),
+    "Scene.light_coefficients": (
+        of_scene("light_coefficients"),
+        {**POINTS, **SHADOWED, "order": 2, "tangents": [1.0, 0.0, 0.0], "shadows": True},
+    ),
     "Scene.radiance": (
         of_scene("radiance"),
         {**RAYS, **{name: SETTINGS[name] for name in OF_RADIANCE}, "min_samples": 1, "lights": False, "threads": 1},
@@ -214,6 +221,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "evaluate": (shlight.evaluate, {"coefficients": [1.0, 0, 0, 0], "directions": [0.0, 0, 1], "threads": 0}),
     "sh_basis": (shlight.sh_basis, {"directions": [0.0, 0, 1], "order": 3, "dtype": np.float32, "threads": 0}),
     "contract": (shlight.contract, {"light": [1.0, 0, 0, 0], "material": [1.0, 0, 0, 0], "threads": 0}),
+    "shading_frames": (shlight.shading_frames, {"normals": [[0.0, 0.0, 1.0]] * 2, "tangents": [1.0, 0.0, 0.0]}),
     "shade_spheres": (shlight.shade_spheres, {**SPHERE, **AUTO}),
     "shade_spheres/random": (shlight.shade_spheres, {**SPHERE, **SAMPLED}),
     "shade_polygons": (shlight.shade_polygons, {**POLYGON, **AUTO}),
@@ -283,8 +291,11 @@ RELATED = {
     "material": ("light",),
     "method": ("order", "tolerance", "samples", "seed", "sampling"),
     "max_samples": ("min_samples",),
+    "normals": ("tangents",),
     "origins": ("directions",),
+    "points": ("normals",),
     "radius": ("intensity",),
+    "tangents": ("normals",),
     "target": ("up",),
     "triangles": ("material_indices",),
     "vertices": ("normals", "triangles"),

@@ -171,13 +171,31 @@ def test_answers_do_not_depend_on_threads_and_have_the_type_of_the_question() ->
     assert scene.intersect(origin.astype(np.float32), directions).position.dtype == np.float64
 
 
-@pytest.mark.parametrize("method", ["intersect", "radiance"])
+OF_RAYS = ["intersect", "radiance"]
+OF_POINTS: dict[str, tuple[int, ...]] = {"irradiance": (), "light_coefficients": (3,)}  # and what else they take
+
+
+@pytest.mark.parametrize("method", [*OF_RAYS, *OF_POINTS])
 def test_batches_may_be_empty(method: str) -> None:
-    answer = getattr(lit_scene(), method)(np.zeros((0, 3)), np.zeros((0, 3)))
+    answer = getattr(lit_scene(), method)(np.zeros((0, 3)), np.zeros((0, 3)), *OF_POINTS.get(method, ()))
     assert len(answer) == 0
 
 
-@pytest.mark.parametrize("method", ["intersect", "radiance"])
+@pytest.mark.parametrize("method", OF_POINTS)
+@pytest.mark.parametrize(
+    ("points", "normals", "message"),
+    [
+        ([[0, 0, 0], [np.nan, 0, 0]], [0, 0, 1], r"points\[1\] contains a number that is not finite"),
+        ([[0, 0, 0]] * 2, [[0, 0, 1], [0, 0, 0]], r"normals\[1\] has length 0"),
+        ([[0, 0]], [0, 0, 1], r"points must have shape \(n, 3\)"),
+    ],
+)
+def test_wrong_points_are_named(method: str, points: Any, normals: Any, message: str) -> None:
+    with pytest.raises(ValueError, match=f"^{message}"):
+        getattr(lit_scene(), method)(points, normals, *OF_POINTS[method])
+
+
+@pytest.mark.parametrize("method", OF_RAYS)
 @pytest.mark.parametrize(
     ("origins", "directions", "message"),
     [
@@ -192,3 +210,240 @@ def test_batches_may_be_empty(method: str) -> None:
 def test_wrong_rays_are_named(method: str, origins: Any, directions: Any, message: str) -> None:
     with pytest.raises(ValueError, match=f"^{message}"):
         getattr(lit_scene(), method)(origins, directions)
+
+
+LAMP = SQUARE[::-1] * 0.5 + [0.1, 0, 2]  # shines down
+WALL = np.array([[-0.6, -0.4, 1.0], [0.3, -0.4, 1.0], [0.3, 0.5, 1.2], [-0.6, 0.5, 1.2]])
+RADIANCE = np.array([3.0, 2.0, 1.0])
+
+
+def half_hidden() -> shlight.Scene:
+    """A square lamp over a floor, and a plate between."""
+    scene = shlight.Scene()
+    scene.add_mesh(FLOOR, FACES)
+    scene.add_mesh(WALL, FACES)
+    scene.add_polygon_light(LAMP, RADIANCE)
+    return scene
+
+
+def lamp_samples(points: Floats, count: int = 6400) -> tuple[Floats, Floats]:
+    """Directions to so many points of the lamp, spread evenly (Roberts 2018), from each point, and the solid angle of a
+    share of the lamp where nothing is between.
+    """
+    share = np.arange(count)[:, None] * [0.7548776662466927, 0.5698402909980532, 0] % 1
+    places = LAMP.mean(axis=0) + np.where([True, True, False], share - 0.5, 0)
+    ways = places - points[:, None]
+    distance = np.linalg.norm(ways, axis=-1)
+    directions = ways / distance[..., None]
+    corners = WALL[np.array(FACES)]
+    hidden = np.isfinite(nearest(corners, np.repeat(points, count, axis=0), directions.reshape(-1, 3))[0])
+    angles = directions[..., 2] / distance**2 / count
+    return directions, np.where(hidden.reshape(angles.shape), 0, angles)
+
+
+def floor_points(count: int, seed: int) -> tuple[Floats, Floats]:
+    rng = np.random.default_rng(seed)
+    points = np.concatenate([rng.uniform(-1.5, 1.5, (count, 2)), np.zeros((count, 1))], axis=-1)
+    return points, rng.normal(size=(count, 3)) * 0.3 + [0, 0, 1]
+
+
+def unit(vectors: Floats) -> Floats:
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+@pytest.mark.parametrize("count", [200, 4000])
+def test_irradiance_is_that_of_the_part_of_a_lamp_that_is_seen(count: int) -> None:
+    points, normals = floor_points(count, seed=3)
+    found, error = half_hidden().irradiance(points, normals, return_error=True)
+    some = slice(0, count, count // 100)
+    directions, angles = lamp_samples(points[some])
+    cosines = np.maximum((directions * unit(normals)[some, None]).sum(-1), 0)
+    true = (angles * cosines).sum(-1)[:, None] * RADIANCE
+    off = np.sqrt(np.mean((found[some] - true) ** 2))
+    assert off <= 0.02 * true.mean()
+    assert off / 3 <= np.sqrt(np.mean(error[some] ** 2)) <= 3 * off
+    many = half_hidden().irradiance(points[some], normals[some], rays=4096)
+    np.testing.assert_allclose(many, true, rtol=0, atol=2e-3 * true.max())
+
+
+def test_irradiance_without_shadows_is_exact() -> None:
+    scene = half_hidden()
+    scene.add_sun_light([0, 0, -1], 0.0, [1, 0, 0])
+    scene.add_point_light([0, 0, 2], [0, 1, 0])
+    scene.add_sphere_light([1, 0, 3], 0.5, [0, 0, 2])
+    scene.add_sphere_light([0, 0, 3], 0.5, [5, 5, 5], diffuse=False)
+    scene.set_environment([0.1, 0.2, 0.3])
+    points, normals = [[0.2, 0.1, 0]], [[0, 0, 5]]
+    corners = unit(np.asarray(LAMP) - points)
+    after = np.roll(corners, -1, axis=0)
+    edges = unit(np.cross(corners, after))[:, 2] * np.arccos((corners * after).sum(-1))  # Lambert 1760
+    lamp = abs(edges.sum()) / 2 * RADIANCE
+    lengths = np.linalg.norm([[-0.2, -0.1, 2], [0.8, -0.1, 3]], axis=-1)
+    others = np.array([1, 2 / lengths[0] ** 3, 2 * np.pi * 0.25 * 3 / lengths[1] ** 3])
+    sky = np.pi * np.array([0.1, 0.2, 0.3])
+    found, error = scene.irradiance(points, normals, rays=0, return_error=True)
+    np.testing.assert_allclose(found[0], lamp + others + sky, rtol=1e-5)
+    np.testing.assert_array_equal(error, 0)
+
+
+def test_points_on_a_surface_are_not_in_its_shadow() -> None:
+    """Also on a large, slanted one, whose points are rounded far off its plane."""
+    rng = np.random.default_rng(4)
+    turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    to_world = np.eye(4)
+    to_world[:3, :3] = turn * 3000
+    scene = shlight.Scene()
+    scene.add_mesh(SQUARE, FACES, transforms=[to_world])
+    scene.set_environment([1, 1, 1])
+    points = rng.uniform(-2000, 2000, (500, 2)) @ turn[:, :2].T
+    for normal in (turn[:, 2], -turn[:, 2]):
+        np.testing.assert_allclose(scene.irradiance(points, normal), np.pi, rtol=1e-4)
+
+
+def of_region(name: str, **region: Any) -> Floats:
+    coefficients: Floats = getattr(shlight, name)(**region, order=5, dtype=np.float64)
+    return coefficients
+
+
+# Functions that add a light to a scene, and that find its coefficients of radiance 1 by two functions that take points
+# and vectors to the frame.
+LIGHTS: dict[str, tuple[Any, Any]] = {
+    "sphere": (
+        lambda scene: scene.add_sphere_light([0.3, 0.2, 2], 0.4, RADIANCE),
+        lambda place, _: of_region("sphere_coefficients", centers=place([0.3, 0.2, 2]), radii=0.4),
+    ),
+    "polygon": (
+        lambda scene: scene.add_polygon_light(LAMP, RADIANCE),
+        lambda place, _: of_region("polygon_coefficients", vertices=place(LAMP)),
+    ),
+    "disk": (
+        lambda scene: scene.add_disk_light([0, 0, 2], [0.5, 0, 0], [0, -0.3, 0.1], RADIANCE),
+        lambda place, turn: of_region(
+            "disk_coefficients",
+            centers=place([0, 0, 2]),
+            half_axes_u=turn([0.5, 0, 0]),
+            half_axes_v=turn([0, -0.3, 0.1]),
+        ),
+    ),
+    "faces": (
+        lambda scene: scene.add_mesh(LAMP, FACES, emission=RADIANCE),
+        lambda place, _: of_region("polygon_coefficients", vertices=place(LAMP)),
+    ),
+    "sun": (
+        lambda scene: scene.add_sun_light([0.2, 0.1, -1], 0.3, RADIANCE * np.pi * np.sin(0.15) ** 2),
+        lambda _, turn: of_region("cap_coefficients", axes=turn([-0.2, -0.1, 1]), half_angles=0.15),
+    ),
+    "point": (
+        lambda scene: scene.add_point_light([0.3, 0.2, 2], RADIANCE),
+        lambda place, _: (
+            shlight.sh_basis(place([0.3, 0.2, 2]), 5, dtype=np.float64)
+            * (place([0.3, 0.2, 2])[2] > 0)
+            / (place([0.3, 0.2, 2]) ** 2).sum()
+        ),
+    ),
+    "sky": (
+        lambda scene: scene.set_environment(RADIANCE),
+        lambda _place, _turn: of_region("cap_coefficients", axes=[0, 0, 1.0], half_angles=np.pi / 2),
+    ),
+}
+
+
+@pytest.mark.parametrize(("add", "region"), LIGHTS.values(), ids=LIGHTS)
+def test_coefficients_without_shadows_are_those_of_the_light(add: Any, region: Any) -> None:
+    scene = shlight.Scene()
+    scene.add_mesh(WALL, FACES)
+    add(scene)
+    points, normals = floor_points(20, seed=5)
+    frames = shlight.shading_frames(normals)
+    found = scene.light_coefficients(points, normals, 5, shadows=False)
+    for i in range(20):
+        true = region(lambda w, i=i: (w - points[i]) @ frames[i], lambda w, i=i: np.asarray(w) @ frames[i])
+        np.testing.assert_allclose(found[i], true[:, None] * RADIANCE, rtol=0, atol=1e-6 * np.abs(true).max())
+
+
+def test_lights_that_are_summed_have_the_coefficients_of_their_radiance() -> None:
+    """A spot with an extent, against an even sum over its surface."""
+    middle, radius, rim = np.array([0.3, 0.2, 2]), 0.3, np.cos(0.6)
+    scene = shlight.Scene()
+    scene.add_spot_light(middle, [0, 0, -1], 1.2, 0.5, RADIANCE, radius=radius)
+    points, normals = floor_points(5, seed=6)
+    frames = shlight.shading_frames(normals)
+    found = scene.light_coefficients(points, normals, 4, shadows=False)
+    outwards = unit(np.random.default_rng(7).normal(size=(400_000, 3)))
+    for i in range(5):
+        ways = middle + radius * outwards - points[i]
+        distance = np.linalg.norm(ways, axis=-1)
+        angles = 4 * radius**2 * np.maximum(-(ways * outwards).sum(-1), 0) / distance**3 / len(outwards)
+        fade = np.clip((ways[:, 2] / distance - rim) / ((1 - rim) * 0.5), 0, 1)
+        local = ways @ frames[i]
+        weights = angles / radius**2 * fade**2 * (3 - 2 * fade) * (local[:, 2] > 0)
+        true = weights @ shlight.sh_basis(local, 4, dtype=np.float64)
+        np.testing.assert_allclose(found[i], true[:, None] * RADIANCE, rtol=0, atol=0.05 * np.abs(true).max())
+
+
+def test_coefficients_with_shadows_are_those_of_what_is_seen() -> None:
+    points, normals = floor_points(60, seed=8)
+    frames = shlight.shading_frames(normals)
+    directions, angles = lamp_samples(points)
+    local = np.einsum("nrj,njk->nrk", directions, frames)
+    basis = shlight.sh_basis(local, 4, dtype=np.float64)
+    true = np.einsum("nr,nrk->nk", angles * (local[..., 2] > 0), basis)[..., None] * RADIANCE
+    scene = half_hidden()
+    scale = true[:, 0].mean()
+    off = scene.light_coefficients(points, normals, 4) - true
+    assert np.sqrt(np.mean(off**2)) <= 0.03 * scale
+    off = np.mean([scene.light_coefficients(points, normals, 4, rays=16, seed=s) for s in range(64)], axis=0) - true
+    assert np.sqrt(np.mean(off**2)) <= 0.015 * scale  # one alone is 0.09: no bias
+    seen = scene.light_coefficients(points, normals, 4)
+    scene.add_sphere_light([0, 0, 3], 0.1, [1, 1, 1], shadows=False)
+    place = np.einsum("nj,njk->nk", [0, 0, 3] - points, frames)
+    sphere = shlight.sphere_coefficients(place, 0.1, 4, dtype=np.float64)
+    np.testing.assert_allclose(
+        scene.light_coefficients(points, normals, 4) - seen, sphere[..., None] * [1, 1, 1], atol=1e-7
+    )
+
+
+def test_coefficients_times_the_cosine_are_irradiance() -> None:
+    scene = half_hidden()
+    scene.set_environment(np.random.default_rng(9).uniform(0, 1, (8, 16, 3)))
+    points, normals = floor_points(30, seed=10)
+    light = scene.light_coefficients(points, normals, 8, rays=1024)
+    cosine = Bsdf.lambert(1.0).coefficients(1.0, 8)
+    reflected = np.einsum("nkc,k->nc", light, np.asarray(cosine)[..., 0] if cosine.ndim > 1 else cosine)
+    irradiance = scene.irradiance(points, normals, rays=4096)
+    np.testing.assert_allclose(np.pi * reflected, irradiance, rtol=0, atol=0.02 * irradiance.mean())
+
+
+def test_frames_are_orthonormal_and_turn_gradually() -> None:
+    rng = np.random.default_rng(11)
+    normals = np.concatenate([rng.normal(size=(100, 3)), [[0, 0, 2], [0, 0, -1], [1e-9, 0, -1], [1e-200, 0, 0]]])
+    tangents = rng.normal(size=normals.shape)
+    for given in (None, tangents):
+        frames = shlight.shading_frames(normals, given)
+        np.testing.assert_allclose(np.swapaxes(frames, 1, 2) @ frames, np.tile(np.eye(3), (104, 1, 1)), atol=1e-14)
+        np.testing.assert_allclose(np.linalg.det(frames), 1, atol=1e-14)
+        np.testing.assert_allclose(frames[:-1, :, 2], unit(normals[:-1]), atol=1e-15)
+    np.testing.assert_allclose((frames[:, :, 1] * tangents).sum(-1), 0, atol=1e-14)
+    assert np.all((frames[:, :, 0] * tangents).sum(-1) > 0)
+    around = np.linspace(0, 2 * np.pi, 1000)
+    for z in (-0.9, 0.0, 0.9):
+        circle = shlight.shading_frames(np.stack([np.cos(around), np.sin(around), np.full(1000, z)], axis=-1))
+        assert np.abs(np.diff(circle, axis=0)).max() <= 0.02
+    np.testing.assert_array_equal(shlight.shading_frames([0, 0, 1]), np.eye(3))
+    assert shlight.shading_frames(np.float32([[0, 0, 1]])).dtype == np.float32
+    with pytest.raises(ValueError, match=r"^normals\[1\] has length 0"):
+        shlight.shading_frames([[0, 0, 1], [0, 0, 0]])
+    with pytest.raises(ValueError, match=r"^tangents\[0\] is parallel to its normal"):
+        shlight.shading_frames([[0, 0, 1]], [[0, 0, 2]])
+
+
+def test_light_at_points_does_not_depend_on_threads() -> None:
+    scene = half_hidden()
+    points, normals = floor_points(3000, seed=12)
+    np.testing.assert_array_equal(
+        scene.irradiance(points, normals, threads=1), scene.irradiance(points, normals, threads=3)
+    )
+    np.testing.assert_array_equal(
+        scene.light_coefficients(points, normals, 3, threads=1),
+        scene.light_coefficients(points, normals, 3, threads=3),
+    )

@@ -8,6 +8,7 @@
 #include <limits>
 #include <span>
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 
 #include "shlight/parallel.h"
@@ -22,7 +23,7 @@ namespace shlight {
 void check_rays(std::span<const Vec3d> origins, std::span<const Vec3d> directions);
 void check_points(std::span<const Vec3d> points, std::span<const Vec3d> normals);
 
-/// Where a ray meets its first surface, opaque or not.
+/// The first surface that a ray meets, opaque or not.
 struct SurfaceHit {
     double distance = std::numeric_limits<double>::infinity();  ///< from the ray's origin [m]; infinite: there is none
     Vec3d position{0};                                          ///< in the triangle's plane
@@ -35,15 +36,48 @@ struct SurfaceHit {
 void intersect(const CompiledScene& scene, std::span<const Vec3d> origins, std::span<const Vec3d> directions,
                std::span<SurfaceHit> hits);
 
-/// What each ray sees, as a camera ray of render() does; black where it meets nothing and the camera does not see the
-/// environment. Each ray is a pixel through which settings.sampling.min_samples … max_samples rays go the same way,
-/// until the estimated error of their mean, relative to √(r² + 0.01 r̄²), r the mean and r̄ that of all rays, is not
-/// above the noise threshold. Light that bounces comes by paths, without records. Textures are read where a ray meets
-/// them, without a footprint. The result does not depend on settings.threads. sees_lights: false: light counts only if
-/// a surface has reflected it, not what rays meet themselves of emission, lamps and the environment. settings: passes,
-/// the filter and the time limit do not matter. Throws as check_render does; RenderCancelled once stopped, and what
-/// `stopped` throws.
+/// The radiance that each ray sees, as a camera ray of render() does; black where it meets nothing and the camera does
+/// not see the environment. Each ray is a pixel through which settings.sampling.min_samples … max_samples rays go the
+/// same way, until the estimated error of their mean, relative to √(r² + 0.01 r̄²), r the mean and r̄ that of all rays,
+/// is not above the noise threshold. Light that bounces comes by paths, without records. Textures are read where a ray
+/// meets them, without a footprint. The result does not depend on settings.threads. sees_lights: false: light counts
+/// only if a surface has reflected it, not what rays meet themselves of emission, lamps and the environment. settings:
+/// passes, the filter and the time limit do not matter. Throws as check_render does; RenderCancelled once stopped, and
+/// what `stopped` throws.
 void radiance(const CompiledScene& scene, std::span<const Vec3d> origins, std::span<const Vec3d> directions,
               const RenderSettings& settings, bool sees_lights, std::span<Vec3d> radiance, const Stopped& stopped = {});
+
+/// How the light at points is found.
+struct PointSettings {
+    /// Shadow rays of a point for each light, 0 … 2^14; 0: no shadows.
+    int rays = 64;
+    /// Surfaces that let light through which a shadow ray passes, at most 1024.
+    int transparent_bounces = 8;
+    int threads = 0;         ///< 0: all cores; the result does not depend on it
+    std::uint32_t seed = 0;  ///< another one draws other rays
+};
+
+/// Throws std::invalid_argument naming the member that is out of range. All functions below throw as it does;
+/// RenderCancelled once stopped, and what `stopped` throws.
+void check_settings(const PointSettings& settings);
+
+/// Irradiance [W m⁻²] of direct light on a surface at each point, from the side of its normal, as a diffuse surface
+/// there gets it: without lights that do not light such. A light takes rays by its share of the irradiance, at most
+/// twice settings.rays, and one where rays from points nearby agree about it. errors: standard deviations by shadow
+/// rays, as many, or none. They are estimated from the rays as if the edge of one shadow crossed each light, over which
+/// points are spread evenly: √v n^-3/4 for n rays of variance v.
+void irradiance(const CompiledScene& scene, std::span<const Vec3d> points, std::span<const Vec3d> normals,
+                const PointSettings& settings, std::span<Vec3d> irradiance, std::span<Vec3d> errors,
+                const Stopped& stopped = {});
+
+/// Coefficients of the radiance that comes to each point from the lights themselves, in its frame and clipped by its
+/// horizon (Eq. 4 of Zhou & Wei 2020).
+/// frames: of each point the axes x, y and z, the normal, as columns: orthonormal and right-handed. coefficients:
+/// points × order² × RGB. Without shadows they are exact for lights of even radiance: spheres, polygons, disks, suns,
+/// convex meshes, sources without extent, and an environment of one radiance. Others are summed over 4096 points. With
+/// shadows they are an estimate without bias, and without noise where all rays agree.
+void light_coefficients(const CompiledScene& scene, std::span<const Vec3d> points, std::span<const glm::dmat3> frames,
+                        int order, const PointSettings& settings, std::span<double> coefficients,
+                        const Stopped& stopped = {});
 
 }  // namespace shlight

@@ -13,11 +13,6 @@
 namespace shlight {
 namespace {
 
-/// Values of UnshadowedRadiance that a batch should hold: as many as fit the cache.
-constexpr std::size_t kValues = std::size_t{1} << 21;
-/// Camera rays of a batch: enough for long batches, few enough for the cache.
-constexpr std::size_t kMostBatchSamples = 4096;
-constexpr std::size_t kLeastSamples = 64;
 /// Camera rays that tell a gradient from an edge.
 constexpr std::uint32_t kLeastForPlane = 8;
 /// Largest radiance of a camera ray; squares of brighter ones would overflow in float.
@@ -140,11 +135,6 @@ Picture::Picture(const CompiledScene& s, const Camera& c, int w, int h, const Re
         return glm::dvec2(r.filter.place(point.x), r.filter.place(point.y));
     });
     parts = parts_of(*this);
-}
-
-std::uint32_t Picture::batch_samples() const {
-    const std::size_t values = std::max<std::size_t>(lighting.extended.size() * lighting.lobe_stride, 1);
-    return static_cast<std::uint32_t>(std::clamp(kValues / values, kLeastSamples, kMostBatchSamples));
 }
 
 std::size_t Picture::stored_parts() const {

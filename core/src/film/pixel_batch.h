@@ -63,8 +63,6 @@ struct Picture {
     Picture(const CompiledScene& s, const Camera& c, int w, int h, const RenderSettings& r,
             std::vector<glm::dvec2> points, std::uint32_t preview_points, const Stopped& stopped);
 
-    /// Camera rays that a batch should hold. Under many lights fewer: what each light adds is kept until all are known.
-    std::uint32_t batch_samples() const;
     /// See StoredLight::parts.
     std::size_t stored_parts() const;
     /// Through a point of the window, in pixels, and one of the aperture; none: its middle.

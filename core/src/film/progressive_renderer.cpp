@@ -42,7 +42,7 @@ ProgressiveRenderer::ProgressiveRenderer(const Picture& picture, Refinement refi
       image_(image),
       pass_image_(picture.layout, passes),
       watch_(&watch),
-      batch_samples_(picture.batch_samples()),
+      batch_samples_(picture.lighting.batch_size()),
       start_(start),
       refinement_(std::move(refinement)),
       stored_{picture.stored_parts(),

@@ -14,6 +14,12 @@ namespace {
 constexpr std::uint32_t kLightSeed = 0;
 constexpr std::uint32_t kDeltaSeed = 0xFFFFFFFEU;
 
+/// Values of UnshadowedRadiance that a batch should hold: as many as fit the cache.
+constexpr std::size_t kValues = std::size_t{1} << 21;
+/// Hits of a batch: enough for long batches, few enough for the cache.
+constexpr std::size_t kMostHits = 4096;
+constexpr std::size_t kLeastHits = 64;
+
 }  // namespace
 
 std::vector<MaterialLobes> lobes_of_materials(std::span<const Material> materials, int order, double tolerance,
@@ -43,6 +49,11 @@ LightingScene::LightingScene(std::span<const Light> all, std::size_t extended_co
     if (!sky.is_black()) {
         environment_shading.emplace(sky, materials, lobe_stride, order, tolerance);
     }
+}
+
+std::uint32_t LightingScene::batch_size() const {
+    const std::size_t values = std::max<std::size_t>(extended.size() * lobe_stride, 1);
+    return static_cast<std::uint32_t>(std::clamp(kValues / values, kLeastHits, kMostHits));
 }
 
 DirectLighting::DirectLighting(const LightingScene& scene, const SceneRays& rays, std::uint32_t transparent_bounces,

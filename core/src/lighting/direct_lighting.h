@@ -47,6 +47,9 @@ struct LightingScene {
     LightingScene(std::span<const Light> all, std::size_t extended_count, const Environment& sky,
                   std::uint32_t sky_group, std::vector<MaterialLobes> lobes, int order, double error_tolerance);
 
+    /// Hits that should be shaded together. Under many lights fewer: what each light adds is kept until all are known.
+    std::uint32_t batch_size() const;
+
     std::span<const Light> extended;
     DeltaLights deltas;
     const Environment* environment;

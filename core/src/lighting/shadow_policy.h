@@ -31,6 +31,7 @@ struct SampleRange {
     std::uint32_t first, count;
     std::uint32_t shadow_rays;  ///< per camera ray and light, at most
     std::uint32_t first_point;  ///< on the light; count · shadow_rays of them are theirs
+    bool shares_rays = true;    ///< false: every light has one of its own, at least
 };
 
 /// If a pixel's light came from n equal lights, each would get this many times the n-th part of the shadow rays.

@@ -48,7 +48,7 @@ void SharedShadowLights::start(std::span<const Light> lights, std::span<const Un
         // Shares are those of light that adds up; and rays to a mesh take another way.
         const bool adds = glm::all(glm::greaterThanEqual(strength_of(light), Rgb(0)));
         const bool is_mesh = std::holds_alternative<MeshLight>(light);
-        may_share_.push_back(adds && !is_mesh && traits_of(light).casts_shadows ? 1 : 0);
+        may_share_.push_back(samples.shares_rays && adds && !is_mesh && traits_of(light).casts_shadows ? 1 : 0);
     }
 }
 

@@ -17,7 +17,7 @@
 namespace shlight {
 namespace {
 
-/// Rays that are shaded together.
+/// Rays that are shaded together, at most.
 constexpr std::uint32_t kBatchRays = 512;
 /// Rays of a pixel whose paths are drawn, at least: fewer do not tell how they differ.
 constexpr std::uint32_t kLeastPaths = 4;
@@ -106,17 +106,18 @@ class RadianceQuery {
 void RadianceQuery::run(std::span<Vec3d> radiance) {
     std::vector<std::uint32_t> pixels(origins_.size());
     std::iota(pixels.begin(), pixels.end(), 0U);
+    const std::uint32_t at_once = std::min(kBatchRays, lighting_.batch_size());
     const PixelSampling& sampling = settings_->sampling;
     const auto most = static_cast<std::uint32_t>(sampling.max_samples);
     const std::uint32_t least = settings_->max_bounces > 0 ? kLeastPaths : 1;
     std::uint32_t count = std::clamp(static_cast<std::uint32_t>(sampling.min_samples), std::min(least, most), most);
     for (std::uint32_t first = 0; !pixels.empty() && first < most;) {
-        const std::size_t size = std::max(kBatchRays / count, 1U);
+        const std::size_t size = std::max(at_once / count, 1U);
         parallel_for((pixels.size() + size - 1) / size, settings_->threads, [&](std::size_t batch) {
             end_if(*stopped_);
             const auto some = std::span(pixels).subspan(batch * size, std::min(size, pixels.size() - batch * size));
-            for (std::uint32_t done = 0; done < count; done += kBatchRays) {
-                shade(some, first + done, std::min(count - done, kBatchRays), shaders_.local());
+            for (std::uint32_t done = 0; done < count; done += at_once) {
+                shade(some, first + done, std::min(count - done, at_once), shaders_.local());
             }
         });
         for (const std::uint32_t pixel : pixels) {

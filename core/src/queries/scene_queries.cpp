@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "shlight/scene_queries.h"
 
+#include <limits>
+#include <string>
 #include <vector>
 
 #include "base/scene_range.h"
@@ -28,6 +30,18 @@ void check_rays(std::span<const Vec3d> origins, std::span<const Vec3d> direction
 
 void check_points(std::span<const Vec3d> points, std::span<const Vec3d> normals) {
     check("points", points, "normals", normals);
+}
+
+void check_settings(const PointSettings& settings) {
+    constexpr int kMostRays = 1 << 14;
+    const auto check = [](const char* name, int value, int most) {
+        if (value < 0 || value > most) {
+            reject(std::string(name) + " must be 0 … " + std::to_string(most) + ", got " + std::to_string(value));
+        }
+    };
+    check("rays", settings.rays, kMostRays);
+    check("transparent_bounces", settings.transparent_bounces, kMostBounces);
+    check("threads", settings.threads, std::numeric_limits<int>::max());
 }
 
 void intersect(const CompiledScene& scene, std::span<const Vec3d> origins, std::span<const Vec3d> directions,
