@@ -56,14 +56,24 @@ def checked_name(name: str, value: Any, known: Iterable[str]) -> str:
     return value
 
 
-def common_type(*arrays: ArrayLike) -> DTypeLike:
-    return np.float64 if any(getattr(a, "dtype", None) == np.float64 for a in arrays) else np.float32
-
-
 def given_type(*arrays: ArrayLike) -> type[np.floating[Any]]:
-    """The type of results: float32 for arrays that are, float64 for all else."""
-    single = all(isinstance(a, np.ndarray | np.generic) and a.dtype == np.float32 for a in arrays)
-    return np.float32 if single else np.float64
+    """The type of results: float32 for arrays that are, float64 for all else. Python's own numbers decide nothing."""
+    deciding = [own for own in arrays if type(own) not in (int, float)]
+    return np.float32 if deciding and all(_is_single(own) for own in deciding) else np.float64
+
+
+def _is_single(value: Any) -> bool:
+    if not isinstance(value, np.ndarray | np.generic) and hasattr(value, "__dlpack__"):
+        try:
+            value = np.from_dlpack(value)
+        except Exception:  # the conversion says what is wrong, and of which argument
+            return False
+    return getattr(getattr(value, "dtype", None), "type", None) is np.float32  # of either byte order
+
+
+def wanted_type(dtype: DTypeLike | None, *arrays: ArrayLike) -> DTypeLike:
+    """The type that the caller names, or that of the arrays."""
+    return given_type(*arrays) if dtype is None else dtype
 
 
 def checked_array(name: str, value: ArrayLike, dtype: DTypeLike, *, core_axes: int = 0) -> Floats:

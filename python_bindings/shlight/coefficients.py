@@ -3,7 +3,9 @@
 
 Every function broadcasts over leading axes, spreads them over `threads` cores (0: all; the result does not depend on
 it), takes arrays of the right type without a copy, and raises ValueError naming the argument for bad input.
-`dtype` (float32 or float64) is the precision of inputs, arithmetic and result.
+Arithmetic and result are float32 where all arrays are, else float64, unless `dtype` names one of the two; numbers of
+Python decide nothing beside arrays.
+`out`, a C-contiguous array of the result's shape and type, is filled and returned; it must not overlap the inputs.
 
 `method` "exact" is the library's own; `tolerance`, `samples`, `seed` and `sampling` are options of some of the other
 methods, which shlight_tools.methods lists where it is built.
@@ -13,7 +15,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from typing import Literal
+from collections.abc import Callable
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
@@ -29,25 +32,32 @@ from shlight._arrays import (
     checked_flag,
     checked_order,
     checked_threads,
-    common_type,
+    given_type,
     rows,
     shaped,
+    wanted_type,
 )
 from shlight._calls import names_rows
 from shlight._methods import coefficient_function
 
 
 @names_rows
-def sh_basis(directions: ArrayLike, order: int, dtype: DTypeLike = np.float32, *, threads: int = 0) -> Floats:
+def sh_basis(
+    directions: ArrayLike,
+    order: int,
+    dtype: DTypeLike | None = None,
+    *,
+    threads: int = 0,
+    out: Floats | None = None,
+) -> Floats:
     """The real spherical harmonics of all bands below `order` in given directions.
 
     directions: (..., 3), of any length > 0. Returns (..., order²).
     """
-    d = checked_array("directions", directions, dtype, core_axes=1)
+    d = checked_array("directions", directions, wanted_type(dtype, directions), core_axes=1)
     check_last("directions", d, 3)
     n = checked_order(order)
-    flat = _core.sh_basis(d.reshape(-1, 3), n, checked_threads(threads))
-    return flat.reshape(*d.shape[:-1], n * n)
+    return _result(_core.sh_basis, (d.reshape(-1, 3), n, checked_threads(threads)), d.shape[:-1], out)
 
 
 @names_rows
@@ -55,9 +65,9 @@ def evaluate(coefficients: ArrayLike, directions: ArrayLike, *, threads: int = 0
     """The value of expansions in given directions: Σ coefficient · basis.
 
     coefficients: (..., order²); directions: (..., 3), of any length > 0; their leading axes broadcast.
-    Returns (...), float64 if either input is, else float32.
+    Returns (...).
     """
-    dtype = common_type(coefficients, directions)
+    dtype = given_type(coefficients, directions)
     c = checked_array("coefficients", coefficients, dtype, core_axes=1)
     d = checked_array("directions", directions, dtype, core_axes=1)
     check_last("directions", d, 3)
@@ -75,8 +85,9 @@ def sphere_coefficients(
     *,
     clip: bool = True,
     method: str = "exact",
-    dtype: DTypeLike = np.float32,
+    dtype: DTypeLike | None = None,
     threads: int = 0,
+    out: Floats | None = None,
     tolerance: float | None = None,
     samples: int | None = None,
     seed: int | None = None,
@@ -90,14 +101,14 @@ def sphere_coefficients(
     """
     options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
     compute = coefficient_function("sphere_coefficients", method, **options)
+    dtype = wanted_type(dtype, centers, radii)
     c = checked_array("centers", centers, dtype, core_axes=1)
     r = checked_array("radii", radii, dtype)
     check_last("centers", c, 3)
     shape = broadcast(centers=c.shape[:-1], radii=r.shape)
     n, above = checked_order(order), checked_flag("clip", clip)
     lights = (rows(c, shape, 3), rows(r, shape))
-    flat = compute(*lights, n, above, checked_threads(threads))
-    return flat.reshape(*shape, n * n)
+    return _result(compute, (*lights, n, above, checked_threads(threads)), shape, out)
 
 
 @names_rows
@@ -108,8 +119,9 @@ def cap_coefficients(
     *,
     clip: bool = True,
     method: str = "exact",
-    dtype: DTypeLike = np.float32,
+    dtype: DTypeLike | None = None,
     threads: int = 0,
+    out: Floats | None = None,
     tolerance: float | None = None,
     samples: int | None = None,
     seed: int | None = None,
@@ -122,14 +134,14 @@ def cap_coefficients(
     """
     options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
     compute = coefficient_function("cap_coefficients", method, **options)
+    dtype = wanted_type(dtype, axes, half_angles)
     a = checked_array("axes", axes, dtype, core_axes=1)
     h = checked_array("half_angles", half_angles, dtype)
     check_last("axes", a, 3)
     shape = broadcast(axes=a.shape[:-1], half_angles=h.shape)
     n, above = checked_order(order), checked_flag("clip", clip)
     lights = (rows(a, shape, 3), rows(h, shape))
-    flat = compute(*lights, n, above, checked_threads(threads))
-    return flat.reshape(*shape, n * n)
+    return _result(compute, (*lights, n, above, checked_threads(threads)), shape, out)
 
 
 @names_rows
@@ -139,8 +151,9 @@ def polygon_coefficients(
     *,
     clip: bool = True,
     method: str = "exact",
-    dtype: DTypeLike = np.float32,
+    dtype: DTypeLike | None = None,
     threads: int = 0,
+    out: Floats | None = None,
     tolerance: float | None = None,
     samples: int | None = None,
     seed: int | None = None,
@@ -154,14 +167,13 @@ def polygon_coefficients(
     """
     options = {"tolerance": tolerance, "samples": samples, "seed": seed, "sampling": sampling}
     compute = coefficient_function("polygon_coefficients", method, **options)
-    v = checked_array("vertices", vertices, dtype, core_axes=2)
+    v = checked_array("vertices", vertices, wanted_type(dtype, vertices), core_axes=2)
     check_last("vertices", v, 3)
     if v.shape[-2] < 3:
         raise ValueError(f"vertices: a polygon needs at least 3, got {v.shape[-2]}")
     n, above = checked_order(order), checked_flag("clip", clip)
     lights = (v.reshape(-1, *v.shape[-2:]),)
-    flat = compute(*lights, n, above, checked_threads(threads))
-    return flat.reshape(*v.shape[:-2], n * n)
+    return _result(compute, (*lights, n, above, checked_threads(threads)), v.shape[:-2], out)
 
 
 @names_rows
@@ -172,8 +184,9 @@ def disk_coefficients(
     order: int,
     *,
     clip: bool = True,
-    dtype: DTypeLike = np.float32,
+    dtype: DTypeLike | None = None,
     threads: int = 0,
+    out: Floats | None = None,
 ) -> Floats:
     """Coefficients of planar disks and ellipses of unit radiance, seen from the origin.
 
@@ -184,12 +197,11 @@ def disk_coefficients(
     in float32, at contact, too. ValueError for dependent half axes and for a shading point in the ellipse.
     Stokes' theorem along the outline as elliptic functions: docs/theory.md, 5.
     """
-    c, u, v = checked_disks(centers, half_axes_u, half_axes_v, dtype)
+    c, u, v = checked_disks(centers, half_axes_u, half_axes_v, wanted_type(dtype, centers, half_axes_u, half_axes_v))
     shape = broadcast(centers=c.shape[:-1], half_axes_u=u.shape[:-1], half_axes_v=v.shape[:-1])
     n, above = checked_order(order), checked_flag("clip", clip)
     lights = (rows(c, shape, 3), rows(u, shape, 3), rows(v, shape, 3))
-    flat = _core.disk_coefficients(*lights, n, above, checked_threads(threads))
-    return flat.reshape(*shape, n * n)
+    return _result(_core.disk_coefficients, (*lights, n, above, checked_threads(threads)), shape, out)
 
 
 @names_rows
@@ -198,13 +210,13 @@ def contract(light: ArrayLike, material: ArrayLike, *, threads: int = 0) -> Floa
 
     light: (..., order²), the coefficients of lights, whose radiance they are proportional to.
     material: (..., order²), those of f·cos at a view, as `Bsdf.coefficients` returns them, of the same order.
-    Leading axes broadcast. Returns (...), float64 if either input is, else float32.
+    Leading axes broadcast. Returns (...).
 
     RGB is an axis like others, before the last: a coloured material has coefficients (..., 3, order²), for which light
     is light[..., None, :], and the result is (..., 3). The radiance of lights is a factor of it: multiply it by their
     RGB. Three lights that meet the three rows of a coloured material one by one give a UserWarning.
     """
-    dtype = common_type(light, material)
+    dtype = given_type(light, material)
     lights = checked_array("light", light, dtype, core_axes=1)
     materials = checked_array("material", material, dtype, core_axes=1)
     order = _order_of("light", lights)
@@ -223,6 +235,28 @@ def shade(light_coefficients: ArrayLike, bsdf_coefficients: ArrayLike, *, thread
     """Deprecated name of `contract`."""
     warnings.warn("shlight.shade is deprecated; its name is shlight.contract", DeprecationWarning, stacklevel=2)
     return contract(light_coefficients, bsdf_coefficients, threads=threads)
+
+
+def _result(
+    compute: Callable[..., Any], arguments: tuple[Any, ...], leading: tuple[int, ...], out: Floats | None
+) -> Floats:
+    """Coefficients (*leading, order²), in `out` if it is given. arguments: flat arrays, the order, and what follows."""
+    arrays = [own for own in arguments if isinstance(own, np.ndarray)]
+    shape = (*leading, arguments[len(arrays)] ** 2)
+    if out is None:
+        made: Floats = compute(*arguments).reshape(shape)
+        return made
+    dtype = arrays[0].dtype
+    fits = isinstance(out, np.ndarray) and out.dtype == dtype and out.shape == shape
+    if not (fits and out.flags.c_contiguous and out.flags.writeable):
+        raise ValueError(f"out must be a C-contiguous, writeable array of {dtype} and shape {shape}")
+    if any(np.may_share_memory(out, own) for own in arrays):
+        raise ValueError("out must not overlap the inputs")
+    if compute.__module__ == _core.__name__:
+        compute(*arguments, out=out.reshape(-1, shape[-1]))
+    else:  # the methods to compare with
+        out[...] = compute(*arguments).reshape(shape)
+    return out
 
 
 def _order_of(name: str, coefficients: Floats) -> int:

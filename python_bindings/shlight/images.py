@@ -19,7 +19,16 @@ import numpy.typing as npt
 
 from shlight._arrays import checked_array, checked_flag, checked_number
 
-__all__ = ["linear_to_srgb8", "read_exr", "read_layers", "read_texture", "write_exr", "write_layers", "write_png"]
+__all__ = [
+    "linear_to_srgb8",
+    "read_environment",
+    "read_exr",
+    "read_layers",
+    "read_texture",
+    "write_exr",
+    "write_layers",
+    "write_png",
+]
 
 _TEXTURE_NUMBERS = ("uint8", "uint16", "half", "float")
 _CHANNEL_NAMES = {1: ("Y",), 3: ("R", "G", "B"), 4: ("R", "G", "B", "A")}
@@ -177,6 +186,23 @@ def read_texture(path: str | os.PathLike[str], *, associate: bool = True) -> npt
     """
     pixels = _read(path, associate=checked_flag("associate", associate))
     return np.ascontiguousarray(pixels[..., : {2: 1}.get(pixels.shape[2], 4)])
+
+
+def read_environment(path: str | os.PathLike[str]) -> npt.NDArray[np.float32]:
+    """Reads a picture of all directions, such as an .exr or .hdr file, as `Scene.set_environment` takes it.
+
+    Returns (height, width, 3) float32, linear; integers are taken for sRGB.
+    Raises ValueError naming the argument, OSError when the file is missing or cannot be read.
+    """
+    rgb = read_texture(path)[..., :3]
+    linear = decoded_srgb(rgb) if rgb.dtype.kind == "u" else rgb
+    return np.ascontiguousarray(np.broadcast_to(linear, (*rgb.shape[:2], 3)), np.float32)
+
+
+def decoded_srgb(pixels: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
+    """Linear light 0 … 1 of unsigned integers that hold sRGB (IEC 61966-2-1)."""
+    encoded = pixels / np.iinfo(pixels.dtype).max
+    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
 
 
 def check_texture(path: str | os.PathLike[str]) -> None:

@@ -11,11 +11,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from shlight._core import Scene
 from shlight.commands import CommandError
-from shlight.images import read_texture
+from shlight.images import read_environment
 from shlight.models import SUFFIXES, load
 from shlight.rendering import render
 
@@ -64,7 +62,7 @@ def render_still(
     for warning in caught:
         print(f"shlight render: {warning.message}", file=sys.stderr)
     if environment is not None:
-        scene.set_environment(_environment(environment))
+        scene.set_environment(read_environment(environment))
     try:
         result = render(scene, *size, threads=threads, **{name: _value(text) for name, text in settings.items()})
     except TypeError as error:
@@ -94,16 +92,6 @@ def _built(path: Path) -> Scene:
     if not isinstance(scene, Scene):
         raise CommandError(f"{path}: {build.__name__}() must return a shlight.Scene, got {type(scene).__name__}", 2)
     return scene
-
-
-def _environment(path: Path) -> Any:
-    """Linear radiance (height, width, 3) of a picture; one of integers is sRGB."""
-    pixels = read_texture(path)
-    rgb = np.broadcast_to(pixels[..., :3], (*pixels.shape[:2], 3))
-    if rgb.dtype.kind != "u":
-        return rgb
-    encoded = rgb / np.iinfo(rgb.dtype).max
-    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
 
 
 def _value(text: Any) -> Any:

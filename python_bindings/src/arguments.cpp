@@ -88,7 +88,9 @@ AnyArray<T> array_from(const char* name, const py::handle& value, const char* ki
         std::strchr(kinds, 'f') != nullptr ? "an array of real numbers" : "an array of integers";
     py::array raw;
     try {
-        raw = py::array(py::reinterpret_borrow<py::object>(value));
+        const bool has_dlpack_alone = py::hasattr(value, "__dlpack__") && !py::hasattr(value, "__array__");
+        raw = py::array(has_dlpack_alone ? py::module_::import("numpy").attr("from_dlpack")(value)
+                                         : py::reinterpret_borrow<py::object>(value));
     } catch (const py::error_already_set& error) {
         if (!error.matches(PyExc_Exception)) {
             throw;  // an interrupt

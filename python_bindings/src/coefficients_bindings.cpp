@@ -21,9 +21,13 @@
 namespace shlight::python {
 namespace {
 
+/// Rows for results: those of `out`, whose type and shape shlight/coefficients.py has checked, or new ones for None.
 template <class T>
-Array<T> rows(std::size_t count, int order) {
+Array<T> rows(const py::object& out, std::size_t count, int order) {
     check_order(order);
+    if (!out.is_none()) {
+        return Array<T>(out);
+    }
     return uninitialized<T>({static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(coefficient_count(order))});
 }
 
@@ -51,9 +55,9 @@ void check_sums(std::span<const T> sums, std::initializer_list<std::pair<const c
 }
 
 template <class T>
-Array<T> basis(const Array<T>& directions, int order, int threads) {
+Array<T> basis(const Array<T>& directions, int order, int threads, const py::object& target) {
     const auto d = vectors("directions", directions);
-    Array<T> out = rows<T>(d.size(), order);
+    Array<T> out = rows<T>(target, d.size(), order);
     T* data = out.mutable_data();
     const Output output = output_of(static_cast<std::size_t>(out.nbytes()));
     in_chunks(d.size(), threads, [&](std::size_t first, std::size_t count) {
@@ -77,10 +81,11 @@ Array<T> evaluated(const Array<T>& coefficients, const Array<T>& directions, int
 }
 
 template <class T>
-Array<T> spheres(const Array<T>& centers, const Array<T>& radii, int order, bool clip, int threads) {
+Array<T> spheres(const Array<T>& centers, const Array<T>& radii, int order, bool clip, int threads,
+                 const py::object& target) {
     const auto c = vectors("centers", centers);
     const auto r = values(radii);
-    Array<T> out = rows<T>(c.size(), order);
+    Array<T> out = rows<T>(target, c.size(), order);
     T* data = out.mutable_data();
     const Output output = output_of(static_cast<std::size_t>(out.nbytes()));
     in_chunks(c.size(), threads, [&](std::size_t first, std::size_t count) {
@@ -91,10 +96,11 @@ Array<T> spheres(const Array<T>& centers, const Array<T>& radii, int order, bool
 }
 
 template <class T>
-Array<T> caps(const Array<T>& axes, const Array<T>& half_angles, int order, bool clip, int threads) {
+Array<T> caps(const Array<T>& axes, const Array<T>& half_angles, int order, bool clip, int threads,
+              const py::object& target) {
     const auto a = vectors("axes", axes);
     const auto h = values(half_angles);
-    Array<T> out = rows<T>(a.size(), order);
+    Array<T> out = rows<T>(target, a.size(), order);
     T* data = out.mutable_data();
     const Output output = output_of(static_cast<std::size_t>(out.nbytes()));
     in_chunks(a.size(), threads, [&](std::size_t first, std::size_t count) {
@@ -105,11 +111,11 @@ Array<T> caps(const Array<T>& axes, const Array<T>& half_angles, int order, bool
 }
 
 template <class T>
-Array<T> polygons(const Array<T>& vertices, int order, bool clip, int threads) {
+Array<T> polygons(const Array<T>& vertices, int order, bool clip, int threads, const py::object& target) {
     const auto v = vectors("vertices", vertices);
     const auto k = static_cast<std::size_t>(vertices.shape(1));
     const auto total = static_cast<std::size_t>(vertices.shape(0));
-    Array<T> out = rows<T>(total, order);
+    Array<T> out = rows<T>(target, total, order);
     T* data = out.mutable_data();
     in_chunks(total, threads, [&](std::size_t first, std::size_t count) {
         polygon_coefficients(v.subspan(first * k, count * k), static_cast<int>(k), order, clip,
@@ -120,11 +126,11 @@ Array<T> polygons(const Array<T>& vertices, int order, bool clip, int threads) {
 
 template <class T>
 Array<T> disks(const Array<T>& centers, const Array<T>& half_axes_u, const Array<T>& half_axes_v, int order, bool clip,
-               int threads) {
+               int threads, const py::object& target) {
     const auto c = vectors("centers", centers);
     const auto u = vectors("half_axes_u", half_axes_u);
     const auto v = vectors("half_axes_v", half_axes_v);
-    Array<T> out = rows<T>(c.size(), order);
+    Array<T> out = rows<T>(target, c.size(), order);
     T* data = out.mutable_data();
     in_chunks(c.size(), threads, [&](std::size_t first, std::size_t count) {
         disk_coefficients(c.subspan(first, count), u.subspan(first, count), v.subspan(first, count), order, clip,
@@ -148,17 +154,19 @@ Array<T> contracted(const Array<T>& light, const Array<T>& material, int order, 
 
 template <class T>
 void bind_coefficients_for(py::module_& m) {
-    m.def("sh_basis", &basis<T>, py::arg("directions").noconvert(), py::arg("order"), py::arg("threads"));
+    m.def("sh_basis", &basis<T>, py::arg("directions").noconvert(), py::arg("order"), py::arg("threads"),
+          py::arg("out") = py::none());
     m.def("evaluate", &evaluated<T>, py::arg("coefficients").noconvert(), py::arg("directions").noconvert(),
           py::arg("order"), py::arg("threads"));
     m.def("sphere_coefficients", &spheres<T>, py::arg("centers").noconvert(), py::arg("radii").noconvert(),
-          py::arg("order"), py::arg("clip"), py::arg("threads"));
+          py::arg("order"), py::arg("clip"), py::arg("threads"), py::arg("out") = py::none());
     m.def("cap_coefficients", &caps<T>, py::arg("axes").noconvert(), py::arg("half_angles").noconvert(),
-          py::arg("order"), py::arg("clip"), py::arg("threads"));
+          py::arg("order"), py::arg("clip"), py::arg("threads"), py::arg("out") = py::none());
     m.def("polygon_coefficients", &polygons<T>, py::arg("vertices").noconvert(), py::arg("order"), py::arg("clip"),
-          py::arg("threads"));
+          py::arg("threads"), py::arg("out") = py::none());
     m.def("disk_coefficients", &disks<T>, py::arg("centers").noconvert(), py::arg("half_axes_u").noconvert(),
-          py::arg("half_axes_v").noconvert(), py::arg("order"), py::arg("clip"), py::arg("threads"));
+          py::arg("half_axes_v").noconvert(), py::arg("order"), py::arg("clip"), py::arg("threads"),
+          py::arg("out") = py::none());
     m.def("contract", &contracted<T>, py::arg("light").noconvert(), py::arg("material").noconvert(), py::arg("order"),
           py::arg("threads"));
 }

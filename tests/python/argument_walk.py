@@ -31,7 +31,7 @@ SPHERE = {"centers": [0.0, 0.0, 2.0], "radii": 1.0}
 CAP = {"axes": [0.0, 0.0, 2.0], "half_angles": 1.0}
 POLYGON = {"vertices": TRIANGLE}
 DISK = {"centers": [0.0, 0.0, 1.0], "half_axes_u": [1.0, 0.0, 0.0], "half_axes_v": [0.0, 1.0, 0.0]}
-COEFFICIENTS = {"order": 3, "clip": True, "dtype": np.float32, "threads": 0}
+COEFFICIENTS = {"order": 3, "clip": True, "dtype": np.float32, "threads": 0, "out": None}
 EXACT = {**COEFFICIENTS, "method": "exact", "tolerance": None, "samples": None, "seed": None, "sampling": None}
 RANDOM = {**COEFFICIENTS, "method": "monte_carlo", "samples": 8, "seed": 1, "sampling": "area"}
 SHADED = {"bsdf": GGX, "cos_theta_o": 0.5, "tolerance": 1e-3, "threads": 0, "return_effort": True}
@@ -219,7 +219,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "sphere_coefficients": (shlight.sphere_coefficients, {**SPHERE, **EXACT}),
     "sphere_coefficients/random": (shlight.sphere_coefficients, {**SPHERE, **RANDOM}),
     "evaluate": (shlight.evaluate, {"coefficients": [1.0, 0, 0, 0], "directions": [0.0, 0, 1], "threads": 0}),
-    "sh_basis": (shlight.sh_basis, {"directions": [0.0, 0, 1], "order": 3, "dtype": np.float32, "threads": 0}),
+    "sh_basis": (shlight.sh_basis, {"directions": [0.0, 0, 1], "order": 3, "dtype": None, "threads": 0, "out": None}),
     "contract": (shlight.contract, {"light": [1.0, 0, 0, 0], "material": [1.0, 0, 0, 0], "threads": 0}),
     "shading_frames": (shlight.shading_frames, {"normals": [[0.0, 0.0, 1.0]] * 2, "tangents": [1.0, 0.0, 0.0]}),
     "shade_spheres": (shlight.shade_spheres, {**SPHERE, **AUTO}),
@@ -247,6 +247,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         images.write_layers,
         {"path": "a.exr", "passes": {"depth": picture(1, np.float32)}, "view_layer": "ViewLayer"},
     ),
+    "images.read_environment": (images.read_environment, {"path": PICTURE}),
     "images.read_exr": (images.read_exr, {"path": "missing.exr"}),
     "images.read_layers": (images.read_layers, {"path": LAYERS, "view_layer": "ViewLayer"}),
     "images.read_texture": (images.read_texture, {"path": PICTURE, "associate": False}),

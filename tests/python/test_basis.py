@@ -55,15 +55,15 @@ def test_shapes_and_types(shape: tuple[int, ...], dtype: type) -> None:
 
 
 def test_takes_integers_lists_and_strides() -> None:
-    expected = shlight.sh_basis(np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]), 5)
-    np.testing.assert_array_equal(shlight.sh_basis([[1, 2, 3], [4, 5, 6]], 5), expected)
+    expected = shlight.sh_basis(np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]), 5, np.float32)
+    np.testing.assert_array_equal(shlight.sh_basis([[1, 2, 3], [4, 5, 6]], 5, np.float32), expected)
     strided = np.zeros((2, 6), np.float32)
     strided[:, ::2] = [[1, 2, 3], [4, 5, 6]]
     np.testing.assert_array_equal(shlight.sh_basis(strided[:, ::2], 5), expected)
     for dtype in (np.float64, np.float32, ">f4"):
         given = np.asfortranarray(np.array([[1, 2, 3], [4, 5, 6]], dtype))
-        np.testing.assert_array_equal(shlight.sh_basis(given, 5), expected)
-        np.testing.assert_array_equal(shlight.sh_basis(np.ascontiguousarray(given), 5), expected)
+        np.testing.assert_array_equal(shlight.sh_basis(given, 5, np.float32), expected)
+        np.testing.assert_array_equal(shlight.sh_basis(np.ascontiguousarray(given), 5, np.float32), expected)
 
 
 def test_evaluate_sums_the_expansion() -> None:

@@ -82,7 +82,7 @@ def test_shapes() -> None:
 
 
 def test_contract_broadcasts_over_colors() -> None:
-    light = shlight.sphere_coefficients(np.ones((7, 3)), 0.5, 4)
+    light = shlight.sphere_coefficients(np.ones((7, 3), np.float32), 0.5, 4)
     bsdf = Bsdf.lambert([0.1, 0.2, 0.3]).coefficients(np.full(7, 0.5), 4)
     radiance = shlight.contract(light[..., None, :], bsdf)
     assert radiance.shape == (7, 3)

@@ -101,3 +101,12 @@ def test_reading_what_is_no_exr_says_so(tmp_path: Path, image: np.ndarray) -> No
             images.read_exr(tmp_path / name)
     with pytest.raises(FileNotFoundError):
         images.read_exr(tmp_path / "missing.exr")
+
+
+def test_environments_are_linear(tmp_path: Path) -> None:
+    sky = np.random.default_rng(1).uniform(0, 5, (3, 6, 3)).astype(np.float32)
+    images.write_exr(tmp_path / "sky.exr", sky)
+    np.testing.assert_array_equal(images.read_environment(tmp_path / "sky.exr"), sky)
+    images.write_png(tmp_path / "sky.png", np.full((3, 6, 1), 188, np.uint8))
+    expected = np.full((3, 6, 3), ((188 / 255 + 0.055) / 1.055) ** 2.4)
+    np.testing.assert_allclose(images.read_environment(tmp_path / "sky.png"), expected, rtol=1e-6)

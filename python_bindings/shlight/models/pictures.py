@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shlight import nodes
+from shlight.images import decoded_srgb
 from shlight.models.parts import Floats
 from shlight.nodes.values import Color, Vector
 
@@ -30,9 +31,7 @@ class Pictures:
         if pixels.shape[2] == 4 and (pixels[..., 3] != np.iinfo(pixels.dtype).max).any():
             alpha = self._looked_up(picture, "alpha", pixels[..., 3], place, "linear", interpolation, extension)
             made = Color(made.x, made.y, made.z, alpha.x)
-        values = rgb / np.iinfo(pixels.dtype).max
-        if encoding == "srgb":
-            values = np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+        values = decoded_srgb(rgb) if encoding == "srgb" else rgb / np.iinfo(rgb.dtype).max
         return made, np.broadcast_to(values, (*values.shape[:2], 3)).mean(axis=(0, 1))
 
     def _looked_up(self, picture: Any, part: str, pixels: NDArray[Any], place: Vector | None, *way: str) -> Color:
