@@ -19,7 +19,7 @@ from scene_cases import FACES, FLOOR, from_above, lit_floor
 import shlight
 from shlight_tools import methods
 from shlight_tools.bench.picture_scenes import lamp_at
-from shlight_tools.charts.scenes import ball, look_at
+from shlight_tools.charts.scenes import ball
 
 
 def floor_points(size: int, half_size: float = 2.0) -> NDArray[np.float64]:
@@ -227,7 +227,7 @@ def test_a_glossy_penumbra_is_that_of_plain_monte_carlo() -> None:
     scene.add_mesh([[-8, -8, 2], [0, -8, 2], [0, 8, 2], [-8, 8, 2]], FACES)
     lamp = lamp_at((0.5, -1.5, 4), (0, 0, 0), 1.5, 1.5, (12, 8, 4))
     scene.add_polygon_light(lamp.corners, lamp.radiance)
-    scene.set_camera(look_at((0, -3, 1.5), (-0.144, -0.134, 0.602)), 0.03)
+    scene.set_camera(shlight.look_at((0, -3, 1.5), (-0.144, -0.134, 0.602)), 0.03)
     image = shlight.render(scene, 8, 8, min_samples=256, max_samples=256, noise_threshold=0.0, max_bounces=0)
     expected = methods.render_monte_carlo(scene, 8, 8, samples=16384)
     # A million rays whose values vary by about their mean: 1e-3; and the renderer's tolerance of 1e-3.

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import shlight
-from shlight_tools.charts.scenes import add_quad, look_at
+from shlight_tools.charts.scenes import add_quad
 
 SEED = 1
 HALF, STRENGTH = 4.0, 30.0  # of the floor; of all lights together
@@ -39,7 +39,7 @@ def many_lights(count: int, radius: float, angle: float) -> shlight.Scene:
             scene.add_point_light(position, tuple(intensity))
         else:
             scene.add_sphere_light(position, radius, tuple(intensity / (np.pi * radius**2)))
-    scene.set_camera(look_at((0.0, -6.0, 4.0), (0.0, 0.0, 0.2)), angle)
+    scene.set_camera(shlight.look_at((0.0, -6.0, 4.0), (0.0, 0.0, 0.2)), angle)
     return scene
 
 
@@ -56,7 +56,7 @@ def ball_on_floor(bsdf: shlight.Bsdf) -> shlight.Scene:
     scene = floored(bsdf)
     normals, faces = icosphere(4)
     scene.add_mesh(0.8 * normals + (0, 0, 0.8), faces, bsdf=bsdf, normals=normals)
-    scene.set_camera(look_at((0.0, -6.0, 3.0), (0.0, 0.0, 0.5)), 0.7)
+    scene.set_camera(shlight.look_at((0.0, -6.0, 3.0), (0.0, 0.0, 0.5)), 0.7)
     return scene
 
 

@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 import shlight
 from shlight import images
 from shlight.quiet import quiet
-from shlight_tools.charts.scenes import look_at
 
 from .picture_scenes import BallLamp, Light, PictureScene, Sun, Thing
 
@@ -222,7 +221,7 @@ def _add_blender_lamp(bpy: Any, lamp: Light) -> None:
     if isinstance(lamp, Sun):
         light = bpy.data.lights.new("Lamp", "SUN")
         strength, light.angle, unit = lamp.irradiance, lamp.angle, 1.0
-        pose = look_at((0, 0, 0), lamp.direction)
+        pose = shlight.look_at((0, 0, 0), lamp.direction)
     elif isinstance(lamp, BallLamp):
         light = bpy.data.lights.new("Lamp", "POINT")
         strength, light.shadow_soft_size = lamp.radiance, lamp.radius

@@ -16,7 +16,7 @@ import numpy as np
 import shlight
 from shlight import nodes
 from shlight._arrays import Floats
-from shlight_tools.charts.scenes import Colour, Mesh, Point, ball, box, knot, look_at, vase
+from shlight_tools.charts.scenes import Colour, Mesh, Point, ball, box, knot, vase
 
 GREY: Colour = (0.6, 0.6, 0.6)
 
@@ -81,7 +81,7 @@ class PictureScene:
     @property
     def camera(self) -> Floats:
         """Camera to world: the camera looks along its own -z, y upwards."""
-        return look_at(self.eye, self.target)
+        return shlight.look_at(self.eye, self.target)
 
     def for_shlight(self) -> shlight.Scene:
         """The scene as `shlight.render` takes it."""
@@ -136,7 +136,7 @@ def checked_floor() -> Thing:
 
 def lamp_at(place: Point, target: Point, width: float, height: float, radiance: Colour) -> Lamp:
     """A rectangular lamp at a place that shines to another."""
-    pose = look_at(place, target)
+    pose = shlight.look_at(place, target)
     right, up = pose[:3, 0] * width / 2, pose[:3, 1] * height / 2
     # Seen from the target, right is left.
     corners = [-right - up, -right + up, right + up, right - up]

@@ -119,18 +119,6 @@ def add_quad(scene: shlight.Scene, corners: list[Point], bsdf: shlight.Bsdf) -> 
     scene.add_mesh(corners, [[0, 1, 2], [0, 2, 3]], bsdf=bsdf)
 
 
-def look_at(eye: Point, target: Point) -> Floats:
-    """Camera to world: the camera looks along its own -z, y upwards."""
-    back = np.subtract(eye, target)
-    back = back / np.linalg.norm(back)
-    right = np.cross([0.0, 0.0, 1.0], back)
-    right /= np.linalg.norm(right)
-    to_world = np.eye(4)
-    to_world[:3, :3] = np.stack([right, np.cross(back, right), back], axis=1)
-    to_world[:3, 3] = eye
-    return to_world
-
-
 def _lit_room(shell: Callable[[Colour], shlight.Bsdf], thing: Callable[[Colour], shlight.Bsdf]) -> shlight.Scene:
     """shell, thing: the materials of walls and of what stands in the room, of a colour in matt paint."""
     scene = shlight.Scene()
@@ -148,7 +136,7 @@ def _lit_room(shell: Callable[[Colour], shlight.Bsdf], thing: Callable[[Colour],
     scene.add_sphere_light((1.95, -0.5, 1.9), 0.18, (24.0, 29.0, 36.0))
     # Counter-clockwise as the room sees it: a polygon shines to one side.
     scene.add_polygon_light([(-0.2, -0.2, 3.1), (-0.2, 0.9, 3.1), (1.3, 0.9, 3.1), (1.3, -0.2, 3.1)], (8.0, 7.7, 7.2))
-    scene.set_camera(look_at((0.05, -4.6, 1.75), (0.05, 0.6, 0.95)), math.radians(46))
+    scene.set_camera(shlight.look_at((0.05, -4.6, 1.75), (0.05, 0.6, 0.95)), math.radians(46))
     return scene
 
 
