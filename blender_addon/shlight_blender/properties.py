@@ -134,7 +134,7 @@ class SHLIGHT_SceneSettings(bpy.types.PropertyGroup):
     )
     world_width: bpy.props.IntProperty(
         name="World Width",
-        description="Width of the picture that a world of other nodes than one colour or a picture is baked to",
+        description="Width of the picture that a world of other nodes than one colour or a picture becomes",
         default=2048,
         min=64,
         max=16384,

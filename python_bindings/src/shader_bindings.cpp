@@ -97,9 +97,10 @@ Array<float> evaluate(const ShaderProgram& program,
         }
     }
     Array<float> out({static_cast<py::ssize_t>(program.result_count()), static_cast<py::ssize_t>(count)});
+    const std::span<float> results(out.mutable_data(), static_cast<std::size_t>(out.size()));
     ShaderProgram::Registers registers;
-    program.evaluate(ArrayReader(inputs, count), count, true, registers,
-                     {out.mutable_data(), static_cast<std::size_t>(out.size())});
+    const py::gil_scoped_release release;
+    program.evaluate(ArrayReader(inputs, count), count, true, registers, results);
     return out;
 }
 

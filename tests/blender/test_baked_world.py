@@ -179,7 +179,7 @@ def test_a_bake_that_fails_is_named(studio: Any, monkeypatch: pytest.MonkeyPatch
     text = "\n".join(studio.messages())
     assert "World 'World': it could not be baked to a picture (Blender ended unexpectedly with code 1" in text
     assert "no Cycles" in text
-    assert "node 'Sky Texture': varying values are not supported" in text
+    assert "node 'Sky Texture': Sky Texture is not supported" in text
     monkeypatch.setattr(bake, "command", lambda *_: ["/nowhere/blender"])
     assert "No such file" in "\n".join(studio.messages())
 

@@ -63,15 +63,20 @@ class VaryingEmission:
         builder, program = self._program
         given = []
         for source, index, component in self.inputs:
-            values = np.broadcast_to(inputs.get((source, index, component), np.zeros(count)), count)
+            values = np.broadcast_to(inputs.get((source, index, component), np.zeros(count)), (3, count))
             number = builder.input_number(source, index)
-            given.append(((*number, component), np.repeat(values[None].astype(np.float32), 3, axis=0)))
+            given.append(((*number, component), values.astype(np.float32)))
         results: Array = program.evaluate(given, count).astype(np.float64)
         return results
 
+    def values(self, inputs: Mapping[Input, Array], count: int) -> Array:
+        """Linear RGB (count, 3). Inputs are (count,), and what is missing is 0; or (3, count) at the places and at
+        those right of and below them, between which pictures are filtered."""
+        return np.nan_to_num(self._evaluate(inputs, count)[:3].T)
+
     def radiance(self, inputs: Mapping[Input, Array], count: int) -> Array:
-        """Linear RGB (count, 3), never negative; `inputs` are (count,), and what is missing is 0."""
-        return np.clip(np.nan_to_num(self._evaluate(inputs, count)[:3].T), 0.0, None)
+        """Linear RGB (count, 3), which is never negative; `inputs` are those of `values`."""
+        return np.clip(self.values(inputs, count), 0.0, None)
 
     def of_sides(self, inputs: Mapping[Input, Array], count: int) -> Array:
         """The radiance of the front, whose inputs are given, and, if it may differ, of the back: (count, 3 or 6)."""

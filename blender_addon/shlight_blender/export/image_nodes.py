@@ -12,7 +12,7 @@ import bpy
 
 from shlight import nodes
 from shlight.nodes import Color, Value, Vector
-from shlight.nodes.values import Number, clamp, dot, equal, operation, select, sqrt
+from shlight.nodes.values import Number, clamp, dot, equal, maximum, normalize, operation, select, sqrt
 
 from ..names import name_of
 from ..report import Effect
@@ -43,6 +43,28 @@ def image_texture(inputs: NodeInputs) -> Color | Value:
     return found.alpha if inputs.output.identifier == "Alpha" else found
 
 
+def environment_texture(inputs: NodeInputs) -> Color:
+    """An Environment Texture node, looked up by a direction or a place."""
+    node = inputs.node
+    textures = None if node.image is None else _textures(inputs, node.image)
+    if textures is None:
+        return Color(*MISSING)
+    direction = normalize(inputs.linked_vector("Vector") or nodes.position())
+    if node.projection == "MIRROR_BALL":
+        return _lookup(inputs, textures, _on_mirror_ball(direction))
+    x, y, z = direction
+    u = 0.5 - operation("arctangent2", y, x) / (2.0 * math.pi)
+    v = 0.5 + operation("arctangent2", z, sqrt(x * x + y * y)) / math.pi
+    return _lookup(inputs, textures, Vector(u, v, 0.0), closed=True)
+
+
+def _on_mirror_ball(direction: Vector) -> Vector:
+    """The place in a picture of a mirror ball, seen along +y, that shows a direction."""
+    x, y, z = direction.x, direction.y - 1.0, direction.z
+    width = 2.0 * sqrt(maximum(-0.5 * y, 0.0))
+    return Vector(0.5 + 0.5 * select(width, x / width, x), 0.5 + 0.5 * select(width, z / width, z), 0.0)
+
+
 def _textures(inputs: NodeInputs, image: Any) -> Any:
     """The texture of an image, or several by tile; None if there are no pixels, which is reported."""
     space = image.colorspace_settings.name
@@ -70,7 +92,7 @@ def _textures(inputs: NodeInputs, image: Any) -> Any:
 
 
 def _extension(node: Any) -> str:
-    return EXTENSIONS.get(node.extension, "repeat")
+    return EXTENSIONS.get(getattr(node, "extension", "REPEAT"), "repeat")
 
 
 def _tiles(image: Any, use: TextureUse) -> dict[tuple[int, int], Any]:
@@ -96,10 +118,10 @@ def _projected(inputs: NodeInputs, textures: Any, place: Vector) -> Color:
         place = _on_sphere(place * 2.0 - 1.0)
     elif projection == "TUBE":
         place = _on_tube(place * 2.0 - 1.0)
-    return _lookup(inputs, textures, place)
+    return _lookup(inputs, textures, place, closed=projection != "FLAT")
 
 
-def _lookup(inputs: NodeInputs, textures: Any, place: Vector) -> Color:
+def _lookup(inputs: NodeInputs, textures: Any, place: Vector, *, closed: bool = False) -> Color:
     node = inputs.node
     alpha_is_used = any(output.name == "Alpha" and output.is_linked for output in node.outputs)
     return nodes.image(
@@ -108,6 +130,7 @@ def _lookup(inputs: NodeInputs, textures: Any, place: Vector) -> Color:
         interpolation=INTERPOLATIONS[node.interpolation],
         extension=_extension(node),
         unassociate=alpha_is_used and associates_alpha(node.image),
+        closed=closed,
     )
 
 

@@ -3,18 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shlight.photometry import LUMINANCE
-
 from ..names import name_of
-from ..report import ExportReport
-from .blackbody import blackbody_rgb
 
 RGB = NDArray[np.float64]
 
@@ -87,15 +83,6 @@ def origin(socket: Any, groups: tuple[Any, ...] = ()) -> Origin:
         socket = inner
 
 
-def _own_value(socket: Any) -> float | RGB:
-    value = getattr(socket, "default_value", None)
-    if value is None:
-        return 0.0
-    if isinstance(value, int | float):
-        return float(value)
-    return np.array(value[:3], dtype=np.float64)
-
-
 def all_nodes(tree: Any) -> Iterator[Any]:
     """The nodes of a tree and of the groups in it."""
     for node in tree.nodes:
@@ -107,63 +94,3 @@ def all_nodes(tree: Any) -> Iterator[Any]:
 def node_name(node: Any) -> str:
     """A node as the user finds it: its label if it has one, else its name."""
     return name_of(node, "label") or name_of(node)
-
-
-class ConstantReader:
-    """Constant values of a tree's sockets; whatever is not constant is reported and replaced by the socket's value.
-
-    `place` names the tree's owner in the report, for instance "Material 'Wood'".
-    """
-
-    def __init__(self, place: str, report: ExportReport) -> None:
-        self.place = place
-        self.report = report
-
-    def at(self, node: Any) -> str:
-        """The place of one node in the report."""
-        return f"{self.place}, node '{node_name(node)}'"
-
-    def number(self, node: Any, name: str, groups: tuple[Any, ...] = ()) -> float:
-        """Value of the input `name` as a number; colours count with their luminance, as in Cycles."""
-        value = self._value(node, node.inputs[name], groups)
-        return value if isinstance(value, float) else float(value @ LUMINANCE)
-
-    def share(self, node: Any, name: str, groups: tuple[Any, ...] = ()) -> float:
-        """Value of the input `name` as a number, clamped to 0 … 1 as Cycles does."""
-        return min(max(float(np.nan_to_num(self.number(node, name, groups))), 0.0), 1.0)
-
-    def color(self, node: Any, name: str, groups: tuple[Any, ...] = ()) -> RGB:
-        """Value of the input `name` as linear RGB, never negative; numbers count as grey."""
-        value = self._value(node, node.inputs[name], groups)
-        rgb = np.full(3, value) if isinstance(value, float) else value
-        return np.maximum(np.nan_to_num(rgb), 0.0)
-
-    def _value(self, node: Any, socket: Any, groups: tuple[Any, ...]) -> float | RGB:
-        source = origin(socket, groups)
-        if source.node is None:
-            return _own_value(source.socket)
-        constant = CONSTANT_NODES.get(source.node.type)
-        if constant is not None:
-            return constant(self, source)
-        fallback = _own_value(source.socket)
-        shown = np.array2string(np.atleast_1d(fallback), precision=3, separator=", ")
-        self.report.add(
-            self.at(source.node),
-            f"varying values are not supported; '{socket.name}' of '{node_name(node)}' uses its constant {shown}",
-        )
-        return fallback
-
-
-def _blackbody(reader: ConstantReader, source: Origin) -> float | RGB:
-    return blackbody_rgb(reader.number(source.node, "Temperature", source.groups))
-
-
-def _output_value(reader: ConstantReader, source: Origin) -> float | RGB:
-    return _own_value(source.output)
-
-
-CONSTANT_NODES: dict[str, Callable[[ConstantReader, Origin], float | RGB]] = {
-    "VALUE": _output_value,
-    "RGB": _output_value,
-    "BLACKBODY": _blackbody,
-}

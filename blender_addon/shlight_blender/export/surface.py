@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +13,7 @@ from shlight.nodes import Shader
 from ..report import Effect, ExportReport
 from .expressions import ExpressionReader, NodeInputs, ReadNode, Surroundings, own_value
 from .frame_nodes import FRAME_NODES
-from .image_nodes import image_texture
+from .image_nodes import environment_texture, image_texture
 from .input_nodes import INPUT_NODES
 from .nodes import Origin, origin
 from .value_nodes import VALUE_NODES
@@ -22,6 +22,7 @@ NODES: dict[str, ReadNode] = {
     "VALUE": lambda inputs: own_value(inputs.output),
     "RGB": lambda inputs: own_value(inputs.output),
     "TEX_IMAGE": image_texture,
+    "TEX_ENVIRONMENT": environment_texture,
     **FRAME_NODES,
     **INPUT_NODES,
     **VALUE_NODES,
@@ -50,7 +51,7 @@ class ShaderInputs(NodeInputs):
 
 
 class ShaderReader(ExpressionReader):
-    """Reads a tree's shaders; `shaders` says how a node of each type is read."""
+    """Reads a tree's shaders; `shaders` and `values` say how a node of each type is read."""
 
     def __init__(
         self,
@@ -59,8 +60,9 @@ class ShaderReader(ExpressionReader):
         report: ExportReport,
         surroundings: Surroundings,
         shaders: dict[str, ReadShader],
+        values: Mapping[str, ReadNode] = NODES,
     ) -> None:
-        super().__init__(owner, place, report, surroundings, NODES)
+        super().__init__(owner, place, report, surroundings, values)
         self._shaders = shaders
         self._made: dict[tuple[Any, ...], Shader] = {}
 

@@ -12,20 +12,26 @@ from mathutils import Euler
 from numpy.typing import NDArray
 
 import shlight
+from shlight.nodes.values import number, vector
 
 from ..compat import uses_nodes
 from ..names import name_of
 from ..passes import WORLD, PassWishes
 from ..report import Effect, ExportReport
 from .bake import Baked, BakeError, Sun
-from .nodes import ConstantReader, Origin, all_nodes, origin
+from .expressions import ExpressionReader, Surroundings
+from .nodes import Origin, all_nodes, node_name, origin
 from .pictures import linear_pixels
+from .surface import ShaderReader
+from .world_program import radiance_of
 
 # Bakes a world in its scene; None while the bake goes on.
 Bake = Callable[[Any, Any], "Baked | None"]
 
 MOST_NEGATIVE = 1e-3  # of a world's light, beyond which the report says that it is left out; skies have a little
 
+# Kinds of images whose pixels are those of one picture.
+PLAIN_IMAGES = {"FILE", "GENERATED"}
 # Kinds of rays that Cycles can hide the world from.
 RAY_KINDS = ("camera", "diffuse", "glossy")
 
@@ -98,8 +104,12 @@ def _read_world(world: Any, blender_scene: Any, report: ExportReport, bake: Bake
     source = origin(output.inputs["Surface"])
     if source.node is None:
         return _black()
+    picture = _plain_picture(source, ShaderReader(world, place, ExportReport(), Surroundings(), {}))
+    if picture is not None:
+        return picture
+    _report_rays(world, place, report)
     findings = ExportReport()
-    read = _read_surface(source, ConstantReader(place, findings))
+    read = World(radiance_of(output.inputs["Surface"], world, place, blender_scene.shlight.world_width, findings))
     if not len(findings):
         return read
     try:
@@ -111,68 +121,43 @@ def _read_world(world: Any, blender_scene: Any, report: ExportReport, bake: Bake
     if baked is None:
         report.add(place, "it is simplified until it is baked to a picture", Effect.LIGHT)
         return read
-    _report_rays(world, ConstantReader(place, report))
     return World(baked.picture, suns=baked.suns)
 
 
-def _read_surface(source: Origin, reader: ConstantReader) -> World:
-    """A world without baking; what of it is otherwise than this is in the reader's report."""
+def _plain_picture(source: Origin, reader: ExpressionReader) -> World | None:
+    """A world that is an Environment Texture, times a strength and turned, with the texels of its image; else None."""
     if source.node.type != "BACKGROUND":
-        reader.report.add(
-            reader.at(source.node), f"{source.node.bl_label} is not supported; black is used", Effect.LIGHT
-        )
-        return _black()
-    strength = reader.number(source.node, "Strength", source.groups)
+        return None
+    strength = number(reader.expression(source.node.inputs["Strength"], source.groups)).constant
     color = origin(source.node.inputs["Color"], source.groups)
-    if color.node is None or color.node.type != "TEX_ENVIRONMENT":
-        return World(strength * reader.color(source.node, "Color", source.groups))
-    read = _read_picture(reader, color)
-    return World((strength * read.radiance).astype(read.radiance.dtype), read.to_world)
+    node = color.node
+    if node is None or node.type != "TEX_ENVIRONMENT" or node.image is None or strength is None:
+        return None
+    if (node.projection, node.interpolation) != ("EQUIRECTANGULAR", "Linear") or node.image.source not in PLAIN_IMAGES:
+        return None
+    turn = _rotation(reader, origin(node.inputs["Vector"], color.groups))
+    pixels = None if turn is None else linear_pixels(node.image)
+    return None if pixels is None else World((strength * pixels).astype(pixels.dtype), turn)
 
 
-def _read_picture(reader: ConstantReader, source: Origin) -> World:
-    """An Environment Texture."""
-    node = source.node
-    place = reader.at(node)
-    if node.projection != "EQUIRECTANGULAR":
-        reader.report.add(place, f"projection {node.projection} is not supported; black is used", Effect.LIGHT)
-        return _black()
-    if node.interpolation != "Linear":
-        reader.report.add(place, f"interpolation {node.interpolation} is not supported; Linear is used")
-    if node.image is not None and node.image.source not in {"FILE", "GENERATED"}:
-        reader.report.add(place, f"images of the kind {node.image.source} are not supported; one picture is used")
-    pixels = None if node.image is None else linear_pixels(node.image)
-    if pixels is None:
-        reader.report.add(place, "it has no image, or its file is missing; black is used", Effect.LIGHT)
-        return _black()
-    return World(pixels, _rotation(reader, origin(node.inputs["Vector"], source.groups)))
-
-
-def _rotation(reader: ConstantReader, source: Origin) -> NDArray[np.float64]:
-    """Rotation of the picture whose directions come from `source`: a Mapping node, or the world's own directions."""
+def _rotation(reader: ExpressionReader, source: Origin) -> NDArray[np.float64] | None:
+    """Rotation of the picture whose directions come from `source`: Mapping nodes, or the world's own directions."""
     node = source.node
     if node is None or (node.type == "TEX_COORD" and source.output.name == "Generated"):
         return np.eye(3)
     if node.type != "MAPPING":
-        reader.report.add(reader.at(node), f"{node.bl_label} as a Vector is not supported; left out")
-        return np.eye(3)
+        return None
     before = _rotation(reader, origin(node.inputs["Vector"], source.groups))
-    angles = _constant_vector(reader, node, "Rotation", source)
-    scale = _constant_vector(reader, node, "Scale", source)
-    if np.ptp(scale) > 1e-6 * np.abs(scale).max() or scale[0] <= 0.0:
-        reader.report.add(reader.at(node), "'Scale' is not supported; the picture is only turned")
-    if node.vector_type in {"POINT", "TEXTURE"} and _constant_vector(reader, node, "Location", source).any():
-        reader.report.add(reader.at(node), "'Location' is not supported; the picture is only turned")
+    names = ("Rotation", "Scale", *(("Location",) if node.vector_type in {"POINT", "TEXTURE"} else ()))
+    constants = [vector(reader.expression(node.inputs[name], source.groups)).constant for name in names]
+    if before is None or any(constant is None for constant in constants):
+        return None
+    angles, scale, *shift = np.array(constants, dtype=np.float64)
+    if np.any(shift) or np.ptp(scale) > 1e-6 * np.abs(scale).max() or scale[0] <= 0.0:
+        return None
     turn = np.array(Euler(angles, "XYZ").to_matrix(), dtype=np.float64)
     # The node turns the directions that look the picture up, so that the picture turns the other way.
     return before @ (turn if node.vector_type == "TEXTURE" else turn.T)
-
-
-def _constant_vector(reader: ConstantReader, node: Any, name: str, source: Origin) -> NDArray[np.float64]:
-    socket = node.inputs[name]
-    if origin(socket, source.groups).node is not None:
-        reader.report.add(reader.at(node), f"a linked '{name}' is not supported; its constant is used")
-    return np.array(socket.default_value, dtype=np.float64)
 
 
 def _report_visibility(world: Any, place: str, report: ExportReport) -> None:
@@ -183,11 +168,12 @@ def _report_visibility(world: Any, place: str, report: ExportReport) -> None:
         report.add(place, text, Effect.LIGHT)
 
 
-def _report_rays(world: Any, reader: ConstantReader) -> None:
+def _report_rays(world: Any, place: str, report: ExportReport) -> None:
     """Names nodes whose values one picture cannot hold."""
     for node in all_nodes(world.node_tree):
         linked = {output.name for output in node.outputs if output.is_linked}
+        at = f"{place}, node '{node_name(node)}'"
         if node.type == "LIGHT_PATH" and linked:
-            reader.report.add(reader.at(node), "kinds of rays are not told apart; all see what diffuse rays see")
+            report.add(at, "kinds of rays are not told apart; all see what diffuse rays see")
         if (node.type == "TEX_COORD" and linked & {"Camera", "Window"}) or (node.type == "CAMERA" and linked):
-            reader.report.add(reader.at(node), "coordinates of the camera are not supported; baked without them")
+            report.add(at, "coordinates of the camera are not supported; baked without them")

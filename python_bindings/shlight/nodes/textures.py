@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from shlight import _core, images
 from shlight.nodes.inputs import uv
-from shlight.nodes.values import Color, Vector, below, right, steps
+from shlight.nodes.values import Color, Vector, below, operation, right, steps
 
 INTERPOLATIONS = ("closest", "linear", "cubic")
 EXTENSIONS = ("repeat", "extend", "clip", "mirror")
@@ -83,6 +83,7 @@ def image(
     interpolation: str = "linear",
     extension: str = "repeat",
     unassociate: bool = False,
+    closed: bool = False,
 ) -> Color:
     """The colour of a picture, filtered by how far texture coordinates move from camera ray to camera ray.
 
@@ -92,6 +93,7 @@ def image(
     interpolation: "linear", "closest" or "cubic" (a B-spline) between texels.
     place: (u, v), (0, 0) at the lower left corner; None: `uv()`.
     unassociate: divide colours by alpha.
+    closed: the picture goes around something, so that u jumps by 1 at a seam; the footprint there goes the short way.
     Raises ValueError naming the argument.
     """
     filtering = _chosen("interpolation", interpolation, INTERPOLATIONS)
@@ -106,4 +108,7 @@ def image(
     texture = ImageLookup(tiles, filtering, beyond, unassociate, tiled)
     where = uv() if place is None else place
     u, v = where.x, where.y
-    return Color(*steps("image", u, v, right(u), right(v), below(u), below(v), data=texture))
+    along, down = right(u), below(u)
+    if closed:
+        along, down = (step - operation("floor", step + 0.5) for step in (along, down))
+    return Color(*steps("image", u, v, along, right(v), down, below(v), data=texture))
