@@ -49,7 +49,7 @@ def environment_texture(inputs: NodeInputs) -> Color:
     textures = None if node.image is None else _textures(inputs, node.image)
     if textures is None:
         return Color(*MISSING)
-    direction = normalize(inputs.linked_vector("Vector") or nodes.position())
+    direction = normalize(inputs.vector_or("Vector", nodes.position()))
     if node.projection == "MIRROR_BALL":
         return _lookup(inputs, textures, _on_mirror_ball(direction))
     x, y, z = direction
