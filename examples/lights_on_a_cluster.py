@@ -34,7 +34,7 @@ def coefficients(spheres: Any, order: int = ORDER) -> Any:
     """Coefficients of each light, (count, order²), not computed yet."""
 
     def of_block(block: Any) -> Any:
-        return shlight.sphere_coefficients(block[:, :3], block[:, 3], order, threads=1)
+        return shlight.sphere_coefficients(block[:, :3], block[:, 3], order, dtype=np.float32, threads=1)
 
     return spheres.map_blocks(of_block, chunks=(spheres.chunks[0], (order**2,)), dtype=np.float32)
 

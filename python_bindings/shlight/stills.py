@@ -18,7 +18,7 @@ from shlight.models import SUFFIXES, load
 from shlight.rendering import render
 
 BUILDERS = ("build_scene", "build")  # functions of scripts that return a Scene
-SIZE = (1280, 720)
+SIZE = (960, 640)
 
 
 def is_still(path: Path) -> bool:

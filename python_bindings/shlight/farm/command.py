@@ -117,7 +117,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--frames", type=_frames, metavar="A-B[:STEP]", help="frames such as 7, 1-250, 1-250:10 or 1,5,9")
     add("--out", required=True, metavar="FILE", help="files such as shot_####.exr; #### becomes the frame. Of a model "
         "also .png")  # fmt: skip
-    add("--size", type=_size, metavar="WxH", help="of the picture of a model, in pixels (default: 1280x720)")
+    add("--size", type=_size, metavar="WxH", help="of the picture of a model, in pixels (default: 960x640)")
     add("--environment", metavar="FILE", help="a picture of all directions around a model, such as sky.exr or sky.hdr")
     add("--views", action="append", default=[], metavar="NAME,…", help="views of the scene, or cameras (default: all "
         "views, or the scene's camera)")  # fmt: skip

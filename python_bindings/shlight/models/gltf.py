@@ -6,6 +6,7 @@ https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
 
 from __future__ import annotations
 
+import importlib.util
 import io
 import json
 import math
@@ -25,7 +26,8 @@ from shlight.photometry import LUMENS_PER_WATT
 JSON_CHUNK = 0x4E4F534A
 LIGHTS = "KHR_lights_punctual"
 KEY = "shlight"  # in the extras of meshes, by which their primitives are found again
-KNOWN_EXTENSIONS = {*EXTENSIONS, LIGHTS, "KHR_texture_transform", "KHR_mesh_quantization", "KHR_draco_mesh_compression"}
+DRACO = "KHR_draco_mesh_compression"
+KNOWN_EXTENSIONS = {*EXTENSIONS, LIGHTS, DRACO, "KHR_texture_transform"}
 ASPECT = 16.0 / 9.0  # of a camera that has none
 
 
@@ -81,6 +83,8 @@ def _header(path: Path) -> tuple[dict[str, Any], bytes | None]:
 def _primitives(path: Path, header: dict[str, Any], rest: bytes | None) -> dict[int, list[Any]]:
     """The meshes of trimesh with triangles, by the number of the file's mesh; their materials have numbers as names."""
     trimesh = import_trimesh()
+    if DRACO in header.get("extensionsUsed", []) and importlib.util.find_spec("DracoPy") is None:
+        raise ValueError(f"path: {path} is compressed by Draco, which needs the module DracoPy")
     numbered = dict(header)
     numbered["materials"] = [{**own, "name": str(i)} for i, own in enumerate(header.get("materials", []))]
     numbered["meshes"] = [{**own, "extras": {KEY: i}} for i, own in enumerate(header.get("meshes", []))]
@@ -199,4 +203,6 @@ def _note_the_rest(model: Model, header: dict[str, Any]) -> None:
         model.notes.append("morph targets")
     if any(own.get("mode", 4) not in (4, 5) for own in primitives):
         model.notes.append("points, lines and triangle fans")
+    if any("sparse" in own for own in header.get("accessors", [])):
+        model.notes.append("sparse accessors (their values are left out)")
     model.notes += [name for name in header.get("extensionsUsed", []) if name not in KNOWN_EXTENSIONS]
