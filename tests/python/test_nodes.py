@@ -267,6 +267,11 @@ def test_operators_give_what_python_gives() -> None:
     assert (np.float64(2.0) - number(0.5)).constant == (np.array(2.0) - number(0.5)).constant == 1.5
 
 
+def test_an_array_times_a_shader_is_a_shader() -> None:
+    factor = np.array([0.25, 0.5, 1.0])
+    assert (factor * nodes.lambert(0.5)).lobes[0].weight.constant == (0.125, 0.25, 0.5)
+
+
 U = nodes.uv().x
 REFUSED: dict[str, Any] = {
     "bool": lambda: bool(U > 0.5),

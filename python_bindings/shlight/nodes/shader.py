@@ -79,6 +79,8 @@ class Shader:
     aovs: Mapping[str, Value | Color] = field(default_factory=dict)  # see with_aovs
     refractions: tuple[Refraction, ...] = ()
 
+    __array_ufunc__ = None  # an array of numpy times a shader is a shader
+
     def __add__(self, other: Shader) -> Shader:
         return Shader(
             _merged(self.lobes + other.lobes),
