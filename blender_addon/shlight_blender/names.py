@@ -37,3 +37,8 @@ def is_utf8(owner: Any) -> bool:
 def printable(text: str) -> str:
     """The text with a question mark for each byte of a path that is not UTF-8."""
     return text.encode("utf-8", "replace").decode("utf-8")
+
+
+def one_line(error: Exception) -> str:
+    """The text of an error without line breaks, and without what Blender puts before it."""
+    return " ".join(str(error).removeprefix("Error: ").split())

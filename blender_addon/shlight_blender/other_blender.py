@@ -12,13 +12,16 @@ from typing import Any
 import bpy
 import numpy as np
 
+START = Path(__file__).with_name("start.py")
 
-def command(script: Path, *arguments: str) -> list[str]:
-    """How it is started to run a script, which finds its arguments after "--"."""
+
+def command(worker: str) -> list[str]:
+    """How it is started to run main() of a module of the add-on, such as "export.bake_worker"."""
+    arguments = [str(START), "--", __package__, os.pathsep.join(folder for folder in sys.path if folder), worker]
     if bpy.app.binary_path:
-        options = ["--background", "--factory-startup", "--python-exit-code", "1", "--python", str(script)]
-        return [bpy.app.binary_path, *options, "--", *arguments]
-    return [sys.executable, str(script), "--", *arguments]
+        options = ["--background", "--factory-startup", "--python-exit-code", "1", "--python"]
+        return [bpy.app.binary_path, *options, *arguments]
+    return [sys.executable, *arguments]
 
 
 def environment() -> dict[str, str]:

@@ -28,14 +28,14 @@ class Progress:
         if not self._moving:
             print(self._title, file=self._stream, flush=True)
 
-    def step(self, share: float, text: str) -> None:
-        """Moves the bar of the part: share 0 … 1."""
+    def step(self, share: float, text: str = "") -> None:
+        """Moves the bar of the part: share 0 … 1; text: of what is being done."""
         if not self._moving:
             return
         full = min(max(int(BAR_WIDTH * share), 0), BAR_WIDTH)
         bar = "#" * full + "." * (BAR_WIDTH - full)
         elapsed = time.monotonic() - self._since
-        self._stream.write(f"\r\033[K[{bar}] {elapsed:5.1f} s  {self._title}: {text}"[: 4 + self._width()])
+        self._stream.write(f"\r\033[K[{bar}] {elapsed:5.1f} s  {self._title}{text and ': '}{text}"[: 4 + self._width()])
         self._stream.flush()
 
     def end(self) -> None:

@@ -95,8 +95,8 @@ def compare():
         found["twice"] = str(error)
     found["stages"] = []
     while session.job is not None:
-        if session.job.stage not in found["stages"]:
-            found["stages"].append(session.job.stage)
+        if session.job.stage.name not in found["stages"]:
+            found["stages"].append(session.job.stage.name)
         yield
     for _ in range(3):
         yield

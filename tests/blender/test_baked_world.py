@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from shlight_blender import worker_process
 from shlight_blender.engine import ShlightRenderEngine
 from shlight_blender.export import bake
 
@@ -157,8 +158,8 @@ def test_renders_of_the_same_world_bake_it_once(studio: Any, monkeypatch: pytest
     studio.ball_in_view_of_the_world()
     set_gradient(studio)
     started: list[Any] = []
-    run = bake._run
-    monkeypatch.setattr(bake, "_run", lambda *given: started.append(given) or run(*given))
+    run = bake._baked
+    monkeypatch.setattr(bake, "_baked", lambda *given: started.append(given) or run(*given))
     first, second = studio.render("SHLIGHT"), studio.render("SHLIGHT")
     assert len(started) == 1
     np.testing.assert_array_equal(first, second)
@@ -187,13 +188,13 @@ def test_a_bake_that_fails_is_named(studio: Any, monkeypatch: pytest.MonkeyPatch
 def sleeping(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """The bake does nothing for a minute; returns its processes."""
     started: list[Any] = []
-    popen = bake.subprocess.Popen
+    popen = worker_process.subprocess.Popen
 
     def start(command: Any, **given: Any) -> Any:
         started.append(popen([sys.executable, "-c", "import time; time.sleep(60)"], **given))
         return started[-1]
 
-    monkeypatch.setattr(bake.subprocess, "Popen", start)
+    monkeypatch.setattr(worker_process.subprocess, "Popen", start)
     return started
 
 

@@ -7,12 +7,13 @@ from typing import Any
 
 import pytest
 
-from shlight_blender.comparison.scene import use_cycles
+from shlight_blender.compare.scene import bounces_of
+from shlight_blender.rendering import use_cycles
 
 
 def compare(studio: Any, samples: int = 512, **bounds: float) -> None:
     """Both pictures with bounces as the scene's settings have them."""
-    use_cycles(studio.scene, samples, 0)
+    use_cycles(studio.scene, samples, 0, bounces_of(studio.scene))
     studio.compare(**bounds)
 
 

@@ -15,7 +15,7 @@ import pytest
 from numpy.typing import NDArray
 
 from shlight_blender.compare import differences, job, panel, places, results, session
-from shlight_blender.comparison.pictures import PALETTE, in_palette
+from shlight_blender.compare.pictures import PALETTE, in_palette
 
 Image = NDArray[np.float32]
 
@@ -366,7 +366,7 @@ def test_the_panel_shows_progress_and_what_was_found(studio: Any, monkeypatch: p
         preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
     )
     drawn = SimpleNamespace(layout=layout)
-    running = SimpleNamespace(status="Reference (3 s)", progress=0.25)
+    running = SimpleNamespace(stage=SimpleNamespace(name="Reference", seconds=3.0, share=0.25))
     monkeypatch.setattr(session.session, "job", running)
     panel.SHLIGHT_RENDER_PT_compare.draw(drawn, context)
     assert said == ["Reference (3 s), 25%", "Cancel"]

@@ -20,9 +20,11 @@ import bpy
 import pytest
 
 from shlight import images, metrics
-from shlight_blender.comparison.scene import LIGHT_RAYS, SceneError, open_scene, prepare, use_cycles, without_shadows
+from shlight_blender.compare.scene import LIGHT_RAYS, bounces_of, open_scene, prepare, without_shadows
 from shlight_blender.preview import main, options
 from shlight_blender.preview.command import FIRST_RESULTS, RESULTS
+from shlight_blender.rendering import use_cycles
+from shlight_blender.serving import SceneError
 
 COMMAND = [sys.executable, "-c", "import sys; from shlight_blender.preview import main; sys.exit(main(sys.argv[1:]))"]
 QUICK = ["--size", "24x16", "--samples", "8", "--shadow-rays", "4", "--pixel-samples", "2", "--tolerance", "0.01"]
@@ -90,7 +92,7 @@ def test_shlights_picture_is_there_first_and_alone(example: SimpleNamespace) -> 
     assert example.at_once == sorted(FIRST_RESULTS)
     assert names(example.results) == sorted(RESULTS)
     before, after = example.out.split("out/preview/example_scene/shlight.png")
-    assert before.startswith("Opening the scene\n")
+    assert before.startswith("Starting Blender\n")
     assert "Cycles" not in before
     assert "out/preview/example_scene/preview.png" in after
 
@@ -149,8 +151,8 @@ def start(folder: Path, *arguments: str) -> subprocess.Popen[str]:
     ("sent", "code", "stage", "left", "said"),
     [
         (signal.SIGINT, 130, "Opening", ["table.py"], "interrupted; nothing was written"),
-        (signal.SIGINT, 130, "reference", ["results", "table.py"], "picture stays: results/shlight.png"),
-        (signal.SIGTERM, 143, "reference", ["results", "table.py"], ""),
+        (signal.SIGINT, 130, "Reference", ["results", "table.py"], "picture stays: results/shlight.png"),
+        (signal.SIGTERM, 143, "Reference", ["results", "table.py"], ""),
     ],
 )
 def test_interrupting(tmp_path: Path, sent: signal.Signals, code: int, stage: str, left: list[str], said: str) -> None:
@@ -174,7 +176,7 @@ def test_interrupting(tmp_path: Path, sent: signal.Signals, code: int, stage: st
 def test_a_killed_command_takes_the_worker_with_it(tmp_path: Path) -> None:
     with start(tmp_path, *ENDLESS) as process:
         assert process.stdout is not None
-        assert process.stdout.readline()
+        assert any(line.startswith("Opening") for line in process.stdout)
         children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
         process.kill()
     assert len(children) == 1
@@ -267,34 +269,34 @@ def test_files_without_scene(tmp_path: Path, empty_scene: bpy.types.Scene) -> No
 def test_the_names_of_scenes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, empty_scene: bpy.types.Scene) -> None:
     for name in ("example_scene", "glossy_balls", "glossy_floor", "roughness_ramp"):
         chosen = options.parse([name])
-        assert chosen.out == f"out/preview/{name}"
-        scene = open_scene(chosen.scene_file)
+        assert chosen.out == Path("out/preview") / name
+        scene = open_scene(Path(chosen.request.scene))
         assert bpy.context.scene == scene
         assert {seen.type for seen in scene.objects} == {"CAMERA", "LIGHT", "MESH"}
     assert options.parse([]).scene == "example_scene"
-    assert options.parse(["some/where/cornell.blend"]).out == "out/preview/cornell"
+    assert options.parse(["some/where/cornell.blend"]).out == Path("out/preview/cornell")
     monkeypatch.chdir(tmp_path)
-    assert options.parse(["glossy_balls"]).scene_file.is_absolute()
+    assert Path(options.parse(["glossy_balls"]).request.scene).is_absolute()
     (tmp_path / "glossy_balls").touch()  # a file comes before an example of its name
-    assert options.parse(["glossy_balls"]).scene_file == Path("glossy_balls")
+    assert options.parse(["glossy_balls"]).request.scene == "glossy_balls"
 
 
 def test_the_lamps_that_are_not_named_are_off(empty_scene: bpy.types.Scene) -> None:
     chosen = options.parse(["glossy_balls", "--light", "quad", "--light", "small"])
-    scene = open_scene(chosen.scene_file)
-    prepare(scene, chosen)
+    scene = open_scene(Path(chosen.request.scene))
+    prepare(scene, chosen.request)
     assert [seen.name for seen in scene.objects if seen.type == "LIGHT" and not seen.hide_render] == ["quad", "small"]
     with pytest.raises(SceneError, match=r"^there is no lamp 'Sun' in it, but "):
-        prepare(scene, options.parse(["--light", "Sun"]))
+        prepare(scene, options.parse(["--light", "Sun"]).request)
 
 
 @pytest.mark.parametrize(("given", "bounces"), [([], 3), (["--max-bounces", "0"], 0), (["--max-bounces", "2"], 2)])
 def test_cycles_has_as_many_bounces(empty_scene: bpy.types.Scene, given: list[str], bounces: int) -> None:
-    scene = open_scene(options.parse([]).scene_file)
+    scene = open_scene(Path(options.parse([]).request.scene))
     scene.shlight.max_bounces, scene.shlight.transmission_bounces = 3, 1
     scene.cycles.glossy_bounces, scene.cycles.sample_clamp_indirect, scene.cycles.caustics_reflective = 1, 10.0, False
-    prepare(scene, options.parse(given))
-    use_cycles(scene, 4, 0)
+    prepare(scene, options.parse(given).request)
+    use_cycles(scene, 4, 0, bounces_of(scene))
     cycles = scene.cycles
     kinds = (cycles.max_bounces, cycles.diffuse_bounces, cycles.glossy_bounces, cycles.transmission_bounces)
     assert kinds == (*(bounces,) * 3, min(bounces, 1))
@@ -303,7 +305,7 @@ def test_cycles_has_as_many_bounces(empty_scene: bpy.types.Scene, given: list[st
 
 
 def test_without_shadows_is_over_afterwards(empty_scene: bpy.types.Scene) -> None:
-    scene = open_scene(options.parse([]).scene_file)
+    scene = open_scene(Path(options.parse([]).request.scene))
     scene.objects["floor"].visible_shadow = False
 
     def seen_by_light() -> dict[str, list[bool]]:

@@ -39,13 +39,13 @@ import os, sys, time
 from shlight_blender.survey import worker
 render = worker.SurveyWorker._render_shlight
 def _render_shlight(self):
-    if "crash" in self._options.scene:
+    if "crash" in self._request.scene:
         os.abort()
-    if "hang" in self._options.scene:
+    if "hang" in self._request.scene:
         time.sleep(1000)
     return render(self)
 worker.SurveyWorker._render_shlight = _render_shlight
-worker.serve(worker.SurveyWorker, worker.FileOptions, sys.argv[1:])
+worker.serve_with(worker.SurveyWorker, sys.argv[1:])
 """
 
 
@@ -143,7 +143,7 @@ def test_what_befalls_a_file_is_its_line(run: SimpleNamespace) -> None:
     assert problem("broken.blend").startswith("Blender cannot read it")
     assert problem("broken.gltf")
     assert problem("faults/crash.blend").startswith("Blender ended unexpectedly with signal SIGABRT")
-    assert problem("faults/hang.blend") == f"no answer after {TIME_LIMIT} s, rendering with shlight"
+    assert problem("faults/hang.blend") == f"no answer after {TIME_LIMIT} s: Rendering with shlight"
     assert run.files["faults/hang.blend"]["seconds"] < 2 * TIME_LIMIT
 
 

@@ -4,14 +4,16 @@
 from __future__ import annotations
 
 import io
+import re
 from typing import Any
 
 import numpy as np
 import pytest
 
-from shlight_blender.comparison import measurements, pictures, timing
-from shlight_blender.comparison.reference import render_halves
+from shlight_blender.compare import measurements, pictures, timing
+from shlight_blender.compare.reference import render_halves
 from shlight_blender.preview.progress import Progress
+from shlight_blender.worker_process import Stage
 
 
 def test_calibration_finds_the_samples_in_less_than_the_time() -> None:
@@ -70,11 +72,10 @@ def test_a_terminal_shows_a_bar_that_is_full_only_at_the_end() -> None:
     stream = io.StringIO()
     stream.isatty = lambda: True
     progress = Progress(stream)
-    progress.stage("reference", expected_seconds=1e-9)
-    progress.tick()
+    progress.show(Stage("reference", expected=1e-9))
     progress.note("look")
     assert "[#######################.]" in stream.getvalue()
-    assert stream.getvalue().endswith("s  reference\nlook\n")
+    assert re.search(r"reference: \d\.\d s\nlook\n$", stream.getvalue())
 
 
 def test_the_picture_is_bright_enough_and_its_scale_round() -> None:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Compare with Cycles, inside Blender: an operator and its panel, images with a split, and markers.
+"""Compare with Cycles: `worker` renders a scene with both in a process of its own, and measures.
 
-`operators` has `job` write a copy of the file and start another Blender with `start`, where `worker` renders, measures
-and finds the largest differences. `results` makes images of what it leaves, which `overlay` draws on.
+`supervision` runs it for commands, which `arguments` reads. In Blender, `operators` has `job` write a copy of the file
+and start `panel_worker`, which also finds the largest differences. `results` makes images of what it leaves, which
+`overlay` draws on.
 """

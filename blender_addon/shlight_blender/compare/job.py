@@ -3,25 +3,22 @@
 
 from __future__ import annotations
 
-import os
 import shutil
-import sys
 import tempfile
-import time
 from pathlib import Path
 from typing import Any
 
 import bpy
 
-from ..comparison.process import WorkerError, WorkerProcess
-from ..names import name_of
+from ..names import name_of, one_line
 from ..native import native_problem
 from ..other_blender import command, environment, save_unsaved_images
 from ..running import ENGINE
-from .options import CompareOptions
+from ..worker_process import Stage, WorkerError, WorkerProcess
+from .request import Request
 
-START = Path(__file__).with_name("start.py")
-PACKAGE = __package__.rpartition(".")[0]
+WORKER = "compare.panel_worker"
+MOST_SAMPLES = 2**16  # of the reference
 PAINTED_SOURCES = {"FILE", "GENERATED"}  # of images whose pixels may be in no file
 
 
@@ -35,15 +32,13 @@ class Job:
     def __init__(self, context: Any, *, denoise: bool, reference_seconds: float) -> None:
         """Writes the copy and starts the other Blender; CompareError where that cannot be."""
         _check(context)
-        self.stage = "Starting Blender"
-        self._expected = 0.0
-        self._since = time.monotonic()
         try:
             self.folder = temporary_folder("shlight_compare_")
         except OSError as error:
             raise CompareError(one_line(error)) from error
         try:
-            options = CompareOptions(
+            request = Request(
+                samples=MOST_SAMPLES,
                 scene=str(self.folder / "scene.blend"),
                 scene_name=context.scene.name,
                 view_layer=context.view_layer.name,
@@ -52,8 +47,7 @@ class Job:
                 reference_seconds=reference_seconds,
                 images=_save_copy(context.scene, self.folder),
             )
-            start = command(START, PACKAGE, os.pathsep.join(folder for folder in sys.path if folder))
-            self._worker = WorkerProcess(start, options.to_data(), self.folder, environment())
+            self._worker = WorkerProcess(command(WORKER), request.to_data(), self.folder, environment())
         except BaseException as error:
             shutil.rmtree(self.folder, ignore_errors=True)
             if isinstance(error, (OSError, RuntimeError)):
@@ -63,28 +57,14 @@ class Job:
     def figures(self, seconds: float = 0.0) -> dict[str, Any] | None:
         """The figures once all is there, else None after so many seconds at most; CompareError if it fails."""
         try:
-            messages = self._worker.messages(seconds)
+            return self._worker.result(seconds)
         except WorkerError as error:
             raise CompareError(str(error)) from error
-        for message in messages:
-            if message["kind"] == "result":
-                found: dict[str, Any] = message["figures"]
-                return found
-            if message["kind"] == "stage":
-                self.stage, self._expected = message["name"], message["expected_seconds"]
-                self._since = time.monotonic()
-        return None
 
     @property
-    def progress(self) -> float:
-        """The elapsed share of the stage's expected time, less than 1; 0 if no time is expected."""
-        elapsed = time.monotonic() - self._since
-        return min(elapsed / self._expected, 0.99) if self._expected > 0 else 0.0
-
-    @property
-    def status(self) -> str:
-        """What is being done, and for how long already."""
-        return f"{self.stage} ({time.monotonic() - self._since:.0f} s)"
+    def stage(self) -> Stage:
+        """What is being done."""
+        return self._worker.stage
 
     def end(self) -> None:
         """Ends the other Blender at once and removes the folder."""
@@ -122,8 +102,3 @@ def _save_copy(scene: Any, folder: Path) -> dict[str, str]:
 def temporary_folder(prefix: str) -> Path:
     """A folder that goes with Blender's temporary files, if not before."""
     return Path(tempfile.mkdtemp(prefix=prefix, dir=bpy.app.tempdir or None))
-
-
-def one_line(error: Exception) -> str:
-    """The text of an error, without line breaks."""
-    return " ".join(str(error).removeprefix("Error: ").split())

@@ -7,9 +7,9 @@ from typing import Any
 
 import bpy
 
-from ..names import name_of
+from ..names import name_of, one_line
 from . import overlay, results
-from .job import CompareError, Job, one_line
+from .job import CompareError, Job
 from .session import session
 from .settings import DENOISE, REFERENCE_SECONDS
 

@@ -8,10 +8,10 @@ from typing import Any
 import bpy
 
 from .. import report_panel
-from ..comparison.pictures import light_name
 from ..compat import draw_progress
 from ..engine_panel import EnginePanel, with_names_aside
 from . import operators, results
+from .pictures import light_name
 from .session import session
 
 
@@ -25,7 +25,8 @@ class SHLIGHT_RENDER_PT_compare(EnginePanel, bpy.types.Panel):
         """Draws the panel."""
         layout = self.layout
         if session.job is not None:
-            draw_progress(layout, session.job.status, session.job.progress)
+            stage = session.job.stage
+            draw_progress(layout, f"{stage.name} ({stage.seconds:.0f} s)", stage.share)
             layout.operator(operators.SHLIGHT_OT_cancel_comparison.bl_idname, text="Cancel", icon="X")
             return
         settings = context.window_manager.shlight_compare

@@ -16,9 +16,9 @@ import bpy
 import numpy as np
 import numpy.typing as npt
 
-from ..comparison.pictures import difference_limit, in_palette
 from ..names import name_of
 from .job import temporary_folder
+from .pictures import difference_limit, in_palette
 
 COMPARISON, DIFFERENCE, REFERENCE = "shlight Comparison", "shlight Difference", "shlight Reference"
 SETTLE_SECONDS = 0.5
@@ -28,7 +28,7 @@ Pixels = npt.NDArray[np.float32]
 
 @dataclass
 class Results:
-    """Figures as compare.worker sends them; pictures (height, width, 4), row 0 at the bottom."""
+    """Figures as the worker sends them; pictures (height, width, 4), row 0 at the bottom."""
 
     scene: str  # its name
     figures: dict[str, Any]
@@ -64,7 +64,7 @@ def load(folder: Path, figures: dict[str, Any], scene: str) -> None:
     """Takes over what the worker has left in `folder`, in place of the results before. OSError, RuntimeError."""
     global last
     names = ["shlight", "cycles_same_time", "difference", *(["reference"] if "reference" in figures else [])]
-    arrays = [np.load(folder / f"{name}.npy") for name in names]
+    arrays = [np.load(folder / f"{name}.npy")[::-1] for name in names]
     before = shown()
     remove()
     last = Results(scene, figures, temporary_folder("shlight_results_"), *arrays)

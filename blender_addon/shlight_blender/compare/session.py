@@ -25,7 +25,10 @@ class Session:
 
     def show(self) -> None:
         """Shows the state in the status bar and the panel."""
-        text = f"Compare with Cycles: {self.job.status}   Esc: cancel" if self.job else None
+        text = None
+        if self.job:
+            stage = self.job.stage
+            text = f"Compare with Cycles: {stage.name} ({stage.seconds:.0f} s)   Esc: cancel"
         for window in bpy.context.window_manager.windows:
             with bpy.context.temp_override(window=window):
                 bpy.context.workspace.status_text_set(text)

@@ -1,113 +1,195 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The process in which another Blender renders for the comparison.
+"""The process in which Blender renders a scene with shlight, with Cycles in the same time, and with Cycles for long.
 
-Its messages are those of comparison.same_time. Left in the folder are shlight.npy, cycles_same_time.npy and, if one was
-asked for, reference.npy, float32 (height, width, 4), linear, and difference.npy (height, width); row 0 at the bottom.
+It leaves shlight.npy, cycles_same_time.npy and reference.npy in its folder: float32 (height, width, 4), linear, row 0
+on top. Its figures are "shlight", "cycles_same_time" and "reference"; shlight's are known, and its picture is there,
+before Cycles renders. `serving` has the messages, and each command and panel that compares has a subclass.
 """
 
 from __future__ import annotations
 
+import os
+import sys
+import time
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
 import bpy
 import numpy as np
 
-from shlight import metrics
-
 from .. import record
-from ..comparison.measurements import Image, add_measurements
-from ..comparison.same_time import SameTimeWorker
-from ..comparison.scene import SceneError, leave_plain, open_blend, use_denoiser
-from ..comparison.timing import SampleTime
-from ..comparison.worker import SEEDS_OF_HALVES, read_picture, serve
-from ..other_blender import load_unsaved_images
-from .differences import largest_differences
-from .options import CompareOptions
-from .places import Finder, show_what_is_rendered
+from .. import register as register_addon
+from ..names import name_of
+from ..rendering import last_picture, use_cycles
+from ..serving import Channel, SceneError, serve
+from .measurements import add_measurements
+from .reference import Image, render_halves
+from .request import Request
+from .scene import bounces_of, few_pixels, open_scene, prepare, use_shlight, without_shadows
+from .timing import SampleTime, alternate, calibrate, middle, rounds_for
 
-MOST_MARKERS = 5
-# Samples from which two pictures tell their noise, and the time that each of them may take for so many.
-ENOUGH_FOR_NOISE, NOISE_SECONDS = 16, 5.0
+# Random seeds; no two pictures of Cycles may share one.
+SEED_SAME_TIME, SEEDS_OF_HALVES = 0, (1, 2)
 
 
-class CompareWorker(SameTimeWorker[CompareOptions]):
-    """One comparison."""
+class Worker:
+    """One scene, the folder for its pictures, and the channel to whoever asked for them."""
 
-    def _figures(self) -> dict[str, Any]:
-        self._stage("Opening the scene")
-        self._prepare(self._open())
-        figures = {"shlight": self._figures_of_shlight()}
+    REFUSES_DARK = True  # scenes in which shlight finds no light
+
+    def __init__(self, request: Request, folder: Path, channel: Channel) -> None:
+        self._request = request
+        self._folder = folder
+        self._channel = channel
+        self._scene: Any = None
+        self.pictures: dict[str, Image] = {}
+
+    def figures(self) -> dict[str, Any]:
+        """Renders and measures all, and returns the figures."""
+        self._channel.stage("Opening the scene")
+        self._scene = self._open()
+        bpy.ops.preferences.addon_enable(module="cycles")
+        register_addon()
+        self._set_up()
+        figures = self._circumstances()
+        figures["shlight"] = self._shlight()
+        height, width = self.pictures["shlight"].shape[:2]
+        figures["size"] = [width, height]
         time_of = self._same_time(figures)
         halves = self._halves(figures, time_of)
-        self._stage("Measuring")
+        self._channel.stage("Measuring")
         try:
             self._measure(figures, halves)
         except ValueError as error:  # black or not finite
-            raise SceneError(str(error)) from error
+            raise RuntimeError(str(error)) from error
         return figures
 
+    def _circumstances(self) -> dict[str, Any]:
+        return {
+            "scene": {"name": name_of(self._scene), "frame": self._scene.frame_current},
+            "threads": self._request.threads or len(os.sched_getaffinity(0)),
+            "blender": bpy.app.version_string,
+        }
+
     def _open(self) -> Any:
-        options = self._options
-        open_blend(Path(options.scene), use_scripts=options.use_scripts)
-        load_unsaved_images(options.images, self._folder)
-        scene = bpy.context.window.scene = bpy.data.scenes[options.scene_name]
-        bpy.context.window.view_layer = scene.view_layers[options.view_layer]
-        for layer in scene.view_layers:
-            layer.use = layer.name == options.view_layer
-        return scene
+        return open_scene(Path(self._request.scene))
 
     def _set_up(self) -> None:
-        leave_plain(self._scene.render)
-        self._scene.render.use_crop_to_border = True
-        if self._options.denoise:
-            use_denoiser(self._scene.cycles)  # its absence is said before anything is rendered
+        prepare(self._scene, self._request)
+
+    def _shlight(self) -> dict[str, Any]:
+        """shlight's picture, and what it reports of it. A first render of few pixels fills its tables."""
+        self._channel.stage("Rendering with shlight")
+        try:
+            with few_pixels(self._scene.render):
+                warm_up_seconds = self._render_shlight()
+            seconds = self._render_shlight()
+        except RuntimeError as error:
+            if record.last.scene_error:
+                raise SceneError(record.last.scene_error) from error
+            raise
+        if record.last.dark and self.REFUSES_DARK:
+            raise SceneError(record.last.dark)
+        self._take("shlight")
+        figures = {**described(record.last), "warm_up_seconds": warm_up_seconds, "times": [seconds], "seconds": seconds}
+        self._channel.known(shlight=figures)
+        return figures
+
+    def _same_time(self, figures: dict[str, Any]) -> SampleTime:
+        """Cycles at the samples that take shlight's time; what takes little time is repeated in turns."""
+        ours = figures["shlight"]["times"]
+        target = ours[0]
+        self._channel.stage("Cycles, finding the samples for the same time", target / 2)
+        time_of = calibrate(self._render_same_time, target, self._request.samples)
+        samples = min(time_of.samples(target), self._request.samples)
+        rounds = rounds_for(target)
+        again = f", and in turns with shlight {rounds - 1} times more" if rounds > 1 else ""
+        self._channel.stage(f"Cycles, same time: {samples} samples{again}", (2 * rounds - 1) * target)
+        theirs = [self._render_same_time(samples)]
+        self._take("cycles_same_time")
+        more = alternate(self._render_shlight, lambda: self._render_same_time(samples), rounds - 1)
+        ours += more[0]
+        theirs += more[1]
+        time_of.add(samples, middle(theirs))
+        figures["shlight"]["seconds"] = middle(ours)
+        figures["cycles_same_time"] = {"samples": samples, "seconds": middle(theirs), "times": theirs}
+        return time_of
 
     def _halves(self, figures: dict[str, Any], time_of: SampleTime) -> list[Image]:
-        """Two independent pictures of Cycles, which tell its noise: the reference, or as long as shlight or longer."""
-        budget = self._options.reference_seconds
-        if budget > 0:
-            self._stage("Reference", budget)
-            halves, figures["reference"] = self._reference(time_of)
-            return halves
-        same = figures["cycles_same_time"]["samples"]
-        samples = max(same, min(ENOUGH_FOR_NOISE, time_of.samples(NOISE_SECONDS)))
-        is_half = samples == same and not self._options.denoise
-        halves = [read_picture(self._folder / "cycles_same_time.exr")] if is_half else []
-        seeds = SEEDS_OF_HALVES[len(halves) :]
-        self._stage("Cycles' noise", len(seeds) * time_of.seconds(samples))
-        for seed in seeds:
-            self._render_cycles(samples, seed)
-            halves.append(read_picture(self._save("part.exr")))
+        """The reference, as two independent pictures of Cycles, which tell its noise."""
+        request = self._request
+        expected = 2 * time_of.seconds((request.samples + 1) // 2)
+        seconds = min(expected, request.reference_seconds or expected)
+        self._channel.stage(f"Reference, at most {request.samples} samples", seconds)
+        halves, figures["reference"] = render_halves(
+            self._part_of_half, time_of, request.samples, request.reference_seconds, request.noise
+        )
+        figures["reference"]["seeds"] = SEEDS_OF_HALVES
         return halves
 
     def _measure(self, figures: dict[str, Any], halves: list[Image]) -> None:
-        pictures = {name: read_picture(self._folder / f"{name}.exr") for name in ("shlight", "cycles_same_time")}
-        shlight, cycles = pictures.values()
-        if "reference" in figures:
-            against = pictures["reference"] = add_measurements(figures, shlight, cycles, (halves[0], halves[1]))
-        else:
-            against = cycles
-            figures["rel_mse_of_both"] = metrics.rel_mse(shlight, cycles)
-        difference = metrics.relative_difference(shlight, against)
-        for name, picture in (pictures | {"difference": difference}).items():
-            np.save(self._folder / f"{name}.npy", picture[::-1].astype(np.float32))
-        figures["size"] = [shlight.shape[1], shlight.shape[0]]
-        figures["differences"] = self._places(shlight, halves)
+        """Leaves the reference, and adds the errors to the figures. ValueError if it is black or not finite."""
+        self._leave("reference", add_measurements(figures, self.pictures, (halves[0], halves[1])))
 
-    def _places(self, shlight: Image, halves: list[Image]) -> list[dict[str, Any]]:
-        """The largest differences, one for each thing that is seen there."""
-        layer = bpy.context.window.view_layer
-        show_what_is_rendered(layer)
-        finder = Finder(self._scene, layer)
-        found: dict[str, dict[str, Any]] = {}
-        for difference in largest_differences(shlight[::-1], (halves[0][::-1], halves[1][::-1])):
-            seen = finder.seen_at(difference.x, difference.y)
-            place = {"x": difference.x, "y": difference.y, "difference": difference.value}
-            found.setdefault(seen.place, place | seen.to_data(record.last.report))
-        return list(found.values())[:MOST_MARKERS]
+    def _render_shlight(self) -> float:
+        use_shlight(self._scene, self._request)
+        return _render()
+
+    def _render_same_time(self, samples: int) -> float:
+        return self._render_cycles(samples, SEED_SAME_TIME, denoise=self._request.denoise)
+
+    def _render_cycles(self, samples: int, seed: int, **further: Any) -> float:
+        use_cycles(self._scene, samples, seed, bounces_of(self._scene), **further)
+        with nullcontext() if self._scene.shlight.use_shadows else without_shadows():
+            return _render()
+
+    def _part_of_half(self, half: int, first: int, samples: int) -> tuple[float, Image]:
+        """See reference.Render. The time that it takes to hand the picture out counts too."""
+        start = time.perf_counter()
+        self._render_cycles(samples, SEEDS_OF_HALVES[half], first=first, of=(self._request.samples + 1) // 2)
+        image = self._picture()
+        return time.perf_counter() - start, image
+
+    def _picture(self) -> Image:
+        """The picture of the last render."""
+        return last_picture(self._scene, self._folder / "picture.exr")
+
+    def _take(self, name: str) -> None:
+        """Leaves the picture of the last render."""
+        self._leave(name, self._picture())
+
+    def _leave(self, name: str, picture: Image) -> None:
+        self.pictures[name] = picture
+        np.save(self._folder / f"{name}.npy", picture)
 
 
-def main(arguments: list[str]) -> None:
-    """Serves the request of a folder; see comparison.worker.serve."""
-    serve(CompareWorker, CompareOptions, arguments)
+def described(made: record.RenderRecord) -> dict[str, Any]:
+    """What is known of a render with shlight."""
+    statistics = made.statistics
+    figures = {
+        "settings": made.settings,
+        "unsupported": made.messages,
+        "export_seconds": made.export_seconds,
+        "order_shares": {str(order): share for order, share in statistics.order_shares.items()},
+        "operations": made.operations,
+        "texture_bytes": made.texture_bytes,
+    }
+    same = ("build_seconds", "render_seconds", "stage_seconds", "cubature_share", "mirror_share", "over_tolerance")
+    return figures | {name: getattr(statistics, name) for name in (*same, "hits", "shadow_rays")}
+
+
+def _render() -> float:
+    """Blender's own render call: wall time from the scene in Blender to the finished picture."""
+    start = time.perf_counter()
+    bpy.ops.render.render()
+    return time.perf_counter() - start
+
+
+def serve_with(worker: type[Worker], arguments: list[str]) -> None:
+    """Serves the request of a folder; see `serving`."""
+    serve(lambda given, folder, channel: worker(Request.from_data(given), folder, channel).figures(), arguments)
+
+
+if __name__ == "__main__":
+    serve_with(Worker, sys.argv[1:])

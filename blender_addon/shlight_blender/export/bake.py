@@ -8,8 +8,6 @@ What was baked is kept as long as Blender runs; `bake_key` says what a world mus
 from __future__ import annotations
 
 import atexit
-import json
-import subprocess
 import tempfile
 import threading
 import time
@@ -23,12 +21,13 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..comparison.process import last_words
+from ..names import one_line
 from ..other_blender import command, environment, save_unsaved_images
+from ..worker_process import WorkerError, WorkerProcess
 from .bake_key import bake_key
 from .nodes import all_nodes
 
-WORKER = Path(__file__).with_name("bake_worker.py")
+WORKER = "export.bake_worker"
 LONGEST_SECONDS = 1800.0
 TICK_SECONDS = 0.1
 MOST_KEPT_BYTES = 2**28  # ten pictures 2048 texels wide; the last one is kept whatever its size
@@ -100,7 +99,7 @@ class _Background:
         self.error = ""
         self._stopped = False
         self._folder = tempfile.TemporaryDirectory(prefix="shlight_world_")
-        _write(Path(self._folder.name), world, scene)
+        self._request = _write(Path(self._folder.name), world, scene)
         self._thread = threading.Thread(target=self._run, name="shlight world", daemon=True)
         self._thread.start()
         atexit.register(self._end)  # else the other Blender would go on
@@ -116,7 +115,7 @@ class _Background:
     def _run(self) -> None:
         with self._folder as name:
             try:
-                baked = _picture(Path(name), lambda _: not self._stopped)
+                baked = _baked(self._request, Path(name), lambda _: not self._stopped)
             except BakeError as error:
                 baked, self.error = None, str(error)
         atexit.unregister(self._end)
@@ -154,31 +153,18 @@ def bake_in_background(world: Any, scene: Any, ended: Callable[[], None]) -> Bak
 
 def _bake(world: Any, scene: Any, waiting: Waiting | None) -> Baked | None:
     with tempfile.TemporaryDirectory(prefix="shlight_world_") as name:
-        _write(Path(name), world, scene)
-        return _picture(Path(name), waiting)
+        return _baked(_write(Path(name), world, scene), Path(name), waiting)
 
 
-def _write(folder: Path, world: Any, scene: Any) -> None:
-    """Writes the files that the other Blender needs."""
+def _write(folder: Path, world: Any, scene: Any) -> dict[str, Any]:
+    """Writes the files that the other Blender needs; returns the request."""
     try:
         bpy.data.libraries.write(str(folder / "world.blend"), {world.original}, path_remap="ABSOLUTE")
-        (folder / "request.json").write_text(json.dumps(_request(world, scene, folder)), encoding="utf-8")
+        return _request(world, scene, folder)
     except UnicodeDecodeError as error:
         raise BakeError("its name, or that of an image in it, is not UTF-8; rename it") from error
     except (OSError, RuntimeError, ValueError) as error:
-        raise BakeError(" ".join(str(error).split())) from error
-
-
-def _picture(folder: Path, waiting: Waiting | None) -> Baked | None:
-    """The picture baked by the other Blender; None if `waiting` stopped it."""
-    try:
-        if not _run(folder, waiting):
-            return None
-        picture = np.load(folder / "picture.npy", allow_pickle=False)
-        suns = json.loads((folder / "suns.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise BakeError(" ".join(str(error).split())) from error
-    return Baked(picture, [Sun(np.array(s["direction"]), s["angle"], np.array(s["irradiance"])) for s in suns])
+        raise BakeError(one_line(error)) from error
 
 
 def _request(world: Any, scene: Any, folder: Path) -> dict[str, Any]:
@@ -197,28 +183,29 @@ def _images(world: Any) -> set[Any]:
     return {node.image.original for node in all_nodes(world.node_tree) if getattr(node, "image", None)}
 
 
-def _run(folder: Path, waiting: Waiting | None) -> bool:
-    """Runs the worker to its end; False if `waiting` stopped it."""
-    log = folder / "blender.log"
-    with log.open("wb") as output:
-        process = subprocess.Popen(
-            command(WORKER, str(folder)),
-            stdin=subprocess.DEVNULL,
-            stdout=output,
-            stderr=subprocess.STDOUT,
-            env=environment(),
-        )
+def _baked(request: dict[str, Any], folder: Path, waiting: Waiting | None) -> Baked | None:
+    """The other Blender's answer to the request; None if `waiting` stopped it."""
     try:
-        end = time.monotonic() + LONGEST_SECONDS
-        while process.poll() is None:
-            if waiting is not None and not waiting("Baking the world"):
-                return False
-            if time.monotonic() > end:
-                raise BakeError(f"it takes longer than {LONGEST_SECONDS:.0f} s")
-            time.sleep(TICK_SECONDS)
-    finally:
-        process.kill()
-        process.wait()
-    if process.returncode != 0:
-        raise BakeError(last_words(process.returncode, log))
-    return True
+        worker = WorkerProcess(command(WORKER), request, folder, environment())
+        try:
+            suns = _suns(worker, waiting)
+        finally:
+            worker.end()
+        if suns is None:
+            return None
+        picture = np.load(folder / "picture.npy", allow_pickle=False)
+    except (WorkerError, OSError, ValueError) as error:
+        raise BakeError(one_line(error)) from error
+    return Baked(picture, [Sun(np.array(s["direction"]), s["angle"], np.array(s["irradiance"])) for s in suns])
+
+
+def _suns(worker: WorkerProcess, waiting: Waiting | None) -> list[dict[str, Any]] | None:
+    """The suns once the picture is there, too; None if `waiting` stopped it."""
+    end = time.monotonic() + LONGEST_SECONDS
+    while waiting is None or waiting("Baking the world"):
+        if figures := worker.result(TICK_SECONDS):
+            suns: list[dict[str, Any]] = figures["suns"]
+            return suns
+        if time.monotonic() > end:
+            raise BakeError(f"it takes longer than {LONGEST_SECONDS:.0f} s")
+    return None

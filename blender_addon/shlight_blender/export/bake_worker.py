@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Blender that bakes a world for `bake`: a script of its own, which needs bpy, Cycles and numpy alone.
+"""The Blender that bakes a world for `bake`.
 
-usage: <Blender or Python> bake_worker.py -- <folder>
-
-The folder holds world.blend, request.json, and the pixels of images whose changes are in no file. Written are
-picture.npy, float32 (width / 2, width, 3) with the mapping of `shlight.Scene.set_environment`, and suns.json, a list of
+The folder holds world.blend, and the pixels of images whose changes are in no file. Written is picture.npy, float32
+(width / 2, width, 3) with the mapping of `shlight.Scene.set_environment`; the figures are "suns", a list of
 {"direction", "angle", "irradiance"} as `bake.Sun` has them.
 
 A sky's sun disc is narrower than a few texels. It is left out of the picture, and its irradiance is that of two renders
@@ -13,11 +11,7 @@ with and without it, of a small part of the sky at 128 x 128 pixels.
 
 from __future__ import annotations
 
-import json
 import math
-import os
-import sys
-import traceback
 from pathlib import Path
 from typing import Any
 
@@ -26,8 +20,13 @@ import numpy as np
 from mathutils import Euler, Vector
 from numpy.typing import NDArray
 
+from ..other_blender import load_unsaved_images
+from ..rendering import last_picture, leave_plain, set_threads, use_cycles
+from ..serving import Channel, serve
+
 Picture = NDArray[np.float32]
 
+SEED, NO_BOUNCES = 0, (0, 0, 0)
 PICTURE_SAMPLES = 16
 SEARCH_WIDTH, SEARCH_SAMPLES = 512, 4
 SUN_SAMPLES, SUN_SIZE = 64, 128
@@ -60,25 +59,14 @@ class Baker:
         self._world = self._scene.world = wanted.worlds[0]
         self._trees = [self._world.node_tree, *bpy.data.node_groups]
         self._set_up_world()
-        for name, pixels in request["images"].items():
-            bpy.data.images[name].pixels.foreach_set(np.load(folder / pixels))
+        load_unsaved_images(request["images"], folder)
         self._scene.frame_set(request["frame"], subframe=request["subframe"])
 
     def _set_up_render(self, threads: int) -> None:
-        render, cycles = self._scene.render, self._scene.cycles
-        render.engine = "CYCLES"
-        render.film_transparent = False
-        render.filepath = str(self._file)
-        render.use_compositing = render.use_sequencer = False
-        render.threads_mode = "FIXED" if threads else "AUTO"
-        if threads:
-            render.threads = threads
-        image = render.image_settings
-        image.file_format, image.color_mode, image.color_depth = "OPEN_EXR", "RGB", "32"
-        cycles.device = "CPU"
-        cycles.use_adaptive_sampling = cycles.use_denoising = False
-        cycles.sample_clamp_direct = 0.0
-        cycles.pixel_filter_type = "BOX"
+        leave_plain(self._scene.render)
+        set_threads(self._scene.render, threads)
+        self._scene.render.film_transparent = False
+        self._scene.cycles.pixel_filter_type = "BOX"
 
     def _set_up_world(self) -> None:
         """Without volume, seen by the camera, and lit as diffuse rays see it."""
@@ -155,13 +143,9 @@ class Baker:
         """RGB (height, width, 3), row 0 on top."""
         render = self._scene.render
         render.resolution_x, render.resolution_y, render.resolution_percentage = width, height, 100
-        self._scene.cycles.samples = samples
-        bpy.ops.render.render(write_still=True)
-        image = bpy.data.images.load(str(self._file), check_existing=False)
-        flat = np.empty(width * height * image.channels, dtype=np.float32)
-        image.pixels.foreach_get(flat)
-        pixels = flat.reshape(height, width, image.channels)[::-1, :, :3]
-        bpy.data.images.remove(image)
+        use_cycles(self._scene, samples, SEED, NO_BOUNCES)
+        bpy.ops.render.render()
+        pixels = last_picture(self._scene, self._file)[..., :3]
         return np.nan_to_num(pixels, posinf=BRIGHTEST, neginf=-BRIGHTEST)
 
 
@@ -215,21 +199,13 @@ def _weighted_mean(
     return mean / length if length > 0.0 else None
 
 
-def main(folder: Path) -> None:
-    """Bakes what the folder asks for."""
-    request = json.loads((folder / "request.json").read_text(encoding="utf-8"))
+def bake(request: dict[str, Any], folder: Path, _: Channel) -> dict[str, Any]:
+    """Bakes what is asked for."""
     picture, suns = Baker(folder, request).bake()
     np.save(folder / "picture.npy", np.ascontiguousarray(picture, dtype=np.float32))
-    (folder / "suns.json").write_text(json.dumps(suns), encoding="utf-8")
+    return {"suns": suns}
 
 
-if __name__ == "__main__":
-    code = 1
-    try:
-        main(Path(sys.argv[sys.argv.index("--") + 1]))
-        code = 0
-    except BaseException:
-        traceback.print_exc()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(code)  # Blender's own end takes time and may crash
+def main(arguments: list[str]) -> None:
+    """Serves the request of a folder; see `serving`."""
+    serve(bake, arguments)

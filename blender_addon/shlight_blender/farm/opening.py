@@ -12,11 +12,12 @@ import bpy
 
 from shlight.quiet import quiet
 
-from ..comparison.scene import SceneError, open_scene
+from ..compare.scene import open_scene
 from ..compat import compositing_nodes
 from ..frame import frame_of
 from ..names import name_of
 from ..running import ENGINE
+from ..serving import SceneError
 
 NUMBERS = {"FLOAT": float, "INT": int}
 FLAGS = {"1": True, "true": True, "on": True, "0": False, "false": False, "off": False}

@@ -14,10 +14,11 @@ from shlight.farm import Rendered
 from shlight.quiet import quiet
 
 from .. import record
-from ..comparison.scene import leave_plain
 from ..compat import choose_layers
 from ..frame import Frame, frame_of
+from ..names import one_line
 from ..passes import layer_passes
+from ..rendering import leave_plain
 
 Box = tuple[int, int, int, int]
 
@@ -35,7 +36,7 @@ def render_picture(scene: Any, frame: int, view: str, box: Box | None, messages:
             with quiet():
                 bpy.ops.render.render(write_still=True)
         except RuntimeError as error:  # how Blender's operators fail
-            raise RuntimeError(record.last.scene_error or _one_line(error)) from None
+            raise RuntimeError(record.last.scene_error or one_line(error)) from None
         finally:
             own.restore()
         (path,) = Path(folder).iterdir()
@@ -121,7 +122,3 @@ def _read(path: Path) -> tuple[tuple[str, ...], Any, dict[str, str]]:
     source.geterror()
     source.close()
     return tuple(names), np.concatenate(parts, axis=2), attributes
-
-
-def _one_line(error: Exception) -> str:
-    return " ".join(str(error).removeprefix("Error: ").split())

@@ -10,15 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from ..comparison.measurements import error_text
-from ..comparison.pictures import light_name
+from ..compare.measurements import error_text
+from ..compare.pictures import light_name
 from .options import Options
 
 
 def add_circumstances(figures: dict[str, Any], options: Options) -> None:
     """Adds where, with what and with which options the figures came about."""
-    figures["scene"]["file"] = str(options.scene_file)
-    figures["options"] = options.to_data()
+    figures["scene"]["file"] = options.request.scene
+    figures["options"] = options.request.to_data() | {"scene": options.scene, "out": str(options.out)}
     figures["versions"] = {
         "shlight": metadata.version("shlight"),
         "blender": figures.pop("blender"),

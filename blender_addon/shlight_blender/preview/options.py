@@ -9,37 +9,38 @@ from pathlib import Path
 
 from shlight.commands import Parser
 
-from ..comparison.arguments import order, seconds, size, tolerance, whole
-from ..comparison.options import RenderOptions
+from ..compare.arguments import order, seconds, size, tolerance, whole
+from ..compare.request import Request
 
 DEFAULT_SCENE = "example_scene"
 
 
-@dataclass(frozen=True, kw_only=True)
-class Options(RenderOptions):
-    """A request; `scene`: a Blender file, a script with build_scene(), or the name of an example, as it was given."""
+@dataclass(frozen=True)
+class Options:
+    """A preview: what is rendered, and the folder of the results."""
 
-    out: str  # folder of the results
+    request: Request
+    scene: str  # as it was given: a Blender file, a script with build_scene(), or the name of an example
+    out: Path
 
     @property
     def scene_name(self) -> str:
         """Name of the scene in captions and of its folder of results."""
         return Path(self.scene).stem
 
-    @property
-    def scene_file(self) -> Path:
-        """The file of the scene: `scene` itself unless that is no file but the name of an example."""
-        given = Path(self.scene)
-        example = _examples() / f"{self.scene}.py"
-        return example if not given.is_file() and self.scene.isidentifier() and example.is_file() else given
-
 
 def parse(argv: list[str]) -> Options:
     """The options of a command line; prints the reason and raises SystemExit(2) where it is not understood."""
     values = vars(_parser().parse_args(argv))
-    if values["out"] is None:
-        values["out"] = str(Path("out") / "preview" / Path(values["scene"]).stem)
-    return Options(**values)
+    scene, out = values.pop("scene"), values.pop("out")
+    request = Request(scene=str(_scene_file(scene)), **values)
+    return Options(request, scene, Path(out or Path("out") / "preview" / Path(scene).stem))
+
+
+def _scene_file(given: str) -> Path:
+    """The file of the scene: what was given unless that is no file but the name of an example."""
+    example = _examples() / f"{given}.py"
+    return example if not Path(given).is_file() and given.isidentifier() and example.is_file() else Path(given)
 
 
 def _examples() -> Path:

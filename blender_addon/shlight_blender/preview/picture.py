@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from shlight import images, metrics
 
-from ..comparison.measurements import error_text
-from ..comparison.pictures import PALETTE, common_exposure, difference_limit, light_name
+from ..compare.measurements import error_text
+from ..compare.pictures import PALETTE, common_exposure, difference_limit, light_name
 
 Image = npt.NDArray[np.float32]
 

@@ -14,14 +14,17 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from shlight import images
 from shlight.commands import INTERRUPTED, CommandError, check_folder, run_command, work_folder
 
-from ..comparison.process import LOG
-from ..comparison.supervision import check_blender, run_worker
+from ..compare.supervision import check_blender, run_worker
+from ..worker_process import LOG, Stage
 from . import records
 from .options import SUFFIXES, Options, parse
 from .records import Record
-from .sheet import write_sheet
+from .sheet import strip, write_sheet
 
 WORKER = "shlight_blender.survey.worker"
 JSON, SHEET, PICTURES = "survey.json", "contact_sheet.png", "pictures"
@@ -126,30 +129,30 @@ class _Survey:
         work.mkdir()
         record: Record = {"file": str(file), "problem": ""}
         begun = time.monotonic()
-        stage = "starting Blender"
 
-        def tick() -> None:
+        def tick(stage: Stage, known: dict[str, Any]) -> None:
+            record.update(records.flat(known))
             if self._stop.is_set():
                 raise _Stopped
             if 0 < self._options.time_limit < time.monotonic() - begun:
-                raise CommandError(f"no answer after {self._options.time_limit:g} s, {stage}", 1)
+                raise CommandError(f"no answer after {self._options.time_limit:g} s: {stage.name}", 1)
 
-        def hear(message: dict[str, Any]) -> None:
-            nonlocal stage
-            if message["kind"] == "stage":
-                stage = message["name"]
-            else:
-                record.update(message["figures"])
-
-        request = self._options.of_file(self._options.folder / file).to_data()
+        request = self._options.of_file(self._options.folder / file)
         try:
-            record |= run_worker(WORKER, request, work, tick, hear)
+            record |= records.flat(run_worker(WORKER, request, work, tick))
+            self._write_pictures(work)
         except CommandError as error:
             record["problem"] = str(error)
             record["log"] = _tail(work / LOG)
         record["seconds"] = time.monotonic() - begun
         self._publish(file, work)
         return record
+
+    def _write_pictures(self, work: Path) -> None:
+        ours, theirs = (np.load(work / f"{name}.npy") for name in ("shlight", "reference"))
+        images.write_exr(work / "shlight.exr", ours)
+        images.write_exr(work / "cycles.exr", theirs)
+        images.write_png(work / "strip.png", strip(ours, theirs))
 
     def _publish(self, file: Path, work: Path) -> None:
         for part in PARTS:

@@ -10,18 +10,11 @@ from typing import Any
 
 from shlight.commands import Parser
 
-from ..comparison.arguments import seconds, size, whole
-from ..comparison.options import RenderOptions
+from ..compare.arguments import seconds, size, whole
+from ..compare.request import Request
 
 NOISE = 2e-4  # relMSE of the reference's own noise at which it ends
 SUFFIXES = (".blend", ".gltf", ".glb")
-
-
-@dataclass(frozen=True, kw_only=True)
-class FileOptions(RenderOptions):
-    """Options of the worker of one file."""
-
-    noise: float = NOISE
 
 
 @dataclass(frozen=True)
@@ -36,9 +29,9 @@ class Options:
     resume: bool
     render: dict[str, Any]
 
-    def of_file(self, path: Path) -> FileOptions:
-        """The options of this file's worker."""
-        return FileOptions(scene=str(path), **self.render)
+    def of_file(self, path: Path) -> Request:
+        """The request for the worker of this file."""
+        return Request(scene=str(path), noise=NOISE, **self.render)
 
 
 def parse(argv: list[str]) -> Options:

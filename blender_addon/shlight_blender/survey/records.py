@@ -16,6 +16,33 @@ FIRST_LINES, LINE_LENGTH = 3, 80  # of the report
 HEADING = "relMSE     mean/ref.  shlight    Cycles  report  uses  file"
 
 
+# Figures of a worker, and what a record calls them.
+OF_SHLIGHT = {
+    "unsupported": "report",
+    "seconds": "shlight_seconds",
+    "warm_up_seconds": "warm_up_seconds",
+    **{name: name for name in ("rel_mse", "rel_mse_standard_error", "rel_mse_measured", "mean_ratio")},
+    "largest_difference": "largest_difference",
+}
+OF_REFERENCE = {
+    "noise_rel_mse": "noise_rel_mse",
+    "seconds": "cycles_seconds",
+    "samples": "cycles_samples",
+    "stopped_by": "stopped_by",
+}
+
+
+def flat(figures: dict[str, Any]) -> Record:
+    """A record of a worker's figures."""
+    found: Record = {name: figures[name] for name in ("versions", "added", "features") if name in figures}
+    for part, names in (("shlight", OF_SHLIGHT), ("reference", OF_REFERENCE)):
+        known = figures.get(part, {})
+        found |= {name: known[figure] for figure, name in names.items() if figure in known}
+    if "shlight" in figures:
+        found["max_bounces"] = figures["shlight"]["settings"]["max_bounces"]
+    return found
+
+
 def is_measured(record: Record) -> bool:
     return "rel_mse" in record
 

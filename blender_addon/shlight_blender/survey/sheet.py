@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from shlight import images, metrics
 
-from ..comparison.pictures import PALETTE, common_exposure, light_name
+from ..compare.pictures import PALETTE, common_exposure, light_name
 from .records import Record, badness, is_measured
 
 Pixels = npt.NDArray[np.uint8]

@@ -10,7 +10,8 @@ from typing import Any
 import bpy
 from mathutils import Matrix, Vector
 
-from ..comparison.scene import SceneError, open_blend
+from ..compare.scene import open_blend
+from ..serving import SceneError
 
 VIEW = Vector((1.0, -1.3, 0.8)).normalized()  # from what is seen to the camera
 ROOM = 1.08  # times the distance at which everything just fits

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import shlight
-from shlight import images
 from shlight.quiet import quiet
 
 from .picture_scenes import BallLamp, Light, PictureScene, Sun, Thing
@@ -109,18 +108,25 @@ class Cycles:
 
     def halves(self, seconds: float) -> tuple[Image, Image]:
         self._build()
-        self._bpy.context.scene.cycles.use_denoising = False
-        taken, _ = self._render(16, seed=1)
+        taken, _ = self._render(16, seed=1, denoise=False)
         samples = max(16, int(16 * seconds / taken))
-        return self._render(samples, seed=11)[1], self._render(samples, seed=12)[1]
+        first, second = (self._render(samples, seed=seed, denoise=False)[1] for seed in (11, 12))
+        return first, second
 
     def _build(self) -> None:
         import bpy
 
+        from shlight_blender.rendering import leave_plain, set_threads
+
         self._bpy = bpy
         bpy.ops.wm.read_factory_settings(use_empty=True)
         scene = bpy.context.scene
-        _set_cycles(scene, self._size, self.denoised, self._scene.max_bounces)
+        render = scene.render
+        leave_plain(render)
+        set_threads(render, THREADS)
+        render.resolution_x = render.resolution_y = self._size
+        render.resolution_percentage = 100
+        scene.cycles.pixel_filter_type = "BOX"
         for thing in self._scene.things:
             _add_blender_mesh(bpy, thing)
         for lamp in self._scene.lamps:
@@ -134,36 +140,17 @@ class Cycles:
         scene.collection.objects.link(scene.camera)
         self._render(1, seed=0)  # what is loaded once
 
-    def _render(self, samples: int, seed: int) -> tuple[float, Image]:
-        bpy = self._bpy
-        scene = bpy.context.scene
-        scene.cycles.samples, scene.cycles.seed = samples, seed
-        with quiet():
+    def _render(self, samples: int, seed: int, denoise: bool | None = None) -> tuple[float, Image]:
+        """denoise: None for as the renderer is named."""
+        from shlight_blender.rendering import last_picture, use_cycles
+
+        scene, most = self._bpy.context.scene, self._scene.max_bounces
+        use_cycles(scene, samples, seed, (most, most, most), denoise=self.denoised if denoise is None else denoise)
+        with quiet(), tempfile.TemporaryDirectory() as folder:
             start = time.perf_counter()
-            bpy.ops.render.render()
+            self._bpy.ops.render.render()
             taken = time.perf_counter() - start
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "picture.exr"
-            bpy.data.images["Render Result"].save_render(str(path))
-            return taken, images.read_exr(path)
-
-
-def _set_cycles(scene: Any, size: int, denoised: bool, max_bounces: int) -> None:
-    render, cycles = scene.render, scene.cycles
-    render.engine, render.threads_mode, render.threads = "CYCLES", "FIXED", THREADS
-    render.resolution_x = render.resolution_y = size
-    render.resolution_percentage = 100
-    render.use_compositing = render.use_sequencer = False
-    render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
-    for kind in ("max", "diffuse", "glossy", "transmission"):
-        setattr(cycles, f"{kind}_bounces", max_bounces)
-    cycles.use_adaptive_sampling = False
-    cycles.light_sampling_threshold = cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
-    cycles.blur_glossy = 0.0
-    cycles.pixel_filter_type = "BOX"
-    cycles.use_denoising = denoised
-    if denoised:
-        cycles.denoiser, cycles.denoising_input_passes = "OPENIMAGEDENOISE", "RGB_ALBEDO_NORMAL"
+            return taken, last_picture(scene, Path(folder) / "picture.exr")
 
 
 def _add_blender_mesh(bpy: Any, thing: Thing) -> None:

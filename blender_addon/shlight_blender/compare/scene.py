@@ -12,21 +12,18 @@ from typing import Any
 import bpy
 
 from .. import register as register_addon
-from ..compat import set_sample_range
 from ..export.expressions import Surroundings
 from ..export.materials import read_material
 from ..names import name_of
+from ..rendering import Bounces, leave_plain, set_threads
 from ..report import ExportReport
-from .options import RenderOptions
+from ..serving import SceneError
+from .request import Request
 
 DEFAULT_LONGER_SIDE = 512
 FEW_PIXELS = 16
 # Rays that find an object in their way, other than the camera's.
 LIGHT_RAYS = ("visible_diffuse", "visible_glossy", "visible_shadow")
-
-
-class SceneError(Exception):
-    """The scene cannot be opened or has nothing to render; the message is for the user."""
 
 
 def open_scene(path: Path) -> Any:
@@ -71,38 +68,21 @@ def _reason(error: RuntimeError) -> str:
     return f"Blender cannot read it ({words.split(' in file ')[0]})"
 
 
-def prepare(scene: Any, options: RenderOptions) -> None:
+def prepare(scene: Any, request: Request) -> None:
     """Settings that all renders share: frame, lamps, size, filter, bounces, and nothing after the renderer."""
-    if options.frame is not None:
-        scene.frame_set(options.frame)
-    if options.lights is not None:
-        _leave_only(scene, options.lights)
+    if request.frame is not None:
+        scene.frame_set(request.frame)
+    if request.lights is not None:
+        _leave_only(scene, request.lights)
     render = scene.render
-    render.resolution_x, render.resolution_y = options.size or _default_size(render)
+    render.resolution_x, render.resolution_y = request.size or _default_size(render)
     render.resolution_percentage = 100
     render.use_border = False
-    render.threads_mode = "FIXED" if options.threads else "AUTO"
-    if options.threads:
-        render.threads = options.threads
+    set_threads(render, request.threads)
     scene.cycles.pixel_filter_type = "BOX"  # both engines read it
-    if options.max_bounces is not None:
-        scene.shlight.max_bounces = options.max_bounces
+    if request.max_bounces is not None:
+        scene.shlight.max_bounces = request.max_bounces
     leave_plain(render)
-
-
-def leave_plain(render: Any) -> None:
-    """One picture with nothing after the renderer, saved as it is."""
-    render.use_multiview = False
-    render.use_compositing = False
-    render.use_sequencer = False
-    render.use_stamp = False
-    # Each render exports the scene anew: that is part of its time, and Cycles would go on with its old settings.
-    render.use_persistent_data = False
-    image = render.image_settings
-    image.color_management = "FOLLOW_SCENE"
-    image.file_format = "OPEN_EXR"
-    image.color_mode = "RGBA"
-    image.color_depth = "32"
 
 
 def _leave_only(scene: Any, names: list[str]) -> None:
@@ -120,19 +100,25 @@ def _default_size(render: Any) -> tuple[int, int]:
     return max(1, round(render.resolution_x * scale)), max(1, round(render.resolution_y * scale))
 
 
-def use_shlight(scene: Any, options: RenderOptions) -> None:
+def use_shlight(scene: Any, request: Request) -> None:
     """The next render is shlight's, with the scene's settings and what the command line changes of them."""
     scene.render.engine = "SHLIGHT"
     settings = scene.shlight
-    if options.order is not None:
-        settings.order = options.order
-    if options.tolerance is not None:
-        settings.tolerance = options.tolerance
-    if options.pixel_samples is not None:
-        settings.pixel_samples = options.pixel_samples
-    if options.shadow_rays is not None:
-        settings.use_shadows = options.shadow_rays > 0
-        settings.shadow_rays = max(options.shadow_rays, 1)
+    if request.order is not None:
+        settings.order = request.order
+    if request.tolerance is not None:
+        settings.tolerance = request.tolerance
+    if request.pixel_samples is not None:
+        settings.pixel_samples = request.pixel_samples
+    if request.shadow_rays is not None:
+        settings.use_shadows = request.shadow_rays > 0
+        settings.shadow_rays = max(request.shadow_rays, 1)
+
+
+def bounces_of(scene: Any) -> Bounces:
+    """The bounces that shlight renders."""
+    settings = scene.shlight
+    return settings.max_bounces, settings.glossy_bounces, settings.transmission_bounces
 
 
 @contextmanager
@@ -163,45 +149,3 @@ def without_shadows() -> Iterator[None]:
 def _glows(seen: Any) -> bool:
     materials = (slot.material for slot in seen.material_slots)
     return any(read_material(material, ExportReport(), Surroundings()).emits() for material in materials)
-
-
-def use_cycles(
-    scene: Any, samples: int, seed: int, *, first: int = 0, of: int | None = None, denoise: bool = False
-) -> None:
-    """The next render is Cycles': as many bounces as shlight's of each kind, and nothing that trades truth for calm.
-
-    The samples are those from number `first` on of a sequence of `of` (by default of `samples`). SceneError where it is
-    to be denoised and this Blender has no denoiser.
-    """
-    scene.render.engine = "CYCLES"
-    cycles = scene.cycles
-    cycles.device = "CPU"
-    set_sample_range(cycles, first, samples, of or samples)
-    cycles.seed = seed
-    cycles.use_animated_seed = False
-    cycles.time_limit = 0.0
-    most = scene.shlight.max_bounces
-    cycles.max_bounces = cycles.diffuse_bounces = most
-    cycles.glossy_bounces = min(scene.shlight.glossy_bounces, most)
-    cycles.transmission_bounces = min(scene.shlight.transmission_bounces, most)
-    cycles.caustics_reflective = cycles.caustics_refractive = True
-    cycles.use_fast_gi = False
-    cycles.sample_clamp_direct = 0.0
-    cycles.sample_clamp_indirect = 0.0
-    cycles.light_sampling_threshold = 0.0
-    cycles.blur_glossy = 0.0
-    cycles.use_adaptive_sampling = False
-    cycles.use_denoising = denoise
-    if denoise:
-        use_denoiser(cycles)
-    cycles.use_guiding = False
-    for layer in scene.view_layers:
-        layer.samples = 0  # 0: the scene's number
-
-
-def use_denoiser(cycles: Any) -> None:
-    """Chooses OpenImageDenoise; SceneError where Blender is built without it."""
-    try:
-        cycles.denoiser = "OPENIMAGEDENOISE"
-    except TypeError:
-        raise SceneError("the Cycles of this Blender is built without OpenImageDenoise") from None

@@ -12,9 +12,8 @@ from typing import Any
 
 from shlight.commands import CommandError
 
-from .process import WorkerError, WorkerProcess
-
-TICK_SECONDS = 0.2
+from ..worker_process import Stage, WorkerError, WorkerProcess
+from .request import Request
 
 
 def check_blender() -> None:
@@ -24,23 +23,20 @@ def check_blender() -> None:
 
 
 def run_worker(
-    module: str, request: dict[str, Any], folder: Path, tick: Callable[[], None], hear: Callable[[dict[str, Any]], None]
+    module: str, request: Request, folder: Path, tick: Callable[[Stage, dict[str, Any]], None]
 ) -> dict[str, Any]:
     """Has the worker `module` render into `folder` and returns its figures; CommandError with its reason if it fails.
 
-    tick() is called a few times a second and ends the worker by raising an exception, hear(message) is told each
-    message but the last.
+    tick() is called a few times a second, with what is being done and the figures that are known already, and ends the
+    worker by raising an exception.
     """
-    worker = WorkerProcess([sys.executable, "-m", module], request, folder, dict(os.environ))
+    worker = WorkerProcess([sys.executable, "-m", module], request.to_data(), folder, dict(os.environ))
     try:
-        while True:
-            tick()
-            for message in worker.messages(TICK_SECONDS):
-                if message["kind"] == "result":
-                    figures: dict[str, Any] = message["figures"]
-                    return figures
-                hear(message)
+        while (figures := worker.result()) is None:
+            tick(worker.stage, worker.known)
+        return figures
     except WorkerError as error:
+        tick(worker.stage, worker.known)  # what came with the error
         raise CommandError(str(error), error.exit_code) from None
     finally:
         worker.end()

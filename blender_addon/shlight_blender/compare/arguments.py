@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import argparse
+import math
 import re
+from collections.abc import Callable
 from typing import Any
 
 LARGEST_SIDE = 16384
@@ -18,22 +20,26 @@ def size(text: str) -> tuple[int, int]:
     return int(match[1]), int(match[2])
 
 
-def whole(least: int) -> Any:
+def whole(least: int) -> Callable[[str], int]:
     """The type of whole numbers from `least` on."""
-
-    def parse_whole(text: str) -> int:
-        if not re.fullmatch(r"\d{1,9}", text) or int(text) < least:
-            raise argparse.ArgumentTypeError(f"'{text}' is no whole number of at least {least}")
-        return int(text)
-
-    return parse_whole
+    return _number(int, least, 999_999_999, f"whole number of at least {least}")
 
 
-def seconds(text: str) -> float:
-    """A time, 0 or more."""
-    if not re.fullmatch(r"\d{1,9}(\.\d{1,9})?", text):
-        raise argparse.ArgumentTypeError(f"'{text}' is no number of seconds, 0 or more")
-    return float(text)
+def _number(kind: type, least: float, most: float, text: str) -> Any:
+    def parse(given: str) -> Any:
+        try:
+            value = kind(given)
+        except ValueError:
+            value = math.nan
+        if not least <= value <= most:
+            raise argparse.ArgumentTypeError(f"'{given}' is no {text}")
+        return value
+
+    return parse
+
+
+seconds = _number(float, 0.0, 1e9, "number of seconds, 0 or more")
+tolerance = _number(float, 1e-6, 0.5, "number from 1e-6 to 0.5")
 
 
 def order(text: str) -> str:
@@ -43,14 +49,3 @@ def order(text: str) -> str:
     if re.fullmatch(r"\d{1,2}", text) and 1 <= int(text) <= 64:
         return str(int(text))
     raise argparse.ArgumentTypeError(f"'{text}' is neither auto nor an order from 1 to 64")
-
-
-def tolerance(text: str) -> float:
-    """A tolerance of shlight."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 1e-6 <= value <= 0.5:
-        raise argparse.ArgumentTypeError(f"'{text}' is no number from 1e-6 to 0.5")
-    return value

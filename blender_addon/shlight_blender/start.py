@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The script that the other Blender runs: it makes the add-on a package of the name it has in the first one.
+"""The script that another Blender runs: it makes the add-on a package of the name it has in the first one.
 
-usage: <Blender or Python> start.py -- <package> <sys.path> <folder> <file descriptor for messages>
+usage: <Blender or Python> start.py -- <package> <sys.path> <module of the worker> <folder> <file descriptor>
 """
 
 import importlib
@@ -12,12 +12,12 @@ from pathlib import Path
 
 import bpy  # noqa: F401 - before the path grows: it has to be the one of this Blender
 
-ADDON = Path(__file__).resolve().parents[1]
+ADDON = Path(__file__).resolve().parent
 
 
 def main() -> None:
     """Serves the request."""
-    package, path, *arguments = sys.argv[sys.argv.index("--") + 1 :]
+    package, path, worker, *arguments = sys.argv[sys.argv.index("--") + 1 :]
     sys.path += [folder for folder in path.split(os.pathsep) if folder not in sys.path]
     spec = importlib.util.spec_from_file_location(
         package, ADDON / "__init__.py", submodule_search_locations=[str(ADDON)]
@@ -26,7 +26,7 @@ def main() -> None:
     assert spec.loader is not None
     sys.modules[package] = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(sys.modules[package])
-    importlib.import_module(f"{package}.compare.worker").main(arguments)
+    importlib.import_module(f"{package}.{worker}").main(arguments)
 
 
 if __name__ == "__main__":

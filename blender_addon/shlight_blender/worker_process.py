@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The process of a worker: it is started, its messages are read without waiting for it, and it is ended for good."""
+"""The process of a worker: it is started, its messages are read without waiting for it, and it is ended for good.
+
+Blender renders in one: whatever it prints, and even its crash, then ends in one clear line. `serving` has the messages.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +11,33 @@ import os
 import select
 import signal
 import subprocess
+import time
 from contextlib import suppress
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 LOG = "blender.log"
+TICK_SECONDS = 0.2
+
+
+@dataclass
+class Stage:
+    """A part of a worker's work. expected: seconds that it may take; 0: nobody knows."""
+
+    name: str = "Starting Blender"
+    expected: float = 0.0
+    since: float = field(default_factory=time.monotonic)
+
+    @property
+    def seconds(self) -> float:
+        """For how long already."""
+        return time.monotonic() - self.since
+
+    @property
+    def share(self) -> float:
+        """The elapsed share of the expected time, less than 1; 0 if none is expected."""
+        return min(self.seconds / self.expected, 0.99) if self.expected > 0 else 0.0
 
 
 class WorkerError(Exception):
@@ -31,6 +56,8 @@ class WorkerProcess:
         (folder / "request.json").write_text(json.dumps(request), encoding="utf-8")
         self._log = folder / LOG
         self._pending = b""
+        self.known: dict[str, Any] = {}
+        self.stage = Stage()
         self._read_end, write_end = os.pipe()
         try:
             with self._log.open("wb") as log:
@@ -50,19 +77,31 @@ class WorkerProcess:
         finally:
             os.close(write_end)
 
-    def messages(self, seconds: float) -> list[dict[str, Any]]:
-        """Messages of the worker that were not read; waits up to `seconds` for one. WorkerError if it failed."""
+    def result(self, seconds: float = TICK_SECONDS) -> dict[str, Any] | None:
+        """The figures once all are known; None after `seconds` at most, for which it waits. WorkerError if it failed.
+
+        `known` has those that are known before, `stage` what is being done.
+        """
+        for message in self._messages(seconds):
+            if message["kind"] == "error":
+                raise WorkerError(message["text"], message["exit_code"])
+            if message["kind"] == "stage":
+                self.stage = Stage(message["name"], message["expected_seconds"])
+                continue
+            self.known |= message["figures"]
+            if message["kind"] == "result":
+                return self.known
+        return None
+
+    def _messages(self, seconds: float) -> list[dict[str, Any]]:
+        """The messages that were not read."""
         if not select.select([self._read_end], [], [], seconds)[0]:
             return []
         received = os.read(self._read_end, 65536)
         if not received:
             raise WorkerError(last_words(self._process.wait(), self._log), 1)
         *lines, self._pending = (self._pending + received).split(b"\n")
-        messages = [json.loads(line) for line in lines]
-        for message in messages:
-            if message["kind"] == "error":
-                raise WorkerError(message["text"], message["exit_code"])
-        return messages
+        return [json.loads(line) for line in lines]
 
     def end(self) -> None:
         """Ends it at once. After its result nothing is left to do but Blender's own end, which may crash."""
