@@ -167,7 +167,12 @@ def test_the_wheel_is_a_package(tmp_path: Path, profile: Path) -> None:
     assert ball[0] > 1.3 * max(ball[1:])  # as the screen shows them
     assert floor.max() < 1.3 * floor.min()
     with zipfile.ZipFile(wheel) as files:
-        assert "shlight/py.typed" in files.namelist()
+        names = files.namelist()
+        assert "shlight/py.typed" in names
+        # Rivals and the reference are for developers.
+        assert not any("shlight_tools" in name or "/bench/" in name or "/charts/" in name for name in names)
+        core = files.read(next(name for name in names if name.startswith("shlight/_core") and name.endswith(".so")))
+        assert not any(word in core for word in (b"monte_carlo", b"zhou_wei", b"float128"))
 
 
 class Wheels:
