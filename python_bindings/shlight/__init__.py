@@ -20,6 +20,7 @@ from shlight._calls import explain_methods  # noqa: E402
 from shlight._core import (  # noqa: E402
     DEFAULT_TOLERANCE,
     Bsdf,
+    Light,
     RenderCancelled,
     RenderReport,
     Scene,
@@ -42,7 +43,7 @@ from shlight.queries import Hits, shading_frames  # noqa: E402
 from shlight.rendering import RenderResult, render  # noqa: E402
 from shlight.shading import shade_disks, shade_polygons, shade_spheres  # noqa: E402
 
-for _kind in (Bsdf, Scene, SceneMesh):
+for _kind in (Bsdf, Light, Scene, SceneMesh):
     explain_methods(_kind)
 
 if TYPE_CHECKING:
@@ -69,6 +70,7 @@ __all__ = [
     "DEFAULT_TOLERANCE",
     "Bsdf",
     "Hits",
+    "Light",
     "RenderCancelled",
     "RenderReport",
     "RenderResult",

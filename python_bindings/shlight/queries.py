@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from shlight._arrays import broadcast, check_last, checked_array
+from shlight._arrays import broadcast, check_last, checked_array, given_type
 
 # A tangent whose part at right angles to the normal is shorter than this, of length 1, has no direction.
 _LEAST_TANGENT = 1e-6
@@ -65,8 +65,7 @@ def shading_frames(normals: ArrayLike, tangents: ArrayLike | None = None) -> Flo
     otherwise float64.
     Raises ValueError naming the argument and its row.
     """
-    given = [normals] if tangents is None else [normals, tangents]
-    single = all(getattr(value, "dtype", None) == np.float32 for value in given)
+    kind = given_type(normals, *([] if tangents is None else [tangents]))
     z = _units("normals", normals)
     if tangents is None:
         x = _turned_x(z)
@@ -78,8 +77,7 @@ def shading_frames(normals: ArrayLike, tangents: ArrayLike | None = None) -> Flo
         _check_rows("tangents", length[..., 0] > _LEAST_TANGENT, "is parallel to its normal")
         x /= length
     x, z = np.broadcast_arrays(x, z)
-    frames = np.stack([x, np.cross(z, x), z], axis=-1)
-    return frames.astype(np.float32) if single else frames
+    return np.stack([x, np.cross(z, x), z], axis=-1).astype(kind, copy=False)
 
 
 def _turned_x(z: Floats) -> Floats:

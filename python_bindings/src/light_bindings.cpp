@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "arguments.h"
 #include "mesh_arrays.h"
 #include "scene_bindings.h"
+#include "whole_objects.h"
 
 using namespace pybind11::literals;
 
@@ -17,7 +23,14 @@ constexpr const char* kTraitsDoc =
 camera: True: the camera sees its radiance, added to that of what is behind it; not of a light of no size.
 group: name of its light group, or None.
 
-Raises ValueError naming the argument.)";
+Returns the Light, which can be changed and removed.
+Raises ValueError naming the argument; the scene is then as it was.)";
+
+constexpr const char* kLightDoc = R"(A light of a Scene, as Scene.add_sphere_light and its like return it.
+
+It belongs to that scene alone; copies of the scene have lights of their own. A change shows in the next render or
+query, which builds nothing of the meshes anew. A refused change leaves the light as it was. All but repr() raise
+ValueError once the light has been removed.)";
 
 std::string with_traits(const char* doc) {
     return std::string(doc) + kTraitsDoc;
@@ -72,80 +85,256 @@ tangent: False: its radiance is irradiance / (pi sin^2(angle / 2)) everywhere; T
     cos^3 alpha) at an angle alpha to its middle, as Blender had it before version 4; angle is then at most 3.
 )";
 
-LightTraits traits_from(SceneObject& scene, const py::object& shadows, const py::object& diffuse,
+LightTraits traits_from(const py::object& scene, const py::object& shadows, const py::object& diffuse,
                         const py::object& glossy, const py::object& camera, const py::object& group) {
     LightTraits traits;
     traits.casts_shadows = flag_from("shadows", shadows);
     traits.lights_diffuse = flag_from("diffuse", diffuse);
     traits.lights_glossy = flag_from("glossy", glossy);
     traits.seen_by_camera = flag_from("camera", camera);
-    traits.group = group_from(scene, group);
+    traits.group = group_from(scene.cast<SceneObject&>(), group);
     return traits;
 }
 
-void add_sphere_light(SceneObject& self, const py::object& center, const py::object& radius, const py::object& radiance,
-                      const py::object& facing_disk, const py::object& shadows, const py::object& diffuse,
-                      const py::object& glossy, const py::object& camera, const py::object& group) {
-    self.scene.add_sphere_light(vector_from("center", center), real_from("radius", radius),
-                                rgb_from("radiance", radiance), flag_from("facing_disk", facing_disk),
-                                traits_from(self, shadows, diffuse, glossy, camera, group));
-    self.changed();
+/// A lamp of a scene; it keeps the scene alive.
+struct LampHandle {
+    py::object owner;
+    Scene::LampNumber number;
+
+    SceneObject& scene() const { return owner.cast<SceneObject&>(); }
+    /// Throws std::invalid_argument if the lamp has been removed.
+    const LampRecord& record() const {
+        const auto found = scene().lamps.find(number);
+        if (found == scene().lamps.end()) {
+            throw std::invalid_argument("light has been removed from its scene");
+        }
+        return found->second;
+    }
+    /// Makes the lamp anew. Throws std::invalid_argument naming the argument; the lamp is then as it was.
+    void change(LampRecord record) const {
+        SceneObject& own = scene();
+        own.scene.set_lamp(number, record.make(record));
+        own.lamps[number] = std::move(record);
+        own.changed();
+    }
+};
+
+LampHandle add_lamp(const py::object& self, LampRecord record) {
+    auto& scene = self.cast<SceneObject&>();
+    const Scene::LampNumber number = scene.scene.add_lamp(record.make(record));
+    scene.lamps.emplace(number, std::move(record));
+    scene.changed();
+    return {self, number};
 }
 
-void add_polygon_light(SceneObject& self, const py::object& vertices, const py::object& radiance,
-                       const py::object& spread, const py::object& shadows, const py::object& diffuse,
-                       const py::object& glossy, const py::object& camera, const py::object& group) {
-    self.scene.add_polygon_light(points_from("vertices", vertices), rgb_from("radiance", radiance),
-                                 real_from("spread", spread),
-                                 traits_from(self, shadows, diffuse, glossy, camera, group));
-    self.changed();
+/// The scale of a transform that turns, moves and scales alike in all directions. Throws std::invalid_argument naming
+/// `to_world` for others.
+double even_scale(const glm::dmat4& to_world, const char* kind) {
+    constexpr double kRounding = 1e-6;
+    const glm::dmat3 linear(to_world);
+    const double scale = std::cbrt(std::abs(glm::determinant(linear)));
+    const glm::dmat3 squares = glm::transpose(linear) * linear / (scale * scale);
+    for (int column = 0; column < 3; ++column) {
+        for (int row = 0; row < 3; ++row) {
+            if (!(std::abs(squares[column][row] - (row == column ? 1 : 0)) <= kRounding)) {
+                throw std::invalid_argument(std::string("to_world must turn, move and scale a ") + kind +
+                                            " light alike in all directions");
+            }
+        }
+    }
+    return scale;
 }
 
-void add_disk_light(SceneObject& self, const py::object& center, const py::object& half_axis_u,
-                    const py::object& half_axis_v, const py::object& radiance, const py::object& spread,
-                    const py::object& shadows, const py::object& diffuse, const py::object& glossy,
-                    const py::object& camera, const py::object& group) {
-    self.scene.add_disk_light(vector_from("center", center), vector_from("half_axis_u", half_axis_u),
-                              vector_from("half_axis_v", half_axis_v), rgb_from("radiance", radiance),
-                              real_from("spread", spread), traits_from(self, shadows, diffuse, glossy, camera, group));
-    self.changed();
+Vec3d moved(const LampRecord& own, const Vec3d& point) {
+    return Vec3d(own.to_world * glm::dvec4(point, 1));
 }
 
-void add_point_light(SceneObject& self, const py::object& position, const py::object& intensity,
-                     const py::object& shadows, const py::object& diffuse, const py::object& glossy,
-                     const py::object& camera, const py::object& group) {
-    self.scene.add_point_light(vector_from("position", position), rgb_from("intensity", intensity),
-                               traits_from(self, shadows, diffuse, glossy, camera, group));
-    self.changed();
+Vec3d turned(const LampRecord& own, const Vec3d& vector) {
+    return glm::dmat3(own.to_world) * vector;
 }
 
-void add_spot_light(SceneObject& self, const py::object& position, const py::object& direction,
-                    const py::object& spot_angle, const py::object& blend, const py::object& intensity,
-                    const py::object& radius, const py::object& facing_disk, const py::object& times_cosine,
-                    const py::object& shadows, const py::object& diffuse, const py::object& glossy,
-                    const py::object& camera, const py::object& group) {
-    self.scene.add_spot_light(vector_from("position", position),
-                              make_spot_profile(axes_from("direction", direction), real_from("spot_angle", spot_angle),
-                                                real_from("blend", blend), flag_from("times_cosine", times_cosine)),
-                              rgb_from("intensity", intensity), real_from("radius", radius),
-                              flag_from("facing_disk", facing_disk),
-                              traits_from(self, shadows, diffuse, glossy, camera, group));
-    self.changed();
+bool is_mirrored(const LampRecord& own) {
+    return glm::determinant(glm::dmat3(own.to_world)) < 0;
 }
 
-void add_sun_light(SceneObject& self, const py::object& direction, const py::object& angle,
-                   const py::object& irradiance, const py::object& tangent, const py::object& shadows,
-                   const py::object& diffuse, const py::object& glossy, const py::object& camera,
-                   const py::object& group) {
-    self.scene.add_sun_light(vector_from("direction", direction), real_from("angle", angle),
-                             rgb_from("irradiance", irradiance), flag_from("tangent", tangent),
-                             traits_from(self, shadows, diffuse, glossy, camera, group));
-    self.changed();
+LampHandle add_sphere_light(const py::object& self, const py::object& center, const py::object& radius,
+                            const py::object& radiance, const py::object& facing_disk, const py::object& shadows,
+                            const py::object& diffuse, const py::object& glossy, const py::object& camera,
+                            const py::object& group) {
+    const Vec3d place = vector_from("center", center);
+    const double size = real_from("radius", radius);
+    const Rgb strength = rgb_from("radiance", radiance);
+    const bool faces = flag_from("facing_disk", facing_disk);
+    return add_lamp(self, {"sphere", "radiance", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
+                           [=](const LampRecord& own) -> Light {
+                               return make_sphere_light(moved(own, place), even_scale(own.to_world, own.kind) * size,
+                                                        own.strength, faces, own.traits);
+                           }});
+}
+
+LampHandle add_polygon_light(const py::object& self, const py::object& vertices, const py::object& radiance,
+                             const py::object& spread, const py::object& shadows, const py::object& diffuse,
+                             const py::object& glossy, const py::object& camera, const py::object& group) {
+    const std::vector<Vec3d> corners = points_from("vertices", vertices);
+    const Rgb strength = rgb_from("radiance", radiance);
+    const double angle = real_from("spread", spread);
+    return add_lamp(self, {"polygon", "radiance", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
+                           [=](const LampRecord& own) -> Light {
+                               std::vector<Vec3d> placed;
+                               for (const Vec3d& corner : corners) {
+                                   placed.push_back(moved(own, corner));
+                               }
+                               if (is_mirrored(own)) {
+                                   std::reverse(placed.begin(), placed.end());
+                               }
+                               return make_polygon_lamp(std::move(placed), own.strength, angle, own.traits);
+                           }});
+}
+
+LampHandle add_disk_light(const py::object& self, const py::object& center, const py::object& half_axis_u,
+                          const py::object& half_axis_v, const py::object& radiance, const py::object& spread,
+                          const py::object& shadows, const py::object& diffuse, const py::object& glossy,
+                          const py::object& camera, const py::object& group) {
+    const Vec3d place = vector_from("center", center);
+    const Vec3d u = vector_from("half_axis_u", half_axis_u);
+    const Vec3d v = vector_from("half_axis_v", half_axis_v);
+    const Rgb strength = rgb_from("radiance", radiance);
+    const double angle = real_from("spread", spread);
+    return add_lamp(self, {"disk", "radiance", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
+                           [=](const LampRecord& own) -> Light {
+                               return make_disk_lamp(moved(own, place), turned(own, u),
+                                                     turned(own, is_mirrored(own) ? -v : v), own.strength, angle,
+                                                     own.traits);
+                           }});
+}
+
+LampHandle add_point_light(const py::object& self, const py::object& position, const py::object& intensity,
+                           const py::object& shadows, const py::object& diffuse, const py::object& glossy,
+                           const py::object& camera, const py::object& group) {
+    const Vec3d place = vector_from("position", position);
+    const Rgb strength = rgb_from("intensity", intensity);
+    return add_lamp(self, {"point", "intensity", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
+                           [=](const LampRecord& own) -> Light {
+                               return make_point_source(moved(own, place), own.strength, own.traits);
+                           }});
+}
+
+LampHandle add_spot_light(const py::object& self, const py::object& position, const py::object& direction,
+                          const py::object& spot_angle, const py::object& blend, const py::object& intensity,
+                          const py::object& radius, const py::object& facing_disk, const py::object& times_cosine,
+                          const py::object& shadows, const py::object& diffuse, const py::object& glossy,
+                          const py::object& camera, const py::object& group) {
+    const Vec3d place = vector_from("position", position);
+    const glm::dmat3 axes = axes_from("direction", direction);
+    const double angle = real_from("spot_angle", spot_angle);
+    const double fading = real_from("blend", blend);
+    const bool cosine = flag_from("times_cosine", times_cosine);
+    const Rgb strength = rgb_from("intensity", intensity);
+    const double size = real_from("radius", radius);
+    const bool faces = flag_from("facing_disk", facing_disk);
+    return add_lamp(self, {"spot", "intensity", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
+                           [=](const LampRecord& own) -> Light {
+                               const double scale = even_scale(own.to_world, own.kind);
+                               const SpotProfile profile =
+                                   make_spot_profile(glm::dmat3(own.to_world) * axes / scale, angle, fading, cosine);
+                               return make_spot_light(moved(own, place), profile, own.strength, scale * size, faces,
+                                                      own.traits);
+                           }});
+}
+
+LampHandle add_sun_light(const py::object& self, const py::object& direction, const py::object& angle,
+                         const py::object& irradiance, const py::object& tangent, const py::object& shadows,
+                         const py::object& diffuse, const py::object& glossy, const py::object& camera,
+                         const py::object& group) {
+    const Vec3d way = vector_from("direction", direction);
+    const double size = real_from("angle", angle);
+    const Rgb strength = rgb_from("irradiance", irradiance);
+    const bool is_tangent = flag_from("tangent", tangent);
+    return add_lamp(self, {"sun", "irradiance", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
+                           [=](const LampRecord& own) -> Light {
+                               const double scale = even_scale(own.to_world, own.kind);
+                               return make_sun_light(turned(own, way) / scale, size, own.strength, is_tangent,
+                                                     own.traits);
+                           }});
+}
+
+/// A light's strength under the name that its add_..._light has for it.
+py::array strength(const LampHandle& self, const char* name) {
+    const LampRecord& record = self.record();
+    if (std::strcmp(record.strength_name, name) != 0) {
+        throw py::attribute_error(std::string("a ") + record.kind + " light has no " + name + " but " +
+                                  record.strength_name);
+    }
+    py::array_t<double> rgb(3);
+    for (int channel = 0; channel < 3; ++channel) {
+        rgb.mutable_at(channel) = double{record.strength[channel]};
+    }
+    return rgb;
+}
+
+void set_strength(const LampHandle& self, const char* name, const py::object& value) {
+    strength(self, name);
+    LampRecord record = self.record();
+    record.strength = rgb_from(name, value);
+    self.change(std::move(record));
+}
+
+void set_group(const LampHandle& self, const py::object& group) {
+    LampRecord record = self.record();
+    record.traits.group = group_from(self.scene(), group);
+    self.change(std::move(record));
+}
+
+void set_place(const LampHandle& self, const py::object& to_world) {
+    LampRecord record = self.record();
+    record.to_world = place_from("to_world", to_world);
+    self.change(std::move(record));
+}
+
+void remove_light(const LampHandle& self) {
+    self.record();
+    SceneObject& scene = self.scene();
+    scene.scene.remove_lamp(self.number);
+    scene.lamps.erase(self.number);
+    scene.changed();
+}
+
+std::string repr_of(const LampHandle& self) {
+    const auto found = self.scene().lamps.find(self.number);
+    if (found == self.scene().lamps.end()) {
+        return "Light(removed)";
+    }
+    const LampRecord& own = found->second;
+    const auto group = py::repr(group_name(self.scene(), own.traits.group)).cast<std::string>();
+    return std::string("Light(") + own.kind + ", " + own.strength_name + "=" +
+           py::repr(strength(self, own.strength_name).attr("tolist")()).cast<std::string>() + ", group=" + group + ")";
+}
+
+void bind_light(py::module_& m) {
+    py::class_<LampHandle> light(m, "Light", kLightDoc, without_constructor());
+    for (const char* name : {"radiance", "intensity", "irradiance"}) {
+        light.def_property(
+            name, [name](const LampHandle& self) { return strength(self, name); },
+            [name](const LampHandle& self, const py::object& value) { set_strength(self, name, value); },
+            "(3,), RGB, as of the add_..._light that has made the light; AttributeError if that calls it otherwise.");
+    }
+    light
+        .def_property(
+            "group", [](const LampHandle& self) { return group_name(self.scene(), self.record().traits.group); },
+            &set_group, "The name of its light group, or None.")
+        .def_property(
+            "to_world", [](const LampHandle& self) { return array_of(self.record().to_world); }, &set_place,
+            "(4, 4), for column vectors: from the frame in which the light was added, at first the world's. A polygon "
+            "or\n"
+            "disk takes any affine one; a sphere, spot or sun one that scales alike in all directions.")
+        .def("remove", &remove_light, "Take the light out of its scene.")
+        .def("__repr__", &repr_of);
 }
 
 }  // namespace
 
-void bind_lights(py::class_<SceneObject>& scene) {
+void bind_lights(py::module_& m, py::class_<SceneObject>& scene) {
+    bind_light(m);
     scene
         .def("add_sphere_light", &add_sphere_light, with_traits(kSphereDoc).c_str(), "center"_a, "radius"_a,
              "radiance"_a, py::kw_only(), "facing_disk"_a = false, "shadows"_a = true, "diffuse"_a = true,

@@ -290,6 +290,22 @@ glm::dmat4 matrix_from(const char* name, const py::handle& value) {
     return matrix_at(numbers<double>(name, value, {4, 4}).data());
 }
 
+glm::dmat4 place_from(const char* name, const py::handle& value) {
+    const glm::dmat4 matrix = matrix_from(name, value);
+    check_place(name, matrix);
+    return matrix;
+}
+
+py::array array_of(const glm::dmat4& matrix) {
+    py::array_t<double> array({4, 4});
+    for (int row = 0; row < 4; ++row) {
+        for (int column = 0; column < 4; ++column) {
+            array.mutable_at(row, column) = matrix[column][row];
+        }
+    }
+    return array;
+}
+
 glm::dmat3 rotation_from(const char* name, const py::handle& value) {
     const AnyArray<double> rows = numbers<double>(name, value, {3, 3});
     return glm::transpose(glm::make_mat3(rows.data()));

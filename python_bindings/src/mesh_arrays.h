@@ -28,6 +28,11 @@ glm::dmat3 axes_from(const char* name, const pybind11::handle& value);
 /// Shape (4, 4), to be multiplied with column vectors.
 glm::dmat4 matrix_from(const char* name, const pybind11::handle& value);
 
+/// The same of a transform that is affine and invertible.
+glm::dmat4 place_from(const char* name, const pybind11::handle& value);
+/// Shape (4, 4).
+pybind11::array array_of(const glm::dmat4& matrix);
+
 /// Shape (3, 3), to be multiplied with column vectors.
 glm::dmat3 rotation_from(const char* name, const pybind11::handle& value);
 /// A radiance, shape (3,), or a lat-long picture, shape (height, width, 3), rotated by `to_world`.

@@ -97,7 +97,11 @@ struct Vectors {
 
   private:
     static bool is_single(const py::object& value) {
-        return py::isinstance<py::array>(value) && py::array(value).dtype().is(py::dtype::of<float>());
+        if (!py::isinstance<py::array>(value)) {
+            return false;
+        }
+        const py::dtype type = py::array(value).dtype();
+        return type.kind() == 'f' && type.itemsize() == sizeof(float);  // of either byte order
     }
 };
 

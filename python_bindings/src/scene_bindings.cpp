@@ -134,6 +134,51 @@ void set_transforms(const MeshHandle& self, const py::object& transforms, const 
     scene.changed();
 }
 
+/// The use of a mesh that has one instance.
+MeshUse single_use(const MeshHandle& self) {
+    const auto& use = static_cast<const MeshUse&>(self.scene().scene.mesh(self.number));
+    if (use.transforms.size() != 1) {
+        throw std::invalid_argument("to_world is of a mesh with one instance; this one has " +
+                                    std::to_string(use.transforms.size()) + ": call set_transforms");
+    }
+    return use;
+}
+
+void set_place(const MeshHandle& self, const py::object& to_world) {
+    MeshUse use = single_use(self);
+    use.transforms.front() = place_from("to_world", to_world);
+    self.scene().scene.use_mesh(self.number, std::move(use));
+    self.scene().changed();
+}
+
+void set_group(const MeshHandle& self, const py::object& group) {
+    auto use = MeshUse(static_cast<const MeshUse&>(self.scene().scene.mesh(self.number)));
+    use.group = group_from(self.scene(), group);
+    self.scene().scene.use_mesh(self.number, std::move(use));
+    self.scene().changed();
+}
+
+std::string counted(std::size_t count, const char* name, const char* plural) {
+    return std::to_string(count) + " " + (count == 1 ? name : plural);
+}
+
+std::string repr_of_mesh(const MeshHandle& self) {
+    try {
+        const SceneMesh& mesh = self.scene().scene.mesh(self.number);
+        return "SceneMesh(index=" + std::to_string(self.number) + ", " +
+               counted(mesh.shape->triangles.size(), "triangle", "triangles") + ", " +
+               counted(mesh.transforms.size(), "instance", "instances") + ")";
+    } catch (const std::invalid_argument&) {
+        return "SceneMesh(removed)";
+    }
+}
+
+std::string repr_of(const SceneObject& self) {
+    return "Scene(" + counted(self.scene.mesh_count(), "mesh", "meshes") + ", " +
+           counted(self.scene.lamp_count(), "light", "lights") +
+           (self.scene.environment().is_black() ? "" : ", an environment") + (self.camera ? ", a camera" : "") + ")";
+}
+
 void remove_mesh(const MeshHandle& self) {
     self.scene().scene.remove_mesh(self.number);
     self.scene().changed();
@@ -141,6 +186,7 @@ void remove_mesh(const MeshHandle& self) {
 
 void remove_lights(SceneObject& self) {
     self.scene.remove_lamps();
+    self.lamps.clear();
     self.changed();
 }
 
@@ -170,6 +216,10 @@ std::uint32_t group_from(SceneObject& scene, const py::object& name) {
     return number;
 }
 
+py::object group_name(const SceneObject& scene, std::uint32_t group) {
+    return group == 0 ? py::object(py::none()) : py::object(py::str(scene.groups[group - 1]));
+}
+
 std::uint32_t aov_number(SceneObject& scene, const std::string& name, bool is_color) {
     const std::pair wanted(name, is_color);
     const auto known = std::find(scene.aovs.begin(), scene.aovs.end(), wanted);
@@ -188,12 +238,21 @@ void bind_scene(py::module_& m) {
              "object_values"_a = py::none(), "object_names"_a = py::none(), "asset_names"_a = py::none(),
              "object_indices"_a = py::none())
         .def("remove", &remove_mesh, "Take the mesh out of its scene.")
+        .def_property(
+            "to_world", [](const MeshHandle& self) { return array_of(single_use(self).transforms.front()); },
+            &set_place, "(4, 4), for column vectors: the place of a mesh with one instance.")
+        .def_property(
+            "group",
+            [](const MeshHandle& self) { return group_name(self.scene(), self.scene().scene.mesh(self.number).group); },
+            &set_group, "The name of the light group of what it emits, or None.")
+        .def("__repr__", &repr_of_mesh)
         .def_property_readonly(
             "index", [](const MeshHandle& self) { return self.number; },
             "Hits.mesh of rays that meet it: the number of meshes that were added to the scene before, removed ones\n"
             "among them.");
     py::class_<SceneObject> scene(m, "Scene", kSceneDoc, constructed_when_new());
     scene.def(py::init<>())
+        .def("__repr__", &repr_of)
         .def("__copy__", [](const SceneObject& self) { return self; })
         .def(
             "__deepcopy__", [](const SceneObject& self, const py::object&) { return self; }, "memo"_a)
@@ -215,7 +274,7 @@ void bind_scene(py::module_& m) {
         .def("set_environment", &set_environment, kEnvironmentDoc, "radiance"_a, py::kw_only(),
              "to_world"_a = py::none(), "visible"_a = true, "group"_a = py::none());
     bind_cameras(scene);
-    bind_lights(scene);
+    bind_lights(m, scene);
     bind_queries(scene);
 }
 

@@ -198,6 +198,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         of_scene("radiance"),
         {**RAYS, **{name: SETTINGS[name] for name in OF_RADIANCE}, "min_samples": 1, "lights": False, "threads": 1},
     ),
+    "Light.remove": (lambda: shlight.Scene().add_point_light([0, 0, 1], RGB).remove(), {}),
     "SceneMesh.set_bsdf": (of_mesh("set_bsdf"), {name: MESH[name] for name in OF_MATERIALS}),
     "SceneMesh.set_transforms": (of_mesh("set_transforms"), {name: MESH[name] for name in OF_PLACES}),
     "SceneMesh.remove": (of_mesh("remove"), {}),

@@ -129,6 +129,13 @@ PolygonLight make_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance
 DiskLight make_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const Vec3d& half_axis_v, const Rgb& radiance,
                           bool two_sided, const LightTraits& traits = {});
 
+/// One-sided, with the profile of a spread (see make_spread_profile) in the place of traits.profile. Throw as the
+/// functions above and make_spread_profile do.
+PolygonLight make_polygon_lamp(std::vector<Vec3d> vertices, const Rgb& radiance, double spread,
+                               const LightTraits& traits = {});
+DiskLight make_disk_lamp(const Vec3d& center, const Vec3d& half_axis_u, const Vec3d& half_axis_v, const Rgb& radiance,
+                         double spread, const LightTraits& traits = {});
+
 /// Throws std::invalid_argument naming the argument: a number outside docs/conventions.md's range.
 PointSource make_point_source(const Vec3d& position, const Rgb& intensity, const LightTraits& traits = {});
 

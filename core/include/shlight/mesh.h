@@ -137,6 +137,9 @@ void check_shape(const MeshShape& shape);
 /// check_shape() for the use of a shape; a transform must be affine and invertible.
 void check_use(const MeshShape& shape, const MeshUse& use);
 
+/// Throws std::invalid_argument naming the argument unless the matrix is affine and invertible.
+void check_place(const char* name, const glm::dmat4& to_world);
+
 struct Box {
     Vec3d least{std::numeric_limits<double>::infinity()}, largest{-std::numeric_limits<double>::infinity()};
 

@@ -98,28 +98,38 @@ class Scene {
     void use_mesh(MeshNumber number, MeshUse use);
     /// Throws what mesh() throws.
     void remove_mesh(MeshNumber number);
-    /// Lamps throw as make_sphere_light, make_polygon_light … do. The camera sees those that are
-    /// LightTraits::seen_by_camera and have an extent; they block no light.
-    void add_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk = false,
-                          const LightTraits& traits = {});
-    /// spread: see make_spread_profile, which replaces traits.profile.
-    void add_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance, double spread = std::numbers::pi,
-                           const LightTraits& traits = {});
-    /// Shines to the side of half_axis_u × half_axis_v. spread: as of a polygon.
-    void add_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const Vec3d& half_axis_v, const Rgb& radiance,
-                        double spread = std::numbers::pi, const LightTraits& traits = {});
-    void add_point_light(const Vec3d& position, const Rgb& intensity, const LightTraits& traits = {});
-    void add_spot_light(const Vec3d& position, const SpotProfile& profile, const Rgb& intensity, double radius = 0,
-                        bool facing_disk = false, const LightTraits& traits = {});
-    void add_sun_light(const Vec3d& direction, double angle, const Rgb& irradiance, bool tangent = false,
-                       const LightTraits& traits = {});
+    std::size_t mesh_count() const { return meshes_.size(); }
 
+    /// Number of a lamp: of those that were added before, also of ones that have been removed. It is the same in copies
+    /// of the scene.
+    using LampNumber = std::uint64_t;
+
+    /// The camera sees lamps that are LightTraits::seen_by_camera and have an extent; they block no light.
+    LampNumber add_lamp(Light lamp);
+    /// Throw std::invalid_argument unless the scene holds the lamp.
+    void set_lamp(LampNumber number, Light lamp);
+    void remove_lamp(LampNumber number);
     /// All lamps; what shines of meshes, and the environment, stays.
     void remove_lamps() { lamps_.clear(); }
+    std::size_t lamp_count() const { return lamps_.size(); }
+
+    /// Add lamps, and throw, as make_sphere_light, make_polygon_lamp … do.
+    LampNumber add_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk = false,
+                                const LightTraits& traits = {});
+    LampNumber add_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance, double spread = std::numbers::pi,
+                                 const LightTraits& traits = {});
+    LampNumber add_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const Vec3d& half_axis_v,
+                              const Rgb& radiance, double spread = std::numbers::pi, const LightTraits& traits = {});
+    LampNumber add_point_light(const Vec3d& position, const Rgb& intensity, const LightTraits& traits = {});
+    LampNumber add_spot_light(const Vec3d& position, const SpotProfile& profile, const Rgb& intensity,
+                              double radius = 0, bool facing_disk = false, const LightTraits& traits = {});
+    LampNumber add_sun_light(const Vec3d& direction, double angle, const Rgb& irradiance, bool tangent = false,
+                             const LightTraits& traits = {});
 
     /// Takes the place of the environment before, at first a black one that the camera does not see.
     /// visible: the camera sees it behind the scene; group: as LightTraits has.
     void set_environment(Environment environment, bool visible = true, std::uint32_t group = 0);
+    const Environment& environment() const { return environment_; }
 
     /// Builds with at most `threads` threads, 0: all cores; calls `progress` meanwhile, with 0, about every 10 ms.
     /// Throws std::invalid_argument for threads < 0 and for surfaces in a scene of less than 1e-6 m, std::bad_alloc or
@@ -133,7 +143,8 @@ class Scene {
 
     std::map<MeshNumber, std::shared_ptr<const SceneMesh>> meshes_;
     MeshNumber next_mesh_ = 0;
-    std::vector<Light> lamps_;
+    std::map<LampNumber, Light> lamps_;
+    LampNumber next_lamp_ = 0;
     Environment environment_;
     bool environment_visible_ = false;
     std::uint32_t environment_group_ = 0;

@@ -275,6 +275,20 @@ DiskLight make_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const V
     return {center, half_axis_u, half_axis_v, glm::normalize(across), radiance, two_sided, radius, error, traits};
 }
 
+PolygonLight make_polygon_lamp(std::vector<Vec3d> vertices, const Rgb& radiance, double spread,
+                               const LightTraits& traits) {
+    PolygonLight light = make_polygon_light(std::move(vertices), radiance, false, traits);
+    light.traits.profile = make_spread_profile(light.normal, spread);
+    return light;
+}
+
+DiskLight make_disk_lamp(const Vec3d& center, const Vec3d& half_axis_u, const Vec3d& half_axis_v, const Rgb& radiance,
+                         double spread, const LightTraits& traits) {
+    DiskLight light = make_disk_light(center, half_axis_u, half_axis_v, radiance, false, traits);
+    light.traits.profile = make_spread_profile(light.normal, spread);
+    return light;
+}
+
 PointSource make_point_source(const Vec3d& position, const Rgb& intensity, const LightTraits& traits) {
     check_position("position", position);
     check_strength("intensity", intensity, kMostIntense);

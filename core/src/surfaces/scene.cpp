@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <unordered_map>
@@ -195,37 +196,52 @@ void Scene::remove_mesh(MeshNumber number) {
     meshes_.erase(number);
 }
 
-void Scene::add_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk,
-                             const LightTraits& traits) {
-    lamps_.emplace_back(make_sphere_light(center, radius, radiance, facing_disk, traits));
+Scene::LampNumber Scene::add_lamp(Light lamp) {
+    lamps_.emplace(next_lamp_, std::move(lamp));
+    return next_lamp_++;
 }
 
-void Scene::add_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance, double spread,
-                              const LightTraits& traits) {
-    PolygonLight light = make_polygon_light(std::move(vertices), radiance, false, traits);
-    light.traits.profile = make_spread_profile(light.normal, spread);
-    lamps_.emplace_back(std::move(light));
+void Scene::set_lamp(LampNumber number, Light lamp) {
+    const auto found = lamps_.find(number);
+    if (found == lamps_.end()) {
+        reject("light has been removed from its scene");
+    }
+    found->second = std::move(lamp);
 }
 
-void Scene::add_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const Vec3d& half_axis_v, const Rgb& radiance,
-                           double spread, const LightTraits& traits) {
-    DiskLight light = make_disk_light(center, half_axis_u, half_axis_v, radiance, false, traits);
-    light.traits.profile = make_spread_profile(light.normal, spread);
-    lamps_.emplace_back(light);
+void Scene::remove_lamp(LampNumber number) {
+    if (lamps_.erase(number) == 0) {
+        reject("light has been removed from its scene");
+    }
 }
 
-void Scene::add_point_light(const Vec3d& position, const Rgb& intensity, const LightTraits& traits) {
-    lamps_.emplace_back(make_point_source(position, intensity, traits));
+Scene::LampNumber Scene::add_sphere_light(const Vec3d& center, double radius, const Rgb& radiance, bool facing_disk,
+                                          const LightTraits& traits) {
+    return add_lamp(make_sphere_light(center, radius, radiance, facing_disk, traits));
 }
 
-void Scene::add_spot_light(const Vec3d& position, const SpotProfile& profile, const Rgb& intensity, double radius,
-                           bool facing_disk, const LightTraits& traits) {
-    lamps_.push_back(make_spot_light(position, profile, intensity, radius, facing_disk, traits));
+Scene::LampNumber Scene::add_polygon_light(std::vector<Vec3d> vertices, const Rgb& radiance, double spread,
+                                           const LightTraits& traits) {
+    return add_lamp(make_polygon_lamp(std::move(vertices), radiance, spread, traits));
 }
 
-void Scene::add_sun_light(const Vec3d& direction, double angle, const Rgb& irradiance, bool tangent,
-                          const LightTraits& traits) {
-    lamps_.push_back(make_sun_light(direction, angle, irradiance, tangent, traits));
+Scene::LampNumber Scene::add_disk_light(const Vec3d& center, const Vec3d& half_axis_u, const Vec3d& half_axis_v,
+                                        const Rgb& radiance, double spread, const LightTraits& traits) {
+    return add_lamp(make_disk_lamp(center, half_axis_u, half_axis_v, radiance, spread, traits));
+}
+
+Scene::LampNumber Scene::add_point_light(const Vec3d& position, const Rgb& intensity, const LightTraits& traits) {
+    return add_lamp(make_point_source(position, intensity, traits));
+}
+
+Scene::LampNumber Scene::add_spot_light(const Vec3d& position, const SpotProfile& profile, const Rgb& intensity,
+                                        double radius, bool facing_disk, const LightTraits& traits) {
+    return add_lamp(make_spot_light(position, profile, intensity, radius, facing_disk, traits));
+}
+
+Scene::LampNumber Scene::add_sun_light(const Vec3d& direction, double angle, const Rgb& irradiance, bool tangent,
+                                       const LightTraits& traits) {
+    return add_lamp(make_sun_light(direction, angle, irradiance, tangent, traits));
 }
 
 void Scene::set_environment(Environment environment, bool visible, std::uint32_t group) {
@@ -246,7 +262,7 @@ Box Scene::checked_bounds() const {
         add(bounds(*mesh->shape, *mesh));
     }
     const bool is_tiny = box.reach() > 0 && box.reach() < kLeastReach;
-    for (const Light& lamp : lamps_) {
+    for (const auto& [number, lamp] : lamps_) {
         add(std::visit(LampBounds{}, lamp));
     }
     if (is_tiny && box.reach() < kLeastReach) {
@@ -262,8 +278,10 @@ std::shared_ptr<const CompiledScene> Scene::compile(int threads, const Progress&
     const Vec3d origin = box.empty() || is_near(box, Vec3d(0)) ? Vec3d(0)
                          : is_near(box, last)                  ? last
                                                                : (box.least + box.largest) / 2.0;
+    std::vector<Light> lamps;
+    std::ranges::transform(lamps_, std::back_inserter(lamps), [](const auto& lamp) { return lamp.second; });
     const std::shared_ptr<CompiledScene> compiled(
-        new CompiledScene(origin, lamps_, environment_, environment_visible_, environment_group_));
+        new CompiledScene(origin, lamps, environment_, environment_visible_, environment_group_));
     std::vector<std::shared_ptr<const SceneMesh>> meshes;
     for (const auto& [number, mesh] : meshes_) {
         if (!mesh->shape->triangles.empty() && !mesh->transforms.empty()) {

@@ -127,6 +127,10 @@ void check_shape(const MeshShape& shape) {
     check_attributes(shape);
 }
 
+void check_place(const char* name, const glm::dmat4& to_world) {
+    check_transform(name, to_world);
+}
+
 void check_use(const MeshShape& shape, const MeshUse& use) {
     check_share("terminator_geometry_offset", use.terminator.geometry);
     check_share("terminator_shading_offset", use.terminator.shading);
