@@ -180,10 +180,9 @@ LampHandle add_polygon_light(const py::object& self, const py::object& vertices,
     const double angle = real_from("spread", spread);
     return add_lamp(self, {"polygon", "radiance", strength, traits_from(self, shadows, diffuse, glossy, camera, group),
                            [=](const LampRecord& own) -> Light {
-                               std::vector<Vec3d> placed;
-                               for (const Vec3d& corner : corners) {
-                                   placed.push_back(moved(own, corner));
-                               }
+                               std::vector<Vec3d> placed(corners.size());
+                               std::transform(corners.begin(), corners.end(), placed.begin(),
+                                              [&](const Vec3d& corner) { return moved(own, corner); });
                                if (is_mirrored(own)) {
                                    std::reverse(placed.begin(), placed.end());
                                }
