@@ -87,6 +87,19 @@ def test_light_bounces_four_times_unless_another_number_is_given() -> None:
     assert (pictures[0] != pictures[2]).any()
 
 
+def test_light_that_bounces_stays_as_it_is_when_the_camera_moves_by_a_pixel() -> None:
+    size, fov = 48, 0.9
+    pixel = 2 * np.tan(fov / 2) / size  # on the wall behind, one metre away
+    scene = room()
+    seen = []
+    for way in (0, pixel):
+        scene.set_camera(looking((0.05 + way, 0, 0), (0, 1, 0)), fov)
+        seen.append(shlight.render(scene, size, size, passes=["diffuse_indirect"], max_bounces=2)["diffuse_indirect"])
+    change = (seen[1][:, :-1] - seen[0][:, 1:]) / seen[0].mean()
+    # Records whose places are given by pixels change it by 0.0086.
+    assert np.sqrt((change**2).mean()) <= 0.004
+
+
 def test_a_mirror_shows_the_room_once_light_bounces() -> None:
     scene = room()
     scene.set_camera(looking((0.2, -4, 0.1), (0, 1, 0)), 0.7)

@@ -13,7 +13,7 @@ namespace {
 
 /// Each round takes some pixels to the next level, or follows something thin by one pixel more.
 constexpr int kMostRounds = 256;
-/// Steps of the grids of pixels whose surfaces have records.
+/// Pixels across the cells of records.
 constexpr int kWidestRecordStep = 32;
 constexpr int kLeastRecordStep = 2;
 /// Step of the finest grid whose pixels are shown before the next one has records; those of finer ones take longer.
@@ -78,8 +78,7 @@ void ProgressiveRenderer::add_bounces(const Watch& caller) {
     const double until = start + kShareOfBounces * (time_limit() - start);
     const auto has_time = [&] { return seconds() < until; };
     for (int step = kWidestRecordStep; step >= kLeastRecordStep && has_time() && !is_left_; step /= 2) {
-        const Grid grid = {step, step < kWidestRecordStep ? 2 * step : 0};
-        const RenderReport report = placement.add_grid(grid, caller.stopped, has_time);
+        const RenderReport report = placement.add_grid(step, caller.stopped, has_time);
         {
             const std::lock_guard lock(telling_);
             told_ += report;

@@ -2,12 +2,13 @@
 #include "film/record_gatherer.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include <tbb/parallel_sort.h>
 
-#include "shlight/sampling.h"
 #include "tracing/light_bits.h"
 
 namespace shlight {
@@ -15,11 +16,19 @@ namespace {
 
 constexpr std::size_t kCellsAtOnce = 1024;
 /// Rays that share shadow rays, and those that are shaded at once.
-constexpr std::size_t kGroupRays = 16;
-constexpr std::size_t kShadedAtOnce = 16 * kGroupRays;
-/// Rays that are shaded of those that meet a cell, at most, and one more for each so many of them.
-constexpr std::size_t kShaded = 8;
-constexpr std::size_t kRaysPerShaded = 64;
+constexpr std::size_t kGroupRays = 8;
+constexpr std::size_t kShadedAtOnce = 32 * kGroupRays;
+/// Places of a cell that are shaded, at least, and times the root of the number of rays that end there.
+constexpr std::size_t kLeastSamples = 2;
+constexpr double kSamplesPerRoot = 2;
+/// In place of the number of an end.
+constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+/// Seldom another number for a few more rays.
+std::size_t wanted_samples(std::size_t rays) {
+    const double wanted = kSamplesPerRoot * std::sqrt(static_cast<double>(rays));
+    return std::max(std::bit_floor(static_cast<std::size_t>(wanted)), kLeastSamples);
+}
 
 }  // namespace
 
@@ -40,27 +49,29 @@ RecordGatherer::RecordGatherer(const CompiledScene& scene, const LightingScene& 
       darkness_(light_count_, Rgb(0)),
       shaders_([this] { return Shader(*this); }) {}
 
-std::vector<LightRecord> RecordGatherer::gather(std::span<const SurfacePoint> surfaces, std::size_t rays_across,
+std::vector<LightRecord> RecordGatherer::gather(std::span<const Place> places, std::size_t rays_across,
                                                 std::uint32_t seed, int threads, const Stopped& stopped,
                                                 const std::function<bool()>& has_time, RenderReport& report) {
     std::vector<LightRecord> made;
     rays_per_record_ = rays_across * rays_across;
-    for (std::size_t first = 0; first < surfaces.size() && has_time(); first += kRecordsAtOnce) {
-        const std::size_t count = std::min(kRecordsAtOnce, surfaces.size() - first);
+    seed_ = seed;
+    for (std::size_t first = 0; first < places.size() && has_time(); first += kRecordsAtOnce) {
+        const std::size_t count = std::min(kRecordsAtOnce, places.size() - first);
         made.resize(first + count);
         records_.assign(count, {});
         distances_.assign(count * rays_per_record_, std::numeric_limits<double>::infinity());
         parallel_for(count, threads, [&](std::size_t i) {
             end_if(stopped);
-            records_[i] =
-                RecordRays(surfaces[first + i], rays_across, hash(seed, static_cast<std::uint32_t>(first + i)));
-            meet(i, shaders_.local());
+            const Place& place = places[first + i];
+            const auto own_seed = seed_of(place.cell);
+            records_[i] = RecordRays(place.surface, rays_across, own_seed);
+            meet(i, own_seed, shaders_.local());
         });
         find_cells();
         shaded_light_.resize(shaded_.size() * light_count_);
         parallel_for((shaded_.size() + kShadedAtOnce - 1) / kShadedAtOnce, threads, [&](std::size_t i) {
             end_if(stopped);
-            shade(i * kShadedAtOnce, hash(seed, static_cast<std::uint32_t>(i)), shaders_.local());
+            shade(i * kShadedAtOnce, shaders_.local());
         });
         for (const Cell& cell : cells_) {
             add(cell);
@@ -76,6 +87,7 @@ std::vector<LightRecord> RecordGatherer::gather(std::span<const SurfacePoint> su
             made[first + i] = records_[i].record(std::span(distances_).subspan(rays, rays_per_record_),
                                                  std::span(light_).subspan(rays, rays_per_record_), light_count_,
                                                  paths_.stored->parts);
+            made[first + i].cell = places[first + i].cell;
         });
     }
     for (Shader& shader : shaders_) {
@@ -84,7 +96,7 @@ std::vector<LightRecord> RecordGatherer::gather(std::span<const SurfacePoint> su
     return made;
 }
 
-void RecordGatherer::meet(std::size_t record, Shader& shader) {
+void RecordGatherer::meet(std::size_t record, std::uint32_t seed, Shader& shader) {
     const std::span<const Ray> rays = records_[record].rays();
     shader.met.resize(rays.size());
     scene_->rays().intersect(rays, shader.met);
@@ -93,7 +105,7 @@ void RecordGatherer::meet(std::size_t record, Shader& shader) {
         if (!rays[i].empty() && !hit.missed()) {
             const std::size_t number = record * rays_per_record_ + i;
             distances_[number] = std::max(double{hit.distance}, 1e-12);
-            End end = {{}, static_cast<std::uint32_t>(number), false};
+            End end = {{}, hash(seed, static_cast<std::uint32_t>(i)), static_cast<std::uint32_t>(number), false};
             const SurfacePoint point = scene_->placed().surface(hit, rays[i].direction);
             end.is_own = !known_->find(point, rays[i].direction, distances_[number], end.cell);
             shader.ends.push_back(end);
@@ -110,41 +122,69 @@ void RecordGatherer::find_cells() {
     tbb::parallel_sort(ends_.begin(), ends_.end(), [](const End& a, const End& b) { return a.order() < b.order(); });
     cells_.clear();
     shaded_.clear();
+    bool was_own = false;
     for (std::size_t first = 0; first < ends_.size();) {
         std::size_t last = first + 1;
         while (last < ends_.size() && ends_[last].cell == ends_[first].cell && !ends_[first].is_own) {
             ++last;
         }
-        const std::size_t wanted = kShaded + (last - first) / kRaysPerShaded;
-        const std::size_t known = ends_[first].is_own ? 0 : static_cast<std::size_t>(known_->weight(ends_[first].cell));
-        const std::size_t shaded = std::min(last - first, wanted - std::min(known, wanted));
+        const bool is_own = ends_[first].is_own;
+        const LightCells::Known known = is_own ? LightCells::Known() : known_->known(ends_[first].cell);
+        const std::size_t wanted = is_own ? 1 : wanted_samples(known.rays + last - first);
+        const std::size_t shaded = wanted - std::min(known.samples, wanted);
+        if (!is_own || !was_own) {
+            fill_group();
+        }
+        was_own = is_own;
         cells_.push_back({first, last - first, shaded_.size(), shaded});
         for (std::size_t i = 0; i < shaded; ++i) {
-            shaded_.push_back(ends_[first + (2 * i + 1) * (last - first) / (2 * shaded)].ray);
+            shaded_.push_back({static_cast<std::uint32_t>(first + i % (last - first)),
+                               static_cast<std::uint32_t>(known.samples + i)});
         }
         first = last;
     }
+    fill_group();
+}
+
+void RecordGatherer::fill_group() {
+    shaded_.resize((shaded_.size() + kGroupRays - 1) / kGroupRays * kGroupRays, {kNone, 0});
+}
+
+Ray RecordGatherer::ray_of(const Shaded& shaded) const {
+    if (shaded.end == kNone) {
+        return {Vec3f(0), 0, Vec3f(0), -1};
+    }
+    const End& end = ends_[shaded.end];
+    const Ray& ray = records_[end.ray / rays_per_record_].rays()[end.ray % rays_per_record_];
+    if (end.is_own) {
+        return ray;
+    }
+    RayHit hit;
+    scene_->rays().intersect({&ray, 1}, {&hit, 1});
+    if (hit.missed()) {  // rays that were traced together have met an edge otherwise
+        return ray;
+    }
+    const SurfacePoint point = scene_->placed().surface(hit, ray.direction);
+    return known_
+        ->sample(end.cell, point, ray.direction, distances_[end.ray], hash(seed_of(end.cell), 0), shaded.number)
+        .value_or(ray);
 }
 
 /// Shades some groups, from the ray `first` on.
-void RecordGatherer::shade(std::size_t first, std::uint32_t seed, Shader& shader) {
+void RecordGatherer::shade(std::size_t first, Shader& shader) {
     const std::size_t count = std::min(kShadedAtOnce, shaded_.size() - first);
-    const std::size_t groups = (count + kGroupRays - 1) / kGroupRays;
     shader.rays.clear();
     shader.seeds.clear();
-    for (std::size_t i = 0; i < groups * kGroupRays; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const Shaded& shaded = shaded_[first + i];
         if (i % kGroupRays == 0) {
-            shader.seeds.push_back(hash(seed, static_cast<std::uint32_t>(i)));
+            const End& end = ends_[shaded.end];
+            shader.seeds.push_back(end.is_own ? end.rank : hash(seed_of(end.cell), shaded.number));
         }
-        Ray ray = {Vec3f(0), 0, Vec3f(0), -1};
-        if (i < count) {
-            const std::uint32_t number = shaded_[first + i];
-            ray = records_[number / rays_per_record_].rays()[number % rays_per_record_];
-        }
-        shader.rays.push_back({ray, static_cast<std::uint32_t>(i % kGroupRays), shader.seeds.back()});
+        shader.rays.push_back({ray_of(shaded), static_cast<std::uint32_t>(i % kGroupRays), shader.seeds.back()});
     }
     shader.surfaces.trace_scattered(shader.rays, kGroupRays, shader.hits, shader.light);
-    shader.penumbrae.assign(groups, LightBits::kAll);
+    shader.penumbrae.assign(shader.seeds.size(), LightBits::kAll);
     shader.lighting.add(shader.seeds, shader.penumbrae, {0, kGroupRays, shadow_rays_, 0}, shader.hits, shader.report);
     for (std::size_t hit = 0; hit < shader.hits.size(); ++hit) {
         shader.light[shader.hits.in_apart[hit]].radiance += shader.hits.radiance[hit];
@@ -165,14 +205,14 @@ void RecordGatherer::shade(std::size_t first, std::uint32_t seed, Shader& shader
 /// A cell's light is the mean of that of some of its rays.
 void RecordGatherer::add(const Cell& cell) {
     const End& end = ends_[cell.first];
-    if (end.is_own || cell.shaded == 0) {
+    if (end.is_own) {
         return;
     }
     std::vector<Rgb> mean(light_count_, Rgb(0));
     for (std::size_t i = 0; i < cell.shaded * light_count_; ++i) {
         mean[i % light_count_] += shaded_light_[cell.first_shaded * light_count_ + i] / static_cast<float>(cell.shaded);
     }
-    known_->add(end.cell, mean, static_cast<float>(cell.shaded));
+    known_->add(end.cell, mean, {cell.shaded, cell.count});
 }
 
 /// Gives all rays of a cell its light.

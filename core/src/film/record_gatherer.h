@@ -19,6 +19,7 @@
 #include "lighting/direct_lighting.h"
 #include "shlight/parallel.h"
 #include "shlight/render_report.h"
+#include "shlight/sampling.h"
 #include "shlight/scene.h"
 #include "surfaces/camera_surfaces.h"
 #include "surfaces/light_cells.h"
@@ -36,25 +37,38 @@ class RecordGatherer {
     RecordGatherer(const CompiledScene& scene, const LightingScene& lighting, const PathSettings& paths, bool shadows,
                    LightCells& cells, const LightParts& parts);
 
-    /// A record at each surface by rays_across² rays, or at as many of the first as there is time for; seed: of them
-    /// all. Throws RenderCancelled once stopped.
-    std::vector<LightRecord> gather(std::span<const SurfacePoint> surfaces, std::size_t rays_across, std::uint32_t seed,
+    /// A surface that gets a record.
+    struct Place {
+        SurfacePoint surface;
+        WorldCell cell;  ///< that the record stands for
+    };
+
+    /// A record at each place by rays_across² rays, or at as many of the first as there is time for; seed: of them all.
+    /// Records of other places change what rays of a record see as little as can be. Throws RenderCancelled once
+    /// stopped.
+    std::vector<LightRecord> gather(std::span<const Place> places, std::size_t rays_across, std::uint32_t seed,
                                     int threads, const Stopped& stopped, const std::function<bool()>& has_time,
                                     RenderReport& report);
 
   private:
     /// The end of a ray.
     struct End {
-        LightCells::Key cell;
+        WorldCell cell;
+        std::uint32_t rank;  // random; the lowest of a cell are shaded
         std::uint32_t ray;
         bool is_own;  // no other ray ends in this cell
 
-        auto order() const { return std::tuple(cell.place, cell.kind, ray); }
+        auto order() const { return std::tuple(cell.place, cell.kind, rank, ray); }
     };
     /// Rays that end in the same cell, on surfaces of the same kind.
     struct Cell {
         std::size_t first, count;          // of the ends
         std::size_t first_shaded, shaded;  // of the rays that are shaded
+    };
+    /// A ray that is shaded.
+    struct Shaded {
+        std::uint32_t end;     // a ray's that it tells of; kNone: there is no ray, and its group has no more
+        std::uint32_t number;  // of the cell's places
     };
     /// Shades rays; one per thread.
     struct Shader {
@@ -71,9 +85,14 @@ class RecordGatherer {
         RenderReport report;
     };
 
-    void meet(std::size_t record, Shader& shader);
+    void meet(std::size_t record, std::uint32_t seed, Shader& shader);
     void find_cells();
-    void shade(std::size_t first, std::uint32_t seed, Shader& shader);
+    void fill_group();
+    std::uint32_t seed_of(const WorldCell& cell) const {
+        return hash(seed_, static_cast<std::uint32_t>(WorldCellHash()(cell)));
+    }
+    Ray ray_of(const Shaded& shaded) const;
+    void shade(std::size_t first, Shader& shader);
     void add(const Cell& cell);
     void spread(const Cell& cell);
 
@@ -85,14 +104,15 @@ class RecordGatherer {
     std::size_t light_count_;    // numbers by which the light of a ray is told apart, see StoredLight
     std::uint32_t shadow_rays_;  // of each ray's hits, for each light
     std::size_t rays_per_record_ = 0;
+    std::uint32_t seed_ = 0;
     std::vector<RecordRays> records_;
     std::vector<double> distances_;  // that rays go
     std::vector<End> ends_;
     std::vector<Cell> cells_;
-    std::vector<std::uint32_t> shaded_;  // rays
-    std::vector<Rgb> shaded_light_;      // of each
-    std::vector<Rgb> darkness_;          // of a ray
-    std::vector<const Rgb*> light_;      // of all rays
+    std::vector<Shaded> shaded_;     // group by group
+    std::vector<Rgb> shaded_light_;  // of each ray
+    std::vector<Rgb> darkness_;      // of a ray
+    std::vector<const Rgb*> light_;  // of all rays
     tbb::enumerable_thread_specific<Shader> shaders_;
 };
 

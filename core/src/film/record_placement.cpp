@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <tuple>
+#include <unordered_set>
 #include <utility>
 
 #include <glm/exponential.hpp>
@@ -15,7 +17,7 @@ namespace {
 
 /// Radius of a record ÷ the harmonic mean of the distances around it, at most.
 constexpr double kReach = 0.5;
-/// Radius of a record ÷ the distance to the next one on its grid.
+/// Radius of a record ÷ the edge of its cell.
 constexpr double kLeastSteps = 0.75;
 constexpr double kMostSteps = 2.5;
 /// Radius of a record that was found wrong farther away ÷ the width of a pixel, at least.
@@ -24,11 +26,16 @@ constexpr double kLeastPixels = 1.5;
 constexpr double kLeastView = 0.1;
 /// Weight of records, at most 1 each, of which a surface has enough.
 constexpr float kEnough = 0.05F;
-/// On grids below this step, only surfaces that have not enough get a record.
+/// In cells below so many pixels, only surfaces that have not enough get a record.
 constexpr int kLeastRefined = 4;
-/// On grids of this step and above, all surfaces get one: a few records may agree because none has seen a small light,
-/// as a lamp in a mirror.
+/// In cells of so many pixels and more, all surfaces get one: a few records may agree because none has seen a small
+/// light, as a lamp in a mirror.
 constexpr int kLeastWhole = 16;
+/// Pixels across a cell that are looked at, and pixels from one of them to the next, at least.
+constexpr int kPixelsPerCell = 2;
+constexpr int kLeastBetween = 2;
+/// Places in a cell that a record may have.
+constexpr std::uint32_t kTrials = 8;
 /// Rays of a record along each side of the square of its directions, at the usual noise threshold; with less noise to
 /// be seen it takes more.
 constexpr double kRaysAcross = 20;
@@ -51,18 +58,9 @@ std::size_t rays_across(double threshold) {
     return static_cast<std::size_t>(std::ceil(least));
 }
 
-/// Any part of the picture then has some of those that are made at once.
-template <class Wanted>
-std::vector<Wanted> spread_over_picture(std::vector<Wanted> wanted) {
-    const std::size_t step = (wanted.size() + kRecordsAtOnce - 1) / kRecordsAtOnce;
-    std::vector<Wanted> spread;
-    spread.reserve(wanted.size());
-    for (std::size_t first = 0; first < step; ++first) {
-        for (std::size_t i = first; i < wanted.size(); i += step) {
-            spread.push_back(wanted[i]);
-        }
-    }
-    return spread;
+/// Random bits by which cells are ordered.
+std::size_t rank(const WorldCell& cell) {
+    return WorldCellHash()(cell);
 }
 
 }  // namespace
@@ -75,6 +73,7 @@ RecordPlacement::RecordPlacement(const Picture& picture, std::span<const float> 
       image_(image),
       stored_(&stored),
       paths_(picture.paths(&stored)),
+      lattice_(*picture.scene),
       threshold_(std::max(picture.settings.sampling.noise_threshold, kLeastThreshold)),
       finders_([this] {
           PathSettings seen = paths_;
@@ -91,59 +90,57 @@ RecordPlacement::RecordPlacement(const Picture& picture, std::span<const float> 
     least_square_ = 0.01 * average * average;
 }
 
-RenderReport RecordPlacement::add_grid(const Grid& grid, const Stopped& stopped,
-                                       const std::function<bool()>& has_time) {
+RenderReport RecordPlacement::add_grid(int step, const Stopped& stopped, const std::function<bool()>& has_time) {
     const int threads = picture_->settings.threads;
-    std::vector<Row> rows(static_cast<std::size_t>((picture_->height + grid.step - 1) / grid.step));
+    const int between = std::max(step / kPixelsPerCell, kLeastBetween);
+    std::vector<Row> rows(static_cast<std::size_t>((picture_->height + between - 1) / between));
     parallel_for(rows.size(), threads, [&](std::size_t row) {
         end_if(stopped);
-        rows[row] = find(static_cast<int>(row) * grid.step, grid, finders_.local());
+        rows[row] = find(static_cast<int>(row) * between, step, finders_.local());
     });
-    std::vector<Wanted> wanted;
+    std::vector<Seen> seen;
     double errors = 0;
     std::size_t pixels = 0;
     for (const Row& row : rows) {
-        wanted.insert(wanted.end(), row.wanted.begin(), row.wanted.end());
+        seen.insert(seen.end(), row.seen.begin(), row.seen.end());
         errors += row.errors;
         pixels += row.pixels;
     }
     error_ = std::sqrt(errors / static_cast<double>(std::max<std::size_t>(pixels, 1)));
-    wanted = spread_over_picture(std::move(wanted));
-    std::vector<SurfacePoint> surfaces;
-    std::ranges::transform(wanted, std::back_inserter(surfaces), &Wanted::point);
-    const auto seed = hash(picture_->settings.seed, static_cast<std::uint32_t>(stored_->records.all().size()));
+    std::vector<Wanted> wanted = find_wanted(std::move(seen), step, stopped);
+    std::vector<RecordGatherer::Place> places;
+    std::ranges::transform(wanted, std::back_inserter(places), &Wanted::place);
     RenderReport report;
-    auto made = gatherer_.gather(surfaces, rays_across(threshold_), seed, threads, stopped, has_time, report);
+    auto made =
+        gatherer_.gather(places, rays_across(threshold_), picture_->settings.seed, threads, stopped, has_time, report);
     wanted.resize(made.size());
     for (std::size_t i = 0; i < made.size(); ++i) {
-        made[i].limit_radius(kReach * made[i].radius, kLeastSteps * wanted[i].to_next, kMostSteps * wanted[i].to_next);
+        const double edge = std::ldexp(1.0, wanted[i].level);
+        made[i].limit_radius(kReach * made[i].radius, kLeastSteps * edge, kMostSteps * edge);
         stored_->records.add(std::move(made[i]));
     }
     stored_->records.index();
-    shrink_wrong(wanted);
+    shrink_wrong(wanted, step);
     return report;
 }
 
-RecordPlacement::Row RecordPlacement::find(int row, const Grid& grid, Finder& finder) const {
+RecordPlacement::Row RecordPlacement::find(int row, int step, Finder& finder) const {
     finder.rays.clear();
     finder.pixels.clear();
-    for (int column = 0; column < picture_->width; column += grid.step) {
-        if (grid.wider == 0 || row % grid.wider != 0 || column % grid.wider != 0) {
-            const auto seed = hash(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row));
-            finder.rays.push_back({picture_->ray(column + 0.5, row + 0.5, {}), 0, seed});
-            finder.pixels.push_back(static_cast<std::size_t>(row) * static_cast<std::size_t>(picture_->width) +
-                                    static_cast<std::size_t>(column));
-        }
+    const int between = std::max(step / kPixelsPerCell, kLeastBetween);
+    for (int column = 0; column < picture_->width; column += between) {
+        const auto seed = hash(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row));
+        finder.rays.push_back({picture_->ray(column + 0.5, row + 0.5, {}), 0, seed});
+        finder.pixels.push_back(static_cast<std::size_t>(row) * static_cast<std::size_t>(picture_->width) +
+                                static_cast<std::size_t>(column));
     }
     Row found;
     found.pixels = finder.rays.size();
-    if (found.pixels > 0) {
-        finder.surfaces.trace(finder.rays, {}, 1, finder.hits, finder.light);
-        for (const CameraSurfaces::Surface& surface : finder.surfaces.surfaces()) {
-            if (surface.sees_lights() && surface.bounces < paths_.max_bounces &&
-                surface.depth <= paths_.transparent_bounces) {
-                look_at(surface, grid.step, finder, found);
-            }
+    finder.surfaces.trace(finder.rays, {}, 1, finder.hits, finder.light);
+    for (const CameraSurfaces::Surface& surface : finder.surfaces.surfaces()) {
+        if (surface.sees_lights() && surface.bounces < paths_.max_bounces &&
+            surface.depth <= paths_.transparent_bounces) {
+            look_at(surface, step, finder, found);
         }
     }
     return found;
@@ -158,40 +155,96 @@ void RecordPlacement::look_at(const CameraSurfaces::Surface& surface, int step, 
     if (albedo == Rgb(0)) {
         return;
     }
-    const RecordedLight found =
-        stored_->records.look_up(surface.point, (paths_.max_bounces - surface.bounces - 1) * stored_->parts);
-    const Rgb all = color_of(image_, finder.pixels[surface.ray]) + albedo * found.mean;
+    const std::size_t pixel = finder.pixels[surface.ray];
+    const RecordedLight found = stored_->records.look_up(surface.point, number_of_all(surface.bounces));
+    const Rgb all = color_of(image_, pixel) + albedo * found.mean;
     const Rgb scale = glm::sqrt(all * all + static_cast<float>(least_square_)) / glm::max(albedo, Rgb(1e-6F));
-    const double error = mean(found.variance + found.noise, scale * scale);
-    row.errors += found.weight > 0 ? error : 0.0;
-    const bool is_exact = step < kLeastRefined || (step < kLeastWhole && error <= threshold_ * threshold_);
-    if (found.weight >= kEnough && is_exact) {
+    row.errors += found.weight > 0 ? mean(found.variance + found.noise, scale * scale) : 0.0;
+    if (found.weight >= kEnough && step < kLeastRefined) {
         return;
     }
     const double width = picture_->pixel_width(surface.ray_length());
     const double cosine = std::max(glm::dot(surface.point.geometric_normal, surface.towards_viewer), kLeastView);
-    const double to_next = step * width / std::sqrt(cosine);
-    row.wanted.push_back({surface.point, width, to_next, static_cast<float>(threshold_) * scale});
+    const double between = std::max(step * width / std::sqrt(cosine), surface.point.error);
+    const int level = WorldLattice::level(between);
+    row.seen.push_back({lattice_.cell(surface.point, level), level, surface.point, surface.bounces,
+                        static_cast<float>(threshold_) * scale});
 }
 
-void RecordPlacement::shrink_wrong(std::span<const Wanted> wanted) {
+std::vector<RecordPlacement::Wanted> RecordPlacement::find_wanted(std::vector<Seen> seen, int step,
+                                                                  const Stopped& stopped) const {
+    const auto order = [](const Seen& one) { return std::tuple(one.cell.place, one.cell.kind); };
+    std::ranges::stable_sort(seen, {}, order);
+    std::vector<std::span<const Seen>> cells;
+    for (auto begin = seen.begin(); begin != seen.end();) {
+        const auto end = std::ranges::upper_bound(begin, seen.end(), order(*begin), {}, order);
+        cells.emplace_back(begin, end);
+        begin = end;
+    }
+    std::vector<std::optional<Wanted>> found(cells.size());
+    parallel_for(cells.size(), picture_->settings.threads, [&](std::size_t i) {
+        end_if(stopped);
+        found[i] = wanted(cells[i], step);
+    });
+    std::vector<Wanted> all;
+    std::unordered_set<WorldCell, WorldCellHash> taken;
+    for (const std::optional<Wanted>& own : found) {
+        if (own && taken.insert(own->place.cell).second) {
+            all.push_back(*own);
+        }
+    }
+    std::ranges::sort(all, {}, [](const Wanted& own) { return rank(own.place.cell); });
+    return all;
+}
+
+std::optional<RecordPlacement::Wanted> RecordPlacement::wanted(std::span<const Seen> seen, int step) const {
+    const int level = seen.front().level;
+    const Vec3d middle = lattice_.middle(seen.front().point, level);
+    const Seen& nearest =
+        *std::ranges::min_element(seen, {}, [&](const Seen& own) { return glm::distance(own.point.position, middle); });
+    std::optional<SurfacePoint> found = lattice_.surface(nearest.point, level, glm::dvec2(0.5));
+    const SobolSequence places(static_cast<std::uint32_t>(rank(nearest.cell)));
+    for (std::uint32_t trial = 1; trial < kTrials && !found; ++trial) {
+        found = lattice_.surface(nearest.point, level, places.point(trial));
+    }
+    const SurfacePoint point = found.value_or(nearest.point);
+    const WorldCell cell = lattice_.cell(point, level);
+    if (stored_->records.has(cell)) {
+        return std::nullopt;
+    }
+    Rgb allowed(0);
+    for (const Seen& own : seen) {
+        allowed += own.allowed / static_cast<float>(seen.size());
+    }
+    if (step >= kLeastRefined && step < kLeastWhole) {
+        const RecordedLight light = stored_->records.look_up(point, number_of_all(nearest.bounces));
+        if (light.weight >= kEnough && mean(light.variance + light.noise, allowed * allowed) <= 1) {
+            return std::nullopt;
+        }
+    }
+    return Wanted{{point, cell}, level, allowed};
+}
+
+void RecordPlacement::shrink_wrong(std::span<const Wanted> wanted, int step) {
     const std::span<const LightRecord> all = stored_->records.all();
     const std::size_t first = all.size() - wanted.size();
-    const std::size_t whole = (paths_.max_bounces - 1) * stored_->parts;
+    const std::size_t whole = number_of_all(0);
     std::vector<double> radius(all.size());
     std::transform(all.begin(), all.end(), radius.begin(), [](const LightRecord& record) { return record.radius; });
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         const LightRecord& own = all[first + i];
         const RecordBasis basis = reflected_basis(own.normal);
-        stored_->records.for_each_near(wanted[i].point, [&](std::size_t number, const LightRecord& other, float) {
-            const Rgb difference = sum_of(other.light[whole], basis) - own.reflected[whole];
-            const Rgb noise = own.noise * own.noise + other.noise * other.noise;
-            const Rgb allowed = wanted[i].allowed * wanted[i].allowed + kNoiseVariances * noise;
-            if (number != first + i && mean(difference * difference, allowed) > 1) {
-                const double distance = glm::distance(own.position, other.position);
-                radius[number] = std::min(radius[number], std::max(distance, kLeastPixels * wanted[i].pixel));
-            }
-        });
+        const double least = kLeastPixels / step * std::ldexp(1.0, wanted[i].level);
+        stored_->records.for_each_near(
+            wanted[i].place.surface, [&](std::size_t number, const LightRecord& other, float) {
+                const Rgb difference = sum_of(other.light[whole], basis) - own.reflected[whole];
+                const Rgb noise = own.noise * own.noise + other.noise * other.noise;
+                const Rgb allowed = wanted[i].allowed * wanted[i].allowed + kNoiseVariances * noise;
+                if (number != first + i && mean(difference * difference, allowed) > 1) {
+                    const double distance = glm::distance(own.position, other.position);
+                    radius[number] = std::min(radius[number], std::max(distance, least));
+                }
+            });
     }
     for (std::size_t i = 0; i < radius.size(); ++i) {
         stored_->records.shrink(i, radius[i]);

@@ -125,8 +125,9 @@ void RecordRays::find_gradients(std::span<const double> distances, std::span<con
 
 void RecordRays::add_up(std::span<const Rgb* const> light, std::size_t parts, LightRecord& record) const {
     const std::size_t count = record.light.size();
-    std::vector<Rgb> sums;           // of parts
-    std::array<Rgb, 2> halves = {};  // of what a white diffuse surface reflects, by cells in turn
+    std::vector<Rgb> sums;         // of parts
+    std::array<Rgb, 2> pair = {};  // what a white diffuse surface reflects of two rays side by side
+    Rgb variance(0);
     for (std::size_t ray = 0; ray < ways_.size(); ++ray) {
         RecordBasis basis;
         const Vec3f way(ways_[ray]);
@@ -140,9 +141,10 @@ void RecordRays::add_up(std::span<const Rgb* const> light, std::size_t parts, Li
             }
         }
         const double cosine = std::max(glm::dot(ways_[ray], z_), 0.0);
-        halves[(ray / across_ + ray) % 2] += sums[0] * static_cast<float>(cosine / std::numbers::pi);
+        pair[ray % 2] = sums[0] * static_cast<float>(cosine / std::numbers::pi);
+        variance += ray % 2 == 1 ? (pair[0] - pair[1]) * (pair[0] - pair[1]) : Rgb(0);
     }
-    record.noise = glm::abs(halves[0] - halves[1]);
+    record.noise = glm::sqrt(variance);
     const RecordBasis reflecting = reflected_basis(z_);
     for (const RecordHarmonics& harmonics : record.light) {
         record.reflected.push_back(sum_of(harmonics, reflecting));

@@ -2,9 +2,8 @@
 #include "surfaces/light_cells.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include <glm/common.hpp>
+#include "shlight/sampling.h"
 
 namespace shlight {
 namespace {
@@ -12,25 +11,16 @@ namespace {
 /// Edge of a cell ÷ the length of the rays that end there: at most this, at least half.
 constexpr double kCellWidth = 0.177;
 
-/// Bits of a number with two zeros between each and the next.
-std::uint64_t spread_bits(std::int64_t number) {
-    std::uint64_t bits = static_cast<std::uint64_t>(number) & 0x7FFFF;
-    bits = (bits | bits << 32) & 0x1F00000000FFFF;
-    bits = (bits | bits << 16) & 0x1F0000FF0000FF;
-    bits = (bits | bits << 8) & 0x100F00F00F00F00F;
-    bits = (bits | bits << 4) & 0x10C30C30C30C30C3;
-    return (bits | bits << 2) & 0x1249249249249249;
-}
+/// Places in a cell that are tried for one, and the numbers that places have, about.
+constexpr std::uint32_t kTrials = 4;
+constexpr std::uint32_t kMostNumbers = 1024;
 
 std::uint32_t signs(const Vec3f& direction) {
     return (direction.x < 0 ? 1U : 0U) | (direction.y < 0 ? 2U : 0U) | (direction.z < 0 ? 4U : 0U);
 }
 
-/// The axis of the world that a direction is close to.
-std::uint32_t face(const Vec3d& direction) {
-    const Vec3d size = glm::abs(direction);
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    return static_cast<std::uint32_t>(2 * axis + (direction[axis] < 0 ? 1 : 0));
+int level(const SurfacePoint& end, double length) {
+    return WorldLattice::level(kCellWidth * std::max(length, end.error));
 }
 
 bool is_sharp(const SurfaceShader* shader, std::span<const Lobe> lobes) {
@@ -43,7 +33,7 @@ bool is_sharp(const SurfaceShader* shader, std::span<const Lobe> lobes) {
 }  // namespace
 
 LightCells::LightCells(const CompiledScene& scene, std::span<const MaterialLobes> materials, std::size_t parts)
-    : parts_(parts) {
+    : lattice_(scene), parts_(parts) {
     for (std::size_t i = 0; i < materials.size(); ++i) {
         const std::span<const Lobe> lobes = materials[i].lobes();
         const bool is_diffuse =
@@ -54,44 +44,48 @@ LightCells::LightCells(const CompiledScene& scene, std::span<const MaterialLobes
     }
 }
 
-bool LightCells::find(const SurfacePoint& end, const Vec3f& direction, double length, Key& key) const {
-    const int level = std::ilogb(kCellWidth * std::max(length, end.error));
-    const glm::i64vec3 cell(glm::floor(end.position * std::ldexp(1.0, -level)));
+bool LightCells::find(const SurfacePoint& end, const Vec3f& direction, double length, WorldCell& key) const {
     const Look look = looks_[end.material];
     const std::uint32_t view = look == Look::by_view ? 1 + signs(direction) : 0;
-    key.place = static_cast<std::uint64_t>(level) << 57 | spread_bits(cell.x) | spread_bits(cell.y) << 1 |
-                spread_bits(cell.z) << 2;
-    key.kind = (face(end.geometric_normal) << 4 | view) << 24 | (end.material & 0xFFFFFF);
+    key = lattice_.cell(end, level(end, length), view);
     return look != Look::sharp;
 }
 
-std::size_t LightCells::Hash::operator()(const Key& key) const {
-    // The finalizer of SplitMix64.
-    std::uint64_t x = key.place + key.kind * 0x9E3779B97F4A7C15U;
-    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9U;
-    x = (x ^ (x >> 27)) * 0x94D049BB133111EBU;
-    return x ^ (x >> 31);
+std::optional<Ray> LightCells::sample(const WorldCell& key, const SurfacePoint& end, const Vec3f& direction,
+                                      double length, std::uint32_t seed, std::uint32_t number) const {
+    const int own = level(end, length);
+    const SobolSequence places(seed);
+    for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
+        const auto found = lattice_.surface(end, own, places.point(number + trial * kMostNumbers));
+        if (found && lattice_.cell(*found, own).place == key.place) {
+            const bool is_alike = looks_[end.material] == Look::everywhere_alike;
+            return WorldLattice::ray_to(*found, own, is_alike ? -found->geometric_normal : Vec3d(direction));
+        }
+    }
+    return std::nullopt;
 }
 
-void LightCells::add(const Key& key, std::span<const Rgb> light, float weight) {
-    const auto [found, is_first] = cells_.try_emplace(key, Cell{light_.size(), 0});
+void LightCells::add(const WorldCell& key, std::span<const Rgb> light, const Known& further) {
+    const auto [found, is_first] = cells_.try_emplace(key, Cell{light_.size(), {}});
     Cell& cell = found->second;
     if (is_first) {
         light_.resize(light_.size() + parts_, Rgb(0));
     }
-    cell.weight += weight;
+    cell.known.samples += further.samples;
+    cell.known.rays += further.rays;
+    const float share = static_cast<float>(further.samples) / static_cast<float>(cell.known.samples);
     for (std::size_t i = 0; i < parts_; ++i) {
         Rgb& mean = light_[cell.first + i];
-        mean += (weight / cell.weight) * (light[i] - mean);
+        mean += share * (light[i] - mean);
     }
 }
 
-float LightCells::weight(const Key& key) const {
+LightCells::Known LightCells::known(const WorldCell& key) const {
     const auto found = cells_.find(key);
-    return found == cells_.end() ? 0 : found->second.weight;
+    return found == cells_.end() ? Known() : found->second.known;
 }
 
-std::span<const Rgb> LightCells::look_up(const Key& key) const {
+std::span<const Rgb> LightCells::look_up(const WorldCell& key) const {
     const auto found = cells_.find(key);
     return found == cells_.end() ? std::span<const Rgb>() : std::span(light_).subspan(found->second.first, parts_);
 }

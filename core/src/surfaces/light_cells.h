@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -15,46 +16,48 @@
 #include "shlight/scene.h"
 #include "shlight/surface_point.h"
 #include "shlight/types.h"
+#include "surfaces/world_lattice.h"
 
 namespace shlight {
 
 class LightCells {
   public:
-    struct Key {
-        std::uint64_t place;  ///< the cell's size and, in an order in which neighbours are near, its place
-        std::uint32_t kind;   ///< of the surface
-
-        bool operator==(const Key&) const = default;
-    };
     /// Lobes this wide, or wider, need no sharper picture of what they reflect.
     static constexpr double kLeastWidth = 0.05;
 
-    /// parts: that light is told apart by, see StoredLight.
+    /// scene: must outlive this; parts: that light is told apart by, see StoredLight.
     LightCells(const CompiledScene& scene, std::span<const MaterialLobes> materials, std::size_t parts);
 
     /// The cell that a ray of some length ends in. Mirrors and what light passes through look different from
     /// everywhere: false.
-    bool find(const SurfacePoint& end, const Vec3f& direction, double length, Key& key) const;
-    /// light: of `weight` rays on average, by parts.
-    void add(const Key& key, std::span<const Rgb> light, float weight);
-    /// The sum of the weights that were added.
-    float weight(const Key& key) const;
+    bool find(const SurfacePoint& end, const Vec3f& direction, double length, WorldCell& key) const;
+    /// A ray that tells of a cell what the ray tells that `end` and `direction` are of: it meets the cell in a place of
+    /// its own, by the number. None if the surface is not that wide.
+    std::optional<Ray> sample(const WorldCell& key, const SurfacePoint& end, const Vec3f& direction, double length,
+                              std::uint32_t seed, std::uint32_t number) const;
+    /// How well a cell is known.
+    struct Known {
+        std::size_t samples = 0;  ///< of its light
+        std::size_t rays = 0;     ///< that have ended there
+    };
+
+    /// light: the mean of further samples, by parts.
+    void add(const WorldCell& key, std::span<const Rgb> light, const Known& further);
+    Known known(const WorldCell& key) const;
     /// The light, until some is added; empty if none is known.
-    std::span<const Rgb> look_up(const Key& key) const;
+    std::span<const Rgb> look_up(const WorldCell& key) const;
 
   private:
     enum class Look : std::uint8_t { everywhere_alike, by_view, sharp };
-    struct Hash {
-        std::size_t operator()(const Key& key) const;
-    };
     struct Cell {
         std::size_t first;  // in light_
-        float weight;
+        Known known;
     };
 
+    WorldLattice lattice_;
     std::size_t parts_;
     std::vector<Look> looks_;  // of materials
-    std::unordered_map<Key, Cell, Hash> cells_;
+    std::unordered_map<WorldCell, Cell, WorldCellHash> cells_;
     std::vector<Rgb> light_;
 };
 

@@ -187,7 +187,7 @@ void CameraSurfaces::scatter(const Surface& surface, std::size_t first, std::uin
 }
 
 bool CameraSurfaces::add_cell(const Surface& end, const Sink& sink) {
-    LightCells::Key key;
+    WorldCell key;
     if (!settings_.stored->cells.find(end.point, end.whole.direction, end.distance, key)) {
         return false;
     }

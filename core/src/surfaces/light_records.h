@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,7 @@
 
 #include "shlight/surface_point.h"
 #include "shlight/types.h"
+#include "surfaces/world_lattice.h"
 
 namespace shlight {
 
@@ -34,6 +36,7 @@ struct LightRecord {
     /// Sectors of directions along the surface.
     static constexpr std::size_t kSectors = 8;
 
+    WorldCell cell;  ///< that it stands for
     Vec3d position;
     Vec3d normal;         ///< unit
     Vec3d along, across;  ///< unit, at right angles to the normal and each other
@@ -68,7 +71,11 @@ struct RecordedLight {
 class LightRecords {
   public:
     std::span<const LightRecord> all() const { return records_; }
-    void add(LightRecord record) { records_.push_back(std::move(record)); }
+    void add(LightRecord record) {
+        cells_.insert(record.cell);
+        records_.push_back(std::move(record));
+    }
+    bool has(const WorldCell& cell) const { return cells_.contains(cell); }
     /// Lets a record reach less far.
     void shrink(std::size_t record, double radius) { records_[record].radius = radius; }
     /// To be called once records were added or shrunk, before any of the functions below.
@@ -117,6 +124,7 @@ class LightRecords {
     class Diffuse;
 
     std::vector<LightRecord> records_;
+    std::unordered_set<WorldCell, WorldCellHash> cells_;  // of the records
     std::vector<Grid> grids_;
 };
 
