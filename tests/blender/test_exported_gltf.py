@@ -20,7 +20,7 @@ pytest.importorskip("PIL")
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 def test_a_scene_by_way_of_gltf_is_the_scene(studio: Any, tmp_path: Path) -> None:
-    # Of glTF's distributions, and with a picture.
+    # The distribution is one that glTF has, and the colour is a picture.
     gloss = {"Roughness": 0.2, "distribution": "GGX"}
     painted = studio.material("ShaderNodeBsdfPrincipled", "Painted", Metallic=0.5, **gloss)
     nodes, links = painted.node_tree.nodes, painted.node_tree.links

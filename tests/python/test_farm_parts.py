@@ -113,4 +113,4 @@ def test_coefficients_of_the_example() -> None:
     spheres = example["lights"](5000).rechunk((1000, 4))
     found = example["coefficients"](spheres).compute(scheduler="sync")
     values = spheres.compute(scheduler="sync")
-    np.testing.assert_array_equal(found, shlight.sphere_coefficients(values[:, :3], values[:, 3], 4))
+    np.testing.assert_array_equal(found, shlight.sphere_coefficients(values[:, :3], values[:, 3], 4, dtype=np.float32))
